@@ -16,9 +16,9 @@ use crate::save::course::Course;
 /// Frames closer to the identity than this leave stored numbers unchanged: f32 resolves 6e-8.
 const UNTURNED: f64 = 1e-7;
 
-/// Triangles whose gradients are computed in parallel before they are summed in order. The size is fixed, so that sums
-/// do not depend on the number of threads.
-const BLOCK: usize = 1 << 16;
+/// Triangles whose gradients are computed in parallel before they are summed in order: as many as stay in the cache
+/// between the two. Sums do not depend on it.
+const BLOCK: usize = 1 << 14;
 
 const NO_GROUP: u32 = u32::MAX;
 
@@ -36,10 +36,12 @@ impl Frames {
         let (of_groups, course) = course.split(0.4);
         let (group_of, group_count) = group(drawn, positions, normals, &of_groups)?;
         let mut sums = vec![(DMat3::ZERO, 0.0_f64); group_count];
+        let mut gradients = Vec::with_capacity(BLOCK);
         for (number, block) in drawn.triangles.chunks(BLOCK).enumerate() {
             course.reach(number * BLOCK, drawn.triangles.len())?;
-            let gradients: Vec<(DMat3, f64)> = block
+            block
                 .par_iter()
+                .with_min_len(BLOCK / 16)
                 .map(|corners| {
                     if corners.iter().all(|corner| group_of[corner.index()] == NO_GROUP) {
                         return (DMat3::ZERO, 0.0);
@@ -54,8 +56,8 @@ impl Frames {
                         (DMat3::ZERO, 0.0)
                     }
                 })
-                .collect();
-            for (corners, (gradient, area)) in block.iter().zip(gradients) {
+                .collect_into_vec(&mut gradients);
+            for (corners, &(gradient, area)) in block.iter().zip(&gradients) {
                 if area == 0.0 {
                     continue;
                 }

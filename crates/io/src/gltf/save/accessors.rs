@@ -28,8 +28,9 @@ pub(crate) fn with_changes<'a>(
     course: &Course<'_>,
 ) -> Result<Patched<'a>, SaveError> {
     let (of_plan, course) = course.split(0.5);
-    let copies = copy_on_write::plan_meshes(document, meshes, pieces, changes, &of_plan)?;
-    let plans = copy_on_write::plan_accessors(document, meshes, &copies, changes, &of_plan)?;
+    let hashes = copy_on_write::hashes(changes);
+    let copies = copy_on_write::plan_meshes(document, meshes, pieces, changes, &hashes, &of_plan)?;
+    let plans = copy_on_write::plan_accessors(document, meshes, &copies, changes, &hashes, &of_plan)?;
     let mut patch = Patch::new(document);
     let places = Places::of(document);
     for (number, (&accessor, plan)) in plans.iter().enumerate() {
@@ -105,12 +106,11 @@ impl Patch<'_> {
             (None, _, Some(dense)) => Some((dense.buffer, dense.element(element as usize))),
             _ => None,
         };
-        let places: Vec<_> = version
-            .change
-            .iter()
-            .map(|&(element, _)| bytes_of(element))
-            .collect::<Option<_>>()?;
-        for ((buffer, range), (_, new)) in places.into_iter().zip(version.change) {
+        if version.change.iter().any(|&(element, _)| bytes_of(element).is_none()) {
+            return None;
+        }
+        for &(element, new) in version.change {
+            let (buffer, range) = bytes_of(element)?;
             let bytes = &mut self.own(buffer)?[range];
             for (bytes, number) in bytes.chunks_exact_mut(4).zip(&new[..layout.lanes]) {
                 bytes.copy_from_slice(&number.to_le_bytes());

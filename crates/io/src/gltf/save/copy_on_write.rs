@@ -16,6 +16,7 @@ use crate::gltf::geometry::primitive::Primitive;
 use crate::gltf::save::changes::{Change, InstanceChange, Rest, Semantic};
 use crate::save::course::Course;
 use pliant_mesh::Cancelled;
+use rayon::prelude::*;
 
 /// A mesh after the edit: the file's own, or a clone of it.
 #[derive(Clone, PartialEq, Debug)]
@@ -72,29 +73,39 @@ static UNCHANGED: Change = Change::new();
 /// hash.
 const MOST_CLASSES_COMPARED: usize = 64;
 
+/// Elements that are hashed at a time.
+const BLOCK: usize = 1 << 13;
+
 /// A number for each instance's changes, by attribute; equal for equal ones.
-fn hashes(changes: &[InstanceChange]) -> Vec<[u64; 3]> {
-    let of_change = |change: &Change| {
+pub(crate) fn hashes(changes: &[InstanceChange]) -> Vec<[u64; 3]> {
+    let of_block = |block: &[(u32, [f32; 4])]| {
         let mut hasher = DefaultHasher::new();
-        for (element, new) in change {
+        for (element, new) in block {
             // Adding zero makes 0 of -0, which is equal to it.
             (element, new.map(|number| (number + 0.0).to_bits())).hash(&mut hasher);
         }
+        hasher.finish()
+    };
+    let of_change = |change: &Change| {
+        let blocks: Vec<u64> = change.par_chunks(BLOCK).map(of_block).collect();
+        let mut hasher = DefaultHasher::new();
+        blocks.hash(&mut hasher);
         hasher.finish()
     };
     let of_instance = |instance: &InstanceChange| Semantic::ALL.map(|semantic| of_change(instance.of(semantic)));
     changes.iter().map(of_instance).collect()
 }
 
-/// The meshes after the edit, the file's own first (mesh `m` is copy `m`), then the clones.
+/// The meshes after the edit, the file's own first (mesh `m` is copy `m`), then the clones. `hashes` are those of the
+/// changes.
 pub(crate) fn plan_meshes(
     document: &Document,
     meshes: &[Vec<Primitive>],
     pieces: &Pieces,
     changes: &[InstanceChange],
+    hashes: &[[u64; 3]],
     course: &Course<'_>,
 ) -> Result<Vec<MeshCopy>, Cancelled> {
-    let hashes = hashes(changes);
     let mut copies: Vec<MeshCopy> = meshes
         .iter()
         .enumerate()
@@ -187,9 +198,10 @@ pub(crate) fn plan_accessors<'a>(
     meshes: &[Vec<Primitive>],
     copies: &[MeshCopy],
     changes: &'a [InstanceChange],
+    hashes: &[[u64; 3]],
     course: &Course<'_>,
 ) -> Result<BTreeMap<usize, AccessorPlan<'a>>, Cancelled> {
-    let mut versions = versions_of_accessors(meshes, copies, changes, course)?;
+    let mut versions = versions_of_accessors(meshes, copies, changes, hashes, course)?;
     versions.retain(|_, versions| versions.iter().any(|version| !version.change.is_empty()));
     let elsewhere = used_elsewhere(document, meshes);
     let plans = versions
@@ -225,9 +237,9 @@ fn versions_of_accessors<'a>(
     meshes: &[Vec<Primitive>],
     copies: &[MeshCopy],
     changes: &'a [InstanceChange],
+    hashes: &[[u64; 3]],
     course: &Course<'_>,
 ) -> Result<BTreeMap<usize, Vec<AccessorVersion<'a>>>, Cancelled> {
-    let hashes = hashes(changes);
     let mut versions: BTreeMap<usize, Vec<AccessorVersion<'a>>> = BTreeMap::new();
     // For each accessor and hash, which of the accessor's versions have it.
     let mut known: HashMap<(usize, u64), Vec<usize>> = HashMap::new();

@@ -30,7 +30,8 @@ pub(crate) fn with_target<'a>(
     course: &Course<'_>,
 ) -> Result<Patched<'a>, SaveError> {
     let (of_plan, course) = course.split(0.3);
-    let copies = copy_on_write::plan_meshes(document, meshes, pieces, changes, &of_plan)?;
+    let hashes = copy_on_write::hashes(changes);
+    let copies = copy_on_write::plan_meshes(document, meshes, pieces, changes, &hashes, &of_plan)?;
     let nodes = nodes_of_copies(document, &copies);
     let mut maker = TargetMaker {
         patch: Patch::new(document),
