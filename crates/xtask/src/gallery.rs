@@ -5,7 +5,7 @@ use std::fs;
 use std::process::Command;
 
 use crate::assets::SAMPLES;
-use crate::process::{cargo, said, succeed, target_folder};
+use crate::process::{build_program, cargo, said, target_folder};
 
 /// The methods of the gallery. Beside each method with its defaults, options that change what it can do.
 const METHODS: &str = "bilaplacian,poisson,laplacian,frames,frames:iterations=20,arap,arap:energy=smooth,primo,shells";
@@ -33,14 +33,7 @@ const SIZE: &str = "1200x640";
 /// # Errors
 /// One sentence naming what can't be built, drawn or written.
 pub fn gallery() -> Result<(), String> {
-    succeed(&mut cargo(&[
-        "build",
-        "--release",
-        "-p",
-        "pliant-app",
-        "--bin",
-        "pliant",
-    ]))?;
+    build_program()?;
     let root = crate::root();
     let page = root.join("docs/methods.md");
     let mut text = fs::read_to_string(&page).map_err(|e| format!("{} can't be read: {e}.", page.display()))?;

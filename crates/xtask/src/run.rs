@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::install::{Consent, Prepared, prepare};
-use crate::process::{cargo, succeed, target_folder};
+use crate::process::{build_program, cargo, succeed, target_folder};
 use crate::requirement::{PICTURES, WINDOW};
 
 /// Builds Pliant and opens its window on `file` or on the sample. Without a display, applies the sample's edit
@@ -72,15 +72,7 @@ fn headless(consent: Consent) -> Result<(), String> {
 /// Builds Pliant in release.
 fn build() -> Result<(), String> {
     println!("Building Pliant; the first time takes some minutes.");
-    succeed(&mut cargo(&[
-        "build",
-        "--locked",
-        "--release",
-        "--package",
-        "pliant-app",
-        "--bin",
-        "pliant",
-    ]))
+    build_program()
 }
 
 /// Runs the built program in the workspace's folder.

@@ -8,7 +8,7 @@ use super::Scale;
 use super::meshes::creature_glb;
 use super::table::{Row, folder};
 use crate::display::{Display, Screen};
-use crate::process::{cargo, succeed, target_folder};
+use crate::process::{build_program, target_folder};
 use crate::system;
 
 /// Starts of each file, of which the median counts.
@@ -26,15 +26,7 @@ const NEAR: f64 = 0.25;
 
 /// One row per file.
 pub fn rows(scale: Scale) -> Result<Vec<Row>, String> {
-    succeed(&mut cargo(&[
-        "build",
-        "--locked",
-        "--release",
-        "--package",
-        "pliant-app",
-        "--bin",
-        "pliant",
-    ]))?;
+    build_program()?;
     let mut files = vec![(30_000, crate::root().join("assets/creature.glb"))];
     files.push((1_000_000, creature_glb(1_000_000)?));
     if scale == Scale::Full {
