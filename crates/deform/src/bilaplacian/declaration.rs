@@ -92,11 +92,7 @@ impl DeformMethod for Bilaplacian {
 impl BoundMethod for BilaplacianSolver {
     fn step(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> Result<Stepped, SolveError> {
         let finite = self.frame(motions, displacements);
-        Ok(Stepped {
-            converged: true,
-            energy: self.energy(motions),
-            finite,
-        })
+        Ok(Stepped::at_once(self.energy(motions), finite))
     }
 
     fn step_by_back_substitution(
@@ -105,11 +101,10 @@ impl BoundMethod for BilaplacianSolver {
         displacements: &mut [DVec3],
     ) -> Result<Stepped, SolveError> {
         self.frame_by_back_substitution(motions, displacements)?;
-        Ok(Stepped {
-            converged: true,
-            energy: BilaplacianSolver::energy_of(self, motions, displacements),
-            finite: Finite::Unknown,
-        })
+        Ok(Stepped::at_once(
+            BilaplacianSolver::energy_of(self, motions, displacements),
+            Finite::Unknown,
+        ))
     }
 
     fn energy_of(&self, motions: &[Motion], displacements: &[DVec3]) -> Option<f64> {

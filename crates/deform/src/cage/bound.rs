@@ -45,11 +45,7 @@ impl BoundMethod for BoundCage {
                 Finite::Unknown
             }
         };
-        Ok(Stepped {
-            converged: true,
-            energy: 0.0,
-            finite,
-        })
+        Ok(Stepped::at_once(0.0, finite))
     }
 
     fn jacobians(&self, motions: &[Motion], out: &mut [Mat3]) -> bool {

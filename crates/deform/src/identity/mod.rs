@@ -78,11 +78,7 @@ impl BoundMethod for BoundIdentity {
                 displacements[vertex as usize] = motion.displace(coordinates) * self.share;
             }
         }
-        Ok(Stepped {
-            converged: true,
-            energy: 0.0,
-            finite: Finite::Unknown,
-        })
+        Ok(Stepped::at_once(0.0, Finite::Unknown))
     }
 
     fn solved_count(&self) -> usize {

@@ -64,11 +64,7 @@ const SMALL_RAD: f64 = 0.2;
 impl BoundMethod for LaplacianSolver {
     fn step(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> Result<Stepped, SolveError> {
         let energy = self.frame(motions, displacements)?;
-        Ok(Stepped {
-            converged: true,
-            energy,
-            finite: Finite::Unknown,
-        })
+        Ok(Stepped::at_once(energy, Finite::Unknown))
     }
 
     fn rest(&mut self) {

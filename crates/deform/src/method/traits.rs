@@ -264,6 +264,17 @@ pub(crate) struct Stepped {
     pub finite: Finite,
 }
 
+impl Stepped {
+    /// The one step of a method that solves at once, after which further steps to the same motions change nothing.
+    pub(crate) fn at_once(energy: f64, finite: Finite) -> Self {
+        Self {
+            converged: true,
+            energy,
+            finite,
+        }
+    }
+}
+
 /// Whether a shape was found to be finite while it was computed.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Finite {

@@ -113,11 +113,7 @@ impl BoundMethod for BoundTurning {
         let finite = self.moving.displace(motions, displacements, |number| {
             self.unit.length * displacement(self.turning, self.places[number], self.row(number), &handles)
         });
-        Ok(Stepped {
-            converged: true,
-            energy: 0.0,
-            finite,
-        })
+        Ok(Stepped::at_once(0.0, finite))
     }
 
     fn jacobians(&self, motions: &[Motion], out: &mut [Mat3]) -> bool {

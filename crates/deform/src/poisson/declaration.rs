@@ -47,11 +47,7 @@ impl DeformMethod for Poisson {
 impl BoundMethod for PoissonSolver {
     fn step(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> Result<Stepped, SolveError> {
         let energy = self.frame(motions, displacements)?;
-        Ok(Stepped {
-            converged: true,
-            energy,
-            finite: Finite::Unknown,
-        })
+        Ok(Stepped::at_once(energy, Finite::Unknown))
     }
 
     fn rest(&mut self) {

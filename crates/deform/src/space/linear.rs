@@ -32,11 +32,7 @@ impl BoundLinear {
 
 impl BoundMethod for BoundLinear {
     fn step(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> Result<Stepped, SolveError> {
-        Ok(Stepped {
-            converged: true,
-            energy: 0.0,
-            finite: self.field.frame(motions, displacements),
-        })
+        Ok(Stepped::at_once(0.0, self.field.frame(motions, displacements)))
     }
 
     fn jacobians(&self, motions: &[Motion], out: &mut [Mat3]) -> bool {

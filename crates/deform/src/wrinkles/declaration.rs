@@ -8,8 +8,8 @@ use super::{Wrinkled, Wrinkles};
 use crate::bilaplacian::solver::BilaplacianSolver;
 use crate::handles::{Motion, clear};
 use crate::method::{
-    Attachment, AttachmentDeclaration, AttachmentKind, BindInput, BoundMethod, ConstraintKind, DeformMethod, Finite,
-    MethodDeclaration, Needs, Solve, Stepped,
+    Attachment, AttachmentDeclaration, AttachmentKind, BindInput, BoundMethod, DeformMethod, Finite, MethodDeclaration,
+    Needs, Solve, Stepped,
 };
 use crate::operators::triangulation::Triangulation;
 use crate::{BindError, Problem, ReusableFactor, SolveError};
@@ -30,11 +30,7 @@ pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
                that is left out is 1",
         kind: AttachmentKind::Shapes,
     }],
-    heeds: &[
-        ConstraintKind::SoftHandles,
-        ConstraintKind::Continuity,
-        ConstraintKind::Stiffness,
-    ],
+    heeds: crate::bilaplacian::DECLARATION.heeds,
     default: || Wrinkles::default().into(),
     first_choice: || Wrinkles::default().into(),
 };
@@ -82,11 +78,7 @@ impl BoundMethod for Wrinkled {
         } else {
             self.frame(motions, displacements);
         }
-        Ok(Stepped {
-            converged: true,
-            energy: self.bending.energy(motions),
-            finite: Finite::Unknown,
-        })
+        Ok(Stepped::at_once(self.bending.energy(motions), Finite::Unknown))
     }
 
     fn step_by_back_substitution(
@@ -95,11 +87,7 @@ impl BoundMethod for Wrinkled {
         displacements: &mut [DVec3],
     ) -> Result<Stepped, SolveError> {
         self.frame_by_back_substitution(motions, displacements)?;
-        Ok(Stepped {
-            converged: true,
-            energy: self.bending.energy(motions),
-            finite: Finite::Unknown,
-        })
+        Ok(Stepped::at_once(self.bending.energy(motions), Finite::Unknown))
     }
 
     fn reusable_factor(&self) -> Option<ReusableFactor> {

@@ -115,6 +115,12 @@ pub(super) fn when_open<V>(state: &State<'_>, _: &V) -> Option<Reason> {
     state.unopened()
 }
 
+/// What needs a handle, whether selected or not.
+pub(super) fn with_handles<V>(state: &State<'_>, _: &V) -> Option<Reason> {
+    let is_any = !state.workspace.document.handles().is_empty();
+    unless(is_any, "There is no handle yet: paint one on the surface.")
+}
+
 /// What can be done with a selected handle that is not locked.
 pub(super) fn with_unlocked<V>(state: &State<'_>, _: &V) -> Option<Reason> {
     state.unlocked().err()

@@ -1,7 +1,7 @@
 //! Making and choosing handles, and how they hold.
 
 use super::entry::{
-    Action, Entry, Scope, alt, character, item, plain, shift, unless, when_open, with_selected, with_unlocked,
+    Action, Entry, Scope, alt, character, item, plain, shift, when_open, with_handles, with_selected, with_unlocked,
 };
 use crate::document::{HandleId, Reach};
 use crate::input::Key;
@@ -164,10 +164,7 @@ pub(super) const SELECT_ALL: Entry<()> = Entry {
         &[character('a')],
     )],
     scope: Scope::Document,
-    unavailable: |state, ()| {
-        let is_any = !state.workspace.document.handles().is_empty();
-        unless(is_any, "There is no handle yet: paint one on the surface.")
-    },
+    unavailable: with_handles,
     action: Action::Do(|context, ()| {
         let workspace = &mut *context.workspace;
         workspace.controls.put([]);
@@ -185,10 +182,7 @@ pub(super) const NEXT_HANDLE: Entry<()> = Entry {
         &[plain(Key::Tab)],
     )],
     scope: Scope::Document,
-    unavailable: |state, ()| {
-        let is_any = !state.workspace.document.handles().is_empty();
-        unless(is_any, "There is no handle yet: paint one on the surface.")
-    },
+    unavailable: with_handles,
     action: Action::Do(|context, ()| {
         let workspace = &mut *context.workspace;
         workspace.controls.put([]);

@@ -122,11 +122,7 @@ impl BoundMethod for Multiresolution {
     fn step(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> Result<Stepped, SolveError> {
         self.bending.frame(motions, displacements);
         self.reconstruct(motions, displacements)?;
-        Ok(Stepped {
-            converged: true,
-            energy: self.bending.energy(motions),
-            finite: Finite::Unknown,
-        })
+        Ok(Stepped::at_once(self.bending.energy(motions), Finite::Unknown))
     }
 
     fn step_by_back_substitution(
@@ -137,11 +133,7 @@ impl BoundMethod for Multiresolution {
         self.bending.frame_by_back_substitution(motions, displacements)?;
         let energy = self.bending.energy_of(motions, displacements);
         self.reconstruct(motions, displacements)?;
-        Ok(Stepped {
-            converged: true,
-            energy,
-            finite: Finite::Unknown,
-        })
+        Ok(Stepped::at_once(energy, Finite::Unknown))
     }
 
     fn base(&self, positions: &mut [DVec3]) -> bool {
