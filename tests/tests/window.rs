@@ -626,6 +626,15 @@ fn the_windows_loops_wait_for_no_job() {
     assert!(session.harness.state().drawings() > drawings, "and all that was shown");
 }
 
+/// "Make cage or lattice" is listed earlier, and a lattice has first to be the method.
+#[test]
+fn the_palette_offers_what_can_be_done_now_first() {
+    let Some(mut session) = Session::begin() else { return };
+    session.palette("lattice");
+    session.key(Key::Enter, Modifiers::NONE);
+    assert_eq!(session.harness.state().editor().document().method().name(), "lattice");
+}
+
 #[test]
 fn escape_closes_the_window_on_top_and_then_means_the_editor_again() {
     let Some(mut session) = Session::begin() else { return };

@@ -124,7 +124,7 @@ impl Palette {
 }
 
 /// What matches, the best first: what begins with what was typed, then what has it, then what is also called so, then
-/// what has its letters in order.
+/// what has its letters in order. Of what matches as well, what can be done now comes first.
 fn entries(context: &egui::Context, editor: &Editor, typed: &str) -> Vec<Entry> {
     let typed = typed.trim().to_lowercase();
     let listed = Command::all_listed().map(|listed| Entry {
@@ -169,7 +169,9 @@ fn entries(context: &egui::Context, editor: &Editor, typed: &str) -> Vec<Entry> 
         .chain(files)
         .filter_map(|entry| Some((rank(&entry.name.to_lowercase(), entry.keywords, &typed)?, entry)))
         .collect();
-    found.sort_by_key(|(rank, _)| *rank);
+    // Before anything is typed the order is that of the list.
+    let is_sought = !typed.is_empty();
+    found.sort_by_key(|(rank, entry)| (*rank, is_sought && entry.obstacle.is_some()));
     found.into_iter().map(|(_, entry)| entry).collect()
 }
 
