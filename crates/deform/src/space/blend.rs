@@ -179,7 +179,7 @@ impl Hold {
         if self.world_places.is_empty() || beside.distance_squared(place) >= width * width {
             return None;
         }
-        let &(nearest, distance) = self.tree.nearest(place, 1).first()?;
+        let &(nearest, distance) = self.tree.nearest_within(place, 1, width).first()?;
         (distance < width).then(|| place - self.world_places[nearest as usize])
     }
 }

@@ -1,5 +1,7 @@
 //! The nearest few of some points.
 
+use std::ops::Range;
+
 use glam::DVec3;
 
 /// Points in a balanced k-d tree: in each range the middle one splits the others along the axis in which they extend
@@ -16,6 +18,9 @@ pub(crate) struct Neighbours {
 /// Ranges of so few points are not split.
 const LEAF: usize = 8;
 
+/// Ranges of more points are split in parallel.
+const LARGE: usize = 1 << 12;
+
 impl Neighbours {
     pub fn of(points: &[DVec3]) -> Self {
         let mut order: Vec<u32> = (0..points.len() as u32).collect();
@@ -31,42 +36,76 @@ impl Neighbours {
     /// The nearest `count` points with their distances, nearest first, of equally near ones the lowest number; fewer if
     /// there are not so many.
     pub fn nearest(&self, to: DVec3, count: usize) -> Vec<(u32, f64)> {
-        let mut found = Vec::with_capacity(count + 1);
-        if count > 0 {
-            self.search(to, count, 0, self.order.len(), &mut found);
-        }
-        found
-            .into_iter()
-            .map(|(square, number): (f64, u32)| (number, square.sqrt()))
-            .collect()
+        self.nearest_within(to, count, f64::INFINITY)
     }
 
-    fn search(&self, to: DVec3, count: usize, start: usize, end: usize, found: &mut Vec<(f64, u32)>) {
-        let mut offer = |place: usize| {
-            let candidate = (self.points[place].distance_squared(to), self.order[place]);
-            let at = found.partition_point(|other| *other < candidate);
-            if at < count {
-                found.insert(at, candidate);
-                found.truncate(count);
-            }
+    /// The same of those that are at most `limit` away.
+    pub fn nearest_within(&self, to: DVec3, count: usize, limit: f64) -> Vec<(u32, f64)> {
+        if count == 0 {
+            return Vec::new();
+        }
+        let mut search = Search {
+            tree: self,
+            to,
+            count,
+            limit_square: limit * limit,
+            found: Vec::with_capacity(count.min(self.order.len()) + 1),
         };
-        if end - start <= LEAF {
-            (start..end).for_each(offer);
+        search.range(0..self.order.len(), DVec3::ZERO);
+        let found = search.found.into_iter();
+        found.map(|(square, number)| (number, square.sqrt())).collect()
+    }
+}
+
+/// One search through the tree.
+struct Search<'a> {
+    tree: &'a Neighbours,
+    to: DVec3,
+    count: usize,
+    limit_square: f64,
+    /// What was found, with the squared distances.
+    found: Vec<(f64, u32)>,
+}
+
+impl Search<'_> {
+    /// Goes through a range whose box is at least `away` from the point, axis by axis [AM93].
+    fn range(&mut self, range: Range<usize>, away: DVec3) {
+        if range.len() <= LEAF {
+            range.for_each(|place| self.offer(place));
             return;
         }
-        let middle = usize::midpoint(start, end);
-        offer(middle);
-        let axis = usize::from(self.axes[middle]);
-        let beyond = to[axis] - self.points[middle][axis];
-        let (near, far) = if beyond < 0.0 {
-            ((start, middle), (middle + 1, end))
-        } else {
-            ((middle + 1, end), (start, middle))
-        };
-        self.search(to, count, near.0, near.1, found);
-        let reach = found.get(count - 1).map_or(f64::INFINITY, |(square, _)| *square);
-        if beyond * beyond <= reach {
-            self.search(to, count, far.0, far.1, found);
+        let middle = usize::midpoint(range.start, range.end);
+        self.offer(middle);
+        let axis = usize::from(self.tree.axes[middle]);
+        let beyond = self.to[axis] - self.tree.points[middle][axis];
+        let (below, above) = (range.start..middle, middle + 1..range.end);
+        let (near, far) = if beyond < 0.0 { (below, above) } else { (above, below) };
+        self.range(near, away);
+        let mut away = away;
+        away[axis] = beyond;
+        if away.length_squared() <= self.reach_square() {
+            self.range(far, away);
+        }
+    }
+
+    /// The squared distance beyond which nothing is sought any more.
+    fn reach_square(&self) -> f64 {
+        let farthest = self.found.get(self.count - 1);
+        farthest.map_or(self.limit_square, |(square, _)| *square)
+    }
+
+    fn offer(&mut self, place: usize) {
+        let candidate = (
+            self.tree.points[place].distance_squared(self.to),
+            self.tree.order[place],
+        );
+        if candidate.0 > self.limit_square {
+            return;
+        }
+        let at = self.found.partition_point(|other| *other < candidate);
+        if at < self.count {
+            self.found.insert(at, candidate);
+            self.found.truncate(self.count);
         }
     }
 }
@@ -89,8 +128,17 @@ fn split(points: &[DVec3], order: &mut [u32], axes: &mut [u8]) {
     };
     order.select_nth_unstable_by(middle, by_axis);
     axes[middle] = axis as u8;
-    split(points, &mut order[..middle], &mut axes[..middle]);
-    split(points, &mut order[middle + 1..], &mut axes[middle + 1..]);
+    let (before, rest) = order.split_at_mut(middle);
+    let (axes_before, axes_rest) = axes.split_at_mut(middle);
+    if middle > LARGE {
+        rayon::join(
+            || split(points, before, axes_before),
+            || split(points, &mut rest[1..], &mut axes_rest[1..]),
+        );
+    } else {
+        split(points, before, axes_before);
+        split(points, &mut rest[1..], &mut axes_rest[1..]);
+    }
 }
 
 #[cfg(test)]
@@ -116,6 +164,9 @@ mod tests {
                 expected.truncate(count);
                 let expected: Vec<(u32, f64)> = expected.into_iter().map(|(square, n)| (n, square.sqrt())).collect();
                 assert_eq!(tree.nearest(to, count), expected);
+                let limit = 0.4;
+                let near = expected.into_iter().filter(|(_, distance)| *distance <= limit);
+                assert_eq!(tree.nearest_within(to, count, limit), near.collect::<Vec<_>>());
             }
         }
         assert!(Neighbours::of(&[]).nearest(DVec3::ZERO, 3).is_empty());
