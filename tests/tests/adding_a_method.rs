@@ -40,7 +40,7 @@ fn no_file_of_the_program_but_its_folder_its_module_and_the_list_names_it() {
         }
     }
     let mut found = Vec::new();
-    for name in ["app", "deform", "editor", "io", "mesh", "render"] {
+    for name in ["app", "deform", "editor", "engine", "io", "mesh", "render"] {
         let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates");
         search(&crates.join(name).join("src"), &mut found);
     }

@@ -16,10 +16,15 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("pliant-render", &[]),
     ("pliant-editor", &["pliant-deform", "pliant-mesh"]),
     (
+        "pliant-engine",
+        &["pliant-deform", "pliant-editor", "pliant-io", "pliant-mesh"],
+    ),
+    (
         "pliant-app",
         &[
             "pliant-deform",
             "pliant-editor",
+            "pliant-engine",
             "pliant-io",
             "pliant-mesh",
             "pliant-render",
@@ -34,6 +39,7 @@ const NEVER_LINKED: &[(&str, &[&str])] = &[
     ("pliant-io", &["wgpu", "naga", "egui", "eframe", "winit", "faer"]),
     ("pliant-render", &["egui", "eframe", "winit", "faer", "obvhs", "gltf"]),
     ("pliant-editor", &["wgpu", "naga", "egui", "eframe", "winit", "gltf"]),
+    ("pliant-engine", &["wgpu", "naga", "egui", "eframe", "winit"]),
 ];
 
 /// What a crate must not depend on directly.
@@ -61,6 +67,10 @@ const NEVER_WRITTEN: &[(&str, &[&str])] = &[
             "std::net",
             "std::process",
         ],
+    ),
+    (
+        "engine",
+        &["std::thread::spawn", "std::thread::scope", "std::net", "std::env"],
     ),
 ];
 

@@ -1,24 +1,19 @@
-//! The program: the command line, the window, files, threads and the clock. `pliant` itself is a thin binary over it.
+//! The program: the command line, the window, threads and the clock, over the engine. `pliant` itself is a thin binary
+//! over it.
 
 pub mod cli;
-pub mod control_mesh;
 pub mod drawing;
-pub mod engine;
-mod error;
-mod examples;
-pub mod files;
 pub mod legend;
-mod loading;
-mod memory;
 pub mod painting;
 mod picture_file;
-pub mod report;
-pub mod saving;
 pub mod sheet;
-mod transfer;
 mod version;
-pub mod watch;
 pub mod window;
 
-pub use error::AppError;
+/// The engine that both the command line and the window run.
+pub use pliant_engine as engine;
+pub use pliant_engine::EngineError as AppError;
+pub use pliant_engine::{files, report, saving, watch};
 pub use version::VERSION;
+
+use pliant_engine::{control_mesh, examples, memory};

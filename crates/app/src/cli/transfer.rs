@@ -5,7 +5,7 @@ use pliant_io::Format;
 use super::arguments::TransferArguments;
 use super::{Console, on_threads, print};
 use crate::AppError;
-use crate::transfer::{Transfer, transfer};
+use crate::engine::{Transfer, transfer};
 
 pub(super) fn run(arguments: &TransferArguments, console: &mut Console<'_>) -> Result<(), AppError> {
     let output_name = arguments.output.to_string_lossy();

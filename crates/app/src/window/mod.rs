@@ -36,7 +36,7 @@ pub use shell::{NumpadDigits, Shared, Shell};
 use files::settings::Settings;
 use shell::Listener;
 
-use crate::error::AppError;
+use crate::AppError;
 
 /// The variables that tell of a display, on systems with X11 or Wayland.
 const DISPLAYS: [&str; 3] = ["WAYLAND_DISPLAY", "WAYLAND_SOCKET", "DISPLAY"];

@@ -45,7 +45,7 @@ impl HandleTransform {
     }
 
     /// Whether no direction is flattened: what the formats read, too. A tiny scale is none the worse for that.
-    pub(crate) fn can_be_undone(&self) -> bool {
+    pub fn can_be_undone(&self) -> bool {
         match self {
             Self::Trs { scale, .. } => scale.is_finite() && !scale.cmpeq(DVec3::ZERO).any(),
             Self::Matrix(matrix) => matrix.is_finite() && !is_singular(&matrix.matrix3),

@@ -6,7 +6,7 @@ use pliant_io::{Bytes, Format, MorphTarget, ReadError, Resolver, Save, Scene};
 use pliant_mesh::{Cancel, Progress};
 
 use super::{Destination, Neighbours};
-use crate::AppError;
+use crate::EngineError;
 
 /// What was written and is not in its place yet.
 pub struct Written<'a> {
@@ -24,7 +24,7 @@ pub struct Written<'a> {
 /// It is the last check before the old file is replaced.
 ///
 /// # Errors
-/// [`AppError::ReadBack`] where it can't be read or shows another shape; [`AppError::Interrupted`] soon after `cancel`
+/// [`EngineError::ReadBack`] where it can't be read or shows another shape; [`EngineError::Interrupted`] soon after `cancel`
 /// is raised.
 pub fn read_back(
     written: &Written<'_>,
@@ -33,8 +33,8 @@ pub fn read_back(
     morph: Option<&MorphTarget<'_>>,
     progress: &Progress,
     cancel: &Cancel,
-) -> Result<(), AppError> {
-    let refuse = |what: String| AppError::ReadBack {
+) -> Result<(), EngineError> {
+    let refuse = |what: String| EngineError::ReadBack {
         file: written.output.given.clone(),
         what,
     };
@@ -50,10 +50,10 @@ pub fn read_back(
     let bytes = super::read(written.file)?;
     let format: Format = save.format;
     let back = pliant_io::read(bytes, format, &name, &resolver, progress, cancel).map_err(|error| match error {
-        ReadError::Cancelled(_) => AppError::Interrupted,
+        ReadError::Cancelled(_) => EngineError::Interrupted,
         error => refuse(error.to_string()),
     })?;
-    cancel.check().map_err(|_| AppError::Interrupted)?;
+    cancel.check().map_err(|_| EngineError::Interrupted)?;
     scene
         .check_read_back(save, morph, written.triangles.as_deref(), &back)
         .map_err(refuse)

@@ -7,7 +7,7 @@ use glam::DVec3;
 use pliant_editor::{Beginning, ExampleSource};
 use pliant_mesh::{Drawn, Model};
 
-use crate::AppError;
+use crate::EngineError;
 use crate::files::shown;
 use crate::loading::{Loaded, open};
 use crate::watch::Watch;
@@ -27,7 +27,7 @@ pub fn files(edit: &mut Beginning, edit_path: &Path) -> Vec<PathBuf> {
 ///
 /// # Errors
 /// A file that can't be read or has other vertices or triangles, and a morph target that `loaded` does not have.
-pub fn bring(edit: &mut Beginning, edit_path: &Path, loaded: &Loaded, watch: &Watch) -> Result<(), AppError> {
+pub fn bring(edit: &mut Beginning, edit_path: &Path, loaded: &Loaded, watch: &Watch) -> Result<(), EngineError> {
     let folder = edit_path.parent().unwrap_or(Path::new(""));
     for example in edit.examples_mut() {
         let of_drawn = match &example.source {
@@ -40,7 +40,7 @@ pub fn bring(edit: &mut Beginning, edit_path: &Path, loaded: &Loaded, watch: &Wa
     Ok(())
 }
 
-fn displacements_to(path: &Path, loaded: &Loaded, watch: &Watch) -> Result<Vec<DVec3>, AppError> {
+fn displacements_to(path: &Path, loaded: &Loaded, watch: &Watch) -> Result<Vec<DVec3>, EngineError> {
     let other = open(path, watch)?.drawn;
     let own = loaded.model.rest();
     check_connectivity((path, &other), (&loaded.path, &own))?;
@@ -51,8 +51,8 @@ fn displacements_to(path: &Path, loaded: &Loaded, watch: &Watch) -> Result<Vec<D
 /// Refuses a shape of other vertices or triangles than those of the file that it is to be a pose of.
 ///
 /// # Errors
-/// [`AppError::Example`].
-pub fn check_connectivity((path, other): (&Path, &Drawn), (file, own): (&Path, &Drawn)) -> Result<(), AppError> {
+/// [`EngineError::Example`].
+pub fn check_connectivity((path, other): (&Path, &Drawn), (file, own): (&Path, &Drawn)) -> Result<(), EngineError> {
     let counts = |drawn: &Drawn| {
         let (positions, triangles) = (drawn.positions.len(), drawn.triangles.len());
         format!("{positions} vertices and {triangles} triangles")
@@ -65,7 +65,7 @@ pub fn check_connectivity((path, other): (&Path, &Drawn), (file, own): (&Path, &
     } else {
         return Ok(());
     };
-    Err(AppError::Example {
+    Err(EngineError::Example {
         example: path.to_owned(),
         what,
         file: file.to_owned(),
@@ -73,18 +73,18 @@ pub fn check_connectivity((path, other): (&Path, &Drawn), (file, own): (&Path, &
     })
 }
 
-fn morph_target(target: &str, loaded: &Loaded, watch: &Watch) -> Result<Vec<DVec3>, AppError> {
+fn morph_target(target: &str, loaded: &Loaded, watch: &Watch) -> Result<Vec<DVec3>, EngineError> {
     let name = loaded.path.to_string_lossy();
     let count = loaded.model.drawn.vertex_count();
     let found = loaded.scene.morph_target(&name, target, count, &watch.cancel);
-    found.map_err(AppError::Read)?.ok_or_else(|| {
+    found.map_err(EngineError::Read)?.ok_or_else(|| {
         let known = loaded.scene.morph_targets();
         let remedy = match known.is_empty() {
             true => "it has none, so name a `file`".to_owned(),
             false => format!("it has {}", known.join(", ")),
         };
         let shown = shown(&loaded.path);
-        AppError::Unsupported(format!("{shown} has no morph target {target:?}: {remedy}"))
+        EngineError::Unsupported(format!("{shown} has no morph target {target:?}: {remedy}"))
     })
 }
 

@@ -7,7 +7,7 @@ use glam::DVec3;
 use pliant_editor::Beginning;
 use pliant_mesh::Drawn;
 
-use crate::AppError;
+use crate::EngineError;
 use crate::loading::open;
 use crate::watch::Watch;
 
@@ -16,12 +16,12 @@ use crate::watch::Watch;
 ///
 /// # Errors
 /// A file that can't be read, or a mesh that the method can't take.
-pub fn bring(edit: &mut Beginning, edit_path: &Path, watch: &Watch) -> Result<Vec<PathBuf>, AppError> {
+pub fn bring(edit: &mut Beginning, edit_path: &Path, watch: &Watch) -> Result<Vec<PathBuf>, EngineError> {
     let mut read = Vec::new();
     for (name, file) in edit.attachment_files() {
         let path = edit_path.parent().unwrap_or(Path::new("")).join(file);
         let mesh = control_mesh(&path, watch)?;
-        edit.bring(name, mesh).map_err(|source| AppError::Edit {
+        edit.bring(name, mesh).map_err(|source| EngineError::Edit {
             edit: edit_path.to_owned(),
             source,
         })?;
@@ -35,7 +35,7 @@ pub fn bring(edit: &mut Beginning, edit_path: &Path, watch: &Watch) -> Result<Ve
 ///
 /// # Errors
 /// As [`open`].
-pub fn control_mesh(path: &Path, watch: &Watch) -> Result<(Vec<DVec3>, Vec<[u32; 3]>), AppError> {
+pub fn control_mesh(path: &Path, watch: &Watch) -> Result<(Vec<DVec3>, Vec<[u32; 3]>), EngineError> {
     Ok(joined(&open(path, watch)?.drawn))
 }
 

@@ -24,7 +24,7 @@ use super::attributes::{self, OtherNames};
 use super::leftovers::{self, PREFIX, TEMPORARY};
 use super::lock::{FolderLock, Share};
 use super::{Destination, FileError, shown};
-use crate::AppError;
+use crate::EngineError;
 
 /// Bytes written between two checks whether the save was cancelled.
 const BLOCK: usize = 1 << 22;
@@ -151,12 +151,12 @@ impl Staging {
     /// left in them. All folders of a save must be locked in one call, so that two saves can't wait for each other.
     ///
     /// # Errors
-    /// Where a folder can't be written; [`AppError::Interrupted`] when `cancel` is raised.
+    /// Where a folder can't be written; [`EngineError::Interrupted`] when `cancel` is raised.
     pub fn hold<'a>(
         &self,
         folders: impl IntoIterator<Item = (&'a Destination, Share)>,
         cancel: &Cancel,
-    ) -> Result<Held, AppError> {
+    ) -> Result<Held, EngineError> {
         let mut wanted: Vec<(&Destination, Share)> = folders.into_iter().collect();
         // One order for all saves, and for each folder the stricter request.
         wanted.sort_by(|(a, of_a), (b, of_b)| a.home.cmp(&b.home).then(of_b.cmp(of_a)));
@@ -175,7 +175,7 @@ impl Staging {
             }
             let lock = FolderLock::take(&to.home, share, cancel, leftovers::clear).map_err(|error| {
                 if error.kind() == ErrorKind::Interrupted {
-                    AppError::Interrupted
+                    EngineError::Interrupted
                 } else {
                     FileError::writing(&to.given, error).into()
                 }
@@ -191,7 +191,7 @@ impl Staging {
     ///
     /// # Errors
     /// Where a file can't be written; nothing is left behind then.
-    pub fn stage<'a>(&self, files: impl IntoIterator<Item = (PathBuf, &'a [u8])>) -> Result<Staged, AppError> {
+    pub fn stage<'a>(&self, files: impl IntoIterator<Item = (PathBuf, &'a [u8])>) -> Result<Staged, EngineError> {
         let to = |(path, bytes): (PathBuf, &'a [u8])| {
             Ok(NewFile {
                 to: Destination::of(&path)?,
@@ -205,7 +205,7 @@ impl Staging {
     /// As [`Self::stage`], telling how far it is. With a bridge, the files are committed over it.
     ///
     /// # Errors
-    /// As [`Self::stage`]; [`AppError::Interrupted`] soon after `cancel` is raised, and nothing is left behind then
+    /// As [`Self::stage`]; [`EngineError::Interrupted`] soon after `cancel` is raised, and nothing is left behind then
     /// either.
     pub fn stage_watched(
         &self,
@@ -213,13 +213,13 @@ impl Staging {
         bridge: Option<&Bridge<'_>>,
         progress: &Progress,
         cancel: &Cancel,
-    ) -> Result<Staged, AppError> {
+    ) -> Result<Staged, EngineError> {
         let all = files.iter().map(|file| file.bytes.len()).sum::<usize>().max(1) as f64;
         let mut written = 0;
         let mut go_on = |bytes: usize| {
             written += bytes;
             progress.set((written as f64 / all) as f32);
-            cancel.check().map_err(|_| AppError::Interrupted)
+            cancel.check().map_err(|_| EngineError::Interrupted)
         };
         let held = self.hold(files.iter().map(|file| (&file.to, Share::Together)), cancel)?;
         let mut staged = Staged {
@@ -278,8 +278,8 @@ impl Staging {
     fn stage_one(
         &self,
         file: &NewFile<'_>,
-        go_on: &mut dyn FnMut(usize) -> Result<(), AppError>,
-    ) -> Result<StagedFile, AppError> {
+        go_on: &mut dyn FnMut(usize) -> Result<(), EngineError>,
+    ) -> Result<StagedFile, EngineError> {
         let NewFile { to, bytes } = file;
         let refuse = |error| FileError::writing(&to.given, error);
         let existing = to.existing()?;

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use pliant_io::{Format, Scene, SceneAndDrawn};
 use pliant_mesh::{Model, WeldOptions};
 
-use crate::AppError;
+use crate::EngineError;
 use crate::files::{self, Neighbours};
 use crate::watch::Watch;
 
@@ -34,8 +34,8 @@ impl Loaded {
 /// Reads and welds a file.
 ///
 /// # Errors
-/// A file that can't be read; [`AppError::Interrupted`] soon after `cancel` is raised.
-pub fn load(path: &Path, weld: &WeldOptions, watch: &Watch) -> Result<Loaded, AppError> {
+/// A file that can't be read; [`EngineError::Interrupted`] soon after `cancel` is raised.
+pub fn load(path: &Path, weld: &WeldOptions, watch: &Watch) -> Result<Loaded, EngineError> {
     load_bytes(read_mesh(path, watch)?, path, weld, watch)
 }
 
@@ -43,14 +43,14 @@ pub fn load(path: &Path, weld: &WeldOptions, watch: &Watch) -> Result<Loaded, Ap
 ///
 /// # Errors
 /// As [`load`].
-pub fn open(path: &Path, watch: &Watch) -> Result<SceneAndDrawn, AppError> {
+pub fn open(path: &Path, watch: &Watch) -> Result<SceneAndDrawn, EngineError> {
     open_bytes(read_mesh(path, watch)?, path, &Neighbours::of(path), watch)
 }
 
 /// The bytes of a mesh's file.
-fn read_mesh(path: &Path, watch: &Watch) -> Result<Vec<u8>, AppError> {
+fn read_mesh(path: &Path, watch: &Watch) -> Result<Vec<u8>, EngineError> {
     if is_project(path) {
-        return Err(AppError::ProjectAsFile(path.to_owned()));
+        return Err(EngineError::ProjectAsFile(path.to_owned()));
     }
     Format::of_name(&path.to_string_lossy())?;
     watch.begin("reading");
@@ -61,7 +61,7 @@ fn read_mesh(path: &Path, watch: &Watch) -> Result<Vec<u8>, AppError> {
 ///
 /// # Errors
 /// As [`load`].
-pub fn load_bytes(bytes: Vec<u8>, path: &Path, weld: &WeldOptions, watch: &Watch) -> Result<Loaded, AppError> {
+pub fn load_bytes(bytes: Vec<u8>, path: &Path, weld: &WeldOptions, watch: &Watch) -> Result<Loaded, EngineError> {
     let neighbours = Neighbours::of(path);
     let opened = open_bytes(bytes, path, &neighbours, watch)?;
     let loaded = welded(opened, path, weld, watch)?;
@@ -71,17 +71,22 @@ pub fn load_bytes(bytes: Vec<u8>, path: &Path, weld: &WeldOptions, watch: &Watch
     })
 }
 
-fn open_bytes(bytes: Vec<u8>, path: &Path, neighbours: &Neighbours, watch: &Watch) -> Result<SceneAndDrawn, AppError> {
+fn open_bytes(
+    bytes: Vec<u8>,
+    path: &Path,
+    neighbours: &Neighbours,
+    watch: &Watch,
+) -> Result<SceneAndDrawn, EngineError> {
     let name = path.to_string_lossy();
     let format = Format::of_name(&name)?;
     let progress = watch.begin("reading");
     let opened = pliant_io::read(bytes, format, &name, neighbours, &progress, &watch.cancel);
-    opened.map_err(AppError::Read)
+    opened.map_err(EngineError::Read)
 }
 
-fn welded(opened: SceneAndDrawn, path: &Path, weld: &WeldOptions, watch: &Watch) -> Result<Loaded, AppError> {
+fn welded(opened: SceneAndDrawn, path: &Path, weld: &WeldOptions, watch: &Watch) -> Result<Loaded, EngineError> {
     let progress = watch.begin("welding");
-    let model = Model::weld(opened.drawn, weld, &progress, &watch.cancel).map_err(|_| AppError::Interrupted)?;
+    let model = Model::weld(opened.drawn, weld, &progress, &watch.cancel).map_err(|_| EngineError::Interrupted)?;
     let model = model.with_objects(opened.scene.objects());
     Ok(Loaded {
         path: path.to_owned(),

@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use crate::files::{FileError, shown};
 
-/// A refusal. Its text is one line for the person; [`AppError::status`] is the program's exit status.
+/// A refusal. Its text is one line for the person; [`EngineError::status`] is the program's exit status.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
-pub enum AppError {
+pub enum EngineError {
     /// The arguments are wrong.
     #[error("{0}")]
     Arguments(String),
@@ -108,7 +108,7 @@ pub enum AppError {
     System(String),
 }
 
-impl AppError {
+impl EngineError {
     /// The exit status: 2 for wrong arguments, 1 for everything else.
     pub fn status(&self) -> u8 {
         match self {

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use super::error::in_words;
 use super::{folder_of, shown};
-use crate::AppError;
+use crate::EngineError;
 
 /// The most links to links that are followed, as in the system.
 const MOST_LINKS: usize = 40;
@@ -130,15 +130,15 @@ fn is_one_folder(a: &Path, b: &Path) -> bool {
 /// Refuses an output that is one of `others`, each with what it is ("FILE", "--edit").
 ///
 /// # Errors
-/// [`AppError::Arguments`], naming both.
+/// [`EngineError::Arguments`], naming both.
 pub fn refuse_shared<'a, 'b>(
     output: (&str, &Path),
     others: impl IntoIterator<Item = (&'a str, &'b Path)>,
-) -> Result<(), AppError> {
+) -> Result<(), EngineError> {
     let (role, path) = output;
     for (other_role, other) in others {
         if is_same(path, other) {
-            return Err(AppError::Arguments(format!(
+            return Err(EngineError::Arguments(format!(
                 "{role} {} is {other_role} as well: give it another name",
                 shown(path)
             )));

@@ -126,7 +126,7 @@ pub fn finite_or(value: f64, instead: f64) -> f64 {
 }
 
 /// Milliseconds since `start`.
-pub(crate) fn ms_since(start: Instant) -> f64 {
+pub fn ms_since(start: Instant) -> f64 {
     start.elapsed().as_secs_f64() * 1e3
 }
 

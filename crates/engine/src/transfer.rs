@@ -7,13 +7,13 @@ use pliant_io::MorphTarget;
 use pliant_mesh::{Drawn, SurfaceVertex, WeldOptions};
 use serde_json::Value;
 
-use crate::engine::{check_not_empty, refused};
+use crate::apply::{check_not_empty, refused};
 use crate::examples::check_connectivity;
 use crate::files::{self, Destination, Staging, shown};
 use crate::loading::{Loaded, load, open};
 use crate::saving::{self, SaveAs};
 use crate::watch::Watch;
-use crate::{AppError, memory};
+use crate::{EngineError, memory};
 
 /// What [`transfer`] is to do.
 #[derive(Clone, Debug)]
@@ -36,7 +36,7 @@ pub struct Transfer<'a> {
 ///
 /// # Errors
 /// Any refusal of the files, of what belongs together, of the solution or of the result. The output is then unchanged.
-pub fn transfer(job: &Transfer<'_>, watch: &Watch, staging: &Staging) -> Result<Vec<String>, AppError> {
+pub fn transfer(job: &Transfer<'_>, watch: &Watch, staging: &Staging) -> Result<Vec<String>, EngineError> {
     Destination::of(job.output)?;
     let inputs = [("SOURCE", job.source), ("POSE", job.pose)].into_iter();
     let inputs = inputs.chain(job.correspondences.map(|path| ("--correspondences", path)));
@@ -50,7 +50,7 @@ pub fn transfer(job: &Transfer<'_>, watch: &Watch, staging: &Staging) -> Result<
     let (partners, mut warnings) = partners(job, &source, &loaded)?;
 
     let progress = watch.begin("ordering");
-    let ordering = Ordering::of(&model.topology, 1, &progress, &watch.cancel).map_err(|_| AppError::Interrupted)?;
+    let ordering = Ordering::of(&model.topology, 1, &progress, &watch.cancel).map_err(|_| EngineError::Interrupted)?;
     watch.begin("binding");
     let (surface, topology) = (&model.surface, &model.topology);
     let bound = DeformationTransfer::bind(surface, topology, &ordering, memory::budget(), &watch.cancel)
@@ -64,7 +64,7 @@ pub fn transfer(job: &Transfer<'_>, watch: &Watch, staging: &Staging) -> Result<
     };
     let displacements = bound
         .pose(&posed, &partners)
-        .map_err(|error: SolveError| AppError::Solve {
+        .map_err(|error: SolveError| EngineError::Solve {
             file: job.target.to_owned(),
             source: error.renumbered(|vertex| model.first_file_vertex(SurfaceVertex(vertex)).0),
         })?;
@@ -80,7 +80,7 @@ pub fn transfer(job: &Transfer<'_>, watch: &Watch, staging: &Staging) -> Result<
     };
     let saved = saving::stage(&loaded, &save, staging, &progress, &watch.cancel)?;
     if watch.cancel.is_cancelled() {
-        return Err(AppError::Interrupted);
+        return Err(EngineError::Interrupted);
     }
     saved.staged.commit()?;
     warnings.extend(saved.warnings);
@@ -92,13 +92,13 @@ fn partners(
     job: &Transfer<'_>,
     source: &Drawn,
     loaded: &Loaded,
-) -> Result<(Vec<Option<usize>>, Vec<String>), AppError> {
+) -> Result<(Vec<Option<usize>>, Vec<String>), EngineError> {
     let target = loaded.model.rest();
     let of_drawn = match job.correspondences {
         Some(path) => read_correspondences(path, source.triangles.len(), target.triangles.len())?,
         None if target.triangles == source.triangles => (0..source.triangles.len()).map(Some).collect(),
         None => {
-            return Err(AppError::Unsupported(format!(
+            return Err(EngineError::Unsupported(format!(
                 "{} has {} triangles and {} has {} others: say with --correspondences which belong together",
                 shown(job.target),
                 target.triangles.len(),
@@ -132,9 +132,9 @@ fn partners(
 
 /// `{"triangles": [[source, target], ..]}`, both numbered from 0 as in the files: for each of the target's triangles that
 /// of the source.
-fn read_correspondences(path: &Path, sources: usize, targets: usize) -> Result<Vec<Option<usize>>, AppError> {
+fn read_correspondences(path: &Path, sources: usize, targets: usize) -> Result<Vec<Option<usize>>, EngineError> {
     let text = files::read_text(path)?;
-    let refuse = |what: String| AppError::Unsupported(format!("{}: {what}", shown(path)));
+    let refuse = |what: String| EngineError::Unsupported(format!("{}: {what}", shown(path)));
     let value: Value = serde_json::from_str(&text).map_err(|error| {
         let (line, column) = (error.line(), error.column());
         refuse(format!(

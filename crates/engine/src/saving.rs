@@ -7,7 +7,7 @@ use glam::DVec3;
 use pliant_io::{Format, MorphTarget, Role, Save, SaveError, Saved, with_neighbours_renamed};
 use pliant_mesh::{Cancel, Progress};
 
-use crate::AppError;
+use crate::EngineError;
 use crate::files::check::{self, Written};
 use crate::files::placement::{self, Action, Settled};
 use crate::files::{self, Bridge, Destination, NewFile, Share, Staged, Staging};
@@ -53,19 +53,19 @@ pub struct StagedSave {
 /// Prepares a model's files: encoded, written beside their targets, synced and read back, to be committed.
 ///
 /// # Errors
-/// If the format can't hold it or the disk can't take it; [`AppError::ReadBack`] if what was written shows another
-/// shape; [`AppError::Interrupted`] soon after `cancel` is raised. Nothing is left behind then.
+/// If the format can't hold it or the disk can't take it; [`EngineError::ReadBack`] if what was written shows another
+/// shape; [`EngineError::Interrupted`] soon after `cancel` is raised. Nothing is left behind then.
 pub fn stage(
     loaded: &Loaded,
     what: &SaveAs<'_>,
     staging: &Staging,
     progress: &Progress,
     cancel: &Cancel,
-) -> Result<StagedSave, AppError> {
+) -> Result<StagedSave, EngineError> {
     let to = Destination::of(what.output)?;
     let refuse = |source| match source {
-        SaveError::Cancelled(_) => AppError::Interrupted,
-        source => AppError::Save {
+        SaveError::Cancelled(_) => EngineError::Interrupted,
+        source => EngineError::Save {
             file: what.output.to_owned(),
             source,
         },
@@ -141,7 +141,7 @@ fn write(
     staging: &Staging,
     progress: &Progress,
     cancel: &Cancel,
-) -> Result<(Staged, Vec<String>), AppError> {
+) -> Result<(Staged, Vec<String>), EngineError> {
     // Neighbours first: the file that names them must not be there without them.
     let neighbours: Vec<&Settled> = settled
         .iter()

@@ -1,4 +1,4 @@
-//! The steps from a file on disk to an edited file on disk, for both the command line and the window: read → weld →
+//! The steps from a file on disk to an edited file on disk: read → weld →
 //! resolve the edit → order → bind → frames → distortion → save.
 //!
 //! Each step is a function of its own, so that the window can keep the results that have not changed; [`apply`] runs
@@ -13,10 +13,10 @@ use pliant_editor::{Beginning, Setup};
 use pliant_io::MorphTarget;
 use pliant_mesh::{Cancel, Model, Progress, SurfaceVertex, WeldOptions, vertex_normals};
 
-use crate::AppError;
+use crate::EngineError;
 use crate::examples;
 use crate::files::{self, Destination, NewFile, Staging};
-pub use crate::loading::{Loaded, is_project, load, load_bytes, open};
+use crate::loading::{Loaded, load};
 use crate::memory;
 use crate::report::{Distortion, Energy, ExampleWeight, FrameTimes, Report, finite_or, ms_since};
 use crate::saving::{self, SaveAs};
@@ -26,17 +26,17 @@ use crate::watch::Watch;
 /// method's own is too large for the memory that is left.
 ///
 /// # Errors
-/// [`AppError::Interrupted`] soon after `cancel` is raised.
+/// [`EngineError::Interrupted`] soon after `cancel` is raised.
 pub fn order(
     model: &Model,
     setup: &Setup,
     budget: Budget,
     progress: &Progress,
     cancel: &Cancel,
-) -> Result<Option<Ordering>, AppError> {
+) -> Result<Option<Ordering>, EngineError> {
     let power = setup.problem(model).ordering_power_within(budget);
     let ordering = power.map(|power| Ordering::of(&model.topology, power, progress, cancel));
-    ordering.transpose().map_err(|_| AppError::Interrupted)
+    ordering.transpose().map_err(|_| EngineError::Interrupted)
 }
 
 /// Binds a setup.
@@ -50,14 +50,14 @@ pub fn bind(
     ordering: Option<&Ordering>,
     budget: Budget,
     (progress, cancel): (&Progress, &Cancel),
-) -> Result<Bound, AppError> {
+) -> Result<Bound, EngineError> {
     let bound = setup.problem(model).bind_within(ordering, budget, progress, cancel);
     bound.map_err(|error| refused(file, model, error))
 }
 
 /// The refusal of a binding, which names vertices by the file's numbers.
-pub(crate) fn refused(file: &Path, model: &Model, error: BindError) -> AppError {
-    AppError::Bind {
+pub(crate) fn refused(file: &Path, model: &Model, error: BindError) -> EngineError {
+    EngineError::Bind {
         file: file.to_owned(),
         source: error.renumbered(|vertex| model.first_file_vertex(SurfaceVertex(vertex)).0),
     }
@@ -67,7 +67,7 @@ pub(crate) fn refused(file: &Path, model: &Model, error: BindError) -> AppError 
 ///
 /// # Errors
 /// [`BindError::NoTriangles`], naming `file`.
-pub fn check_bends(file: &Path, model: &Model, method: &Method) -> Result<(), AppError> {
+pub fn check_bends(file: &Path, model: &Model, method: &Method) -> Result<(), EngineError> {
     let checked = method.check_bends(&model.surface);
     checked.map_err(|error| refused(file, model, error))
 }
@@ -75,10 +75,10 @@ pub fn check_bends(file: &Path, model: &Model, method: &Method) -> Result<(), Ap
 /// Refuses a file that holds neither triangles nor points.
 ///
 /// # Errors
-/// [`AppError::Empty`].
-pub fn check_not_empty(file: &Path, model: &Model) -> Result<(), AppError> {
+/// [`EngineError::Empty`].
+pub fn check_not_empty(file: &Path, model: &Model) -> Result<(), EngineError> {
     if model.surface.positions.is_empty() {
-        return Err(AppError::Empty(file.to_owned()));
+        return Err(EngineError::Empty(file.to_owned()));
     }
     Ok(())
 }
@@ -108,7 +108,7 @@ pub struct Apply<'a> {
 ///
 /// # Errors
 /// Any refusal of the file, the edit or the result. OUT is then unchanged.
-pub fn apply(apply: &Apply<'_>, watch: &Watch, staging: &Staging) -> Result<Report, AppError> {
+pub fn apply(apply: &Apply<'_>, watch: &Watch, staging: &Staging) -> Result<Report, EngineError> {
     // What is no file is refused before anything is read.
     Destination::of(apply.output)?;
     let report_to = apply.report.map(Destination::of).transpose()?;
@@ -124,7 +124,7 @@ pub fn apply(apply: &Apply<'_>, watch: &Watch, staging: &Staging) -> Result<Repo
     check_not_empty(apply.file, model)?;
     let mut edit = apply.edit.clone();
     examples::bring(&mut edit, apply.edit_path, &loaded, watch)?;
-    let setup = edit.resolve(model).map_err(|source| AppError::Edit {
+    let setup = edit.resolve(model).map_err(|source| EngineError::Edit {
         edit: apply.edit_path.to_owned(),
         source,
     })?;
@@ -136,7 +136,7 @@ pub fn apply(apply: &Apply<'_>, watch: &Watch, staging: &Staging) -> Result<Repo
         solve(apply.file, apply.frames, model, &setup, apply.budget, watch)?
     };
     if watch.cancel.is_cancelled() {
-        return Err(AppError::Interrupted);
+        return Err(EngineError::Interrupted);
     }
 
     let progress = watch.begin("saving");
@@ -166,7 +166,7 @@ pub fn apply(apply: &Apply<'_>, watch: &Watch, staging: &Staging) -> Result<Repo
         staged = staged.and(staging.stage_watched(&[file], None, &Progress::new(), &watch.cancel)?);
     }
     if watch.cancel.is_cancelled() {
-        return Err(AppError::Interrupted);
+        return Err(EngineError::Interrupted);
     }
     staged.commit()?;
     Ok(report)
@@ -183,7 +183,7 @@ pub fn solved(
     loaded: &Loaded,
     setup: &Setup,
     watch: &Watch,
-) -> Result<Solved, AppError> {
+) -> Result<Solved, EngineError> {
     check_bends(file, &loaded.model, &setup.method)?;
     let solution = if edit.changes_nothing() {
         Solution::at_rest(&loaded.model, setup)
@@ -191,7 +191,7 @@ pub fn solved(
         solve(file, frames, &loaded.model, setup, memory::budget(), watch)?
     };
     if watch.cancel.is_cancelled() {
-        return Err(AppError::Interrupted);
+        return Err(EngineError::Interrupted);
     }
     Ok(Solved {
         surface_positions: solution.surface_positions.clone(),
@@ -296,21 +296,35 @@ impl Solution {
     }
 }
 
-fn solve(
+/// A binding, and how long it took.
+#[derive(Debug)]
+pub struct Prepared {
+    /// The bound problem.
+    pub bound: Bound,
+    /// The mesh's ordering, in milliseconds.
+    pub order_ms: f64,
+    /// From the ordering to the binding, in milliseconds.
+    pub bind_ms: f64,
+}
+
+/// Orders and binds a setup, once its tables are known to fit the budget.
+///
+/// # Errors
+/// As [`bind`]; [`EngineError::Interrupted`] soon after the watch's flag is raised.
+pub fn prepare(
     file: &Path,
-    frames: Option<usize>,
     model: &Model,
     setup: &Setup,
     budget: Budget,
     watch: &Watch,
-) -> Result<Solution, AppError> {
+) -> Result<Prepared, EngineError> {
     let start = Instant::now();
     let checked = setup.problem(model).check_tables(budget);
     checked.map_err(|error| refused(file, model, error))?;
     let ordering = order(model, setup, budget, &watch.begin("ordering"), &watch.cancel)?;
     let order_ms = ms_since(start);
     let start = Instant::now();
-    let mut bound = bind(
+    let bound = bind(
         file,
         model,
         setup,
@@ -319,7 +333,26 @@ fn solve(
         (&watch.begin("binding"), &watch.cancel),
     )?;
     let bind_ms = ms_since(start);
+    Ok(Prepared {
+        bound,
+        order_ms,
+        bind_ms,
+    })
+}
 
+fn solve(
+    file: &Path,
+    frames: Option<usize>,
+    model: &Model,
+    setup: &Setup,
+    budget: Budget,
+    watch: &Watch,
+) -> Result<Solution, EngineError> {
+    let Prepared {
+        mut bound,
+        order_ms,
+        bind_ms,
+    } = prepare(file, model, setup, budget, watch)?;
     let bent = bend(file, frames.unwrap_or(1), model, setup, &mut bound, watch)?;
     Ok(Solution {
         positions: bent.positions,
@@ -353,6 +386,28 @@ struct Bent {
     last: Step,
 }
 
+/// Steps towards the targets that were set until the shape has converged or met the limit that the method's options
+/// say, or at the latest after `most` steps. `displacements` has one entry per surface vertex. Stops after the step
+/// during which `cancel` was raised.
+///
+/// # Errors
+/// As [`Bound::step`].
+pub fn settle(
+    bound: &mut Bound,
+    displacements: &mut [DVec3],
+    most: usize,
+    cancel: &Cancel,
+) -> Result<Step, SolveError> {
+    let mut last = bound.step(displacements)?;
+    for _ in 1..most {
+        if last.finished || cancel.is_cancelled() {
+            break;
+        }
+        last = bound.step(displacements)?;
+    }
+    Ok(last)
+}
+
 /// Takes the handles to their targets frame by frame.
 fn bend(
     file: &Path,
@@ -361,8 +416,8 @@ fn bend(
     setup: &Setup,
     bound: &mut Bound,
     watch: &Watch,
-) -> Result<Bent, AppError> {
-    let refuse = |error: SolveError| AppError::Solve {
+) -> Result<Bent, EngineError> {
+    let refuse = |error: SolveError| EngineError::Solve {
         file: file.to_owned(),
         source: error.renumbered(|vertex| model.first_file_vertex(SurfaceVertex(vertex)).0),
     };
@@ -376,7 +431,7 @@ fn bend(
     let (mut iterations, mut last) = (0_u64, Step::default());
     for frame in 1..=count {
         if watch.cancel.is_cancelled() {
-            return Err(AppError::Interrupted);
+            return Err(EngineError::Interrupted);
         }
         let targets = setup.targets(frame as f64 / count as f64);
         let start = Instant::now();
@@ -387,11 +442,7 @@ fn bend(
         if let Some(weights) = setup.weights(frame as f64 / count as f64) {
             bound.set_weights(&weights).map_err(refuse)?;
         }
-        last = bound.step(&mut displacements).map_err(refuse)?;
-        // The method's own options limit the steps.
-        while !last.finished && !watch.cancel.is_cancelled() {
-            last = bound.step(&mut displacements).map_err(refuse)?;
-        }
+        last = settle(bound, &mut displacements, usize::MAX, &watch.cancel).map_err(refuse)?;
         from_file.clone_from(&displacements);
         if let Some(rest) = &setup.rest {
             from_file

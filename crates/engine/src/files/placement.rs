@@ -22,7 +22,7 @@ use super::leftovers::{is_passing, real_name};
 use super::named::names_in_folder;
 use super::same_file::FileSet;
 use super::{Destination, FileError, folder_of, follow, is_same, neighbour_path};
-use crate::AppError;
+use crate::EngineError;
 
 /// Where `output` stands as seen from `source`.
 pub fn placement(source: &Path, output: &Destination) -> Placement {
@@ -63,7 +63,7 @@ pub enum Action {
 ///
 /// # Errors
 /// Where a neighbour can't be called otherwise, or a thousand names are taken.
-pub fn settle(saved: &mut Saved, format: Format, output: &Destination) -> Result<Vec<Settled>, AppError> {
+pub fn settle(saved: &mut Saved, format: Format, output: &Destination) -> Result<Vec<Settled>, EngineError> {
     if matches!(format, Format::Glb | Format::Gltf) {
         adopt_passing(saved, output)?;
     }
@@ -89,14 +89,14 @@ pub fn settle(saved: &mut Saved, format: Format, output: &Destination) -> Result
             .map(|name| (folder.look_at(&name, &file.bytes, file.role), name))
             .find(|(there, _)| !matches!(there, There::Taken));
         let Some((there, name)) = found else {
-            return Err(AppError::System(format!(
+            return Err(EngineError::System(format!(
                 "{}: no name is free for {}: choose another folder",
                 super::shown(&output.given),
                 quoted(&wanted)
             )));
         };
         if name != old {
-            saved.rename(place, &name, format).map_err(|source| AppError::Save {
+            saved.rename(place, &name, format).map_err(|source| EngineError::Save {
                 file: output.given.clone(),
                 source,
             })?;
