@@ -20,6 +20,10 @@ const ARROWS: &[(&str, &[&str])] = &[
         &["pliant-deform", "pliant-editor", "pliant-io", "pliant-mesh"],
     ),
     (
+        "pliant-python",
+        &["pliant-deform", "pliant-editor", "pliant-engine", "pliant-mesh"],
+    ),
+    (
         "pliant-app",
         &[
             "pliant-deform",
@@ -40,6 +44,7 @@ const NEVER_LINKED: &[(&str, &[&str])] = &[
     ("pliant-render", &["egui", "eframe", "winit", "faer", "obvhs", "gltf"]),
     ("pliant-editor", &["wgpu", "naga", "egui", "eframe", "winit", "gltf"]),
     ("pliant-engine", &["wgpu", "naga", "egui", "eframe", "winit"]),
+    ("pliant-python", &["wgpu", "naga", "egui", "eframe", "winit"]),
 ];
 
 /// What a crate must not depend on directly.

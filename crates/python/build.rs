@@ -1,0 +1,4 @@
+//! macOS links what Python brings only when the module is loaded.
+fn main() {
+    pyo3_build_config::add_extension_module_link_args();
+}

@@ -1,0 +1,208 @@
+"""Bends meshes: ARAP, thin plates, coupled prisms, shells, cages, lattices and more."""
+
+import os
+from collections.abc import Mapping, Sequence
+from typing import Any, Literal, TypedDict, TypeVar, Union, final, overload
+
+import numpy as np
+import numpy.typing as npt
+
+__version__: str
+
+MethodName = Literal[
+    "bilaplacian",
+    "arap",
+    "primo",
+    "shells",
+    "wrinkles",
+    "poisson",
+    "laplacian",
+    "frames",
+    "rbf",
+    "mls",
+    "embedded",
+    "lattice",
+    "cage",
+    "space-primo",
+]
+
+Method = Union[MethodName, Mapping[str, Any]]
+"""A method's name, or a dict with its `name` and options, as the edit format's `method`."""
+
+Selection = Union[npt.ArrayLike, Literal["all", "none"], Mapping[str, Any]]
+"""Numbers of vertices, a mask with a value for each vertex, or a selector of the edit format: `"all"`,
+`{"sphere": {"center": [0, 0, 0], "radius": 1}}` and so on. A vertex takes along those in the same place."""
+
+class HandleEntry(TypedDict, total=False):
+    """A handle with more than its vertices."""
+
+    select: Selection
+    """Its vertices; required."""
+    soft: float
+    """The weight, 1e-6 to 1e6, of a handle that only pulls. Left out, it holds exactly."""
+    continuity: float
+    """How the surface joins it, 0 to 2, in place of the mesh's."""
+
+Handles = Union[Mapping[str, Union[Selection, HandleEntry]], Sequence[Union[Selection, HandleEntry]]]
+"""Handles by name, or in a row; those in a row are called "handle 1", "handle 2", ..."""
+
+Field = Union[npt.ArrayLike, Sequence[Mapping[str, Any]]]
+"""One number, an array with one for each vertex, or the edit format's list of selections and values."""
+
+Loose = Union[Literal["follow", "bend", "rest"], Sequence[Mapping[str, Any]]]
+"""What parts do that nothing holds, or the edit format's list of selections and what they do."""
+
+Transform = Union[npt.ArrayLike, tuple[npt.ArrayLike, npt.ArrayLike], Mapping[str, Any]]
+"""A map of world positions from rest: a 4x4 matrix whose last row is 0, 0, 0, 1; a pair (R, t) of a 3x3 matrix and a
+translation, which takes p to R p + t; or the edit format's dict of `translation`, `rotation`, `scale` and `pivot`."""
+
+Transforms = Union[npt.ArrayLike, Sequence[Transform], Mapping[str, Transform], Transform]
+"""One transform for each handle: an array of the shape (handles, 4, 4), a list, or a dict by names, where a handle that
+is not named is at rest. The only handle's may stand alone."""
+
+Out = TypeVar("Out", npt.NDArray[np.float64], npt.NDArray[np.float32])
+
+class OptionInfo(TypedDict):
+    default: Union[float, int, str, bool]
+    allowed: str
+    unit: str
+    help: str
+
+class MethodInfo(TypedDict):
+    title: str
+    when_to_use: str
+    options: dict[str, OptionInfo]
+    attachments: list[str]
+
+def methods() -> dict[MethodName, MethodInfo]:
+    """The methods by name: title, when to take it, and its options with defaults, values, units and help."""
+
+def bind(
+    vertices: npt.ArrayLike,
+    faces: npt.ArrayLike,
+    *,
+    handles: Handles | None = None,
+    fixed: Selection | None = None,
+    region: Selection | None = None,
+    stiffness: Field | None = None,
+    continuity: Field | None = None,
+    loose: Loose | None = None,
+    method: Method | None = None,
+) -> Bound:
+    """Binds a mesh: factors and solves everything that does not depend on where the handles go.
+
+    :param vertices: positions, shape (n, 3).
+    :param faces: triangles, whole numbers, shape (m, 3); none for points alone, which methods that bend space take.
+    :param handles: what moves; handles win over `fixed` and `region`.
+    :param fixed: what is held still; by default nothing.
+    :param region: what may move; the rest is held still. By default everything.
+    :param stiffness: 0.001 to 1000; by default 1.
+    :param continuity: how the surface joins what is held, 0 to 2; by default 2.
+    :param loose: what parts do that nothing holds: "follow" (the default), "bend" or "rest".
+    :param method: by default "bilaplacian" with its defaults.
+    :raises ValueError: one sentence that names the culprit and the remedy.
+    """
+
+def load(path: str | os.PathLike[str]) -> Mesh:
+    """Reads a mesh from a glTF, GLB, OBJ, PLY, STL or OFF file.
+
+    :raises OSError: if the file can't be read.
+    :raises ValueError: if it is no such file.
+    """
+
+def save(path: str | os.PathLike[str], mesh: Mesh, vertices: npt.ArrayLike | None = None) -> list[str]:
+    """Saves a mesh with new positions of its vertices, in the format that the path's extension names.
+
+    In the format that was read only the numbers of moved vertices differ, and if nothing moved the bytes are the same.
+    The file is written beside its place and read back before it replaces anything, so on any error the old one is still
+    there.
+
+    :param vertices: the rows of `mesh.vertices`, moved; shape (n, 3).
+    :return: what a person should know, as sentences.
+    :raises OSError: if the file can't be written.
+    :raises ValueError: if the format can't hold it.
+    """
+
+@final
+class Mesh:
+    """A file that was read: its shape as arrays, and all else that is in it, kept for `save`."""
+
+    @property
+    def vertices(self) -> npt.NDArray[np.float64]:
+        """The vertices in world space, shape (n, 3), a new array each time. A glTF's vertex that several nodes show
+        stands here once for each."""
+    @property
+    def faces(self) -> npt.NDArray[np.uint32]:
+        """The triangles, rows of `vertices`, shape (m, 3). Polygons are cut into triangles."""
+    @property
+    def file_vertices(self) -> npt.NDArray[np.uint32]:
+        """The file's own number of each row of `vertices`: what selections name. They count up unless a glTF shows a
+        vertex several times."""
+    @property
+    def path(self) -> os.PathLike[str]:
+        """Where it was read from."""
+    @property
+    def findings(self) -> list[str]:
+        """What is wrong with the mesh, in sentences; none for a clean, closed, connected one."""
+    def bind(
+        self,
+        *,
+        handles: Handles | None = None,
+        fixed: Selection | None = None,
+        region: Selection | None = None,
+        stiffness: Field | None = None,
+        continuity: Field | None = None,
+        loose: Loose | None = None,
+        method: Method | None = None,
+    ) -> Bound:
+        """Binds the file's mesh, as `pliant.bind` does with arrays. Masks and fields are by the file's vertices."""
+
+@final
+class Bound:
+    """A mesh that is bound to a method: transforms of the handles in, positions of all vertices out.
+
+    Threads may share it; their steps wait for one another.
+    """
+
+    @overload
+    def step(
+        self, transforms: Transforms, *, iterations: int | None = None, out: None = None
+    ) -> npt.NDArray[np.float64]: ...
+    @overload
+    def step(self, transforms: Transforms, *, iterations: int | None = None, out: Out) -> Out: ...
+    def step(self, transforms: Transforms, *, iterations: int | None = None, out: Any = None) -> Any:
+        """Moves the handles and returns the positions of all vertices, shape (n, 3).
+
+        :param iterations: how many steps a method that iterates takes at most. By default it goes on until it has
+            converged or met the limit of its options. Fewer follow a moving hand; calls with the same transforms go on.
+        :param out: an array that is filled and returned in place of a new one.
+        :raises ValueError: one sentence that names the culprit and the remedy.
+        """
+    @property
+    def handles(self) -> list[str]:
+        """The handles' names, in the order that `step` takes transforms in."""
+    @property
+    def method(self) -> MethodName:
+        """The method's name."""
+    @property
+    def free_count(self) -> int:
+        """How many vertices are solved for, once those in the same place are joined."""
+    @property
+    def warnings(self) -> list[str]:
+        """What a person should know about the binding and the last step, as sentences."""
+    @property
+    def findings(self) -> list[str]:
+        """What is wrong with the mesh, in sentences; none for a clean, closed, connected one."""
+    @property
+    def converged(self) -> bool:
+        """Whether further steps with the same transforms would change nothing."""
+    @property
+    def iterations(self) -> int:
+        """How many iterations were taken towards the last transforms."""
+    @property
+    def energy(self) -> float:
+        """The method's energy after the last step, 0 at rest, without unit."""
+    @property
+    def handle_residual(self) -> float:
+        """The largest distance of a handle's vertex from where its transform takes it, after the last step, in world
+        units: 0 for methods that hold handles exactly."""

@@ -1,0 +1,161 @@
+//! Files: read with everything in them, and saved with new positions.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use glam::DVec3;
+use numpy::PyArray2;
+use pliant_engine::files::{self, Staging};
+use pliant_engine::saving::{self, SaveAs};
+use pliant_engine::watch::Watch;
+use pliant_engine::{EngineError, Loaded, load as load_file};
+use pliant_mesh::{Progress, WeldOptions};
+use pyo3::prelude::*;
+
+use crate::arrays;
+use crate::bound::{BoundMesh, bind_model};
+use crate::edit::Arguments;
+use crate::interruptible::interruptible;
+use crate::refusal::{of_engine, refused};
+
+/// A file that was read: its shape as arrays, and all else that is in it, kept for `save`.
+#[pyclass(frozen, module = "pliant")]
+pub struct Mesh {
+    loaded: Arc<Loaded>,
+}
+
+#[pymethods]
+impl Mesh {
+    /// The vertices in world space, an array of the shape (n, 3). A glTF's vertex that several nodes show stands here
+    /// once for each.
+    #[getter]
+    fn vertices<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        arrays::of_points(py, self.loaded.model.rest_positions())
+    }
+
+    /// The triangles, an array of the shape (m, 3): rows of `vertices`. Polygons are cut into triangles.
+    #[getter]
+    fn faces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u32>>> {
+        arrays::of_triangles(py, &self.loaded.model.drawn_triangles())
+    }
+
+    /// The file's own number of each row of `vertices`: what selections name. They count up unless a glTF shows a
+    /// vertex several times.
+    #[getter]
+    fn file_vertices<'py>(&self, py: Python<'py>) -> Bound<'py, numpy::PyArray1<u32>> {
+        let numbers = self.loaded.model.drawn.file_vertices().map(|vertex| vertex.0);
+        numpy::PyArray1::from_iter(py, numbers)
+    }
+
+    /// Where it was read from.
+    #[getter]
+    fn path(&self) -> PathBuf {
+        self.loaded.path.clone()
+    }
+
+    /// What is wrong with the mesh, in sentences; none for a clean, closed, connected one.
+    #[getter]
+    fn findings(&self) -> Vec<String> {
+        let mut said = self.loaded.scene.notes().to_vec();
+        said.extend(self.loaded.model.findings.sentences());
+        said
+    }
+
+    /// Binds the file's mesh, as `pliant.bind` does with arrays.
+    #[pyo3(signature = (*, handles=None, fixed=None, region=None, stiffness=None, continuity=None, loose=None, method=None))]
+    #[expect(clippy::too_many_arguments, reason = "they are the edit format's members, by name")]
+    fn bind<'py>(
+        &self,
+        py: Python<'py>,
+        handles: Option<Bound<'py, PyAny>>,
+        fixed: Option<Bound<'py, PyAny>>,
+        region: Option<Bound<'py, PyAny>>,
+        stiffness: Option<Bound<'py, PyAny>>,
+        continuity: Option<Bound<'py, PyAny>>,
+        loose: Option<Bound<'py, PyAny>>,
+        method: Option<Bound<'py, PyAny>>,
+    ) -> PyResult<BoundMesh> {
+        let arguments = Arguments {
+            method,
+            handles,
+            fixed,
+            region,
+            stiffness,
+            continuity,
+            loose,
+        };
+        let edit = arguments.edit(self.loaded.model.drawn.file_vertex_count())?;
+        let loaded = &*self.loaded;
+        interruptible(py, |pool, cancel| {
+            pool.install(|| bind_model(&loaded.path, Arc::clone(&loaded.model), &edit, cancel))
+        })?
+    }
+
+    fn __repr__(&self) -> String {
+        let drawn = &self.loaded.model.drawn;
+        let (vertices, triangles) = (drawn.vertex_count(), drawn.triangle_count());
+        let name = files::shown(&self.loaded.path);
+        format!("<pliant.Mesh {name}: {vertices} vertices, {triangles} triangles>")
+    }
+}
+
+/// Reads a mesh from a glTF, GLB, OBJ, PLY, STL or OFF file.
+#[pyfunction]
+pub fn load(py: Python<'_>, path: PathBuf) -> PyResult<Mesh> {
+    let loaded = interruptible(py, |pool, cancel| {
+        pool.install(|| load_file(&path, &WeldOptions::default(), &Watch::cancelled_by(cancel)))
+    })?;
+    let loaded = loaded.map_err(|error| of_engine(&error))?;
+    Ok(Mesh {
+        loaded: Arc::new(loaded),
+    })
+}
+
+/// Saves a mesh with new positions of its vertices, in the format that the path's extension names.
+///
+/// Only the numbers of moved vertices differ from the file that was read. The file is written beside its place and read
+/// back before it replaces anything, so that on any error the old one is still there. Returns what a person should
+/// know, as sentences.
+#[pyfunction]
+#[pyo3(signature = (path, mesh, vertices=None))]
+pub fn save(
+    py: Python<'_>,
+    path: PathBuf,
+    mesh: &Bound<'_, Mesh>,
+    vertices: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Vec<String>> {
+    let loaded = Arc::clone(&mesh.get().loaded);
+    let count = loaded.model.drawn.vertex_count();
+    let positions = match vertices {
+        Some(vertices) => arrays::points(vertices, "vertices")?,
+        None => loaded.model.rest_positions(),
+    };
+    if positions.len() != count {
+        return Err(refused(format!(
+            "vertices has {} rows, but the mesh has {count} vertices: give a row for each",
+            positions.len()
+        )));
+    }
+    if let Some(at) = positions.iter().position(|position| !position.is_finite()) {
+        let was = loaded.model.rest_positions()[at];
+        if was.is_finite() {
+            return Err(refused(format!("vertices[{at}] is not finite: give finite positions")));
+        }
+    }
+    let saved = interruptible(py, |pool, cancel| {
+        pool.install(|| saved(&loaded, &positions, &path, &Watch::cancelled_by(cancel)))
+    })?;
+    saved.map_err(|error| of_engine(&error))
+}
+
+fn saved(loaded: &Loaded, positions: &[DVec3], path: &Path, watch: &Watch) -> Result<Vec<String>, EngineError> {
+    files::refuse_shared(("path", path), loaded.sources().skip(1))?;
+    let staging = Staging::default();
+    let save = SaveAs::shape(positions, path);
+    let saved = saving::stage(loaded, &save, &staging, &Progress::new(), &watch.cancel)?;
+    if watch.cancel.is_cancelled() {
+        return Err(EngineError::Interrupted);
+    }
+    saved.staged.commit()?;
+    Ok(saved.warnings)
+}

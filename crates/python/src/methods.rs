@@ -1,0 +1,47 @@
+//! The methods as Python sees them: their declarations as dicts.
+
+use pliant_deform::{METHODS, MethodDeclaration, OptionKind, OptionValue};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// The methods by name, each with its title, when to take it, and its options with defaults, values, units and help.
+///
+/// The names are those of the edit format: `bind(method={"name": "arap", "energy": "smooth"})`.
+#[pyfunction]
+pub fn methods(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
+    let all = PyDict::new(py);
+    for declaration in METHODS {
+        all.set_item(declaration.name, described(py, declaration)?)?;
+    }
+    Ok(all)
+}
+
+fn described<'py>(py: Python<'py>, declaration: &MethodDeclaration) -> PyResult<Bound<'py, PyDict>> {
+    let method = (declaration.default)();
+    let options = PyDict::new(py);
+    for option in declaration.options {
+        let own = PyDict::new(py);
+        match method.value(option.name) {
+            Some(OptionValue::Number(number)) => own.set_item("default", number)?,
+            Some(OptionValue::Whole(number)) => own.set_item("default", number)?,
+            Some(OptionValue::Name(name)) => own.set_item("default", name)?,
+            Some(OptionValue::Switch(on)) => own.set_item("default", on)?,
+            None => {}
+        }
+        own.set_item("allowed", option.kind.allowed())?;
+        let unit = match option.kind {
+            OptionKind::Number { unit, .. } => unit,
+            _ => "",
+        };
+        own.set_item("unit", unit)?;
+        own.set_item("help", option.help)?;
+        options.set_item(option.name, own)?;
+    }
+    let attachments: Vec<&str> = declaration.attachments.iter().map(|own| own.name).collect();
+    let all = PyDict::new(py);
+    all.set_item("title", declaration.title)?;
+    all.set_item("when_to_use", declaration.when_to_use)?;
+    all.set_item("options", options)?;
+    all.set_item("attachments", attachments)?;
+    Ok(all)
+}

@@ -1,0 +1,52 @@
+"""Meshes for the tests, and the command line that results are compared with."""
+
+import os
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+ROOT = Path(__file__).parents[3]
+
+
+def bar(around=12, along=40):
+    """An open cylinder along y, its vertices ring by ring."""
+    angle = np.linspace(0, 2 * np.pi, around, endpoint=False)
+    ring = np.c_[0.2 * np.cos(angle), np.zeros(around), 0.2 * np.sin(angle)]
+    vertices = np.concatenate([ring + [0, y, 0] for y in np.linspace(0, 1, along)])
+    a = np.arange((along - 1) * around)
+    b = a // around * around + (a + 1) % around
+    faces = np.concatenate([np.c_[a, a + around, b], np.c_[b, a + around, b + around]])
+    return vertices, faces
+
+
+@pytest.fixture
+def mesh():
+    return bar()
+
+
+@pytest.fixture
+def ends(mesh):
+    """The bar's two ends: what is held still, and the handle."""
+    height = mesh[0][:, 1]
+    return {"fixed": np.flatnonzero(height < 0.1), "handles": {"top": np.flatnonzero(height > 0.9)}}
+
+
+@pytest.fixture(scope="session")
+def program():
+    """The `pliant` of this build, or the one that the variable PLIANT names."""
+    named = os.environ.get("PLIANT") or shutil.which("pliant")
+    built = [ROOT / "target" / profile / "pliant" for profile in ("release", "debug")]
+    found = [Path(path) for path in [named, *built] if path and Path(path).is_file()]
+    if not found:
+        pytest.skip("pliant is not built: cargo build --release --bin pliant")
+    return found[0]
+
+
+def quarter_turn(translation=(0.3, 0.1, 0.0)):
+    """A turn by 90 degrees about z, and a move."""
+    matrix = np.eye(4)
+    matrix[:2, :2] = [[0, -1], [1, 0]]
+    matrix[:3, 3] = translation
+    return matrix
