@@ -19,6 +19,7 @@ usage: cargo xtask COMMAND
   gallery                    draw the samples' edits by every method into docs/gallery and docs/methods.md
   package                    make the packages that this system can make, and say what is left
   manual                     build the manual as a site, and check its links
+  python                     build the Python package and the Blender add-on, and run their tests and the notebook
 
 `run` and `test` install missing packages with apt after asking; --yes answers yes.";
 
@@ -58,6 +59,8 @@ pub enum Command {
     Package,
     /// Build the manual.
     Manual,
+    /// Build and test the Python package and the Blender add-on.
+    Python,
 }
 
 /// Which samples to make, how fine, and where to put them.
@@ -117,13 +120,14 @@ pub fn parse(words: &[String]) -> Result<Command, String> {
         )),
         "bench" => Ok(Command::Bench { sections: names, scale }),
         "assets" => Ok(Command::Assets(Order { names, ..order })),
-        "gallery" | "package" | "manual" if !names.is_empty() => Err(format!(
+        "gallery" | "package" | "manual" | "python" if !names.is_empty() => Err(format!(
             "`cargo xtask {command}` takes no names, and `{}` is one.",
             names[0]
         )),
         "gallery" => Ok(Command::Gallery),
         "package" => Ok(Command::Package),
         "manual" => Ok(Command::Manual),
+        "python" => Ok(Command::Python),
         _ => Err(format!("There is no command `{command}`.")),
     }
 }

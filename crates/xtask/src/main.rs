@@ -1,4 +1,4 @@
-//! Pliant's own commands: `cargo xtask run|test|check|bench|assets|gallery|package|manual`.
+//! Pliant's own commands: `cargo xtask run|test|check|bench|assets|gallery|package|manual|python`.
 //!
 //! It depends only on the standard library, so it builds in seconds on a fresh machine.
 #![allow(
@@ -19,6 +19,7 @@ mod make_assets;
 mod manual;
 mod package;
 mod process;
+mod python;
 mod requirement;
 mod run;
 mod system;
@@ -54,6 +55,7 @@ fn main() -> ExitCode {
         Command::Gallery => gallery::gallery(),
         Command::Package => package::package(),
         Command::Manual => manual::manual(),
+        Command::Python => python::python(),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -1,0 +1,73 @@
+"""To Pliant's window and back: the mesh as a file, whose vertices keep their order."""
+
+import os
+import shutil
+import subprocess
+import tempfile
+from pathlib import Path
+
+import bpy
+import numpy as np
+import pliant
+
+from .preferences import program
+from .settings import Refused
+
+KEY = "Pliant (window)"
+
+# The files that are open in the window, by the objects' session numbers, and the programs.
+opened = {}
+
+
+def write(obj, path):
+    """The mesh as a PLY file: its vertices in their order, and its polygons."""
+    mesh = obj.data
+    vertices = np.empty((len(mesh.vertices), 3), np.float32)
+    mesh.vertices.foreach_get("co", vertices.ravel())
+    header = (
+        "ply\nformat binary_little_endian 1.0\ncomment written by Pliant's add-on for Blender\n"
+        f"element vertex {len(vertices)}\nproperty float x\nproperty float y\nproperty float z\n"
+        f"element face {len(mesh.polygons)}\nproperty list uint int vertex_indices\nend_header\n"
+    )
+    corners = np.empty(len(mesh.loops), np.int32)
+    mesh.loops.foreach_get("vertex_index", corners)
+    sizes = np.empty(len(mesh.polygons), np.int32)
+    mesh.polygons.foreach_get("loop_total", sizes)
+    # Blender keeps the corners of its polygons in a row.
+    faces = np.insert(corners, np.r_[0, np.cumsum(sizes)[:-1]] if len(sizes) else [], sizes)
+    path.write_bytes(header.encode() + vertices.astype("<f4").tobytes() + faces.astype("<i4").tobytes())
+
+
+def open_window(obj):
+    """Opens the mesh in Pliant's window."""
+    path = program()
+    if shutil.which(path) is None:
+        raise Refused(f"The program {path} is not there: give its path in the add-on's preferences")
+    folder = Path(tempfile.mkdtemp(prefix="pliant-"))
+    file = folder / (bpy.path.clean_name(obj.name) + ".ply")
+    write(obj, file)
+    window = subprocess.Popen([path, os.fspath(file)], stdin=subprocess.DEVNULL)
+    opened[obj.session_uid] = (file, file.stat().st_mtime_ns, window)
+    return file
+
+
+def take_back(obj):
+    """Puts the saved shape into a shape key, and returns its name."""
+    if obj.session_uid not in opened:
+        raise Refused(f"{obj.name} is not open in Pliant's window: open it first")
+    file, written, _ = opened[obj.session_uid]
+    if not file.is_file() or file.stat().st_mtime_ns == written:
+        raise Refused("Nothing was saved in Pliant's window yet: save there with Ctrl-S, then take the shape back")
+    shape = pliant.load(file).vertices.astype(np.float32)
+    if len(shape) != len(obj.data.vertices):
+        raise Refused(
+            f"{obj.name} has {len(obj.data.vertices)} vertices and the saved file {len(shape)}: "
+            "undo what changed the mesh since it was opened"
+        )
+    if obj.data.shape_keys is None:
+        obj.shape_key_add(name="Basis", from_mix=False)
+    key = obj.data.shape_keys.key_blocks.get(KEY) or obj.shape_key_add(name=KEY, from_mix=False)
+    key.data.foreach_set("co", shape.ravel())
+    key.value = 1.0
+    obj.data.update()
+    return key.name

@@ -1,0 +1,29 @@
+"""The add-on's preferences: where Pliant's program is."""
+
+import shutil
+
+import bpy
+from bpy.props import StringProperty
+
+
+class PliantPreferences(bpy.types.AddonPreferences):
+    bl_idname = __package__
+
+    program: StringProperty(
+        name="Pliant",
+        description="The program whose window meshes are opened in; empty for the one in the path",
+        subtype="FILE_PATH",
+    )
+
+    def draw(self, _context):
+        self.layout.prop(self, "program")
+
+
+def program():
+    """The program's path."""
+    addon = bpy.context.preferences.addons.get(__package__)
+    chosen = addon.preferences.program if addon and addon.preferences else ""
+    return bpy.path.abspath(chosen) or shutil.which("pliant") or "pliant"
+
+
+CLASSES = [PliantPreferences]

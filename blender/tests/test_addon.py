@@ -1,0 +1,324 @@
+"""The add-on in Blender, without its window: `bpy` from PyPI."""
+
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy")
+pliant = pytest.importorskip("pliant")
+Vector = pytest.importorskip("mathutils").Vector
+
+from scene import SCANS, add, add_mesh, empty, group, hand, handle, load_addon, select, shown, stored  # noqa: E402
+
+
+@pytest.fixture
+def addon():
+    """The add-on, registered in an empty file."""
+    module = load_addon()
+    yield module
+    module.unregister()
+
+
+def tube(around=12, along=30):
+    """An open tube of quads along z."""
+    angle = np.linspace(0, 2 * np.pi, around, endpoint=False)
+    ring = np.c_[0.2 * np.cos(angle), 0.2 * np.sin(angle), np.zeros(around)]
+    vertices = np.concatenate([ring + [0, 0, z] for z in np.linspace(0, 2, along)])
+    a = np.arange((along - 1) * around)
+    b = a // around * around + (a + 1) % around
+    return vertices, np.c_[a, b, b + around, a + around]
+
+
+@pytest.fixture
+def bent(addon):
+    """A tube with a fixed foot and a top that an empty moves."""
+    vertices, faces = tube()
+    obj = add_mesh(vertices, faces)
+    group(obj, "foot", np.flatnonzero(vertices[:, 2] < 0.2))
+    group(obj, "top", np.flatnonzero(vertices[:, 2] > 1.8))
+    target = empty((0, 0, 2))
+    handle(obj, "top", target)
+    obj.pliant.fixed = "foot"
+    select(obj)
+    return obj, target
+
+
+def own(obj, **change):
+    """What the engine makes of the tube, without Blender."""
+    rest = stored(obj.data)
+    top, foot = rest[:, 2] > 1.8, rest[:, 2] < 0.2
+    obj.data.calc_loop_triangles()
+    corners = [list(triangle.vertices) for triangle in obj.data.loop_triangles]
+    arguments = {"handles": {"top": top}, "fixed": foot, "method": "arap", **change}
+    return pliant.bind(rest, corners, **arguments)
+
+
+def moved(x):
+    matrix = np.eye(4)
+    matrix[0, 3] = np.float32(x)
+    return matrix
+
+
+def test_an_empty_bends_the_mesh_live_and_the_shape_is_baked(addon, bent, tmp_path):
+    obj, target = bent
+    rest = stored(obj.data)
+    assert bpy.ops.pliant.begin() == {"FINISHED"}
+    assert np.array_equal(shown(obj), rest)
+    previous = rest
+    for x in (0.2, 0.4, 0.6):
+        target.location.x = x
+        bpy.context.view_layer.update()
+        now = shown(obj)
+        top = rest[:, 2] > 1.8
+        assert np.abs(now[top] - rest[top] - [x, 0, 0]).max() < 1e-5
+        assert np.array_equal(now[rest[:, 2] < 0.2], rest[rest[:, 2] < 0.2])
+        assert not np.array_equal(now, previous)
+        previous = now
+    assert bpy.ops.pliant.bake() == {"FINISHED"}
+    assert addon.live.sessions == {}
+    expected = own(obj)
+    expected.step(moved(0), iterations=1)
+    settled = shown(obj)
+    assert np.abs(settled - expected.step(moved(0.6))).max() < 1e-2
+    target.location.x = 5
+    assert np.array_equal(shown(obj), settled), "a baked shape stays"
+    assert np.array_equal(stored(obj.data), rest), "the mesh itself is as it was"
+
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "baked.blend"))
+    names = obj.name, target.name
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "baked.blend"))
+    again = bpy.data.objects[names[0]]
+    assert [key.name for key in again.data.shape_keys.key_blocks] == ["Basis", "Pliant"]
+    assert np.array_equal(shown(again), settled)
+    assert again.pliant.handles[0].group == "top" and again.pliant.handles[0].target.name == names[1]
+
+
+def test_a_linear_method_gives_the_engine_s_shape_to_the_bit_in_f32(bent):
+    obj, target = bent
+    obj.pliant.method = "bilaplacian"
+    bpy.ops.pliant.begin()
+    target.location.x = 0.5
+    bpy.context.view_layer.update()
+    assert np.array_equal(shown(obj), own(obj, method="bilaplacian").step(moved(0.5)).astype(np.float32))
+
+
+def test_the_object_s_own_place_and_the_target_s_turn_are_taken_into_account(bent):
+    obj, target = bent
+    obj.pliant.method = "bilaplacian"
+    obj.location, obj.rotation_euler, obj.scale = (3, 1, 2), (0.3, 0.2, 0.1), (2, 2, 2)
+    target.location = (3, 1, 6)
+    bpy.context.view_layer.update()
+    rest = stored(obj.data)
+    world_from_object = np.array(obj.matrix_world)
+    before = np.array(target.matrix_world)
+    bpy.ops.pliant.begin()
+    target.location, target.rotation_euler = (3.5, 1, 5.5), (0, 0.8, 0)
+    bpy.context.view_layer.update()
+    world_move = np.array(target.matrix_world) @ np.linalg.inv(before)
+    now, top = shown(obj), rest[:, 2] > 1.8
+    homogeneous = lambda points: np.c_[points, np.ones(len(points))]
+    expected = homogeneous(rest[top]) @ (world_move @ world_from_object).T
+    assert np.abs(homogeneous(now[top]) @ world_from_object.T - expected).max() < 1e-4
+
+
+def test_giving_up_leaves_the_mesh_as_it_was(bent):
+    obj, target = bent
+    rest = stored(obj.data)
+    bpy.ops.pliant.begin()
+    target.location.x = 0.5
+    bpy.context.view_layer.update()
+    assert bpy.ops.pliant.cancel() == {"FINISHED"}
+    assert obj.data.shape_keys is None and np.array_equal(shown(obj), rest)
+
+
+def test_stiffness_options_and_soft_handles_change_the_shape(bent):
+    obj, target = bent
+    vertices = stored(obj.data)
+    group(obj, "hard", np.flatnonzero(vertices[:, 2] > 1.0))
+
+    def shape():
+        target.location.x = 0
+        bpy.context.view_layer.update()
+        bpy.ops.pliant.begin()
+        target.location.x = 0.8
+        bpy.context.view_layer.update()
+        bpy.ops.pliant.bake()
+        out = shown(obj)
+        obj.shape_key_clear()
+        return out
+
+    plain = shape()
+    obj.pliant.options = '"energy": "smooth"'
+    smooth = shape()
+    obj.pliant.options = ""
+    obj.pliant.stiffness, obj.pliant.stiffest = "hard", 100
+    stiff = shape()
+    obj.pliant.stiffness = ""
+    obj.pliant.handles[0].is_soft, obj.pliant.handles[0].weight = True, 0.01
+    soft = shape()
+    for other in (smooth, stiff, soft):
+        assert np.abs(other - plain).max() > 1e-3
+
+
+def armature():
+    data = bpy.data.armatures.new("Armature")
+    obj = select(add(bpy.data.objects.new("Armature", data)))
+    bpy.ops.object.mode_set(mode="EDIT")
+    for name, low, high in (("foot", 0, 0.3), ("top", 1.7, 2)):
+        bone = data.edit_bones.new(name)
+        bone.head, bone.tail = (0, 0, low), (0, 0, high)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    return obj
+
+
+def test_bones_move_handles_in_place_of_their_modifier(addon, bent):
+    obj, _ = bent
+    rest = stored(obj.data)
+    rig = armature()
+    modifier = obj.modifiers.new("rig", "ARMATURE")
+    modifier.object = rig
+    select(obj)
+    assert bpy.ops.pliant.find_handles(source="ARMATURE") == {"FINISHED"}
+    assert {(own.group, own.bone) for own in obj.pliant.handles} == {("foot", "foot"), ("top", "top")}
+    obj.pliant.fixed = ""
+    bpy.ops.pliant.begin()
+    assert not modifier.show_viewport
+    rig.pose.bones["top"].location = (0, 0, 0.5)  # along the bone's own axes
+    bpy.context.view_layer.update()
+    now = shown(obj)
+    way = np.array(rig.pose.bones["top"].matrix.translation) - [0, 0, 1.7]
+    assert np.linalg.norm(way) > 0.4
+    top = rest[:, 2] > 1.8
+    assert np.abs(now[top] - rest[top] - way).max() < 1e-4
+    assert np.abs(now[rest[:, 2] < 0.2] - rest[rest[:, 2] < 0.2]).max() < 1e-5
+    bpy.ops.pliant.cancel()
+    assert modifier.show_viewport and modifier.show_render
+
+
+def test_hooks_become_handles(bent):
+    obj, target = bent
+    hook = obj.modifiers.new("hook", "HOOK")
+    hook.object, hook.vertex_group = target, "top"
+    obj.pliant.handles.clear()
+    assert bpy.ops.pliant.find_handles(source="HOOK") == {"FINISHED"}
+    assert [(own.group, own.target) for own in obj.pliant.handles] == [("top", target)]
+    rest = stored(obj.data)
+    bpy.ops.pliant.begin()
+    target.location.y = 0.4
+    bpy.context.view_layer.update()
+    top = rest[:, 2] > 1.8
+    assert np.abs(shown(obj)[top] - rest[top] - [0, 0.4, 0]).max() < 1e-5
+
+
+def test_an_animated_target_is_followed(bent):
+    obj, target = bent
+    obj.pliant.method = "bilaplacian"
+    target.keyframe_insert("location", frame=1)
+    target.location.x = 1
+    target.keyframe_insert("location", frame=11)
+    bpy.context.scene.frame_set(1)
+    bpy.ops.pliant.begin()
+    rest = stored(obj.data)
+    top = rest[:, 2] > 1.8
+    bpy.context.scene.frame_set(11)
+    assert np.abs(shown(obj)[top] - rest[top] - [1, 0, 0]).max() < 1e-5
+
+
+@pytest.mark.parametrize(
+    "change, said",
+    [
+        (lambda obj: obj.pliant.handles.clear(), "has no handle"),
+        (lambda obj: setattr(obj.pliant.handles[0], "group", "nose"), 'no vertex group "nose"'),
+        (lambda obj: setattr(obj.pliant.handles[0], "target", None), "has no target"),
+        (lambda obj: setattr(obj.pliant.handles[0], "bone", "arm"), 'no bone "arm"'),
+        (lambda obj: setattr(obj.pliant, "options", '"energie": 1'), "did you mean `energy`"),
+        (lambda obj: setattr(obj.pliant, "options", "energy=1"), "options can't be read"),
+        (lambda obj: setattr(obj.pliant, "fixed", "nose"), "fixed part"),
+        (lambda obj: obj.vertex_groups["top"].remove(range(len(obj.data.vertices))), "weighs 0.5 or more"),
+    ],
+)
+def test_what_is_refused_is_named_with_its_remedy_and_nothing_is_changed(addon, bent, change, said):
+    obj, _ = bent
+    change(obj)
+    with pytest.raises(RuntimeError, match=said):
+        bpy.ops.pliant.begin()
+    assert obj.data.shape_keys is None and addon.live.sessions == {}
+
+
+def test_a_deleted_object_ends_its_session(addon, bent):
+    obj, target = bent
+    bpy.ops.pliant.begin()
+    bpy.data.objects.remove(obj)
+    target.location.x = 1
+    bpy.context.view_layer.update()
+    assert addon.live.sessions == {}
+
+
+def test_the_window_gets_the_mesh_and_its_shape_comes_back_by_vertex_order(addon, bent, tmp_path, monkeypatch):
+    obj, _ = bent
+    # In the place of the window's person: bends the file and saves it.
+    window = tmp_path / "window.py"
+    window.write_text(
+        f"#!{sys.executable}\nimport sys, pliant\nmesh = pliant.load(sys.argv[1])\n"
+        "shape = mesh.vertices\nshape[:, 0] += shape[:, 2]\npliant.save(sys.argv[1], mesh, shape)\n"
+    )
+    window.chmod(0o755)
+    monkeypatch.setattr(addon.exchange, "program", lambda: str(window))
+    rest = stored(obj.data)
+    with pytest.raises(RuntimeError, match="open it first"):
+        bpy.ops.pliant.take_back()
+    assert bpy.ops.pliant.open_window() == {"FINISHED"}
+    file, _, process = addon.exchange.opened[obj.session_uid]
+    assert process.wait(60) == 0
+    assert bpy.ops.pliant.take_back() == {"FINISHED"}
+    assert np.array_equal(shown(obj), rest + rest[:, [2]] * np.float32([1, 0, 0]))
+    bound = pliant.load(file)
+    assert len(bound.faces) == 2 * len(obj.data.polygons)
+    obj.shape_key_clear()
+    obj.data.clear_geometry()
+    with pytest.raises(RuntimeError, match="0 vertices and the saved file 360"):
+        bpy.ops.pliant.take_back()
+
+
+def test_blender_installs_the_packed_add_on(tmp_path):
+    archive = os.environ.get("PLIANT_EXTENSION")
+    if not archive:
+        pytest.skip("no archive: cargo xtask python")
+    script = f"""
+import bpy
+bpy.ops.extensions.package_install_files(filepath={str(archive)!r}, repo="user_default", enable_on_install=True)
+assert any(name.endswith(".pliant") for name in bpy.context.preferences.addons.keys()), list(bpy.context.preferences.addons.keys())
+import pliant
+print("engine", pliant.__file__)
+assert bpy.types.Object.bl_rna.properties["pliant"]
+bpy.ops.mesh.primitive_uv_sphere_add()
+assert "FINISHED" in bpy.ops.pliant.add_handle()
+"""
+    environment = {**os.environ, "BLENDER_USER_RESOURCES": str(tmp_path)}
+    run = subprocess.run([sys.executable, "-c", script], env=environment, capture_output=True, text=True, cwd=tmp_path)
+    assert run.returncode == 0, run.stdout + run.stderr
+
+
+def test_the_hand_of_a_scan_follows_an_empty_and_is_baked_saved_and_reopened(addon, tmp_path):
+    if not (SCANS / "armadillo.obj").is_file():
+        pytest.skip("there is no ../shared/data/scans")
+    scan = pliant.load(SCANS / "armadillo.obj")
+    obj, target = hand(scan)
+    rest = stored(obj.data)
+    obj.pliant.method, obj.pliant.options = "arap", '"energy": "smooth"'
+    bpy.ops.pliant.begin()
+    for way in (0.5, 1.0):
+        target.location += way * Vector((0.2, 1, 0.3)) * 10
+        target.rotation_euler.z = 0.9 * way
+        bpy.context.view_layer.update()
+    bpy.ops.pliant.bake()
+    baked = shown(obj)
+    assert np.abs(baked - rest).max() > 10
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "hand.blend"))
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "hand.blend"))
+    obj = bpy.data.objects["Armadillo"]
+    assert np.array_equal(shown(obj), baked)
+    assert np.array_equal(stored(obj.data), rest)
