@@ -257,6 +257,27 @@ def test_a_deleted_object_ends_its_session(addon, bent):
     assert addon.live.sessions == {}
 
 
+def test_an_undo_of_the_target_s_move_is_followed(addon, bent):
+    obj, target = bent
+    names = obj.name, target.name
+    bpy.ops.pliant.begin()
+    bpy.ops.ed.undo_push(message="begin")
+    for x in (0.5, 0.9):
+        target.location.x = x
+        bpy.context.view_layer.update()
+        bpy.ops.ed.undo_push(message="move")
+    assert bpy.ops.ed.undo() == {"FINISHED"}
+    # What was before the undo is another object in memory.
+    obj, target = (bpy.data.objects[name] for name in names)
+    bpy.context.view_layer.update()
+    for x in (0.5, 0.2):
+        target.location.x = x
+        bpy.context.view_layer.update()
+        assert np.abs(shown(obj)[-1] - stored(obj.data)[-1] - [x, 0, 0]).max() < 1e-5
+    select(obj)
+    assert bpy.ops.pliant.bake() == {"FINISHED"} and addon.live.sessions == {}
+
+
 def test_the_window_gets_the_mesh_and_its_shape_comes_back_by_vertex_order(addon, bent, tmp_path, monkeypatch):
     obj, _ = bent
     # In the place of the window's person: bends the file and saves it.
