@@ -136,12 +136,6 @@ pub fn save(
             positions.len()
         )));
     }
-    if let Some(at) = positions.iter().position(|position| !position.is_finite()) {
-        let was = loaded.model.rest_positions()[at];
-        if was.is_finite() {
-            return Err(refused(format!("vertices[{at}] is not finite: give finite positions")));
-        }
-    }
     let saved = interruptible(py, |pool, cancel| {
         pool.install(|| saved(&loaded, &positions, &path, &Watch::cancelled_by(cancel)))
     })?;

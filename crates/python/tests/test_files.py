@@ -41,9 +41,8 @@ def test_bending_a_file_gives_the_command_line_s_bytes(program, tmp_path, method
     assert (tmp_path / "saved.glb").read_bytes() == expected.read_bytes()
 
 
-def test_arrays_bend_as_the_file_does_to_the_bit(program, tmp_path):
+def test_arrays_bend_as_the_file_does_to_the_bit():
     mesh = pliant.load(ASSETS / "creature.glb")
-    # As PLY in f64 a shape is stored to the bit.
     members, transforms = arguments(EDIT)
     by_file = mesh.bind(**members).step(transforms)
     by_arrays = pliant.bind(mesh.vertices, mesh.faces, **members).step(transforms)
@@ -89,8 +88,8 @@ def test_files_that_are_none_are_refused_and_nothing_is_replaced(tmp_path):
     kept.write_bytes(b"kept")
     for wrong, said in [
         (mesh.vertices[:5], "5 rows, but the mesh has"),
-        (np.full_like(mesh.vertices, np.nan), r"vertices\[0\] is not finite"),
-        (np.full_like(mesh.vertices, 1e300), "."),
+        (np.full_like(mesh.vertices, np.nan), "vertex 0 .*single precision"),
+        (np.full_like(mesh.vertices, 1e300), "vertex 0 .*single precision"),
     ]:
         with pytest.raises(ValueError, match=said):
             pliant.save(kept, mesh, wrong)
