@@ -1,6 +1,6 @@
 //! The engine: from files and an edit to files. The command line, the window and the Python package run it.
 //!
-//! It alone touches the file system: it reads a file with its neighbours and welds it (`loading`), binds and bends it
+//! It reads a file with its neighbours and welds it (`loading`), binds and bends it
 //! (`apply`), puts a pose of one mesh onto another (`transfer`), and writes all of a result or nothing (`saving`,
 //! [`files`]). It starts no threads: long loops run on the caller's rayon pool, and a [`Watch`](watch::Watch) tells the
 //! caller's other threads how far they are.
