@@ -5,7 +5,7 @@ use super::shortcut::Shortcut;
 use crate::document::Paint;
 use crate::input::{Key, Modifiers};
 use crate::jobs::JobKind;
-use crate::workspace::{apply_shape, clear_regions, reset_shape, set_loose, set_loose_part, set_method};
+use crate::workspace::{apply_shape, clear_regions, reset_shape, set_loose, set_loose_part, set_method, set_strength};
 use pliant_deform::{Loose, Method};
 
 /// Takes back the last step.
@@ -86,6 +86,41 @@ pub(super) const RESET_SHAPE: Entry<()> = Entry {
         unless(is_other, "The shape is as in the file already.")
     },
     action: Action::Do(|context, ()| reset_shape(context.workspace)),
+};
+
+/// Shows a share (0 to 1) of the whole edit: everything that was moved, at that share of its way from rest.
+pub(super) const SET_STRENGTH: Entry<f64> = Entry {
+    listed: &[
+        item(
+            1.0,
+            "Full strength",
+            "Shows all of what handles, control points and examples were moved by.",
+            "amount intensity blend 100%",
+            &[],
+        ),
+        item(
+            0.5,
+            "Half strength",
+            "Shows half of the edit: every handle goes half its way and turns by half its angle.",
+            "amount intensity blend 50%",
+            &[],
+        ),
+        item(
+            0.0,
+            "No strength",
+            "Shows nothing of the edit and keeps it: the strength in the panel brings it back.",
+            "amount intensity blend off 0%",
+            &[],
+        ),
+    ],
+    scope: Scope::Document,
+    unavailable: |state, _| {
+        let document = &state.workspace.document;
+        let is_moved = document.is_moved() || document.strength() < 1.0;
+        let nothing = "Nothing is bent that could be shown in part: move a handle first.";
+        state.unopened().or(unless(is_moved, nothing))
+    },
+    action: Action::Do(|context, share| set_strength(context.workspace, share)),
 };
 
 /// Holds everything still again: no handle, no region.

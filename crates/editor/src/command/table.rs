@@ -90,6 +90,8 @@ commands! {
     Apply = document::APPLY;
     /// Takes the rest shape and every handle back to the file's shape.
     ResetShape = document::RESET_SHAPE;
+    /// Shows a share (0 to 1) of the whole edit: everything that was moved, at that share of its way from rest.
+    SetStrength(share: f64) = document::SET_STRENGTH;
     /// Holds everything still again: no handle, no region.
     ClearRegions = document::CLEAR_REGIONS;
     /// Chooses the method and its options.

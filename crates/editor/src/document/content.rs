@@ -9,6 +9,7 @@ use pliant_deform::{Arap, Attachment, Loose, Method};
 use super::access::Access;
 use super::handle::{Handle, HandleId};
 use super::kept_shape::KeptShape;
+use super::strength::Strength;
 
 /// What was painted on a vertex.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
@@ -67,6 +68,8 @@ pub struct Content {
     pub(crate) kept: Option<Arc<KeptShape>>,
     /// Whether `from_rest` is final for the handles' transforms.
     pub(crate) settled: bool,
+    /// What handles and attachments are a share of; `None` where they are shown in full.
+    pub(crate) strength: Option<Arc<Strength>>,
 }
 
 impl Content {
@@ -91,6 +94,7 @@ impl Content {
             kept: None,
             from_file: zero,
             settled: true,
+            strength: None,
         }
     }
 

@@ -82,39 +82,59 @@ impl HandleTransform {
         }
     }
 
-    /// The map of world positions at the share `t` of a drag, 0 at rest and 1 at the target.
+    /// The map of world positions at the share `t` of a drag, 0 at rest and 1 at the target: that of
+    /// [`HandleTransform::part`].
+    pub fn at(&self, t: f64, default_pivot: DVec3) -> DAffine3 {
+        self.part(t, default_pivot).affine(default_pivot)
+    }
+
+    /// The transform at the share `t` of a drag, 0 at rest and 1 at the target.
     ///
     /// Translation and scale go linearly and the rotation by slerp about the pivot, the short way round. A matrix is
     /// split by its polar decomposition about `default_pivot`: its rotation goes by slerp, its stretch and the
     /// pivot's way linearly.
-    pub fn at(&self, t: f64, default_pivot: DVec3) -> DAffine3 {
-        if t == 0.0 {
-            return DAffine3::IDENTITY;
-        }
+    #[must_use]
+    pub fn part(&self, t: f64, default_pivot: DVec3) -> Self {
+        self.part_turned(t, default_pivot, |rotation| {
+            DQuat::IDENTITY.slerp(rotation, t).normalize()
+        })
+    }
+
+    /// The same with another way of turning: `part_of` tells the share of a rotation.
+    pub(crate) fn part_turned(&self, t: f64, default_pivot: DVec3, part_of: impl FnOnce(DQuat) -> DQuat) -> Self {
         if t == 1.0 {
-            return self.affine(default_pivot);
+            return *self;
         }
-        let pivot = self.pivot_or(default_pivot);
-        let (rotation, stretch, translation) = match *self {
+        match *self {
+            Self::Trs { pivot, .. } if t == 0.0 => Self::Trs {
+                translation: DVec3::ZERO,
+                rotation: DQuat::IDENTITY,
+                scale: DVec3::ONE,
+                pivot,
+            },
+            Self::Matrix(_) if t == 0.0 => Self::Matrix(DAffine3::IDENTITY),
             Self::Trs {
                 translation,
                 rotation,
                 scale,
-                ..
-            } => (rotation, DMat3::from_diagonal(scale), translation),
+                pivot,
+            } => Self::Trs {
+                translation: translation * t,
+                rotation: part_of(rotation),
+                scale: DVec3::ONE + (scale - DVec3::ONE) * t,
+                pivot,
+            },
             Self::Matrix(matrix) => {
                 let (rotation, stretch) = polar_decomposition(matrix.matrix3);
-                (rotation, stretch, matrix.transform_point3(pivot) - pivot)
+                let way = matrix.transform_point3(default_pivot) - default_pivot;
+                let stretch = DMat3::IDENTITY + (stretch - DMat3::IDENTITY) * t;
+                Self::Matrix(about(
+                    default_pivot,
+                    DMat3::from_quat(part_of(rotation)) * stretch,
+                    way * t,
+                ))
             }
-        };
-        let rotation = DQuat::IDENTITY.slerp(rotation, t).normalize();
-        let stretch = DMat3::IDENTITY + (stretch - DMat3::IDENTITY) * t;
-        let turned = if rotation.xyz() == DVec3::ZERO {
-            stretch
-        } else {
-            DMat3::from_quat(rotation) * stretch
-        };
-        about(pivot, turned, translation * t)
+        }
     }
 }
 

@@ -15,10 +15,11 @@ use pliant_deform::{Attachment, ExampleShape, Loose, Method};
 
 use super::access::Access;
 use super::content::{Paint, Tips};
-use super::handle::Handle;
+use super::handle::{Handle, HandleId};
 use super::kept_shape::KeptShape;
 use super::sparse::Sparse;
 use super::state::Document;
+use super::strength::{Stance, Strength};
 use super::version::{Aspect, Version};
 
 /// How many bytes of deltas are kept before the oldest steps are forgotten.
@@ -49,6 +50,8 @@ pub(crate) enum Change {
     Kept(Option<Arc<KeptShape>>),
     /// Whether the shape is final for the handles' transforms.
     Settled(bool),
+    /// What handles and attachments are a share of.
+    Strength(Option<Arc<Strength>>),
 }
 
 /// A named step.
@@ -77,7 +80,12 @@ impl Step {
                 // Tables that steps share are counted in each.
                 Change::Attachments(attachments) => attachments.values().map(attachment_bytes).sum(),
                 Change::Kept(Some(kept)) => kept.shape.len() * size_of::<DVec3>(),
+                Change::Strength(Some(strength)) => {
+                    let attachments: usize = strength.attachments.values().map(attachment_bytes).sum();
+                    attachments + strength.handles.len() * size_of::<(HandleId, Stance)>()
+                }
                 Change::Kept(None)
+                | Change::Strength(None)
                 | Change::Continuity(None)
                 | Change::Options(..)
                 | Change::Tips(_)
@@ -235,9 +243,12 @@ impl History {
 
     fn exchange(&mut self, step: &mut Step, document: &mut Document) {
         self.revision += 1;
+        // Apart from the document, which forgets it when a handle moves.
+        let mut strength = document.take_strength();
         for change in &mut step.changes {
-            swap(change, document);
+            swap(change, document, &mut strength);
         }
+        document.put_strength(strength);
         if !step.shape.is_empty() {
             document.swap_shape(&mut step.shape);
         }
@@ -255,8 +266,8 @@ impl History {
     }
 }
 
-/// Exchanges what the change holds with what the document has.
-fn swap(change: &mut Change, document: &mut Document) {
+/// Exchanges what the change holds with what the document has, or with its strength.
+fn swap(change: &mut Change, document: &mut Document, strength: &mut Option<Arc<Strength>>) {
     match change {
         Change::Paint(sparse) => document.swap_paint(sparse),
         Change::Handles(handles, next_handle) => document.swap_handles(handles, next_handle),
@@ -269,5 +280,6 @@ fn swap(change: &mut Change, document: &mut Document) {
         Change::Access(access) => document.swap_access(access),
         Change::Kept(kept) => document.swap_kept(kept),
         Change::Settled(settled) => document.swap_settled(settled),
+        Change::Strength(other) => std::mem::swap(other, strength),
     }
 }

@@ -3,10 +3,15 @@
 //! The rotation itself is a quaternion, which knows no full turns. Of all triples of angles about x, y and z that mean
 //! the same rotation the one that is nearest to what was shown before is shown.
 
+use std::f64::consts::TAU;
+
 use glam::{DQuat, DVec3, EulerRot};
 
 /// No step of a turn that is followed is longer: a third of what would be ambiguous.
 const STEP_RAD: f64 = std::f64::consts::FRAC_PI_3;
+
+/// Below this sine of half its angle a rotation has no axis of its own.
+const NO_TURN: f64 = 1e-9;
 
 /// The rotation of angles about x, y and z in degrees.
 pub(crate) fn rotation_of(turn_deg: DVec3) -> DQuat {
@@ -50,11 +55,62 @@ pub(crate) fn accumulated(start_deg: DVec3, start: DQuat, axis: DVec3, angle_rad
     })
 }
 
+/// The share `t` of a rotation that is counted as `turn_deg`: about its own axis, the short way round unless more than
+/// half a turn is counted about x, y or z.
+pub(crate) fn part_of(rotation: DQuat, turn_deg: DVec3, t: f64) -> DQuat {
+    let short = if rotation.w < 0.0 { -rotation } else { rotation };
+    let turns = full_turns(short, turn_deg);
+    if turns == 0.0 {
+        return DQuat::IDENTITY.slerp(rotation, t).normalize();
+    }
+    let (axis, angle) = axis_and_angle(short, turn_deg);
+    DQuat::from_axis_angle(axis, t * (angle + turns * TAU))
+}
+
+/// Whether a rotation is counted the short way round.
+pub(crate) fn is_short(rotation: DQuat, turn_deg: DVec3) -> bool {
+    full_turns(if rotation.w < 0.0 { -rotation } else { rotation }, turn_deg) == 0.0
+}
+
+/// How many full turns are counted beyond the short way of a rotation with w ≥ 0.
+fn full_turns(short: DQuat, turn_deg: DVec3) -> f64 {
+    if turn_deg.abs().max_element() <= 180.0 {
+        return 0.0;
+    }
+    let (axis, angle) = axis_and_angle(short, turn_deg);
+    ((turn_deg.map(f64::to_radians).dot(axis) - angle) / TAU).round()
+}
+
+/// The axis and the angle in radians of a rotation with w ≥ 0. One of full turns alone has the axis that is counted.
+fn axis_and_angle(short: DQuat, turn_deg: DVec3) -> (DVec3, f64) {
+    let (sine, axis) = (short.xyz().length(), short.xyz());
+    if sine < NO_TURN {
+        (turn_deg.normalize_or(DVec3::X), 0.0)
+    } else {
+        (axis / sine, 2.0 * sine.atan2(short.w))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use glam::{DQuat, DVec3};
 
-    use super::{accumulated, followed, rotation_of};
+    use super::{accumulated, followed, part_of, rotation_of};
+
+    #[test]
+    fn a_share_of_a_turn_is_that_share_of_what_is_counted() {
+        for unit in [DVec3::X, DVec3::Y, DVec3::Z] {
+            for degrees in [40.0, 170.0, 270.0_f64, -200.0, 360.0, 725.0, -1000.0] {
+                let whole = rotation_of(unit * degrees);
+                for t in [0.1, 0.5, 0.9] {
+                    let wanted = DQuat::from_axis_angle(unit, t * degrees.to_radians());
+                    let part = part_of(whole, unit * degrees, t);
+                    assert!(part.dot(wanted).abs() > 1.0 - 1e-9, "{t} of {degrees} about {unit}");
+                }
+                assert!(part_of(whole, unit * degrees, 1.0).dot(whole).abs() > 1.0 - 1e-9);
+            }
+        }
+    }
 
     #[test]
     fn a_turn_about_an_axis_counts_on_beyond_half_and_full_turns() {

@@ -25,6 +25,9 @@ pub const EDIT_VERSION: u64 = 1;
 /// The smallest and the largest stiffness that an edit may give.
 pub const STIFFNESS_RANGE: std::ops::RangeInclusive<f64> = 0.001..=1000.0;
 
+/// The least and the most of an edit that is shown.
+pub const STRENGTH_RANGE: std::ops::RangeInclusive<f64> = 0.0..=1.0;
+
 /// The smallest and the largest weight of a soft handle.
 pub const SOFT_RANGE: std::ops::RangeInclusive<f64> = 1e-6..=1e6;
 
@@ -50,6 +53,9 @@ pub struct EditFile {
     pub loose: Loose,
     /// What single ones do instead: those with a selected vertex; the later entry wins.
     pub loose_parts: Vec<(Selector, Loose)>,
+    /// How much of the edit is made, in [`STRENGTH_RANGE`]: handles, control points and weights that bend the surface
+    /// go this share of their way ([`HandleTransform::part`]).
+    pub strength: f64,
 }
 
 /// A handle: which vertices move, and how.
@@ -90,6 +96,8 @@ struct StoredEdit {
     continuity: Option<OneOrList<f64, FieldEntry>>,
     #[serde(default = "follow")]
     loose: OneOrList<StoredLoose, LooseEntry>,
+    #[serde(default = "all_of_it", skip_serializing_if = "is_all")]
+    strength: f64,
 }
 
 /// What the loose parts of a selection do.
@@ -112,6 +120,15 @@ fn follow() -> OneOrList<StoredLoose, LooseEntry> {
     OneOrList::One(StoredLoose::Follow)
 }
 
+fn all_of_it() -> f64 {
+    1.0
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes by reference")]
+fn is_all(strength: &f64) -> bool {
+    *strength == 1.0
+}
+
 impl Default for EditFile {
     /// The edit with nothing but a version and a method.
     fn default() -> Self {
@@ -125,6 +142,7 @@ impl Default for EditFile {
             continuity: Vec::new(),
             loose: Loose::Follow,
             loose_parts: Vec::new(),
+            strength: 1.0,
         }
     }
 }
@@ -192,6 +210,9 @@ impl EditFile {
         continuity_kind()
             .check_all(&continuity)
             .map_err(|error| error.under("continuity"))?;
+        strength_kind()
+            .check(stored.strength)
+            .map_err(|error| error.under("strength"))?;
         let (mut loose, mut loose_parts) = (Loose::Follow, Vec::new());
         match stored.loose {
             OneOrList::One(does) => loose = does.into(),
@@ -220,6 +241,7 @@ impl EditFile {
             continuity,
             loose,
             loose_parts,
+            strength: stored.strength,
         })
     }
 
@@ -248,6 +270,7 @@ impl EditFile {
                     )
                 }
             },
+            strength: self.strength,
         };
         json!(stored)
     }
@@ -258,8 +281,11 @@ impl EditFile {
     }
 
     /// Whether neither a handle of the edit, nor a control point that was moved by hand, nor an example's weight moves
-    /// anything.
+    /// anything, or nothing of that is made.
     pub fn changes_nothing(&self) -> bool {
+        if self.strength == 0.0 {
+            return true;
+        }
         let own = self.attachments.iter();
         let own = own.filter(|(name, _)| self.method.declaration().attachment(name).is_some());
         let are_at_rest = own.map(|(_, entry)| match entry {
@@ -326,6 +352,14 @@ impl HandleEntry {
                 .map_err(|error| error.under("continuity"))?;
         }
         Ok(())
+    }
+}
+
+/// What a strength may be.
+pub(crate) fn strength_kind() -> FieldKind {
+    FieldKind {
+        name: "a strength",
+        range: STRENGTH_RANGE,
     }
 }
 

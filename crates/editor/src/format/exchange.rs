@@ -41,6 +41,10 @@ pub(crate) fn export(document: &Document, model: &Arc<Model>) -> Result<EditFile
     if document.applied {
         return Err(ExportError::Applied);
     }
+    // An edit counts no full turns: what depends on them is said as it is shown.
+    let in_full = Some(document.in_full()).filter(Document::goes_the_short_way);
+    let strength = if in_full.is_some() { document.strength() } else { 1.0 };
+    let document = in_full.as_ref().unwrap_or(document);
     let region = Region::measure(
         &region_input(model, document, &FileContacts::default()),
         &pliant_mesh::Cancel::new(),
@@ -97,6 +101,7 @@ pub(crate) fn export(document: &Document, model: &Arc<Model>) -> Result<EditFile
             .iter()
             .map(|(part, loose)| (Selector::Component(*part), *loose))
             .collect(),
+        strength,
     };
     let setup = edit.resolve(model)?;
     let differing = setup
@@ -113,7 +118,11 @@ pub(crate) fn export(document: &Document, model: &Arc<Model>) -> Result<EditFile
 
 /// A document that an edit describes: every vertex's role is painted as the edit says it.
 pub(crate) fn import(edit: &EditFile, model: &Model) -> Result<Document, EditError> {
-    let setup = edit.resolve(model)?;
+    let in_full = EditFile {
+        strength: 1.0,
+        ..edit.clone()
+    };
+    let setup = in_full.resolve(model)?;
     let mut document = Content::new(model.surface.positions.len());
     document.paint = Arc::new(
         setup
@@ -156,6 +165,7 @@ pub(crate) fn import(edit: &EditFile, model: &Model) -> Result<Document, EditErr
     document.attachments = Arc::new(setup.attachments.into_iter().collect());
     document.loose = setup.loose;
     let mut document = Document::from(document);
+    document.take_part(edit.strength);
     if document.is_moved() {
         document.unsettle();
     }

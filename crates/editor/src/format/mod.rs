@@ -26,7 +26,7 @@ mod transform;
 pub use attachment::AttachmentEntry;
 pub use beginning::Beginning;
 pub use edit_error::EditError;
-pub use edit_file::{EDIT_VERSION, EditFile, HandleEntry, SOFT_RANGE, STIFFNESS_RANGE};
+pub use edit_file::{EDIT_VERSION, EditFile, HandleEntry, SOFT_RANGE, STIFFNESS_RANGE, STRENGTH_RANGE};
 pub use examples::{ExampleEntry, ExampleSource};
 pub use exchange::ExportError;
 pub(crate) use exchange::{export, without_pivot};

@@ -12,7 +12,7 @@ use super::edit_file::EditFile;
 use super::exchange::with_pivot;
 use super::refusal::shortened;
 use crate::HandleTransform;
-use crate::document::Document;
+use crate::document::{Document, attachment_part};
 use crate::jobs::Region;
 use crate::warning::worded;
 
@@ -139,15 +139,8 @@ impl Setup {
     /// their places; `None` where none was brought.
     pub fn controls(&self, t: f64) -> Option<Arc<Vec<DVec3>>> {
         let attachment = self.attachment()?;
-        let moved = attachment.moved()?;
-        if t >= 1.0 {
-            return Some(Arc::clone(moved));
-        }
-        let rest = self.method.control_rest(attachment);
-        let places = rest.iter().zip(moved.iter());
-        Some(Arc::new(
-            places.map(|(rest, moved)| *rest + (*moved - *rest) * t).collect(),
-        ))
+        attachment.moved()?;
+        attachment_part(&self.method, attachment, t).moved().cloned()
     }
 
     /// The examples of the method, where some were brought.
@@ -158,10 +151,12 @@ impl Setup {
         }
     }
 
-    /// The weights of the examples at the share `t` of the way: those that are set, times it.
+    /// The weights of the examples at the share `t` of the way: those that are set and bend the surface, times it.
     pub fn weights(&self, t: f64) -> Option<Vec<Option<f64>>> {
-        let weights = &self.examples()?.weights;
-        Some(weights.iter().map(|weight| weight.map(|weight| t * weight)).collect())
+        match attachment_part(&self.method, self.attachment()?, t) {
+            Attachment::Shapes(examples) => Some(examples.weights),
+            _ => None,
+        }
     }
 
     /// What was brought of what the method takes.
@@ -227,10 +222,11 @@ impl EditFile {
                     index,
                 });
             }
+            let pivot = entry.transform.pivot_or(sum / count);
             handles.push(HandleSetup {
                 name: entry.name.clone(),
-                transform: entry.transform,
-                pivot: entry.transform.pivot_or(sum / count),
+                transform: entry.transform.part(self.strength, pivot),
+                pivot,
             });
         }
         let stiffness = self.stiffness_on(model)?;
@@ -251,7 +247,15 @@ impl EditFile {
 
     fn attachments_on(&self, model: &Model) -> Result<Vec<(&'static str, Attachment)>, EditError> {
         let entries = self.attachments.iter();
-        let attachments = entries.map(|(name, entry)| Ok((*name, on_model(name, entry, model)?)));
+        let declared = self.method.declaration();
+        let attachments = entries.map(|(name, entry)| {
+            let attachment = on_model(name, entry, model)?;
+            let attachment = match declared.attachment(name) {
+                Some(_) => attachment_part(&self.method, &attachment, self.strength),
+                None => attachment,
+            };
+            Ok((*name, attachment))
+        });
         let attachments: Result<_, EditError> = attachments.collect();
         attachments.map_err(|error| error.under("method"))
     }

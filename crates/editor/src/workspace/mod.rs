@@ -37,7 +37,7 @@ pub(crate) use mirror_request::Purpose;
 pub(crate) use objects::{act_on_object_here, act_on_objects, isolate, show_everything};
 pub(crate) use options::{
     apply_shape, clear_regions, clear_stiffness, reset_shape, set_loose, set_loose_part, set_method, set_stiffness,
-    set_tips,
+    set_strength, set_tips,
 };
 pub(crate) use painting::{members, tidy_handles};
 pub use regions::RegionAction;

@@ -7,9 +7,9 @@ use pliant_deform::{Attachment, Loose, Method};
 
 use super::painting::members;
 use super::state::Workspace;
-use crate::STIFFNESS_RANGE;
 use crate::document::{Document, HandleTransform, Tips};
 use crate::jobs::centroid;
+use crate::{STIFFNESS_RANGE, STRENGTH_RANGE};
 
 /// Makes the present shape the new rest shape.
 pub(crate) fn apply_shape(workspace: &mut Workspace) {
@@ -53,6 +53,15 @@ pub(super) fn at_rest(document: &Document) -> Arc<BTreeMap<&'static str, Attachm
         Arc::make_mut(&mut attachments).insert(name, rested);
     }
     attachments
+}
+
+/// Shows a share (0 to 1) of the whole edit.
+pub(crate) fn set_strength(workspace: &mut Workspace, share: f64) {
+    if !STRENGTH_RANGE.contains(&share) {
+        workspace.refuse("A strength is from 0 to 100 percent: enter another number.");
+        return;
+    }
+    workspace.change("Change strength", |document| document.set_strength(share));
 }
 
 /// Removes all handles and regions; the shape stays as it is.

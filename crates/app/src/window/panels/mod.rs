@@ -12,6 +12,7 @@ pub(in crate::window) mod method;
 pub(in crate::window) mod notes;
 pub(in crate::window) mod objects;
 mod part_name;
+mod strength;
 
 use std::collections::BTreeSet;
 
@@ -66,6 +67,7 @@ fn section(ui: &mut egui::Ui, title: &str, folded: &BTreeSet<String>, contents: 
 fn bending(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     method::show(ui, editor, commands);
     loose::show(ui, editor, commands);
+    strength::show(ui, editor, commands);
     ui.horizontal_wrapped(|ui| {
         for command in [Command::Apply, Command::ResetShape, Command::ClearRegions] {
             if command_button(ui, editor, &command) {

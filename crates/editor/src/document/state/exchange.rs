@@ -124,6 +124,7 @@ impl Document {
         }
         if before != after {
             self.marks.mark(&[Aspect::Targets]);
+            self.content.strength = None;
         }
     }
 

@@ -8,6 +8,7 @@
 
 mod exchange;
 mod shapes;
+mod strength;
 
 use std::collections::BTreeMap;
 use std::ops::Deref;
@@ -376,6 +377,8 @@ impl Document {
         if before == after {
             return;
         }
+        self.forget_strength_unless_handles_stay(before);
+        let after = &self.content.handles;
         let mut changed = vec![Aspect::Handles];
         if !are_same(before, after, |h| (h.id, h.reach, h.soft, h.continuity)) {
             changed.push(Aspect::Constraints);
@@ -396,6 +399,10 @@ impl Document {
     pub(crate) fn set_method(&mut self, method: Method) {
         if self.content.method != method {
             self.content.method = method;
+            if !self.content.attachments.is_empty() {
+                // Other points and weights count now, or the same with other rests.
+                self.forget_strength();
+            }
             self.marks.mark(&[Aspect::Method]);
         }
     }

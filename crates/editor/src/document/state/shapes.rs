@@ -19,6 +19,7 @@ impl Document {
         }
         let content = &mut self.content;
         let before = Arc::clone(&content.rest);
+        content.strength = None;
         content.rest = Arc::clone(&content.from_file);
         content.applied = true;
         content.from_rest = Arc::new(vec![DVec3::ZERO; content.rest.len()]);
@@ -79,6 +80,7 @@ impl Document {
     pub(crate) fn forget_shapes(&mut self) {
         let content = &mut self.content;
         let before = Arc::clone(&content.rest);
+        content.strength = None;
         content.applied = false;
         content.rest = Arc::new(vec![DVec3::ZERO; content.paint.len()]);
         content.from_rest = Arc::clone(&content.rest);

@@ -30,6 +30,7 @@ use self::kept::StoredKept;
 use self::objects::{StoredObject, access, stored_objects};
 use super::attachment::{read_stored_attachments, stored_attachments};
 use super::edit_error::EditError;
+use super::edit_file::strength_kind;
 use super::json::parse;
 use super::loose::StoredLoose;
 use super::method::{method_to_value, read_method};
@@ -94,6 +95,9 @@ pub struct Project {
     kept: Option<StoredKept>,
     /// Whether that is what the handles' transforms mean; else it is computed on opening.
     settled: bool,
+    /// How much of handles and attachments, which stand here in full, is shown; without, all of it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    strength: Option<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     camera: Option<StoredCamera>,
 }
@@ -195,8 +199,9 @@ impl Project {
                 (value != default).then_some([value])
             })
         };
-        let mut attachments = stored_attachments(&document.method, &document.attachments);
-        for (name, attachment) in &*document.attachments {
+        let in_full = document.in_full();
+        let mut attachments = stored_attachments(&document.method, &in_full.attachments);
+        for (name, attachment) in &*in_full.attachments {
             if let Attachment::Shapes(examples) = attachment {
                 attachments.insert((*name).to_owned(), stored_examples(examples, model));
             }
@@ -215,7 +220,7 @@ impl Project {
             tips: (document.tips == Tips::Held).then_some(StoredTips::Held),
             region: painted(Paint::Free),
             fixed: painted(Paint::Fixed),
-            handles: document
+            handles: in_full
                 .handles
                 .iter()
                 .map(|handle| StoredHandle::of(handle, painted(Paint::Handle(handle.id))))
@@ -233,6 +238,7 @@ impl Project {
                 .as_ref()
                 .map(|kept| StoredKept::of(kept, displacements(&kept.shape))),
             settled: document.settled,
+            strength: document.strength.as_ref().map(|strength| strength.share),
             camera: camera.map(StoredCamera::of),
         }
     }
@@ -284,7 +290,8 @@ impl Project {
             .attachments
             .iter()
             .any(|(name, attachment)| own(name) && moves(attachment));
-        self.rest.is_none() && !has_moved && self.handles.iter().all(StoredHandle::is_at_rest)
+        let is_at_rest = !has_moved && self.handles.iter().all(StoredHandle::is_at_rest);
+        self.rest.is_none() && (is_at_rest || self.strength == Some(0.0))
     }
 
     /// The document on its mesh.
@@ -354,6 +361,12 @@ impl Project {
         }
         document.settled = self.settled;
         let mut document = Document::from(document);
+        if let Some(strength) = self.strength {
+            strength_kind()
+                .check(strength)
+                .map_err(|error| error.under("strength"))?;
+            document.take_part(strength);
+        }
         if !document.is_moved() && !document.settled {
             // Nothing is moved by this method, so what another has made of it is gone.
             match document.kept {

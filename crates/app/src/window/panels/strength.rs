@@ -1,0 +1,27 @@
+//! How much of the edit is shown, as a slider.
+
+use eframe::egui::{self, Slider};
+use pliant_editor::{Command, Editor};
+
+use crate::window::widgets::outbox::Outbox;
+
+/// Shows the slider. It is grey while nothing is bent.
+pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
+    let mut percent = editor.document().strength() * 100.0;
+    let obstacle = editor.unavailable_because(&Command::SetStrength(0.5));
+    ui.horizontal(|ui| {
+        let label = ui.label("Strength");
+        let slider = Slider::new(&mut percent, 0.0..=100.0)
+            .suffix(" %")
+            .fixed_decimals(0)
+            .update_while_editing(false);
+        let slider = ui.add_enabled(obstacle.is_none(), slider).labelled_by(label.id);
+        let slider = slider
+            .on_hover_text(
+                "How much of the edit is shown and saved: every handle goes this share of its way and of its turn. \
+                 What you move next goes on from what you see.",
+            )
+            .on_disabled_hover_text(obstacle.as_deref().unwrap_or_default());
+        commands.adjust(&slider, || Command::SetStrength(percent / 100.0));
+    });
+}

@@ -1,0 +1,96 @@
+//! What the panel's section *Bending* does with a bent shape, by pointer and keyboard: its strength.
+//! Skipped by name if there is no graphics device at all.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    reason = "tests fail by panicking and say what they skip"
+)]
+
+mod window_rig;
+
+use egui::accesskit::Role;
+use egui::{Key, Modifiers, Rect, pos2, vec2};
+use egui_kittest::kittest::{NodeT, Queryable};
+use glam::{DQuat, DVec3};
+use pliant_editor::{Command, Document, HandleTransform};
+use window_rig::Session;
+
+/// The sample with a handle at its top that stands elsewhere, in a window so high that the whole panel is seen.
+fn bent(translation: DVec3, turn_rad: f64) -> Option<Session> {
+    let mut session = Session::with_handle()?;
+    session.harness.set_size(vec2(1000.0, 1500.0));
+    session.harness.run();
+    let id = session.harness.state().editor().view().selected.unwrap();
+    let transform = HandleTransform::Trs {
+        translation,
+        rotation: DQuat::from_rotation_y(turn_rad),
+        scale: DVec3::ONE,
+        pivot: None,
+    };
+    session
+        .harness
+        .state_mut()
+        .command(Command::SetHandleTransform(id, transform));
+    session.settle();
+    Some(session)
+}
+
+fn document(session: &Session) -> &Document {
+    session.harness.state().editor().document()
+}
+
+fn slider(session: &Session) -> Rect {
+    let mut nodes = session.harness.get_all_by_label("Strength");
+    let slider = nodes.find(|node| node.accesskit_node().role() == Role::Slider);
+    slider.expect("the panel has the slider").rect()
+}
+
+#[test]
+fn the_strength_is_dragged_and_typed_and_what_is_moved_next_goes_on_from_it() {
+    let Some(mut session) = bent(DVec3::X * 0.05, 1.0) else {
+        return;
+    };
+    let whole = session.shape();
+    let before = document(&session).handles()[0].clone();
+    // Across the slider from its right end to its middle: one step of the history.
+    let place = slider(&session);
+    session.stroke(
+        pos2(place.right() - 4.0, place.center().y),
+        pos2(place.left() + 0.5 * place.width(), place.center().y),
+    );
+    let strength = document(&session).strength();
+    assert!(strength > 0.2 && strength < 0.8, "{strength}");
+    assert_eq!(session.harness.state().editor().view().undo, Some("Change strength"));
+    let handle = document(&session).handles()[0].clone();
+    assert!((handle.turn_deg.y - before.turn_deg.y * strength).abs() < 1e-6);
+    assert_ne!(session.shape(), whole);
+    session.key(Key::Z, Modifiers::COMMAND);
+    session.settle();
+    assert_eq!(session.shape(), whole);
+    assert_eq!(document(&session).strength(), 1.0);
+
+    // Typed into its number.
+    session.click_into("Strength");
+    session.harness.event(egui::Event::Text("0".to_owned()));
+    session.key(Key::Enter, Modifiers::NONE);
+    session.settle();
+    assert_eq!(document(&session).strength(), 0.0);
+    assert!(session.shape().iter().all(|displacement| *displacement == DVec3::ZERO));
+
+    // From the palette, and on by G, X and a number: what was seen is the whole.
+    session.palette("half strength");
+    session.key(Key::Enter, Modifiers::NONE);
+    session.settle();
+    assert_eq!(document(&session).strength(), 0.5);
+    for key in [Key::G, Key::X, Key::Num0, Key::Period, Key::Num0, Key::Num1, Key::Enter] {
+        session.key(key, Modifiers::NONE);
+    }
+    session.settle();
+    assert_eq!(document(&session).strength(), 1.0);
+    assert!((session.translation().x - document(&session).handles()[0].pivot.x).is_finite());
+    let HandleTransform::Trs { translation, .. } = document(&session).handles()[0].transform else {
+        panic!("it was moved, turned and scaled");
+    };
+    assert!(translation.distance(DVec3::X * 0.035) < 1e-9, "{translation}");
+}
