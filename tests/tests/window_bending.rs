@@ -1,5 +1,5 @@
-//! What the panel's section *Bending* does with a bent shape, by pointer and keyboard: its strength.
-//! Skipped by name if there is no graphics device at all.
+//! What the panel's section *Bending* does with a bent shape, by pointer and keyboard: its strength, and the warning where
+//! it passes through itself. Skipped by name if there is no graphics device at all.
 
 #![allow(
     clippy::unwrap_used,
@@ -8,6 +8,8 @@
 )]
 
 mod window_rig;
+
+use std::time::{Duration, Instant};
 
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, Rect, pos2, vec2};
@@ -93,4 +95,67 @@ fn the_strength_is_dragged_and_typed_and_what_is_moved_next_goes_on_from_it() {
         panic!("it was moved, turned and scaled");
     };
     assert!(translation.distance(DVec3::X * 0.035) < 1e-9, "{translation}");
+}
+
+#[test]
+fn a_shape_that_passes_through_itself_is_told_and_shown() {
+    let Some(mut session) = bent(DVec3::ZERO, 0.0) else {
+        return;
+    };
+    assert!(
+        session.harness.state().editor().intersections().is_none(),
+        "nothing is bent"
+    );
+    let height = session
+        .harness
+        .state()
+        .editor()
+        .view()
+        .model
+        .unwrap()
+        .bounds()
+        .unwrap()
+        .extent()
+        .y;
+    let id = session.harness.state().editor().view().selected.unwrap();
+    let down = HandleTransform::Trs {
+        translation: DVec3::new(0.0, -0.6 * height, 0.0),
+        rotation: DQuat::IDENTITY,
+        scale: DVec3::ONE,
+        pivot: None,
+    };
+    session
+        .harness
+        .state_mut()
+        .command(Command::SetHandleTransform(id, down));
+    session.settle();
+    let start = Instant::now();
+    while session.harness.state().editor().intersections().is_none() {
+        assert!(start.elapsed() < Duration::from_secs(60), "it was never looked for");
+        std::thread::sleep(Duration::from_millis(10));
+        session.harness.step();
+    }
+    let found = session.harness.state().editor().intersections().unwrap().clone();
+    let sentence = found.sentence().expect("the head went through the body");
+    session.harness.run_steps(2);
+    session.harness.get_by_label(&sentence);
+    let before = *session.harness.state().editor().view().camera;
+    let button = if found.places.len() == 1 { "Go there" } else { "Go to 1" };
+    let middle = session.harness.get_by_label(button).rect().center();
+    for pressed in [true, false] {
+        session.pointer(middle, Some(pressed));
+    }
+    session.harness.run_steps(2);
+    let after = *session.harness.state().editor().view().camera;
+    let places = found.places[0].segments.as_flattened();
+    let nearest = places
+        .iter()
+        .map(|p| p.distance(after.target))
+        .fold(f64::INFINITY, f64::min);
+    assert!(nearest < 0.2 * height, "{nearest}");
+    assert!(after.distance < before.distance);
+    // Undone, nothing is left to be told.
+    session.key(Key::Z, Modifiers::COMMAND);
+    session.settle();
+    assert!(session.harness.query_by_label(&sentence).is_none());
 }

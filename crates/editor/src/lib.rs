@@ -35,7 +35,8 @@ pub use format::{
 pub use input::{Button, Key, Modifiers, Pointer};
 pub use jobs::{
     Alternative, Compared, Comparison, ControlPlaces, Counts, Descent, Executor, Figures, InlineExecutor, Inspectable,
-    Inspected, Job, JobDone, JobKind, JobOutcome, JobQueue, Region, Revision, Rim, Running, Solved,
+    Inspected, IntersectionPlace, Intersections, Job, JobDone, JobKind, JobOutcome, JobQueue, Region, Revision, Rim,
+    Running, Solved,
 };
 pub use scene_view::{ControlPoints, Cursor, Readout, SceneView};
 pub use selection::Selection;

@@ -24,7 +24,12 @@ pub(crate) fn status(
     let now = gesture.and_then(|gesture| gesture.status(workspace, view));
     let now = now.unwrap_or_else(|| hint(workspace, settings));
     let is_dragging = gesture.is_some_and(|gesture| gesture.activity() == Activity::Dragging);
-    let parts = [working(workspace, is_dragging), descent(workspace), Some(now)];
+    let parts = [
+        working(workspace, is_dragging),
+        descent(workspace),
+        crossing(workspace),
+        Some(now),
+    ];
     parts.into_iter().flatten().collect::<Vec<_>>().join(" · ")
 }
 
@@ -39,6 +44,12 @@ fn descent(workspace: &Workspace) -> Option<String> {
         true => return None,
     };
     Some(said.to_owned())
+}
+
+/// Whether bending has put the surface through itself; the panel says more, but may be scrolled away.
+fn crossing(workspace: &Workspace) -> Option<String> {
+    let found = workspace.intersections()?;
+    (!found.is_empty()).then(|| "The shape passes through itself".to_owned())
 }
 
 /// What can be done when no gesture is active, and how many vertices have each role.
@@ -84,7 +95,7 @@ fn working(workspace: &Workspace, is_dragging: bool) -> Option<String> {
         return Some("Nothing is bound: handles move alone until the regions change".to_owned());
     }
     let (kind, fraction) = jobs.running().into_iter().rfind(|(kind, _)| match kind {
-        JobKind::Solve | JobKind::Compare | JobKind::Inspect | JobKind::Joint => false,
+        JobKind::Solve | JobKind::Compare | JobKind::Inspect | JobKind::Joint | JobKind::Intersect => false,
         JobKind::Pick => workspace.computed().pickable.is_none(),
         JobKind::Order => !document.handles().is_empty(),
         JobKind::Region | JobKind::Bind | JobKind::Mirror | JobKind::Enclose => true,

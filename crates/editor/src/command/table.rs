@@ -226,6 +226,9 @@ commands! {
     FramePart(part: u32) = view::FRAME_PART;
     /// Lights up a connected part, by its component's number, or none.
     LightPart(part: Option<u32>) = view::LIGHT_PART;
+    /// Comes close to a place where the shape passes through itself, by its number in
+    /// [`Intersections::places`](crate::Intersections::places).
+    FrameIntersection(place: usize) = view::FRAME_INTERSECTION;
     /// Comes close to a vertex, by the file's number.
     FrameFileVertex(vertex: u32) = view::FRAME_FILE_VERTEX;
     /// Looks from where one looked before.

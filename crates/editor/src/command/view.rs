@@ -63,6 +63,32 @@ pub(super) const FRAME_FILE_VERTEX: Entry<u32> = Entry {
     action: Action::Do(|context, vertex| frame_file_vertex(context.workspace, context.view, vertex)),
 };
 
+/// Comes close to a place where the shape passes through itself, by its number.
+pub(super) const FRAME_INTERSECTION: Entry<usize> = Entry {
+    listed: &[item(
+        0,
+        "Go to where the shape passes through itself",
+        "Comes close to the largest place where bending has put one part of the surface through another.",
+        "self-intersection crossing collision overlap penetrate",
+        &[],
+    )],
+    scope: Scope::View,
+    unavailable: |state, place| {
+        let found = state.workspace.intersections();
+        let is_there = found.is_some_and(|found| *place < found.places.len());
+        unless(
+            is_there,
+            "The shape at rest passes through itself nowhere that the file's does not.",
+        )
+    },
+    action: Action::Do(|context, place| {
+        let found = context.workspace.intersections();
+        if let Some(place) = found.and_then(|found| found.places.get(place)) {
+            context.view.frame(place.segments.as_flattened());
+        }
+    }),
+};
+
 /// Looks from where one looked before.
 pub(super) const CAMERA_BACK: Entry<()> = Entry {
     listed: &[item(

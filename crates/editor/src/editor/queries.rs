@@ -12,7 +12,7 @@ use crate::EditFile;
 use crate::command::{Command, Shortcut, State};
 use crate::document::{Document, History};
 use crate::format::{ExportError, export};
-use crate::jobs::{Comparison, JobKind, Revision, Rim};
+use crate::jobs::{Comparison, Intersections, JobKind, Revision, Rim};
 use crate::scene_view::{ControlPoints, Cursor, SceneView};
 use crate::snapshot::Snapshot;
 use crate::status::status;
@@ -146,6 +146,12 @@ impl Editor {
         warnings.map(|warning| warning.worded(self.document())).collect()
     }
 
+    /// Where the shape at rest passes through itself and the file's did not; `None` where nothing is bent, until it was
+    /// looked for, and while the shape changes.
+    pub fn intersections(&self) -> Option<&Intersections> {
+        self.workspace.intersections()
+    }
+
     /// What the methods make of the present edit, while they are compared.
     pub fn comparison(&self) -> Option<&Comparison> {
         self.workspace.jobs.comparison.as_ref()
@@ -255,7 +261,7 @@ impl Editor {
     /// prepare for the pointer or the first drag.
     pub fn is_settled(&self) -> bool {
         let awaited = |kind| match kind {
-            JobKind::Pick | JobKind::Compare | JobKind::Joint => false,
+            JobKind::Pick | JobKind::Compare | JobKind::Joint | JobKind::Intersect => false,
             JobKind::Order => self.document().is_displaced(),
             JobKind::Region
             | JobKind::Bind

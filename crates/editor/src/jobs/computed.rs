@@ -8,7 +8,8 @@ use pliant_mesh::{Joint, Model};
 use super::bound_controls::BoundControls;
 use super::carried::Carried;
 use super::inspected::{Inspectable, Inspected};
-use super::job::{Pickable, ShownTriangles};
+use super::intersections::Intersections;
+use super::job::{Pickable, Revision, ShownTriangles};
 use super::region::{FileContacts, Region};
 use crate::warning::HandleWarning;
 
@@ -36,6 +37,8 @@ pub(crate) struct Computed {
     pub(super) reusable_factor: Option<ReusableFactor>,
     /// Of the limb under the pointer.
     pub(super) joint: Option<Arc<Joint>>,
+    /// Where a shape passes through itself, and the shape's revision.
+    pub(super) intersections: Option<(Revision, Intersections)>,
     /// About the last binding.
     pub(crate) warnings: Vec<HandleWarning>,
     /// About the targets of the last solve.
@@ -60,6 +63,7 @@ impl Default for Computed {
             inspected: Inspected::default(),
             reusable_factor: None,
             joint: None,
+            intersections: None,
             warnings: Vec::new(),
             blind_to: Vec::new(),
             example_weights: Vec::new(),

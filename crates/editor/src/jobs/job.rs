@@ -13,6 +13,7 @@ use pliant_mesh::{Bvh, Cancel, Joint, Progress, SurfaceVertex};
 use super::carried::Carried;
 use super::compared::Compared;
 use super::inspected::{Inspectable, Inspected};
+use super::intersections::Intersections;
 use super::region::Region;
 use crate::warning::HandleWarning;
 
@@ -39,11 +40,13 @@ pub enum JobKind {
     Inspect,
     /// The joint of the limb under the pointer.
     Joint,
+    /// Where the present shape passes through itself.
+    Intersect,
 }
 
 impl JobKind {
     /// Every kind, in the order in which their results build on one another.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Pick,
         Self::Order,
         Self::Region,
@@ -54,6 +57,7 @@ impl JobKind {
         Self::Compare,
         Self::Inspect,
         Self::Joint,
+        Self::Intersect,
     ];
 
     /// What the job does, for the status line: "binding".
@@ -69,6 +73,7 @@ impl JobKind {
             Self::Compare => "comparing methods",
             Self::Inspect => "looking into the binding",
             Self::Joint => "looking for the joint",
+            Self::Intersect => "looking for where the shape passes through itself",
         }
     }
 }
@@ -188,6 +193,8 @@ pub enum JobOutcome {
     Inspected(Inspected),
     /// The joint of a limb; `None` where there is none.
     Joint(Option<Arc<Joint>>),
+    /// Where the shape passes through itself.
+    Intersections(Intersections),
     /// It was cancelled, and nothing is owed.
     Cancelled,
     /// It failed; one sentence that names the culprit and the remedy.
@@ -208,6 +215,7 @@ impl std::fmt::Debug for JobOutcome {
             Self::Compared(_) => "Compared",
             Self::Inspected(_) => "Inspected",
             Self::Joint(_) => "Joint",
+            Self::Intersections(_) => "Intersections",
             Self::Cancelled => "Cancelled",
             Self::Failed(sentence) => return write!(f, "Failed({sentence})"),
         })

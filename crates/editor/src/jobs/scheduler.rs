@@ -15,6 +15,7 @@ use super::comparison::Comparison;
 use super::computed::Computed;
 use super::inspected::{Asked, Inspected};
 use super::inspection::inspect_work;
+use super::intersections::{Intersections, intersect_work};
 use super::job::{ControlPlaces, Executor, Job, JobDone, JobKind, JobOutcome, Revision, ShownTriangles, Solved, Work};
 use super::job_queue::{JobQueue, Running};
 use super::region::{Region, region_input};
@@ -255,6 +256,24 @@ impl Jobs {
     /// What is drawn is no longer what it was.
     pub(crate) fn shape_changed(&mut self) {
         self.shape_revision = self.next_revision();
+        self.queues[JobKind::Intersect as usize].cancel();
+    }
+
+    /// Has looked for where the present shape passes through itself, once rays are answered from it.
+    pub(crate) fn intersect(&mut self) {
+        let Some(model) = self.computed.model.clone() else {
+            return;
+        };
+        let is_known = self.intersections().is_some();
+        if !is_known && self.is_picking_current() {
+            self.want(JobKind::Intersect, |computed| intersect_work(computed, &model));
+        }
+    }
+
+    /// Where the present shape passes through itself; `None` until that was looked for.
+    pub(crate) fn intersections(&self) -> Option<&Intersections> {
+        let (of, found) = self.computed.intersections.as_ref()?;
+        (*of == self.shape_revision).then_some(found)
     }
 
     /// Solves that run or are done but have not arrived must not change the shape any more.
@@ -285,6 +304,7 @@ impl Jobs {
             JobKind::Mirror,
             JobKind::Enclose,
             JobKind::Joint,
+            JobKind::Intersect,
         ] {
             let queue = &mut self.queues[kind as usize];
             if queue.is_busy() {
@@ -457,6 +477,9 @@ impl Jobs {
                 self.computed.joint = joint;
                 return Arrival::Joint;
             }
+            JobOutcome::Intersections(found) if stamp == self.shape_revision => {
+                self.computed.intersections = Some((stamp, found));
+            }
             JobOutcome::Mirrored(image) if stamp == self.mirror_revision => return Arrival::Mirrored(image),
             JobOutcome::Enclosed(vertices) if stamp == self.enclose_revision => return Arrival::Enclosed(vertices),
             JobOutcome::Solved(solved) if stamp >= self.solve_floor => {
@@ -490,7 +513,7 @@ impl Jobs {
     /// The revision that a job of this kind would be made for now.
     fn stamp(&self, kind: JobKind) -> Revision {
         match kind {
-            JobKind::Pick => self.shape_revision,
+            JobKind::Pick | JobKind::Intersect => self.shape_revision,
             JobKind::Order => self.model_revision,
             JobKind::Region | JobKind::Bind => self.problem_revision,
             JobKind::Solve => self.target_revision,

@@ -13,6 +13,7 @@ mod control_box;
 mod enclosed;
 mod gesture;
 mod hidden_points;
+mod intersections;
 mod mode;
 mod moved_controls;
 mod navigate;

@@ -7,6 +7,7 @@ use glam::{DVec2, DVec3};
 
 use super::brush::ring;
 use super::hidden_points::HiddenPoints;
+use super::intersections::intersection_shapes;
 use super::mode::{StrokeShape, ToolMode};
 use super::pose::{Limb, joint_shapes, limb_under};
 use super::settings::ToolSettings;
@@ -120,6 +121,7 @@ impl Overlay {
         let controls = self.renew_controls(workspace, view, control_px);
         let joint_px = pointer_px.filter(|_| highlighted.is_none());
         shapes.extend(joint(lit, workspace, view, settings, joint_px));
+        shapes.extend(intersection_shapes(workspace, camera, viewport_px));
         if self.ring != line || self.gizmo != gizmo || self.controls != controls || self.shapes != shapes {
             self.ring = line;
             self.shapes = shapes;

@@ -20,6 +20,12 @@ impl Workspace {
             self.controls.drop_lost(count);
         }
         self.jobs.inspect(asked);
+        let is_at_rest = activity == Activity::Still && self.document.is_settled();
+        let is_bent = self.document.is_displaced() || self.document.is_applied();
+        // One that follows another is looked at, and not edited.
+        if is_at_rest && is_bent && self.followed.is_none() {
+            self.jobs.intersect();
+        }
         self.jobs.pump(&self.document, activity);
         let versions = self.document.versions();
         let sources = Sources {

@@ -14,7 +14,7 @@ use super::selection::HandleSelection;
 use crate::document::{
     Aspect, Document, HISTORY_BYTES, Handle, HandleId, History, Transaction, Version, Versions, VertexAccess,
 };
-use crate::jobs::{Computed, Descent, Executor, Jobs, Revision};
+use crate::jobs::{Computed, Descent, Executor, Intersections, Jobs, Revision};
 use crate::view::{Pick, Picking, View};
 
 /// The document and what follows from it.
@@ -117,6 +117,11 @@ impl Workspace {
     /// Grows when what is drawn has another shape.
     pub(crate) fn shape_revision(&self) -> u64 {
         self.shape_revision
+    }
+
+    /// Where the shape at rest passes through itself; `None` until that was looked for, and while it moves.
+    pub(crate) fn intersections(&self) -> Option<&Intersections> {
+        self.jobs.intersections().filter(|_| self.document.is_settled())
     }
 
     pub(crate) fn colours(&self) -> &Colours {

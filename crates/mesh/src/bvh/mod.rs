@@ -10,6 +10,7 @@
 mod blocks;
 mod boxes;
 mod query;
+mod self_intersections;
 
 use std::sync::Arc;
 
@@ -22,6 +23,8 @@ use rayon::prelude::*;
 
 use crate::SurfaceVertex;
 use crate::surface::corners;
+
+pub use self_intersections::{SelfIntersection, SelfIntersections};
 
 use blocks::{BLOCK, Blocks};
 use boxes::{BoxSpace, RUN, Span};

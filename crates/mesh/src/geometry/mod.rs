@@ -9,6 +9,7 @@ mod distortion;
 mod gradient;
 mod normals;
 mod triangle_distance;
+mod triangle_intersection;
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -19,6 +20,7 @@ pub use distortion::Distortion;
 pub use gradient::face_gradient;
 pub use normals::vertex_normals;
 pub(crate) use triangle_distance::distance_to_triangle;
+pub use triangle_intersection::triangle_intersection;
 
 /// An axis-aligned box, `min <= max` in each coordinate.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -6,6 +6,7 @@ mod examples;
 pub(in crate::window) mod file;
 pub(in crate::window) mod handles;
 pub(in crate::window) mod history;
+mod intersections;
 pub(in crate::window) mod loose;
 mod material;
 pub(in crate::window) mod method;
@@ -68,6 +69,7 @@ fn bending(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     method::show(ui, editor, commands);
     loose::show(ui, editor, commands);
     strength::show(ui, editor, commands);
+    intersections::show(ui, editor, commands);
     ui.horizontal_wrapped(|ui| {
         for command in [Command::Apply, Command::ResetShape, Command::ClearRegions] {
             if command_button(ui, editor, &command) {

@@ -135,6 +135,7 @@ fn draw(ui: &Ui, rect: Rect, view: &mut SideView, editor: &Editor, smooth: Smoot
         brush_ring: &[],
         gizmo: &[],
         controls: &[],
+        shapes: &[],
         overlay_revision: 0,
         ..main
     };

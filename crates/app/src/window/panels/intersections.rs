@@ -1,0 +1,29 @@
+//! A warning where bending has put the surface through itself, with a way to each place.
+
+use eframe::egui::{self, RichText};
+use pliant_editor::{Command, Editor};
+
+use crate::window::widgets::outbox::Outbox;
+
+/// So many places have a button: the largest.
+const SHOWN: usize = 8;
+
+/// Shows the warning, if there is one.
+pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
+    let Some(found) = editor.intersections() else { return };
+    let Some(sentence) = found.sentence() else { return };
+    let colour = ui.visuals().warn_fg_color;
+    ui.add(egui::Label::new(RichText::new(sentence).small().color(colour)).wrap());
+    ui.horizontal_wrapped(|ui| {
+        for place in 0..found.places.len().min(SHOWN) {
+            let label = match found.places.len() {
+                1 => "Go there".to_owned(),
+                _ => format!("Go to {}", place + 1),
+            };
+            let hover = "Comes close to the place. The red lines are where the surface passes through itself.";
+            if ui.small_button(label).on_hover_text(hover).clicked() {
+                commands.push(Command::FrameIntersection(place));
+            }
+        }
+    });
+}

@@ -1,0 +1,170 @@
+//! Where a surface passes through itself: pairs of triangles by their boxes, then by their corners.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::boxes::Span;
+use super::{Bvh, Node};
+use crate::geometry::triangle_intersection;
+use crate::{Cancel, Cancelled, Progress, Surface, SurfaceVertex, Topology};
+
+/// Two triangles that pass through each other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SelfIntersection {
+    /// Their corners.
+    pub triangles: [[SurfaceVertex; 3]; 2],
+    /// The segment in which they do.
+    pub segment: [DVec3; 2],
+}
+
+/// What was found.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SelfIntersections {
+    /// The pairs, in the order of the hierarchy.
+    pub pairs: Vec<SelfIntersection>,
+    /// Whether these are all that there are.
+    pub are_all: bool,
+}
+
+/// Leaves whose pairs are looked for before it is asked whether to go on.
+const LEAVES: usize = 512;
+
+/// So many pairs of triangles are tried for each triangle before the search ends: a surface has some twenty with boxes
+/// that overlap, and one where everything overlaps has as many as there are triangles.
+const TRIED_A_TRIANGLE: usize = 400;
+
+/// At most so many of the triangles around a corner count as next to it. Few corners have more than ten.
+const NEXT: usize = 32;
+
+impl Bvh {
+    /// The pairs of triangles that pass through each other in the hierarchy's positions and did not at rest, which is
+    /// `surface`, of whose triangles the hierarchy has all or some. No more are looked for once there are `most`, or once
+    /// the search has become as long as only a tangle makes it.
+    ///
+    /// Where the triangles next to a pair crossed at rest, the same crossing has only shifted, and the pair does not
+    /// count. Pairs of triangles that stand where they rested are not looked at, so a local change costs what it moved.
+    ///
+    /// # Errors
+    /// [`Cancelled`] soon after `cancel` is raised.
+    pub fn new_self_intersections(
+        &self,
+        surface: &Surface,
+        topology: &Topology,
+        most: usize,
+        progress: &Progress,
+        cancel: &Cancel,
+    ) -> Result<SelfIntersections, Cancelled> {
+        let is_moved = self.moved_nodes(&surface.positions);
+        let leaves: Vec<u32> = (0..self.nodes.len() as u32)
+            .filter(|&place| is_moved[place as usize] && self.nodes.get(place as usize).count > 0)
+            .collect();
+        let is_new = |pair: &SelfIntersection| !crossed_at_rest(pair, surface, topology);
+        let (mut pairs, mut tried) = (Vec::new(), 0);
+        let most_tried = TRIED_A_TRIANGLE * self.leaves.triangles.len();
+        let mut are_all = true;
+        for (number, some) in leaves.chunks(LEAVES).enumerate() {
+            cancel.check()?;
+            progress.set((number * LEAVES) as f32 / leaves.len() as f32);
+            if pairs.len() > most || tried > most_tried {
+                are_all = false;
+                break;
+            }
+            let of_leaf = |&leaf: &u32| {
+                let (mut found, tried) = self.pairs_of(leaf, &is_moved);
+                found.retain(is_new);
+                (found, tried)
+            };
+            for (found, of_leaf) in some.par_iter().map(of_leaf).collect::<Vec<_>>() {
+                pairs.extend(found);
+                tried += of_leaf;
+            }
+        }
+        are_all &= pairs.len() <= most;
+        pairs.truncate(most);
+        Ok(SelfIntersections { pairs, are_all })
+    }
+
+    /// Of each node, whether a corner of a triangle below it stands elsewhere than at `rest`.
+    fn moved_nodes(&self, rest: &[DVec3]) -> Vec<bool> {
+        let is_elsewhere = |v: &SurfaceVertex| self.positions.get(v.index()) != rest[v.index()];
+        let of_leaf = |place: usize| {
+            let leaf = self.nodes.get(place).leaf();
+            leaf.is_some_and(|leaf| self.leaves.corners[leaf].iter().flatten().any(is_elsewhere))
+        };
+        let mut is_moved: Vec<bool> = (0..self.nodes.len()).into_par_iter().map(of_leaf).collect();
+        // Children stand behind their parents.
+        for place in (0..self.nodes.len()).rev() {
+            let Node { first, count, .. } = self.nodes.get(place);
+            if count == 0 {
+                is_moved[place] = is_moved[first as usize] || is_moved[first as usize + 1];
+            }
+        }
+        is_moved
+    }
+
+    /// The pairs of a leaf that moved: within it, with leaves that did not move, and with those behind it that did; and
+    /// how many were tried.
+    fn pairs_of(&self, leaf: u32, is_moved: &[bool]) -> (Vec<SelfIntersection>, usize) {
+        let own = self.nodes.get(leaf as usize);
+        let places = own.leaf().unwrap_or_default();
+        let (mut found, mut tried) = (Vec::new(), 0);
+        for first in places.clone() {
+            found.extend((first + 1..places.end).filter_map(|second| self.intersection(first, second)));
+        }
+        let mut stack = vec![0_u32];
+        while let Some(number) = stack.pop() {
+            let other = self.nodes.get(number as usize);
+            if !overlap(&own.span, &other.span) {
+                continue;
+            }
+            let Some(others) = other.leaf() else {
+                stack.extend([other.first + 1, other.first]);
+                continue;
+            };
+            if number > leaf || (number < leaf && !is_moved[number as usize]) {
+                tried += places.len() * others.len();
+                let pairs = places.clone().flat_map(|a| others.clone().map(move |b| (a, b)));
+                found.extend(pairs.filter_map(|(a, b)| self.intersection(a, b)));
+            }
+        }
+        (found, tried)
+    }
+
+    fn intersection(&self, a: usize, b: usize) -> Option<SelfIntersection> {
+        let triangles = [a, b].map(|place| self.leaves.corners[place]);
+        let [a, b] = triangles.map(|corners| corners.map(|v| self.positions.get(v.index())));
+        Some(SelfIntersection {
+            triangles,
+            segment: triangle_intersection(a, b)?,
+        })
+    }
+}
+
+fn overlap(a: &Span, b: &Span) -> bool {
+    a.min.cmple(b.max).all() && b.min.cmple(a.max).all()
+}
+
+/// Whether a triangle at or next to the first of a pair passes through one at or next to the second at rest.
+fn crossed_at_rest(pair: &SelfIntersection, surface: &Surface, topology: &Topology) -> bool {
+    let [first, second] = pair.triangles;
+    let at_rest = |triangle: [SurfaceVertex; 3]| triangle.map(|v| surface.positions[v.index()]);
+    if triangle_intersection(at_rest(first), at_rest(second)).is_some() {
+        return true;
+    }
+    let around = |triangle: [SurfaceVertex; 3]| -> Vec<[DVec3; 3]> {
+        let faces = triangle
+            .into_iter()
+            .flat_map(|v| topology.faces(v, &surface.triangles).take(NEXT));
+        let mut faces: Vec<u32> = faces.collect();
+        faces.sort_unstable();
+        faces.dedup();
+        faces
+            .iter()
+            .map(|&face| at_rest(surface.triangles[face as usize]))
+            .collect()
+    };
+    let others = around(second);
+    around(first)
+        .iter()
+        .any(|own| others.iter().any(|other| triangle_intersection(*own, *other).is_some()))
+}
