@@ -1,5 +1,5 @@
-//! What the panel's section *Bending* does with a bent shape, by pointer and keyboard: its strength, and the warning where
-//! it passes through itself. Skipped by name if there is no graphics device at all.
+//! What a person does with a bent shape, by pointer and keyboard: its strength, the warning where it passes through
+//! itself, and poses that are kept. Skipped by name if there is no graphics device at all.
 
 #![allow(
     clippy::unwrap_used,
@@ -158,4 +158,34 @@ fn a_shape_that_passes_through_itself_is_told_and_shown() {
     session.key(Key::Z, Modifiers::COMMAND);
     session.settle();
     assert!(session.harness.query_by_label(&sentence).is_none());
+}
+
+fn click(session: &mut Session, label: &str) {
+    let middle = session.harness.get_by_label(label).rect().center();
+    for pressed in [true, false] {
+        session.pointer(middle, Some(pressed));
+    }
+    session.settle();
+}
+
+#[test]
+fn a_pose_is_kept_and_taken_again() {
+    let Some(mut session) = bent(DVec3::X * 0.05, 0.4) else {
+        return;
+    };
+    click(&mut session, "Keep pose");
+    let kept = document(&session).handles()[0].affine();
+    session.key(Key::G, Modifiers::ALT);
+    session.settle();
+    assert!(!document(&session).is_displaced());
+    click(&mut session, "Take pose 1");
+    assert_eq!(document(&session).handles()[0].affine(), kept);
+    assert!(document(&session).is_displaced());
+    session
+        .harness
+        .state_mut()
+        .command(Command::RenamePose(0, "bow".to_owned()));
+    session.harness.run_steps(2);
+    click(&mut session, "Remove bow");
+    assert!(document(&session).poses().is_empty());
 }

@@ -23,7 +23,7 @@ mod workspace;
 pub use command::{Command, KeyMap, Listed, Shortcut};
 pub use document::{
     Access, Content, Document, HANDLE_COLOURS, HISTORY_BYTES, Handle, HandleId, HandleTransform, History, KeptShape,
-    MirrorPlane, ObjectAction, Paint, PivotPlace, Reach, Tips, Twin, object_name,
+    MirrorPlane, ObjectAction, Paint, PivotPlace, Pose, Reach, Tips, Twin, object_name,
 };
 pub use editor::Editor;
 pub use event::Event;

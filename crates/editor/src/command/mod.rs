@@ -12,6 +12,7 @@ mod key_map;
 mod look;
 mod object;
 mod paint;
+mod pose;
 mod region;
 mod shortcut;
 mod table;

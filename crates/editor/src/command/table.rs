@@ -8,7 +8,7 @@ use pliant_deform::{Attachment, Loose, Method};
 
 use super::entry::{Action, Entry, Reason, Scope, State};
 use super::shortcut::Shortcut;
-use super::{controls, document, examples, handle, look, object, paint, region, transform, view};
+use super::{controls, document, examples, handle, look, object, paint, pose, region, transform, view};
 use crate::document::{HandleId, HandleTransform, ObjectAction, PivotPlace, Reach, Tips};
 use crate::tool::{BrushMetric, Context, Depth, Gesture, StiffnessBrush, StrokeShape, ToolMode};
 use crate::view::{Clay, GizmoMode, GizmoOrientation, NamedView, Orbit, Shading, UpAxis};
@@ -118,6 +118,16 @@ commands! {
     RenameExample(place: usize, name: String) = examples::RENAME_EXAMPLE;
     /// Removes an example.
     RemoveExample(place: usize) = examples::REMOVE_EXAMPLE;
+    /// Keeps where handles and control points stand under a name.
+    KeepPose = pose::KEEP_POSE;
+    /// Puts everything where a pose has it, by its place in the list; locked handles and pins stay.
+    TakePose(place: usize) = pose::TAKE_POSE;
+    /// Has a pose be what is shown now.
+    RenewPose(place: usize) = pose::RENEW_POSE;
+    /// Gives a pose another name.
+    RenamePose(place: usize, name: String) = pose::RENAME_POSE;
+    /// Removes a pose.
+    RemovePose(place: usize) = pose::REMOVE_POSE;
     /// Begins to compare what the methods make of the edit, or ends it.
     CompareMethods = document::COMPARE_METHODS;
     /// Stops the jobs that run; what needs them starts them again.

@@ -9,6 +9,7 @@ use pliant_deform::{Arap, Attachment, Loose, Method};
 use super::access::Access;
 use super::handle::{Handle, HandleId};
 use super::kept_shape::KeptShape;
+use super::pose::Pose;
 use super::strength::Strength;
 
 /// What was painted on a vertex.
@@ -70,6 +71,8 @@ pub struct Content {
     pub(crate) settled: bool,
     /// What handles and attachments are a share of; `None` where they are shown in full.
     pub(crate) strength: Option<Arc<Strength>>,
+    /// Poses that a person keeps.
+    pub(crate) poses: Arc<Vec<Pose>>,
 }
 
 impl Content {
@@ -95,6 +98,7 @@ impl Content {
             from_file: zero,
             settled: true,
             strength: None,
+            poses: Arc::default(),
         }
     }
 

@@ -17,6 +17,7 @@ use super::access::Access;
 use super::content::{Paint, Tips};
 use super::handle::{Handle, HandleId};
 use super::kept_shape::KeptShape;
+use super::pose::{Placed, Pose};
 use super::sparse::Sparse;
 use super::state::Document;
 use super::strength::{Stance, Strength};
@@ -52,6 +53,8 @@ pub(crate) enum Change {
     Settled(bool),
     /// What handles and attachments are a share of.
     Strength(Option<Arc<Strength>>),
+    /// The poses that are kept.
+    Poses(Arc<Vec<Pose>>),
 }
 
 /// A named step.
@@ -83,6 +86,12 @@ impl Step {
                 Change::Strength(Some(strength)) => {
                     let attachments: usize = strength.attachments.values().map(attachment_bytes).sum();
                     attachments + strength.handles.len() * size_of::<(HandleId, Stance)>()
+                }
+                Change::Poses(poses) => {
+                    let of_handles = |pose: &Pose| pose.handles.len() * size_of::<(HandleId, Placed)>();
+                    let of_points = |pose: &Pose| pose.controls.values().map(|points| points.len()).sum::<usize>();
+                    let of_pose = |pose| size_of::<Pose>() + of_handles(pose) + of_points(pose) * size_of::<DVec3>();
+                    poses.iter().map(of_pose).sum()
                 }
                 Change::Kept(None)
                 | Change::Strength(None)
@@ -280,6 +289,7 @@ fn swap(change: &mut Change, document: &mut Document, strength: &mut Option<Arc<
         Change::Access(access) => document.swap_access(access),
         Change::Kept(kept) => document.swap_kept(kept),
         Change::Settled(settled) => document.swap_settled(settled),
+        Change::Poses(poses) => document.swap_poses(poses),
         Change::Strength(other) => std::mem::swap(other, strength),
     }
 }

@@ -117,6 +117,9 @@ fn differences(before: &Document, after: &Document) -> Vec<Change> {
     if before.settled != after.settled {
         changes.push(Change::Settled(before.settled));
     }
+    if !Arc::ptr_eq(&before.poses, &after.poses) && before.poses != after.poses {
+        changes.push(Change::Poses(Arc::clone(&before.poses)));
+    }
     if before.strength != after.strength {
         changes.push(Change::Strength(before.strength.clone()));
     }

@@ -15,6 +15,7 @@ mod mirror_request;
 mod objects;
 mod options;
 mod painting;
+mod poses;
 mod regions;
 mod selection;
 mod snapshot;
@@ -40,6 +41,7 @@ pub(crate) use options::{
     set_strength, set_tips,
 };
 pub(crate) use painting::{members, tidy_handles};
+pub(crate) use poses::{keep_pose, remove_pose, rename_pose, renew_pose, take_pose};
 pub use regions::RegionAction;
 pub(crate) use regions::act_on_region;
 pub use snapshot::SnapshotKey;

@@ -1,10 +1,11 @@
 //! The examples that the method is led by or learns from: a list with a weight each.
 
-use eframe::egui::{self, RichText, Slider, SliderClamping, TextEdit};
+use eframe::egui::{self, RichText, Slider, SliderClamping};
 use pliant_deform::{AttachmentKind, LARGEST_WEIGHT};
 use pliant_editor::{Command, Editor};
 
 use crate::window::widgets::command_button::command_button;
+use crate::window::widgets::name_label::name_label;
 use crate::window::widgets::outbox::Outbox;
 
 /// Shows the list, where the method takes examples.
@@ -29,7 +30,11 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
         let found = editor.example_weights().get(place).copied();
         ui.push_id(("example", place), |ui| {
             ui.horizontal(|ui| {
-                name(ui, place, &shape.name, commands);
+                let (label, renamed) = name_label(ui, "the example", place, &shape.name, false);
+                label.on_hover_text("Double-click to rename.");
+                if let Some(name) = renamed {
+                    commands.push(Command::RenameExample(place, name));
+                }
                 if they_bend {
                     let mut is_free = weight.is_none();
                     let says = "The weight is found: as much of the example as suits the handles.";
@@ -66,34 +71,5 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
                 Command::SetExampleWeight(place, Some(weight.clamp(-LARGEST_WEIGHT, LARGEST_WEIGHT)))
             });
         });
-    }
-}
-
-/// The name; a double click renames.
-fn name(ui: &mut egui::Ui, place: usize, name: &str, commands: &mut Outbox) {
-    let editing = egui::Id::unique("renamed example");
-    let typed: Option<(usize, String)> = ui.data(|data| data.get_temp(editing));
-    if let Some((own, mut text)) = typed
-        && own == place
-    {
-        let field = ui.add(TextEdit::singleline(&mut text).desired_width(110.0));
-        field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Name of the example"));
-        if field.lost_focus() {
-            let is_meant = !ui.input(|input| input.key_pressed(egui::Key::Escape)) && !text.trim().is_empty();
-            if is_meant && text.trim() != name {
-                commands.push(Command::RenameExample(place, text.trim().to_owned()));
-            }
-            ui.data_mut(|data| data.remove::<(usize, String)>(editing));
-        } else {
-            field.request_focus();
-            ui.data_mut(|data| data.insert_temp(editing, (place, text)));
-        }
-        return;
-    }
-    let label = ui
-        .selectable_label(false, name)
-        .on_hover_text("Double-click to rename.");
-    if label.double_clicked() {
-        ui.data_mut(|data| data.insert_temp(editing, (place, name.to_owned())));
     }
 }

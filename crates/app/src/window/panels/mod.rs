@@ -13,6 +13,7 @@ pub(in crate::window) mod method;
 pub(in crate::window) mod notes;
 pub(in crate::window) mod objects;
 mod part_name;
+mod poses;
 mod strength;
 
 use std::collections::BTreeSet;
@@ -42,6 +43,7 @@ pub fn show(
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         ui.add_space(4.0);
         section(ui, "Handles", &mut |ui| handles::show(ui, editor, commands));
+        section(ui, "Poses", &mut |ui| poses::show(ui, editor, commands));
         section(ui, "Objects", &mut |ui| objects::show(ui, editor, commands));
         section(ui, "Brush", &mut |ui| brush::show(ui, editor, commands));
         section(ui, "Bending", &mut |ui| bending(ui, editor, commands));

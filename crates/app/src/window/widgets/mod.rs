@@ -3,6 +3,7 @@
 pub(in crate::window) mod command_button;
 pub(in crate::window) mod drawn_key;
 pub(in crate::window) mod icon;
+pub(in crate::window) mod name_label;
 pub(in crate::window) mod number_field;
 pub(in crate::window) mod outbox;
 pub(in crate::window) mod theme;

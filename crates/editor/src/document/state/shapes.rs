@@ -31,6 +31,10 @@ impl Document {
         self.set_attachments(attachments);
         self.rest_examples();
         self.rebase_examples(&before);
+        if !self.content.poses.is_empty() {
+            let handles = self.content.handles.clone();
+            self.change_poses(|poses| poses.iter_mut().for_each(|pose| pose.rebase(&handles)));
+        }
         self.change_handles(|handles| {
             for handle in handles {
                 handle.pivot = handle.centre();

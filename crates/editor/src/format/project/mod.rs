@@ -11,6 +11,7 @@ mod field;
 mod handle;
 mod kept;
 mod objects;
+mod poses;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -28,6 +29,7 @@ use self::field::{Field, Ranges, for_each_drawn, ranges_where};
 use self::handle::StoredHandle;
 use self::kept::StoredKept;
 use self::objects::{StoredObject, access, stored_objects};
+use self::poses::StoredPose;
 use super::attachment::{read_stored_attachments, stored_attachments};
 use super::edit_error::EditError;
 use super::edit_file::strength_kind;
@@ -98,6 +100,9 @@ pub struct Project {
     /// How much of handles and attachments, which stand here in full, is shown; without, all of it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     strength: Option<f64>,
+    /// Poses that a person keeps.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    poses: Vec<StoredPose>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     camera: Option<StoredCamera>,
 }
@@ -239,6 +244,7 @@ impl Project {
                 .map(|kept| StoredKept::of(kept, displacements(&kept.shape))),
             settled: document.settled,
             strength: document.strength.as_ref().map(|strength| strength.share),
+            poses: document.poses.iter().map(StoredPose::of).collect(),
             camera: camera.map(StoredCamera::of),
         }
     }
@@ -360,6 +366,7 @@ impl Project {
             document.kept = Some(Arc::new(kept.kept(shape)));
         }
         document.settled = self.settled;
+        document.poses = Arc::new(self.poses.iter().map(StoredPose::pose).collect());
         let mut document = Document::from(document);
         if let Some(strength) = self.strength {
             strength_kind()

@@ -1,0 +1,47 @@
+//! The poses that a person keeps: a list, each to be taken again, renewed, renamed or removed.
+
+use eframe::egui;
+use pliant_editor::{Command, Editor};
+
+use crate::window::widgets::command_button::command_button;
+use crate::window::widgets::name_label::name_label;
+use crate::window::widgets::outbox::Outbox;
+
+/// Shows the list; the pose that is shown is marked.
+pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
+    for (place, pose) in editor.document().poses().iter().enumerate() {
+        ui.push_id(("pose", place), |ui| {
+            ui.horizontal(|ui| {
+                let is_shown = editor.document().is_in_pose(pose);
+                let (label, renamed) = name_label(ui, "the pose", place, &pose.name, is_shown);
+                label.on_hover_text("Double-click to rename.");
+                if let Some(name) = renamed {
+                    commands.push(Command::RenamePose(place, name));
+                }
+                ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                    let mut button = |verb: &str, says: &str, is_enabled: bool, command: Command| {
+                        let button = ui.add_enabled(is_enabled, egui::Button::new(verb).small());
+                        let name = format!("{verb} {}", pose.name);
+                        button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, is_enabled, &name));
+                        if button.on_hover_text(says).clicked() {
+                            commands.push(command);
+                        }
+                    };
+                    button(
+                        "Remove",
+                        "Forgets this pose. Nothing moves.",
+                        true,
+                        Command::RemovePose(place),
+                    );
+                    let says = "Has this pose be what is shown now.";
+                    button("Renew", says, !is_shown, Command::RenewPose(place));
+                    let says = "Puts everything where it stood in this pose. Locked handles and pins stay.";
+                    button("Take", says, !is_shown, Command::TakePose(place));
+                });
+            });
+        });
+    }
+    if command_button(ui, editor, &Command::KeepPose) {
+        commands.push(Command::KeepPose);
+    }
+}

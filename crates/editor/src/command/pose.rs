@@ -1,0 +1,60 @@
+//! What is done with the poses that a person keeps.
+
+use super::entry::{Action, Entry, Reason, Scope, State, item, unless};
+use crate::workspace::{keep_pose, remove_pose, rename_pose, renew_pose, take_pose};
+
+/// Keeps what is shown as a pose.
+pub(super) const KEEP_POSE: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Keep pose",
+        "Keeps where handles and control points stand under a name, to come back to.",
+        "save store library snapshot bookmark",
+        &[],
+    )],
+    scope: Scope::Document,
+    unavailable: |state, ()| {
+        let document = &state.workspace.document;
+        let is_posed = !document.handles().is_empty() || document.bends_without_handles();
+        let nothing = "There is nothing that could stand in a pose: paint a handle first.";
+        state.unopened().or(unless(is_posed, nothing))
+    },
+    action: Action::Do(|context, ()| keep_pose(context.workspace)),
+};
+
+/// Puts everything where a pose has it, by its place in the list.
+pub(super) const TAKE_POSE: Entry<usize> = Entry {
+    listed: &[],
+    scope: Scope::Document,
+    unavailable: |state, place| gone(state, *place),
+    action: Action::Do(|context, place| take_pose(context.workspace, place)),
+};
+
+/// Has a pose be what is shown now.
+pub(super) const RENEW_POSE: Entry<usize> = Entry {
+    listed: &[],
+    scope: Scope::Document,
+    unavailable: |state, place| gone(state, *place),
+    action: Action::Do(|context, place| renew_pose(context.workspace, place)),
+};
+
+/// Gives a pose another name.
+pub(super) const RENAME_POSE: Entry<(usize, String)> = Entry {
+    listed: &[],
+    scope: Scope::Document,
+    unavailable: |state, (place, _)| gone(state, *place),
+    action: Action::Do(|context, (place, name)| rename_pose(context.workspace, place, name)),
+};
+
+/// Removes a pose.
+pub(super) const REMOVE_POSE: Entry<usize> = Entry {
+    listed: &[],
+    scope: Scope::Document,
+    unavailable: |state, place| gone(state, *place),
+    action: Action::Do(|context, place| remove_pose(context.workspace, place)),
+};
+
+fn gone(state: &State<'_>, place: usize) -> Option<Reason> {
+    let poses = state.workspace.document.poses();
+    unless(place < poses.len(), "That pose is not there any more.")
+}

@@ -1,0 +1,103 @@
+//! Poses as a project stores them.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use glam::DVec3;
+use pliant_deform::METHODS;
+use serde::{Deserialize, Serialize};
+
+use crate::HandleTransform;
+use crate::document::{HandleId, Placed, Pose, Stance, followed, means};
+
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct StoredPose {
+    name: String,
+    /// By the handles' numbers.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    handles: BTreeMap<u32, StoredPlace>,
+    /// Where control points were moved to, by the attachments' names.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    controls: BTreeMap<String, Vec<[f64; 3]>>,
+    /// Of examples, `null` where one was found.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    weights: BTreeMap<String, Vec<Option<f64>>>,
+}
+
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct StoredPlace {
+    #[serde(default)]
+    transform: HandleTransform,
+    /// The turn as it is counted, in degrees about x, y and z.
+    #[serde(default)]
+    turn_deg: [f64; 3],
+    pivot: [f64; 3],
+}
+
+impl StoredPose {
+    pub(super) fn of(pose: &Pose) -> Self {
+        let place = |placed: &Placed| StoredPlace {
+            transform: placed.stance.transform,
+            turn_deg: placed.stance.turn_deg.to_array(),
+            pivot: placed.pivot.to_array(),
+        };
+        let points = |points: &Arc<Vec<DVec3>>| points.iter().map(|point| point.to_array()).collect();
+        Self {
+            name: pose.name.clone(),
+            handles: pose
+                .handles
+                .iter()
+                .map(|(id, placed)| (u32::from(id.0), place(placed)))
+                .collect(),
+            controls: pose
+                .controls
+                .iter()
+                .map(|(name, own)| ((*name).to_owned(), points(own)))
+                .collect(),
+            weights: pose
+                .weights
+                .iter()
+                .map(|(name, own)| ((*name).to_owned(), own.clone()))
+                .collect(),
+        }
+    }
+
+    pub(super) fn pose(&self) -> Pose {
+        let placed = |stored: &StoredPlace| {
+            let counted = DVec3::from_array(stored.turn_deg);
+            Placed {
+                stance: Stance {
+                    transform: stored.transform,
+                    // What is counted means the rotation, whoever wrote it.
+                    turn_deg: match stored.transform {
+                        HandleTransform::Trs { rotation, .. } if !means(counted, rotation) => {
+                            followed(DVec3::ZERO, rotation)
+                        }
+                        _ => counted,
+                    },
+                },
+                pivot: DVec3::from_array(stored.pivot),
+            }
+        };
+        let points = |points: &Vec<[f64; 3]>| Arc::new(points.iter().map(|point| DVec3::from_array(*point)).collect());
+        Pose {
+            name: self.name.clone(),
+            handles: self
+                .handles
+                .iter()
+                .map(|(id, stored)| (HandleId(u16::try_from(*id).unwrap_or(u16::MAX)), placed(stored)))
+                .collect(),
+            // What no method declares is nothing that could be put there.
+            controls: known(&self.controls).map(|(name, own)| (name, points(own))).collect(),
+            weights: known(&self.weights).map(|(name, own)| (name, own.clone())).collect(),
+        }
+    }
+}
+
+/// What is stored under the names of attachments.
+fn known<T>(stored: &BTreeMap<String, T>) -> impl Iterator<Item = (&'static str, &T)> {
+    let declared = METHODS.iter().flat_map(|declaration| declaration.attachments);
+    declared.filter_map(|declared| Some((declared.name, stored.get(declared.name)?)))
+}
