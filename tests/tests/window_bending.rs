@@ -1,5 +1,6 @@
 //! What a person does with a bent shape, by pointer and keyboard: its strength, the warning where it passes through
-//! itself, and poses that are kept. Skipped by name if there is no graphics device at all.
+//! itself, poses that are kept, and the shape as it was opened beside it. Skipped by name if there is no graphics device
+//! at all.
 
 #![allow(
     clippy::unwrap_used,
@@ -188,4 +189,78 @@ fn a_pose_is_kept_and_taken_again() {
     session.harness.run_steps(2);
     click(&mut session, "Remove bow");
     assert!(document(&session).poses().is_empty());
+}
+
+/// The window's picture once it is as smooth as it gets.
+fn picture(session: &mut Session) -> image::RgbaImage {
+    session.settle();
+    let start = Instant::now();
+    let mut before = session.harness.render().unwrap();
+    loop {
+        assert!(start.elapsed() < Duration::from_secs(60), "it never comes to rest");
+        std::thread::sleep(Duration::from_millis(400));
+        session.harness.run_steps(3);
+        let picture = session.harness.render().unwrap();
+        if picture == before {
+            return picture;
+        }
+        before = picture;
+    }
+}
+
+/// In how many places of the view two pictures differ, what is written over its top and its corner apart.
+fn differences(session: &Session, a: &image::RgbaImage, b: &image::RgbaImage) -> usize {
+    let view = session.harness.state().view_rect();
+    let (columns, rows) = (
+        view.left() as u32 + 60..view.right() as u32 - 60,
+        view.top() as u32 + 130..view.bottom() as u32 - 60,
+    );
+    let places = columns.flat_map(|x| rows.clone().map(move |y| (x, y)));
+    let differ = |&(x, y): &(u32, u32)| {
+        let pair = a.get_pixel(x, y).0.into_iter().zip(b.get_pixel(x, y).0);
+        pair.into_iter().any(|(a, b)| a.abs_diff(b) > 24)
+    };
+    places.filter(differ).count()
+}
+
+#[test]
+fn the_original_is_seen_beside_the_present_shape_and_through_it() {
+    let Some(mut session) = bent(DVec3::new(0.3, 0.1, 0.0), 0.0) else {
+        return;
+    };
+    session.harness.state_mut().command(Command::Deselect);
+    let present = picture(&mut session);
+    session.harness.state_mut().command(Command::ToggleOriginal);
+    let original = picture(&mut session);
+    session.harness.state_mut().command(Command::ToggleOriginal);
+    let apart = differences(&session, &present, &original);
+    assert!(apart > 500, "{apart}");
+
+    session.key(Key::O, Modifiers::ALT);
+    session.settle();
+    let view = session.harness.state().view_rect();
+    for (end, shown, other) in [(view.right(), &original, &present), (view.left(), &present, &original)] {
+        let line = session
+            .harness
+            .get_by_label("Line between before and after")
+            .rect()
+            .center();
+        session.stroke(line, pos2(end, line.y));
+        let split = picture(&mut session);
+        assert!(differences(&session, &split, shown) < apart / 50, "at {end}");
+        assert!(differences(&session, &split, other) > apart / 2, "at {end}");
+    }
+    assert_eq!(document(&session).handles().len(), 1, "the line is no stroke");
+
+    // A ghost lies between both.
+    session.key(Key::O, Modifiers::SHIFT);
+    let ghost = picture(&mut session);
+    for shape in [&present, &original] {
+        let count = differences(&session, &ghost, shape);
+        assert!(count > apart / 8, "{count} of {apart}");
+    }
+    session.key(Key::O, Modifiers::SHIFT);
+    let again = picture(&mut session);
+    let count = differences(&session, &again, &present);
+    assert!(count < apart / 50, "{count} of {apart}");
 }

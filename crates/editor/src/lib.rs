@@ -46,7 +46,7 @@ pub use tool::{
     BRUSH_RADIUS_PX, BrushMetric, Constraint, Depth, StiffnessAction, StiffnessBrush, StrokeShape, ToolMode,
 };
 pub use view::{
-    Camera, Clay, ControlShape, GizmoAxes, GizmoMode, GizmoOrientation, GizmoPart, GizmoShape, Look, NamedView, Orbit,
-    Pick, Projection, Ray, Shading, UpAxis, gizmo_shapes, hit_gizmo,
+    Before, Camera, Clay, ControlShape, GizmoAxes, GizmoMode, GizmoOrientation, GizmoPart, GizmoShape, Look, NamedView,
+    Orbit, Pick, Projection, Ray, Shading, UpAxis, gizmo_shapes, hit_gizmo,
 };
 pub use workspace::{RegionAction, SnapshotKey, stiffness_colour};

@@ -28,6 +28,8 @@ pub struct SceneView<'a> {
     pub displacements: &'a Arc<Vec<DVec3>>,
     /// What is drawn, from the file's shape: the displacements, or the smooth base at rest where that is shown.
     pub drawn: &'a Arc<Vec<DVec3>>,
+    /// No displacement of any vertex: the file's own shape.
+    pub original: &'a Arc<Vec<DVec3>>,
     /// Per surface vertex the selected handle's weight, from 0 to 1, where the shading is by weights and the method has
     /// some.
     pub weights: Option<&'a Arc<Vec<f64>>>,

@@ -6,7 +6,8 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use pliant_editor::{
-    Beginning, Camera, Editor, Event, InlineExecutor, JobKind, Look, NamedView, Projection, Setup, Shading, UpAxis,
+    Before, Beginning, Camera, Editor, Event, InlineExecutor, JobKind, Look, NamedView, Projection, Setup, Shading,
+    UpAxis,
 };
 use pliant_mesh::{Cancel, Model, WeldOptions};
 use pliant_render::{Background, Frame, Headless, RenderError, Renderer, Samples, Surface, SurfaceLine};
@@ -87,6 +88,7 @@ fn look(arguments: &RenderArguments) -> Look {
         grid: arguments.grid,
         original: false,
         base: false,
+        before: Before::Off,
     }
 }
 

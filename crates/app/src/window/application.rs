@@ -30,6 +30,7 @@ use super::threads::message::Message;
 use super::threads::pose_queue::PoseQueue;
 use super::threads::workers::Workers;
 use super::viewport::Viewport;
+use super::viewport::before::{OriginalView, Split};
 use super::viewport::compare::Compare;
 use super::viewport::method_views::MethodViews;
 use super::widgets::theme;
@@ -44,6 +45,9 @@ pub struct Application {
     pub(super) viewport: Viewport,
     /// The second view, while two methods are compared.
     pub(super) compare: Option<Compare>,
+    /// The shape as it was opened, while it is shown along with the present one, and where the line between both stands.
+    pub(super) original: Option<OriginalView>,
+    pub(super) split: Split,
     /// The small views of what each method makes of the edit, while they are compared.
     pub(super) method_views: MethodViews,
     pub(super) workers: Workers,
@@ -130,6 +134,8 @@ impl Application {
             editor: Editor::new(Box::new(workers.clone())),
             viewport,
             compare: None,
+            original: None,
+            split: Split::default(),
             method_views: MethodViews::default(),
             workers,
             messages,
@@ -177,6 +183,7 @@ impl Application {
         let system = |error: pliant_render::RenderError| AppError::System(error.to_string());
         self.viewport = Viewport::new(state).map_err(system)?;
         self.compare = None;
+        self.original = None;
         self.method_views = MethodViews::default();
         self.workers.wake(context.egui_ctx.clone());
         self.input = Input::default();
@@ -236,7 +243,8 @@ impl Application {
         let compared = self.compare.as_ref().is_none_or(Compare::is_settled);
         let comparison = self.editor.comparison();
         let compared = compared && comparison.is_none_or(|comparison| self.method_views.are_settled(comparison));
-        view.settled && shown && compared && self.session.doing().is_none() && !self.is_loading_textures()
+        let original = self.original.as_ref().is_none_or(|original| original.is_settled(&view));
+        view.settled && shown && compared && original && self.session.doing().is_none() && !self.is_loading_textures()
     }
 
     /// The shape in the GPU's buffers, per surface vertex, from the file's.
@@ -283,7 +291,9 @@ impl Application {
     /// How long drawing has kept the window's thread busy so far.
     pub fn drawing_time(&self) -> Duration {
         let second = self.compare.as_ref().map_or(Duration::ZERO, Compare::drawing_time);
-        self.viewport.drawing_time() + second + self.method_views.drawing_time()
+        let original = self.original.as_ref();
+        let original = original.map_or(Duration::ZERO, OriginalView::drawing_time);
+        self.viewport.drawing_time() + second + original + self.method_views.drawing_time()
     }
 
     /// Gives the editor a command, as a menu would.

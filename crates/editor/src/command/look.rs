@@ -1,8 +1,8 @@
 //! How the surface is shown.
 
-use super::entry::{Action, Entry, Reason, Scope, State, always, character, item, when_open};
+use super::entry::{Action, Entry, Reason, Scope, State, alt, always, character, item, shift, when_open};
 use crate::jobs::Inspectable;
-use crate::view::{Clay, Shading};
+use crate::view::{Before, Clay, Shading};
 
 /// Shades the surface like this clay.
 pub(super) const SET_CLAY: Entry<Clay> = Entry {
@@ -189,6 +189,32 @@ pub(super) const TOGGLE_ORIGINAL: Entry<()> = Entry {
     scope: Scope::View,
     unavailable: when_open,
     action: Action::Do(|context, ()| context.view.look.original = !context.view.look.original),
+};
+
+/// Shows the file's own shape along with the present one, or no longer.
+pub(super) const TOGGLE_BEFORE: Entry<Before> = Entry {
+    listed: &[
+        item(
+            Before::Split,
+            "Before and after",
+            "Shows the shape as it was opened on the left of a line that you can drag, and the present one on the right.",
+            "split compare original slider wipe",
+            &[alt('o')],
+        ),
+        item(
+            Before::Ghost,
+            "Ghost of the original",
+            "Shows the shape as it was opened through the present one.",
+            "onion skin overlay compare before transparent",
+            &[shift('o')],
+        ),
+    ],
+    scope: Scope::View,
+    unavailable: when_open,
+    action: Action::Do(|context, before| {
+        let look = &mut context.view.look;
+        look.before = if look.before == before { Before::Off } else { before };
+    }),
 };
 
 /// Shows each triangle flat, or normals interpolated.

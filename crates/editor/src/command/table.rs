@@ -11,7 +11,7 @@ use super::shortcut::Shortcut;
 use super::{controls, document, examples, handle, look, object, paint, pose, region, transform, view};
 use crate::document::{HandleId, HandleTransform, ObjectAction, PivotPlace, Reach, Tips};
 use crate::tool::{BrushMetric, Context, Depth, Gesture, StiffnessBrush, StrokeShape, ToolMode};
-use crate::view::{Clay, GizmoMode, GizmoOrientation, NamedView, Orbit, Shading, UpAxis};
+use crate::view::{Before, Clay, GizmoMode, GizmoOrientation, NamedView, Orbit, Shading, UpAxis};
 use crate::workspace::RegionAction;
 
 /// A command as a menu or the palette lists it.
@@ -271,6 +271,8 @@ commands! {
     ToggleGrid = look::TOGGLE_GRID;
     /// Shows the file's own shape in place of the present one, or the present one again.
     ToggleOriginal = look::TOGGLE_ORIGINAL;
+    /// Shows the file's own shape along with the present one in this way, or no longer.
+    ToggleBefore(before: Before) = look::TOGGLE_BEFORE;
     /// Shows the smooth base in place of the surface, or the surface again.
     ToggleBase = look::TOGGLE_BASE;
     /// Shows or hides the regions' colours over clay and material.

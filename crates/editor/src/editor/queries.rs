@@ -34,6 +34,7 @@ impl Editor {
             viewport_px: view.viewport_px(),
             shape_revision: workspace.shape_revision(),
             displacements: document.from_file(),
+            original: &workspace.original,
             drawn: match view.look {
                 Look { original: true, .. } => &workspace.original,
                 Look { base: true, .. } => inspected.base.as_ref().unwrap_or(document.from_file()),

@@ -23,6 +23,8 @@ pub struct Look {
     pub original: bool,
     /// Whether the smooth base is shown in place of the surface, where the method has one.
     pub base: bool,
+    /// How the file's own shape is shown along with the present one.
+    pub before: Before,
 }
 
 impl Default for Look {
@@ -38,8 +40,21 @@ impl Default for Look {
             grid: true,
             original: false,
             base: false,
+            before: Before::Off,
         }
     }
+}
+
+/// How the file's own shape is shown along with the present one.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
+pub enum Before {
+    /// Not at all.
+    #[default]
+    Off,
+    /// As a ghost over the present shape.
+    Ghost,
+    /// On the left of a line that can be dragged.
+    Split,
 }
 
 /// What the surface seems to be made of, or what its colours say.

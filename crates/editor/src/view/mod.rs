@@ -18,7 +18,7 @@ pub use control_shapes::ControlShape;
 pub(crate) use control_shapes::{ShownPoint, control_at, control_shapes};
 pub(crate) use gizmo::axis_vector;
 pub use gizmo::{GizmoAxes, GizmoMode, GizmoOrientation, GizmoPart, GizmoShape, gizmo_shapes, hit_gizmo};
-pub use look::{Clay, Look, Shading};
+pub use look::{Before, Clay, Look, Shading};
 pub use picking::Pick;
 pub(crate) use picking::Picking;
 pub(crate) use state::View;

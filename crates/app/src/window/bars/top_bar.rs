@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use eframe::egui::{self, MenuBar, RichText};
 use pliant_editor::{
-    Clay, Command, Editor, NamedView, Orbit, Projection, RegionAction, Shading, Tips, ToolMode, UpAxis,
+    Before, Clay, Command, Editor, NamedView, Orbit, Projection, RegionAction, Shading, Tips, ToolMode, UpAxis,
 };
 
 use crate::window::files::file_command::FileCommand;
@@ -258,6 +258,9 @@ fn view_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     choice(ui, Command::ToggleGrid, look.grid);
     choice(ui, Command::ToggleBase, look.base);
     choice(ui, Command::ToggleOriginal, look.original);
+    for before in [Before::Split, Before::Ghost] {
+        choice(ui, Command::ToggleBefore(before), look.before == before);
+    }
     ui.separator();
     choice(ui, Command::CompareMethods, editor.comparison().is_some());
     ui.separator();

@@ -5,10 +5,11 @@ use std::time::{Duration, Instant};
 
 use eframe::egui::{self, Sense, vec2};
 use glam::DVec2;
-use pliant_editor::{Command, Cursor, Event};
+use pliant_editor::{Before, Command, Cursor, Event};
 
 use super::Smoothness;
 use super::axis_ball;
+use super::before::OriginalView;
 use super::context_menu;
 use super::method_views::MethodViews;
 use crate::legend;
@@ -100,7 +101,8 @@ impl Application {
                 && pointer.is_some_and(|at| rect.contains(at))
                 && !is_asked
                 && !egui::Popup::is_any_open(ui.ctx())
-                && !axis_ball::contains(rect, pointer),
+                && !axis_ball::contains(rect, pointer)
+                && !self.split.takes(rect, pointer, self.editor.view().look.before),
             follows_pointer: self.editor.view().cursor == Cursor::Move,
             keys: !is_asked && !self.keys.takes_keys() && !typing && !ui.ctx().egui_wants_keyboard_input(),
             more_to_come: EventQueue::has_more(ui.ctx()),
@@ -165,6 +167,7 @@ impl Application {
                     .max(Duration::from_millis(10)),
             );
         }
+        self.original(ui, rect, smooth)?;
         if let (Some(second), Some(compare), Some(stage)) = (second, &mut self.compare, self.workers.stage()) {
             compare.follow(&self.editor, &self.viewport, &stage);
             let resting = smooth == Smoothness::Resting && compare.is_settled();
@@ -174,6 +177,31 @@ impl Application {
             }
             let name = self.editor.document().method().declaration().title;
             axis_ball::readout(ui.painter(), rect.center_top() + vec2(-60.0, 12.0), name);
+        }
+        Ok(())
+    }
+
+    /// Lays the shape as it was opened over the picture, where it is shown along with the present one.
+    fn original(
+        &mut self,
+        ui: &mut egui::Ui,
+        rect: egui::Rect,
+        smooth: Smoothness,
+    ) -> Result<(), pliant_render::RenderError> {
+        let before = self.editor.view().look.before;
+        let (Some(stage), true) = (self.workers.stage(), before != Before::Off) else {
+            // What is on the device for it goes with it.
+            self.original = None;
+            return Ok(());
+        };
+        let new = || OriginalView::beside(ui.ctx(), &self.viewport);
+        let original = self.original.get_or_insert_with(new);
+        original.follow(&self.editor, &self.viewport, &stage);
+        if original.show(ui, rect, &self.editor, self.split, smooth)? {
+            ui.ctx().request_repaint_after(REST);
+        }
+        if before == Before::Split {
+            self.split.show(ui, rect);
         }
         Ok(())
     }

@@ -6,6 +6,7 @@
 
 pub(in crate::window) mod area;
 pub(in crate::window) mod axis_ball;
+pub(in crate::window) mod before;
 pub(in crate::window) mod coarseness;
 pub(in crate::window) mod compare;
 mod context_menu;
@@ -51,6 +52,8 @@ pub struct Viewport {
     drawings: u64,
     drawing_time: Duration,
     coarseness: Coarseness,
+    /// How much of what lies behind its picture the picture covers; a part of it leaves the surroundings out.
+    opacity: f32,
 }
 
 impl Viewport {
@@ -91,6 +94,15 @@ impl Viewport {
             drawings: 0,
             drawing_time: Duration::ZERO,
             coarseness: Coarseness::default(),
+            opacity: 1.0,
+        }
+    }
+
+    /// Chooses how much of what lies behind its picture the picture covers: all (1), or the surface alone a part.
+    pub fn set_opacity(&mut self, opacity: f32) {
+        if self.opacity != opacity {
+            self.opacity = opacity;
+            self.drawn = None;
         }
     }
 
@@ -293,7 +305,8 @@ impl Viewport {
         }
         if let Some(texture) = self.texture {
             let whole = egui::Rect::from_min_max(egui::Pos2::ZERO, egui::pos2(1.0, 1.0));
-            ui.painter().image(texture, rect, whole, egui::Color32::WHITE);
+            let tint = egui::Color32::WHITE.gamma_multiply(self.opacity);
+            ui.painter().image(texture, rect, whole, tint);
         }
         let is_less = |drawn: &DrawnKey| drawn.size_px != size_px || drawn.detail == Detail::Reduced;
         let is_coarse = self.drawn.as_ref().is_some_and(is_less);
@@ -351,15 +364,20 @@ impl Viewport {
         let pixels_per_point = drawn_share as f32;
         let overlays = drawing::overlays(view, centre, pixels_per_point);
         let surfaces: Vec<&Surface> = self.surface.iter().map(|shown| &shown.surface).collect();
+        let is_alone = self.opacity < 1.0;
         let ground = self.surface.as_ref().and_then(|shown| shown.ground(view));
         let frame = Frame {
             view: &eye,
             style: &Style {
                 detail: key.detail,
+                background: match is_alone {
+                    true => Background::Transparent,
+                    false => Background::default(),
+                },
                 ..drawing::style(&self.present_look(key.look), pixels_per_point)
             },
             surfaces: &surfaces,
-            grid: ground.as_ref(),
+            grid: ground.as_ref().filter(|_| !is_alone),
             overlays: &overlays,
         };
         let start = Instant::now();
