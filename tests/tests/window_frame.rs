@@ -66,24 +66,31 @@ fn place_of(session: &Session, label: &str) -> Rect {
         .rect()
 }
 
-/// After the window narrows, so that the tools need a second row, and widens again, every tool is above the view as
-/// soon as the frames that the window itself requests have run.
+/// After the window narrows and lowers, so that tools and choices show their icons alone, and grows again, the tools are
+/// beside the view and the choices above it as soon as the frames that the window itself requests have run.
 #[test]
 fn bars_are_laid_out_anew_after_a_resize_without_any_input() {
     let Some(mut session) = Session::begin() else { return };
-    for size in [vec2(700.0, 600.0), vec2(1200.0, 700.0), vec2(640.0, 500.0)] {
+    for size in [vec2(700.0, 600.0), vec2(1200.0, 700.0), vec2(640.0, 400.0)] {
         session.harness.set_size(size);
         session.harness.run();
         let view = session.harness.state().view_rect();
-        let tools = ["Paint handle", "Select", "Clay", "Wireframe"].map(|label| place_of(&session, label));
+        let tools = ["Paint handle", "Select", "Pose", "Scale"].map(|label| place_of(&session, label));
         for tool in tools {
             assert!(
-                tool.bottom() <= view.top() && tool.right() <= size.x,
+                tool.right() <= view.left() && view.left() - tool.right() < 12.0 && tool.bottom() <= size.y,
                 "{tool:?} in a window of {size:?} whose view is at {view:?}"
             );
         }
-        let lowest = tools.map(|tool| tool.bottom()).into_iter().fold(0.0, f32::max);
-        assert!(view.top() - lowest < 12.0, "a band between {lowest} and {view:?}");
+        let choices = ["Undo", "Clay", "Wireframe"].map(|label| place_of(&session, label));
+        for choice in choices {
+            assert!(
+                choice.bottom() <= view.top()
+                    && view.top() - choice.bottom() < 12.0
+                    && view.x_range().contains(choice.right()),
+                "{choice:?} in a window of {size:?} whose view is at {view:?}"
+            );
+        }
     }
 }
 

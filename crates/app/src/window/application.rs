@@ -33,7 +33,7 @@ use super::viewport::Viewport;
 use super::viewport::before::{OriginalView, Split};
 use super::viewport::compare::Compare;
 use super::viewport::method_views::MethodViews;
-use super::widgets::theme;
+use super::widgets::{icon, theme};
 use crate::AppError;
 
 /// How long the view must rest before it is drawn with smooth borders on a software device.
@@ -77,7 +77,7 @@ pub struct Application {
     /// Whether the window is still to fill the screen, as it did the last time.
     pub(super) is_to_fill_screen: bool,
     /// Where the window's content, its bars and its panel were in the last frame.
-    pub(super) layout: [egui::Rect; 4],
+    pub(super) layout: [egui::Rect; 6],
     /// Stops the decoding of the open file's images, once that was asked for.
     pub(super) images: Option<Cancel>,
     pub(super) view_rect: egui::Rect,
@@ -113,6 +113,7 @@ impl Application {
         let workers = Workers::new(context.egui_ctx.clone(), sender);
         let settings = SettingsFile::open(places.settings.clone());
         theme::apply(&context.egui_ctx, settings.get());
+        icon::install(&context.egui_ctx);
         context.egui_ctx.add_plugin(EventQueue::default());
         let mut notes = Notes {
             headline: settings.problem.clone().map(Note::Failed),
@@ -158,7 +159,7 @@ impl Application {
             recovered_from: None,
             longest_frame: Duration::ZERO,
             is_to_fill_screen,
-            layout: [egui::Rect::NOTHING; 4],
+            layout: [egui::Rect::NOTHING; 6],
             images: None,
             view_rect: egui::Rect::ZERO,
             title: String::new(),
@@ -174,6 +175,7 @@ impl Application {
     /// As [`Application::new`].
     pub fn revive(&mut self, context: &eframe::CreationContext<'_>) -> Result<(), AppError> {
         theme::apply(&context.egui_ctx, self.settings.get());
+        icon::install(&context.egui_ctx);
         context.egui_ctx.add_plugin(EventQueue::default());
         let Some(state) = context.wgpu_render_state.clone() else {
             return Err(AppError::System(

@@ -5,8 +5,7 @@ use std::time::{Duration, Instant};
 use eframe::egui::{self, CentralPanel, Panel};
 
 use super::application::Application;
-use super::bars::status;
-use super::bars::top_bar;
+use super::bars::{status, tool_column, top_bar, view_bar};
 use super::dialogs::palette::{Found, Outcome};
 use super::dialogs::{keys_window, log, question};
 use super::files::file_command::FileCommand;
@@ -72,7 +71,7 @@ impl eframe::App for Application {
 
 impl Application {
     /// What surrounds the view. Returns what was chosen of files, and where the content, the bars and the panel are.
-    fn bars_and_panel(&mut self, ui: &mut egui::Ui, commands: &mut Outbox) -> (Option<FileCommand>, [egui::Rect; 4]) {
+    fn bars_and_panel(&mut self, ui: &mut egui::Ui, commands: &mut Outbox) -> (Option<FileCommand>, [egui::Rect; 6]) {
         let context = ui.ctx().clone();
         let title = self.session.open.as_ref().map(OpenFile::name).unwrap_or_default();
         let top = Panel::top("top").show(ui, |ui| {
@@ -90,7 +89,19 @@ impl Application {
             true => egui::Rect::NOTHING,
             false => self.panel(ui, commands),
         };
-        let layout = [context.content_rect(), top.response.rect, status.response.rect, panel];
+        let tools = Panel::left("tools").exact_size(tool_column::WIDTH).resizable(false);
+        let tools = tools.show(ui, |ui| tool_column::show(ui, &self.editor, commands));
+        let view_bar = Panel::top("view bar").show(ui, |ui| view_bar::show(ui, &self.editor, commands));
+        let bars = [&top.response, &status.response, &tools.response, &view_bar.response].map(|bar| bar.rect);
+        let [top_rect, status_rect, tools_rect, view_bar_rect] = bars;
+        let layout = [
+            context.content_rect(),
+            top_rect,
+            status_rect,
+            panel,
+            tools_rect,
+            view_bar_rect,
+        ];
         (top.inner.or_else(|| commands.take_file()), layout)
     }
 

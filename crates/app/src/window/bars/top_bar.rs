@@ -1,11 +1,9 @@
-//! The bar above the view: menus, the tools, the gizmo's modes and the shading.
+//! The bar above everything: the menus, and what is open.
 
 use std::path::PathBuf;
 
 use eframe::egui::{self, MenuBar, RichText};
-use pliant_editor::{
-    Before, Clay, Command, Editor, NamedView, Orbit, Projection, RegionAction, Shading, Tips, ToolMode, UpAxis,
-};
+use pliant_editor::{Before, Clay, Command, Editor, NamedView, Orbit, Projection, RegionAction, Shading, Tips, UpAxis};
 
 use crate::window::files::file_command::FileCommand;
 use crate::window::threads::message::{Ground, PictureKind};
@@ -32,9 +30,6 @@ pub fn show(
             ui.label(RichText::new(format!("{file_name}{unsaved}")).weak());
         });
     });
-    ui.separator();
-    ui.horizontal_wrapped(|ui| tools(ui, editor, commands));
-    ui.add_space(2.0);
     chosen
 }
 
@@ -268,34 +263,4 @@ fn view_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     for axis in [UpAxis::Y, UpAxis::Z] {
         choice(ui, Command::SetUp(axis), up == axis);
     }
-}
-
-fn tools(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
-    let view = editor.view();
-    let mut choice = |ui: &mut egui::Ui, command: Command, chosen: bool| {
-        if command_choice(ui, editor, &command, chosen) {
-            commands.push(command);
-        }
-    };
-    for tool in [
-        ToolMode::PaintHandle,
-        ToolMode::PaintFree,
-        ToolMode::PaintFixed,
-        ToolMode::PaintStiffness,
-        ToolMode::Erase,
-        ToolMode::Select,
-        ToolMode::Pose,
-    ] {
-        choice(ui, Command::SetTool(tool), view.tool == tool);
-    }
-    ui.separator();
-    choice(ui, Command::Move, false);
-    choice(ui, Command::Turn, false);
-    choice(ui, Command::Scale, false);
-    ui.separator();
-    for shading in [Shading::Clay, Shading::Material] {
-        choice(ui, Command::SetShading(shading), view.look.shading == shading);
-    }
-    choice(ui, Command::ToggleRegions, view.look.regions);
-    choice(ui, Command::ToggleWireframe, view.look.wireframe);
 }

@@ -1,0 +1,57 @@
+//! The column at the left: the tools in the order of their keys, then the gizmo's modes.
+
+use eframe::egui::{self, ScrollArea};
+use pliant_editor::{Command, Editor, ToolMode};
+
+use crate::window::widgets::command_button::{LABELLED_TILE, tile_choice};
+use crate::window::widgets::icon::Glyph;
+use crate::window::widgets::outbox::Outbox;
+
+/// Its width.
+pub const WIDTH: f32 = 68.0;
+
+/// The heights that tiles may have: an icon alone, and an icon with its label and air.
+const HEIGHTS: [f32; 2] = [30.0, 54.0];
+
+/// Space between two tiles.
+const GAP: f32 = 2.0;
+
+/// Shows the column. Commands are added to `commands`.
+pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
+    let chosen = editor.view().tool;
+    let tools = [
+        (ToolMode::PaintHandle, Glyph::Hand, "Handle"),
+        (ToolMode::PaintFree, Glyph::PaintbrushVertical, "Region"),
+        (ToolMode::PaintFixed, Glyph::Anchor, "Fixed"),
+        (ToolMode::PaintStiffness, Glyph::Bone, "Stiffness"),
+        (ToolMode::Erase, Glyph::Eraser, "Erase"),
+        (ToolMode::Select, Glyph::SquareDashedMousePointer, "Select"),
+        (ToolMode::Pose, Glyph::PersonStanding, "Pose"),
+    ]
+    .map(|(tool, glyph, label)| (Command::SetTool(tool), chosen == tool, glyph, label));
+    let modes = [
+        (Command::Move, Glyph::Move3d, "Move"),
+        (Command::Turn, Glyph::Rotate3d, "Turn"),
+        (Command::Scale, Glyph::Scale3d, "Scale"),
+    ]
+    .map(|(command, glyph, label)| (command, false, glyph, label));
+    let count = (tools.len() + modes.len()) as f32;
+    let room = (ui.available_height() - 12.0) / count - GAP;
+    let height = room.clamp(HEIGHTS[0], HEIGHTS[1]);
+    // Labels come and go together.
+    let height = if height < LABELLED_TILE { HEIGHTS[0] } else { height };
+    ui.spacing_mut().item_spacing.y = GAP;
+    ScrollArea::vertical().show(ui, |ui| {
+        ui.add_space(4.0);
+        for (number, group) in [&tools[..], &modes].into_iter().enumerate() {
+            if number > 0 {
+                ui.separator();
+            }
+            for (command, is_chosen, glyph, label) in group {
+                if tile_choice(ui, editor, command, *is_chosen, *glyph, (label, height)) {
+                    commands.push(command.clone());
+                }
+            }
+        }
+    });
+}
