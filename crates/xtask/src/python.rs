@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::process::{cargo, said, succeed, target_folder};
+use crate::process::{build_program, said, succeed, target_folder};
 use crate::tool::Tool;
 use crate::{files, root};
 
@@ -29,15 +29,7 @@ const BLENDER_PYTHON: Tool = Tool {
 pub fn python() -> Result<(), String> {
     let python = PYTHON.find()?;
     let folder = target_folder().join("python");
-    succeed(&mut cargo(&[
-        "build",
-        "--locked",
-        "--release",
-        "--package",
-        "pliant-app",
-        "--bin",
-        "pliant",
-    ]))?;
+    build_program()?;
     let wheel = wheel(&python, &folder)?;
     println!("made: {}", wheel.display());
     let extension = extension(&python, &wheel, &folder)?;
