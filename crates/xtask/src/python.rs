@@ -35,7 +35,9 @@ pub fn python() -> Result<(), String> {
     let extension = extension(&python, &wheel, &folder)?;
     println!("made: {}", extension.display());
 
-    let clean = environment(&python, &folder.join("clean"))?;
+    let clean = folder.join("clean");
+    files::remove_folder(&clean)?;
+    let clean = environment(&python, &clean)?;
     let with_tests = format!("{}[test]", wheel.display());
     install(&clean, &[&with_tests])?;
     tests(&clean, "crates/python/tests", &extension)?;
@@ -48,10 +50,11 @@ pub fn python() -> Result<(), String> {
         return Ok(());
     };
     let blender = environment(&python, &folder.join("blender"))?;
-    let wheel = wheel.display().to_string();
+    install(&blender, &["pytest", BLENDER, "--extra-index-url", BLENDER_INDEX])?;
+    // It is as new as the other, whatever its version says.
     install(
         &blender,
-        &["pytest", BLENDER, "--extra-index-url", BLENDER_INDEX, &wheel],
+        &["--force-reinstall", "--no-deps", &wheel.display().to_string()],
     )?;
     tests(&blender, "blender/tests", &extension)
 }
