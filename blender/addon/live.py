@@ -140,6 +140,8 @@ def begin(obj):
 def end(obj, keep):
     """Ends the session of an object."""
     sessions.pop(obj.session_uid).end(keep)
+    if not sessions:
+        stop_settling()
 
 
 def follow_all(depsgraph):
@@ -165,6 +167,8 @@ def targets_may_have_moved(_scene, depsgraph=None):
 @persistent
 def another_file_is_loaded(_file):
     sessions.clear()
+    # Blender drops its timers with the old file, and crashes at its end if one of them was Python's.
+    stop_settling()
 
 
 def settle_further():
@@ -174,6 +178,12 @@ def settle_further():
     if any(not session.is_settled for session in sessions.values()):
         follow_all(bpy.context.evaluated_depsgraph_get())
     return FRAME
+
+
+def stop_settling():
+    """Takes the timer away."""
+    if bpy.app.timers.is_registered(settle_further):
+        bpy.app.timers.unregister(settle_further)
 
 
 LISTENERS = [
@@ -198,5 +208,4 @@ def stop_listening():
     for handlers, listener in LISTENERS:
         if listener in handlers:
             handlers.remove(listener)
-    if bpy.app.timers.is_registered(settle_further):
-        bpy.app.timers.unregister(settle_further)
+    stop_settling()

@@ -15,15 +15,15 @@ SCANS = Path(os.environ.get("PLIANT_SCANS", ROOT / "../shared/data/scans"))
 def load_addon():
     """The add-on, registered in an empty file."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
-    folder = ROOT / "blender/addon"
-    for name in [name for name in sys.modules if name.split(".")[0] == "pliant_addon"]:
-        del sys.modules[name]
-    spec = importlib.util.spec_from_file_location(
-        "pliant_addon", folder / "__init__.py", submodule_search_locations=[str(folder)]
-    )
-    module = importlib.util.module_from_spec(spec)
-    sys.modules["pliant_addon"] = module
-    spec.loader.exec_module(module)
+    module = sys.modules.get("pliant_addon")
+    if module is None:
+        folder = ROOT / "blender/addon"
+        spec = importlib.util.spec_from_file_location(
+            "pliant_addon", folder / "__init__.py", submodule_search_locations=[str(folder)]
+        )
+        module = importlib.util.module_from_spec(spec)
+        sys.modules["pliant_addon"] = module
+        spec.loader.exec_module(module)
     module.register()
     return module
 

@@ -19,6 +19,7 @@ def addon():
     """The add-on, registered in an empty file."""
     module = load_addon()
     yield module
+    bpy.ops.wm.read_factory_settings(use_empty=True)
     module.unregister()
 
 

@@ -15,7 +15,6 @@ const PYTHON: Tool = Tool {
 
 /// What the add-on's tests run on; there is a build of it for one version of Python alone.
 const BLENDER: &str = "bpy==4.2.0";
-const BLENDER_INDEX: &str = "https://download.blender.org/pypi/";
 const BLENDER_PYTHON: Tool = Tool {
     program: "python3.11",
     install: "apt install python3.11-venv, or pyenv install 3.11",
@@ -50,7 +49,7 @@ pub fn python() -> Result<(), String> {
         return Ok(());
     };
     let blender = environment(&python, &folder.join("blender"))?;
-    install(&blender, &["pytest", BLENDER, "--extra-index-url", BLENDER_INDEX])?;
+    install(&blender, &["pytest", BLENDER])?;
     // It is as new as the other, whatever its version says.
     install(
         &blender,
