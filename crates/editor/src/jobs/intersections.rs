@@ -1,15 +1,7 @@
-//! Looks for where the present shape passes through itself and the file's did not.
-
-use std::sync::Arc;
+//! Where the present shape passes through itself and the file's did not, place by place.
 
 use glam::DVec3;
-use pliant_mesh::{Model, SelfIntersection, SurfaceVertex};
-
-use super::computed::Computed;
-use super::job::{JobOutcome, Work};
-
-/// So many pairs of triangles are enough to show where.
-const MOST_PAIRS: usize = 20_000;
+use pliant_mesh::{SelfIntersection, SurfaceVertex};
 
 /// Where the present shape passes through itself and the file's did not.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -29,7 +21,7 @@ pub struct IntersectionPlace {
 
 impl Intersections {
     /// The pairs as places: pairs are at one where their triangles share corners.
-    fn of(pairs: &[SelfIntersection], are_all: bool) -> Self {
+    pub(super) fn of(pairs: &[SelfIntersection], are_all: bool) -> Self {
         let mut places: Vec<IntersectionPlace> = Vec::new();
         for numbers in groups(pairs) {
             let segments = numbers.iter().map(|&pair| pairs[pair].segment).collect();
@@ -93,15 +85,4 @@ fn groups(pairs: &[SelfIntersection]) -> Vec<Vec<usize>> {
         groups[group].push(number);
     }
     groups
-}
-
-/// Looks through the hierarchy that rays are answered from, so among what is shown.
-pub(super) fn intersect_work(computed: &Computed, model: &Arc<Model>) -> Option<Work> {
-    let (bvh, model) = (computed.pickable.as_ref()?.bvh.clone(), Arc::clone(model));
-    Some(Box::new(move |progress, cancel| {
-        match bvh.new_self_intersections(&model.surface, &model.topology, MOST_PAIRS, progress, cancel) {
-            Ok(found) => JobOutcome::Intersections(Intersections::of(&found.pairs, found.are_all)),
-            Err(_) => JobOutcome::Cancelled,
-        }
-    }))
 }

@@ -7,10 +7,14 @@ use pliant_mesh::{Bvh, Model, SurfaceVertex};
 
 use super::computed::Computed;
 use super::inspected::Inspectable;
+use super::intersections::Intersections;
 use super::job::{JobOutcome, Pickable, Work};
 use super::region::{Region, RegionInput};
 use crate::Setup;
 use crate::document::Document;
+
+/// So many pairs of triangles are enough to show where.
+const MOST_PAIRS: usize = 20_000;
 
 /// Makes the ordering for a power of the Laplacian.
 pub(super) fn order_work(model: &Arc<Model>, power: u32) -> Option<Work> {
@@ -93,6 +97,17 @@ pub(super) fn bind_work(
                     .renumbered(|vertex| model.first_file_vertex(SurfaceVertex(vertex)).0)
                     .to_string(),
             ),
+        }
+    }))
+}
+
+/// Looks through the hierarchy that rays are answered from, so among what is shown.
+pub(super) fn intersect_work(computed: &Computed, model: &Arc<Model>) -> Option<Work> {
+    let (bvh, model) = (computed.pickable.as_ref()?.bvh.clone(), Arc::clone(model));
+    Some(Box::new(move |progress, cancel| {
+        match bvh.new_self_intersections(&model.surface, &model.topology, MOST_PAIRS, progress, cancel) {
+            Ok(found) => JobOutcome::Intersections(Intersections::of(&found.pairs, found.are_all)),
+            Err(_) => JobOutcome::Cancelled,
         }
     }))
 }

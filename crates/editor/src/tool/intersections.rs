@@ -1,14 +1,17 @@
 //! How a place is shown where the shape passes through itself: the lines in which its triangles do.
 
-use crate::view::{Camera, ControlShape};
+use crate::view::{ControlShape, View};
 use crate::workspace::Workspace;
-use glam::DVec2;
 
 /// A red that neither clay nor handles have.
 const COLOUR: [u8; 4] = [235, 30, 45, 255];
 
-/// The lines of all places.
-pub(super) fn intersection_shapes(workspace: &Workspace, camera: &Camera, viewport_px: DVec2) -> Option<ControlShape> {
+/// The lines of all places, where the present shape is seen.
+pub(super) fn intersection_shapes(workspace: &Workspace, view: &View) -> Option<ControlShape> {
+    let (camera, viewport_px) = (view.camera(), view.viewport_px());
+    if view.look.original || view.look.base {
+        return None;
+    }
     let found = workspace.intersections().filter(|found| !found.is_empty())?;
     // Moved towards the eye, so that the surface on either side does not hide them.
     let lifted = |point| point + camera.towards_eye(point) * camera.world_per_px(point, viewport_px);

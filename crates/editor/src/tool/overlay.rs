@@ -121,7 +121,7 @@ impl Overlay {
         let controls = self.renew_controls(workspace, view, control_px);
         let joint_px = pointer_px.filter(|_| highlighted.is_none());
         shapes.extend(joint(lit, workspace, view, settings, joint_px));
-        shapes.extend(intersection_shapes(workspace, camera, viewport_px));
+        shapes.extend(intersection_shapes(workspace, view));
         if self.ring != line || self.gizmo != gizmo || self.controls != controls || self.shapes != shapes {
             self.ring = line;
             self.shapes = shapes;
