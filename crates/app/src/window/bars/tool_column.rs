@@ -23,9 +23,9 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
         (ToolMode::PaintHandle, Glyph::Hand, "Handle"),
         (ToolMode::PaintFree, Glyph::PaintbrushVertical, "Region"),
         (ToolMode::PaintFixed, Glyph::Anchor, "Fixed"),
-        (ToolMode::PaintStiffness, Glyph::Bone, "Stiffness"),
         (ToolMode::Erase, Glyph::Eraser, "Erase"),
         (ToolMode::Select, Glyph::SquareDashedMousePointer, "Select"),
+        (ToolMode::PaintStiffness, Glyph::Bone, "Stiffness"),
         (ToolMode::Pose, Glyph::PersonStanding, "Pose"),
     ]
     .map(|(tool, glyph, label)| (Command::SetTool(tool), chosen == tool, glyph, label));
