@@ -19,7 +19,7 @@ use egui_kittest::kittest::Queryable;
 use glam::DVec3;
 use pliant_app::window::{AppDirectories, Application, Source};
 use pliant_deform::Method;
-use pliant_editor::{Command, RegionAction, StiffnessBrush, StrokeShape, ToolMode};
+use pliant_editor::{BrushMetric, Command, RegionAction, StiffnessBrush, StrokeShape, ToolMode};
 
 struct Walk {
     harness: Harness<'static, Application>,
@@ -107,8 +107,9 @@ impl Walk {
     }
 }
 
-fn highest(positions: &[DVec3]) -> DVec3 {
-    *positions.iter().max_by(|a, b| a.y.total_cmp(&b.y)).unwrap()
+fn mean<'a>(positions: impl Iterator<Item = &'a DVec3>) -> DVec3 {
+    let (count, sum) = positions.fold((0.0, DVec3::ZERO), |(count, sum), p| (count + 1.0, sum + *p));
+    sum / count
 }
 
 fn main() {
@@ -133,14 +134,15 @@ fn main() {
     };
     walk.shoot("opened");
 
-    let top = walk.point(highest);
-    walk.command(Command::SetBrushRadius(26.0));
-    let strokes: Vec<Pos2> = (0..5).map(|step| top + vec2(-6.0 + 4.0 * step as f32, 14.0)).collect();
+    let head = walk.point(|positions| mean(positions.iter().filter(|p| p.y > 0.87 && p.z > 0.28)));
+    walk.command(Command::SetBrushMetric(BrushMetric::Through));
+    walk.command(Command::SetBrushRadius(100.0));
+    let strokes: Vec<Pos2> = (0..5).map(|step| head + vec2(35.0 * step as f32 - 70.0, 0.0)).collect();
     walk.stroke(&strokes);
     walk.shoot("handle");
 
-    walk.keys(&[Key::G, Key::X, Key::Num0, Key::Period, Key::Num2, Key::Enter]);
-    walk.keys(&[Key::R, Key::Z, Key::Minus, Key::Num3, Key::Num0, Key::Enter]);
+    walk.keys(&[Key::G, Key::X, Key::Num0, Key::Period, Key::Num1, Key::Enter]);
+    walk.keys(&[Key::R, Key::Y, Key::Num4, Key::Num0, Key::Enter]);
     walk.shoot("dragged");
 
     walk.command(Command::SetTool(ToolMode::PaintStiffness));
@@ -149,7 +151,7 @@ fn main() {
         ..StiffnessBrush::default()
     }));
     let body = walk.point(|positions| {
-        let mean = positions.iter().sum::<DVec3>() / positions.len() as f64;
+        let mean = mean(positions.iter());
         *positions
             .iter()
             .max_by(|a, b| {
@@ -185,7 +187,7 @@ fn main() {
     walk.command(Command::Region(RegionAction::Grow));
     walk.command(Command::SetMethod(Method::from_name("primo").unwrap()));
     walk.settle();
-    walk.keys(&[Key::R, Key::Z, Key::Num4, Key::Num0, Key::Enter]);
+    walk.keys(&[Key::R, Key::Z, Key::Minus, Key::Num2, Key::Num0, Key::Enter]);
     walk.shoot("another-method");
 
     walk.harness.key_press(Key::F1);
