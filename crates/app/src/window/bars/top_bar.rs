@@ -24,7 +24,8 @@ pub fn show(
         ui.menu_button("Edit", |ui| edit_menu(ui, editor, commands));
         ui.menu_button("Region", |ui| region_menu(ui, editor, commands));
         ui.menu_button("View", |ui| view_menu(ui, editor, commands));
-        ui.menu_button("Window", |ui| window_menu(ui, &mut chosen));
+        ui.menu_button("Window", |ui| file_commands(ui, &WINDOW_MENU, &mut chosen));
+        ui.menu_button("Help", |ui| file_commands(ui, &HELP_MENU, &mut chosen));
         let unsaved = if editor.view().unsaved { " •" } else { "" };
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             ui.label(RichText::new(format!("{file_name}{unsaved}")).weak());
@@ -155,28 +156,36 @@ fn region_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     }
 }
 
-/// How the window itself looks, and what it can tell.
-fn window_menu(ui: &mut egui::Ui, chosen: &mut Option<FileCommand>) {
-    let groups: [&[(FileCommand, Option<&str>)]; 3] = [
-        &[
-            (FileCommand::Palette, None),
-            (FileCommand::Panel, None),
-            (FileCommand::Keys, None),
-            (FileCommand::Log, None),
-            (FileCommand::Hints, None),
-        ],
-        &[(FileCommand::Compare, None)],
-        &[
-            (FileCommand::NextTheme, None),
-            (FileCommand::Scale(1), Some("Larger")),
-            (FileCommand::Scale(-1), Some("Smaller")),
-        ],
-    ];
-    for (number, group) in groups.into_iter().enumerate() {
+/// Commands of the window in groups, with other names where those of the palette say too little.
+type Groups<'a> = [&'a [(FileCommand, Option<&'static str>)]];
+
+/// How the window itself looks.
+const WINDOW_MENU: [&[(FileCommand, Option<&str>)]; 3] = [
+    &[(FileCommand::Panel, None)],
+    &[(FileCommand::Compare, None)],
+    &[
+        (FileCommand::NextTheme, None),
+        (FileCommand::Scale(1), Some("Larger")),
+        (FileCommand::Scale(-1), Some("Smaller")),
+    ],
+];
+
+/// What the window can tell.
+const HELP_MENU: [&[(FileCommand, Option<&str>)]; 2] = [
+    &[
+        (FileCommand::Palette, None),
+        (FileCommand::Keys, None),
+        (FileCommand::Hints, None),
+    ],
+    &[(FileCommand::Log, None)],
+];
+
+fn file_commands(ui: &mut egui::Ui, groups: &Groups<'_>, chosen: &mut Option<FileCommand>) {
+    for (number, group) in groups.iter().enumerate() {
         if number > 0 {
             ui.separator();
         }
-        for (command, name) in group {
+        for (command, name) in *group {
             let mut button = egui::Button::new(name.unwrap_or(command.name()));
             if let Some(shortcut) = command.shortcut() {
                 button = button.shortcut_text(ui.ctx().format_shortcut(&shortcut));
