@@ -9,6 +9,7 @@ use pliant_editor::{
 use crate::window::widgets::command_button::{choices, command_button, command_choice};
 use crate::window::widgets::number_field::number_field;
 use crate::window::widgets::outbox::Outbox;
+use crate::window::widgets::row_label::row_label;
 
 /// Shows what belongs to the tool in hand.
 pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
@@ -42,7 +43,7 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
 
 /// The brush's radius, and how distance from its centre is measured.
 fn brush_rows(ui: &mut egui::Ui, mut radius_px: f64, metric: BrushMetric, commands: &mut Outbox) {
-    let label = ui.label("Radius");
+    let label = row_label(ui, "Radius");
     let slider = number_field(ui, &mut radius_px, |ui, radius_px| {
         let slider = Slider::new(radius_px, 4.0..=200.0).suffix(" px").fixed_decimals(0);
         ui.add(slider.update_while_editing(false))
@@ -54,7 +55,7 @@ fn brush_rows(ui: &mut egui::Ui, mut radius_px: f64, metric: BrushMetric, comman
         commands.push(Command::SetBrushRadius(radius_px));
     }
     ui.end_row();
-    ui.label("Measured");
+    row_label(ui, "Measured");
     const METRICS: [(BrushMetric, &str, &str); 3] = [
         (
             BrushMetric::Screen,
@@ -80,7 +81,7 @@ fn brush_rows(ui: &mut egui::Ui, mut radius_px: f64, metric: BrushMetric, comman
 
 /// How far a lasso or a box reaches into the model.
 fn depth_row(ui: &mut egui::Ui, depth: Depth, commands: &mut Outbox) {
-    ui.label("Takes");
+    row_label(ui, "Takes");
     const DEPTHS: [(Depth, &str, &str); 2] = [
         (
             Depth::Visible,
@@ -117,7 +118,7 @@ fn stiffness(ui: &mut egui::Ui, editor: &Editor, brush: &StiffnessBrush, pressur
         .num_columns(2)
         .spacing([8.0, 4.0])
         .show(ui, |ui| {
-            let label = ui.label("Value");
+            let label = row_label(ui, "Value");
             let speed = 0.02 * changed.value;
             let field = number_field(ui, &mut changed.value, |ui, value| {
                 let field = DragValue::new(value).range(STIFFNESS_RANGE).speed(speed);
@@ -139,7 +140,7 @@ fn stiffness(ui: &mut egui::Ui, editor: &Editor, brush: &StiffnessBrush, pressur
                     "0 ends at a hard rim, 1 falls off from the middle.",
                 ),
             ] {
-                let label = ui.label(name);
+                let label = row_label(ui, name);
                 let slider = number_field(ui, value, |ui, value| {
                     let slider = Slider::new(value, 0.0..=1.0).fixed_decimals(2);
                     ui.add(slider.update_while_editing(false))

@@ -11,6 +11,7 @@ use crate::window::widgets::command_button::command_button;
 use crate::window::widgets::icon::{Icon, toggle};
 use crate::window::widgets::number_field::number_field;
 use crate::window::widgets::outbox::Outbox;
+use crate::window::widgets::row_label::row_label;
 
 /// Shows the list and the selected handle's numbers.
 pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
@@ -186,7 +187,7 @@ fn triple(
     commands: &mut Outbox,
     set: impl Fn(DVec3) -> Command,
 ) {
-    let name = ui.label(label);
+    let name = row_label(ui, label);
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
         ui.spacing_mut().interact_size.x = 54.0;
@@ -219,9 +220,7 @@ fn pivot(ui: &mut egui::Ui, handle: &Handle, commands: &mut Outbox) {
         PivotPlace::Border => "border",
         PivotPlace::Picked => "picked",
     };
-    let label = ui
-        .label("Pivot")
-        .on_hover_text("The point that the handle turns about. Moving it moves nothing.");
+    let label = row_label(ui, "Pivot").on_hover_text("The point that the handle turns about. Moving it moves nothing.");
     ui.horizontal(|ui| {
         let list = ComboBox::from_id_salt("pivot")
             .selected_text(name(handle.pivot_place))
@@ -253,7 +252,7 @@ fn pivot(ui: &mut egui::Ui, handle: &Handle, commands: &mut Outbox) {
 }
 
 fn reach(ui: &mut egui::Ui, handle: &Handle, commands: &mut Outbox) {
-    let label = ui.label("Reach");
+    let label = row_label(ui, "Reach");
     let (mut value, suffix, most, make): (f64, _, _, fn(f64) -> Reach) = match handle.reach {
         Reach::Radii(radii) => (radii, " radii", 50.0, Reach::Radii),
         Reach::Length(length) => (length, "", f64::MAX, Reach::Length),
@@ -271,7 +270,7 @@ fn reach(ui: &mut egui::Ui, handle: &Handle, commands: &mut Outbox) {
 
 /// How smoothly the surface goes over into the handle, where the method has a choice.
 fn joint(ui: &mut egui::Ui, editor: &Editor, handle: &Handle, commands: &mut Outbox) {
-    let label = ui.label("Border");
+    let label = row_label(ui, "Border");
     let has_choice = editor.document().method().name() == "bilaplacian";
     let mut value = handle.continuity.unwrap_or(*CONTINUITY_RANGE.end());
     let word = match value {

@@ -8,6 +8,7 @@ use pliant_mesh::Model;
 use super::part_name::part_name;
 use crate::window::widgets::command_button::choices;
 use crate::window::widgets::outbox::Outbox;
+use crate::window::widgets::row_label::row_label;
 
 const CHOICES: [(Loose, &str, &str); 3] = [
     (
@@ -27,8 +28,7 @@ const CHOICES: [(Loose, &str, &str); 3] = [
 pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     let document = editor.document();
     ui.horizontal(|ui| {
-        ui.label("Loose parts")
-            .on_hover_text("Parts of the surface that no handle and no paint holds.");
+        row_label(ui, "Loose parts").on_hover_text("Parts of the surface that no handle and no paint holds.");
         if let Some(loose) = choices(ui, document.loose(), &CHOICES) {
             commands.push(Command::SetLoose(loose));
         }

@@ -5,6 +5,7 @@ use pliant_deform::{OptionValue, Shells};
 use pliant_editor::{Command, Editor};
 
 use crate::window::widgets::outbox::Outbox;
+use crate::window::widgets::row_label::row_label;
 
 /// Shows the slider, where the method is discrete shells.
 pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
@@ -15,7 +16,7 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     let [paper, rubber] = Shells::PAPER_TO_RUBBER;
     let mut bending = shells.bending;
     ui.horizontal(|ui| {
-        let label = ui.label("Paper");
+        let label = row_label(ui, "Paper");
         let slider = Slider::new(&mut bending, paper..=rubber)
             .logarithmic(true)
             .show_value(false);

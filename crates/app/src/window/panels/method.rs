@@ -9,13 +9,14 @@ use crate::window::files::file_command::FileCommand;
 use crate::window::widgets::command_button::{command_button, command_choice};
 use crate::window::widgets::number_field::number_field;
 use crate::window::widgets::outbox::Outbox;
+use crate::window::widgets::row_label::row_label;
 
 /// Shows the method and its options.
 pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     let method = editor.document().method();
     let declaration = method.declaration();
     ui.horizontal(|ui| {
-        let label = ui.label("Method");
+        let label = row_label(ui, "Method");
         let width = ui.available_width();
         let (list, chosen) = choose_method(ui, "method", method, width);
         list.labelled_by(label.id);
@@ -146,7 +147,7 @@ fn row(ui: &mut egui::Ui, method: &Method, option: &OptionDeclaration, commands:
         return;
     };
     let says = option.sentence(default);
-    let label = ui.label(title(&option.name.replace('_', " "))).on_hover_text(&says);
+    let label = row_label(ui, title(&option.name.replace('_', " "))).on_hover_text(&says);
     let set = |value: OptionValue| {
         let set = method.with([(option.name, value)]);
         Command::SetMethod(set.unwrap_or_else(|_| method.clone()))

@@ -4,13 +4,14 @@ use eframe::egui::{self, Slider};
 use pliant_editor::{Command, Editor};
 
 use crate::window::widgets::outbox::Outbox;
+use crate::window::widgets::row_label::row_label;
 
 /// Shows the slider. It is grey while nothing is bent.
 pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     let mut percent = editor.document().strength() * 100.0;
     let obstacle = editor.unavailable_because(&Command::SetStrength(0.5));
     ui.horizontal(|ui| {
-        let label = ui.label("Strength");
+        let label = row_label(ui, "Strength");
         let slider = Slider::new(&mut percent, 0.0..=100.0)
             .suffix(" %")
             .fixed_decimals(0)

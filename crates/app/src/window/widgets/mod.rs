@@ -6,4 +6,5 @@ pub(in crate::window) mod icon;
 pub(in crate::window) mod name_label;
 pub(in crate::window) mod number_field;
 pub(in crate::window) mod outbox;
+pub(in crate::window) mod row_label;
 pub(in crate::window) mod theme;
