@@ -38,15 +38,12 @@ pub fn field(shading: Shading) -> Option<Field> {
     }
 }
 
-/// How much of a region's colour is seen over the surface's own.
-const REGION_TINT: f32 = 0.45;
-
 /// The renderer's style for a look.
 pub fn style(look: &Look, pixels_per_point: f32) -> Style {
     let (shading, region_share) = match look.shading {
-        // Regions are a tint, under which the form and the file's colours stay visible.
-        Shading::Clay => (pliant_render::Shading::Matcap(matcap(look.clay)), REGION_TINT),
-        Shading::Material => (pliant_render::Shading::Material, REGION_TINT),
+        Shading::Clay => (pliant_render::Shading::Matcap(matcap(look.clay)), 1.0),
+        // The file's colours stay visible under the region colours.
+        Shading::Material => (pliant_render::Shading::Material, 0.45),
         Shading::Zebra => (pliant_render::Shading::Zebra, 0.0),
         Shading::Normals => (pliant_render::Shading::Normals, 0.0),
         Shading::Stiffness | Shading::Weights | Shading::Stretch | Shading::Area | Shading::Curvature => {
