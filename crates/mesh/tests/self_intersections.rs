@@ -3,7 +3,9 @@
 #![allow(clippy::unwrap_used, reason = "a test that fails may panic")]
 
 use glam::{DAffine3, DVec3};
-use pliant_mesh::{Bvh, Cancel, Model, Progress, SelfIntersections, SurfaceVertex, shapes, triangle_intersection};
+use pliant_mesh::{
+    Bvh, Cancel, Drawn, Model, Progress, SelfIntersections, SurfaceVertex, shapes, triangle_intersection,
+};
 
 /// What is found after the vertices were moved.
 fn found(model: &Model, moved: &[DVec3], most: usize) -> SelfIntersections {
@@ -28,14 +30,12 @@ fn ordered(mut pair: [[SurfaceVertex; 3]; 2]) -> [[SurfaceVertex; 3]; 2] {
     pair
 }
 
-/// A tube that is bent until its ends pass through each other.
-fn bent_tube() -> (Model, Vec<DVec3>) {
-    let model = shapes::model(shapes::tube(16, 60, 12.0));
+/// The shape bent along its longest side until its ends pass through each other.
+fn bent(drawn: Drawn) -> (Model, Vec<DVec3>) {
+    let model = shapes::model(drawn);
     let bounds = model.bounds().unwrap();
-    let axis = (0..3)
-        .max_by(|&a, &b| bounds.extent()[a].total_cmp(&bounds.extent()[b]))
-        .unwrap();
-    let (along, across) = (axis, (axis + 1) % 3);
+    let along = bounds.extent().max_position();
+    let across = (along + 1) % 3;
     let moved = model.surface.positions.iter().map(|p| {
         let share = (p[along] - bounds.min[along]) / bounds.extent()[along];
         let (angle, radius) = (1.1 * std::f64::consts::TAU * share, 2.5 + p[across]);
@@ -45,6 +45,10 @@ fn bent_tube() -> (Model, Vec<DVec3>) {
     });
     let moved = moved.collect();
     (model, moved)
+}
+
+fn bent_tube() -> (Model, Vec<DVec3>) {
+    bent(shapes::tube(16, 60, 12.0))
 }
 
 #[test]
@@ -109,6 +113,38 @@ fn a_crossing_that_was_there_at_rest_is_no_news_where_it_shifts() {
         for end in pair.segment {
             assert!((end.length() - 1.0).abs() < 0.05 && (end.distance(DVec3::Y * 1.5) - 1.0).abs() < 0.1);
         }
+    }
+}
+
+#[test]
+fn triangles_that_are_joined_to_no_other_are_no_news() {
+    let mut soup = shapes::soup(&shapes::tube(16, 60, 12.0));
+    for corners in &soup.triangles {
+        let middle = corners.iter().map(|v| soup.positions[v.index()]).sum::<DVec3>() / 3.0;
+        for v in corners {
+            soup.positions[v.index()] = soup.positions[v.index()].lerp(middle, 0.01);
+        }
+    }
+    let (model, moved) = bent(soup);
+    assert!(every_pair(&model.surface.triangles, &moved).len() > 50);
+    assert!(found(&model, &moved, 10).pairs.is_empty());
+}
+
+#[test]
+fn pairs_are_at_one_place_where_they_hang_together() {
+    // Two balls come into a third one, at opposite sides.
+    let ball = |x: f64| shapes::moved(&shapes::icosphere(3), DAffine3::from_translation(DVec3::X * x));
+    let model = shapes::model(shapes::together(&[ball(0.0), ball(4.0), ball(-4.0)]));
+    let near = |p: &DVec3| *p - DVec3::X * if p.x.abs() > 2.0 { 2.5 * p.x.signum() } else { 0.0 };
+    let moved: Vec<DVec3> = model.surface.positions.iter().map(near).collect();
+    let found = found(&model, &moved, usize::MAX);
+    let places = found.places();
+    assert_eq!(places.len(), 2, "{places:?}");
+    assert_eq!(places.iter().map(Vec::len).sum::<usize>(), found.pairs.len());
+    for place in places {
+        let sides = place.iter().map(|&pair| found.pairs[pair].segment[0].x > 0.0);
+        let right = sides.filter(|is_right| *is_right).count();
+        assert!(right == 0 || right == place.len());
     }
 }
 

@@ -106,7 +106,7 @@ pub(super) fn intersect_work(computed: &Computed, model: &Arc<Model>) -> Option<
     let (bvh, model) = (computed.pickable.as_ref()?.bvh.clone(), Arc::clone(model));
     Some(Box::new(move |progress, cancel| {
         match bvh.new_self_intersections(&model.surface, &model.topology, MOST_PAIRS, progress, cancel) {
-            Ok(found) => JobOutcome::Intersections(Intersections::of(&found.pairs, found.are_all)),
+            Ok(found) => JobOutcome::Intersections(Intersections::of(&found)),
             Err(_) => JobOutcome::Cancelled,
         }
     }))

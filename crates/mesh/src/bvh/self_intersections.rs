@@ -1,11 +1,14 @@
 //! Where a surface passes through itself: pairs of triangles by their boxes, then by their corners.
 
+use std::collections::BTreeMap;
+
 use glam::DVec3;
 use rayon::prelude::*;
 
 use super::boxes::Span;
 use super::{Bvh, Node};
 use crate::geometry::triangle_intersection;
+use crate::topology::components::roots;
 use crate::{Cancel, Cancelled, Progress, Surface, SurfaceVertex, Topology};
 
 /// Two triangles that pass through each other.
@@ -26,6 +29,39 @@ pub struct SelfIntersections {
     pub are_all: bool,
 }
 
+impl SelfIntersections {
+    /// The numbers of the pairs, place by place: pairs are at one place where they hang together by corners. In the
+    /// order of the first pair of each.
+    pub fn places(&self) -> Vec<Vec<usize>> {
+        let mut corners: Vec<SurfaceVertex> = self.pairs.iter().flat_map(SelfIntersection::corners).collect();
+        corners.sort_unstable();
+        corners.dedup();
+        let number = |corner: SurfaceVertex| corners.partition_point(|&other| other < corner) as u32;
+        let edges = self.pairs.iter().flat_map(|pair| {
+            let first = pair.triangles[0][0];
+            pair.corners().map(move |other| [first, other].map(number))
+        });
+        let roots = roots(corners.len(), edges);
+        let mut place_of_root = BTreeMap::new();
+        let mut places: Vec<Vec<usize>> = Vec::new();
+        for (number_of_pair, pair) in self.pairs.iter().enumerate() {
+            let root = roots[number(pair.triangles[0][0]) as usize];
+            let place = *place_of_root.entry(root).or_insert(places.len());
+            if place == places.len() {
+                places.push(Vec::new());
+            }
+            places[place].push(number_of_pair);
+        }
+        places
+    }
+}
+
+impl SelfIntersection {
+    fn corners(&self) -> impl Iterator<Item = SurfaceVertex> + use<> {
+        self.triangles.into_iter().flatten()
+    }
+}
+
 /// Leaves whose pairs are looked for before it is asked whether to go on.
 const LEAVES: usize = 512;
 
@@ -42,7 +78,8 @@ impl Bvh {
     /// the search has become as long as only a tangle makes it.
     ///
     /// Where the triangles next to a pair crossed at rest, the same crossing has only shifted, and the pair does not
-    /// count. Pairs of triangles that stand where they rested are not looked at, so a local change costs what it moved.
+    /// count. Nor does one with a triangle that is joined to no other, as in a soup: it bounds nothing, and soups cross
+    /// themselves anyway. Pairs of triangles that stand where they rested are not looked at, so a local change costs what it moved.
     ///
     /// # Errors
     /// [`Cancelled`] soon after `cancel` is raised.
@@ -58,7 +95,13 @@ impl Bvh {
         let leaves: Vec<u32> = (0..self.nodes.len() as u32)
             .filter(|&place| is_moved[place as usize] && self.nodes.get(place as usize).count > 0)
             .collect();
-        let is_new = |pair: &SelfIntersection| !crossed_at_rest(pair, surface, topology);
+        let is_loose = |corners: [SurfaceVertex; 3]| {
+            let mut corners = corners.into_iter();
+            corners.all(|v| topology.faces(v, &surface.triangles).nth(1).is_none())
+        };
+        let is_new = |pair: &SelfIntersection| {
+            !pair.triangles.into_iter().any(is_loose) && !crossed_at_rest(pair, surface, topology)
+        };
         let (mut pairs, mut tried) = (Vec::new(), 0);
         let most_tried = TRIED_A_TRIANGLE * self.leaves.triangles.len();
         let mut are_all = true;

@@ -30,7 +30,8 @@ pub(crate) struct Components {
 
 impl Components {
     pub(crate) fn of(triangles: &[[SurfaceVertex; 3]], first_file_vertex: &[FileVertex]) -> Self {
-        let mut of_vertex = roots(first_file_vertex.len(), triangles);
+        let edges = triangles.iter().flat_map(|[a, b, c]| [[a.0, b.0], [a.0, c.0]]);
+        let mut of_vertex = roots(first_file_vertex.len(), edges);
         let mut all: Vec<Component> = Vec::new();
         // A root is its component's lowest vertex, so it comes before all others; roots turn into labels on the way.
         for v in 0..of_vertex.len() {
@@ -93,13 +94,10 @@ impl Components {
     }
 }
 
-/// The lowest vertex of each vertex's component.
-fn roots(vertex_count: usize, triangles: &[[SurfaceVertex; 3]]) -> Vec<u32> {
+/// The lowest vertex of each vertex's component, where each of the `edges` joins two vertices.
+pub(crate) fn roots(vertex_count: usize, edges: impl Iterator<Item = [u32; 2]>) -> Vec<u32> {
     let mut parent: Vec<u32> = (0..vertex_count as u32).collect();
-    for [a, b, c] in triangles {
-        join(&mut parent, a.0, b.0);
-        join(&mut parent, a.0, c.0);
-    }
+    edges.for_each(|[a, b]| join(&mut parent, a, b));
     // Parents are never higher than their children, so one ascending sweep flattens the trees.
     for v in 0..vertex_count {
         parent[v] = parent[parent[v] as usize];
