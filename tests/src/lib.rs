@@ -21,8 +21,8 @@ use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 use pliant_app::cli::{self, Console};
-use pliant_app::engine::{self, Loaded};
-use pliant_app::watch::Watch;
+use pliant_engine::Loaded;
+use pliant_engine::watch::Watch;
 use pliant_mesh::{Drawn, WeldOptions};
 use serde_json::{Value, json};
 
@@ -148,8 +148,8 @@ pub fn open(path: &Path) -> Loaded {
 }
 
 /// Like [`open`], for a file that may be refused.
-pub fn try_open(path: &Path) -> Result<Loaded, pliant_app::AppError> {
-    engine::load(path, &WeldOptions::default(), &Watch::default())
+pub fn try_open(path: &Path) -> Result<Loaded, pliant_engine::EngineError> {
+    pliant_engine::load(path, &WeldOptions::default(), &Watch::default())
 }
 
 /// An edit that contains only its method.

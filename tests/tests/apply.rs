@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 
 use glam::{DAffine3, DQuat, DVec3};
-use pliant_app::engine::Loaded;
+use pliant_engine::Loaded;
 use pliant_mesh::{Drawn, shapes};
 use pliant_tests::{Folder, bare_edit, bend, data, datum, diagonal, extension, largest_distance, open};
 use serde_json::{Value, json};

@@ -6,8 +6,8 @@ use std::path::Path;
 use std::sync::Arc;
 
 use glam::DVec3;
-use pliant_app::engine::Loaded;
 use pliant_editor::{Command, Editor, Event, HandleTransform, InlineExecutor, MeshReference, geometry_hash};
+use pliant_engine::Loaded;
 use pliant_mesh::shapes;
 use pliant_tests::{Ended, Folder, open, run};
 

@@ -10,10 +10,4 @@ pub mod sheet;
 mod version;
 pub mod window;
 
-/// The engine that both the command line and the window run.
-pub use pliant_engine as engine;
-pub use pliant_engine::EngineError as AppError;
-pub use pliant_engine::{files, report, saving, watch};
 pub use version::VERSION;
-
-use pliant_engine::{control_mesh, examples, memory};

@@ -4,12 +4,12 @@ use std::io::Cursor;
 
 use pliant_render::Image;
 
-use crate::AppError;
+use pliant_engine::EngineError;
 
 /// A picture as PNG bytes. The renderer's colours are premultiplied by alpha, in linear light; PNG's are straight.
-pub fn png(mut picture: Image) -> Result<Vec<u8>, AppError> {
+pub fn png(mut picture: Image) -> Result<Vec<u8>, EngineError> {
     picture.rgba.chunks_exact_mut(4).for_each(straighten);
-    let refuse = |reason: String| AppError::System(format!("the picture can't be written as PNG: {reason}"));
+    let refuse = |reason: String| EngineError::System(format!("the picture can't be written as PNG: {reason}"));
     let Image { width, height, rgba } = picture;
     let image = image::RgbaImage::from_raw(width, height, rgba).ok_or_else(|| refuse("it is incomplete".to_owned()))?;
     let mut png = Cursor::new(Vec::new());

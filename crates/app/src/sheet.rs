@@ -4,7 +4,7 @@ use eframe::egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Vec2, pos2, vec
 use pliant_render::{Image, RenderError, Renderer};
 
 use crate::painting;
-use crate::report::Report;
+use pliant_engine::report::Report;
 
 /// The height of a caption in points.
 const CAPTION: f32 = 76.0;

@@ -8,11 +8,10 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 use glam::DVec3;
-use pliant_app::AppError;
-use pliant_app::engine::{self, Loaded};
-use pliant_app::files::{Staged, Staging};
-use pliant_app::saving::{self, SaveAs};
-use pliant_app::watch::Watch;
+use pliant_engine::files::{Staged, Staging};
+use pliant_engine::saving::{self, SaveAs};
+use pliant_engine::watch::Watch;
+use pliant_engine::{EngineError, Loaded};
 use pliant_mesh::{Cancel, Progress, WeldOptions};
 
 /// A square of four vertices as `scan.gltf` with its buffer and an image beside it.
@@ -34,14 +33,14 @@ fn write_scan(folder: &Path) {
 }
 
 fn load(path: &Path) -> Loaded {
-    engine::load(path, &WeldOptions::default(), &Watch::default()).unwrap()
+    pliant_engine::load(path, &WeldOptions::default(), &Watch::default()).unwrap()
 }
 
-fn stage(loaded: &Loaded, positions: &[DVec3], out: &Path) -> Result<Staged, AppError> {
+fn stage(loaded: &Loaded, positions: &[DVec3], out: &Path) -> Result<Staged, EngineError> {
     stage_unless(loaded, positions, out, &Cancel::new())
 }
 
-fn stage_unless(loaded: &Loaded, positions: &[DVec3], out: &Path, cancel: &Cancel) -> Result<Staged, AppError> {
+fn stage_unless(loaded: &Loaded, positions: &[DVec3], out: &Path, cancel: &Cancel) -> Result<Staged, EngineError> {
     let save = SaveAs::shape(positions, out);
     let saved = saving::stage(loaded, &save, &Staging::default(), &Progress::new(), cancel);
     saved.map(|saved| saved.staged)
@@ -149,7 +148,7 @@ fn stopped_at_any_look_every_file_is_as_it_was() {
     let staged = loop {
         match stage_unless(&loaded, &positions, &scan, &Cancel::after_looks(looks)) {
             Ok(staged) => break staged,
-            Err(AppError::Interrupted) => assert!(contents() == before, "stopped at look {looks}"),
+            Err(EngineError::Interrupted) => assert!(contents() == before, "stopped at look {looks}"),
             Err(error) => panic!("{error}"),
         }
         looks += 1;

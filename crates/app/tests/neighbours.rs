@@ -4,7 +4,7 @@
 use std::fs;
 use std::path::Path;
 
-use pliant_app::files::Neighbours;
+use pliant_engine::files::Neighbours;
 use pliant_io::Resolver as _;
 
 fn folder() -> tempfile::TempDir {

@@ -16,8 +16,8 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use desktop::{Desktop, SIZE};
-use pliant_app::engine::{self, Loaded};
-use pliant_app::watch::Watch;
+use pliant_engine::Loaded;
+use pliant_engine::watch::Watch;
 use pliant_mesh::WeldOptions;
 use serde_json::Value;
 
@@ -30,7 +30,7 @@ fn sample() -> PathBuf {
 }
 
 fn load(path: &Path) -> Loaded {
-    engine::load(path, &WeldOptions::default(), &Watch::default()).unwrap()
+    pliant_engine::load(path, &WeldOptions::default(), &Watch::default()).unwrap()
 }
 
 fn handles(project: &Value) -> &[Value] {

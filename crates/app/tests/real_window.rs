@@ -19,9 +19,9 @@ use std::thread::sleep;
 use std::time::Duration;
 
 use desktop::{Desktop, PATIENCE, PAUSE, PLIANT, SIZE};
-use pliant_app::engine::{self, Loaded};
-use pliant_app::watch::Watch;
 use pliant_deform::Method;
+use pliant_engine::Loaded;
+use pliant_engine::watch::Watch;
 use pliant_mesh::WeldOptions;
 
 impl Desktop {
@@ -67,7 +67,7 @@ fn sample() -> PathBuf {
 const MIDDLE: (i32, i32) = ((SIZE.0 - 270) / 2, SIZE.1 / 2 + 20);
 
 fn load(path: &Path) -> Loaded {
-    engine::load(path, &WeldOptions::default(), &Watch::default()).unwrap()
+    pliant_engine::load(path, &WeldOptions::default(), &Watch::default()).unwrap()
 }
 
 /// The largest distance between two files' drawn vertices.

@@ -208,7 +208,7 @@ fn project_of(model: &Model, chance: &mut Chance) -> Vec<u8> {
     let Some((_, Entry::File(file))) = model.entries.iter().find(|(place, _)| *place == input) else {
         return Vec::new();
     };
-    let loaded = pliant_app::engine::load_bytes(file.clone(), &model.input, &Default::default(), &Default::default());
+    let loaded = pliant_engine::load_bytes(file.clone(), &model.input, &Default::default(), &Default::default());
     let (hash, drawn) = match &loaded {
         Ok(loaded) => (
             pliant_editor::geometry_hash(&loaded.model),

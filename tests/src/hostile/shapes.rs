@@ -19,7 +19,7 @@ pub fn is_same(a: &Shape, b: &Shape) -> bool {
 
 /// A model's shape, or `None` if it can't be read.
 pub fn shape(path: &Path) -> Option<Shape> {
-    let opened = catch_unwind(|| pliant_app::engine::open(path, &Default::default()).ok()).ok()??;
+    let opened = catch_unwind(|| pliant_engine::open(path, &Default::default()).ok()).ok()??;
     let drawn = opened.drawn;
     let corners = |triangle: &[pliant_mesh::DrawnVertex; 3]| triangle.map(|vertex| drawn.positions[vertex.index()]);
     Some(drawn.triangles.iter().map(corners).collect())

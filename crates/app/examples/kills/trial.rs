@@ -7,8 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-use pliant_app::engine;
-use pliant_app::watch::Watch;
+use pliant_engine::watch::Watch;
 use pliant_mesh::{WeldOptions, shapes};
 
 /// Ways to save, each a source and an output in the trial's folder.
@@ -311,7 +310,7 @@ fn edit(way: Option<f64>) -> String {
 type Shape = Vec<[u64; 3]>;
 
 fn shape(path: &Path) -> Option<Shape> {
-    let loaded = engine::load(path, &WeldOptions::default(), &Watch::default()).ok()?;
+    let loaded = pliant_engine::load(path, &WeldOptions::default(), &Watch::default()).ok()?;
     let positions = loaded.model.rest_positions();
     Some(positions.iter().map(|p| p.to_array().map(f64::to_bits)).collect())
 }

@@ -8,10 +8,10 @@ use pliant_io::Format;
 use super::arguments::ApplyArguments;
 use super::method_argument::method_argument;
 use super::{Console, on_threads};
-use crate::watch::Watch;
-use crate::{AppError, control_mesh, engine, examples, files, memory};
+use pliant_engine::watch::Watch;
+use pliant_engine::{EngineError, control_mesh, examples, files, memory};
 
-pub(super) fn run(arguments: &ApplyArguments, console: &mut Console<'_>) -> Result<(), AppError> {
+pub(super) fn run(arguments: &ApplyArguments, console: &mut Console<'_>) -> Result<(), EngineError> {
     let ApplyArguments {
         file,
         edit: edit_path,
@@ -24,7 +24,7 @@ pub(super) fn run(arguments: &ApplyArguments, console: &mut Console<'_>) -> Resu
         compute,
     } = arguments;
     let output_name = output.to_string_lossy();
-    Format::of_name(&output_name).map_err(|error| AppError::Arguments(format!("--output: {error}")))?;
+    Format::of_name(&output_name).map_err(|error| EngineError::Arguments(format!("--output: {error}")))?;
     let method = method.as_deref();
     let method = method.map(|name| method_argument("--method", name)).transpose()?;
     files::refuse_shared(("--output", output), [("--edit", &**edit_path)])?;
@@ -44,7 +44,7 @@ pub(super) fn run(arguments: &ApplyArguments, console: &mut Console<'_>) -> Resu
     let stem = edit_path.file_stem().unwrap_or_default().to_string_lossy();
     let own_name = stem.strip_suffix(".edit").unwrap_or(&stem);
     let morph = morph.target(own_name);
-    let job = engine::Apply {
+    let job = pliant_engine::Apply {
         file,
         edit: &edit,
         edit_path,
@@ -55,20 +55,20 @@ pub(super) fn run(arguments: &ApplyArguments, console: &mut Console<'_>) -> Resu
         morph,
     };
     let (watch, staging) = (&console.watch, &console.staging);
-    on_threads(*compute, || engine::apply(&job, watch, staging))??;
+    on_threads(*compute, || pliant_engine::apply(&job, watch, staging))??;
     Ok(())
 }
 
 /// Reads the file of an edit or of a project, and the cages that it names. With it the paths of all files that it names;
 /// examples are read once the mesh is.
-pub(super) fn read_edit(path: &Path, watch: &Watch) -> Result<(Beginning, Vec<PathBuf>), AppError> {
+pub(super) fn read_edit(path: &Path, watch: &Watch) -> Result<(Beginning, Vec<PathBuf>), EngineError> {
     let text = files::read_text(path)?;
-    let read = if engine::is_project(path) {
+    let read = if pliant_engine::is_project(path) {
         Project::parse(&text).map(Beginning::from)
     } else {
         Beginning::parse(&text)
     };
-    let mut edit = read.map_err(|source| AppError::Edit {
+    let mut edit = read.map_err(|source| EngineError::Edit {
         edit: path.to_owned(),
         source,
     })?;

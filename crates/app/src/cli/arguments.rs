@@ -96,7 +96,7 @@ pub(crate) struct ApplyArguments {
     pub method: Option<String>,
     /// The most memory that binding may take beside the mesh, such as 8GB or 500MB; without it 16GiB, and never more
     /// than the machine has left. What does not fit is solved in a way that takes less, or refused
-    #[arg(long, value_name = "SIZE", value_parser = crate::memory::bytes)]
+    #[arg(long, value_name = "SIZE", value_parser = pliant_engine::memory::bytes)]
     pub memory: Option<u64>,
     /// On how many threads, and with which vectors.
     #[command(flatten)]

@@ -17,14 +17,14 @@ use super::method_argument::method_argument;
 use super::render::{self, Posed, Shape, Uploaded};
 use super::{Console, on_threads, print};
 use crate::drawing::{self, Drawing};
-use crate::engine::{self, Loaded, Solved};
-use crate::files::Destination;
-use crate::report::Report;
 use crate::sheet::{self, Caption, Cell, Layout};
-use crate::watch::Watch;
-use crate::{AppError, examples, files, legend, painting, picture_file};
+use crate::{legend, painting, picture_file};
+use pliant_engine::files::Destination;
+use pliant_engine::report::Report;
+use pliant_engine::watch::Watch;
+use pliant_engine::{EngineError, Loaded, Solved, examples, files};
 
-pub(super) fn run(arguments: &CompareArguments, console: &mut Console<'_>) -> Result<(), AppError> {
+pub(super) fn run(arguments: &CompareArguments, console: &mut Console<'_>) -> Result<(), EngineError> {
     render::check_png(&arguments.output)?;
     let methods = asked(&arguments.methods)?;
     let given = [("FILE", &*arguments.file), ("--edit", &*arguments.edit)];
@@ -38,7 +38,7 @@ pub(super) fn run(arguments: &CompareArguments, console: &mut Console<'_>) -> Re
     let watch = &console.watch;
     let Compared { sheet, report, table } = on_threads(arguments.compute, || compare(arguments, &methods, watch))??;
     if watch.cancel.is_cancelled() {
-        return Err(AppError::Interrupted);
+        return Err(EngineError::Interrupted);
     }
     let mut files = vec![(arguments.output.clone(), sheet.as_slice())];
     if let Some(path) = &arguments.report {
@@ -56,7 +56,7 @@ struct Asked {
 }
 
 /// The methods that `names` ask for, each once.
-fn asked(names: &[String]) -> Result<Vec<Asked>, AppError> {
+fn asked(names: &[String]) -> Result<Vec<Asked>, EngineError> {
     let all = METHODS.iter().map(|declaration| declaration.name.to_owned());
     let names = if *names == ["all"] {
         all.collect()
@@ -65,7 +65,7 @@ fn asked(names: &[String]) -> Result<Vec<Asked>, AppError> {
     };
     for (number, name) in names.iter().enumerate() {
         if names[..number].contains(name) {
-            return Err(AppError::Arguments(format!(
+            return Err(EngineError::Arguments(format!(
                 "--methods names {} twice: name it once",
                 quoted(name)
             )));
@@ -124,14 +124,14 @@ struct SheetReport<'a> {
     methods: BTreeMap<&'a str, &'a Outcome>,
 }
 
-fn compare(arguments: &CompareArguments, methods: &[Asked], watch: &Watch) -> Result<Compared, AppError> {
-    let loaded = engine::load(&arguments.file, &WeldOptions::default(), watch)?;
+fn compare(arguments: &CompareArguments, methods: &[Asked], watch: &Watch) -> Result<Compared, EngineError> {
+    let loaded = pliant_engine::load(&arguments.file, &WeldOptions::default(), watch)?;
     files::refuse_shared(("--output", &arguments.output), loaded.sources())?;
     if let Some(report) = &arguments.report {
         files::refuse_shared(("--report", report), loaded.sources())?;
     }
     let model = &loaded.model;
-    engine::check_not_empty(&arguments.file, model)?;
+    pliant_engine::check_not_empty(&arguments.file, model)?;
     let (edit, _) = render::resolved(&arguments.edit, &loaded, watch)?;
     let mut outcomes = Vec::with_capacity(methods.len());
     for method in methods {
@@ -144,7 +144,7 @@ fn compare(arguments: &CompareArguments, methods: &[Asked], watch: &Watch) -> Re
         .iter()
         .all(|outcome| matches!(outcome, Outcome::Refused { .. }))
     {
-        return Err(AppError::System(format!("every method refuses the edit: {refusal}")));
+        return Err(EngineError::System(format!("every method refuses the edit: {refusal}")));
     }
     rank_details(&mut outcomes);
     let image = draw(arguments, &loaded, edit, methods, &outcomes, watch)?;
@@ -163,17 +163,22 @@ fn compare(arguments: &CompareArguments, methods: &[Asked], watch: &Watch) -> Re
 ///
 /// # Errors
 /// It was interrupted, or the edit can't be read a second time.
-fn outcome(arguments: &CompareArguments, loaded: &Loaded, asked: &Asked, watch: &Watch) -> Result<Outcome, AppError> {
+fn outcome(
+    arguments: &CompareArguments,
+    loaded: &Loaded,
+    asked: &Asked,
+    watch: &Watch,
+) -> Result<Outcome, EngineError> {
     let (mut edit, _) = read_edit(&arguments.edit, watch)?;
     if edit.method_name() != asked.name {
         edit.set_method(asked.method.clone());
     }
     examples::bring(&mut edit, &arguments.edit, loaded, watch)?;
-    let setup = edit.resolve(&loaded.model).map_err(|source| AppError::Edit {
+    let setup = edit.resolve(&loaded.model).map_err(|source| EngineError::Edit {
         edit: arguments.edit.clone(),
         source,
     })?;
-    match engine::solved(&arguments.file, &edit, arguments.frames, loaded, &setup, watch) {
+    match pliant_engine::solved(&arguments.file, &edit, arguments.frames, loaded, &setup, watch) {
         Ok(Solved {
             surface_positions,
             report,
@@ -183,7 +188,7 @@ fn outcome(arguments: &CompareArguments, loaded: &Loaded, asked: &Asked, watch: 
             detail_error_ratio: None,
             surface_positions,
         }),
-        Err(_) if watch.cancel.is_cancelled() => Err(AppError::Interrupted),
+        Err(_) if watch.cancel.is_cancelled() => Err(EngineError::Interrupted),
         Err(refused) => Ok(Outcome::Refused {
             refused: refused.to_string(),
         }),
@@ -258,7 +263,7 @@ fn detail_error(model: &Model, bent: &[DVec3]) -> f64 {
         .zip(before.iter().zip(&after))
         .map(|(area, (before, after))| area * (after - before).powi(2))
         .sum();
-    crate::report::finite_or(squared.sqrt(), f64::MAX)
+    pliant_engine::report::finite_or(squared.sqrt(), f64::MAX)
 }
 
 /// Tells each method's detail error relative to the least of them.
@@ -291,13 +296,13 @@ fn draw(
     methods: &[Asked],
     outcomes: &[Outcome],
     watch: &Watch,
-) -> Result<Image, AppError> {
+) -> Result<Image, EngineError> {
     let model = &loaded.model;
     let mut shape = Shape::of(&arguments.file, loaded, Some(edit), Posed::AtRest, watch)?;
     let progress = watch.begin("drawing");
     let drawing = Drawing::new(model, loaded.scene.appearance());
     let mut renderer = Headless::new()
-        .map_err(|error| AppError::System(error.to_string()))?
+        .map_err(|error| EngineError::System(error.to_string()))?
         .renderer;
     let PictureSize { width, height } = arguments.size;
     let layout = Layout::of(methods.len(), [width, height]);
@@ -316,7 +321,7 @@ fn draw(
     let mut cells = Vec::with_capacity(methods.len());
     for (number, (asked, outcome)) in methods.iter().zip(outcomes).enumerate() {
         if watch.cancel.is_cancelled() {
-            return Err(AppError::Interrupted);
+            return Err(EngineError::Interrupted);
         }
         let title = &asked.title();
         cells.push(match outcome {

@@ -7,14 +7,14 @@ use serde_json::{Value, json};
 
 use super::arguments::{ComputeArguments, DiffArguments};
 use super::{Console, on_threads, print, print_json};
-use crate::{AppError, engine};
+use pliant_engine::EngineError;
 
-pub(super) fn run(arguments: &DiffArguments, console: &mut Console<'_>) -> Result<(), AppError> {
+pub(super) fn run(arguments: &DiffArguments, console: &mut Console<'_>) -> Result<(), EngineError> {
     let watch = &console.watch;
     let differences = on_threads(ComputeArguments::default(), || {
-        let [first, second] = [&arguments.first, &arguments.second].map(|path| engine::open(path, watch));
+        let [first, second] = [&arguments.first, &arguments.second].map(|path| pliant_engine::open(path, watch));
         let (first, second) = (first?, second?);
-        Ok::<_, AppError>(first.scene.differences(&first.drawn, &second.scene, &second.drawn))
+        Ok::<_, EngineError>(first.scene.differences(&first.drawn, &second.scene, &second.drawn))
     })??;
     let text = if arguments.json {
         let all: Vec<Value> = differences.iter().map(as_json).collect();

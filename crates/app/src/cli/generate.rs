@@ -10,17 +10,17 @@ use clap_complete::Shell;
 use pliant_editor::{Command, Shortcut};
 
 use super::arguments::{GenerateArguments, definition};
-use crate::AppError;
-use crate::files::shown;
+use pliant_engine::EngineError;
+use pliant_engine::files::shown;
 
 /// Writes `man/*.1`, `completions/*`, `command-line.md` and `commands.md` into a folder, over what has these names there.
 ///
 /// # Errors
-/// [`AppError::System`] if the folder can't be written.
-pub(super) fn run(arguments: &GenerateArguments) -> Result<(), AppError> {
+/// [`EngineError::System`] if the folder can't be written.
+pub(super) fn run(arguments: &GenerateArguments) -> Result<(), EngineError> {
     let folder = &arguments.folder;
     write(folder).map_err(|error| {
-        AppError::System(format!(
+        EngineError::System(format!(
             "{} can't be written: {error}; choose another folder",
             shown(folder)
         ))

@@ -9,15 +9,14 @@ use serde_json::{Value, json};
 
 use super::arguments::{ComputeArguments, InfoArguments};
 use super::{Console, on_threads, print, print_json};
-use crate::AppError;
-use crate::engine;
-use crate::files::shown;
-use crate::watch::Watch;
+use pliant_engine::EngineError;
+use pliant_engine::files::shown;
+use pliant_engine::watch::Watch;
 
 /// How many components are listed one by one.
 const LISTED_COMPONENTS: usize = 12;
 
-pub(super) fn run(arguments: &InfoArguments, console: &mut Console<'_>) -> Result<(), AppError> {
+pub(super) fn run(arguments: &InfoArguments, console: &mut Console<'_>) -> Result<(), EngineError> {
     let watch = &console.watch;
     let looked_at = on_threads(ComputeArguments::default(), || look_at(&arguments.file, watch))??;
     if arguments.json {
@@ -34,11 +33,11 @@ struct LookedAt<'a> {
     inspection: Inspection,
 }
 
-fn look_at<'a>(path: &'a Path, watch: &Watch) -> Result<LookedAt<'a>, AppError> {
-    let SceneAndDrawn { scene, drawn } = engine::open(path, watch)?;
+fn look_at<'a>(path: &'a Path, watch: &Watch) -> Result<LookedAt<'a>, EngineError> {
+    let SceneAndDrawn { scene, drawn } = pliant_engine::open(path, watch)?;
     let progress = watch.begin("welding");
     let inspection = Inspection::of(drawn, &WeldOptions::default(), &progress, &watch.cancel);
-    let inspection = inspection.map_err(|_| AppError::Interrupted)?;
+    let inspection = inspection.map_err(|_| EngineError::Interrupted)?;
     Ok(LookedAt {
         path,
         scene,

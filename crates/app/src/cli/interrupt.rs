@@ -3,9 +3,9 @@
 use std::io::Write;
 use std::time::Duration;
 
-use crate::AppError;
-use crate::files::Staging;
-use crate::watch::Watch;
+use pliant_engine::EngineError;
+use pliant_engine::files::Staging;
+use pliant_engine::watch::Watch;
 
 /// How long a command has to stop by itself.
 const PATIENCE: Duration = Duration::from_millis(500);
@@ -29,7 +29,7 @@ pub(super) fn listen(watch: &Watch, staging: &Staging) {
         if let Some(_guard) = staging.discard() {
             // The window's saves have a staging each.
             staging.discard_others();
-            let interrupted = AppError::Interrupted;
+            let interrupted = EngineError::Interrupted;
             let _ = writeln!(std::io::stderr(), "\r\x1b[Kpliant: {interrupted}");
             std::process::exit(i32::from(interrupted.status()));
         }

@@ -3,19 +3,19 @@
 use pliant_deform::{METHODS, Method, OptionKind, OptionValue};
 use pliant_io::quoted;
 
-use crate::AppError;
+use pliant_engine::EngineError;
 
 /// The method that `text`, the value of `option`, names; what it does not set has its default.
 ///
 /// # Errors
 /// An unknown name, or a value that the option does not take.
-pub(super) fn method_argument(option: &str, text: &str) -> Result<Method, AppError> {
+pub(super) fn method_argument(option: &str, text: &str) -> Result<Method, EngineError> {
     let mut parts = text.split(':');
     let name = parts.next().unwrap_or_default();
-    let refuse = |why: String| AppError::Arguments(format!("{option} {}: {why}", quoted(text)));
+    let refuse = |why: String| EngineError::Arguments(format!("{option} {}: {why}", quoted(text)));
     let method = Method::from_name(name).ok_or_else(|| {
         let names: Vec<&str> = METHODS.iter().map(|declaration| declaration.name).collect();
-        AppError::Arguments(format!(
+        EngineError::Arguments(format!(
             "{option} {} is not known: use one of {}",
             quoted(name),
             names.join(", ")

@@ -21,10 +21,10 @@ pub use arguments::{LookArguments, PictureSize, RenderArguments, Shading, Up, Vi
 use pliant_io::steers;
 use pliant_mesh::Vectors;
 
-use crate::AppError;
-use crate::files::Staging;
-use crate::watch::Watch;
 use arguments::{Command, ComputeArguments};
+use pliant_engine::EngineError;
+use pliant_engine::files::Staging;
+use pliant_engine::watch::Watch;
 
 /// A command's output streams, and how it is watched and stopped.
 pub struct Console<'a> {
@@ -69,12 +69,12 @@ pub fn run(arguments: Vec<OsString>, console: &mut Console<'_>) -> u8 {
             None => crate::window::run(arguments.file),
         },
         Err(help) if !help.use_stderr() => print(console.out, &help.render().to_string()),
-        Err(error) => Err(AppError::Arguments(arguments::one_line(&error))),
+        Err(error) => Err(EngineError::Arguments(arguments::one_line(&error))),
     };
     let error = match result {
         Ok(()) => return 0,
         // Whatever error a cancelled job returned: the person stopped it.
-        Err(_) if console.watch.cancel.is_cancelled() => AppError::Interrupted,
+        Err(_) if console.watch.cancel.is_cancelled() => EngineError::Interrupted,
         Err(error) => error,
     };
     let line = plain(&error.to_string().replace(['\n', '\r'], " "));
@@ -91,13 +91,13 @@ fn plain(line: &str) -> String {
 }
 
 /// Prints a text without the control characters that it may quote from files.
-fn print(out: &mut dyn Write, text: &str) -> Result<(), AppError> {
+fn print(out: &mut dyn Write, text: &str) -> Result<(), EngineError> {
     let lines = text.lines().map(|line| plain(line) + "\n");
     write_out(out, &lines.collect::<String>())
 }
 
 /// Prints JSON. Control characters are escaped, which does not change its meaning.
-fn print_json(out: &mut dyn Write, value: &serde_json::Value) -> Result<(), AppError> {
+fn print_json(out: &mut dyn Write, value: &serde_json::Value) -> Result<(), EngineError> {
     let mut text = String::new();
     for letter in format!("{value:#}\n").chars() {
         if steers(letter) && letter != '\n' {
@@ -110,9 +110,9 @@ fn print_json(out: &mut dyn Write, value: &serde_json::Value) -> Result<(), AppE
 }
 
 /// Writes to standard output. A closed pipe is no error: its reader has read enough.
-fn write_out(out: &mut dyn Write, text: &str) -> Result<(), AppError> {
+fn write_out(out: &mut dyn Write, text: &str) -> Result<(), EngineError> {
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(AppError::System(format!(
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(EngineError::System(format!(
             "standard output can't be written: {error}; check where it goes"
         ))),
         _ => Ok(()),
@@ -123,12 +123,12 @@ fn write_out(out: &mut dyn Write, text: &str) -> Result<(), AppError> {
 const MOST_THREADS_A_CORE: usize = 4;
 
 /// Runs `work` on a pool of its own, with as many threads and with the vectors that are asked for.
-fn on_threads<T: Send>(asked: ComputeArguments, work: impl FnOnce() -> T + Send) -> Result<T, AppError> {
+fn on_threads<T: Send>(asked: ComputeArguments, work: impl FnOnce() -> T + Send) -> Result<T, EngineError> {
     let ComputeArguments { threads, vectors } = asked;
     if let Some(vectors) = vectors.filter(|vectors| !vectors.choose()) {
         let others = Vectors::ALL.into_iter().filter(|other| other.is_available());
         let others: Vec<&str> = others.map(Vectors::name).collect();
-        return Err(AppError::Arguments(format!(
+        return Err(EngineError::Arguments(format!(
             "--vectors {}: this processor does not have them; leave it out, or give {}",
             vectors.name(),
             others.join(" or ")
@@ -137,7 +137,7 @@ fn on_threads<T: Send>(asked: ComputeArguments, work: impl FnOnce() -> T + Send)
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let most = MOST_THREADS_A_CORE * cores;
     if let Some(threads) = threads.filter(|&threads| threads > most) {
-        return Err(AppError::Arguments(format!(
+        return Err(EngineError::Arguments(format!(
             "--threads {threads} is more than four for each of this machine's cores: give at most {most}"
         )));
     }
@@ -146,7 +146,7 @@ fn on_threads<T: Send>(asked: ComputeArguments, work: impl FnOnce() -> T + Send)
         builder = builder.num_threads(threads);
     }
     let pool = builder.build().map_err(|error| {
-        AppError::System(format!(
+        EngineError::System(format!(
             "the threads can't be started ({error}): give a smaller --threads"
         ))
     })?;

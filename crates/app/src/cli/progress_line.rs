@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-use crate::watch::Watch;
+use pliant_engine::watch::Watch;
 
 /// Erases the terminal's line.
 const ERASE: &str = "\r\x1b[K";

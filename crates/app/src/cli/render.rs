@@ -16,12 +16,12 @@ use super::apply::read_edit;
 use super::arguments::{self, ComputeArguments, PictureSize, ProjectionName, RenderArguments, Up, View};
 use super::{Console, on_threads, print};
 use crate::drawing::{self, Drawing, Pose, Scale};
-use crate::engine::{self, Loaded};
-use crate::files::Destination;
-use crate::watch::Watch;
-use crate::{AppError, examples, files, legend, painting, picture_file};
+use crate::{legend, painting, picture_file};
+use pliant_engine::files::Destination;
+use pliant_engine::watch::Watch;
+use pliant_engine::{EngineError, Loaded, examples, files};
 
-pub(super) fn run(arguments: &RenderArguments, console: &mut Console<'_>) -> Result<(), AppError> {
+pub(super) fn run(arguments: &RenderArguments, console: &mut Console<'_>) -> Result<(), EngineError> {
     check_png(&arguments.output)?;
     let watch = &console.watch;
     let paths = paths(arguments);
@@ -34,7 +34,7 @@ pub(super) fn run(arguments: &RenderArguments, console: &mut Console<'_>) -> Res
     }
     let Pictures { pngs, notes } = on_threads(ComputeArguments::default(), || pictures(arguments, &paths, watch))??;
     if watch.cancel.is_cancelled() {
-        return Err(AppError::Interrupted);
+        return Err(EngineError::Interrupted);
     }
     let files = paths.into_iter().zip(pngs.iter().map(Vec::as_slice));
     console.staging.stage(files)?.commit()?;
@@ -43,13 +43,13 @@ pub(super) fn run(arguments: &RenderArguments, console: &mut Console<'_>) -> Res
 }
 
 /// Refuses a name that is no picture's.
-pub(super) fn check_png(output: &Path) -> Result<(), AppError> {
+pub(super) fn check_png(output: &Path) -> Result<(), EngineError> {
     let extension = output.extension();
     if extension.is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
         return Ok(());
     }
     let output = files::shown(output);
-    Err(AppError::Arguments(format!(
+    Err(EngineError::Arguments(format!(
         "--output {output} is no .png: pictures are written as PNG"
     )))
 }
@@ -107,19 +107,19 @@ pub(super) fn shading(shading: arguments::Shading) -> Shading {
 }
 
 /// The pictures that go to `paths`.
-fn pictures(arguments: &RenderArguments, paths: &[PathBuf], watch: &Watch) -> Result<Pictures, AppError> {
-    let loaded = engine::load(&arguments.file, &WeldOptions::default(), watch)?;
+fn pictures(arguments: &RenderArguments, paths: &[PathBuf], watch: &Watch) -> Result<Pictures, EngineError> {
+    let loaded = pliant_engine::load(&arguments.file, &WeldOptions::default(), watch)?;
     for path in paths {
         files::refuse_shared(("--output", path), loaded.sources())?;
     }
     let model = &loaded.model;
     let Some(bounds) = model.bounds() else {
-        return Err(AppError::Empty(arguments.file.clone()));
+        return Err(EngineError::Empty(arguments.file.clone()));
     };
     let edit = match arguments.edit.as_deref() {
         Some(path) => {
             let (edit, setup) = resolved(path, &loaded, watch)?;
-            engine::check_bends(&arguments.file, model, &setup.method)?;
+            pliant_engine::check_bends(&arguments.file, model, &setup.method)?;
             Some(edit)
         }
         None => None,
@@ -132,7 +132,7 @@ fn pictures(arguments: &RenderArguments, paths: &[PathBuf], watch: &Watch) -> Re
     progress.set(0.2);
 
     let mut renderer = Headless::new()
-        .map_err(|error| AppError::System(error.to_string()))?
+        .map_err(|error| EngineError::System(error.to_string()))?
         .renderer;
     let look = look(arguments);
     let Uploaded { surface, scale, notes } = upload(&renderer, &drawing, &pose, model, &shape, &look, &watch.cancel)?;
@@ -159,7 +159,7 @@ fn pictures(arguments: &RenderArguments, paths: &[PathBuf], watch: &Watch) -> Re
     let mut pngs = Vec::new();
     for number in 0..count {
         if watch.cancel.is_cancelled() {
-            return Err(AppError::Interrupted);
+            return Err(EngineError::Interrupted);
         }
         let mut turned = camera;
         turned.yaw_rad += TAU * f64::from(number) / f64::from(count);
@@ -203,7 +203,7 @@ pub(super) fn upload(
     shape: &Shape,
     look: &Look,
     cancel: &Cancel,
-) -> Result<Uploaded, AppError> {
+) -> Result<Uploaded, EngineError> {
     let mut surface = drawing.upload(renderer, pose).map_err(refuse)?;
     let field = drawing::field(look.shading);
     let scale = field.map(|field| Scale::of(field, model));
@@ -219,7 +219,7 @@ pub(super) fn upload(
     let mut notes = Vec::new();
     if look.shading == Shading::Material {
         let decoded = drawing.materials.decode(cancel);
-        let decoded = decoded.map_err(|_| AppError::Interrupted)?;
+        let decoded = decoded.map_err(|_| EngineError::Interrupted)?;
         let materials = decoded.upload(renderer).map_err(refuse)?;
         surface.set_materials(materials).map_err(refuse)?;
         notes = decoded.notes;
@@ -227,8 +227,8 @@ pub(super) fn upload(
     Ok(Uploaded { surface, scale, notes })
 }
 
-pub(super) fn refuse(error: RenderError) -> AppError {
-    AppError::System(error.to_string())
+pub(super) fn refuse(error: RenderError) -> EngineError {
+    EngineError::System(error.to_string())
 }
 
 /// Where the eye of the first picture is: it sees all of the rest shape, whatever the edit does, so that before and
@@ -259,10 +259,10 @@ pub(super) fn looking(up_axis: Up, from: View, diagonal: f64) -> Camera {
 const ROOM_FOR_THE_EDIT: f64 = 1.2;
 
 /// Reads an edit that fits the model, with the same refusals as `apply`: the editor itself would accept any edit.
-pub(super) fn resolved(path: &Path, loaded: &Loaded, watch: &Watch) -> Result<(Beginning, Setup), AppError> {
+pub(super) fn resolved(path: &Path, loaded: &Loaded, watch: &Watch) -> Result<(Beginning, Setup), EngineError> {
     let (mut edit, _) = read_edit(path, watch)?;
     examples::bring(&mut edit, path, loaded, watch)?;
-    let setup = edit.resolve(&loaded.model).map_err(|source| AppError::Edit {
+    let setup = edit.resolve(&loaded.model).map_err(|source| EngineError::Edit {
         edit: path.to_owned(),
         source,
     })?;
@@ -294,7 +294,7 @@ impl Shape {
         edit: Option<Beginning>,
         posed: Posed,
         watch: &Watch,
-    ) -> Result<Self, AppError> {
+    ) -> Result<Self, EngineError> {
         let progress = watch.begin("bending");
         let executor = InlineExecutor::new();
         let mut editor = Editor::new(Box::new(executor.clone()));
@@ -305,7 +305,7 @@ impl Shape {
         });
         while let Some(kind) = executor.waiting().first().copied() {
             if watch.cancel.is_cancelled() {
-                return Err(AppError::Interrupted);
+                return Err(EngineError::Interrupted);
             }
             let Some(job) = executor.take(kind) else { break };
             // A picture needs no hierarchy for rays, and a shape at rest no solver: without an ordering nothing is bound.
@@ -321,7 +321,7 @@ impl Shape {
         progress.set(1.0);
         let seen = editor.view();
         if let Some(problem) = seen.problem {
-            return Err(AppError::System(format!("{}: {problem}", files::shown(file))));
+            return Err(EngineError::System(format!("{}: {problem}", files::shown(file))));
         }
         let displacements = Arc::clone(seen.displacements);
         let mut region_colours = Vec::new();

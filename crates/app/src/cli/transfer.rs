@@ -4,12 +4,11 @@ use pliant_io::Format;
 
 use super::arguments::TransferArguments;
 use super::{Console, on_threads, print};
-use crate::AppError;
-use crate::engine::{Transfer, transfer};
+use pliant_engine::{EngineError, Transfer, transfer};
 
-pub(super) fn run(arguments: &TransferArguments, console: &mut Console<'_>) -> Result<(), AppError> {
+pub(super) fn run(arguments: &TransferArguments, console: &mut Console<'_>) -> Result<(), EngineError> {
     let output_name = arguments.output.to_string_lossy();
-    Format::of_name(&output_name).map_err(|error| AppError::Arguments(format!("--output: {error}")))?;
+    Format::of_name(&output_name).map_err(|error| EngineError::Arguments(format!("--output: {error}")))?;
     let own_name = arguments.pose.file_stem().unwrap_or_default().to_string_lossy();
     let job = Transfer {
         source: &arguments.source,

@@ -34,7 +34,7 @@ use super::viewport::before::{OriginalView, Split};
 use super::viewport::compare::Compare;
 use super::viewport::method_views::MethodViews;
 use super::widgets::{icon, theme};
-use crate::AppError;
+use pliant_engine::EngineError;
 
 /// How long the view must rest before it is drawn with smooth borders on a software device.
 pub(super) const REST: Duration = Duration::from_millis(300);
@@ -89,7 +89,7 @@ impl Application {
     ///
     /// # Errors
     /// Where there is no graphics device, or it can't run our pipelines.
-    pub fn new(context: &eframe::CreationContext<'_>, source: Source) -> Result<Self, AppError> {
+    pub fn new(context: &eframe::CreationContext<'_>, source: Source) -> Result<Self, EngineError> {
         Self::with_places(context, source, &AppDirectories::default())
     }
 
@@ -101,14 +101,14 @@ impl Application {
         context: &eframe::CreationContext<'_>,
         source: Source,
         places: &AppDirectories,
-    ) -> Result<Self, AppError> {
+    ) -> Result<Self, EngineError> {
         interface_pool::install();
         let Some(state) = context.wgpu_render_state.clone() else {
-            return Err(AppError::System(
+            return Err(EngineError::System(
                 "the window has no graphics device: install a Vulkan driver".to_owned(),
             ));
         };
-        let viewport = Viewport::new(state).map_err(|error| AppError::System(error.to_string()))?;
+        let viewport = Viewport::new(state).map_err(|error| EngineError::System(error.to_string()))?;
         let (sender, messages) = channel();
         let workers = Workers::new(context.egui_ctx.clone(), sender);
         let settings = SettingsFile::open(places.settings.clone());
@@ -173,16 +173,16 @@ impl Application {
     ///
     /// # Errors
     /// As [`Application::new`].
-    pub fn revive(&mut self, context: &eframe::CreationContext<'_>) -> Result<(), AppError> {
+    pub fn revive(&mut self, context: &eframe::CreationContext<'_>) -> Result<(), EngineError> {
         theme::apply(&context.egui_ctx, self.settings.get());
         icon::install(&context.egui_ctx);
         context.egui_ctx.add_plugin(EventQueue::default());
         let Some(state) = context.wgpu_render_state.clone() else {
-            return Err(AppError::System(
+            return Err(EngineError::System(
                 "the window has no graphics device any more".to_owned(),
             ));
         };
-        let system = |error: pliant_render::RenderError| AppError::System(error.to_string());
+        let system = |error: pliant_render::RenderError| EngineError::System(error.to_string());
         self.viewport = Viewport::new(state).map_err(system)?;
         self.compare = None;
         self.original = None;

@@ -36,7 +36,7 @@ pub use shell::{NumpadDigits, Shared, Shell};
 use files::settings::Settings;
 use shell::Listener;
 
-use crate::AppError;
+use pliant_engine::EngineError;
 
 /// The variables that tell of a display, on systems with X11 or Wayland.
 const DISPLAYS: [&str; 3] = ["WAYLAND_DISPLAY", "WAYLAND_SOCKET", "DISPLAY"];
@@ -45,9 +45,9 @@ const DISPLAYS: [&str; 3] = ["WAYLAND_DISPLAY", "WAYLAND_SOCKET", "DISPLAY"];
 ///
 /// # Errors
 /// Where no window or no graphics device can be had.
-pub fn run(file: Option<PathBuf>) -> Result<(), AppError> {
+pub fn run(file: Option<PathBuf>) -> Result<(), EngineError> {
     if cfg!(all(unix, not(target_os = "macos"))) && DISPLAYS.iter().all(|name| std::env::var_os(name).is_none()) {
-        return Err(AppError::System(format!(
+        return Err(EngineError::System(format!(
             "there is no display to open a window on (none of {} is set): start it in a desktop session, or use \
              `pliant apply` and `pliant render`, which need none",
             DISPLAYS.join(", ")
@@ -58,14 +58,14 @@ pub fn run(file: Option<PathBuf>) -> Result<(), AppError> {
         fault::listen(folder.clone());
     }
     let source = file.map_or(Source::Sample, Source::File);
-    let refused = |reason: String| AppError::System(sentence(&reason));
+    let refused = |reason: String| EngineError::System(sentence(&reason));
     let mut event_loop = EventLoop::<UserEvent>::with_user_event()
         .build()
         .map_err(|error| refused(error.to_string()))?;
     let (application, numpad) = (Shared::default(), NumpadDigits::default());
     loop {
         // eframe's handler tells nobody why it could not begin.
-        let failure: Rc<RefCell<Option<AppError>>> = Rc::default();
+        let failure: Rc<RefCell<Option<EngineError>>> = Rc::default();
         let has_begun = Rc::new(Cell::new(false));
         let inner = eframe::create_native(
             "Pliant",

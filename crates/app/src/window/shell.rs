@@ -14,7 +14,7 @@ use winit::keyboard::{KeyCode, PhysicalKey};
 use winit::window::WindowId;
 
 use super::Application;
-use crate::AppError;
+use pliant_engine::EngineError;
 
 /// The application between two windows.
 pub type Shared = Rc<RefCell<Option<Application>>>;
@@ -37,9 +37,9 @@ impl Shell {
     pub fn new(
         context: &eframe::CreationContext<'_>,
         application: Shared,
-        begin: impl FnOnce(&eframe::CreationContext<'_>) -> Result<Application, AppError>,
+        begin: impl FnOnce(&eframe::CreationContext<'_>) -> Result<Application, EngineError>,
         numpad: NumpadDigits,
-    ) -> Result<Self, AppError> {
+    ) -> Result<Self, EngineError> {
         let mut held = application.borrow_mut();
         match held.as_mut() {
             Some(application) => application.revive(context)?,

@@ -10,10 +10,6 @@ use pliant_editor::{Command, Event, Revision};
 
 use super::recovery::left;
 use super::session::{KeepOriginal, Source};
-use crate::control_mesh::control_mesh;
-use crate::engine::is_project;
-use crate::files::{is_same, shown};
-use crate::watch::Watch;
 use crate::window::application::Application;
 use crate::window::dialogs::palette::Palette;
 use crate::window::dialogs::question::{self, Answer, Question, Then};
@@ -22,6 +18,10 @@ use crate::window::input::event_queue::EventQueue;
 use crate::window::panels::notes::Note;
 use crate::window::threads::message::{Message, Purpose, Written, WrittenKind};
 use crate::window::widgets::theme;
+use pliant_engine::control_mesh::control_mesh;
+use pliant_engine::files::{is_same, shown};
+use pliant_engine::is_project;
+use pliant_engine::watch::Watch;
 
 impl Application {
     pub(in crate::window) fn file_shortcuts(&mut self, context: &egui::Context) {

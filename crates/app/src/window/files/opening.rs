@@ -9,13 +9,11 @@ use pliant_mesh::WeldOptions;
 
 use super::names::{SAMPLE, SAMPLE_NAME, saved_name};
 use super::project_file::{self, MeshSource};
-use crate::AppError;
 use crate::drawing::Drawing;
-use crate::engine;
-use crate::files;
-use crate::watch::Watch;
 use crate::window::threads::message::ModelToShow;
 use crate::window::viewport::gpu::Gpu;
+use pliant_engine::watch::Watch;
+use pliant_engine::{EngineError, files};
 
 /// Where a model comes from.
 #[derive(Clone, Debug)]
@@ -29,18 +27,18 @@ pub enum Source {
 }
 
 /// Reads, welds and uploads.
-pub(super) fn open(source: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<ModelToShow>, AppError> {
+pub(super) fn open(source: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<ModelToShow>, EngineError> {
     let weld = WeldOptions::default();
     let mut beginning = None;
     let (mut project, mut recovered) = (None, None);
     let (loaded, path, source) = match source {
         Source::Sample => (
-            engine::load_bytes(SAMPLE.to_vec(), Path::new(SAMPLE_NAME), &weld, watch)?,
+            pliant_engine::load_bytes(SAMPLE.to_vec(), Path::new(SAMPLE_NAME), &weld, watch)?,
             None,
             MeshSource::Sample,
         ),
-        Source::File(path) if !engine::is_project(path) => (
-            engine::load(path, &weld, watch)?,
+        Source::File(path) if !pliant_engine::is_project(path) => (
+            pliant_engine::load(path, &weld, watch)?,
             Some(path.clone()),
             MeshSource::File(path.clone()),
         ),
@@ -72,7 +70,7 @@ pub(super) fn open(source: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<Mode
     progress.set(0.8);
     let surface = gpu
         .upload(&drawing, &pose)
-        .map_err(|error| AppError::System(error.to_string()))?;
+        .map_err(|error| EngineError::System(error.to_string()))?;
     Ok(Box::new(ModelToShow {
         path,
         loaded: Arc::new(loaded),

@@ -6,11 +6,10 @@ use pliant_editor::{Beginning, MeshReference, Project, Snapshot, geometry_hash};
 use pliant_mesh::{Cancel, Progress, WeldOptions};
 
 use super::names::{SAMPLE, SAMPLE_NAME, file_name, original_name, saved_name};
-use crate::AppError;
-use crate::engine::{self, Loaded};
-use crate::files::{self, Staging};
-use crate::saving::{self, SaveAs};
-use crate::watch::Watch;
+use pliant_engine::files::{self, Staging};
+use pliant_engine::saving::{self, SaveAs};
+use pliant_engine::watch::Watch;
+use pliant_engine::{EngineError, Loaded};
 
 /// Where a mesh as it was read stands now.
 #[derive(Clone, PartialEq, Eq, Debug)]
@@ -35,7 +34,7 @@ pub fn write(
     staging: &Staging,
     progress: &Progress,
     cancel: &Cancel,
-) -> Result<(), AppError> {
+) -> Result<(), EngineError> {
     let geometry = geometry_hash(snapshot.model());
     let folder = files::folder_of(path);
     let mut beside = None;
@@ -118,9 +117,9 @@ pub struct OpenedProject {
 ///
 /// # Errors
 /// A project that can't be read, or whose mesh is not to be found.
-pub fn read(path: &Path, watch: &Watch) -> Result<OpenedProject, AppError> {
+pub fn read(path: &Path, watch: &Watch) -> Result<OpenedProject, EngineError> {
     let text = files::read_text(path)?;
-    let refuse = |source| AppError::Edit {
+    let refuse = |source| EngineError::Edit {
         edit: path.to_owned(),
         source,
     };
@@ -134,7 +133,7 @@ pub fn read(path: &Path, watch: &Watch) -> Result<OpenedProject, AppError> {
     };
     let weld = WeldOptions::default();
     let Some(named) = project.mesh().path.clone() else {
-        let loaded = engine::load_bytes(SAMPLE.to_vec(), Path::new(SAMPLE_NAME), &weld, watch)?;
+        let loaded = pliant_engine::load_bytes(SAMPLE.to_vec(), Path::new(SAMPLE_NAME), &weld, watch)?;
         return if geometry_hash(&loaded.model) == project.mesh().geometry {
             Ok(OpenedProject {
                 project,
@@ -142,7 +141,7 @@ pub fn read(path: &Path, watch: &Watch) -> Result<OpenedProject, AppError> {
                 source: MeshSource::Sample,
             })
         } else {
-            Err(AppError::ProjectMesh {
+            Err(EngineError::ProjectMesh {
                 project: path.to_owned(),
                 mesh: SAMPLE_NAME.into(),
                 what: "another sample's",
@@ -157,7 +156,7 @@ pub fn read(path: &Path, watch: &Watch) -> Result<OpenedProject, AppError> {
         if !mesh.is_file() {
             continue;
         }
-        let loaded = engine::load(mesh, &weld, watch)?;
+        let loaded = pliant_engine::load(mesh, &weld, watch)?;
         if geometry_hash(&loaded.model) == project.mesh().geometry {
             return Ok(OpenedProject {
                 project,
@@ -167,7 +166,7 @@ pub fn read(path: &Path, watch: &Watch) -> Result<OpenedProject, AppError> {
         }
         what = "another one now";
     }
-    Err(AppError::ProjectMesh {
+    Err(EngineError::ProjectMesh {
         project: path.to_owned(),
         mesh: at,
         what,

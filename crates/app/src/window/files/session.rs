@@ -14,11 +14,11 @@ use super::project_file::MeshSource;
 pub use super::writing::KeepOriginal;
 use super::writing::{Content, Model, SaveRequest, write};
 use crate::drawing::Drawing;
-use crate::engine::Loaded;
-use crate::watch::Watch;
 use crate::window::threads::message::{Message, ModelToShow, Written, WrittenKind};
 use crate::window::threads::workers::Workers;
 use crate::window::viewport::gpu::Gpu;
+use pliant_engine::Loaded;
+use pliant_engine::watch::Watch;
 
 /// The open file and the jobs that read and write it.
 #[derive(Default)]

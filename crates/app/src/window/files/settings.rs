@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use crate::files::{self, Staging, shown};
+use pliant_engine::files::{self, Staging, shown};
 
 /// How many files are remembered.
 const RECENT: usize = 10;

@@ -11,12 +11,11 @@ use pliant_render::Image;
 
 use super::names::{file_name, is_gltf, original_name};
 use super::project_file::{self, MeshSource};
-use crate::AppError;
-use crate::engine::Loaded;
-use crate::files::{self, Destination, NewFile, Staged, Staging};
 use crate::picture_file;
-use crate::saving::{self, SaveAs};
 use crate::window::threads::message::{Written, WrittenKind};
+use pliant_engine::files::{self, Destination, NewFile, Staged, Staging};
+use pliant_engine::saving::{self, SaveAs};
+use pliant_engine::{EngineError, Loaded};
 
 /// What is to be written.
 pub(super) struct SaveRequest {
@@ -64,14 +63,16 @@ pub enum KeepOriginal {
 pub(super) fn write(request: SaveRequest, progress: &Progress, cancel: &Cancel) -> Result<Written, String> {
     let name = file_name(&request.path);
     write_unless_stopped(request, progress, cancel).map_err(|error| match error {
-        AppError::Interrupted => format!("Saving {name} was stopped: nothing was written. Save again when you like."),
+        EngineError::Interrupted => {
+            format!("Saving {name} was stopped: nothing was written. Save again when you like.")
+        }
         error => error.to_string(),
     })
 }
 
-fn write_unless_stopped(request: SaveRequest, progress: &Progress, cancel: &Cancel) -> Result<Written, AppError> {
+fn write_unless_stopped(request: SaveRequest, progress: &Progress, cancel: &Cancel) -> Result<Written, EngineError> {
     let SaveRequest { path, content, sources } = request;
-    let go_on = || cancel.check().map_err(|_| AppError::Interrupted);
+    let go_on = || cancel.check().map_err(|_| EngineError::Interrupted);
     // What has begun shows that it has.
     progress.set(0.02);
     go_on()?;
@@ -134,9 +135,9 @@ fn write_model(
     staging: &Staging,
     progress: &Progress,
     cancel: &Cancel,
-) -> Result<(Option<MeshSource>, Vec<String>), AppError> {
+) -> Result<(Option<MeshSource>, Vec<String>), EngineError> {
     let loaded = &*model.loaded;
-    let go_on = || cancel.check().map_err(|_| AppError::Interrupted);
+    let go_on = || cancel.check().map_err(|_| EngineError::Interrupted);
     let mut positions = Vec::new();
     loaded.model.drawn_positions(&model.displacements, &mut positions);
     go_on()?;
@@ -172,7 +173,7 @@ fn stage_original(
     staging: &Staging,
     progress: &Progress,
     cancel: &Cancel,
-) -> Result<Staged, AppError> {
+) -> Result<Staged, EngineError> {
     if is_gltf(path) {
         let at_rest = &loaded.model.rest_positions();
         let staged = saving::stage(loaded, &SaveAs::shape(at_rest, original), staging, progress, cancel)?.staged;

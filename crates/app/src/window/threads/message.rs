@@ -9,8 +9,8 @@ use pliant_mesh::Cancel;
 use pliant_render::{Materials, Surface};
 
 use crate::drawing::{Drawing, Field, Pose, Scale};
-use crate::engine::Loaded;
 use crate::window::files::project_file::MeshSource;
+use pliant_engine::Loaded;
 
 /// A result of another thread; the window takes all waiting ones at the start of each frame.
 pub enum Message {

@@ -16,9 +16,8 @@ use pliant_editor::{Executor, Job, JobDone, JobOutcome};
 
 use super::message::{Message, Painted, Posed};
 use crate::drawing::{self, Drawing, Field, Scale};
-use crate::engine::Loaded;
-use crate::memory;
-use crate::report::ms_since;
+use pliant_engine::report::ms_since;
+use pliant_engine::{Loaded, memory};
 
 /// Starts work off the window's thread and wakes the window when it ends. Cloning shares the channel.
 #[derive(Clone)]

@@ -12,10 +12,10 @@ use pliant_render::RenderError;
 
 use super::side_view::SideView;
 use super::{Smoothness, Viewport};
-use crate::report::finite_or;
 use crate::sheet;
 use crate::window::threads::workers::Stage;
 use crate::window::widgets::theme;
+use pliant_engine::report::finite_or;
 
 /// The height of a caption in points.
 const CAPTION: f32 = 52.0;

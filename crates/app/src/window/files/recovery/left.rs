@@ -24,7 +24,7 @@ pub fn left_in(folder: &Path) -> Vec<Left> {
     };
     let mut left: Vec<Left> = entries
         .filter_map(|entry| entry.ok().map(|entry| entry.path()))
-        .filter(|path| crate::engine::is_project(path) && is_gone(&path.with_extension("lock")))
+        .filter(|path| pliant_engine::is_project(path) && is_gone(&path.with_extension("lock")))
         .map(|project| {
             let written = fs::metadata(&project).and_then(|metadata| metadata.modified());
             Left {

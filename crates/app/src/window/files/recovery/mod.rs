@@ -16,8 +16,8 @@ use pliant_mesh::{Cancel, Progress};
 
 use self::left::remove;
 use super::project_file::{self, MeshSource};
-use crate::engine::Loaded;
-use crate::files::{Staging, shown};
+use pliant_engine::Loaded;
+use pliant_engine::files::{Staging, shown};
 
 /// How often unsaved work is kept. A write takes less than a second even on a large mesh, so no more than twice this
 /// can be lost.

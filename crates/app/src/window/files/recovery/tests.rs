@@ -6,8 +6,7 @@ use pliant_mesh::{WeldOptions, shapes};
 
 use super::left::left_in;
 use super::*;
-use crate::engine;
-use crate::watch::Watch;
+use pliant_engine::watch::Watch;
 
 const FOLDER: &str = "PLIANT_TEST_RECOVERY";
 const KILLS: u64 = 50;
@@ -27,7 +26,7 @@ fn mesh(folder: &Path) -> PathBuf {
 }
 
 fn loaded(path: &Path) -> Arc<Loaded> {
-    Arc::new(engine::load(path, &WeldOptions::default(), &Watch::default()).unwrap())
+    Arc::new(pliant_engine::load(path, &WeldOptions::default(), &Watch::default()).unwrap())
 }
 
 /// Works without an end, keeping every state, until it is killed. Does nothing where no folder is named.
