@@ -23,7 +23,7 @@ mod workspace;
 pub use command::{Command, KeyMap, Listed, Shortcut};
 pub use document::{
     Access, Content, Document, HANDLE_COLOURS, HISTORY_BYTES, Handle, HandleId, HandleTransform, History, KeptShape,
-    MirrorPlane, ObjectAction, Paint, PivotPlace, Pose, Reach, Tips, Twin, object_name,
+    ObjectAction, Paint, PivotPlace, Pose, Reach, Tips, Twin, object_name,
 };
 pub use editor::Editor;
 pub use event::Event;
@@ -34,9 +34,9 @@ pub use format::{
 };
 pub use input::{Button, Key, Modifiers, Pointer};
 pub use jobs::{
-    Alternative, Compared, Comparison, ControlPlaces, Counts, Descent, Executor, Figures, InlineExecutor, Inspectable,
-    Inspected, IntersectionPlace, Intersections, Job, JobDone, JobKind, JobOutcome, JobQueue, Region, Revision, Rim,
-    Running, Solved,
+    Alternative, BothSides, Compared, Comparison, ControlPlaces, Counts, Descent, Executor, Figures, InlineExecutor,
+    Inspectable, Inspected, IntersectionPlace, Intersections, Job, JobDone, JobKind, JobOutcome, JobQueue, Region,
+    Revision, Rim, Running, Solved,
 };
 pub use scene_view::{ControlPoints, Cursor, Readout, SceneView};
 pub use selection::Selection;
@@ -49,4 +49,4 @@ pub use view::{
     Before, Camera, Clay, ControlShape, GizmoAxes, GizmoMode, GizmoOrientation, GizmoPart, GizmoShape, Look, NamedView,
     Orbit, Pick, Projection, Ray, Shading, UpAxis, gizmo_shapes, hit_gizmo,
 };
-pub use workspace::{RegionAction, SnapshotKey, stiffness_colour};
+pub use workspace::{RegionAction, SnapshotKey, Symmetry, stiffness_colour};

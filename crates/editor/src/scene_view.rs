@@ -11,6 +11,7 @@ use crate::document::{Handle, HandleId};
 use crate::jobs::{Counts, Descent, JobKind};
 use crate::tool::{BrushMetric, Depth, StiffnessBrush, StrokeShape, ToolMode};
 use crate::view::{Camera, ControlShape, GizmoOrientation, GizmoShape, Look, Orbit};
+use crate::workspace::Symmetry;
 
 /// Everything the 3D view and the panels around it show.
 #[derive(Debug)]
@@ -71,6 +72,8 @@ pub struct SceneView<'a> {
     pub stroke_shape: StrokeShape,
     /// How deep a lasso or a box goes.
     pub depth: Depth,
+    /// Across which plane both sides are painted at once, found or still looked for.
+    pub symmetry: Symmetry,
     /// How the brush measures its radius.
     pub brush_metric: BrushMetric,
     /// The stiffness brush.

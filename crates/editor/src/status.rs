@@ -98,7 +98,7 @@ fn working(workspace: &Workspace, is_dragging: bool) -> Option<String> {
         JobKind::Solve | JobKind::Compare | JobKind::Inspect | JobKind::Joint | JobKind::Intersect => false,
         JobKind::Pick => workspace.computed().pickable.is_none(),
         JobKind::Order => !document.handles().is_empty(),
-        JobKind::Region | JobKind::Bind | JobKind::Mirror | JobKind::Enclose => true,
+        JobKind::Region | JobKind::Bind | JobKind::Mirror | JobKind::Symmetry | JobKind::Enclose => true,
     })?;
     let doing = kind.doing();
     let waits = is_dragging || !document.is_settled();

@@ -1,5 +1,5 @@
-//! A triangle surface in memory: topology, geometry, welding, findings, distances along the surface and a
-//! bounding-volume hierarchy, and the one pair of [`Progress`] and [`Cancel`] that every long job takes.
+//! A triangle surface in memory: topology, geometry, welding, findings, distances along the surface, symmetry and
+//! a bounding-volume hierarchy, and the one pair of [`Progress`] and [`Cancel`] that every long job takes.
 //!
 //! Three vertex sets exist and must not be mixed; each has its own id type:
 //! [`FileVertex`] (what is saved), [`DrawnVertex`] (a file vertex seen through one node: what is rendered and
@@ -17,6 +17,7 @@ mod model;
 mod progress;
 pub mod shapes;
 mod surface;
+mod symmetry;
 mod topology;
 mod vectors;
 mod weld;
@@ -33,6 +34,7 @@ pub use ids::{DrawnVertex, FileVertex, SurfaceVertex};
 pub use model::{Drawn, DrawnSet, Model, Object, SurfaceOfFile, WeldOptions};
 pub use progress::{Cancel, Cancelled, Progress};
 pub use surface::Surface;
+pub use symmetry::{Counterparts, MirrorPlane, image_of, symmetry_plane};
 pub use topology::{
     Component, Contact, ContourLine, Crossing, Faces, FanKind, Topology, component_areas, contacts, contours,
 };

@@ -1,7 +1,8 @@
 //! What the left button does on the surface, and with what.
 
-use super::entry::{Action, Entry, Scope, always, character, item, unless};
+use super::entry::{Action, Entry, Scope, alt, always, character, item, shift, unless, when_open};
 use crate::tool::{BrushMetric, Depth, SizeBrush, StiffnessBrush, StrokeShape, ToolMode};
+use crate::workspace::{Symmetry, set_symmetry};
 
 /// The factor by which a key sizes the brush.
 const BRUSH_STEP: f64 = 1.2;
@@ -157,6 +158,50 @@ pub(super) const SET_DEPTH: Entry<Depth> = Entry {
     scope: Scope::View,
     unavailable: always,
     action: Action::Do(|context, depth| context.settings.depth = depth),
+};
+
+/// Across which plane both sides are painted at once.
+pub(super) const SET_SYMMETRY: Entry<Symmetry> = Entry {
+    listed: &[
+        item(
+            Symmetry::Found,
+            "Symmetry",
+            "Paints and poses both sides at once, across the plane that the shape has.",
+            "mirror both sides left right",
+            &[shift('x')],
+        ),
+        item(
+            Symmetry::Axis(0),
+            "Symmetry across x",
+            "Paints and poses left and right at once.",
+            "mirror both sides",
+            &[],
+        ),
+        item(
+            Symmetry::Axis(1),
+            "Symmetry across y",
+            "Paints and poses above and below at once.",
+            "mirror both sides",
+            &[],
+        ),
+        item(
+            Symmetry::Axis(2),
+            "Symmetry across z",
+            "Paints and poses before and behind at once.",
+            "mirror both sides",
+            &[],
+        ),
+        item(
+            Symmetry::None,
+            "No symmetry",
+            "Paints and poses each side by itself.",
+            "mirror one side",
+            &[alt('x')],
+        ),
+    ],
+    scope: Scope::Tool,
+    unavailable: when_open,
+    action: Action::Do(|context, symmetry| set_symmetry(context.workspace, symmetry)),
 };
 
 /// Sets the brush's radius in points, clamped to what the brush allows.

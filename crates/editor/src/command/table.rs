@@ -12,7 +12,7 @@ use super::{controls, document, examples, handle, look, object, paint, pose, reg
 use crate::document::{HandleId, HandleTransform, ObjectAction, PivotPlace, Reach, Tips};
 use crate::tool::{BrushMetric, Context, Depth, Gesture, StiffnessBrush, StrokeShape, ToolMode};
 use crate::view::{Before, Clay, GizmoMode, GizmoOrientation, NamedView, Orbit, Shading, UpAxis};
-use crate::workspace::RegionAction;
+use crate::workspace::{RegionAction, Symmetry};
 
 /// A command as a menu or the palette lists it.
 #[derive(Clone, PartialEq, Debug)]
@@ -140,6 +140,8 @@ commands! {
     SetBrushMetric(metric: BrushMetric) = paint::SET_BRUSH_METRIC;
     /// How deep a lasso or a box goes.
     SetDepth(depth: Depth) = paint::SET_DEPTH;
+    /// Across which plane both sides are painted at once.
+    SetSymmetry(symmetry: Symmetry) = paint::SET_SYMMETRY;
     /// Sets the brush's radius in points, clamped to what the brush allows.
     SetBrushRadius(radius_px: f64) = paint::SET_BRUSH_RADIUS;
     /// Sizes the brush with the pointer.

@@ -1,10 +1,10 @@
 //! A handle: a part of the surface that is moved as a whole, with all that a person chose for it.
 
 use glam::{DAffine3, DVec3};
+use pliant_mesh::MirrorPlane;
 
 use super::handle_colour::handle_colour;
 use super::handle_transform::HandleTransform;
-use super::mirror_plane::MirrorPlane;
 use super::turn::followed;
 
 /// A handle's number for as long as the document lives.

@@ -1,60 +1,40 @@
-//! A plane to mirror across, and what a mirrored handle does.
+//! What a mirrored handle does.
 
-use glam::{DAffine3, DMat3, DQuat, DVec3};
+use glam::{DAffine3, DQuat, DVec3};
+use pliant_mesh::MirrorPlane;
 
 use super::handle_transform::HandleTransform;
 
-/// A plane across an axis of the world.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct MirrorPlane {
-    /// 0, 1, 2 for x, y, z.
-    pub axis: usize,
-    /// Where it crosses the axis, in world units.
-    pub at: f64,
-}
-
-impl MirrorPlane {
-    /// What a handle on the other side does when one on this side does `transform`.
-    pub(crate) fn mirrored_transform(&self, transform: HandleTransform) -> HandleTransform {
-        let mut flip = DVec3::ONE;
-        flip[self.axis] = -1.0;
-        match transform {
+/// What a handle on the other side of a plane does when one on this side, with this pivot, does `transform`.
+pub(crate) fn mirrored_transform(plane: &MirrorPlane, transform: HandleTransform, pivot: DVec3) -> HandleTransform {
+    match transform {
+        // Lengths along the world's axes stay such in a mirror across one of them.
+        HandleTransform::Trs {
+            translation,
+            rotation,
+            scale,
+            pivot,
+        } if plane.axis().is_some() || scale == DVec3::splat(scale.x) => {
+            // A rotation's axis turns the other way round in a mirror.
+            let axis = -plane.mirrored_vector(rotation.xyz());
+            let rotation = if rotation.xyz() == DVec3::ZERO {
+                rotation
+            } else {
+                DQuat::from_xyzw(axis.x, axis.y, axis.z, rotation.w)
+            };
             HandleTransform::Trs {
-                translation,
+                translation: plane.mirrored_vector(translation),
                 rotation,
                 scale,
-                pivot,
-            } => {
-                // A rotation's axis turns the other way round in a mirror.
-                let axis = -(rotation.xyz() * flip);
-                let rotation = if rotation.xyz() == DVec3::ZERO {
-                    rotation
-                } else {
-                    DQuat::from_xyzw(axis.x, axis.y, axis.z, rotation.w)
-                };
-                HandleTransform::Trs {
-                    translation: translation * flip,
-                    rotation,
-                    scale,
-                    pivot: pivot.map(|pivot| self.mirrored(pivot)),
-                }
-            }
-            HandleTransform::Matrix(matrix) => {
-                let mut shift = DVec3::ZERO;
-                shift[self.axis] = 2.0 * self.at;
-                let mirror = DAffine3 {
-                    matrix3: DMat3::from_diagonal(flip),
-                    translation: shift,
-                };
-                HandleTransform::Matrix(mirror * matrix * mirror)
+                pivot: pivot.map(|pivot| plane.mirrored(pivot)),
             }
         }
-    }
-
-    /// The point on the other side.
-    pub fn mirrored(&self, point: DVec3) -> DVec3 {
-        let mut other = point;
-        other[self.axis] = 2.0 * self.at - point[self.axis];
-        other
+        HandleTransform::Trs { .. } | HandleTransform::Matrix(_) => {
+            let mirror = DAffine3 {
+                matrix3: plane.reflection(),
+                translation: plane.mirrored(DVec3::ZERO),
+            };
+            HandleTransform::Matrix(mirror * transform.affine(pivot) * mirror)
+        }
     }
 }

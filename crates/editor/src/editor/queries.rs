@@ -62,6 +62,7 @@ impl Editor {
             outline_px: gesture.map_or(Vec::new(), Gesture::outline_px),
             stroke_shape: settings.stroke_shape,
             depth: settings.depth,
+            symmetry: workspace.symmetry(),
             brush_metric: settings.brush.metric,
             stiffness_brush: settings.stiffness_brush,
             pressure: settings.pressure,
@@ -268,6 +269,7 @@ impl Editor {
             | JobKind::Bind
             | JobKind::Solve
             | JobKind::Mirror
+            | JobKind::Symmetry
             | JobKind::Enclose
             | JobKind::Inspect => true,
         };

@@ -10,6 +10,7 @@ use glam::{DVec3, Mat3};
 use pliant_deform::{Bound, Budget, Ordering};
 use pliant_mesh::{Bvh, Cancel, Joint, Progress, SurfaceVertex};
 
+use super::both_sides::BothSides;
 use super::carried::Carried;
 use super::compared::Compared;
 use super::inspected::{Inspectable, Inspected};
@@ -32,6 +33,8 @@ pub enum JobKind {
     Solve,
     /// The mirror image of a region.
     Mirror,
+    /// The plane across which the shape is its own mirror image, and what goes with what.
+    Symmetry,
     /// The vertices that an outline on the screen holds.
     Enclose,
     /// What another method makes of the edit.
@@ -46,13 +49,14 @@ pub enum JobKind {
 
 impl JobKind {
     /// Every kind, in the order in which their results build on one another.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::Pick,
         Self::Order,
         Self::Region,
         Self::Bind,
         Self::Solve,
         Self::Mirror,
+        Self::Symmetry,
         Self::Enclose,
         Self::Compare,
         Self::Inspect,
@@ -69,6 +73,7 @@ impl JobKind {
             Self::Bind => "binding",
             Self::Solve => "bending",
             Self::Mirror => "looking for the mirror image",
+            Self::Symmetry => "looking for the plane of symmetry",
             Self::Enclose => "looking for what is inside",
             Self::Compare => "comparing methods",
             Self::Inspect => "looking into the binding",
@@ -185,6 +190,8 @@ pub enum JobOutcome {
     Controls(ControlPlaces),
     /// The vertices of a region's mirror image, ascending.
     Mirrored(Vec<usize>),
+    /// Both sides of the plane of symmetry; `None` where the shape has none.
+    Symmetry(Option<Arc<BothSides>>),
     /// The vertices that an outline holds, ascending.
     Enclosed(Vec<SurfaceVertex>),
     /// What a method makes of the edit.
@@ -211,6 +218,7 @@ impl std::fmt::Debug for JobOutcome {
             Self::Solved(_) => "Solved",
             Self::Controls(_) => "Controls",
             Self::Mirrored(_) => "Mirrored",
+            Self::Symmetry(_) => "Symmetry",
             Self::Enclosed(_) => "Enclosed",
             Self::Compared(_) => "Compared",
             Self::Inspected(_) => "Inspected",

@@ -1,6 +1,7 @@
 //! What follows from the document and is computed beside the window: the jobs, their queues and their last results.
 
 mod alternative;
+mod both_sides;
 mod bound_controls;
 mod carried;
 mod compared;
@@ -19,6 +20,7 @@ mod solving;
 mod work;
 
 pub use alternative::Alternative;
+pub use both_sides::BothSides;
 pub(crate) use bound_controls::BoundControls;
 pub use compared::{Compared, Figures};
 pub use comparison::Comparison;

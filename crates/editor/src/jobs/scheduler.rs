@@ -10,6 +10,7 @@ use std::sync::{Arc, Mutex};
 
 use pliant_mesh::{Joint, Model, SurfaceVertex};
 
+use super::both_sides::BothSides;
 use super::bound_controls::BoundControls;
 use super::comparison::Comparison;
 use super::computed::Computed;
@@ -60,6 +61,7 @@ pub(crate) struct Jobs {
     controls_revision: Revision,
     mirror_revision: Revision,
     enclose_revision: Revision,
+    symmetry_revision: Revision,
     compare_revision: Revision,
     inspect_revision: Revision,
     joint_revision: Revision,
@@ -79,6 +81,8 @@ pub(crate) enum Arrival {
     Picking,
     /// The vertices of a mirror image.
     Mirrored(Vec<usize>),
+    /// Both sides of the plane of symmetry, or that there is none.
+    Symmetry(Option<Arc<BothSides>>),
     /// The joint of the limb under the pointer, or that it has none.
     Joint,
     /// The vertices that an outline holds.
@@ -119,6 +123,7 @@ impl Jobs {
             controls_revision: Revision(0),
             mirror_revision: Revision(0),
             enclose_revision: Revision(0),
+            symmetry_revision: Revision(0),
             compare_revision: Revision(0),
             inspect_revision: Revision(0),
             joint_revision: Revision(0),
@@ -172,6 +177,17 @@ impl Jobs {
         self.queues[JobKind::Mirror as usize].cancel();
         self.mirror_revision = self.next_revision();
         self.queues[JobKind::Mirror as usize].request(self.mirror_revision, work);
+    }
+
+    /// Has the plane of symmetry looked for.
+    pub(crate) fn look_for_symmetry(&mut self, work: Work) {
+        self.queues[JobKind::Symmetry as usize].request(self.symmetry_revision, work);
+    }
+
+    /// No plane of symmetry is wanted any more, or another one.
+    pub(crate) fn stop_looking_for_symmetry(&mut self) {
+        self.queues[JobKind::Symmetry as usize].cancel();
+        self.symmetry_revision = self.next_revision();
     }
 
     /// Has an outline's vertices looked for.
@@ -302,6 +318,7 @@ impl Jobs {
             JobKind::Bind,
             JobKind::Solve,
             JobKind::Mirror,
+            JobKind::Symmetry,
             JobKind::Enclose,
             JobKind::Joint,
             JobKind::Intersect,
@@ -481,6 +498,7 @@ impl Jobs {
                 self.computed.intersections = Some((stamp, found));
             }
             JobOutcome::Mirrored(image) if stamp == self.mirror_revision => return Arrival::Mirrored(image),
+            JobOutcome::Symmetry(found) if stamp == self.symmetry_revision => return Arrival::Symmetry(found),
             JobOutcome::Enclosed(vertices) if stamp == self.enclose_revision => return Arrival::Enclosed(vertices),
             JobOutcome::Solved(solved) if stamp >= self.solve_floor => {
                 let last = stamp == self.target_revision && solved.finished;
@@ -518,6 +536,7 @@ impl Jobs {
             JobKind::Region | JobKind::Bind => self.problem_revision,
             JobKind::Solve => self.target_revision,
             JobKind::Mirror => self.mirror_revision,
+            JobKind::Symmetry => self.symmetry_revision,
             JobKind::Enclose => self.enclose_revision,
             JobKind::Compare => self.compare_revision,
             JobKind::Inspect => self.inspect_revision,

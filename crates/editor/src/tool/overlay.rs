@@ -11,6 +11,7 @@ use super::intersections::intersection_shapes;
 use super::mode::{StrokeShape, ToolMode};
 use super::pose::{Limb, joint_shapes, limb_under};
 use super::settings::ToolSettings;
+use super::symmetry::symmetry_shapes;
 use crate::document::HandleTransform;
 use crate::view::{
     Camera, ControlShape, GizmoAxes, GizmoPart, GizmoShape, ShownPoint, View, control_at, control_shapes, gizmo_shapes,
@@ -122,6 +123,7 @@ impl Overlay {
         let joint_px = pointer_px.filter(|_| highlighted.is_none());
         shapes.extend(joint(lit, workspace, view, settings, joint_px));
         shapes.extend(intersection_shapes(workspace, view));
+        shapes.extend(symmetry_shapes(workspace, &line));
         if self.ring != line || self.gizmo != gizmo || self.controls != controls || self.shapes != shapes {
             self.ring = line;
             self.shapes = shapes;

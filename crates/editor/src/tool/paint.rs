@@ -9,6 +9,7 @@ use pliant_mesh::SurfaceVertex;
 use super::context::Context;
 use super::gesture::{Gesture, Next};
 use super::mode::ToolMode;
+use super::other_side::OtherSide;
 use super::overlay::Lit;
 use super::settings::ToolSettings;
 use crate::document::{HandleId, Paint, Transaction};
@@ -26,6 +27,7 @@ const LOCKED_OBJECT: &str = "This object is locked: unlock it in the list of obj
 pub(crate) struct PaintStroke {
     transaction: Transaction,
     paint: Paint,
+    other_side: Option<OtherSide>,
     last_px: DVec2,
 }
 
@@ -72,6 +74,7 @@ impl PaintStroke {
         Some(Self {
             transaction,
             paint,
+            other_side: OtherSide::of(workspace),
             last_px: pointer.position_px,
         })
     }
@@ -89,6 +92,9 @@ impl PaintStroke {
 
     fn finish(&mut self, workspace: &mut Workspace) {
         tidy_handles(workspace, self.transaction.before());
+        if let Some(other_side) = &self.other_side {
+            other_side.finish(workspace, self.paint);
+        }
         if let Paint::Handle(id) = self.paint
             && workspace.document.handle(id).is_some()
         {
@@ -114,31 +120,42 @@ impl PaintStroke {
         self.take(context.workspace, met);
     }
 
-    /// Paints vertices; those of locked handles and those that are hidden or locked keep their paint.
-    fn take(&self, workspace: &mut Workspace, mut vertices: Vec<SurfaceVertex>) {
-        let document = &workspace.document;
-        vertices.retain(|vertex| document.paint[vertex.index()] != self.paint);
-        let access = &workspace.vertex_access;
-        if !access.opens_all() {
-            let has_locked = vertices.iter().any(|vertex| access.is_locked(vertex.index()));
-            vertices.retain(|vertex| access.may_be_painted(vertex.index()));
-            if has_locked && vertices.is_empty() {
-                workspace.refuse(LOCKED_OBJECT);
-                return;
-            }
+    /// Paints vertices, and those that go with them on the other side.
+    fn take(&mut self, workspace: &mut Workspace, mut vertices: Vec<SurfaceVertex>) {
+        if let Some(other_side) = &mut self.other_side {
+            vertices.sort_unstable();
+            vertices.dedup();
+            let (opposite, paint) = other_side.of_painted(workspace, self.paint, &vertices);
+            lay(workspace, opposite, paint);
         }
-        if document.handles().iter().any(|handle| handle.locked) {
-            let is_locked = |paint: Paint| match paint {
-                Paint::Handle(id) => document.handle(id).is_some_and(|handle| handle.locked),
-                _ => false,
-            };
-            vertices.retain(|vertex| !is_locked(document.paint[vertex.index()]));
+        lay(workspace, vertices, self.paint);
+    }
+}
+
+/// Paints vertices; those of locked handles and those that are hidden or locked keep their paint.
+fn lay(workspace: &mut Workspace, mut vertices: Vec<SurfaceVertex>, laid: Paint) {
+    let document = &workspace.document;
+    vertices.retain(|vertex| document.paint[vertex.index()] != laid);
+    let access = &workspace.vertex_access;
+    if !access.opens_all() {
+        let has_locked = vertices.iter().any(|vertex| access.is_locked(vertex.index()));
+        vertices.retain(|vertex| access.may_be_painted(vertex.index()));
+        if has_locked && vertices.is_empty() {
+            workspace.refuse(LOCKED_OBJECT);
+            return;
         }
-        if !vertices.is_empty() {
-            let document = &mut workspace.document;
-            document.keep_shape();
-            document.paint_vertices(vertices.into_iter().map(|vertex| (vertex, self.paint)));
-        }
+    }
+    if document.handles().iter().any(|handle| handle.locked) {
+        let is_locked = |paint: Paint| match paint {
+            Paint::Handle(id) => document.handle(id).is_some_and(|handle| handle.locked),
+            _ => false,
+        };
+        vertices.retain(|vertex| !is_locked(document.paint[vertex.index()]));
+    }
+    if !vertices.is_empty() {
+        let document = &mut workspace.document;
+        document.keep_shape();
+        document.paint_vertices(vertices.into_iter().map(|vertex| (vertex, laid)));
     }
 }
 

@@ -64,6 +64,9 @@ impl StiffnessStroke {
         }
         self.last_px = to_px;
         let workspace = &mut *context.workspace;
+        if let Some(sides) = workspace.both_sides() {
+            met.extend(sides.opposite_with(&met));
+        }
         met.retain(|(vertex, _)| workspace.vertex_access.may_be_painted(vertex.index()));
         if met.is_empty() {
             return;

@@ -5,6 +5,7 @@
 
 use super::colour_revisions::{ColouredBy, Sources};
 use super::state::Workspace;
+use super::symmetry::take_symmetry;
 use crate::document::{Aspect, VertexAccess};
 use crate::jobs::{Activity, Arrival, Asked, Finality, Solved};
 
@@ -96,6 +97,7 @@ impl Workspace {
             Arrival::Nothing | Arrival::Picking => {}
             Arrival::Problem(sentence) => self.refuse(sentence),
             Arrival::Shape(solved, finality) => self.take_shape(solved, finality),
+            Arrival::Symmetry(found) => take_symmetry(self, found),
             Arrival::Enclosed(_) | Arrival::Mirrored(_) | Arrival::Joint => return Some(arrival),
         }
         None

@@ -6,7 +6,9 @@ use pliant_mesh::{Model, SurfaceVertex};
 
 use super::painting::{border_middle, members, repaint, tidy_handles};
 use super::state::Workspace;
-use crate::document::{Document, Handle, HandleId, HandleTransform, Paint, PivotPlace, Reach, VertexAccess, means};
+use crate::document::{
+    Document, Handle, HandleId, HandleTransform, Paint, PivotPlace, Reach, VertexAccess, means, mirrored_transform,
+};
 
 /// Why a handle can't be moved, if it can't.
 pub(crate) fn held_because(workspace: &Workspace, id: HandleId) -> Option<String> {
@@ -48,7 +50,7 @@ pub(crate) fn put_handle(workspace: &mut Workspace, id: HandleId, transform: Han
         workspace.refuse("That would flatten the handle for good: give a scale other than 0.".to_owned());
         return;
     }
-    let twin = handle.twin;
+    let (twin, pivot) = (handle.twin, handle.pivot);
     // A number that is typed digit by digit passes through 0.
     workspace.refusal = None;
     workspace.document.unsettle();
@@ -56,7 +58,11 @@ pub(crate) fn put_handle(workspace: &mut Workspace, id: HandleId, transform: Han
     if let Some(twin) = twin
         && held_because(workspace, twin.handle).is_none()
     {
-        put_alone(workspace, twin.handle, twin.plane.mirrored_transform(transform));
+        put_alone(
+            workspace,
+            twin.handle,
+            mirrored_transform(&twin.plane, transform, pivot),
+        );
     }
 }
 

@@ -3,13 +3,13 @@
 //! What is done with the image waits meanwhile. If the paint has changed when it comes, nothing is done, and that is
 //! said.
 
-use pliant_mesh::{Bvh, Cancel, Cancelled, Model, Progress, SurfaceVertex};
+use pliant_mesh::{Bvh, Cancel, Cancelled, MirrorPlane, Model, Progress, SurfaceVertex, image_of};
 use rayon::prelude::*;
 
 use super::mirror_request::{Mirroring, Purpose};
 use super::painting::{members_of, name_of, repaint};
 use super::state::Workspace;
-use crate::document::{Aspect, HandleId, MirrorPlane, Paint, PivotPlace, Twin};
+use crate::document::{Aspect, HandleId, Paint, link_twins};
 use crate::jobs::JobOutcome;
 
 /// How many vertices are asked between two looks at the progress.
@@ -25,11 +25,7 @@ pub(crate) fn mirror(workspace: &mut Workspace, purpose: Purpose, axis: usize) {
         Purpose::Twin(id) => Paint::Handle(id),
     };
     let is_member = members_of(workspace, role);
-    let is_as_in_file = !workspace.document.applied && !workspace.document.is_displaced();
-    let ready = workspace.computed().pickable.as_ref();
-    let bvh = ready
-        .filter(|pickable| is_as_in_file && pickable.shown.triangles.is_none() && workspace.jobs.is_picking_current())
-        .map(|pickable| pickable.bvh.clone());
+    let bvh = rest_bvh(workspace);
     workspace.mirroring = Some(Mirroring {
         purpose,
         plane,
@@ -91,37 +87,24 @@ fn twin_of(workspace: &mut Workspace, id: HandleId, image: &[usize], plane: Mirr
         let other = document.add_handle();
         let painted = image.iter().map(|&vertex| SurfaceVertex(vertex as u32));
         document.paint_vertices(painted.map(|vertex| (vertex, Paint::Handle(other))));
-        let first = document.change_handle(id, |first| {
-            first.twin = Some(Twin { handle: other, plane });
-            first.clone()
-        });
-        let Some(first) = first else { return };
-        document.change_handle(other, |second| {
-            second.name = format!("{} twin", first.name);
-            second.reach = first.reach;
-            second.pivot = plane.mirrored(first.pivot);
-            // Mirrored motion needs mirrored pivots.
-            second.pivot_place = PivotPlace::Picked;
-            second.soft = first.soft;
-            second.twin = Some(Twin { handle: id, plane });
-        });
-        // The twin is known to stand at rest; from there it goes where its other half has gone.
-        document.keep_shape();
-        if first.is_displaced() {
-            document.change_handle(other, |second| second.put(plane.mirrored_transform(first.transform)));
-            document.unsettle();
-        }
+        link_twins(document, id, other, plane);
     });
 }
 
+/// The hierarchy of the file's own shape, if it is at hand.
+pub(super) fn rest_bvh(workspace: &Workspace) -> Option<Bvh> {
+    let is_as_in_file = !workspace.document.applied && !workspace.document.is_displaced();
+    let ready = workspace.computed().pickable.as_ref();
+    ready
+        .filter(|pickable| is_as_in_file && pickable.shown.triangles.is_none() && workspace.jobs.is_picking_current())
+        .map(|pickable| pickable.bvh.clone())
+}
+
 /// The plane through the middle of the model's rest shape, across an axis.
-fn mirror_plane(workspace: &Workspace, axis: usize) -> Option<MirrorPlane> {
+pub(super) fn mirror_plane(workspace: &Workspace, axis: usize) -> Option<MirrorPlane> {
     let axis = axis.min(2);
     let bounds = workspace.model()?.bounds()?;
-    Some(MirrorPlane {
-        axis,
-        at: bounds.centre()[axis],
-    })
+    Some(MirrorPlane::across(axis, bounds.centre()[axis]))
 }
 
 /// The vertices whose mirror image on the file's shape is nearest to a member and no farther from it than its longest
@@ -147,15 +130,8 @@ fn mirrored(
         if is_member[*vertex] || !near(position) {
             return false;
         }
-        bvh.nearest_vertex(plane.mirrored(position))
-            .is_some_and(|(nearest, distance)| {
-                let here = positions[nearest.index()];
-                let neighbours = model.topology.neighbours(nearest).iter();
-                let longest = neighbours
-                    .map(|v| here.distance(positions[v.index()]))
-                    .fold(0.0, f64::max);
-                is_member[nearest.index()] && distance <= longest
-            })
+        let image = image_of(positions, &model.topology, bvh, plane, SurfaceVertex(*vertex as u32));
+        image.is_some_and(|image| is_member[image.index()])
     };
     let mut found = Vec::new();
     for start in (0..is_member.len()).step_by(BATCH) {

@@ -1,6 +1,8 @@
 //! A mirror image that is being looked for: of what, and what is done with it.
 
-use crate::document::{HandleId, MirrorPlane, Paint, Version};
+use pliant_mesh::MirrorPlane;
+
+use crate::document::{HandleId, Paint, Version};
 
 /// What an image is wanted for.
 #[derive(Clone, Copy, PartialEq, Debug)]

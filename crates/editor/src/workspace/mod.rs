@@ -20,6 +20,7 @@ mod regions;
 mod selection;
 mod snapshot;
 mod state;
+mod symmetry;
 
 pub(crate) use colour_revisions::ColouredBy;
 pub use colours::stiffness_colour;
@@ -47,3 +48,5 @@ pub(crate) use regions::act_on_region;
 pub use snapshot::SnapshotKey;
 pub(crate) use snapshot::WorkspaceSnapshot;
 pub(crate) use state::Workspace;
+pub use symmetry::Symmetry;
+pub(crate) use symmetry::{set_symmetry, twin_across};

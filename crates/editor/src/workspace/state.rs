@@ -11,10 +11,11 @@ use super::colour_revisions::Colours;
 use super::control_selection::ControlSelection;
 use super::mirror_request::Mirroring;
 use super::selection::HandleSelection;
+use super::symmetry::Symmetry;
 use crate::document::{
     Aspect, Document, HISTORY_BYTES, Handle, HandleId, History, Transaction, Version, Versions, VertexAccess,
 };
-use crate::jobs::{Computed, Descent, Executor, Intersections, Jobs, Revision};
+use crate::jobs::{BothSides, Computed, Descent, Executor, Intersections, Jobs, Revision};
 use crate::view::{Pick, Picking, View};
 
 /// The document and what follows from it.
@@ -44,6 +45,9 @@ pub(crate) struct Workspace {
     /// The step that a widget is adjusting.
     adjusting: Option<Transaction>,
     pub(super) mirroring: Option<Mirroring>,
+    pub(super) symmetry: Symmetry,
+    /// What the symmetry is across, once it is found.
+    pub(super) both_sides: Option<Arc<BothSides>>,
     pub(super) followed: Option<Followed>,
 }
 
@@ -75,6 +79,8 @@ impl Workspace {
             shape_revision: 0,
             adjusting: None,
             mirroring: None,
+            symmetry: Symmetry::None,
+            both_sides: None,
             followed: None,
         }
     }
@@ -92,6 +98,8 @@ impl Workspace {
         self.file_name = name;
         self.descent = None;
         self.mirroring = None;
+        self.symmetry = Symmetry::None;
+        self.both_sides = None;
         self.followed = None;
         self.jobs.open(model);
         self.seen = *self.document.versions();

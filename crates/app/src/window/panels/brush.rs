@@ -2,8 +2,8 @@
 
 use eframe::egui::{self, Color32, DragValue, RichText, Slider};
 use pliant_editor::{
-    BrushMetric, Command, Depth, Editor, STIFFNESS_RANGE, StiffnessAction, StiffnessBrush, StrokeShape, ToolMode,
-    stiffness_colour,
+    BrushMetric, Command, Depth, Editor, STIFFNESS_RANGE, StiffnessAction, StiffnessBrush, StrokeShape, Symmetry,
+    ToolMode, stiffness_colour,
 };
 
 use crate::window::widgets::command_button::{choices, command_button, command_choice};
@@ -35,6 +35,10 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
             StrokeShape::Lasso | StrokeShape::Box => depth_row(ui, view.depth, commands),
             StrokeShape::Component => {}
         });
+    egui::Grid::new("symmetry")
+        .num_columns(2)
+        .spacing([8.0, 4.0])
+        .show(ui, |ui| symmetry_row(ui, view.symmetry, commands));
     if view.tool == ToolMode::PaintStiffness {
         ui.add_space(4.0);
         stiffness(ui, editor, &view.stiffness_brush, view.pressure, commands);
@@ -96,6 +100,26 @@ fn depth_row(ui: &mut egui::Ui, depth: Depth, commands: &mut Outbox) {
     ];
     if let Some(depth) = choices(ui, depth, &DEPTHS) {
         commands.push(Command::SetDepth(depth));
+    }
+    ui.end_row();
+}
+
+/// Across which plane both sides are painted.
+fn symmetry_row(ui: &mut egui::Ui, symmetry: Symmetry, commands: &mut Outbox) {
+    row_label(ui, "Symmetry");
+    const PLANES: [(Symmetry, &str, &str); 5] = [
+        (Symmetry::None, "off", "Paints and poses each side by itself."),
+        (
+            Symmetry::Found,
+            "found",
+            "Paints and poses both sides at once, across the plane that the shape has.",
+        ),
+        (Symmetry::Axis(0), "x", "Paints and poses left and right at once."),
+        (Symmetry::Axis(1), "y", "Paints and poses above and below at once."),
+        (Symmetry::Axis(2), "z", "Paints and poses before and behind at once."),
+    ];
+    if let Some(symmetry) = choices(ui, symmetry, &PLANES) {
+        commands.push(Command::SetSymmetry(symmetry));
     }
     ui.end_row();
 }

@@ -2,10 +2,11 @@
 
 use glam::DVec3;
 use pliant_deform::CONTINUITY_RANGE;
+use pliant_mesh::MirrorPlane;
 use serde::{Deserialize, Serialize};
 
 use super::field::Ranges;
-use crate::document::{Handle, HandleId, MirrorPlane, PivotPlace, Twin};
+use crate::document::{Handle, HandleId, PivotPlace, Twin};
 use crate::document::{followed, means};
 use crate::format::refusal::shortened;
 use crate::{EditError, HandleTransform, Reach, SOFT_RANGE};
@@ -60,8 +61,26 @@ enum StoredReach {
 #[serde(deny_unknown_fields)]
 struct StoredTwin {
     handle: u16,
-    axis: usize,
+    /// The axis of the world that the plane stands across.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    axis: Option<usize>,
+    /// Else its normal.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    normal: Option<[f64; 3]>,
+    /// Its distance from the origin along either.
     at: f64,
+}
+
+impl StoredTwin {
+    /// The plane that is stored, if it is one.
+    fn plane(&self) -> Option<MirrorPlane> {
+        let normal = match (self.axis, self.normal) {
+            (Some(axis), None) => *DVec3::AXES.get(axis)?,
+            (None, Some(normal)) => DVec3::from_array(normal),
+            _ => return None,
+        };
+        MirrorPlane::new(normal, self.at)
+    }
 }
 
 impl StoredHandle {
@@ -90,8 +109,9 @@ impl StoredHandle {
             pin: handle.is_pin,
             twin: handle.twin.map(|twin| StoredTwin {
                 handle: twin.handle.0,
-                axis: twin.plane.axis,
-                at: twin.plane.at,
+                axis: twin.plane.axis(),
+                normal: twin.plane.axis().is_none().then(|| twin.plane.normal().to_array()),
+                at: twin.plane.distance(),
             }),
         }
     }
@@ -105,7 +125,8 @@ impl StoredHandle {
         let (StoredReach::Radii(size) | StoredReach::Length(size)) = self.reach;
         let refused_weight = self.soft.is_some_and(|weight| !SOFT_RANGE.contains(&weight))
             || self.continuity.is_some_and(|value| !CONTINUITY_RANGE.contains(&value));
-        if !(size.is_finite() && size >= 0.0) || refused_weight || self.twin.is_some_and(|twin| twin.axis > 2) {
+        if !(size.is_finite() && size >= 0.0) || refused_weight || self.twin.is_some_and(|twin| twin.plane().is_none())
+        {
             return Err(EditError::Project(format!(
                 "the handle `{}` has a reach, a weight, a continuity or a twin that can't be: save it again",
                 shortened(&self.name)
@@ -137,12 +158,11 @@ impl StoredHandle {
             visible: self.visible,
             locked: self.locked,
             is_pin: self.pin,
-            twin: self.twin.map(|twin| Twin {
-                handle: HandleId(twin.handle),
-                plane: MirrorPlane {
-                    axis: twin.axis,
-                    at: twin.at,
-                },
+            twin: self.twin.and_then(|twin| {
+                Some(Twin {
+                    handle: HandleId(twin.handle),
+                    plane: twin.plane()?,
+                })
             }),
             ..Handle::new(id, self.name.clone())
         })

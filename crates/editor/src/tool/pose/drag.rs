@@ -5,7 +5,9 @@ use pliant_mesh::{Joint, SurfaceVertex};
 
 use super::hover::{Limb, hover, limb_under};
 use super::motion::{Motion, Pose, Way};
-use crate::document::{Handle, HandleId, HandleTransform, Paint, PivotPlace, Reach, Transaction, accumulated};
+use crate::document::{
+    Handle, HandleId, HandleTransform, Paint, PivotPlace, Reach, Transaction, accumulated, link_twins,
+};
 use crate::input::{Button, Pointer};
 use crate::jobs::Activity;
 use crate::scene_view::{Cursor, Readout};
@@ -13,7 +15,7 @@ use crate::tool::context::Context;
 use crate::tool::gesture::{Gesture, Next};
 use crate::tool::overlay::Lit;
 use crate::view::{ControlShape, Pick, View};
-use crate::workspace::{Workspace, count_turn, held_because, members, put_handle, tidy_handles};
+use crate::workspace::{Workspace, count_turn, held_because, members, put_handle, tidy_handles, twin_across};
 
 /// The pointer must move this far before the limb follows.
 const THRESHOLD_PX: f64 = 3.0;
@@ -263,7 +265,26 @@ fn make_handle(workspace: &mut Workspace, joint: &Joint) -> Option<Taken> {
         handle.pivot_place = PivotPlace::Picked;
         handle.move_pivot(on_rest);
     });
+    make_posed_twin(workspace, id);
     let handle = workspace.document.handle(id)?.clone();
     transaction.rename(format!("Make {}", handle.name));
     Some((transaction, handle, joint.axis))
+}
+
+/// With symmetry, gives a limb that was made a handle its twin on the other side, unless it lies across the plane.
+fn make_posed_twin(workspace: &mut Workspace, id: HandleId) {
+    let Some(sides) = workspace.both_sides().cloned() else {
+        return;
+    };
+    let Some((twin, opposite)) = twin_across(workspace, &sides, id, &[]) else {
+        return;
+    };
+    let access = &workspace.vertex_access;
+    let open: Vec<_> = opposite
+        .into_iter()
+        .filter(|vertex| access.may_be_painted(vertex.index()))
+        .collect();
+    let document = &mut workspace.document;
+    document.paint_vertices(open.into_iter().map(|vertex| (vertex, Paint::Handle(twin))));
+    link_twins(document, id, twin, sides.plane);
 }

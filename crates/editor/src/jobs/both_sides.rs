@@ -1,0 +1,56 @@
+//! Both sides of a plane of symmetry: which vertices go with which.
+
+use pliant_mesh::{Bvh, Cancel, Cancelled, Counterparts, MirrorPlane, Model, Progress, SurfaceVertex, symmetry_plane};
+
+/// Both sides of a plane.
+#[derive(Debug)]
+pub struct BothSides {
+    pub(crate) plane: MirrorPlane,
+    counterparts: Counterparts,
+}
+
+impl BothSides {
+    /// Looks for them across the given plane, or across that which the shape has; `None` where it has none. `bvh` is that
+    /// of the file's shape, if it is at hand.
+    pub(crate) fn find(
+        model: &Model,
+        bvh: Option<Bvh>,
+        given: Option<MirrorPlane>,
+        progress: &Progress,
+        cancel: &Cancel,
+    ) -> Result<Option<Self>, Cancelled> {
+        let (surface, topology) = (&model.surface, &model.topology);
+        let bvh = bvh.unwrap_or_else(|| Bvh::build(&surface.positions, &surface.triangles));
+        let plane = match given {
+            Some(plane) => Some(plane),
+            None => symmetry_plane(surface, topology, &bvh, progress, cancel)?,
+        };
+        let Some(plane) = plane else { return Ok(None) };
+        let counterparts = Counterparts::find(&surface.positions, topology, &bvh, plane, progress, cancel)?;
+        Ok(Some(Self { plane, counterparts }))
+    }
+
+    /// The vertices that go with these on the other side, in no order, some more than once.
+    pub(crate) fn opposite<'a>(
+        &'a self,
+        vertices: impl IntoIterator<Item = SurfaceVertex> + 'a,
+    ) -> impl Iterator<Item = SurfaceVertex> + 'a {
+        let of = |vertex| self.counterparts.of(vertex).iter().copied();
+        vertices.into_iter().flat_map(of)
+    }
+
+    /// The same with what goes along with each vertex.
+    pub(crate) fn opposite_with<T: Copy>(&self, vertices: &[(SurfaceVertex, T)]) -> Vec<(SurfaceVertex, T)> {
+        let of = |&(vertex, value): &(SurfaceVertex, T)| {
+            let counterparts = self.counterparts.of(vertex).iter();
+            counterparts.map(move |&counterpart| (counterpart, value))
+        };
+        vertices.iter().flat_map(of).collect()
+    }
+
+    /// Whether some of these vertices, which ascend, go with others of them: they lie across the plane.
+    pub(crate) fn are_crossed_by(&self, vertices: &[SurfaceVertex]) -> bool {
+        let mut opposite = self.opposite(vertices.iter().copied());
+        opposite.any(|vertex| vertices.binary_search(&vertex).is_ok())
+    }
+}

@@ -1,0 +1,101 @@
+//! Symmetry: what is painted or posed on one side of a plane is done on the other side, too.
+//!
+//! The plane is the shape's own, or stands across an axis of the world. A job finds it, and which vertices go with each
+//! other across it, once for a file; a stroke only looks them up.
+
+use std::sync::Arc;
+
+use pliant_mesh::SurfaceVertex;
+
+use super::mirror::{mirror_plane, rest_bvh};
+use super::painting::members;
+use super::state::Workspace;
+use crate::document::{HandleId, Paint};
+use crate::jobs::{BothSides, JobOutcome};
+
+/// Across which plane both sides are painted at once.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
+pub enum Symmetry {
+    /// Across none: each side by itself.
+    #[default]
+    None,
+    /// The plane that the shape has.
+    Found,
+    /// Across an axis of the world (0, 1, 2 for x, y, z), through the model's middle.
+    Axis(usize),
+}
+
+impl Workspace {
+    /// What is done on both sides of, once it is found.
+    pub(crate) fn both_sides(&self) -> Option<&Arc<BothSides>> {
+        self.both_sides.as_ref()
+    }
+
+    /// Across which plane, found or still looked for.
+    pub(crate) fn symmetry(&self) -> Symmetry {
+        self.symmetry
+    }
+}
+
+/// Does everything on both sides of a plane, once that is found, or on one side alone.
+pub(crate) fn set_symmetry(workspace: &mut Workspace, symmetry: Symmetry) {
+    if workspace.symmetry == symmetry {
+        return;
+    }
+    workspace.jobs.stop_looking_for_symmetry();
+    workspace.symmetry = Symmetry::None;
+    workspace.both_sides = None;
+    let Some(model) = workspace.model().cloned() else {
+        return;
+    };
+    let given = match symmetry {
+        Symmetry::None => return,
+        Symmetry::Found => None,
+        Symmetry::Axis(axis) => mirror_plane(workspace, axis),
+    };
+    let bvh = rest_bvh(workspace);
+    workspace.symmetry = symmetry;
+    workspace.jobs.look_for_symmetry(Box::new(move |progress, cancel| {
+        match BothSides::find(&model, bvh, given, progress, cancel) {
+            Ok(found) => JobOutcome::Symmetry(found.map(Arc::new)),
+            Err(_) => JobOutcome::Cancelled,
+        }
+    }));
+}
+
+/// Takes what was found.
+pub(crate) fn take_symmetry(workspace: &mut Workspace, found: Option<Arc<BothSides>>) {
+    if found.is_none() {
+        workspace.symmetry = Symmetry::None;
+        workspace.refuse("This shape has no plane of symmetry: choose an axis for one, or paint each side by itself.");
+    }
+    workspace.both_sides = found;
+}
+
+/// A handle's twin across the plane: the one that it has, or a new one of all that goes with its vertices and these. `None`
+/// where they lie on both sides.
+pub(crate) fn twin_across(
+    workspace: &mut Workspace,
+    sides: &BothSides,
+    id: HandleId,
+    painted: &[SurfaceVertex],
+) -> Option<(HandleId, Vec<SurfaceVertex>)> {
+    let document = &mut workspace.document;
+    if let Some(twin) = document.handle(id).and_then(|handle| handle.twin) {
+        return Some((twin.handle, Vec::new()));
+    }
+    let mut all: Vec<SurfaceVertex> = members(document, id);
+    let former = all.clone();
+    all.extend(painted);
+    all.sort_unstable();
+    all.dedup();
+    if sides.are_crossed_by(&all) {
+        return None;
+    }
+    let opposite = sides.opposite(former).filter(|vertex| {
+        let is_handles = matches!(workspace.document.paint[vertex.index()], Paint::Handle(_));
+        !is_handles
+    });
+    let opposite: Vec<SurfaceVertex> = opposite.collect();
+    Some((workspace.document.add_handle(), opposite))
+}

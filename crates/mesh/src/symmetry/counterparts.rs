@@ -1,0 +1,83 @@
+//! Which vertices are each other's mirror images.
+//!
+//! No mesh of a scan is symmetric vertex by vertex. A vertex' image lies somewhere on the other side's surface, and what
+//! is done to the vertex nearest to it is done to the vertex: asked this way round, no vertex between images is left out.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::plane::MirrorPlane;
+use crate::{Bvh, Cancel, Cancelled, Progress, SurfaceVertex, Topology};
+
+/// How many vertices are asked between two looks at the progress.
+const BATCH: usize = 16_384;
+
+/// The vertex nearest to the mirror image of `vertex`; `None` where it is farther from it than its longest edge.
+/// `bvh` is that of the same `positions`.
+pub fn image_of(
+    positions: &[DVec3],
+    topology: &Topology,
+    bvh: &Bvh,
+    plane: MirrorPlane,
+    vertex: SurfaceVertex,
+) -> Option<SurfaceVertex> {
+    let (nearest, distance) = bvh.nearest_vertex(plane.mirrored(positions[vertex.index()]))?;
+    let here = positions[nearest.index()];
+    let edges = topology.neighbours(nearest).iter();
+    let longest = edges.map(|v| here.distance(positions[v.index()])).fold(0.0, f64::max);
+    (distance <= longest).then_some(nearest)
+}
+
+/// For every vertex those on the other side that go with it.
+#[derive(Clone, Debug)]
+pub struct Counterparts {
+    offsets: Vec<u32>,
+    vertices: Vec<SurfaceVertex>,
+}
+
+impl Counterparts {
+    /// Looks for every vertex' image; `bvh` is that of the same `positions`.
+    ///
+    /// # Errors
+    /// If it was cancelled.
+    pub fn find(
+        positions: &[DVec3],
+        topology: &Topology,
+        bvh: &Bvh,
+        plane: MirrorPlane,
+        progress: &Progress,
+        cancel: &Cancel,
+    ) -> Result<Self, Cancelled> {
+        let count = positions.len();
+        let mut images: Vec<Option<SurfaceVertex>> = Vec::with_capacity(count);
+        for start in (0..count).step_by(BATCH) {
+            cancel.check()?;
+            let batch = (start..(start + BATCH).min(count)).into_par_iter();
+            images.par_extend(batch.map(|v| image_of(positions, topology, bvh, plane, SurfaceVertex(v as u32))));
+            progress.set(start as f32 / count as f32);
+        }
+        let pairs = images.iter().enumerate().filter_map(|(vertex, image)| {
+            let vertex = SurfaceVertex(vertex as u32);
+            image.filter(|&image| image != vertex).map(|image| [vertex, image])
+        });
+        let mut both_ways: Vec<[SurfaceVertex; 2]> = pairs.flat_map(|[a, b]| [[a, b], [b, a]]).collect();
+        both_ways.par_sort_unstable();
+        both_ways.dedup();
+        let mut offsets = vec![0_u32; count + 1];
+        for [vertex, _] in &both_ways {
+            offsets[vertex.index() + 1] += 1;
+        }
+        for vertex in 0..count {
+            offsets[vertex + 1] += offsets[vertex];
+        }
+        let vertices = both_ways.into_iter().map(|[_, counterpart]| counterpart).collect();
+        Ok(Self { offsets, vertices })
+    }
+
+    /// The vertices that go with this one, ascending: that nearest to its image, and those whose image it is nearest to.
+    /// Empty where the shape has no other side, and where a vertex on the plane is its own image.
+    pub fn of(&self, vertex: SurfaceVertex) -> &[SurfaceVertex] {
+        let [from, to] = [vertex.index(), vertex.index() + 1].map(|place| self.offsets[place] as usize);
+        &self.vertices[from..to]
+    }
+}

@@ -1,0 +1,9 @@
+//! Mirror symmetry: a plane, the plane that a shape has, and which vertices are each other's images across it.
+
+mod counterparts;
+mod plane;
+mod search;
+
+pub use counterparts::{Counterparts, image_of};
+pub use plane::MirrorPlane;
+pub use search::symmetry_plane;

@@ -1,0 +1,147 @@
+//! Mirror symmetry: the plane that a shape has is found wherever the shape stands, a shape without one has none, and
+//! counterparts leave no vertex out.
+
+#![allow(clippy::unwrap_used, reason = "a test that fails may panic")]
+
+use glam::{DAffine3, DQuat, DVec2, DVec3};
+use pliant_mesh::{
+    Bvh, Cancel, Counterparts, Drawn, MirrorPlane, Model, Progress, SurfaceVertex, shapes, symmetry_plane,
+};
+
+fn plane_of(model: &Model) -> Option<MirrorPlane> {
+    let surface = &model.surface;
+    let bvh = Bvh::build(&surface.positions, &surface.triangles);
+    symmetry_plane(surface, &model.topology, &bvh, &Progress::new(), &Cancel::new()).unwrap()
+}
+
+fn counterparts(model: &Model, plane: MirrorPlane) -> Counterparts {
+    let surface = &model.surface;
+    let bvh = Bvh::build(&surface.positions, &surface.triangles);
+    let (progress, cancel) = (Progress::new(), Cancel::new());
+    Counterparts::find(&surface.positions, &model.topology, &bvh, plane, &progress, &cancel).unwrap()
+}
+
+/// A body with x = 0 as its only plane of symmetry: longer than high, with a hump in front and a belly below.
+fn creature() -> Drawn {
+    let mut drawn = shapes::icosphere(4);
+    for p in &mut drawn.positions {
+        let hump = 0.8 * (-8.0 * p.distance_squared(DVec3::new(0.0, 0.6, 0.8))).exp();
+        let arms = 0.7 * (-12.0 * DVec3::new(p.x.abs(), p.y, p.z).distance_squared(DVec3::new(0.9, 0.3, 0.3))).exp();
+        *p *= DVec3::new(0.8 + arms, 1.7 + hump, 1.1 + 0.5 * hump + 0.2 * p.y);
+    }
+    drawn
+}
+
+fn motions() -> [DAffine3; 3] {
+    let turn = |x: f64, y: f64, z: f64| DQuat::from_euler(glam::EulerRot::XYZ, x, y, z);
+    [
+        DAffine3::IDENTITY,
+        DAffine3::from_rotation_translation(turn(0.4, -0.9, 1.7), DVec3::new(3.0, -2.0, 5.0)),
+        DAffine3::from_scale_rotation_translation(DVec3::splat(1e-3), turn(2.0, 0.3, -0.6), DVec3::splat(7.0)),
+    ]
+}
+
+#[test]
+fn the_plane_is_found_wherever_the_shape_stands() {
+    for motion in motions() {
+        let plane = plane_of(&shapes::model(shapes::moved(&creature(), motion))).unwrap();
+        let normal = motion.transform_vector3(DVec3::X).normalize();
+        let size = motion.transform_vector3(DVec3::X).length();
+        assert!(plane.normal().dot(normal).abs() > 1.0 - 1e-9, "{plane:?} {normal}");
+        assert!(plane.height(motion.translation).abs() < 1e-5 * size, "{plane:?}");
+    }
+}
+
+#[test]
+fn what_one_side_lacks_does_not_tilt_the_plane() {
+    let mut drawn = creature();
+    let bag = |p: DVec3| 0.3 * (-20.0 * p.distance_squared(DVec3::new(0.8, -0.9, 0.2))).exp();
+    drawn.positions.iter_mut().for_each(|p| *p += p.normalize() * bag(*p));
+    let plane = plane_of(&shapes::model(drawn)).unwrap();
+    assert!(plane.normal().x.abs() > (2.0_f64.to_radians()).cos(), "{plane:?}");
+}
+
+#[test]
+fn a_shape_without_a_plane_has_none() {
+    // A tube along a helix: one hand, whatever the mirror.
+    let helix = |angle: f64| DVec3::new(angle.cos(), angle.sin(), 0.25 * angle);
+    let mut drawn = shapes::tube(12, 240, 1.0);
+    let (min, max) = drawn
+        .positions
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), p| (a.min(p.z), b.max(p.z)));
+    for p in &mut drawn.positions {
+        let angle = 8.0 * (p.z - min) / (max - min);
+        let out = DVec2::new(p.x, p.y) * 0.08;
+        *p = helix(angle) + DVec3::new(angle.cos(), angle.sin(), 0.0) * out.x + DVec3::Z * out.y;
+    }
+    assert_eq!(plane_of(&shapes::model(drawn)), None);
+}
+
+#[test]
+fn of_planes_that_fit_alike_it_is_that_across_x() {
+    for drawn in [shapes::icosphere(3), shapes::bar(4, 4, 4), shapes::torus(40, 20)] {
+        let plane = plane_of(&shapes::model(drawn)).unwrap();
+        assert!(plane.normal().x.abs() > 1.0 - 1e-6, "{plane:?}");
+    }
+}
+
+#[test]
+fn the_plane_of_nothing_is_none() {
+    for drawn in [Drawn::default(), shapes::grid(1, 1)] {
+        let model = shapes::model(drawn);
+        if let Some(plane) = plane_of(&model) {
+            assert!(plane.normal().is_finite() && plane.distance().is_finite());
+        }
+    }
+}
+
+#[test]
+fn mirroring_twice_is_where_one_was_and_the_plane_stays() {
+    let plane = MirrorPlane::new(DVec3::new(1.0, -2.0, 0.5), 0.7).unwrap();
+    let point = DVec3::new(0.3, 4.0, -2.0);
+    assert!(plane.mirrored(plane.mirrored(point)).distance(point) < 1e-14);
+    assert!((plane.height(point) + plane.height(plane.mirrored(point))).abs() < 1e-14);
+    assert!((plane.reflection() * point).distance(plane.mirrored_vector(point)) < 1e-14);
+    assert_eq!(MirrorPlane::across(1, 2.0).axis(), Some(1));
+    assert_eq!(plane.axis(), None);
+    assert_eq!(MirrorPlane::new(DVec3::ZERO, 1.0), None);
+}
+
+#[test]
+fn counterparts_go_both_ways_and_leave_no_vertex_of_a_symmetric_shape_out() {
+    // Rotated within itself, so that no vertex is the image of another.
+    let turned = DAffine3::from_axis_angle(DVec3::new(0.3, 1.0, 0.2).normalize(), 0.37);
+    for drawn in [creature(), shapes::moved(&shapes::icosphere(4), turned)] {
+        let model = shapes::model(drawn);
+        let plane = MirrorPlane::across(0, 0.0);
+        let all = counterparts(&model, plane);
+        let positions = &model.surface.positions;
+        for vertex in (0..positions.len() as u32).map(SurfaceVertex) {
+            let own = all.of(vertex);
+            let position = positions[vertex.index()];
+            let edges = model
+                .topology
+                .neighbours(vertex)
+                .iter()
+                .map(|v| position.distance(positions[v.index()]));
+            let edge = edges.fold(0.0, f64::max);
+            assert!(!own.is_empty() || position.x.abs() < edge, "{vertex:?} at {position}");
+            for &other in own {
+                assert!(all.of(other).contains(&vertex));
+                let apart = plane.mirrored(position).distance(positions[other.index()]);
+                assert!(apart < 2.0 * edge, "{apart} {edge}");
+            }
+        }
+    }
+}
+
+#[test]
+fn what_lies_on_one_side_alone_has_no_counterpart() {
+    let model = shapes::model(shapes::moved(
+        &shapes::icosphere(2),
+        DAffine3::from_translation(DVec3::X * 5.0),
+    ));
+    let all = counterparts(&model, MirrorPlane::across(0, 0.0));
+    assert!((0..model.surface.positions.len() as u32).all(|v| all.of(SurfaceVertex(v)).is_empty()));
+}
