@@ -4,7 +4,9 @@
 mod rig;
 
 use glam::{DAffine3, DMat3, DVec2, DVec3};
-use pliant_editor::{Button, Command, Event, JobKind, Key, Modifiers, Paint, PivotPlace, Pointer, Reach, ToolMode};
+use pliant_editor::{
+    Button, Command, Event, JobKind, Key, Modifiers, Paint, PivotPlace, Pointer, Reach, Symmetry, ToolMode,
+};
 use pliant_mesh::{Drawn, shapes};
 use rig::{Rig, VIEWPORT_PX};
 
@@ -301,4 +303,47 @@ fn another_tool_forgets_the_joint_and_a_locked_limb_is_left_alone() {
     assert_eq!(rig.fingerprint(), before);
     assert!(rig.editor.view().problem.is_some_and(|why| why.contains("locked")));
     assert!(rig.count(Paint::Handle(id)) > 0);
+}
+
+#[test]
+fn with_symmetry_the_other_limb_is_posed_in_a_mirror_and_one_step_takes_both_back() {
+    let mut rig = open();
+    rig.command(Command::SetSymmetry(Symmetry::Axis(0)));
+    rig.drain();
+    let before = rig.fingerprint();
+    let hand_px = seen(&rig, 4.0..4.6);
+    drag(&mut rig, hand_px, DVec2::new(0.0, -60.0), Modifiers::NONE);
+    let handles = rig.editor.document().handles().to_vec();
+    assert_eq!(handles.len(), 2);
+    let twin = handles[0].twin.unwrap();
+    assert_eq!((twin.handle, twin.plane.axis()), (handles[1].id, Some(0)));
+    let point = DVec3::new(3.0, 0.2, -0.1);
+    let [moved, other] = [
+        handles[0].affine().transform_point3(point),
+        handles[1].affine().transform_point3(twin.plane.mirrored(point)),
+    ];
+    assert!(moved.distance(point) > 0.1);
+    assert!(twin.plane.mirrored(moved).distance(other) < 1e-12);
+    let count = |handle: usize| {
+        let paint = rig.editor.document().paint().iter();
+        paint
+            .filter(|paint| **paint == Paint::Handle(handles[handle].id))
+            .count()
+    };
+    assert_eq!(count(0), count(1));
+    rig.command(Command::Undo);
+    rig.drain();
+    assert_eq!(rig.fingerprint(), before);
+}
+
+#[test]
+fn a_limb_across_the_plane_of_symmetry_has_no_twin() {
+    let mut rig = open();
+    // Each arm lies across y = 0.
+    rig.command(Command::SetSymmetry(Symmetry::Axis(1)));
+    rig.drain();
+    let hand_px = seen(&rig, 4.0..4.6);
+    drag(&mut rig, hand_px, DVec2::new(0.0, -60.0), Modifiers::NONE);
+    let handles = rig.editor.document().handles();
+    assert_eq!((handles.len(), handles[0].twin), (1, None));
 }

@@ -1,15 +1,13 @@
-//! How the plane of symmetry is shown, and the brush's ring on its other side.
+//! How the plane of symmetry is shown, as a frame that hides and tints nothing, and the brush's ring on its other side.
 
 use glam::DVec3;
-use pliant_mesh::Bounds;
-use pliant_mesh::MirrorPlane;
+use pliant_mesh::{Bounds, MirrorPlane};
 
 use crate::view::ControlShape;
 use crate::workspace::Workspace;
 
 /// A violet that neither handles nor axes have.
 const EDGE: [u8; 4] = [170, 90, 230, 200];
-const FILL: [u8; 4] = [170, 90, 230, 22];
 const RING: [u8; 4] = [235, 235, 245, 150];
 
 /// How far the plane is shown beyond the model, as a share of its size.
@@ -28,20 +26,11 @@ pub(super) fn symmetry_shapes(workspace: &Workspace, ring: &[DVec3]) -> Vec<Cont
         let next = points.iter().cycle().skip(1);
         points.iter().zip(next).map(|(from, to)| [*from, *to]).collect()
     };
-    let mut shapes = vec![
-        ControlShape {
-            colour: FILL,
-            lines: Vec::new(),
-            triangles: (2..outline.len())
-                .map(|k| [outline[0], outline[k - 1], outline[k]])
-                .collect(),
-        },
-        ControlShape {
-            colour: EDGE,
-            lines: closed(&outline),
-            triangles: Vec::new(),
-        },
-    ];
+    let mut shapes = vec![ControlShape {
+        colour: EDGE,
+        lines: closed(&outline),
+        triangles: Vec::new(),
+    }];
     // The other side of a bent shape is elsewhere.
     let is_at_rest = !workspace.document.is_displaced() && !workspace.document.is_applied();
     if is_at_rest && !ring.is_empty() {

@@ -22,6 +22,8 @@ const MANY: usize = 1_000;
 const FITTED: usize = 6;
 const SAME: f64 = 0.95;
 const ROUNDS: usize = 30;
+/// A fit is done when a round turns the plane by less than this in radians, and shifts it by less as a share of the size.
+const SETTLED: f64 = 1e-7;
 /// The share of the samples that count: what the other side lacks, such as a bag in one hand, does not.
 const COUNTED: f64 = 0.8;
 /// A shape has a plane if the samples' images are on average this near to the surface, as a share of the samples' mean
@@ -166,7 +168,13 @@ fn fit(mut plane: MirrorPlane, shape: &Shape<'_>, cancel: &Cancel) -> Option<Mir
         let mut pairs: Vec<(f64, DVec3, usize)> = shape.samples.iter().filter_map(pair).collect();
         pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
         pairs.truncate(counted(pairs.len()));
-        plane = step(plane, shape, &pairs)?;
+        let next = step(plane, shape, &pairs)?;
+        let turned = next.normal().distance(plane.normal());
+        let shifted = (next.height(shape.centroid) - plane.height(shape.centroid)).abs() / shape.size;
+        plane = next;
+        if turned.max(shifted) < SETTLED {
+            break;
+        }
     }
     Some(plane)
 }
