@@ -6,12 +6,14 @@ use glam::{DAffine3, DVec3, Mat3};
 use pliant_mesh::{Cancel, Progress};
 use rayon::prelude::*;
 
+use crate::budget::bytes_of;
 use crate::handles::residual::HandleResidual;
 use crate::handles::{FRAME_CHUNK, Handle, Motion, clear};
 use crate::method::attachment::{check_weights, finite};
 use crate::method::{BindInput, BoundMethod, Finite, HandleFit, Solve};
 use crate::region::follow::{Followers, followers};
 use crate::region::partition::Partition;
+use crate::rigid::{RigidParts, Softened};
 use crate::sparse::refactorisation::{Refactorisation, RenewableFactor};
 use crate::{Attachment, AttachmentRefused, BindError, Budget, HandleBases, Ordering, Problem, SolveError, Warning};
 
@@ -31,6 +33,8 @@ pub struct Bound {
     /// Of the examples that were brought; `None` where one is to be found.
     weights: Vec<Option<f64>>,
     followers: Followers,
+    /// What is rigid, if something is.
+    rigid: Option<Box<RigidParts>>,
     /// Of hard handles that the method only fits.
     residual: HandleResidual,
     /// First those of the binding, then what the present targets ask for and the method can't follow.
@@ -101,6 +105,31 @@ impl Bound {
         progress: &Progress,
         cancel: &Cancel,
     ) -> Result<Self, BindError> {
+        let Some(softened) = Softened::of(problem)? else {
+            return Self::bind_plain(problem, ordering, refactorisation, budget, progress, cancel);
+        };
+        let firm = softened.problem(problem);
+        let mut bound = Self::bind_plain(&firm, ordering, refactorisation, budget, progress, cancel)?;
+        let left = budget.without(bytes_of(bound.factor_len(), size_of::<f64>()));
+        let left = left.map_err(|limit| BindError::budget(bound.solved_count(), limit))?;
+        let rigid = softened.bind_parts(problem, ordering, left, progress, cancel)?;
+        bound.rigid = rigid.map(Box::new);
+        // Those about the last step and its targets come after those of the binding.
+        bound.warnings.extend(softened.warning());
+        bound.binding_warnings = bound.warnings.len();
+        bound.target_warnings = bound.warnings.len();
+        Ok(bound)
+    }
+
+    /// Binds a problem in which nothing is rigid.
+    pub(crate) fn bind_plain(
+        problem: &Problem,
+        ordering: Option<&Ordering>,
+        refactorisation: Refactorisation,
+        budget: Budget,
+        progress: &Progress,
+        cancel: &Cancel,
+    ) -> Result<Self, BindError> {
         cancel.check()?;
         let mut partition = Partition::of(problem)?;
         partition.take_budget(problem, budget)?;
@@ -162,6 +191,7 @@ impl Bound {
                 &partition.driven,
                 cancel,
             )?,
+            rigid: None,
             residual,
             binding_warnings: warnings.len(),
             target_warnings: warnings.len(),
@@ -195,15 +225,19 @@ impl Bound {
             .zip(world_targets)
             .map(|(handle, target)| handle.motion(target))
             .collect();
-        // A method that iterates goes on where it is.
-        if self.solve == Solve::Direct || motions != self.motions {
-            self.iteration = 0;
-        }
-        self.motions = motions;
+        self.put_motions(motions);
         self.warnings.truncate(self.binding_warnings);
         self.warnings.extend(self.method.blind_to(&self.motions));
         self.target_warnings = self.warnings.len();
         Ok(())
+    }
+
+    /// Sets the handles' motions. A method that iterates goes on where it is.
+    pub(crate) fn put_motions(&mut self, motions: Vec<Motion>) {
+        if self.solve == Solve::Direct || motions != self.motions {
+            self.iteration = 0;
+        }
+        self.motions = motions;
     }
 
     /// Sets where the control points of the attachment that the problem brought are moved to by hand: one world position
@@ -228,7 +262,9 @@ impl Bound {
             self.iteration = 0;
         }
         controls.move_to(Arc::clone(moved));
-        Ok(())
+        self.rigid
+            .as_mut()
+            .map_or(Ok(()), |rigid| rigid.bound.set_controls(moved))
     }
 
     /// Sets the weight of each example that the problem brought, as in [`crate::Examples::weights`].
@@ -244,7 +280,9 @@ impl Bound {
             self.weights = weights.to_vec();
             self.method.set_weights(weights);
         }
-        Ok(())
+        self.rigid
+            .as_mut()
+            .map_or(Ok(()), |rigid| rigid.bound.set_weights(weights))
     }
 
     /// The weight of each example that the problem brought, as the last step took or found it; 0 before the first.
@@ -315,7 +353,7 @@ impl Bound {
         };
         if self.is_at_rest() {
             clear(displacements);
-            self.method.rest();
+            self.rest();
             return Ok(step);
         }
         let motions = &self.motions;
@@ -332,6 +370,14 @@ impl Bound {
                 Solve::Iterative { max_iterations } => self.iteration >= max_iterations,
             };
         self.followers.carry(displacements);
+        if let Some(rigid) = &mut self.rigid {
+            gate(displacements)?;
+            let last = rigid.step(motions, displacements);
+            let last = last.inspect_err(|_| displacements.fill(DVec3::ZERO))?;
+            step.energy = last.energy;
+            step.converged &= last.converged;
+            step.finished &= last.finished;
+        }
         if stepped.finite == Finite::Unknown || !self.followers.is_empty() {
             gate(displacements)?;
         }
@@ -344,6 +390,14 @@ impl Bound {
             return Err(SolveError::EnergyNotFinite);
         }
         Ok(step)
+    }
+
+    /// The next step begins at rest.
+    fn rest(&mut self) {
+        self.method.rest();
+        if let Some(rigid) = &mut self.rigid {
+            rigid.bound.rest();
+        }
     }
 
     /// The energy of any displacements, one per surface vertex, as in [`Step::energy`], with soft handles pulling
@@ -378,7 +432,10 @@ impl Bound {
     /// As [`Bound::jacobians`], into a table that is kept from frame to frame. Whether the method knows them.
     pub fn jacobians_into(&self, jacobians: &mut Vec<Mat3>) -> bool {
         jacobians.resize(self.vertex_count, Mat3::ZERO);
-        let are_known = self.method.jacobians(&self.motions, jacobians);
+        let are_known = match &self.rigid {
+            Some(rigid) => rigid.bound.method.jacobians(&rigid.bound.motions, jacobians),
+            None => self.method.jacobians(&self.motions, jacobians),
+        };
         if self.is_at_rest() {
             jacobians.fill(Mat3::ZERO);
         }
@@ -387,7 +444,7 @@ impl Bound {
 
     /// The handle bases, if a step is a product with them.
     pub fn handle_bases(&self) -> Option<&HandleBases> {
-        self.method.handle_bases()
+        self.method.handle_bases().filter(|_| self.rigid.is_none())
     }
 
     /// How the method comes to its shape.
@@ -424,12 +481,12 @@ impl Bound {
     /// About what a step costs, in vertices of a method with cheap steps. Callers that show intermediate shapes take
     /// fewer steps between two of them if steps are expensive.
     pub fn step_cost(&self) -> usize {
-        self.method.step_cost()
+        self.method.step_cost() + self.rigid.as_ref().map_or(0, |rigid| rigid.bound.step_cost())
     }
 
     /// How many numbers the system's factor stores, 8 bytes each.
     pub fn factor_len(&self) -> usize {
-        self.method.factor_len()
+        self.method.factor_len() + self.rigid.as_ref().map_or(0, |rigid| rigid.bound.factor_len())
     }
 
     /// [`Problem::revision`] of the problem it was bound from.

@@ -47,6 +47,16 @@ pub enum BindError {
         /// What it has.
         value: f64,
     },
+    /// Rigid paint on too many separate parts.
+    #[error(
+        "{found} separate parts are painted rigid, and {most} can move as bodies: paint fewer, or paint a stiffness of 1000"
+    )]
+    RigidParts {
+        /// How many there are.
+        found: usize,
+        /// How many there may be.
+        most: usize,
+    },
     /// A soft handle's weight that is not allowed.
     #[error("the weight {value} of soft handle {handle} is not a number above 0: give it one, or make it hard")]
     SoftWeight {

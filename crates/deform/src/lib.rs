@@ -35,6 +35,7 @@ mod primo;
 mod problem;
 mod rbf;
 mod region;
+mod rigid;
 mod shells;
 mod space;
 mod space_primo;

@@ -45,7 +45,9 @@ pub struct Problem<'a> {
     /// How many handles there are; [`Role::Handle`] numbers lie below it, and every number occurs.
     pub handle_count: usize,
     /// Painted stiffness of each surface vertex, above 0, 1 where nothing was painted: the factor of the
-    /// energy's density there. A face is as stiff as the mean of its three vertices.
+    /// energy's density there. A face is as stiff as the mean of its three vertices. Where it is [`f64::INFINITY`] the
+    /// surface is rigid: each connected part of such vertices moves as one body, by every method, and with the handle or
+    /// what is fixed that some of its vertices belong to.
     pub stiffness: &'a [f64],
     /// How firmly handles pull and how smoothly the surface joins what holds it.
     pub constraints: Constraints<'a>,

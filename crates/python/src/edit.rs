@@ -157,18 +157,25 @@ fn field_entries(field: &Bound<'_, PyAny>, place: &str) -> PyResult<Value> {
     match shape[..] {
         [] => {
             let everywhere = numbers.first().copied().unwrap_or(1.0);
-            Ok(json!([{ "select": "all", "value": finite(everywhere, place)? }]))
+            Ok(json!([{ "select": "all", "value": field_value(everywhere, place, place)? }]))
         }
         [_] => {
-            for (number, own) in numbers.iter().enumerate() {
-                finite(*own, &format!("{place}[{number}]"))?;
-            }
-            Ok(json!([{ "per_vertex": numbers }]))
+            let values = numbers.iter().enumerate();
+            let values = values.map(|(number, own)| field_value(*own, place, &format!("{place}[{number}]")));
+            Ok(json!([{ "per_vertex": values.collect::<PyResult<Vec<Value>>>()? }]))
         }
         _ => Err(refused(format!(
             "{place} is an array of the shape {shape:?}: give one number for each vertex"
         ))),
     }
+}
+
+/// A field's value: infinite stiffness is rigid.
+fn field_value(number: f64, field: &str, place: &str) -> PyResult<Value> {
+    if field == "stiffness" && number == f64::INFINITY {
+        return Ok(json!("rigid"));
+    }
+    finite(number, place).map(|number| json!(number))
 }
 
 /// JSON has no other numbers.

@@ -120,6 +120,17 @@ def test_iterations_go_on_to_where_one_long_step_ends(mesh, ends):
     assert np.array_equal(bent, expected)
 
 
+@pytest.mark.parametrize("method", METHODS)
+def test_infinite_stiffness_moves_as_one_body(mesh, ends, method):
+    vertices = mesh[0]
+    middle = np.abs(vertices[:, 1] - 0.5) < 0.15
+    stiffness = np.where(middle, np.inf, 1.0)
+    bent = pliant.bind(*mesh, **ends, stiffness=stiffness, method=method).step(quarter_turn())
+    before, after = (np.linalg.norm(p[middle][:, None] - p[middle][None], axis=-1) for p in (vertices, bent))
+    assert np.abs(after - before).max() < 1e-9
+    assert np.abs(bent[middle] - vertices[middle]).max() > 1e-2
+
+
 def test_stiffness_soft_handles_continuity_and_loose_parts_change_the_shape(mesh, ends):
     vertices, faces = mesh
     plain = pliant.bind(*mesh, **ends).step(quarter_turn())

@@ -5,6 +5,7 @@
 
 use glam::{DMat3, DQuat, DVec3};
 
+use crate::handles::{Handle, Motion};
 use crate::numerical::eigen::jacobi;
 
 /// A rigid motion about a point: `p ↦ centre + rotation * (p − centre) + shift`.
@@ -45,6 +46,14 @@ impl RigidMotion {
     /// The rotation, a unit quaternion.
     pub fn rotation(&self) -> DQuat {
         DQuat::from_mat3(&(self.turn + DMat3::IDENTITY)).normalize()
+    }
+
+    /// The same of a handle's vertices.
+    pub(crate) fn motion_of(&self, handle: &Handle) -> Motion {
+        Motion {
+            linear: self.turn * handle.radius,
+            shift: self.displace(handle.world_centre),
+        }
     }
 
     /// The displacement of a point.

@@ -31,6 +31,7 @@ mod primo;
 mod rbf;
 mod rebind;
 mod rig;
+mod rigid_parts;
 mod robust;
 mod shared;
 mod shells;

@@ -192,6 +192,7 @@ impl EditFile {
         let stiffness = FieldKind {
             name: "a stiffness",
             range: STIFFNESS_RANGE,
+            may_be_rigid: true,
         };
         stiffness
             .check_all(&stored.stiffness)
@@ -341,6 +342,7 @@ impl HandleEntry {
         let weight = FieldKind {
             name: "a weight",
             range: SOFT_RANGE,
+            may_be_rigid: false,
         };
         self.select.check().map_err(|error| error.under("select"))?;
         if let Some(value) = self.soft {
@@ -360,6 +362,7 @@ pub(crate) fn strength_kind() -> FieldKind {
     FieldKind {
         name: "a strength",
         range: STRENGTH_RANGE,
+        may_be_rigid: false,
     }
 }
 
@@ -367,5 +370,6 @@ fn continuity_kind() -> FieldKind {
     FieldKind {
         name: "a continuity",
         range: CONTINUITY_RANGE,
+        may_be_rigid: false,
     }
 }

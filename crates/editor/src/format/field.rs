@@ -1,9 +1,11 @@
-//! A number painted on the surface, as an edit has it: selections with a value each, the later one winning.
+//! A number painted on the surface, as an edit has it: selections with a value each, the later one winning. A stiffness
+//! may be "rigid" in place of a number, which is infinity here: JSON has none.
 
 use std::ops::RangeInclusive;
 
 use pliant_mesh::Model;
-use serde::{Deserialize, Serialize};
+use serde::ser::SerializeSeq;
+use serde::{Deserialize, Serialize, Serializer};
 
 use super::edit_error::EditError;
 use super::selector::Selector;
@@ -14,13 +16,14 @@ use super::selector::Selector;
 pub enum FieldEntry {
     /// The whole field: one value for each of the file's vertices. Twins that were welded take the value of the one
     /// with the lowest number.
-    PerVertex(Vec<f64>),
+    PerVertex(#[serde(serialize_with = "write_all")] Vec<f64>),
     /// One value on a selection.
     #[serde(untagged)]
     Select {
         /// Where.
         select: Selector,
-        /// The value there.
+        /// The value there; infinity is written "rigid".
+        #[serde(serialize_with = "write")]
         value: f64,
     },
 }
@@ -30,8 +33,51 @@ pub enum FieldEntry {
 #[serde(deny_unknown_fields)]
 struct StoredEntry {
     select: Option<Selector>,
-    value: Option<f64>,
-    per_vertex: Option<Vec<f64>>,
+    value: Option<Value>,
+    per_vertex: Option<Vec<Value>>,
+}
+
+/// A number, or the word for infinity.
+#[derive(Clone, Copy, Serialize, Deserialize)]
+#[serde(untagged, expecting = "expected a number or \"rigid\"")]
+enum Value {
+    Number(f64),
+    Word(Word),
+}
+
+#[derive(Clone, Copy, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum Word {
+    Rigid,
+}
+
+impl Value {
+    fn of(number: f64) -> Self {
+        if number == f64::INFINITY {
+            Self::Word(Word::Rigid)
+        } else {
+            Self::Number(number)
+        }
+    }
+
+    fn number(self) -> f64 {
+        match self {
+            Self::Number(number) => number,
+            Self::Word(Word::Rigid) => f64::INFINITY,
+        }
+    }
+}
+
+fn write<S: Serializer>(number: &f64, serializer: S) -> Result<S::Ok, S::Error> {
+    Value::of(*number).serialize(serializer)
+}
+
+fn write_all<S: Serializer>(numbers: &[f64], serializer: S) -> Result<S::Ok, S::Error> {
+    let mut list = serializer.serialize_seq(Some(numbers.len()))?;
+    for &number in numbers {
+        list.serialize_element(&Value::of(number))?;
+    }
+    list.end()
 }
 
 impl TryFrom<StoredEntry> for FieldEntry {
@@ -39,10 +85,13 @@ impl TryFrom<StoredEntry> for FieldEntry {
 
     fn try_from(stored: StoredEntry) -> Result<Self, &'static str> {
         match (stored.per_vertex, stored.select, stored.value) {
-            (Some(values), None, None) => Ok(Self::PerVertex(values)),
+            (Some(values), None, None) => Ok(Self::PerVertex(values.into_iter().map(Value::number).collect())),
             (Some(_), Some(_), _) => Err("has both `per_vertex` and `select`: keep one of them"),
             (Some(_), None, Some(_)) => Err("has both `per_vertex` and `value`: keep one of them"),
-            (None, Some(select), Some(value)) => Ok(Self::Select { select, value }),
+            (None, Some(select), Some(value)) => Ok(Self::Select {
+                select,
+                value: value.number(),
+            }),
             (None, Some(_), None) => Err("lacks its member `value`: add it"),
             (None, None, _) => Err("lacks its member `select`: add it, or give `per_vertex`"),
         }
@@ -55,19 +104,28 @@ pub(crate) struct FieldKind {
     /// With its article: "a stiffness".
     pub name: &'static str,
     pub range: RangeInclusive<f64>,
+    /// Whether it may be "rigid", too.
+    pub may_be_rigid: bool,
 }
 
 impl FieldKind {
     /// Refuses a value that is not of this kind.
     pub(crate) fn check(&self, value: f64) -> Result<(), EditError> {
-        if self.range.contains(&value) {
+        if self.range.contains(&value) || (self.may_be_rigid && value == f64::INFINITY) {
             return Ok(());
         }
         let (name, least, most) = (self.name, self.range.start(), self.range.end());
         Err(EditError::OutOfRange {
             place: String::new(),
-            found: value.to_string(),
-            allowed: format!("{name} from {least} to {most}"),
+            found: if value == f64::INFINITY {
+                "rigid".to_owned()
+            } else {
+                value.to_string()
+            },
+            allowed: match self.may_be_rigid {
+                true => format!("{name} from {least} to {most}, or \"rigid\""),
+                false => format!("{name} from {least} to {most}"),
+            },
         })
     }
 

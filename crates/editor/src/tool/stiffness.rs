@@ -1,4 +1,4 @@
-//! A stroke of the stiffness brush: towards a value, towards the neighbours, or back to 1.
+//! A stroke of the stiffness brush: towards a value, towards the neighbours, rigid, or back to 1.
 //!
 //! Stiffness spans six decades, so everything is blended in its logarithm. Within one stroke a vertex is changed as far
 //! as by its firmest dab: going over the same place again without letting go adds nothing, and a stroke does not depend
@@ -35,8 +35,13 @@ impl StiffnessStroke {
         if pointer.modifiers.ctrl {
             brush.action = StiffnessAction::Erase;
         }
+        if brush.action == StiffnessAction::Rigid {
+            // Rigid or not: there is nothing between.
+            (brush.strength, brush.falloff) = (1.0, 0.0);
+        }
         let transaction = context.workspace.begin_stroke(match brush.action {
             StiffnessAction::Paint => "Paint stiffness",
+            StiffnessAction::Rigid => "Paint rigid",
             StiffnessAction::Smooth => "Smooth stiffness",
             StiffnessAction::Erase => "Erase stiffness",
         });
@@ -51,7 +56,11 @@ impl StiffnessStroke {
     }
 
     fn dab(&mut self, context: &mut Context<'_>, to_px: DVec2) {
-        let strength = self.brush.strength * context.settings.pressure.unwrap_or(1.0);
+        let pressure = match self.brush.action {
+            StiffnessAction::Rigid => 1.0,
+            _ => context.settings.pressure.unwrap_or(1.0),
+        };
+        let strength = self.brush.strength * pressure;
         let mut met: Vec<(SurfaceVertex, f64)> = Vec::new();
         if let Some(picking) = context.workspace.picking(context.view) {
             let firmness = |share| strength * self.brush.firmness(share);
@@ -82,7 +91,8 @@ impl StiffnessStroke {
         let before = self.transaction.before().stiffness();
         let goal = match self.brush.action {
             StiffnessAction::Erase => 1.0,
-            _ => self.brush.value,
+            StiffnessAction::Rigid => f64::INFINITY,
+            StiffnessAction::Paint | StiffnessAction::Smooth => self.brush.value,
         };
         let firmest = &mut self.firmest;
         workspace.document.stiffen(|field| {
@@ -94,7 +104,7 @@ impl StiffnessStroke {
                 }
                 *firmest = firmness as f32;
                 changed.push(vertex);
-                let start = before.map_or(1.0, |field| field[vertex.index()]);
+                let start = finite(before.map_or(1.0, |field| field[vertex.index()]));
                 field[vertex.index()] = if firmness >= 1.0 {
                     goal
                 } else {
@@ -120,7 +130,10 @@ impl Gesture for StiffnessStroke {
     }
 
     fn status(&self, _: &Workspace, _: &View) -> Option<String> {
-        Some("Painting stiffness: Esc takes it back".to_owned())
+        Some(match self.brush.action {
+            StiffnessAction::Rigid => "Painting what moves as one body: Esc takes it back".to_owned(),
+            _ => "Painting stiffness: Esc takes it back".to_owned(),
+        })
     }
 
     fn moved(&mut self, context: &mut Context<'_>, pointer: Pointer) -> Next {
@@ -152,9 +165,12 @@ fn smooth(mut met: Vec<(SurfaceVertex, f64)>, field: &mut [f64], topology: &Topo
     met.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(b.1.total_cmp(&a.1)));
     met.dedup_by_key(|(vertex, _)| *vertex);
     let smoothed = met.iter().map(|&(vertex, firmness)| {
+        if field[vertex.index()] == f64::INFINITY {
+            return f64::INFINITY;
+        }
         let own = field[vertex.index()].ln();
         let neighbours = topology.neighbours(vertex);
-        let sum: f64 = neighbours.iter().map(|v| field[v.index()].ln()).sum();
+        let sum: f64 = neighbours.iter().map(|v| finite(field[v.index()]).ln()).sum();
         let mean = if neighbours.is_empty() {
             own
         } else {
@@ -167,6 +183,11 @@ fn smooth(mut met: Vec<(SurfaceVertex, f64)>, field: &mut [f64], topology: &Topo
         field[vertex.index()] = value;
     }
     met.into_iter().map(|(vertex, _)| vertex).collect()
+}
+
+/// What a stiffness counts as where it is blended: rigid as the stiffest.
+fn finite(value: f64) -> f64 {
+    value.min(*STIFFNESS_RANGE.end())
 }
 
 fn in_range(value: f64) -> f64 {

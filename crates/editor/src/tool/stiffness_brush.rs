@@ -10,6 +10,8 @@ pub enum StiffnessAction {
     Paint,
     /// Takes each vertex towards its neighbours.
     Smooth,
+    /// Makes the surface rigid: each part that hangs together moves as one body.
+    Rigid,
     /// Takes the surface back to 1.
     Erase,
 }

@@ -10,11 +10,16 @@ use super::state::Workspace;
 use crate::document::{HandleId, Paint};
 use crate::jobs::{Rim, bounded};
 
-/// The colour of a stiffness, sRGB with alpha: blue where it gives way (0.001), grey at 1, red where it is firm (1000).
+/// The colour of a stiffness, sRGB with alpha: blue where it gives way (0.001), grey at 1, red where it is firm (1000),
+/// violet where it is rigid.
 pub fn stiffness_colour(stiffness: f64) -> [u8; 4] {
     const SOFT: [f64; 3] = [58.0, 118.0, 214.0];
     const PLAIN: [f64; 3] = [196.0, 196.0, 192.0];
     const FIRM: [f64; 3] = [206.0, 66.0, 44.0];
+    const RIGID: [u8; 4] = [126, 52, 160, 255];
+    if stiffness == f64::INFINITY {
+        return RIGID;
+    }
     let decades = stiffness.max(f64::MIN_POSITIVE).log10() / 3.0;
     // What is near 1 is told apart, too.
     let share = decades.abs().min(1.0).sqrt();

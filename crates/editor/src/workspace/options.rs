@@ -155,7 +155,8 @@ fn put_loose(document: &mut Document, loose: Loose, parts: BTreeMap<u32, Loose>)
 /// Sets the stiffness of every vertex.
 pub(crate) fn set_stiffness(workspace: &mut Workspace, field: Vec<f64>) {
     let count = workspace.document.paint().len();
-    let bad = field.iter().find(|stiffness| !STIFFNESS_RANGE.contains(stiffness));
+    let is_allowed = |stiffness: &&f64| STIFFNESS_RANGE.contains(*stiffness) || **stiffness == f64::INFINITY;
+    let bad = field.iter().find(|stiffness| !is_allowed(stiffness));
     if field.len() != count {
         workspace.refuse(format!(
             "The stiffness has {} values for {count} vertices: give one for each.",
@@ -164,7 +165,7 @@ pub(crate) fn set_stiffness(workspace: &mut Workspace, field: Vec<f64>) {
     } else if let Some(bad) = bad {
         let (low, high) = (STIFFNESS_RANGE.start(), STIFFNESS_RANGE.end());
         workspace.refuse(format!(
-            "A stiffness of {bad} is not between {low} and {high}: paint another."
+            "A stiffness of {bad} is not between {low} and {high}, and not rigid: paint another."
         ));
     } else {
         let field = field.iter().any(|&stiffness| stiffness != 1.0).then_some(field);

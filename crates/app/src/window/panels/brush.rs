@@ -126,9 +126,14 @@ fn symmetry_row(ui: &mut egui::Ui, symmetry: Symmetry, commands: &mut Outbox) {
 
 fn stiffness(ui: &mut egui::Ui, editor: &Editor, brush: &StiffnessBrush, pressure: Option<f64>, commands: &mut Outbox) {
     let mut changed = *brush;
-    const ACTIONS: [(StiffnessAction, &str, &str); 3] = [
+    const ACTIONS: [(StiffnessAction, &str, &str); 4] = [
         (StiffnessAction::Paint, "Paint", "Takes the surface towards the value."),
         (StiffnessAction::Smooth, "Smooth", "Evens the stiffness out."),
+        (
+            StiffnessAction::Rigid,
+            "Rigid",
+            "Each painted part moves as one body, by every method.",
+        ),
         (
             StiffnessAction::Erase,
             "Erase",

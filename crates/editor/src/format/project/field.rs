@@ -55,11 +55,12 @@ impl Field {
     /// Gives every stored vertex and its numbers to `take`.
     ///
     /// # Errors
-    /// A vertex that the file does not have, too many or too few numbers, or one that is not finite.
+    /// A vertex that the file does not have, too many or too few numbers, or one that is none.
     fn read<const N: usize>(
         &self,
         name: &str,
         model: &Model,
+        is_number: impl Fn(f64) -> bool,
         mut take: impl FnMut(SurfaceVertex, [f64; N]),
     ) -> Result<(), EditError> {
         let bytes = STANDARD
@@ -83,7 +84,7 @@ impl Field {
         for_each_drawn(&self.vertices, name, model, |vertex| {
             let values = std::array::from_fn(|_| numbers.next().unwrap_or(f64::NAN));
             match vertex {
-                _ if values.iter().any(|number: &f64| !number.is_finite()) => Err(EditError::Project(format!(
+                _ if !values.iter().all(|number| is_number(*number)) => Err(EditError::Project(format!(
                     "`{name}` has a number that is not finite: save it again"
                 ))),
                 Some(vertex) => {
@@ -98,18 +99,20 @@ impl Field {
     /// One number for each surface vertex, `default` where none is stored.
     ///
     /// # Errors
-    /// As [`Self::read`], and a number outside of `range`.
+    /// As [`Self::read`], and a number outside of `range` that `is_beyond` does not allow.
     pub(super) fn numbers(
         &self,
         name: &str,
         model: &Model,
         default: f64,
         range: RangeInclusive<f64>,
+        is_beyond: impl Fn(f64) -> bool,
     ) -> Result<Arc<Vec<f64>>, EditError> {
         let mut numbers = vec![default; model.surface.positions.len()];
         let mut refused = None;
-        self.read(name, model, |vertex, [value]| {
-            if !range.contains(&value) {
+        let is_number = |value: f64| value.is_finite() || is_beyond(value);
+        self.read(name, model, is_number, |vertex, [value]| {
+            if !range.contains(&value) && !is_beyond(value) {
                 refused = Some(value);
             }
             numbers[vertex.index()] = value;
@@ -130,7 +133,7 @@ impl Field {
     /// As [`Self::read`].
     pub(super) fn displacements(&self, name: &str, model: &Model) -> Result<Arc<Vec<DVec3>>, EditError> {
         let mut displacements = vec![DVec3::ZERO; model.surface.positions.len()];
-        self.read(name, model, |vertex, value| {
+        self.read(name, model, f64::is_finite, |vertex, value| {
             displacements[vertex.index()] = DVec3::from_array(value);
         })?;
         Ok(Arc::new(displacements))

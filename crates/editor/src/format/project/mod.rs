@@ -342,13 +342,14 @@ impl Project {
         self.read_paint_and_handles(model, &mut document)?;
         document.next_handle = self.next_handle;
         document.access = Arc::new(access(&self.objects, self.isolated, model)?);
+        let is_rigid = |value: f64| value == f64::INFINITY;
         let stiffness = self.stiffness.as_ref();
         document.stiffness = stiffness
-            .map(|field| field.numbers("stiffness", model, 1.0, STIFFNESS_RANGE))
+            .map(|field| field.numbers("stiffness", model, 1.0, STIFFNESS_RANGE, is_rigid))
             .transpose()?;
         let (continuity, highest) = (self.continuity.as_ref(), *CONTINUITY_RANGE.end());
         document.continuity = continuity
-            .map(|field| field.numbers("continuity", model, highest, CONTINUITY_RANGE))
+            .map(|field| field.numbers("continuity", model, highest, CONTINUITY_RANGE, |_| false))
             .transpose()?;
         document.applied = self.applied;
         if let Some(rest) = &self.rest {
