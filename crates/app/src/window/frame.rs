@@ -148,6 +148,7 @@ impl Application {
             self.answer(answer);
             context.request_repaint();
         }
+        self.read_folder();
     }
 
     fn show_palette(&mut self, context: &egui::Context) {

@@ -1,5 +1,7 @@
-//! What opens over the window: questions, the palette, the list of keys, the log.
+//! What opens over the window: questions, the folder browser, the palette, the list of keys, the log.
 
+pub(in crate::window) mod file_dialog;
+pub(in crate::window) mod folder_browser;
 pub(in crate::window) mod keys_window;
 pub(in crate::window) mod log;
 pub(in crate::window) mod palette;

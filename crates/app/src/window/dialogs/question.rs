@@ -1,4 +1,4 @@
-//! Questions to the person: the system's file dialogs, and our own one before a source is written over.
+//! Questions to the person that the window itself asks.
 
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
@@ -6,89 +6,21 @@ use std::time::SystemTime;
 use eframe::egui::{self, Id, Modal, RichText};
 use pliant_io::quoted;
 
+use super::file_dialog;
+use super::folder_browser::{FolderBrowser, view};
 use crate::window::files::names::{file_name, original_name};
 use crate::window::files::recovery::left::Left;
-use crate::window::threads::message::{Message, Purpose};
-use crate::window::threads::workers::Workers;
-
-/// The kinds of file that open, by extension.
-const MODELS: [&str; 6] = ["glb", "gltf", "obj", "ply", "stl", "off"];
-
-/// Asks for a path by the system's dialog, which is made here, on the main thread, and awaited elsewhere. Where the
-/// system has no dialog its answer is "none"; a typed path and drag and drop remain.
-pub fn choose(purpose: Purpose, near: Option<&Path>, workers: &Workers) {
-    let mut dialog = rfd::AsyncFileDialog::new();
-    if let Some(folder) = near.and_then(Path::parent).filter(|folder| folder.is_dir()) {
-        dialog = dialog.set_directory(folder);
-    }
-    if let Some(name) = near.map(file_name).filter(|_| purpose == Purpose::SaveAs) {
-        dialog = dialog.set_file_name(name);
-    }
-    let answered =
-        move |file: Option<rfd::FileHandle>| Message::Chosen(purpose, file.map(|file| file.path().to_owned()));
-    let none = move |_| Message::Chosen(purpose, None);
-    match purpose {
-        Purpose::Open => {
-            let answer = dialog
-                .set_title("Open a model or a project")
-                .add_filter("Models and projects", &[&MODELS[..], &["pliant"]].concat())
-                .pick_file();
-            workers.spawn("dialog", move || answered(pollster::block_on(answer)), none);
-        }
-        Purpose::SaveAs => {
-            let answer = dialog
-                .set_title("Save the model as")
-                .add_filter("Models", &MODELS)
-                .save_file();
-            workers.spawn("dialog", move || answered(pollster::block_on(answer)), none);
-        }
-        Purpose::SaveMorph => {
-            let answer = dialog
-                .set_title("Save as morph target")
-                .add_filter("glTF", &["glb", "gltf"])
-                .set_file_name("morph.glb")
-                .save_file();
-            workers.spawn("dialog", move || answered(pollster::block_on(answer)), none);
-        }
-        Purpose::SaveProject => {
-            let answer = dialog
-                .set_title("Save the project as")
-                .add_filter("Projects", &["pliant"])
-                .save_file();
-            workers.spawn("dialog", move || answered(pollster::block_on(answer)), none);
-        }
-        Purpose::ExportEdit => {
-            let answer = dialog
-                .set_title("Export the edit as")
-                .set_file_name("edit.json")
-                .save_file();
-            workers.spawn("dialog", move || answered(pollster::block_on(answer)), none);
-        }
-        Purpose::LoadCage => {
-            let answer = dialog
-                .set_title("Load a cage")
-                .add_filter("Models", &MODELS)
-                .pick_file();
-            workers.spawn("dialog", move || answered(pollster::block_on(answer)), none);
-        }
-        Purpose::SavePicture(_) => {
-            let answer = dialog
-                .set_title("Save the picture as")
-                .set_file_name("picture.png")
-                .save_file();
-            workers.spawn("dialog", move || answered(pollster::block_on(answer)), none);
-        }
-    }
-}
+use crate::window::threads::message::Purpose;
+use crate::window::widgets::default_button::default_button;
 
 /// A question that waits for an answer; the window behind it does nothing meanwhile.
 #[derive(Clone, PartialEq, Debug)]
 pub enum Question {
     /// Whether the file that was opened may be written over.
     WriteOver(PathBuf),
-    /// A path to type, where the system has no dialog.
-    Path(Purpose, String),
-    /// Whether a file that stands where a typed path leads may be replaced.
+    /// For a file, where the system has no dialog.
+    File(Purpose, Box<FolderBrowser>),
+    /// Whether a file that stands where the chosen path leads may be replaced.
     Replace(Purpose, PathBuf),
     /// Whether unsaved work may be lost.
     Discard(Then),
@@ -101,14 +33,8 @@ impl Question {
     pub fn title(&self) -> &'static str {
         match self {
             Self::WriteOver(_) => "Save over the source?",
-            Self::Path(Purpose::Open, _) => "Open a model",
-            Self::Path(Purpose::SaveAs, _) => "Save the model as",
-            Self::Path(Purpose::SaveMorph, _) => "Save as morph target",
-            Self::Path(Purpose::SaveProject, _) => "Save the project as",
+            Self::File(purpose, _) => file_dialog::title(*purpose),
             Self::Recover(_) => "Recover unsaved work?",
-            Self::Path(Purpose::ExportEdit, _) => "Export the edit",
-            Self::Path(Purpose::LoadCage, _) => "Load a cage",
-            Self::Path(Purpose::SavePicture(_), _) => "Save the picture as",
             Self::Replace(..) => "Replace the file?",
             Self::Discard(_) => "There is unsaved work",
         }
@@ -153,10 +79,12 @@ pub enum Answer {
 pub fn ask(context: &egui::Context, question: &mut Question) -> Option<Answer> {
     let mut answer = None;
     let response = Modal::new(Id::unique("question")).show(context, |ui| {
-        ui.set_max_width(420.0);
+        if !matches!(question, Question::File(..)) {
+            ui.set_max_width(420.0);
+        }
         match question {
             Question::WriteOver(path) => write_over(ui, path, &mut answer),
-            Question::Path(purpose, typed) => path(ui, *purpose, typed, &mut answer),
+            Question::File(purpose, browser) => file(ui, *purpose, browser, &mut answer),
             Question::Replace(purpose, path) => replace(ui, *purpose, path, &mut answer),
             Question::Discard(then) => discard(ui, then, &mut answer),
             Question::Recover(left) => recover(ui, left, &mut answer),
@@ -208,48 +136,13 @@ fn replace(ui: &mut egui::Ui, purpose: Purpose, path: &Path, answer: &mut Option
     });
 }
 
-fn path(ui: &mut egui::Ui, purpose: Purpose, typed: &mut String, answer: &mut Option<Answer>) {
-    let (heading, hint) = match purpose {
-        Purpose::Open => (
-            "Open a model",
-            "The path of a .glb, .gltf, .obj, .ply, .stl or .off file, or of a .pliant project:",
-        ),
-        Purpose::SaveAs => (
-            "Save the model as",
-            "The path to save under; its extension chooses the format:",
-        ),
-        Purpose::SaveMorph => (
-            "Save as morph target",
-            "The path of the .glb or .gltf file; its name is the morph target's:",
-        ),
-        Purpose::SaveProject => ("Save the project as", "The path of the .pliant file:"),
-        Purpose::ExportEdit => ("Export the edit", "The path of the .json file:"),
-        Purpose::LoadCage => (
-            "Load a cage",
-            "The path of a closed mesh, a .glb, .gltf, .obj, .ply, .stl or .off file:",
-        ),
-        Purpose::SavePicture(_) => ("Save the picture", "The path of the .png file:"),
-    };
-    ui.heading(heading);
-    ui.label(hint);
-    // The keys are its own from the first frame on.
-    let id = ui.scope_id().with("path");
-    ui.memory_mut(|memory| memory.request_focus(id));
-    ui.add(egui::TextEdit::singleline(typed).id(id).desired_width(f32::INFINITY));
-    let entered = ui.input(|input| input.key_pressed(egui::Key::Enter));
-    ui.add_space(8.0);
-    ui.horizontal(|ui| {
-        let named = !typed.trim().is_empty();
-        let clicked = ui
-            .add_enabled(named, egui::Button::new(RichText::new("OK").strong()))
-            .clicked();
-        if named && (clicked || entered) {
-            *answer = Some(Answer::Path(purpose, PathBuf::from(typed.trim())));
-        }
-        if ui.button("Cancel").clicked() {
-            *answer = Some(Answer::Cancel);
-        }
-    });
+fn file(ui: &mut egui::Ui, purpose: Purpose, browser: &mut FolderBrowser, answer: &mut Option<Answer>) {
+    if view::show(ui, file_dialog::title(purpose), browser) {
+        *answer = Some(Answer::Cancel);
+    }
+    if let Some(path) = browser.take_found() {
+        *answer = Some(Answer::Path(purpose, path));
+    }
 }
 
 fn recover(ui: &mut egui::Ui, left: &[Left], answer: &mut Option<Answer>) {
@@ -285,7 +178,7 @@ fn recover(ui: &mut egui::Ui, left: &[Left], answer: &mut Option<Answer>) {
 
 /// The answer that Enter gives: it has the focus until another is chosen.
 fn main_button(ui: &mut egui::Ui, name: &str) -> bool {
-    let button = ui.button(RichText::new(name).strong());
+    let button = ui.add(default_button(ui, name));
     if ui.memory(|memory| memory.focused().is_none()) {
         button.request_focus();
     }

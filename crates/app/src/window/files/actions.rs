@@ -11,8 +11,10 @@ use pliant_editor::{Command, Event, Revision};
 use super::recovery::left;
 use super::session::{KeepOriginal, Source};
 use crate::window::application::Application;
+use crate::window::dialogs::file_dialog;
+use crate::window::dialogs::folder_browser::listing;
 use crate::window::dialogs::palette::Palette;
-use crate::window::dialogs::question::{self, Answer, Question, Then};
+use crate::window::dialogs::question::{Answer, Question, Then};
 use crate::window::files::file_command::FileCommand;
 use crate::window::input::event_queue::EventQueue;
 use crate::window::panels::notes::Note;
@@ -77,28 +79,68 @@ impl Application {
                 Ok(None) => self.fail("the view is busy or empty: try again".to_owned()),
                 Err(error) => self.fail(error.to_string()),
             },
-            // Cancelled, or the system has no dialog: then a path can be typed.
-            (purpose, None) => self.question = Some(Question::Path(purpose, self.suggested_path(purpose))),
+            // Cancelled, or the system has no dialog.
+            (purpose, None) => self.browse(purpose, &self.suggested_path(purpose)),
         }
     }
 
-    fn suggested_path(&self, purpose: Purpose) -> String {
+    /// Asks for a file by the system's dialog.
+    fn choose(&self, purpose: Purpose) {
+        file_dialog::choose(purpose, &self.suggested_path(purpose), &self.workers);
+    }
+
+    /// Asks which file to open by the window's own dialog, as where the system has none.
+    pub fn browse_to_open(&mut self) {
+        self.browse(Purpose::Open, &self.suggested_path(Purpose::Open));
+    }
+
+    /// The same for the name to save the model under.
+    pub fn browse_to_save(&mut self) {
+        self.browse(Purpose::SaveAs, &self.suggested_path(Purpose::SaveAs));
+    }
+
+    /// Asks for a file by the window's own dialog, which begins at `suggested`.
+    fn browse(&mut self, purpose: Purpose, suggested: &Path) {
+        let browser = file_dialog::browser(purpose, suggested, self.path(), &self.settings.get().recent);
+        self.question = Some(Question::File(purpose, Box::new(browser)));
+        self.read_folder();
+    }
+
+    /// Has the folder read that the window's own dialog wants to show, off the window's thread.
+    pub(in crate::window) fn read_folder(&mut self) {
+        let Some(Question::File(_, browser)) = &mut self.question else {
+            return;
+        };
+        if let Some(folder) = browser.take_wanted() {
+            let unread = folder.clone();
+            self.workers.spawn(
+                "folder",
+                move || {
+                    let contents = listing::read(&folder);
+                    Message::Folder(folder, contents)
+                },
+                move |sentence| Message::Folder(unread.clone(), Err(sentence)),
+            );
+        }
+    }
+
+    fn suggested_path(&self, purpose: Purpose) -> PathBuf {
+        let beside = |path: &Path, ending: &str| path.with_extension(ending);
         match (purpose, self.path()) {
-            (Purpose::SaveAs, Some(path)) => path.display().to_string(),
-            (Purpose::SaveAs, None) => "edited.glb".to_owned(),
-            (Purpose::SaveMorph, Some(path)) => path.with_extension("morph.glb").display().to_string(),
-            (Purpose::SaveMorph, None) => "morph.glb".to_owned(),
-            (Purpose::ExportEdit, Some(path)) => path.with_extension("edit.json").display().to_string(),
-            (Purpose::SaveProject, Some(path)) => path.with_extension("pliant").display().to_string(),
-            (Purpose::SaveProject, None) => "edited.pliant".to_owned(),
-            (Purpose::ExportEdit, None) => "edit.json".to_owned(),
-            (Purpose::SavePicture(_), Some(path)) => path.with_extension("png").display().to_string(),
-            (Purpose::SavePicture(_), None) => "picture.png".to_owned(),
-            (Purpose::Open | Purpose::LoadCage, _) => String::new(),
+            (Purpose::Open | Purpose::LoadCage | Purpose::SaveAs, Some(path)) => path.to_owned(),
+            (Purpose::SaveMorph, Some(path)) => beside(path, "morph.glb"),
+            (Purpose::ExportEdit, Some(path)) => beside(path, "edit.json"),
+            (Purpose::SaveProject, Some(path)) => beside(path, "pliant"),
+            (Purpose::SavePicture(_), Some(path)) => beside(path, "png"),
+            (Purpose::Open | Purpose::LoadCage | Purpose::SaveAs, None) => PathBuf::from("edited.glb"),
+            (Purpose::SaveMorph, None) => PathBuf::from("morph.glb"),
+            (Purpose::SaveProject, None) => PathBuf::from("edited.pliant"),
+            (Purpose::ExportEdit, None) => PathBuf::from("edit.json"),
+            (Purpose::SavePicture(_), None) => PathBuf::from("picture.png"),
         }
     }
 
-    /// Whether saving under a typed path would replace a file that is not the open one; the system's dialogs ask that
+    /// Whether saving under a path that the window's own dialog gave would replace a file that is not the open one; the system's dialogs ask that
     /// themselves.
     fn would_be_lost(&self, purpose: Purpose, path: &Path) -> bool {
         let path = match purpose {
@@ -122,17 +164,17 @@ impl Application {
             FileCommand::Open => self.unless_unsaved(context, Then::Open(None)),
             FileCommand::OpenPath(path) => self.unless_unsaved(context, Then::Open(Some(path))),
             FileCommand::Save => self.save(),
-            FileCommand::SaveAs => question::choose(Purpose::SaveAs, self.path(), &self.workers),
-            FileCommand::SaveMorph => question::choose(Purpose::SaveMorph, self.path(), &self.workers),
+            FileCommand::SaveAs => self.choose(Purpose::SaveAs),
+            FileCommand::SaveMorph => self.choose(Purpose::SaveMorph),
             FileCommand::SaveProject => match self.session.open.as_ref().and_then(|open| open.project.clone()) {
                 Some(path) => self.save_project_to(path),
-                None => question::choose(Purpose::SaveProject, self.path(), &self.workers),
+                None => self.choose(Purpose::SaveProject),
             },
-            FileCommand::SaveProjectAs => question::choose(Purpose::SaveProject, self.path(), &self.workers),
-            FileCommand::ExportEdit => question::choose(Purpose::ExportEdit, self.path(), &self.workers),
+            FileCommand::SaveProjectAs => self.choose(Purpose::SaveProject),
+            FileCommand::ExportEdit => self.choose(Purpose::ExportEdit),
             FileCommand::LoadCage => match command.unavailable_because(&self.editor) {
                 Some(why) => self.fail(why.to_owned()),
-                None => question::choose(Purpose::LoadCage, self.path(), &self.workers),
+                None => self.choose(Purpose::LoadCage),
             },
             FileCommand::Palette => self.palette = Some(Palette::default()),
             FileCommand::Panel => self.is_panel_hidden = !self.is_panel_hidden,
@@ -151,7 +193,7 @@ impl Application {
             }
             FileCommand::Compare => self.toggle_compare(context),
             FileCommand::Hints => self.settings.change(|settings| settings.hints_seen = false),
-            FileCommand::SavePicture(kind) => question::choose(Purpose::SavePicture(kind), self.path(), &self.workers),
+            FileCommand::SavePicture(kind) => self.choose(Purpose::SavePicture(kind)),
             FileCommand::Quit => self.unless_unsaved(context, Then::Close),
         }
     }
@@ -186,7 +228,7 @@ impl Application {
         match self.path().map(Path::to_owned) {
             Some(path) if self.may_write_over() => self.save_to(path, KeepOriginal::No),
             Some(path) => self.question = Some(Question::WriteOver(path)),
-            None => question::choose(Purpose::SaveAs, None, &self.workers),
+            None => self.choose(Purpose::SaveAs),
         }
     }
 
@@ -215,7 +257,7 @@ impl Application {
     fn go_on(&mut self, then: Then) {
         match then {
             Then::Open(Some(path)) => self.open(path),
-            Then::Open(None) => question::choose(Purpose::Open, self.path(), &self.workers),
+            Then::Open(None) => self.choose(Purpose::Open),
             Then::Close => self.closing = true,
         }
     }
@@ -224,7 +266,7 @@ impl Application {
         let question = self.question.take();
         match answer {
             Answer::WriteOver(path) => self.save_to(path, KeepOriginal::Yes),
-            Answer::SaveAs => question::choose(Purpose::SaveAs, self.path(), &self.workers),
+            Answer::SaveAs => self.choose(Purpose::SaveAs),
             Answer::Save => {
                 if let Some(Question::Discard(then)) = question {
                     self.after_saving = Some(then);
@@ -236,7 +278,7 @@ impl Application {
             }
             Answer::Path(purpose, path) | Answer::Replace(purpose, path) => self.chosen(purpose, Some(path)),
             Answer::Rename(purpose, path) => {
-                self.question = Some(Question::Path(purpose, path.display().to_string()));
+                self.browse(purpose, &path);
             }
             Answer::Discard(then) => self.go_on(then),
             Answer::Recover(project) => {

@@ -10,6 +10,7 @@ use super::message::{ImagesOf, LoadedMaterials, Message, ModelToShow, Posed};
 use super::workers::Stage;
 use crate::drawing::{self, Field};
 use crate::window::application::Application;
+use crate::window::dialogs::question::Question;
 use crate::window::files::session::OpenFile;
 use crate::window::panels::notes::Notes;
 
@@ -65,6 +66,11 @@ impl Application {
                     }
                 }
                 Message::Cage(mesh) => self.take_cage(mesh),
+                Message::Folder(folder, contents) => {
+                    if let Some(Question::File(_, browser)) = &mut self.question {
+                        browser.set_contents(&folder, contents);
+                    }
+                }
                 Message::Chosen(purpose, path) => self.chosen(purpose, path),
             }
         }

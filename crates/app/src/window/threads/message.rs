@@ -9,6 +9,7 @@ use pliant_mesh::Cancel;
 use pliant_render::{Materials, Surface};
 
 use crate::drawing::{Drawing, Field, Pose, Scale};
+use crate::window::dialogs::folder_browser::listing::Entry;
 use crate::window::files::project_file::MeshSource;
 use pliant_engine::Loaded;
 
@@ -30,6 +31,8 @@ pub enum Message {
     Autosaved(SnapshotKey, Result<(), String>),
     /// A cage was read, its vertices and triangles, or why it was not.
     Cage(Result<(Vec<DVec3>, Vec<[u32; 3]>), String>),
+    /// What is in a folder, or why it can't be read.
+    Folder(PathBuf, Result<Vec<Entry>, String>),
     /// A person chose a path in a dialog; `None` if they chose none.
     Chosen(Purpose, Option<PathBuf>),
 }

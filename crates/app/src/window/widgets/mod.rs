@@ -1,6 +1,7 @@
 //! The widgets of panels and bars.
 
 pub(in crate::window) mod command_button;
+pub(in crate::window) mod default_button;
 pub(in crate::window) mod drawn_key;
 pub(in crate::window) mod icon;
 pub(in crate::window) mod name_label;

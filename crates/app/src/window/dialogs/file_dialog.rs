@@ -1,0 +1,108 @@
+//! How a person is asked for a file: by the system's dialog, or by the window's own folder browser where there is none.
+
+use std::path::{Path, PathBuf};
+use std::pin::Pin;
+
+use rfd::FileHandle;
+
+use super::folder_browser::{Asked, FolderBrowser, Place};
+use crate::window::files::names::file_name;
+use crate::window::threads::message::{Message, Purpose};
+use crate::window::threads::workers::Workers;
+use pliant_engine::files::folder_of;
+
+/// The kinds of mesh file.
+const MODELS: &[&str] = &["glb", "gltf", "obj", "ply", "stl", "off"];
+
+/// What is asked for.
+struct Request {
+    title: &'static str,
+    asked: Asked,
+    /// What the files are called, and their extensions.
+    kind: &'static str,
+    endings: &'static [&'static str],
+}
+
+fn request(purpose: Purpose) -> Request {
+    let (title, asked, kind, endings): (_, _, _, &[&str]) = match purpose {
+        Purpose::Open => (
+            "Open a model or a project",
+            Asked::ToOpen,
+            "Models and projects",
+            &["glb", "gltf", "obj", "ply", "stl", "off", "pliant"],
+        ),
+        Purpose::LoadCage => ("Load a cage", Asked::ToOpen, "Models", MODELS),
+        Purpose::SaveAs => ("Save the model as", Asked::ToSave, "Models", MODELS),
+        Purpose::SaveMorph => ("Save as morph target", Asked::ToSave, "glTF", &["glb", "gltf"]),
+        Purpose::SaveProject => ("Save the project as", Asked::ToSave, "Projects", &["pliant"]),
+        Purpose::ExportEdit => ("Export the edit", Asked::ToSave, "Edits", &["json"]),
+        Purpose::SavePicture(_) => ("Save the picture as", Asked::ToSave, "Pictures", &["png"]),
+    };
+    Request {
+        title,
+        asked,
+        kind,
+        endings,
+    }
+}
+
+/// What a dialog for this purpose is called.
+pub fn title(purpose: Purpose) -> &'static str {
+    request(purpose).title
+}
+
+/// Asks for a path by the system's dialog, which is made here, on the main thread, and awaited elsewhere. It begins in
+/// the folder of `suggested`, whose name is the one to save under. Where the system has no dialog its answer is "none".
+pub fn choose(purpose: Purpose, suggested: &Path, workers: &Workers) {
+    let request = request(purpose);
+    let mut dialog = rfd::AsyncFileDialog::new()
+        .set_title(request.title)
+        .add_filter(request.kind, request.endings);
+    if let Some(folder) = suggested.parent().filter(|folder| folder.is_dir()) {
+        dialog = dialog.set_directory(folder);
+    }
+    let answer: Pin<Box<dyn Future<Output = Option<FileHandle>> + Send>> = match request.asked {
+        Asked::ToOpen => Box::pin(dialog.pick_file()),
+        Asked::ToSave => Box::pin(dialog.set_file_name(file_name(suggested)).save_file()),
+    };
+    workers.spawn(
+        "dialog",
+        move || {
+            let file = pollster::block_on(answer);
+            Message::Chosen(purpose, file.map(|file| file.path().to_owned()))
+        },
+        move |_| Message::Chosen(purpose, None),
+    );
+}
+
+/// The window's own dialog, which begins at `suggested` and offers the folders of the open file and of the `recent`
+/// ones.
+pub fn browser(purpose: Purpose, suggested: &Path, open: Option<&Path>, recent: &[PathBuf]) -> FolderBrowser {
+    let request = request(purpose);
+    let home = dirs::home_dir();
+    let mut places: Vec<Place> = Vec::new();
+    let mut offer = |name: Option<&str>, folder: &Path| {
+        if folder.is_absolute() && places.iter().all(|place| place.folder != folder) {
+            let name = name.map_or_else(|| file_name(folder), str::to_owned);
+            let folder = folder.to_owned();
+            places.push(Place { name, folder });
+        }
+    };
+    if let Some(home) = &home {
+        offer(Some("Home"), home);
+    }
+    for file in open.into_iter().chain(recent.iter().map(PathBuf::as_path)) {
+        offer(None, folder_of(file));
+    }
+    // A bare name is to stand where files were last, or at home.
+    let last = places.get(1).or(places.first());
+    let suggested = match last {
+        Some(last) if !suggested.is_absolute() => last.folder.join(suggested),
+        _ => suggested.to_owned(),
+    };
+    let begin = match request.asked {
+        Asked::ToOpen => folder_of(&suggested).to_owned(),
+        Asked::ToSave => suggested,
+    };
+    FolderBrowser::new(request.asked, request.endings, &begin, places, home)
+}

@@ -1,0 +1,188 @@
+//! The window's own dialog for files, by keys and pointer, where the system has none. Skipped by name if there is no
+//! graphics device at all.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    reason = "tests fail by panicking and say what they skip"
+)]
+
+mod window_rig;
+
+use std::fs;
+use std::time::{Duration, Instant};
+
+use egui::accesskit::Role;
+use egui::{Event, Key, Modifiers, Rect};
+use egui_kittest::kittest::{NodeT, Queryable};
+use pliant_app::window::{AppDirectories, Source};
+use pliant_tests::Folder;
+use window_rig::Session;
+
+/// A folder with two balls, a note and a folder with a third ball, the first of which is open.
+fn begin(folder: &Folder) -> Option<Session> {
+    let ball = |name: &str, depth| folder.write_mesh(name, &pliant_mesh::shapes::icosphere(depth));
+    fs::create_dir(folder.at("old")).unwrap();
+    let first = ball("first.off", 2);
+    ball("second.off", 3);
+    ball("old/third.off", 1);
+    folder.write("note.txt", "not a model");
+    Session::begin_in(Source::File(first), AppDirectories::default())
+}
+
+/// Where an entry of the list is.
+fn row(session: &Session, name: &str) -> Option<Rect> {
+    let row = session.harness.query_by_role_and_label(Role::ListBoxOption, name);
+    row.map(|row| row.rect())
+}
+
+/// Runs frames until an entry is listed.
+#[track_caller]
+fn await_row(session: &mut Session, name: &str) {
+    let start = Instant::now();
+    while row(session, name).is_none() {
+        assert!(start.elapsed() < Duration::from_secs(60), "{name} never comes");
+        std::thread::sleep(Duration::from_millis(5));
+        session.harness.step();
+    }
+}
+
+fn has(session: &Session, label: &str) -> bool {
+    session.harness.query_by_label(label).is_some()
+}
+
+fn type_text(session: &mut Session, text: &str) {
+    session.harness.event(Event::Text(text.to_owned()));
+    session.harness.run_steps(2);
+}
+
+/// The text of the field of this name.
+fn text_of(session: &Session, name: &str) -> String {
+    let mut fields = session.harness.get_all_by_label(name);
+    let field = fields.find(|node| node.accesskit_node().role() == Role::TextInput);
+    field.unwrap().value().unwrap_or_default()
+}
+
+fn click(session: &mut Session, label: &str) {
+    session.harness.run_steps(2);
+    let button = || session.harness.get_by_label(label).rect();
+    let at = row(session, label).unwrap_or_else(button).center();
+    for pressed in [true, false] {
+        session.pointer(at, Some(pressed));
+    }
+    session.harness.run_steps(2);
+}
+
+#[test]
+fn a_file_is_found_by_typing_by_arrows_and_by_pointer() {
+    let folder = Folder::new();
+    let Some(mut session) = begin(&folder) else { return };
+    session.harness.state_mut().browse_to_open();
+    await_row(&mut session, "second.off");
+    let tops = ["old", "first.off", "second.off"].map(|name| row(&session, name).unwrap().top());
+    assert!(tops.is_sorted(), "folders come first: {tops:?}");
+    assert!(row(&session, "note.txt").is_none());
+
+    // Letters filter, and Enter opens what they lead to.
+    type_text(&mut session, "sec");
+    assert!(row(&session, "second.off").is_some() && row(&session, "first.off").is_none());
+    session.key(Key::Enter, Modifiers::NONE);
+    session.settle();
+    assert_eq!(session.harness.state().path(), Some(&*folder.at("second.off")));
+
+    // The first arrow chooses the first row, which is the folder.
+    session.harness.state_mut().browse_to_open();
+    await_row(&mut session, "old");
+    session.key(Key::ArrowDown, Modifiers::NONE);
+    session.key(Key::Enter, Modifiers::NONE);
+    await_row(&mut session, "third.off");
+    click(&mut session, "third.off");
+    assert_eq!(
+        session.harness.state().path(),
+        Some(&*folder.at("second.off")),
+        "one click chooses"
+    );
+    click(&mut session, "Open");
+    session.settle();
+    assert_eq!(session.harness.state().path(), Some(&*folder.at("old/third.off")));
+
+    // Tab completes, and the way up leads out again.
+    session.harness.state_mut().browse_to_open();
+    await_row(&mut session, "third.off");
+    session.key(Key::ArrowUp, Modifiers::ALT);
+    await_row(&mut session, "second.off");
+    type_text(&mut session, "ol");
+    session.key(Key::Tab, Modifiers::NONE);
+    await_row(&mut session, "third.off");
+    let path = text_of(&session, "Path");
+    assert!(path.ends_with(&format!("old{}", std::path::MAIN_SEPARATOR)), "{path}");
+    // And goes to the next widget where there is nothing to complete.
+    session.key(Key::Tab, Modifiers::NONE);
+    assert_eq!(text_of(&session, "Path"), path);
+    session.key(Key::Escape, Modifiers::NONE);
+    assert!(row(&session, "third.off").is_none());
+}
+
+#[test]
+fn a_click_on_a_columns_name_sorts_and_a_folder_that_is_gone_is_named() {
+    let folder = Folder::new();
+    let Some(mut session) = begin(&folder) else { return };
+    session.harness.state_mut().browse_to_open();
+    await_row(&mut session, "second.off");
+    let order = |session: &Session| {
+        let [first, second] = ["first.off", "second.off"].map(|name| row(session, name).unwrap().top());
+        first < second
+    };
+    assert!(order(&session), "by name");
+    click(&mut session, "Sort by name");
+    assert!(!order(&session), "the other way round");
+    click(&mut session, "Sort by size");
+    assert!(order(&session), "the second has more faces");
+    click(&mut session, "Sort by size");
+    assert!(!order(&session));
+
+    session.harness.get_by_label("Path").focus();
+    session.key(Key::A, Modifiers::COMMAND);
+    type_text(&mut session, "/no such place/scan");
+    let start = Instant::now();
+    while session
+        .harness
+        .query_by_label_contains("there is no such folder")
+        .is_none()
+    {
+        assert!(start.elapsed() < Duration::from_secs(60), "nothing is said");
+        session.harness.step();
+    }
+    session.key(Key::Enter, Modifiers::NONE);
+    assert!(has(&session, "Cancel"), "it stays open");
+}
+
+#[test]
+fn a_copy_is_saved_under_a_typed_name_and_a_file_in_its_place_is_asked_about_once() {
+    let folder = Folder::new();
+    let Some(mut session) = begin(&folder) else { return };
+    session.harness.state_mut().browse_to_save();
+    await_row(&mut session, "second.off");
+    assert_eq!(text_of(&session, "Name"), "first.off");
+    // The stem is selected: what is typed leaves the extension.
+    type_text(&mut session, "copy");
+    assert_eq!(text_of(&session, "Name"), "copy.off");
+    session.key(Key::Enter, Modifiers::NONE);
+    session.settle();
+    let (first, copy) = (folder.at("first.off"), folder.at("copy.off"));
+    assert_eq!(fs::read(&first).unwrap(), fs::read(&copy).unwrap(), "nothing was moved");
+    assert_eq!(session.harness.state().path(), Some(&*copy));
+
+    let second = fs::read(folder.at("second.off")).unwrap();
+    session.harness.state_mut().browse_to_save();
+    await_row(&mut session, "second.off");
+    click(&mut session, "second.off");
+    assert_eq!(text_of(&session, "Name"), "second.off");
+    click(&mut session, "Save");
+    assert!(has(&session, "Replace second.off?"));
+    assert_eq!(fs::read(folder.at("second.off")).unwrap(), second);
+    click(&mut session, "Replace");
+    session.settle();
+    assert!(!has(&session, "Replace second.off?"));
+    assert_eq!(fs::read(folder.at("second.off")).unwrap(), fs::read(&first).unwrap());
+}
