@@ -12,7 +12,7 @@ options! {
             help: "what a neighbourhood keeps: its vertex's edges (\"spokes\"), its triangles (\"spokes-and-rims\", quick, \
                    for folds and creases), or these and how it bends (\"smooth\", for even bends and twists and for \
                    handles of single points)",
-        },
+        }; advanced,
         /// κ of the smooth energy (see [`ArapEnergy::Smooth`]), which bends like ½ κ A ∫ |Hess p'|², A being the area
         /// of what can move: without unit and independent of the mesh's size and density. Other energies have no use
         /// for it.
@@ -24,9 +24,9 @@ options! {
             help: "how much the energy \"smooth\" resists bending, whatever the mesh's size and density",
         },
         /// Iteration ends when a step lowers the energy by less than this share of it; above 0.
-        tolerance: f64 = iteration::TOLERANCE,
+        tolerance: f64 = iteration::TOLERANCE; advanced,
         /// Iteration ends after this many steps towards one set of targets, converged or not; at least 1.
-        max_iterations: u32 = iteration::MAX_ITERATIONS,
+        max_iterations: u32 = iteration::MAX_ITERATIONS; advanced,
     }
     beside {
         /// With more solved vertices than this a coarse level leads: it predicts the shape for new targets and speeds

@@ -45,13 +45,13 @@ options! {
         discretisation: Discretisation = Choice {
             default: Discretisation::CotangentArea,
             help: "weights of the Laplacian",
-        },
+        }; advanced,
         /// Which triangles it is made on.
         triangulation: TriangulationKind = Choice {
             default: TriangulationKind::AsIs,
             help: "triangles of the Laplacian: as they are, or without negative weights (\"tufted\" on non-manifold \
                    meshes, too)",
-        },
+        }; advanced,
         /// From 0, as the surface lies in space, to 1, as if it were stretched along the principal axes of the part
         /// that may move until that varied alike along all of them, though by no more than a factor 10: stiffer along
         /// what is long [BK04].
@@ -60,7 +60,7 @@ options! {
             range: [0.0, 1.0],
             unit: "",
             help: "stiffer along what is long: 0 not at all, 1 as if the part that may move were as wide as long",
-        },
+        }; advanced,
         /// How details are put back on the bent base.
         detail: Detail = Choice {
             default: Detail::None,
@@ -72,13 +72,13 @@ options! {
         base_order: BilaplacianOrder = Choice {
             default: BilaplacianOrder::ThinPlate,
             help: "for details: how smooth the surface below them is, from a membrane to the least change of curvature",
-        },
+        }; advanced,
         /// How often displacement volumes are corrected in a frame.
         volume_iterations: u32 = Whole {
             default: 8,
             range: [1, 1000],
             help: "for \"displacement-volumes\": how often the volumes are corrected",
-        },
+        }; advanced,
     }
 }
 

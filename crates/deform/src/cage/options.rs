@@ -22,7 +22,7 @@ options! {
             default: 5,
             range: [5, 10],
             help: "how fine the grid of harmonic coordinates is: its cells along one cell of the cage",
-        },
+        }; advanced,
         /// Where the field fades towards what is fixed.
         falloff: f64 = Number {
             default: 0.1,

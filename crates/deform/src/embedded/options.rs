@@ -13,8 +13,8 @@ options! {
             help: "how many nodes are spread over the part that moves: more bend in more places, and take longer",
         },
         /// Where iteration ends.
-        tolerance: f64 = TOLERANCE,
+        tolerance: f64 = TOLERANCE; advanced,
         /// The most steps.
-        max_iterations: u32 = MAX_ITERATIONS,
+        max_iterations: u32 = MAX_ITERATIONS; advanced,
     }
 }

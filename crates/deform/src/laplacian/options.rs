@@ -21,7 +21,7 @@ options! {
             default: 1,
             range: [1, 5],
             help: "how many edges wide the neighbourhoods are from which turns are estimated: wide ones are smoother",
-        },
+        }; advanced,
         /// Into how many parts the handles' motion is divided.
         steps: u32 = Whole {
             default: 1,

@@ -37,13 +37,13 @@ options! {
             range: [1, 3],
             help: "how smooth b-splines are: 1 has creases, 2 has even tangents, 3 even curvature; bernstein has the \
                    resolution for its degree",
-        },
+        }; advanced,
         /// What decides where the handles leave a choice.
         norm: LatticeNorm = Choice {
             default: LatticeNorm::Bending,
             help: "what the lattice does where handles leave it a choice: bend as little as it can, or (displacement) \
                    move as little as it can, which stays close to the handles",
-        },
+        }; advanced,
         /// Where the field fades towards what is fixed.
         falloff: f64 = Number {
             default: 0.1,

@@ -11,6 +11,8 @@ pub struct OptionDeclaration {
     pub help: &'static str,
     /// Which values it takes.
     pub kind: OptionKind,
+    /// Whether it is for those who know the method: the window folds such options away.
+    pub is_advanced: bool,
 }
 
 /// Which values an option takes.
@@ -123,6 +125,14 @@ impl OptionDeclaration {
         format!("{}; {}; default {default}", self.help, self.kind.values())
     }
 
+    /// The same as an option for those who know the method.
+    pub(crate) const fn advanced(self) -> Self {
+        Self {
+            is_advanced: true,
+            ..self
+        }
+    }
+
     /// The refusal of a value that it does not take.
     pub(crate) fn refused(&self) -> OptionRefused {
         OptionRefused {
@@ -195,6 +205,7 @@ impl Number {
                 range: self.range,
                 unit: self.unit,
             },
+            is_advanced: false,
         }
     }
 }
@@ -205,6 +216,7 @@ impl Whole {
             name,
             help: self.help,
             kind: OptionKind::Whole { range: self.range },
+            is_advanced: false,
         }
     }
 }
@@ -215,6 +227,7 @@ impl<T: Choices> Choice<T> {
             name,
             help: self.help,
             kind: T::KIND,
+            is_advanced: false,
         }
     }
 }
@@ -299,13 +312,14 @@ macro_rules! named_choices {
 
 /// The options of a method: a struct with its defaults, its list of declarations, and access by name.
 ///
-/// A field `name: type = declaration` is an option; the declaration is a [`Number`], a [`Whole`] or a [`Choice`].
+/// A field `name: type = declaration` is an option; the declaration is a [`Number`], a [`Whole`] or a [`Choice`],
+/// and `; advanced` after it has the window fold it away.
 /// Fields in `beside { .. }` are no options: only tests and measurements set them.
 macro_rules! options {
     (
         $(#[$meta:meta])*
         pub struct $type:ident {
-            $($(#[$doc:meta])* $option:ident: $kind:ty = $declaration:expr,)*
+            $($(#[$doc:meta])* $option:ident: $kind:ty = $declaration:expr $(; $level:ident)?,)*
         }
         $(beside { $($(#[$beside_doc:meta])* $beside:ident: $beside_kind:ty = $beside_default:expr,)* })?
     ) => {
@@ -319,7 +333,7 @@ macro_rules! options {
 
         impl $type {
             pub(crate) const OPTIONS: &'static [$crate::OptionDeclaration] =
-                &[$($declaration.declare(stringify!($option))),*];
+                &[$($declaration.declare(stringify!($option))$(.$level())?),*];
         }
 
         impl Default for $type {

@@ -15,8 +15,8 @@ options! {
             help: "the prisms' height, in diagonals of the model: how much bending is resisted against stretching",
         },
         /// Iteration ends when a step lowers the energy by less than this share of it; above 0.
-        tolerance: f64 = iteration::TOLERANCE,
+        tolerance: f64 = iteration::TOLERANCE; advanced,
         /// Iteration ends after this many steps towards one set of targets, converged or not; at least 1.
-        max_iterations: u32 = iteration::MAX_ITERATIONS,
+        max_iterations: u32 = iteration::MAX_ITERATIONS; advanced,
     }
 }

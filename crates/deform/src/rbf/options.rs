@@ -12,12 +12,12 @@ options! {
             unit: "",
             help: "the largest error at the constraints, as a share of how far the handles move: centres are added until \
                    it is met",
-        },
+        }; advanced,
         /// The most centres.
         centres: u32 = Whole {
             default: 1500,
             range: [8, 5000],
             help: "the most centres, chosen among the constraints",
-        },
+        }; advanced,
     }
 }

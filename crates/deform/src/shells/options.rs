@@ -30,9 +30,9 @@ options! {
                    keeps it",
         },
         /// Where iteration ends.
-        tolerance: f64 = TOLERANCE,
+        tolerance: f64 = TOLERANCE; advanced,
         /// The most steps.
-        max_iterations: u32 = MAX_ITERATIONS,
+        max_iterations: u32 = MAX_ITERATIONS; advanced,
     }
     beside {
         /// With more solved vertices than this a coarse level leads; with fewer, every step is a Gauss–Newton step of

@@ -14,8 +14,8 @@ options! {
                    closely, and take longer",
         },
         /// Where iteration ends.
-        tolerance: f64 = TOLERANCE,
+        tolerance: f64 = TOLERANCE; advanced,
         /// The most steps.
-        max_iterations: u32 = MAX_ITERATIONS,
+        max_iterations: u32 = MAX_ITERATIONS; advanced,
     }
 }

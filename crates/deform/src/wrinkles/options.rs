@@ -14,7 +14,7 @@ options! {
             default: 200,
             range: [4, 5000],
             help: "at how many places the strain is measured: with more of them, wrinkles depend on what is nearer",
-        },
+        }; advanced,
     }
 }
 

@@ -1,31 +1,62 @@
-//! The stiffness of discrete shells as one slider, from paper to rubber: their option `bending` on a logarithmic scale.
+//! How a method's material bends as one slider, on a logarithmic scale: discrete shells from paper to rubber, ARAP's
+//! smooth energy from rigid to smooth.
 
-use eframe::egui::{self, Slider};
-use pliant_deform::{OptionValue, Shells};
+use eframe::egui::{self, Slider, SliderClamping};
+use pliant_deform::{Arap, ArapEnergy, Method, OptionValue, Shells};
 use pliant_editor::{Command, Editor};
 
 use crate::window::widgets::outbox::Outbox;
 use crate::window::widgets::row_label::row_label;
 
-/// Shows the slider, where the method is discrete shells.
+/// A slider of one of a method's options.
+struct Scale {
+    option: &'static str,
+    ends: [&'static str; 2],
+    range: [f64; 2],
+    help: &'static str,
+}
+
+fn scale(method: &Method) -> Option<Scale> {
+    if method.options::<Shells>().is_some() {
+        return Some(Scale {
+            option: "bending",
+            ends: ["Paper", "rubber"],
+            range: Shells::PAPER_TO_RUBBER,
+            help: "Paper keeps its lengths and creases; thick rubber bends evenly and stretches instead. It sets \
+                   `bending`.",
+        });
+    }
+    let arap = method.options::<Arap>()?;
+    (arap.energy == ArapEnergy::Smooth).then_some(Scale {
+        option: "smoothness",
+        ends: ["Rigid", "smooth"],
+        range: RIGID_TO_SMOOTH,
+        help: "Rigid keeps details and bends where it must; smooth spreads the bend evenly. It sets `smoothness`.",
+    })
+}
+
+/// From hardly smoother than the rims alone to where details begin to flatten, around the default of 0.003.
+const RIGID_TO_SMOOTH: [f64; 2] = [3e-5, 0.3];
+
+/// Shows the slider, where the method has one.
 pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     let method = editor.document().method();
-    let Some(shells) = method.options::<Shells>() else {
+    let Some(scale) = scale(method) else { return };
+    let Some(OptionValue::Number(mut value)) = method.value(scale.option) else {
         return;
     };
-    let [paper, rubber] = Shells::PAPER_TO_RUBBER;
-    let mut bending = shells.bending;
+    let ([least, most], [first, last]) = (scale.range, scale.ends);
     ui.horizontal(|ui| {
-        let label = row_label(ui, "Paper");
-        let slider = Slider::new(&mut bending, paper..=rubber)
+        let label = row_label(ui, first);
+        let slider = Slider::new(&mut value, least..=most)
             .logarithmic(true)
             .show_value(false);
-        let slider = ui.add(slider).labelled_by(label.id).on_hover_text(
-            "Paper keeps its lengths and creases; thick rubber bends evenly and stretches instead. It sets `bending`.",
-        );
-        ui.label("rubber");
+        // A value beyond the ends stays until somebody moves it.
+        let slider = slider.clamping(SliderClamping::Never);
+        let slider = ui.add(slider).labelled_by(label.id).on_hover_text(scale.help);
+        ui.label(last);
         commands.adjust(&slider, || {
-            let set = method.with([("bending", OptionValue::Number(bending))]);
+            let set = method.with([(scale.option, OptionValue::Number(value))]);
             Command::SetMethod(set.unwrap_or_else(|_| method.clone()))
         });
     });

@@ -35,24 +35,38 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     material::show(ui, editor, commands);
     examples::show(ui, editor, commands);
     control_points(ui, editor, commands);
-    if declaration.options.is_empty() {
-        return;
-    }
-    egui::CollapsingHeader::new("Options")
-        .id_salt("options")
-        .show(ui, |ui| {
-            egui::Grid::new("method options").num_columns(2).show(ui, |ui| {
-                for option in declaration.options {
+    options(ui, method, commands);
+}
+
+/// The method's options, folded away, and apart from them those for who knows the method.
+fn options(ui: &mut egui::Ui, method: &Method, commands: &mut Outbox) {
+    let declared = method.declaration();
+    let first_choice = (declared.first_choice)();
+    for (title, is_advanced) in [("Options", false), ("Advanced", true)] {
+        let mut own = declared
+            .options
+            .iter()
+            .filter(|option| option.is_advanced == is_advanced)
+            .peekable();
+        if own.peek().is_none() {
+            continue;
+        }
+        egui::CollapsingHeader::new(title).id_salt(title).show(ui, |ui| {
+            egui::Grid::new((title, "of the method")).num_columns(2).show(ui, |ui| {
+                for option in own {
                     row(ui, method, option, commands);
                     ui.end_row();
                 }
             });
-            let first_choice = (declaration.first_choice)();
             let back = ui.add_enabled(first_choice != *method, egui::Button::new("Defaults"));
-            if back.clicked() {
-                commands.push(Command::SetMethod(first_choice));
+            if back
+                .on_hover_text("Sets all options of the method, advanced ones, too.")
+                .clicked()
+            {
+                commands.push(Command::SetMethod(first_choice.clone()));
             }
         });
+    }
 }
 
 /// What there is of the method's cage or lattice, and what can be done with it.

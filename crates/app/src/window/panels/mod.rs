@@ -43,7 +43,11 @@ pub fn show(
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         ui.add_space(4.0);
         section(ui, "Handles", &mut |ui| handles::show(ui, editor, commands));
-        section(ui, "Poses", &mut |ui| poses::show(ui, editor, commands));
+        if editor.document().poses().is_empty() {
+            poses::show_none(ui, editor, commands);
+        } else {
+            section(ui, "Poses", &mut |ui| poses::show(ui, editor, commands));
+        }
         section(ui, "Objects", &mut |ui| objects::show(ui, editor, commands));
         section(ui, "Brush", &mut |ui| brush::show(ui, editor, commands));
         section(ui, "Bending", &mut |ui| bending(ui, editor, commands));
@@ -53,9 +57,14 @@ pub fn show(
     turned
 }
 
+/// The title of a part of the panel.
+fn title(name: &str) -> RichText {
+    RichText::new(name).strong().size(14.0)
+}
+
 /// A part of the panel that can be folded away; true when it is just turned from one to the other.
 fn section(ui: &mut egui::Ui, title: &str, folded: &BTreeSet<String>, contents: &mut dyn FnMut(&mut egui::Ui)) -> bool {
-    let header = egui::CollapsingHeader::new(RichText::new(title).strong().size(14.0))
+    let header = egui::CollapsingHeader::new(self::title(title))
         .id_salt(title)
         .default_open(!folded.contains(title))
         .show_unindented(ui, |ui| {

@@ -7,6 +7,19 @@ use crate::window::widgets::command_button::command_button;
 use crate::window::widgets::name_label::name_label;
 use crate::window::widgets::outbox::Outbox;
 
+/// Shows what there is before the first pose is kept: the title, and how one is kept, on a line.
+pub fn show_none(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
+    ui.horizontal(|ui| {
+        // Under the titles of the sections that fold.
+        ui.add_space(ui.spacing().indent);
+        ui.label(super::title("Poses"));
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            keep(ui, editor, commands);
+        });
+    });
+    ui.separator();
+}
+
 /// Shows the list; the pose that is shown is marked.
 pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     for (place, pose) in editor.document().poses().iter().enumerate() {
@@ -41,6 +54,10 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
             });
         });
     }
+    keep(ui, editor, commands);
+}
+
+fn keep(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     if command_button(ui, editor, &Command::KeepPose) {
         commands.push(Command::KeepPose);
     }
