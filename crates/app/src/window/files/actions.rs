@@ -79,7 +79,9 @@ impl Application {
                 Ok(None) => self.fail("the view is busy or empty: try again".to_owned()),
                 Err(error) => self.fail(error.to_string()),
             },
-            // Cancelled, or the system has no dialog.
+            // There is always a dialog on these systems, and it was cancelled.
+            (_, None) if cfg!(any(windows, target_os = "macos")) => {}
+            // Cancelled, or the system has no dialog: which of both it was nobody tells.
             (purpose, None) => self.browse(purpose, &self.suggested_path(purpose)),
         }
     }
