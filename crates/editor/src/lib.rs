@@ -49,4 +49,4 @@ pub use view::{
     Before, Camera, Clay, ControlShape, GizmoAxes, GizmoMode, GizmoOrientation, GizmoPart, GizmoShape, Look, NamedView,
     Orbit, Pick, Projection, Ray, Shading, UpAxis, gizmo_shapes, hit_gizmo,
 };
-pub use workspace::{RegionAction, SnapshotKey, Symmetry, stiffness_colour};
+pub use workspace::{RegionAction, SnapshotKey, StiffnessChange, Symmetry, stiffness_colour};

@@ -1,8 +1,10 @@
 //! What is done to the region in hand as a whole, and to stiffness.
 
-use super::entry::{Action, Entry, Scope, ctrl, item, unless, unlocked, when_open};
+use super::entry::{Action, Entry, Reason, Scope, State, ctrl, item, unless, unlocked, when_open};
 use crate::document::{Paint, Tips};
-use crate::workspace::{RegionAction, act_on_region, clear_stiffness, set_stiffness, set_tips};
+use crate::workspace::{
+    RegionAction, StiffnessChange, act_on_region, change_stiffness, clear_stiffness, set_stiffness, set_tips,
+};
 
 const NO_HANDLE: &str = "No handle is selected: select one in the list, or paint one.";
 
@@ -142,6 +144,48 @@ pub(super) const SET_TIPS: Entry<Tips> = Entry {
     action: Action::Do(|context, tips| set_tips(context.workspace, tips)),
 };
 
+/// Changes what is painted of stiffness as a whole.
+pub(super) const CHANGE_STIFFNESS: Entry<StiffnessChange> = Entry {
+    listed: &[
+        item(
+            StiffnessChange::Blur,
+            "Blur stiffness",
+            "Takes the stiffness of every vertex towards that of its neighbours.",
+            "mask soften smooth rigidity",
+            &[],
+        ),
+        item(
+            StiffnessChange::Sharpen,
+            "Sharpen stiffness",
+            "Makes what is stiff end more sharply.",
+            "mask contrast harden rigidity",
+            &[],
+        ),
+        item(
+            StiffnessChange::Grow,
+            "Grow stiffness",
+            "Takes in the vertices around what is painted stiff or soft.",
+            "mask expand dilate rigidity",
+            &[],
+        ),
+        item(
+            StiffnessChange::Shrink,
+            "Shrink stiffness",
+            "Gives up the vertices at the border of what is painted stiff or soft.",
+            "mask erode contract rigidity",
+            &[],
+        ),
+    ],
+    scope: Scope::Document,
+    unavailable: |state, _| is_stiffness_painted(state),
+    action: Action::Do(|context, change| change_stiffness(context.workspace, change)),
+};
+
+fn is_stiffness_painted(state: &State<'_>) -> Option<Reason> {
+    let is_any = state.workspace.document.stiffness().is_some();
+    unless(is_any, "No stiffness is painted.")
+}
+
 /// Makes the whole surface equally stiff.
 pub(super) const CLEAR_STIFFNESS: Entry<()> = Entry {
     listed: &[item(
@@ -152,10 +196,7 @@ pub(super) const CLEAR_STIFFNESS: Entry<()> = Entry {
         &[],
     )],
     scope: Scope::Document,
-    unavailable: |state, ()| {
-        let is_any = state.workspace.document.stiffness().is_some();
-        unless(is_any, "No stiffness is painted.")
-    },
+    unavailable: |state, ()| is_stiffness_painted(state),
     action: Action::Do(|context, ()| clear_stiffness(context.workspace)),
 };
 

@@ -12,7 +12,7 @@ use super::{controls, document, examples, handle, look, object, paint, pose, reg
 use crate::document::{HandleId, HandleTransform, ObjectAction, PivotPlace, Reach, Tips};
 use crate::tool::{BrushMetric, Context, Depth, Gesture, StiffnessBrush, StrokeShape, ToolMode};
 use crate::view::{Before, Clay, GizmoMode, GizmoOrientation, NamedView, Orbit, Shading, UpAxis};
-use crate::workspace::{RegionAction, Symmetry};
+use crate::workspace::{RegionAction, StiffnessChange, Symmetry};
 
 /// A command as a menu or the palette lists it.
 #[derive(Clone, PartialEq, Debug)]
@@ -218,6 +218,8 @@ commands! {
     Region(action: RegionAction) = region::REGION;
     /// Chooses whether the parts that a reach cuts off from the body come along.
     SetTips(tips: Tips) = region::SET_TIPS;
+    /// Blurs, sharpens, grows or shrinks what is painted of stiffness.
+    ChangeStiffness(change: StiffnessChange) = region::CHANGE_STIFFNESS;
     /// Makes the whole surface equally stiff.
     ClearStiffness = region::CLEAR_STIFFNESS;
     /// Sets the stiffness (0.001 to 1000; 1 is a vertex left alone) of every vertex.

@@ -13,7 +13,7 @@ use super::pose::Pose;
 use super::strength::Strength;
 
 /// What was painted on a vertex.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug, Default, Hash)]
 pub enum Paint {
     /// Nothing: free where a handle reaches, held still elsewhere.
     #[default]

@@ -10,6 +10,7 @@ use super::navigate::Navigate;
 use super::outline::OutlineStroke;
 use super::paint::PaintStroke;
 use super::pose::PoseDrag;
+use super::smooth::SmoothStroke;
 use super::stiffness::StiffnessStroke;
 use super::transform::TransformDrag;
 use super::transform_measure::TransformKind;
@@ -35,7 +36,7 @@ pub(crate) fn begin(context: &mut Context<'_>, pointer: Pointer, button: Button)
         Button::Primary if modifiers.ctrl && boxes_controls(context) => {
             return Some(Box::new(ControlBox::begin(pointer, StrokeShape::Box)));
         }
-        Button::Primary if modifiers.alt || (modifiers.shift && context.settings.mode != ToolMode::Pose) => {
+        Button::Primary if modifiers.alt || (modifiers.shift && !heeds_shift(context)) => {
             return navigate(context, pointer, button);
         }
         Button::Primary => {}
@@ -69,6 +70,9 @@ pub(crate) fn begin(context: &mut Context<'_>, pointer: Pointer, button: Button)
         return None;
     }
     match mode {
+        mode if modifiers.shift && mode.has_brush() && mode != ToolMode::PaintStiffness => {
+            Some(Box::new(SmoothStroke::begin(context, pointer)))
+        }
         ToolMode::PaintStiffness => Some(Box::new(StiffnessStroke::begin(context, pointer))),
         ToolMode::Select => select(context, pointer, button, pick),
         ToolMode::Pose => Some(Box::new(PoseDrag::begin(context, pointer, pick)?)),
@@ -80,6 +84,13 @@ pub(crate) fn begin(context: &mut Context<'_>, pointer: Pointer, button: Button)
         }
         _ => Some(Box::new(PaintStroke::begin(context, pointer)?)),
     }
+}
+
+/// Whether the tool does something else on the surface with Shift: a brush smooths, a limb grows.
+fn heeds_shift(context: &Context<'_>) -> bool {
+    let settings = &*context.settings;
+    let is_brush = settings.mode.has_brush() && settings.stroke_shape == StrokeShape::Brush;
+    settings.mode == ToolMode::Pose || is_brush
 }
 
 /// The control point under the pointer, if a press takes it: the gizmo lies before the points, and a brush paints what is

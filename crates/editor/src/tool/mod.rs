@@ -25,6 +25,7 @@ mod paint;
 mod pose;
 mod settings;
 mod size;
+mod smooth;
 mod stiffness;
 mod stiffness_brush;
 mod symmetry;

@@ -133,7 +133,7 @@ impl PaintStroke {
 }
 
 /// Paints vertices; those of locked handles and those that are hidden or locked keep their paint.
-fn lay(workspace: &mut Workspace, mut vertices: Vec<SurfaceVertex>, laid: Paint) {
+pub(super) fn lay(workspace: &mut Workspace, mut vertices: Vec<SurfaceVertex>, laid: Paint) {
     let document = &workspace.document;
     vertices.retain(|vertex| document.paint[vertex.index()] != laid);
     let access = &workspace.vertex_access;

@@ -34,6 +34,8 @@ impl StiffnessStroke {
         let mut brush = context.settings.stiffness_brush;
         if pointer.modifiers.ctrl {
             brush.action = StiffnessAction::Erase;
+        } else if pointer.modifiers.shift {
+            brush.action = StiffnessAction::Smooth;
         }
         if brush.action == StiffnessAction::Rigid {
             // Rigid or not: there is nothing between.

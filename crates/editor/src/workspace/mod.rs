@@ -20,6 +20,7 @@ mod regions;
 mod selection;
 mod snapshot;
 mod state;
+mod stiffness;
 mod symmetry;
 
 pub(crate) use colour_revisions::ColouredBy;
@@ -38,8 +39,7 @@ pub(crate) use mirror::{mirror, take_mirrored};
 pub(crate) use mirror_request::Purpose;
 pub(crate) use objects::{act_on_object_here, act_on_objects, isolate, show_everything};
 pub(crate) use options::{
-    apply_shape, clear_regions, clear_stiffness, reset_shape, set_loose, set_loose_part, set_method, set_stiffness,
-    set_strength, set_tips,
+    apply_shape, clear_regions, reset_shape, set_loose, set_loose_part, set_method, set_strength, set_tips,
 };
 pub(crate) use painting::{members, tidy_handles};
 pub(crate) use poses::{keep_pose, remove_pose, rename_pose, renew_pose, take_pose};
@@ -48,5 +48,7 @@ pub(crate) use regions::act_on_region;
 pub use snapshot::SnapshotKey;
 pub(crate) use snapshot::WorkspaceSnapshot;
 pub(crate) use state::Workspace;
+pub use stiffness::StiffnessChange;
+pub(crate) use stiffness::{change_stiffness, clear_stiffness, set_stiffness};
 pub use symmetry::Symmetry;
 pub(crate) use symmetry::{set_symmetry, twin_across};

@@ -7,9 +7,9 @@ use pliant_deform::{Attachment, Loose, Method};
 
 use super::painting::members;
 use super::state::Workspace;
+use crate::STRENGTH_RANGE;
 use crate::document::{Document, HandleTransform, Tips};
 use crate::jobs::centroid;
-use crate::{STIFFNESS_RANGE, STRENGTH_RANGE};
 
 /// Makes the present shape the new rest shape.
 pub(crate) fn apply_shape(workspace: &mut Workspace) {
@@ -150,38 +150,4 @@ fn put_loose(document: &mut Document, loose: Loose, parts: BTreeMap<u32, Loose>)
         document.unsettle_if_displaced();
         document.set_loose(loose, parts);
     }
-}
-
-/// Sets the stiffness of every vertex.
-pub(crate) fn set_stiffness(workspace: &mut Workspace, field: Vec<f64>) {
-    let count = workspace.document.paint().len();
-    let is_allowed = |stiffness: &&f64| STIFFNESS_RANGE.contains(*stiffness) || **stiffness == f64::INFINITY;
-    let bad = field.iter().find(|stiffness| !is_allowed(stiffness));
-    if field.len() != count {
-        workspace.refuse(format!(
-            "The stiffness has {} values for {count} vertices: give one for each.",
-            field.len()
-        ));
-    } else if let Some(bad) = bad {
-        let (low, high) = (STIFFNESS_RANGE.start(), STIFFNESS_RANGE.end());
-        workspace.refuse(format!(
-            "A stiffness of {bad} is not between {low} and {high}, and not rigid: paint another."
-        ));
-    } else {
-        let field = field.iter().any(|&stiffness| stiffness != 1.0).then_some(field);
-        workspace.change("Change stiffness", |document| {
-            if document.stiffness() != field.as_deref() {
-                document.unsettle_if_displaced();
-                document.set_stiffness(field);
-            }
-        });
-    }
-}
-
-/// Makes the whole surface equally stiff.
-pub(crate) fn clear_stiffness(workspace: &mut Workspace) {
-    workspace.change("Clear stiffness", |document| {
-        document.unsettle_if_displaced();
-        document.set_stiffness(None);
-    });
 }

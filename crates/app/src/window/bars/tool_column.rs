@@ -1,7 +1,7 @@
 //! The column at the left: the tools in the order of their keys, then the gizmo's modes.
 
 use eframe::egui::{self, ScrollArea};
-use pliant_editor::{Command, Editor, ToolMode};
+use pliant_editor::{Command, Editor, GizmoOrientation, ToolMode};
 
 use crate::window::widgets::command_button::{LABELLED_TILE, tile_choice};
 use crate::window::widgets::icon::Glyph;
@@ -35,6 +35,15 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
         (Command::Scale, Glyph::Scale3d, "Scale"),
     ]
     .map(|(command, glyph, label)| (command, false, glyph, label));
+    // The tile shows along which axes the gizmo stands, and a click takes the next ones.
+    let (next, glyph, label) = match editor.view().orientation {
+        GizmoOrientation::World => (GizmoOrientation::Local, Glyph::Globe, "World"),
+        GizmoOrientation::Local => (GizmoOrientation::View, Glyph::Axis3d, "Own"),
+        GizmoOrientation::View => (GizmoOrientation::World, Glyph::Monitor, "Screen"),
+    };
+    let [mode_move, mode_turn, mode_scale] = modes;
+    let axes = (Command::SetOrientation(next), false, glyph, label);
+    let modes = [mode_move, mode_turn, mode_scale, axes];
     let count = (tools.len() + modes.len()) as f32;
     let room = (ui.available_height() - 12.0) / count - GAP;
     let height = room.clamp(HEIGHTS[0], HEIGHTS[1]);

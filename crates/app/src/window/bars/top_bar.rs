@@ -3,7 +3,9 @@
 use std::path::PathBuf;
 
 use eframe::egui::{self, MenuBar, RichText};
-use pliant_editor::{Before, Clay, Command, Editor, NamedView, Orbit, Projection, RegionAction, Shading, Tips, UpAxis};
+use pliant_editor::{
+    Before, Clay, Command, Editor, NamedView, Orbit, Projection, RegionAction, Shading, StiffnessChange, Tips, UpAxis,
+};
 
 use crate::window::files::file_command::FileCommand;
 use crate::window::threads::message::{Ground, PictureKind};
@@ -148,6 +150,22 @@ fn region_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
         }
         ui.separator();
     }
+    ui.menu_button("Stiffness", |ui| {
+        let changes = [
+            StiffnessChange::Grow,
+            StiffnessChange::Shrink,
+            StiffnessChange::Blur,
+            StiffnessChange::Sharpen,
+        ]
+        .map(Command::ChangeStiffness);
+        for command in changes.into_iter().chain([Command::ClearStiffness]) {
+            if command_button(ui, editor, &command) {
+                commands.push(command);
+                ui.close();
+            }
+        }
+    });
+    ui.separator();
     for command in [Tips::Held, Tips::ComeAlong].map(Command::SetTips) {
         if command_button(ui, editor, &command) {
             commands.push(command);

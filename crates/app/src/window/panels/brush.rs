@@ -143,41 +143,10 @@ fn stiffness(ui: &mut egui::Ui, editor: &Editor, brush: &StiffnessBrush, pressur
     if let Some(action) = choices(ui, brush.action, &ACTIONS) {
         changed.action = action;
     }
-    egui::Grid::new("stiffness")
-        .num_columns(2)
-        .spacing([8.0, 4.0])
-        .show(ui, |ui| {
-            let label = row_label(ui, "Value");
-            let speed = 0.02 * changed.value;
-            let field = number_field(ui, &mut changed.value, |ui, value| {
-                let field = DragValue::new(value).range(STIFFNESS_RANGE).speed(speed);
-                ui.add(field.max_decimals(3).update_while_editing(false))
-            });
-            field
-                .labelled_by(label.id)
-                .on_hover_text("0.001 gives way like cloth, 1 is as everywhere, 1000 keeps its shape.");
-            ui.end_row();
-            for (name, value, hover) in [
-                (
-                    "Strength",
-                    &mut changed.strength,
-                    "How far one stroke goes towards the value.",
-                ),
-                (
-                    "Falloff",
-                    &mut changed.falloff,
-                    "0 ends at a hard rim, 1 falls off from the middle.",
-                ),
-            ] {
-                let label = row_label(ui, name);
-                let slider = number_field(ui, value, |ui, value| {
-                    let slider = Slider::new(value, 0.0..=1.0).fixed_decimals(2);
-                    ui.add(slider.update_while_editing(false))
-                });
-                slider.labelled_by(label.id).on_hover_text(hover);
-                ui.end_row();
-            }
-        });
+    // Rigid or not: no number says how much.
+    if changed.action != StiffnessAction::Rigid {
+        stiffness_rows(ui, &mut changed);
+    }
     if changed != *brush {
         commands.push(Command::SetStiffnessBrush(changed));
     }
@@ -194,9 +163,48 @@ fn stiffness(ui: &mut egui::Ui, editor: &Editor, brush: &StiffnessBrush, pressur
     });
 }
 
-/// What the colours mean: from 0.001 to 1000.
+/// The stiffness that is painted, how far one stroke goes, and how softly it ends.
+fn stiffness_rows(ui: &mut egui::Ui, brush: &mut StiffnessBrush) {
+    egui::Grid::new("stiffness")
+        .num_columns(2)
+        .spacing([8.0, 4.0])
+        .show(ui, |ui| {
+            let label = row_label(ui, "Value");
+            let speed = 0.02 * brush.value;
+            let field = number_field(ui, &mut brush.value, |ui, value| {
+                let field = DragValue::new(value).range(STIFFNESS_RANGE).speed(speed);
+                ui.add(field.max_decimals(3).update_while_editing(false))
+            });
+            field
+                .labelled_by(label.id)
+                .on_hover_text("0.001 gives way like cloth, 1 is as everywhere, 1000 keeps its shape.");
+            ui.end_row();
+            for (name, value, hover) in [
+                (
+                    "Strength",
+                    &mut brush.strength,
+                    "How far one stroke goes towards the value.",
+                ),
+                (
+                    "Falloff",
+                    &mut brush.falloff,
+                    "0 ends at a hard rim, 1 falls off from the middle.",
+                ),
+            ] {
+                let label = row_label(ui, name);
+                let slider = number_field(ui, value, |ui, value| {
+                    let slider = Slider::new(value, 0.0..=1.0).fixed_decimals(2);
+                    ui.add(slider.update_while_editing(false))
+                });
+                slider.labelled_by(label.id).on_hover_text(hover);
+                ui.end_row();
+            }
+        });
+}
+
+/// What the colours mean: from 0.001 to 1000, and rigid.
 fn legend(ui: &mut egui::Ui) {
-    let width = ui.available_width().min(240.0);
+    let width = (ui.available_width() - 40.0).min(240.0);
     let (rect, _) = ui.allocate_exact_size(egui::vec2(width, 10.0), egui::Sense::hover());
     const STEPS: usize = 60;
     for step in 0..STEPS {
@@ -217,4 +225,13 @@ fn legend(ui: &mut egui::Ui) {
         let at = egui::pos2(labels.left() + width * share, labels.top());
         ui.painter().text(at, align, text, font.clone(), colour);
     }
+    let [red, green, blue, _] = stiffness_colour(f64::INFINITY);
+    let swatch = egui::Rect::from_min_size(
+        egui::pos2(rect.right() + 10.0, rect.top()),
+        egui::vec2(22.0, rect.height()),
+    );
+    ui.painter()
+        .rect_filled(swatch, 0.0, Color32::from_rgb(red, green, blue));
+    let at = egui::pos2(swatch.center().x, labels.top());
+    ui.painter().text(at, egui::Align2::CENTER_TOP, "rigid", font, colour);
 }
