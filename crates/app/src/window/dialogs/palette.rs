@@ -90,8 +90,14 @@ impl Palette {
                         ui.label(RichText::new("No command is called so.").weak());
                     }
                     for (number, entry) in entries.iter().enumerate() {
+                        let shortcut = RichText::new(&entry.shortcut);
+                        let shortcut = match number == self.chosen {
+                            // Weak text is too weak on what is chosen.
+                            true => shortcut,
+                            false => shortcut.weak(),
+                        };
                         let button = egui::Button::selectable(number == self.chosen, &entry.name)
-                            .right_text(RichText::new(&entry.shortcut).weak())
+                            .right_text(shortcut)
                             .min_size(egui::vec2(ui.available_width(), 0.0));
                         let button = ui.add_enabled(entry.obstacle.is_none(), button);
                         let button = button

@@ -39,6 +39,8 @@ fn dark() -> Visuals {
     visuals.hyperlink_color = ACCENT;
     visuals.widgets.noninteractive.fg_stroke.color = Color32::from_gray(208);
     visuals.widgets.inactive.fg_stroke.color = Color32::from_gray(218);
+    visuals.weak_text_color = Some(Color32::from_gray(166));
+    visuals.widgets.hovered.weak_bg_fill = Color32::from_gray(58);
     rounded(visuals)
 }
 
@@ -49,9 +51,12 @@ fn light() -> Visuals {
     visuals.extreme_bg_color = Color32::WHITE;
     visuals.selection.bg_fill = Color32::from_rgb(244, 214, 150);
     visuals.selection.stroke = Stroke::new(1.0, Color32::from_rgb(92, 62, 8));
-    visuals.hyperlink_color = Color32::from_rgb(158, 104, 10);
+    visuals.hyperlink_color = Color32::from_rgb(140, 90, 6);
     visuals.widgets.noninteractive.fg_stroke.color = Color32::from_gray(40);
     visuals.widgets.inactive.fg_stroke.color = Color32::from_gray(30);
+    visuals.weak_text_color = Some(Color32::from_gray(82));
+    visuals.warn_fg_color = Color32::from_rgb(150, 70, 0);
+    visuals.widgets.active.weak_bg_fill = Color32::from_gray(202);
     rounded(visuals)
 }
 
@@ -65,4 +70,110 @@ fn rounded(mut visuals: Visuals) -> Visuals {
         widget.corner_radius = CornerRadius::same(5);
     }
     visuals
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::window::bars::status;
+
+    /// The least contrast of text, by the Web Content Accessibility Guidelines 2.2 (1.4.3).
+    const LEAST: f64 = 4.5;
+
+    /// Relative luminance as those guidelines define it.
+    fn luminance(colour: Color32) -> f64 {
+        let [red, green, blue] = [colour.r(), colour.g(), colour.b()].map(|byte| {
+            let share = f64::from(byte) / 255.0;
+            match share <= 0.04045 {
+                true => share / 12.92,
+                false => ((share + 0.055) / 1.055).powf(2.4),
+            }
+        });
+        0.2126 * red + 0.7152 * green + 0.0722 * blue
+    }
+
+    fn contrast(text: Color32, ground: Color32) -> f64 {
+        // What is translucent is blended as egui does, in gamma space.
+        let share = 1.0 - f32::from(text.a()) / 255.0;
+        let [red, green, blue] = [(text.r(), ground.r()), (text.g(), ground.g()), (text.b(), ground.b())]
+            .map(|(text, ground)| (f32::from(text) + share * f32::from(ground)).round() as u8);
+        let [text, ground] = [Color32::from_rgb(red, green, blue), ground].map(luminance);
+        (text.max(ground) + 0.05) / (text.min(ground) + 0.05)
+    }
+
+    /// Every colour of text and signs with every ground that it may lie on, each with its name. What can't be used now
+    /// is excepted, as it is by the guidelines: it is faded on purpose.
+    fn pairs(ui: &egui::Ui) -> Vec<(String, Color32, Color32)> {
+        let visuals = ui.visuals();
+        let widgets = &visuals.widgets;
+        let frames = [("panels", visuals.panel_fill), ("windows", visuals.window_fill)];
+        let of_buttons = [
+            ("buttons", &widgets.inactive),
+            ("buttons under the pointer", &widgets.hovered),
+            ("pressed buttons", &widgets.active),
+            ("open menus", &widgets.open),
+        ];
+        let buttons = of_buttons.map(|(name, own)| (name, own.weak_bg_fill));
+        let fields = [("fields", visuals.text_edit_bg_color())];
+        let selected = [("what is selected", visuals.selection.bg_fill)];
+        let mut pairs = Vec::new();
+        let mut add = |name: &str, text: Color32, grounds: &[(&str, Color32)]| {
+            pairs.extend(
+                grounds
+                    .iter()
+                    .map(|(of, ground)| (format!("{name} on {of}"), text, *ground)),
+            );
+        };
+        let everywhere = [&frames[..], &buttons, &fields].concat();
+        add("text", visuals.text_color(), &[&frames[..], &fields].concat());
+        add(
+            "strong text",
+            visuals.strong_text_color(),
+            &[&frames[..], &buttons].concat(),
+        );
+        // Shortcuts stand on buttons, hints in fields.
+        add("weak text", visuals.weak_text_color(), &everywhere);
+        for (name, own) in of_buttons {
+            // Buttons without a frame, signs of check boxes and folded sections, too.
+            add(
+                name,
+                own.text_color(),
+                &[&frames[..], &[("their own", own.weak_bg_fill), ("boxes", own.bg_fill)]].concat(),
+            );
+        }
+        add("text of what is selected", visuals.selection.stroke.color, &selected);
+        for (name, text) in [
+            ("links and headings of hints", visuals.hyperlink_color),
+            ("warnings", visuals.warn_fg_color),
+            ("what went wrong", status::failed(ui)),
+            ("what went well", status::done(ui)),
+        ] {
+            add(name, text, &frames);
+        }
+        pairs
+    }
+
+    #[test]
+    fn text_and_signs_stand_out_from_what_they_lie_on_in_both_themes() {
+        for (theme, visuals) in [("dark", dark()), ("light", light())] {
+            egui::__run_test_ui(|ui| {
+                *ui.visuals_mut() = visuals.clone();
+                let pairs = pairs(ui);
+                assert!(pairs.len() > 40);
+                let poor: Vec<String> = pairs
+                    .into_iter()
+                    .map(|(name, text, ground)| (name, contrast(text, ground)))
+                    .filter(|(_, contrast)| *contrast < LEAST)
+                    .map(|(name, contrast)| format!("{name}: {contrast:.2}"))
+                    .collect();
+                assert!(poor.is_empty(), "{theme}: {poor:#?}");
+            });
+        }
+    }
+
+    #[test]
+    fn contrast_is_that_of_the_guidelines() {
+        assert!((contrast(Color32::BLACK, Color32::WHITE) - 21.0).abs() < 1e-9);
+        assert!((contrast(Color32::from_gray(119), Color32::WHITE) - 4.478).abs() < 1e-3);
+    }
 }
