@@ -8,10 +8,22 @@ use std::collections::VecDeque;
 
 use eframe::egui::{Context, Event, Key, Plugin, RawInput};
 
+/// Two clicks within so many seconds are a double click, as on most systems. What comes within one frame comes at one
+/// time, so this is also the slowest frame with which double clicks are heard.
+const DOUBLE_CLICK: f64 = 0.5;
+
+/// The least time from a frame to the next, in seconds.
+const MOMENT: f64 = 1e-4;
+
 /// Events that wait for a frame of their own, in the order in which they happened.
 #[derive(Debug, Default)]
 pub struct EventQueue {
-    waiting: VecDeque<Event>,
+    waiting: VecDeque<(Event, f64)>,
+    /// When what comes in now has come, in seconds.
+    now: f64,
+    /// When the last thing came that has been handed on. egui measures double clicks by it: frames that are slow, and
+    /// those that each press gets, would hold two clicks too far apart.
+    heard: f64,
     /// Keys that are down: what the system tells of them again is a repeat, which only egui itself says otherwise.
     held: Vec<Key>,
     typing: bool,
@@ -69,10 +81,10 @@ impl EventQueue {
         self.typing = typing;
         for mut event in events.drain(..) {
             self.tell_repeat(&mut event);
-            self.waiting.push_back(event);
+            self.waiting.push_back((event, self.now));
         }
         let (mut is_decided, mut is_button) = (false, false);
-        while let Some(event) = self.waiting.front() {
+        while let Some((event, came)) = self.waiting.front() {
             // The pointer's place is known once a frame: a press is judged where it happened, not where the pointer went.
             let moves_on = is_button && matches!(event, Event::PointerMoved(_) | Event::PointerGone);
             if (is_decided && is_press(event)) || moves_on {
@@ -80,7 +92,8 @@ impl EventQueue {
             }
             is_decided |= is_press(event) && may_change_listener(event, typing);
             is_button |= matches!(event, Event::PointerButton { .. });
-            events.extend(self.waiting.pop_front());
+            self.heard = *came;
+            events.extend(self.waiting.pop_front().map(|(event, _)| event));
         }
         let escapes = |event: &Event| is_press(event) && matches!(event, Event::Key { key: Key::Escape, .. });
         self.escaped = match typing && events.iter().any(escapes) {
@@ -122,8 +135,22 @@ impl Plugin for EventQueue {
         "event queue"
     }
 
+    fn setup(&mut self, context: &Context) {
+        context.options_mut(|options| options.input_options.max_double_click_delay = DOUBLE_CLICK);
+    }
+
     fn input_hook(&mut self, context: &Context, input: &mut RawInput) {
+        let last = self.heard;
+        self.now = input.time.unwrap_or_default();
         self.portion(&mut input.events, context.memory(|memory| memory.focused().is_some()));
+        if let Some(time) = &mut input.time {
+            // Time goes on, if only by a moment.
+            self.heard = match input.events.is_empty() {
+                true => *time,
+                false => self.heard.max(last + MOMENT),
+            };
+            *time = self.heard;
+        }
         if !self.waiting.is_empty() {
             context.request_repaint();
         }
@@ -132,7 +159,7 @@ impl Plugin for EventQueue {
 
 #[cfg(test)]
 mod tests {
-    use eframe::egui::{Modifiers, PointerButton, pos2};
+    use eframe::egui::{InputState, Modifiers, PointerButton, pos2};
 
     use super::*;
 
@@ -176,6 +203,31 @@ mod tests {
         assert_eq!(parts.concat(), all);
         let lengths: Vec<usize> = parts.iter().map(Vec::len).collect();
         assert_eq!(lengths, [2, 2, 1]);
+    }
+
+    #[test]
+    fn two_clicks_that_come_in_one_slow_frame_are_a_double_click_and_time_never_goes_back() {
+        let context = Context::default();
+        context.add_plugin(EventQueue::default());
+        let (mut counts, mut times) = (Vec::new(), Vec::new());
+        for frame in 0..8 {
+            let clicks = [button(true), button(false), button(true), button(false)];
+            let input = RawInput {
+                time: Some(10.0 + 0.4 * f64::from(frame)),
+                events: if frame == 1 { clicks.to_vec() } else { Vec::new() },
+                ..RawInput::default()
+            };
+            let mut output = context.run_ui(input, |ui| {
+                times.push(ui.input(|input| input.time));
+                if ui.input(|input| input.pointer.primary_released()) {
+                    let is_double = |input: &InputState| input.pointer.button_double_clicked(PointerButton::Primary);
+                    counts.push(ui.input(is_double));
+                }
+            });
+            output.textures_delta.clear();
+        }
+        assert_eq!(counts, [false, true]);
+        assert!(times.windows(2).all(|pair| pair[0] < pair[1]), "{times:?}");
     }
 
     #[test]
