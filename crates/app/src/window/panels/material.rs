@@ -35,7 +35,7 @@ fn scale(method: &Method) -> Option<Scale> {
     })
 }
 
-/// From hardly smoother than the rims alone to where details begin to flatten, around the default of 0.003.
+/// A hundredth of the default and a hundred times it: the slider, which goes by the logarithm, begins in its middle.
 const RIGID_TO_SMOOTH: [f64; 2] = [3e-5, 0.3];
 
 /// Shows the slider, where the method has one.
