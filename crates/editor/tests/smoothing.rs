@@ -60,7 +60,7 @@ fn ragged() -> Rig {
 fn a_stroke_with_shift_shortens_the_border_in_one_step_that_undo_takes_back() {
     let mut rig = ragged();
     let before = Fingerprint::of(rig.editor.document());
-    let (border_before, camera) = (border(&rig, Paint::Free), rig.editor.view().camera.clone());
+    let (border_before, camera) = (border(&rig, Paint::Free), *rig.editor.view().camera);
     let way: Vec<DVec2> = (0..=12)
         .map(|step| CENTRE_PX + DVec2::new(-60.0 + 10.0 * f64::from(step), 10.0))
         .collect();
@@ -84,7 +84,7 @@ fn where_all_is_painted_alike_a_stroke_with_shift_changes_nothing() {
 #[test]
 fn beside_the_surface_shift_still_moves_the_view() {
     let mut rig = ragged();
-    let camera = rig.editor.view().camera.clone();
+    let camera = *rig.editor.view().camera;
     swipe_with_shift(&mut rig, &[DVec2::new(5.0, 5.0), DVec2::new(60.0, 40.0)]);
     assert_ne!(*rig.editor.view().camera, camera);
 }

@@ -137,7 +137,7 @@ fn a_handle_across_the_plane_is_one_handle_wherever_the_stroke_begins() {
     // Down the middle, and from one side over it.
     for way in [[[0.0, 0.1], [0.0, 0.3]], [[0.4, 0.2], [-0.4, 0.2]]] {
         let mut rig = opened(body(), Symmetry::Found);
-        let camera = rig.editor.view().camera.clone();
+        let camera = *rig.editor.view().camera;
         let seen_px = |[x, y]: [f64; 2]| camera.project(DVec3::new(x, y, 0.7), VIEWPORT_PX).unwrap();
         rig.swipe(&way.map(seen_px));
         rig.drain();
