@@ -6,6 +6,7 @@ use std::pin::Pin;
 use rfd::FileHandle;
 
 use super::folder_browser::{Asked, FolderBrowser, Place};
+use super::system_dialog;
 use crate::window::files::names::file_name;
 use crate::window::threads::message::{Message, Purpose};
 use crate::window::threads::workers::Workers;
@@ -52,7 +53,7 @@ pub fn title(purpose: Purpose) -> &'static str {
 }
 
 /// Asks for a path by the system's dialog, which is made here, on the main thread, and awaited elsewhere. It begins in
-/// the folder of `suggested`, whose name is the one to save under. Where the system has no dialog its answer is "none".
+/// the folder of `suggested`, whose name is the one to save under. Where the system has no dialog that is said, and the browser of folders takes its place.
 pub fn choose(purpose: Purpose, suggested: &Path, workers: &Workers) {
     let request = request(purpose);
     let mut dialog = rfd::AsyncFileDialog::new()
@@ -69,9 +70,13 @@ pub fn choose(purpose: Purpose, suggested: &Path, workers: &Workers) {
         "dialog",
         move || {
             let file = pollster::block_on(answer);
-            Message::Chosen(purpose, file.map(|file| file.path().to_owned()))
+            match file {
+                Some(file) => Message::Chosen(purpose, Some(file.path().to_owned())),
+                None if system_dialog::is_there() => Message::Chosen(purpose, None),
+                None => Message::NoDialog(purpose),
+            }
         },
-        move |_| Message::Chosen(purpose, None),
+        move |_| Message::NoDialog(purpose),
     );
 }
 

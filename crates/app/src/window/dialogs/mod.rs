@@ -6,3 +6,4 @@ pub(in crate::window) mod keys_window;
 pub(in crate::window) mod log;
 pub(in crate::window) mod palette;
 pub(in crate::window) mod question;
+mod system_dialog;

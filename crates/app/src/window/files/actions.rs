@@ -79,10 +79,7 @@ impl Application {
                 Ok(None) => self.fail("the view is busy or empty: try again".to_owned()),
                 Err(error) => self.fail(error.to_string()),
             },
-            // There is always a dialog on these systems, and it was cancelled.
-            (_, None) if cfg!(any(windows, target_os = "macos")) => {}
-            // Cancelled, or the system has no dialog: which of both it was nobody tells.
-            (purpose, None) => self.browse(purpose, &self.suggested_path(purpose)),
+            (_, None) => {}
         }
     }
 
@@ -102,7 +99,7 @@ impl Application {
     }
 
     /// Asks for a file by the window's own dialog, which begins at `suggested`.
-    fn browse(&mut self, purpose: Purpose, suggested: &Path) {
+    pub(in crate::window) fn browse(&mut self, purpose: Purpose, suggested: &Path) {
         let browser = file_dialog::browser(purpose, suggested, self.path(), &self.settings.get().recent);
         self.question = Some(Question::File(purpose, Box::new(browser)));
         self.read_folder();
@@ -126,7 +123,7 @@ impl Application {
         }
     }
 
-    fn suggested_path(&self, purpose: Purpose) -> PathBuf {
+    pub(in crate::window) fn suggested_path(&self, purpose: Purpose) -> PathBuf {
         let beside = |path: &Path, ending: &str| path.with_extension(ending);
         match (purpose, self.path()) {
             (Purpose::Open | Purpose::LoadCage | Purpose::SaveAs, Some(path)) => path.to_owned(),

@@ -72,6 +72,7 @@ impl Application {
                     }
                 }
                 Message::Chosen(purpose, path) => self.chosen(purpose, path),
+                Message::NoDialog(purpose) => self.browse(purpose, &self.suggested_path(purpose)),
             }
         }
         is_news
