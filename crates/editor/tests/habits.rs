@@ -7,9 +7,9 @@ mod rig;
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
-use pliant_editor::{Button, Command, Event, Key, Modifiers, Pointer, ToolMode};
+use pliant_editor::{Button, Command, Event, Key, Modifiers, NamedView, Paint, Pointer, ToolMode};
 use pliant_mesh::shapes;
-use rig::{CENTRE_PX, Rig, at};
+use rig::{CENTRE_PX, Rig, VIEWPORT_PX, at};
 
 fn wheel(rig: &mut Rig, modifiers: Modifiers, lines: f64) {
     let pointer = Pointer {
@@ -132,6 +132,49 @@ fn ctrl_holds_turns_to_fifteen_degrees_and_an_arc_shows_them() {
     rig.key(Key::Enter);
     assert!(rig.editor.view().shapes.is_empty());
     rig.drain();
+}
+
+#[test]
+fn ctrl_lands_what_is_moved_near_the_ground_on_it_and_nothing_that_is_far_from_it() {
+    for constraint in ["", "y"] {
+        let mut rig = Rig::open(shapes::icosphere(3));
+        rig.command(Command::View(NamedView::Front));
+        rig.paint_handle();
+        rig.drain();
+        let ground = rig.model.bounds().unwrap().min.y;
+        let own: Vec<f64> = members(&rig)
+            .iter()
+            .map(|&v| rig.model.surface.positions[v].y)
+            .collect();
+        let lowest = own.into_iter().fold(f64::INFINITY, f64::min);
+        let camera = *rig.editor.view().camera;
+        let per_px = camera.world_per_px(rig.editor.document().handles()[0].centre(), VIEWPORT_PX);
+        rig.move_to(CENTRE_PX);
+        rig.type_keys(&format!("g{constraint}"));
+        let moved_by = |rig: &mut Rig, way: f64| {
+            rig.send(Event::PointerMoved(Pointer {
+                position_px: CENTRE_PX - DVec2::Y * way / per_px,
+                modifiers: Modifiers::CTRL,
+            }));
+            rig.editor.document().handles()[0].affine().translation.y
+        };
+        let near = moved_by(&mut rig, ground - lowest + 6.0 * per_px);
+        assert!((lowest + near - ground).abs() < 1e-12, "{constraint}: {near}");
+        let far = moved_by(&mut rig, 0.5 * (ground - lowest));
+        assert!((lowest + far - ground).abs() > 12.0 * per_px, "{constraint}: {far}");
+        rig.key(Key::Escape);
+        rig.drain();
+    }
+}
+
+/// The vertices of the first handle.
+fn members(rig: &Rig) -> Vec<usize> {
+    let id = rig.editor.document().handles()[0].id;
+    let paint = rig.editor.document().paint().iter().enumerate();
+    paint
+        .filter(|(_, paint)| **paint == Paint::Handle(id))
+        .map(|(vertex, _)| vertex)
+        .collect()
 }
 
 #[test]

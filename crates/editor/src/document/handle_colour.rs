@@ -1,15 +1,16 @@
 //! Colours to tell handles apart by.
 
-/// The colours that handles get in turn: gold first, as in the survey's figures.
+/// The colours that handles get in turn: gold first, as in the survey's figures. They are told apart from each other and
+/// from the regions under every common colour blindness, by a test of the regions' colours.
 pub const HANDLE_COLOURS: [[u8; 4]; 8] = [
     [232, 184, 48, 255],
-    [222, 96, 72, 255],
-    [120, 190, 88, 255],
-    [176, 112, 214, 255],
-    [64, 190, 190, 255],
-    [236, 132, 176, 255],
-    [150, 128, 84, 255],
-    [244, 222, 120, 255],
+    [219, 84, 32, 255],
+    [80, 204, 99, 255],
+    [117, 52, 250, 255],
+    [20, 243, 250, 255],
+    [176, 72, 159, 255],
+    [117, 83, 42, 255],
+    [203, 248, 164, 255],
 ];
 
 /// The colour that the handle of this number gets when it is made.

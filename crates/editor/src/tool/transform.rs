@@ -17,7 +17,7 @@ use crate::input::{Button, Key, Modifiers, Pointer};
 use crate::jobs::Activity;
 use crate::scene_view::{Cursor, Readout};
 use crate::view::{ControlShape, GizmoAxes, GizmoPart, View};
-use crate::workspace::{Workspace, count_turn, held_because, put_handle};
+use crate::workspace::{Workspace, count_turn, held_because, members, put_handle};
 
 /// A held button must move the pointer this far before a handle follows.
 const THRESHOLD_PX: f64 = 3.0;
@@ -91,7 +91,11 @@ impl TransformDrag {
         let start = (handle.transform, handle.centre());
         Some(Self {
             transaction: workspace.begin(format!("{} {}", kind.verb(), handle.name)),
-            measure: Measure::begin(kind, constraint, start, axes.basis, start_px),
+            measure: Measure::begin(kind, constraint, start, axes.basis, start_px).above_ground(height_above_ground(
+                workspace,
+                camera.up.vector(),
+                handle.id,
+            )),
             subject: Subject::Handle {
                 id: handle.id,
                 pivot: handle.pivot,
@@ -219,6 +223,16 @@ impl TransformDrag {
             }
         }
     }
+}
+
+/// How far above the file's lowest point, on which its ground lies, the lowest vertex of a handle is seen.
+fn height_above_ground(workspace: &Workspace, up: DVec3, id: HandleId) -> Option<f64> {
+    let ground = workspace.model()?.bounds()?.min.dot(up);
+    let own = members(&workspace.document, id)
+        .into_iter()
+        .map(|vertex| workspace.position(vertex).dot(up));
+    let height = own.fold(f64::INFINITY, f64::min) - ground;
+    height.is_finite().then_some(height)
 }
 
 impl Gesture for TransformDrag {

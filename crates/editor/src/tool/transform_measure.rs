@@ -15,6 +15,8 @@ const SNAP_RAD: f64 = std::f64::consts::PI / 12.0;
 const SNAP_FACTOR: f64 = 0.1;
 /// What Ctrl holds lengths to is the largest power of ten below this many points.
 const SNAP_PX: f64 = 40.0;
+/// What is nearer to the ground than this many points is held to it by Ctrl.
+const GROUND_PX: f64 = 12.0;
 
 /// What is done to the handle.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -40,8 +42,10 @@ pub(super) struct Measure {
     /// The turn so far, which may exceed a full circle.
     turned_rad: f64,
     pub(super) number: NumberEntry,
-    /// Whether Ctrl holds the pointer's way to round numbers.
+    /// Whether Ctrl holds the pointer's way to round numbers, and what is near the ground to it.
     snaps: bool,
+    /// How far above the ground the lowest point of what is moved was when it began.
+    above_ground: Option<f64>,
     /// The gizmo's axes when it began.
     basis: DQuat,
 }
@@ -66,8 +70,15 @@ impl Measure {
             turned_rad: 0.0,
             number: NumberEntry::default(),
             snaps: false,
+            above_ground: None,
             basis,
         }
+    }
+
+    /// With the ground this far below what is moved.
+    pub(super) fn above_ground(mut self, height: Option<f64>) -> Self {
+        self.above_ground = height;
+        self
     }
 
     /// The pointer moved on; `snaps` says whether Ctrl is held.
@@ -128,6 +139,30 @@ impl Measure {
 
     /// How far the handle goes, in world units.
     pub(super) fn translation(&self, view: &View) -> DVec3 {
+        let way = self.way(view);
+        let lands = self.snaps && self.number.value().is_none();
+        match self.above_ground.filter(|_| lands) {
+            Some(height) => way + self.landing(view, height + way.dot(view.camera().up.vector())),
+            None => way,
+        }
+    }
+
+    /// What brings the lowest point, this far above the ground, onto it, if that is near and the constraint lets it.
+    fn landing(&self, view: &View, height: f64) -> DVec3 {
+        let near = GROUND_PX * view.camera().world_per_px(self.centre, view.viewport_px());
+        let up = view.camera().up.vector();
+        let along = match self.constraint {
+            Constraint::Free => Some(up),
+            Constraint::Axis(axis) => Some(self.axis(axis)),
+            // Within the plane only where it stands upright.
+            Constraint::Plane(axis) => (self.axis(axis).dot(up).abs() < 1e-6).then_some(up),
+        };
+        let steep = along.filter(|along| along.dot(up).abs() > 0.5 && height.abs() <= near);
+        steep.map_or(DVec3::ZERO, |along| along * (-height / along.dot(up)))
+    }
+
+    /// The same wherever the ground is.
+    fn way(&self, view: &View) -> DVec3 {
         if let Some(length) = self.number.value() {
             return match self.constraint {
                 Constraint::Free => self.axis(0) * length,

@@ -17,6 +17,16 @@ pub enum UpAxis {
     Z,
 }
 
+impl UpAxis {
+    /// The unit vector up.
+    pub(crate) fn vector(self) -> DVec3 {
+        match self {
+            Self::Y => DVec3::Y,
+            Self::Z => DVec3::Z,
+        }
+    }
+}
+
 /// A side to look from.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Hash)]
 pub enum NamedView {

@@ -28,12 +28,14 @@ pub fn stiffness_colour(stiffness: f64) -> [u8; 4] {
     [r, g, b, 255]
 }
 
+/// What may bend, and what is held still.
+const FREE: [u8; 4] = [96, 150, 222, 255];
+const FIXED: [u8; 4] = [112, 112, 116, 255];
+
 /// What tells the colour of a vertex, sRGB with alpha.
 pub(crate) fn region_colour(workspace: &Workspace) -> impl Fn(SurfaceVertex) -> [u8; 4] {
-    const FREE: [u8; 4] = [96, 150, 222, 255];
     // The clay or the material as it is: a share of any grey would wash it out.
     const STILL: [u8; 4] = [0; 4];
-    const FIXED: [u8; 4] = [112, 112, 116, 255];
     const LIT: [u8; 4] = [255, 214, 110, 255];
     let document = &workspace.document;
     let lit = workspace.colours.lit().zip(workspace.model());
@@ -89,4 +91,78 @@ pub(crate) fn rims(workspace: &Workspace) -> impl Iterator<Item = (&ContourLine,
     let lines = region.rims.iter();
     let shown = lines.filter(|line| workspace.vertex_access.shows_triangle(line.triangle));
     shown.filter_map(move |line| Some((line, bounded(line.label, &region.handles).filter(is_seen)?)))
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{DMat3, DVec3};
+
+    use super::{FIXED, FREE};
+    use crate::document::HANDLE_COLOURS;
+
+    /// What is seen, in linear light, without and with the three blindnesses [MOF09, severity 1], by rows.
+    const VISIONS: [(&str, [f64; 9]); 4] = [
+        ("none", [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]),
+        (
+            "protanopia",
+            [
+                0.152286, 1.052583, -0.204868, 0.114503, 0.786281, 0.099216, -0.003882, -0.048116, 1.051998,
+            ],
+        ),
+        (
+            "deuteranopia",
+            [
+                0.367322, 0.860646, -0.227968, 0.280085, 0.672501, 0.047413, -0.011820, 0.042940, 0.968881,
+            ],
+        ),
+        (
+            "tritanopia",
+            [
+                1.255528, -0.076749, -0.178779, -0.078411, 0.930809, 0.147602, 0.004733, 0.691367, 0.303900,
+            ],
+        ),
+    ];
+
+    /// A colour in CIE L*a*b* as a vision sees it.
+    fn seen([red, green, blue, _]: [u8; 4], vision: &[f64; 9]) -> DVec3 {
+        let linear = |channel: u8| {
+            let value = f64::from(channel) / 255.0;
+            if value <= 0.04045 {
+                value / 12.92
+            } else {
+                ((value + 0.055) / 1.055).powf(2.4)
+            }
+        };
+        let light = DVec3::new(linear(red), linear(green), linear(blue));
+        let light = (DMat3::from_cols_array(vision).transpose() * light).clamp(DVec3::ZERO, DVec3::ONE);
+        let to_xyz = DMat3::from_cols(
+            DVec3::new(0.4124, 0.2126, 0.0193),
+            DVec3::new(0.3576, 0.7152, 0.1192),
+            DVec3::new(0.1805, 0.0722, 0.9505),
+        );
+        let xyz = to_xyz * light / DVec3::new(0.95047, 1.0, 1.08883);
+        let [x, y, z] = xyz.to_array().map(|t| {
+            if t > 0.008856 {
+                t.cbrt()
+            } else {
+                7.787 * t + 16.0 / 116.0
+            }
+        });
+        DVec3::new(116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z))
+    }
+
+    #[test]
+    fn regions_and_handles_are_told_apart_under_every_common_colour_blindness() {
+        // Two colours side by side are seen to differ from about 2 on.
+        const PLAIN: f64 = 15.0;
+        let all: Vec<[u8; 4]> = HANDLE_COLOURS.into_iter().chain([FREE, FIXED]).collect();
+        for (name, vision) in &VISIONS {
+            for (number, first) in all.iter().enumerate() {
+                for second in &all[..number] {
+                    let apart = seen(*first, vision).distance(seen(*second, vision));
+                    assert!(apart > PLAIN, "{name}: {first:?} {second:?} {apart:.1}");
+                }
+            }
+        }
+    }
 }

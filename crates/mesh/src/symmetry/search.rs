@@ -1,7 +1,7 @@
 //! The plane across which a shape is its own mirror image, as far as a scan can be.
 //!
 //! Such a plane goes through the surface's centroid, so only its direction is looked for: many are tried with few samples
-//! of the surface, and the best are fitted to it. A fit goes on as that of closest points (Chen and Medioni 1992): each
+//! of the surface, and the best are fitted to it. A fit goes on as that of closest points [CM92]: each
 //! sample's image is paired with the vertex nearest to it, and the plane that brings images nearest to the tangent planes
 //! there takes the place of the last.
 
