@@ -43,7 +43,8 @@ pub use selection::Selection;
 pub use snapshot::Snapshot;
 pub use status::thousands;
 pub use tool::{
-    BRUSH_RADIUS_PX, BrushMetric, Constraint, Depth, StiffnessAction, StiffnessBrush, StrokeShape, ToolMode,
+    BRUSH_RADIUS_PX, BrushMetric, Constraint, Correction, CorrectionBrush, Depth, StiffnessAction, StiffnessBrush,
+    StrokeShape, ToolMode,
 };
 pub use view::{
     Before, Camera, Clay, ControlShape, GizmoAxes, GizmoMode, GizmoOrientation, GizmoPart, GizmoShape, Look, NamedView,

@@ -9,7 +9,7 @@ use pliant_mesh::Model;
 
 use crate::document::{Handle, HandleId};
 use crate::jobs::{Counts, Descent, JobKind};
-use crate::tool::{BrushMetric, Depth, StiffnessBrush, StrokeShape, ToolMode};
+use crate::tool::{BrushMetric, CorrectionBrush, Depth, StiffnessBrush, StrokeShape, ToolMode};
 use crate::view::{Camera, ControlShape, GizmoOrientation, GizmoShape, Look, Orbit};
 use crate::workspace::Symmetry;
 
@@ -78,6 +78,8 @@ pub struct SceneView<'a> {
     pub brush_metric: BrushMetric,
     /// The stiffness brush.
     pub stiffness_brush: StiffnessBrush,
+    /// The brush that corrects the shape.
+    pub correction_brush: CorrectionBrush,
     /// How hard a pen presses, 0 to 1; `None` until the system reports it.
     pub pressure: Option<f64>,
     /// Along which axes the gizmo stands.

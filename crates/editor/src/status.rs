@@ -69,6 +69,7 @@ fn hint(workspace: &Workspace, settings: &ToolSettings) -> String {
             ToolMode::Pose => {
                 "Point at a limb and drag it: it turns about its joint, with Ctrl it twists, with Shift it grows"
             }
+            ToolMode::Correct => "Stroke the shape where it is to be corrected",
             ToolMode::Erase | ToolMode::Select | ToolMode::PaintStiffness => "Press 1 and paint what you want to move",
         }
     } else if settings.wants_pivot {

@@ -1,7 +1,7 @@
 //! What the left button does on the surface, and with what.
 
 use super::entry::{Action, Entry, Scope, alt, always, character, item, shift, unless, when_open};
-use crate::tool::{BrushMetric, Depth, SizeBrush, StiffnessBrush, StrokeShape, ToolMode};
+use crate::tool::{BrushMetric, CorrectionBrush, Depth, SizeBrush, StiffnessBrush, StrokeShape, ToolMode};
 use crate::workspace::{Symmetry, set_symmetry};
 
 /// The factor by which a key sizes the brush.
@@ -58,6 +58,13 @@ pub(super) const SET_TOOL: Entry<ToolMode> = Entry {
             "Point at a limb and drag it: it turns about its joint. Ctrl twists it, Shift scales it.",
             "bend limb arm leg joint rotate brush",
             &[character('7')],
+        ),
+        item(
+            ToolMode::Correct,
+            "Correct",
+            "Smooths, relaxes or grabs the shape by hand, where a bend has left a crease.",
+            "sculpt brush armpit crease smooth relax grab",
+            &[character('8')],
         ),
     ],
     scope: Scope::Tool,
@@ -266,6 +273,18 @@ pub(super) const SIZE_BRUSH: Entry<()> = Entry {
         let pointer_px = context.pointer.map(|pointer| pointer.position_px);
         let pointer_px = pointer_px.unwrap_or(context.view.viewport_px() * 0.5);
         Some(Box::new(SizeBrush::begin(context.settings, pointer_px)))
+    }),
+};
+
+/// What the correcting brush does, and how far, clamped to what it may be.
+pub(super) const SET_CORRECTION: Entry<CorrectionBrush> = Entry {
+    listed: &[],
+    scope: Scope::View,
+    unavailable: always,
+    action: Action::Do(|context, brush| {
+        if let Some(brush) = brush.clamped() {
+            context.settings.correction_brush = brush;
+        }
     }),
 };
 

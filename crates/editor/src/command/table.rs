@@ -10,7 +10,7 @@ use super::entry::{Action, Entry, Reason, Scope, State};
 use super::shortcut::Shortcut;
 use super::{controls, document, examples, handle, look, object, paint, pose, region, transform, view};
 use crate::document::{HandleId, HandleTransform, ObjectAction, PivotPlace, Reach, Tips};
-use crate::tool::{BrushMetric, Context, Depth, Gesture, StiffnessBrush, StrokeShape, ToolMode};
+use crate::tool::{BrushMetric, Context, CorrectionBrush, Depth, Gesture, StiffnessBrush, StrokeShape, ToolMode};
 use crate::view::{Before, Clay, GizmoMode, GizmoOrientation, NamedView, Orbit, Shading, UpAxis};
 use crate::workspace::{RegionAction, StiffnessChange, Symmetry};
 
@@ -150,6 +150,8 @@ commands! {
     GrowBrush = paint::GROW_BRUSH;
     /// A smaller brush.
     ShrinkBrush = paint::SHRINK_BRUSH;
+    /// What the correcting brush does, and how far, clamped to what it may be.
+    SetCorrection(brush: CorrectionBrush) = paint::SET_CORRECTION;
     /// The stiffness brush's action and numbers, clamped to what they may be.
     SetStiffnessBrush(brush: StiffnessBrush) = paint::SET_STIFFNESS_BRUSH;
     /// Widens the selected handle's reach with the pointer.

@@ -65,6 +65,7 @@ impl Editor {
             symmetry: workspace.symmetry(),
             brush_metric: settings.brush.metric,
             stiffness_brush: settings.stiffness_brush,
+            correction_brush: settings.correction_brush,
             pressure: settings.pressure,
             orientation: settings.orientation,
             wants_pivot: settings.wants_pivot,

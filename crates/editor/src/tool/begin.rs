@@ -4,6 +4,7 @@
 use super::constraint::Constraint;
 use super::context::Context;
 use super::control_box::ControlBox;
+use super::correct;
 use super::gesture::Gesture;
 use super::mode::{StrokeShape, ToolMode};
 use super::navigate::Navigate;
@@ -70,10 +71,9 @@ pub(crate) fn begin(context: &mut Context<'_>, pointer: Pointer, button: Button)
         return None;
     }
     match mode {
-        mode if modifiers.shift && mode.has_brush() && mode != ToolMode::PaintStiffness => {
-            Some(Box::new(SmoothStroke::begin(context, pointer)))
-        }
+        mode if modifiers.shift && mode.paints_roles() => Some(Box::new(SmoothStroke::begin(context, pointer))),
         ToolMode::PaintStiffness => Some(Box::new(StiffnessStroke::begin(context, pointer))),
+        ToolMode::Correct => Some(correct::begin(context, pointer, &pick)),
         ToolMode::Select => select(context, pointer, button, pick),
         ToolMode::Pose => Some(Box::new(PoseDrag::begin(context, pointer, pick)?)),
         _ if shape == StrokeShape::Component => {
@@ -139,8 +139,12 @@ fn grab(context: &mut Context<'_>, pointer: Pointer, part: GizmoPart) -> Begun {
 
 /// Begins a lasso or a box.
 fn outline(context: &mut Context<'_>, pointer: Pointer, shape: StrokeShape) -> Begun {
-    if context.settings.mode == ToolMode::PaintStiffness {
-        let why = "Stiffness is painted with the brush: press B for it.";
+    let why = match context.settings.mode {
+        ToolMode::PaintStiffness => Some("Stiffness is painted with the brush: press B for it."),
+        ToolMode::Correct => Some("The shape is corrected with the brush: press B for it."),
+        _ => None,
+    };
+    if let Some(why) = why {
         context.workspace.refuse(why);
         return None;
     }

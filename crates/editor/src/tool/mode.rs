@@ -18,12 +18,22 @@ pub enum ToolMode {
     Select,
     /// Turns a limb about its joint.
     Pose,
+    /// Corrects the shape by hand.
+    Correct,
 }
 
 impl ToolMode {
     /// Whether it paints with a brush.
     pub(crate) fn has_brush(self) -> bool {
         !matches!(self, Self::Select | Self::Pose)
+    }
+
+    /// Whether it paints what vertices do.
+    pub(crate) fn paints_roles(self) -> bool {
+        matches!(
+            self,
+            Self::PaintHandle | Self::PaintFree | Self::PaintFixed | Self::Erase
+        )
     }
 }
 

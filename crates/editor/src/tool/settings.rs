@@ -1,6 +1,7 @@
 //! The settings of tools: which one is chosen, how it selects vertices, how the gizmo is oriented.
 
 use super::brush::{BRUSH_RADIUS_PX, BrushSize};
+use super::correct::CorrectionBrush;
 use super::mode::{Depth, StrokeShape, ToolMode};
 use super::stiffness_brush::StiffnessBrush;
 use crate::document::{HandleId, Paint};
@@ -14,6 +15,7 @@ pub(crate) struct ToolSettings {
     pub(crate) depth: Depth,
     pub(crate) brush: BrushSize,
     pub(crate) stiffness_brush: StiffnessBrush,
+    pub(crate) correction_brush: CorrectionBrush,
     /// How hard a pen presses, 0 to 1; `None` until the system reports it.
     pub(crate) pressure: Option<f64>,
     pub(crate) gizmo_mode: GizmoMode,

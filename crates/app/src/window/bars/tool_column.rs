@@ -27,6 +27,7 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
         (ToolMode::Select, Glyph::SquareDashedMousePointer, "Select"),
         (ToolMode::PaintStiffness, Glyph::Bone, "Stiffness"),
         (ToolMode::Pose, Glyph::PersonStanding, "Pose"),
+        (ToolMode::Correct, Glyph::Brush, "Correct"),
     ]
     .map(|(tool, glyph, label)| (Command::SetTool(tool), chosen == tool, glyph, label));
     let modes = [

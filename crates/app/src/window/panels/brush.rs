@@ -2,8 +2,8 @@
 
 use eframe::egui::{self, Color32, DragValue, RichText, Slider};
 use pliant_editor::{
-    BrushMetric, Command, Depth, Editor, STIFFNESS_RANGE, StiffnessAction, StiffnessBrush, StrokeShape, Symmetry,
-    ToolMode, stiffness_colour,
+    BrushMetric, Command, Correction, CorrectionBrush, Depth, Editor, STIFFNESS_RANGE, StiffnessAction, StiffnessBrush,
+    StrokeShape, Symmetry, ToolMode, stiffness_colour,
 };
 
 use crate::window::widgets::command_button::{choices, command_button, command_choice};
@@ -39,6 +39,10 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
         .num_columns(2)
         .spacing([8.0, 4.0])
         .show(ui, |ui| symmetry_row(ui, view.symmetry, commands));
+    if view.tool == ToolMode::Correct {
+        ui.add_space(4.0);
+        correction(ui, &view.correction_brush, commands);
+    }
     if view.tool == ToolMode::PaintStiffness {
         ui.add_space(4.0);
         stiffness(ui, editor, &view.stiffness_brush, view.pressure, commands);
@@ -124,6 +128,52 @@ fn symmetry_row(ui: &mut egui::Ui, symmetry: Symmetry, commands: &mut Outbox) {
     ui.end_row();
 }
 
+fn correction(ui: &mut egui::Ui, brush: &CorrectionBrush, commands: &mut Outbox) {
+    let mut changed = *brush;
+    const CORRECTIONS: [(Correction, &str, &str); 3] = [
+        (
+            Correction::Smooth,
+            "Smooth",
+            "Takes bumps and creases away, and keeps the volume. So does any correction with Shift held.",
+        ),
+        (
+            Correction::Relax,
+            "Relax",
+            "Evens the triangles out within the surface, which stays where it is.",
+        ),
+        (
+            Correction::Grab,
+            "Grab",
+            "Takes the surface along with the pointer, and keeps the volume.",
+        ),
+    ];
+    if let Some(correction) = choices(ui, brush.correction, &CORRECTIONS) {
+        changed.correction = correction;
+    }
+    if changed.correction != Correction::Grab {
+        egui::Grid::new("correction")
+            .num_columns(2)
+            .spacing([8.0, 4.0])
+            .show(ui, |ui| {
+                share_row(ui, "Strength", &mut changed.strength, "How far one dab goes.")
+            });
+    }
+    if changed != *brush {
+        commands.push(Command::SetCorrection(changed));
+    }
+}
+
+/// A share from 0 to 1.
+fn share_row(ui: &mut egui::Ui, name: &str, value: &mut f64, hover: &str) {
+    let label = row_label(ui, name);
+    let slider = number_field(ui, value, |ui, value| {
+        let slider = Slider::new(value, 0.0..=1.0).fixed_decimals(2);
+        ui.add(slider.update_while_editing(false))
+    });
+    slider.labelled_by(label.id).on_hover_text(hover);
+    ui.end_row();
+}
+
 fn stiffness(ui: &mut egui::Ui, editor: &Editor, brush: &StiffnessBrush, pressure: Option<f64>, commands: &mut Outbox) {
     let mut changed = *brush;
     const ACTIONS: [(StiffnessAction, &str, &str); 4] = [
@@ -191,13 +241,7 @@ fn stiffness_rows(ui: &mut egui::Ui, brush: &mut StiffnessBrush) {
                     "0 ends at a hard rim, 1 falls off from the middle.",
                 ),
             ] {
-                let label = row_label(ui, name);
-                let slider = number_field(ui, value, |ui, value| {
-                    let slider = Slider::new(value, 0.0..=1.0).fixed_decimals(2);
-                    ui.add(slider.update_while_editing(false))
-                });
-                slider.labelled_by(label.id).on_hover_text(hover);
-                ui.end_row();
+                share_row(ui, name, value, hover);
             }
         });
 }

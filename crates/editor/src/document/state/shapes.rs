@@ -61,6 +61,19 @@ impl Document {
         }
     }
 
+    /// Changes the present shape, displacements from the rest shape, by hand. It is kept: the next drag begins from it.
+    pub(crate) fn correct(&mut self, change: impl FnOnce(&mut [DVec3])) {
+        let mut from_rest = self.content.from_rest.to_vec();
+        change(&mut from_rest);
+        self.bend(from_rest);
+        let controls = self.moved_controls().cloned();
+        let weights = self.example_weights().to_vec();
+        let content = &mut self.content;
+        content.settled = true;
+        let kept = KeptShape::of(&content.handles, controls, &weights, &content.from_rest);
+        content.kept = Some(Arc::new(kept));
+    }
+
     /// Shows a shape that the handles have brought about; `from_file` is its sum with the rest shape.
     pub(crate) fn show(&mut self, from_rest: Arc<Vec<DVec3>>, from_file: Arc<Vec<DVec3>>) {
         (self.content.from_rest, self.content.from_file) = (from_rest, from_file);

@@ -1,0 +1,26 @@
+//! Corrections by hand where a method's shape is not what one wants, such as armpits and creases: smooth, relax, grab.
+//!
+//! A stroke changes the shape that is seen, which the next drags carry along (see `document/kept_shape`).
+
+mod brush;
+mod grab;
+mod kelvinlet;
+mod smooth;
+
+use super::context::Context;
+use super::gesture::Gesture;
+use crate::input::Pointer;
+use crate::view::Pick;
+pub use brush::{Correction, CorrectionBrush};
+
+/// Begins a stroke at a point of the surface; Shift smooths, whatever the brush does.
+pub(super) fn begin(context: &mut Context<'_>, pointer: Pointer, pick: &Pick) -> Box<dyn Gesture> {
+    let mut brush = context.settings.correction_brush;
+    if pointer.modifiers.shift {
+        brush.correction = Correction::Smooth;
+    }
+    match brush.correction {
+        Correction::Smooth | Correction::Relax => Box::new(smooth::SmoothShape::begin(context, pointer, brush)),
+        Correction::Grab => Box::new(grab::GrabShape::begin(context, pointer, pick)),
+    }
+}
