@@ -36,7 +36,7 @@ pub use input::{Button, Key, Modifiers, Pointer};
 pub use jobs::{
     Alternative, BothSides, Compared, Comparison, ControlPlaces, Counts, Descent, Executor, Figures, InlineExecutor,
     Inspectable, Inspected, IntersectionPlace, Intersections, Job, JobDone, JobKind, JobOutcome, JobQueue, Region,
-    Revision, Rim, Running, Solved,
+    Revision, Rim, Running, Solved, Symmetry,
 };
 pub use scene_view::{ControlPoints, Cursor, Readout, SceneView};
 pub use selection::Selection;
@@ -50,4 +50,4 @@ pub use view::{
     Before, Camera, Clay, ControlShape, GizmoAxes, GizmoMode, GizmoOrientation, GizmoPart, GizmoShape, Look, NamedView,
     Orbit, Pick, Projection, Ray, Shading, UpAxis, gizmo_shapes, hit_gizmo,
 };
-pub use workspace::{RegionAction, SnapshotKey, StiffnessChange, Symmetry, stiffness_colour};
+pub use workspace::{RegionAction, SnapshotKey, StiffnessChange, stiffness_colour};

@@ -8,10 +8,9 @@ use glam::{DVec2, DVec3};
 use pliant_mesh::Model;
 
 use crate::document::{Handle, HandleId};
-use crate::jobs::{Counts, Descent, JobKind};
+use crate::jobs::{Counts, Descent, JobKind, Symmetry};
 use crate::tool::{BrushMetric, CorrectionBrush, Depth, StiffnessBrush, StrokeShape, ToolMode};
 use crate::view::{Camera, ControlShape, GizmoOrientation, GizmoShape, Look, Orbit};
-use crate::workspace::Symmetry;
 
 /// Everything the 3D view and the panels around it show.
 #[derive(Debug)]

@@ -1,8 +1,9 @@
 //! What the left button does on the surface, and with what.
 
 use super::entry::{Action, Entry, Scope, alt, always, character, item, shift, unless, when_open};
+use crate::jobs::Symmetry;
 use crate::tool::{BrushMetric, CorrectionBrush, Depth, SizeBrush, StiffnessBrush, StrokeShape, ToolMode};
-use crate::workspace::{Symmetry, set_symmetry};
+use crate::workspace::set_symmetry;
 
 /// The factor by which a key sizes the brush.
 const BRUSH_STEP: f64 = 1.2;

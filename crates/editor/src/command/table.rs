@@ -10,9 +10,10 @@ use super::entry::{Action, Entry, Reason, Scope, State};
 use super::shortcut::Shortcut;
 use super::{controls, document, examples, handle, look, object, paint, pose, region, transform, view};
 use crate::document::{HandleId, HandleTransform, ObjectAction, PivotPlace, Reach, Tips};
+use crate::jobs::Symmetry;
 use crate::tool::{BrushMetric, Context, CorrectionBrush, Depth, Gesture, StiffnessBrush, StrokeShape, ToolMode};
 use crate::view::{Before, Clay, GizmoMode, GizmoOrientation, NamedView, Orbit, Shading, UpAxis};
-use crate::workspace::{RegionAction, StiffnessChange, Symmetry};
+use crate::workspace::{RegionAction, StiffnessChange};
 
 /// A command as a menu or the palette lists it.
 #[derive(Clone, PartialEq, Debug)]

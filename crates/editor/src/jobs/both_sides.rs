@@ -2,6 +2,18 @@
 
 use pliant_mesh::{Bvh, Cancel, Cancelled, Counterparts, MirrorPlane, Model, Progress, SurfaceVertex, symmetry_plane};
 
+/// Across which plane both sides are painted at once.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
+pub enum Symmetry {
+    /// Across none: each side by itself.
+    #[default]
+    None,
+    /// The plane that the shape has.
+    Found,
+    /// Across an axis of the world (0, 1, 2 for x, y, z), through the model's middle.
+    Axis(usize),
+}
+
 /// Both sides of a plane.
 #[derive(Debug)]
 pub struct BothSides {

@@ -20,7 +20,7 @@ mod solving;
 mod work;
 
 pub use alternative::Alternative;
-pub use both_sides::BothSides;
+pub use both_sides::{BothSides, Symmetry};
 pub(crate) use bound_controls::BoundControls;
 pub use compared::{Compared, Figures};
 pub use comparison::Comparison;

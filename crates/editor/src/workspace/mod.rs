@@ -50,5 +50,4 @@ pub(crate) use snapshot::WorkspaceSnapshot;
 pub(crate) use state::Workspace;
 pub use stiffness::StiffnessChange;
 pub(crate) use stiffness::{change_stiffness, clear_stiffness, set_stiffness};
-pub use symmetry::Symmetry;
 pub(crate) use symmetry::{set_symmetry, twin_across};

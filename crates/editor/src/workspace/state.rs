@@ -11,11 +11,10 @@ use super::colour_revisions::Colours;
 use super::control_selection::ControlSelection;
 use super::mirror_request::Mirroring;
 use super::selection::HandleSelection;
-use super::symmetry::Symmetry;
 use crate::document::{
     Aspect, Document, HISTORY_BYTES, Handle, HandleId, History, Transaction, Version, Versions, VertexAccess,
 };
-use crate::jobs::{BothSides, Computed, Descent, Executor, Intersections, Jobs, Revision};
+use crate::jobs::{BothSides, Computed, Descent, Executor, Intersections, Jobs, Revision, Symmetry};
 use crate::view::{Pick, Picking, View};
 
 /// The document and what follows from it.

@@ -11,19 +11,7 @@ use super::mirror::{mirror_plane, rest_bvh};
 use super::painting::members;
 use super::state::Workspace;
 use crate::document::{HandleId, Paint};
-use crate::jobs::{BothSides, JobOutcome};
-
-/// Across which plane both sides are painted at once.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
-pub enum Symmetry {
-    /// Across none: each side by itself.
-    #[default]
-    None,
-    /// The plane that the shape has.
-    Found,
-    /// Across an axis of the world (0, 1, 2 for x, y, z), through the model's middle.
-    Axis(usize),
-}
+use crate::jobs::{BothSides, JobOutcome, Symmetry};
 
 impl Workspace {
     /// What is done on both sides of, once it is found.

@@ -11,7 +11,7 @@ use crate::window::widgets::outbox::Outbox;
 pub const WIDTH: f32 = 68.0;
 
 /// The heights that tiles may have: an icon alone, and an icon with its label and air.
-const HEIGHTS: [f32; 2] = [30.0, 54.0];
+const HEIGHTS: [f32; 2] = [22.0, 54.0];
 
 /// Space between two tiles.
 const GAP: f32 = 2.0;
