@@ -23,6 +23,9 @@ use crate::workspace::Workspace;
 /// grows.
 const BACK: f64 = 1.06;
 
+/// How often one dab filters: once is hardly seen.
+const ROUNDS: usize = 3;
+
 /// A stroke that goes on.
 #[derive(Debug)]
 pub(super) struct SmoothShape {
@@ -87,7 +90,7 @@ impl SmoothShape {
                 Correction::Relax => &[1.0],
                 Correction::Smooth | Correction::Grab => &[1.0, -BACK],
             };
-            for way in ways {
+            for way in ways.repeat(ROUNDS) {
                 let stepped = met.iter().map(|&(vertex, firmness)| {
                     let own = at(&positions, shape, vertex);
                     let mean = mean_of_ring(&model, vertex, |v| at(&positions, shape, v));
