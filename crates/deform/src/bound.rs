@@ -236,7 +236,15 @@ impl Bound {
     pub(crate) fn put_motions(&mut self, motions: Vec<Motion>) {
         if self.solve == Solve::Direct || motions != self.motions {
             self.iteration = 0;
+            if let Some(rigid) = &mut self.rigid {
+                rigid.bound.iteration = 0;
+            }
         }
+        self.motions = motions;
+    }
+
+    /// Sets motions that another solve has found and goes on finding: they count as the same targets.
+    pub(crate) fn follow(&mut self, motions: Vec<Motion>) {
         self.motions = motions;
     }
 

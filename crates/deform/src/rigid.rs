@@ -215,7 +215,7 @@ impl RigidParts {
             all.push(fit.map_or(Motion::default(), |fit| fit.motion_of(&part.handle)));
         }
         let of_parts = all[motions.len()..].to_vec();
-        self.bound.put_motions(all);
+        self.bound.follow(all);
         let step = self.bound.step(displacements)?;
         // A method that only fits handles bends the parts a little.
         for (part, motion) in self.parts.iter().zip(&of_parts) {
