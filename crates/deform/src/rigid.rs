@@ -1,6 +1,6 @@
 //! Parts of infinite stiffness: each moves as one body, by every method.
 //!
-//! A method is bound twice. First the parts are as stiff as paint can be, which tells where each of them goes: the rigid
+//! A method is bound twice. First the parts are very stiff, which tells where each of them goes: the rigid
 //! motion that fits its vertices best [Hor87]. Then each part is a handle with that motion, so that it keeps its shape to
 //! rounding and what is around it joins it as it joins any handle.
 
@@ -13,8 +13,10 @@ use crate::numerical::rigid_fit::RigidMotion;
 use crate::sparse::refactorisation::Refactorisation;
 use crate::{BindError, Bound, Budget, Ordering, Problem, Role, SolveError, Step, Warning};
 
-/// How stiff the parts are while their motions are looked for.
-const FIRM: f64 = 1e3;
+/// How stiff the parts are while their motions are looked for. The stiffer, the slower iterative methods converge: on a
+/// bar ARAP takes 76 steps at 30, 129 at 100 and 550 at 1000, and the parts go up to 0.5%, 0.2% and 0.02% of their way
+/// elsewhere than at 10,000.
+const FIRM: f64 = 1e2;
 
 /// The most parts: every part takes the tables of a handle.
 pub const MOST_RIGID_PARTS: usize = 256;
