@@ -12,10 +12,10 @@ use std::sync::OnceLock;
 use std::time::Instant;
 
 use common::{median, ms, name, one_handle, peak_mb, peers_edit, pool, read, stroke};
-use glam::DVec3;
+use glam::{DVec3, Vec3A};
 use pliant_deform::stages::Operator;
 use pliant_deform::{Bilaplacian, Method, Ordering};
-use pliant_mesh::{Cancel, Progress, vertex_normals};
+use pliant_mesh::{Cancel, Progress, SurfaceVertex, vertex_normals};
 use rayon::prelude::*;
 
 fn main() {
@@ -65,13 +65,23 @@ fn measure(file: &Path, threads: usize, clock: fn() -> f64) {
     let mut displacements = vec![DVec3::ZERO; count];
     let (solve_ms, _) = watch.of(times, || bound.step_by_back_substitution(&mut displacements).unwrap());
     let (frame_ms, _) = watch.of(60, || bound.step(&mut displacements).unwrap());
-    let mut drawn = Vec::new();
-    let (drawn_ms, ()) = watch.of(60, || model.drawn_positions(&displacements, &mut drawn));
-    let rest = model.surface.positions.par_iter();
-    let positions: Vec<DVec3> = rest.zip(&displacements).map(|(rest, moved)| *rest + *moved).collect();
+    // What the renderer's buffers take, made as the window makes it: in single precision, relative to a centre.
+    let rest = &model.surface.positions;
+    let centre = model.bounds().unwrap().centre();
+    let (mut positions, mut drawn): (Vec<Vec3A>, Vec<[f32; 3]>) = (Vec::new(), Vec::new());
+    let (drawn_ms, ()) = watch.of(60, || {
+        let moved = rest.par_iter().zip(&displacements).with_min_len(4096);
+        moved
+            .map(|(rest, moved)| (*rest + *moved - centre).as_vec3a())
+            .collect_into_vec(&mut positions);
+        let single = |v: SurfaceVertex| positions[v.index()].to_array();
+        model.spread(single, |_, v| v.map_or([0.0; 3], single), &mut drawn);
+    });
     let mut normals = Vec::new();
     let (normals_ms, ()) = watch.of(60, || {
         vertex_normals(&model.surface.triangles, &model.topology, &positions, &mut normals);
+        let single = |v: SurfaceVertex| normals[v.index()].to_array();
+        model.spread(single, |_, v| v.map_or([0.0; 3], single), &mut drawn);
     });
     // From here on another bound problem stands beside this one, as it does in the window while a stroke is bound.
     let peak_mb = peak_mb();

@@ -26,9 +26,9 @@ pub use bvh::{Bvh, Hit, SelfIntersection, SelfIntersections};
 pub use findings::{Example, Finding, FindingKind, Findings, Inspection, LocatedFinding, Named};
 pub use geodesics::{DistanceSearch, JOINT_RINGS, Joint, Shape, distances_along_surface, joint_of};
 pub use geometry::{
-    Bounds, Distortion, area_of_lengths, bounding_box, cotangents, edge_lengths, face_area, face_areas, face_gradient,
-    face_normal, is_without_area, mean_curvatures, mixed_corner_areas, mixed_voronoi_areas, signed_volume,
-    triangle_intersection, vertex_normals,
+    Bounds, Distortion, Vector3, area_of_lengths, bounding_box, cotangents, edge_lengths, face_area, face_areas,
+    face_gradient, face_normal, is_without_area, mean_curvatures, mixed_corner_areas, mixed_voronoi_areas,
+    signed_volume, triangle_intersection, vertex_normals,
 };
 pub use ids::{DrawnVertex, FileVertex, SurfaceVertex};
 pub use model::{Drawn, DrawnSet, Model, Object, SurfaceOfFile, WeldOptions};

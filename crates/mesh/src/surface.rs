@@ -28,6 +28,6 @@ impl Surface {
 
 /// The positions of a triangle's corners.
 #[inline]
-pub(crate) fn corners(triangle: [SurfaceVertex; 3], positions: &[DVec3]) -> [DVec3; 3] {
+pub(crate) fn corners<V: Copy>(triangle: [SurfaceVertex; 3], positions: &[V]) -> [V; 3] {
     triangle.map(|v| positions[v.index()])
 }

@@ -11,6 +11,7 @@ mod materials;
 mod normals;
 mod outlines;
 mod pose;
+mod relative;
 mod stage;
 mod wires;
 
@@ -31,6 +32,8 @@ pub use stage::{field, overlays, style, view};
 pub use wires::wires;
 
 use normals::NormalGroups;
+use pose::Kept;
+use relative::Relative;
 
 /// What stays the same while the shape changes.
 #[derive(Debug)]
@@ -42,7 +45,9 @@ pub struct Drawing {
     triangles: Vec<[u32; 3]>,
     welded: Vec<u32>,
     chunks: Arc<Chunks>,
+    relative: Relative,
     normals: NormalGroups,
+    kept: Kept,
     uvs: Option<Vec<[f32; 2]>>,
     second_uvs: Option<Vec<[f32; 2]>>,
     colours: Option<Vec<[u8; 4]>>,
@@ -53,7 +58,8 @@ impl Drawing {
     /// Prepares a file for drawing. Its images are decoded separately: see [`EncodedMaterials::decode`].
     pub fn new(model: &Model, mut appearance: Appearance) -> Self {
         materials::dim_bare(&mut appearance, model.drawn.triangle_count() as u32);
-        let centre = model.bounds().map_or(DVec3::ZERO, |bounds| bounds.centre());
+        let relative = Relative::of(model);
+        let centre = relative.centre;
         let materials = EncodedMaterials::new(&mut appearance);
         let groups: Vec<MaterialGroup> = appearance
             .groups
@@ -65,15 +71,17 @@ impl Drawing {
             .collect();
         let triangles = model.drawn_triangles().into_iter();
         let triangles: Vec<[u32; 3]> = triangles.map(|corners| corners.map(|vertex| vertex.0)).collect();
-        let relative = model.rest_positions().into_iter();
-        let positions: Vec<[f32; 3]> = relative.map(|position| pose::finite(position - centre)).collect();
+        let at_rest = model.rest_positions().into_iter();
+        let positions: Vec<[f32; 3]> = at_rest.map(|position| pose::finite(position - centre)).collect();
         let chunks = Chunks::new(&positions, &triangles, &groups, &materials.without_images());
         Self {
             centre,
             materials,
             welded: welded(model),
             chunks: Arc::new(chunks),
-            normals: NormalGroups::of(model, &triangles, appearance.normals),
+            normals: NormalGroups::of(model, &relative, &triangles, appearance.normals),
+            relative,
+            kept: Kept::default(),
             uvs: appearance.uvs,
             second_uvs: appearance.second_uvs,
             colours: appearance.colours,
@@ -91,6 +99,11 @@ impl Drawing {
     /// I + J, with J the map's Jacobian at each surface vertex ([`pliant_deform::Bound::jacobians`]).
     pub fn pose_turned(&self, model: &Model, displacements: &[DVec3], jacobians: &[Mat3]) -> Pose {
         Pose::of(model, displacements, Some(jacobians), self)
+    }
+
+    /// Takes back a pose whose numbers were uploaded, so that the next one is made in its memory.
+    pub fn put_back(&self, pose: Pose) {
+        self.kept.put_back(pose);
     }
 
     /// Uploads everything except the images, in the shape of `pose`.

@@ -4,26 +4,41 @@
 //! area-weighted mean over its triangles. The stored normal is rotated by the smallest rotation from the geometric
 //! normal at rest to the current one. So the file's normals are shown bit for bit at rest, and shading does not jump
 //! when a drag begins.
+//!
+//! Nearly all surface vertices have a single group, whose geometric normal is the surface's own.
 
 use std::collections::HashMap;
 use std::sync::OnceLock;
 
-use glam::{DVec3, Mat3, Quat, Vec3};
-use pliant_mesh::{DrawnVertex, Model};
+use glam::{DVec3, Mat3, Quat, Vec3, Vec3A};
+use pliant_mesh::{DrawnVertex, Model, SurfaceVertex, Vector3, vertex_normals};
 use rayon::prelude::*;
+
+use super::relative::Relative;
+
+/// Groups that one task takes.
+const CHUNK: usize = 1024;
 
 /// Which drawn vertices share a normal, and the triangles that it is computed from.
 #[derive(Debug)]
 pub struct NormalGroups {
-    /// The group of each drawn vertex.
+    /// The group of each drawn vertex: below the number of surface vertices all triangles at that vertex, from there on
+    /// a part of them.
     group_of_drawn: Vec<u32>,
-    /// Triangles of group `g`: `faces[offsets[g]..offsets[g + 1]]`, ascending, so that the order of sums is fixed.
-    offsets: Vec<u32>,
-    faces: Vec<u32>,
+    parts: Parts,
     /// Geometric normals at rest and stored normals of each group; `None` if the file stores no normals.
     rest: Option<RestNormals>,
     /// The normals of the groups that are shown at rest, once they were asked for.
     shown_at_rest: OnceLock<Vec<Vec3>>,
+}
+
+/// The groups of surface vertices that have several.
+#[derive(Debug, Default)]
+struct Parts {
+    /// Triangles of part `p`: `triangles[offsets[p]..offsets[p + 1]]`, in the file's order, so that the order of sums is
+    /// fixed.
+    offsets: Vec<u32>,
+    triangles: Vec<[SurfaceVertex; 3]>,
 }
 
 #[derive(Debug)]
@@ -35,77 +50,58 @@ struct RestNormals {
 impl NormalGroups {
     /// Groups the model's drawn vertices. `triangles` are in drawn vertices; `stored` has one world-space unit normal
     /// per drawn vertex.
-    pub fn of(model: &Model, triangles: &[[u32; 3]], stored: Option<Vec<[f32; 3]>>) -> Self {
+    pub fn of(model: &Model, relative: &Relative, triangles: &[[u32; 3]], stored: Option<Vec<[f32; 3]>>) -> Self {
         let (group_of_drawn, stored_of_group) = group_vertices(model, stored.as_deref());
-        let group_count = stored_of_group.len();
-        let mut offsets = vec![0_u32; group_count + 1];
-        let corner_groups = |corners: &[u32; 3]| corners.map(|v| group_of_drawn[v as usize] as usize);
-        for corners in triangles {
-            for group in corner_groups(corners) {
-                offsets[group + 1] += 1;
-            }
-        }
-        for group in 0..group_count {
-            offsets[group + 1] += offsets[group];
-        }
-        let mut next = offsets.clone();
-        let mut faces = vec![0_u32; 3 * triangles.len()];
-        for (face, corners) in triangles.iter().enumerate() {
-            for group in corner_groups(corners) {
-                faces[next[group] as usize] = face as u32;
-                next[group] += 1;
-            }
-        }
         let mut groups = Self {
+            parts: Parts::of(model, triangles, &group_of_drawn, stored_of_group.len()),
             group_of_drawn,
-            offsets,
-            faces,
             rest: None,
             shown_at_rest: OnceLock::new(),
         };
         if stored.is_some() {
-            let geometric = groups.geometric(&model.rest_positions(), triangles);
             groups.rest = Some(RestNormals {
-                geometric,
+                geometric: groups.geometric_at_rest(model, relative),
                 stored: stored_of_group,
             });
         }
         groups
     }
 
-    /// One unit normal per drawn vertex, for a shape with these positions of drawn vertices; `triangles` as in
-    /// [`NormalGroups::of`].
-    pub fn at(&self, positions: &[DVec3], triangles: &[[u32; 3]]) -> Vec<[f32; 3]> {
-        let mut normals = self.geometric(positions, triangles);
-        if let Some(rest) = &self.rest {
-            normals
-                .par_iter_mut()
-                .zip(&rest.geometric)
-                .zip(&rest.stored)
-                .for_each(|((normal, &from), &stored)| {
-                    // Without a stored normal, the vertex gets the geometric one.
-                    if stored != Vec3::ZERO {
-                        *normal = if *normal == from {
-                            stored
-                        } else {
-                            rotated(stored, from, *normal)
-                        };
-                    }
-                });
-        }
+    /// One unit normal per drawn vertex into `out`, for a shape with these [`Relative::positions`]. `normals` is
+    /// overwritten by the geometric ones of the groups.
+    pub fn at<V: Vector3>(&self, model: &Model, positions: &[V], normals: &mut Vec<V>, out: &mut Vec<[f32; 3]>) {
+        self.geometric(model, positions, normals);
+        let shown = |&group: &u32| {
+            let group = group as usize;
+            let normal = direction(normals[group]);
+            let Some(RestNormals { geometric, stored }) = &self.rest else {
+                return normal.to_array();
+            };
+            let (from, stored) = (geometric[group], stored[group]);
+            // Without a stored normal, the vertex gets the geometric one.
+            let shown = if stored == Vec3::ZERO {
+                normal
+            } else if normal == from {
+                stored
+            } else {
+                rotated(stored, from, normal)
+            };
+            shown.to_array()
+        };
         self.group_of_drawn
             .par_iter()
-            .map(|&group| normals[group as usize].to_array())
-            .collect()
+            .with_min_len(CHUNK)
+            .map(shown)
+            .collect_into_vec(out);
     }
 
     /// As [`NormalGroups::at`], from those at rest and the Jacobian J of the displacements at each surface vertex: a
     /// normal n becomes the direction of cof(I + J) n, with cof(F) = det(F) F⁻ᵀ, which has no pole where F is singular.
-    pub fn turned(&self, model: &Model, triangles: &[[u32; 3]], jacobians: &[Mat3]) -> Vec<[f32; 3]> {
+    pub fn turned(&self, model: &Model, relative: &Relative, jacobians: &[Mat3], out: &mut Vec<[f32; 3]>) {
         let at_rest = self.shown_at_rest.get_or_init(|| {
             let mut normals = match &self.rest {
                 Some(rest) => rest.geometric.clone(),
-                None => self.geometric(&model.rest_positions(), triangles),
+                None => self.geometric_at_rest(model, relative),
             };
             let stored = self.rest.iter().flat_map(|rest| &rest.stored);
             for (normal, stored) in normals.iter_mut().zip(stored) {
@@ -126,33 +122,88 @@ impl NormalGroups {
             let cofactor = Mat3::from_cols(y_axis.cross(z_axis), z_axis.cross(x_axis), x_axis.cross(y_axis));
             (cofactor * normal).try_normalize().unwrap_or(normal).to_array()
         };
-        self.group_of_drawn.par_iter().enumerate().map(turned).collect()
+        self.group_of_drawn
+            .par_iter()
+            .enumerate()
+            .with_min_len(CHUNK)
+            .map(turned)
+            .collect_into_vec(out);
     }
 
-    /// Area-weighted geometric normal of each group; the z axis if its triangles have no area.
-    fn geometric(&self, positions: &[DVec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
-        // f32 is enough from here on: a doubled area vector only gives a direction for shading.
-        let doubled_areas: Vec<Vec3> = triangles
-            .par_iter()
-            .map(|corners| {
-                let [a, b, c] = corners.map(|vertex| positions[vertex as usize]);
-                (b - a).cross(c - a).as_vec3()
-            })
-            .collect();
-        let scale = doubled_areas
-            .par_iter()
-            .map(|area| area.abs().max_element())
-            .reduce(|| 0.0, f32::max);
-        let scale = if scale.is_normal() { scale.recip() } else { 1.0 };
-        (0..self.offsets.len() - 1)
-            .into_par_iter()
-            .map(|group| {
-                let faces = &self.faces[self.offsets[group] as usize..self.offsets[group + 1] as usize];
-                let sum: Vec3 = faces.iter().map(|&face| doubled_areas[face as usize] * scale).sum();
-                sum.try_normalize().unwrap_or(Vec3::Z)
-            })
-            .collect()
+    /// The geometric normal of each group; none where its triangles have no area.
+    fn geometric<V: Vector3>(&self, model: &Model, positions: &[V], normals: &mut Vec<V>) {
+        vertex_normals(&model.surface.triangles, &model.topology, positions, normals);
+        self.parts.add_normals(positions, normals);
     }
+
+    fn geometric_at_rest(&self, model: &Model, relative: &Relative) -> Vec<Vec3> {
+        match relative.is_fine {
+            true => self.geometric_at_rest_in::<DVec3>(model, relative),
+            false => self.geometric_at_rest_in::<Vec3A>(model, relative),
+        }
+    }
+
+    fn geometric_at_rest_in<V: Vector3>(&self, model: &Model, relative: &Relative) -> Vec<Vec3> {
+        let (mut positions, mut normals) = (Vec::<V>::new(), Vec::new());
+        relative.positions(&model.surface.positions, |_| DVec3::ZERO, &mut positions);
+        self.geometric(model, &positions, &mut normals);
+        normals.into_iter().map(direction).collect()
+    }
+}
+
+impl Parts {
+    fn of(model: &Model, triangles: &[[u32; 3]], group_of_drawn: &[u32], group_count: usize) -> Self {
+        let whole = model.surface.positions.len();
+        let part_of = |drawn: u32| (group_of_drawn[drawn as usize] as usize).checked_sub(whole);
+        let mut offsets = vec![0_u32; group_count - whole + 1];
+        for part in triangles.iter().flatten().filter_map(|&drawn| part_of(drawn)) {
+            offsets[part + 1] += 1;
+        }
+        for part in 1..offsets.len() {
+            offsets[part] += offsets[part - 1];
+        }
+        let mut next = offsets.clone();
+        let mut listed = vec![[SurfaceVertex(0); 3]; offsets.last().map_or(0, |&end| end as usize)];
+        for corners in triangles {
+            for part in corners.iter().filter_map(|&drawn| part_of(drawn)) {
+                // A triangle with a corner without a position has no area.
+                let corner = |drawn| model.drawn.surface_vertex(DrawnVertex(drawn));
+                let [a, b, c] = corners.map(corner);
+                if let (Some(a), Some(b), Some(c)) = (a, b, c) {
+                    listed[next[part] as usize] = [a, b, c];
+                }
+                next[part] += 1;
+            }
+        }
+        Self {
+            offsets,
+            triangles: listed,
+        }
+    }
+
+    /// Puts the parts' normals behind those of the surface vertices.
+    fn add_normals<V: Vector3>(&self, positions: &[V], normals: &mut Vec<V>) {
+        let count = self.offsets.len() - 1;
+        normals.resize(positions.len() + count, V::ZERO);
+        let doubled_area = |corners: &[SurfaceVertex; 3]| {
+            let [a, b, c] = corners.map(|corner| positions[corner.index()]);
+            (b - a).cross(c - a)
+        };
+        let chunks = normals[positions.len()..].par_chunks_mut(CHUNK).enumerate();
+        chunks.for_each(|(chunk, normals)| {
+            for (normal, part) in normals.iter_mut().zip(chunk * CHUNK..) {
+                let own = &self.triangles[self.offsets[part] as usize..self.offsets[part + 1] as usize];
+                *normal = own.iter().map(doubled_area).sum();
+            }
+            V::normalize_all(normals);
+        });
+    }
+}
+
+/// A normal as it is shown; the z axis if there is none.
+fn direction(normal: impl Vector3) -> Vec3 {
+    let normal = Vec3::from(normal.single());
+    if normal == Vec3::ZERO { Vec3::Z } else { normal }
 }
 
 /// Rotates `stored` by the smallest rotation from one geometric normal to another.
@@ -165,25 +216,47 @@ fn rotated(stored: Vec3, from: Vec3, to: Vec3) -> Vec3 {
 
 /// The group of each drawn vertex, and the stored normal of each group (zero if the file has none).
 fn group_vertices(model: &Model, stored: Option<&[[f32; 3]]>) -> (Vec<u32>, Vec<Vec3>) {
-    let vertex_count = model.drawn.vertex_count();
-    let mut group_of_drawn = Vec::with_capacity(vertex_count);
-    let mut stored_of_group = Vec::new();
-    let mut group_of_key: HashMap<(u32, [u32; 3]), u32> = HashMap::with_capacity(vertex_count);
-    for (drawn, surface_vertex) in model.drawn.surface_vertices().enumerate() {
-        let normal = stored
-            .and_then(|normals| normals.get(drawn).copied())
-            .unwrap_or_default();
-        let mut new_group = || {
-            stored_of_group.push(Vec3::from(normal));
+    let whole = model.surface.positions.len();
+    let stored_at = |drawn: usize| {
+        let normal = stored.and_then(|normals| normals.get(drawn).copied());
+        normal.map_or(Vec3::ZERO, Vec3::from)
+    };
+    // The first drawn vertex of each surface vertex, and whether the others have its stored normal.
+    let mut first = vec![u32::MAX; whole];
+    let mut is_one = vec![true; whole];
+    let surface_vertices = || model.drawn.surface_vertices().enumerate();
+    for (drawn, surface) in surface_vertices() {
+        let Some(surface) = surface.map(SurfaceVertex::index) else {
+            continue;
+        };
+        if first[surface] == u32::MAX {
+            first[surface] = drawn as u32;
+        }
+        is_one[surface] &= same_bits(stored_at(first[surface] as usize), stored_at(drawn));
+    }
+    let stored_of_surface = first.iter().zip(&is_one);
+    let mut stored_of_group: Vec<Vec3> = stored_of_surface
+        .map(|(&drawn, &is_one)| if is_one { stored_at(drawn as usize) } else { Vec3::ZERO })
+        .collect();
+    let mut part_of_key: HashMap<(u32, [u32; 3]), u32> = HashMap::new();
+    let group_of_drawn = surface_vertices().map(|(drawn, surface)| {
+        let own = stored_at(drawn);
+        let mut new_part = || {
+            stored_of_group.push(own);
             stored_of_group.len() as u32 - 1
         };
-        let group = match surface_vertex {
-            Some(surface) => *group_of_key
-                .entry((surface.0, normal.map(f32::to_bits)))
-                .or_insert_with(new_group),
-            None => new_group(),
-        };
-        group_of_drawn.push(group);
-    }
+        match surface {
+            Some(surface) if is_one[surface.index()] => surface.0,
+            Some(surface) => *part_of_key
+                .entry((surface.0, own.to_array().map(f32::to_bits)))
+                .or_insert_with(new_part),
+            None => new_part(),
+        }
+    });
+    let group_of_drawn = group_of_drawn.collect();
     (group_of_drawn, stored_of_group)
+}
+
+fn same_bits(one: Vec3, other: Vec3) -> bool {
+    one.to_array().map(f32::to_bits) == other.to_array().map(f32::to_bits)
 }

@@ -1,14 +1,19 @@
 //! One shape, converted for the renderer.
 
-use glam::{DVec3, Mat3};
-use pliant_mesh::Model;
+use std::sync::{Mutex, PoisonError};
+
+use glam::{DVec3, Mat3, Vec3A};
+use pliant_mesh::{Model, Vector3};
 use pliant_render::{ChunkBounds, ShapeData};
 use rayon::prelude::*;
 
 use super::Drawing;
 
+/// Poses that wait to be used again: one is in the renderer's hands while the next is made.
+const MOST_SPARE: usize = 2;
+
 /// Positions and normals of the drawn vertices, rounded to f32 after subtracting the drawing's centre.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Pose {
     /// Positions relative to the drawing's centre.
     pub positions: Vec<[f32; 3]>,
@@ -18,25 +23,86 @@ pub struct Pose {
     pub bounds: Vec<ChunkBounds>,
 }
 
+/// Memory that poses are made in, kept from frame to frame: mapping it anew takes longer than filling it.
+#[derive(Debug, Default)]
+pub(super) struct Kept {
+    scratch: Mutex<Scratch>,
+    spare: Mutex<Vec<Pose>>,
+}
+
+/// What a pose is made from, in the precision that the drawing needs.
+#[derive(Debug, Default)]
+struct Scratch {
+    single: Buffers<Vec3A>,
+    double: Buffers<DVec3>,
+}
+
+/// Of each surface vertex, and of normals' groups beyond.
+#[derive(Debug)]
+struct Buffers<V> {
+    positions: Vec<V>,
+    normals: Vec<V>,
+}
+
+impl<V> Default for Buffers<V> {
+    fn default() -> Self {
+        Self {
+            positions: Vec::new(),
+            normals: Vec::new(),
+        }
+    }
+}
+
+impl Kept {
+    /// Takes a pose that is not needed any more.
+    pub fn put_back(&self, pose: Pose) {
+        let mut spare = self.spare.lock().unwrap_or_else(PoisonError::into_inner);
+        if spare.len() < MOST_SPARE {
+            spare.push(pose);
+        }
+    }
+}
+
 impl Pose {
     pub(super) fn of(model: &Model, displacements: &[DVec3], jacobians: Option<&[Mat3]>, drawing: &Drawing) -> Self {
-        let (centre, chunks) = (drawing.centre, &drawing.chunks);
-        let mut world = Vec::new();
-        model.drawn_positions(displacements, &mut world);
-        let normals = match jacobians {
-            Some(jacobians) => drawing.normals.turned(model, &drawing.triangles, jacobians),
-            None => drawing.normals.at(&world, &drawing.triangles),
-        };
-        let positions: Vec<[f32; 3]> = world.par_iter().map(|&position| finite(position - centre)).collect();
-        let bounds = (0..chunks.count())
-            .into_par_iter()
-            .map(|chunk| chunks.bounds(chunk, &positions))
-            .collect();
-        Self {
-            positions,
-            normals,
-            bounds,
+        let Kept { scratch, spare } = &drawing.kept;
+        let pose = spare.lock().unwrap_or_else(PoisonError::into_inner).pop();
+        let mut pose = pose.unwrap_or_default();
+        // Another thread that poses the same drawing has it: the side view, or a picture that is saved.
+        let mut own = Scratch::default();
+        let mut kept = scratch.try_lock().ok();
+        let Scratch { single, double } = kept.as_deref_mut().unwrap_or(&mut own);
+        match drawing.relative.is_fine {
+            true => pose.fill(model, displacements, jacobians, drawing, double),
+            false => pose.fill(model, displacements, jacobians, drawing, single),
         }
+        pose
+    }
+
+    fn fill<V: Vector3>(
+        &mut self,
+        model: &Model,
+        displacements: &[DVec3],
+        jacobians: Option<&[Mat3]>,
+        drawing: &Drawing,
+        Buffers { positions, normals }: &mut Buffers<V>,
+    ) {
+        let (relative, chunks) = (&drawing.relative, &drawing.chunks);
+        relative.positions(&model.surface.positions, |v| displacements[v], positions);
+        let moved = |stray: DVec3, by: DVec3| finite(stray + by - relative.centre);
+        model.spread(
+            |v| relative.in_world_units(positions[v.index()]),
+            |stray, v| moved(stray, v.map_or(DVec3::ZERO, |v| displacements[v.index()])),
+            &mut self.positions,
+        );
+        match jacobians {
+            Some(jacobians) => drawing.normals.turned(model, relative, jacobians, &mut self.normals),
+            None => drawing.normals.at(model, positions, normals, &mut self.normals),
+        }
+        (0..chunks.count())
+            .into_par_iter()
+            .map(|chunk| chunks.bounds(chunk, &self.positions))
+            .collect_into_vec(&mut self.bounds);
     }
 
     /// The shape as the renderer's type.

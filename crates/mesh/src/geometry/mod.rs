@@ -10,6 +10,7 @@ mod gradient;
 mod normals;
 mod triangle_distance;
 mod triangle_intersection;
+mod vector3;
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -21,6 +22,7 @@ pub use gradient::face_gradient;
 pub use normals::vertex_normals;
 pub(crate) use triangle_distance::distance_to_triangle;
 pub use triangle_intersection::triangle_intersection;
+pub use vector3::Vector3;
 
 /// An axis-aligned box, `min <= max` in each coordinate.
 #[derive(Clone, Copy, Debug, PartialEq)]

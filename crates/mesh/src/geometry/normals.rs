@@ -6,10 +6,10 @@
 //! diagonals. A vertex with six neighbours costs two cross products, and neither its own position nor any triangle is
 //! looked up. Lengths are computed many at a time, by loops compiled for the machine's vectors.
 
-use glam::DVec3;
 use pulp::{Simd, WithSimd};
 use rayon::prelude::*;
 
+use crate::geometry::vector3::{BLOCK, Vector3};
 use crate::surface::corners;
 use crate::vectors::vectors;
 use crate::{FanKind, SurfaceVertex, Topology};
@@ -17,18 +17,18 @@ use crate::{FanKind, SurfaceVertex, Topology};
 /// Vertices that one task takes.
 const CHUNK: usize = 2048;
 
-/// Vertices whose lengths are taken together.
-const BLOCK: usize = 64;
-
 /// The unit normal of every vertex into `out`: the mean of its triangles' normals weighted by area. Where none has an
 /// area it is zero; where they cancel it may be any direction.
-pub fn vertex_normals(
+///
+/// In single precision a normal is off by the rounding of the positions over the length of an edge, and edges should be
+/// between 1e-9 and 1e9 long, because the square of an area is taken.
+pub fn vertex_normals<V: Vector3>(
     triangles: &[[SurfaceVertex; 3]],
     topology: &Topology,
-    positions: &[DVec3],
-    out: &mut Vec<DVec3>,
+    positions: &[V],
+    out: &mut Vec<V>,
 ) {
-    out.resize(positions.len(), DVec3::ZERO);
+    out.resize(positions.len(), V::ZERO);
     let around = Around {
         triangles,
         topology,
@@ -46,22 +46,22 @@ pub fn vertex_normals(
 
 /// What normals are gathered from.
 #[derive(Clone, Copy)]
-struct Around<'a> {
+struct Around<'a, V> {
     triangles: &'a [[SurfaceVertex; 3]],
     topology: &'a Topology,
-    positions: &'a [DVec3],
+    positions: &'a [V],
 }
 
 /// The unit normals of the vertices from `first` on.
 ///
 /// A closure would be compiled without the vector instructions that its caller is compiled for.
-struct Fill<'a> {
-    around: Around<'a>,
+struct Fill<'a, V> {
+    around: Around<'a, V>,
     first: usize,
-    normals: &'a mut [DVec3],
+    normals: &'a mut [V],
 }
 
-impl WithSimd for Fill<'_> {
+impl<V: Vector3> WithSimd for Fill<'_, V> {
     type Output = ();
 
     #[inline(always)]
@@ -70,34 +70,21 @@ impl WithSimd for Fill<'_> {
     }
 }
 
-impl Around<'_> {
+impl<V: Vector3> Around<'_, V> {
     /// The unit normals of the vertices from `first` on.
     #[inline(always)]
-    fn fill(self, first: usize, normals: &mut [DVec3]) {
-        let mut sums = [[0.0; BLOCK]; 3];
-        for (block, normals) in normals.chunks_mut(BLOCK).enumerate() {
-            for i in 0..normals.len() {
-                let sum = self.sum(SurfaceVertex((first + block * BLOCK + i) as u32));
-                (sums[0][i], sums[1][i], sums[2][i]) = (sum.x, sum.y, sum.z);
+    fn fill(self, first: usize, normals: &mut [V]) {
+        for (normals, first) in normals.chunks_mut(BLOCK).zip((first..).step_by(BLOCK)) {
+            for (normal, v) in normals.iter_mut().zip(first..) {
+                *normal = self.sum(SurfaceVertex(v as u32));
             }
-            let mut shrink = [0.0; BLOCK];
-            for i in 0..BLOCK {
-                let square = sums[0][i] * sums[0][i] + sums[1][i] * sums[1][i] + sums[2][i] * sums[2][i];
-                let inverse = 1.0 / square.sqrt();
-                shrink[i] = if inverse.is_finite() { inverse } else { 0.0 };
-            }
-            for (i, normal) in normals.iter_mut().enumerate() {
-                *normal = match shrink[i] {
-                    0.0 => DVec3::ZERO,
-                    shrink => DVec3::new(sums[0][i], sums[1][i], sums[2][i]) * shrink,
-                };
-            }
+            V::normalize_all(normals);
         }
     }
 
     /// Twice the area-weighted normals of the triangles at `v`.
     #[inline(always)]
-    fn sum(self, v: SurfaceVertex) -> DVec3 {
+    fn sum(self, v: SurfaceVertex) -> V {
         match self.topology.ring_and_fan(v) {
             (FanKind::Closed, ring, [first, rest @ ..]) => self.polygon(ring[usize::from(*first)], ring, rest),
             (FanKind::Open, ring, fan) => self.polygon(v, ring, fan),
@@ -107,13 +94,13 @@ impl Around<'_> {
 
     /// Twice the area vector of the polygon from `corner` along `chain` and back; `chain` has places in `ring`.
     #[inline(always)]
-    fn polygon(self, corner: SurfaceVertex, ring: &[SurfaceVertex], chain: &[u8]) -> DVec3 {
+    fn polygon(self, corner: SurfaceVertex, ring: &[SurfaceVertex], chain: &[u8]) -> V {
         let at = |place: u8| self.positions[ring[usize::from(place)].index()];
         let Some((&first, rest)) = chain.split_first() else {
-            return DVec3::ZERO;
+            return V::ZERO;
         };
         let (corner, mut before) = (self.positions[corner.index()], at(first));
-        let mut sum = DVec3::ZERO;
+        let mut sum = V::ZERO;
         let pairs = rest.chunks_exact(2);
         let last = pairs.remainder().first();
         for pair in pairs {
@@ -128,7 +115,7 @@ impl Around<'_> {
     }
 
     /// The same sum, whatever the triangles look like.
-    fn triangles(self, v: SurfaceVertex) -> DVec3 {
+    fn triangles(self, v: SurfaceVertex) -> V {
         let doubled_area = |t: u32| {
             let [a, b, c] = corners(self.triangles[t as usize], self.positions);
             (b - a).cross(c - a)
@@ -139,6 +126,8 @@ impl Around<'_> {
 
 #[cfg(test)]
 mod tests {
+    use glam::{DVec3, Vec3A};
+
     use super::*;
     use crate::{face_area, face_normal, shapes};
 
@@ -165,6 +154,20 @@ mod tests {
                     cancels || normals[v].abs_diff_eq(expected, 1e-7),
                     "{class}: {} {expected}",
                     normals[v]
+                );
+            }
+            // In single precision the same, as far as it goes.
+            let centre = model.bounds().unwrap().centre();
+            let single: Vec<Vec3A> = surface.positions.iter().map(|p| (*p - centre).as_vec3a()).collect();
+            let mut rounded = Vec::new();
+            vertex_normals(&surface.triangles, &model.topology, &single, &mut rounded);
+            for v in 0..normals.len() {
+                let cancels = sums[v].length() <= 1e-4 * areas[v].max(1e-6);
+                assert!(
+                    cancels || normals[v].abs_diff_eq(rounded[v].as_dvec3(), 1e-3),
+                    "{class}: {} {}",
+                    normals[v],
+                    rounded[v]
                 );
             }
         }

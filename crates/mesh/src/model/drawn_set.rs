@@ -237,7 +237,8 @@ impl Model {
     /// Where each drawn vertex stands at rest.
     pub fn rest_positions(&self) -> Vec<DVec3> {
         let mut out = Vec::new();
-        self.place(|_| DVec3::ZERO, &mut out);
+        let rest = &self.surface.positions;
+        self.spread(|v| rest[v.index()], |stray, _| stray, &mut out);
         out
     }
 
@@ -264,30 +265,39 @@ impl Model {
     /// Each drawn vertex's rest position plus the displacement of its surface vertex (`displacements`, one each),
     /// into `out`. Where the displacement is zero, and where there is no surface vertex, the rest position's own bits.
     pub fn drawn_positions(&self, displacements: &[DVec3], out: &mut Vec<DVec3>) {
-        let displacements = &displacements[..self.surface.positions.len()];
-        self.place(|v| displacements[v], out);
+        let rest = &self.surface.positions[..];
+        let displacements = &displacements[..rest.len()];
+        self.spread(
+            |v| displaced(rest[v.index()], displacements[v.index()]),
+            |stray, v| v.map_or(stray, |v| displaced(stray, displacements[v.index()])),
+            out,
+        );
     }
 
-    /// As [`Self::drawn_positions`].
+    /// For each drawn vertex what `of_surface` gives for its surface vertex, into `out`. A drawn vertex whose rest position
+    /// is not its surface vertex's to the bit, or that has none, gets what `of_stray` gives for that position.
     #[inline]
-    fn place(&self, displacement: impl Fn(usize) -> DVec3 + Sync, out: &mut Vec<DVec3>) {
+    pub fn spread<T: Copy + Default + Send>(
+        &self,
+        of_surface: impl Fn(SurfaceVertex) -> T + Sync,
+        of_stray: impl Fn(DVec3, Option<SurfaceVertex>) -> T + Sync,
+        out: &mut Vec<T>,
+    ) {
         let DrawnSet {
             surface_vertices,
             strays,
             ..
         } = &self.drawn;
-        let rest = &self.surface.positions[..];
-        out.resize(surface_vertices.len(), DVec3::ZERO);
+        out.resize(surface_vertices.len(), T::default());
         let chunks = out.par_chunks_mut(CHUNK).zip(surface_vertices.par_chunks(CHUNK));
         chunks.enumerate().for_each(|(chunk, (out, surface_vertices))| {
             for (moved, &v) in out.iter_mut().zip(surface_vertices) {
-                if let Some(&rest) = rest.get(v as usize) {
-                    *moved = displaced(rest, displacement(v as usize));
+                if let Some(v) = known(v) {
+                    *moved = of_surface(v);
                 }
             }
             for (place, stray) in strays.within(chunk * CHUNK, out.len()) {
-                let v = known(surface_vertices[place]);
-                out[place] = v.map_or(stray, |v| displaced(stray, displacement(v.index())));
+                out[place] = of_stray(stray, known(surface_vertices[place]));
             }
         });
     }

@@ -238,6 +238,7 @@ impl Viewport {
         let renderer = self.gpu.read();
         shown.surface.update_shape(&renderer, &posed.pose.data())?;
         shown.displacements = posed.displacements;
+        shown.drawing.put_back(posed.pose);
         if let Some(painted) = posed.painted {
             shown.surface.update_regions(&renderer, &painted.colours)?;
             shown.colours = Colours::Field(painted.field);
