@@ -11,6 +11,54 @@
 //! angles; `wrinkles` adds learnt details to the bi-Laplacian; `poisson` spreads the handles' turns and solves for what fits
 //! them, `laplacian` does so with differential coordinates, and `frames` solves for the turns first. `rbf`, `mls`,
 //! `embedded`, `lattice` and `cage` bend the space around points, connected or not (`space`).
+//!
+//! A bar whose one end is held while its other, the handle, is lifted:
+//!
+//! ```
+//! use glam::{DAffine3, DVec3};
+//! use pliant_deform::{Constraints, Loose, Method, Problem, Role};
+//! use pliant_mesh::{Cancel, Progress, shapes};
+//!
+//! let model = shapes::model(shapes::bar(10, 2, 2));
+//! let roles: Vec<Role> = (model.surface.positions.iter())
+//!     .map(|position| match position.x {
+//!         x if x < 1.5 => Role::Fixed,
+//!         x if x > 8.5 => Role::Handle(0),
+//!         _ => Role::Free,
+//!     })
+//!     .collect();
+//! let method = Method::from_name("arap").unwrap_or_default();
+//! let (progress, cancel) = (Progress::new(), Cancel::new());
+//! let problem = Problem {
+//!     surface: &model.surface,
+//!     topology: &model.topology,
+//!     roles: &roles,
+//!     handle_count: 1,
+//!     stiffness: &vec![1.0; roles.len()],
+//!     constraints: Constraints::default(),
+//!     loose: Loose::Follow,
+//!     method: &method,
+//!     attachments: &[],
+//!     revision: 0,
+//! };
+//! let ordering = method.ordering(&model.topology, &progress, &cancel)?;
+//! let mut bound = problem.bind(&ordering, &progress, &cancel)?;
+//!
+//! let lift = DVec3::new(0.0, 0.0, 3.0);
+//! bound.set_targets(&[DAffine3::from_translation(lift)])?;
+//! let mut displacements = vec![DVec3::ZERO; roles.len()];
+//! while !bound.step(&mut displacements)?.finished {}
+//!
+//! for ((position, role), displacement) in model.surface.positions.iter().zip(&roles).zip(&displacements) {
+//!     match role {
+//!         Role::Fixed => assert_eq!(*displacement, DVec3::ZERO),
+//!         Role::Handle(_) => assert_eq!(*displacement, lift),
+//!         Role::Free if position.x == 5.0 => assert!((displacement.z - 1.5).abs() < 0.2, "half way"),
+//!         Role::Free => {}
+//!     }
+//! }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod alternatives;
 mod arap;

@@ -3,6 +3,45 @@
 //!
 //! Everything happens through [`Editor::handle`]: the window, a test and a script send it [`Event`]s. What is to be
 //! shown is a [`SceneView`]; long work goes to the [`Executor`] that the application provides.
+//!
+//! A sphere is opened, a handle painted in the middle of the view and moved along x by typing, as a person does:
+//!
+//! ```
+//! use std::sync::Arc;
+//!
+//! use glam::DVec2;
+//! use pliant_editor::{
+//!     Button, Command, Editor, Event, InlineExecutor, Key, Modifiers, Pointer, ToolMode,
+//! };
+//! use pliant_mesh::shapes;
+//!
+//! let jobs = InlineExecutor::new();
+//! let mut editor = Editor::new(Box::new(jobs.clone()));
+//! let mut tell = |event| {
+//!     editor.handle(event);
+//!     while let Some(done) = jobs.run_next() {
+//!         editor.handle(Event::JobDone(done));
+//!     }
+//! };
+//! tell(Event::Viewport { size_px: DVec2::new(800.0, 600.0) });
+//! let model = Arc::new(shapes::model(shapes::icosphere(4)));
+//! tell(Event::Opened { model, name: "sphere".to_owned(), beginning: None });
+//!
+//! tell(Event::Command(Command::SetTool(ToolMode::PaintHandle)));
+//! let middle = Pointer { position_px: DVec2::new(400.0, 300.0), modifiers: Modifiers::NONE };
+//! tell(Event::PointerMoved(middle));
+//! tell(Event::PointerPressed(middle, Button::Primary));
+//! tell(Event::PointerReleased(middle, Button::Primary));
+//! for key in "gx0.2".chars().map(Key::Character).chain([Key::Enter]) {
+//!     tell(Event::Key(key, Modifiers::NONE));
+//! }
+//!
+//! let view = editor.view();
+//! assert!(view.counts.free > view.counts.handle && view.counts.handle > 0);
+//! let farthest = view.displacements.iter().map(|way| way.x).fold(0.0, f64::max);
+//! assert!((farthest - 0.2).abs() < 1e-9);
+//! assert_eq!(editor.document().handles()[0].affine().translation.x, 0.2);
+//! ```
 
 mod command;
 mod document;

@@ -4,6 +4,45 @@
 //! (`apply`), puts a pose of one mesh onto another (`transfer`), and writes all of a result or nothing (`saving`,
 //! [`files`]). It starts no threads: long loops run on the caller's rayon pool, and a [`Watch`](watch::Watch) tells the
 //! caller's other threads how far they are.
+//!
+//! `pliant apply` without its arguments: the upper edge of a strip is lifted, and the rest follows:
+//!
+//! ```
+//! use pliant_editor::Beginning;
+//! use pliant_engine::{Apply, apply, files::Staging, load, memory, watch::Watch};
+//! use pliant_mesh::WeldOptions;
+//!
+//! let folder = tempfile::tempdir()?;
+//! let [file, output] = ["strip.off", "bent.off"].map(|name| folder.path().join(name));
+//! let strip = "OFF\n6 4 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 0\n1 2 0\n\
+//!              3 0 1 3\n3 0 3 2\n3 2 3 5\n3 2 5 4\n";
+//! std::fs::write(&file, strip)?;
+//! let edit = r#"{
+//!     "version": 1,
+//!     "method": { "name": "bilaplacian" },
+//!     "fixed": { "vertices": [0, 1] },
+//!     "handles": [
+//!         { "name": "edge", "select": { "vertices": [4, 5] }, "transform": { "translation": [0, 0, 1] } }
+//!     ]
+//! }"#;
+//! let job = Apply {
+//!     file: &file,
+//!     edit: &Beginning::parse(edit)?,
+//!     edit_path: "edit.json".as_ref(),
+//!     output: &output,
+//!     report: None,
+//!     frames: None,
+//!     budget: memory::budget(),
+//!     morph: None,
+//! };
+//! let report = apply(&job, &Watch::default(), &Staging::default())?;
+//!
+//! assert_eq!((report.free_vertices, report.converged), (2, true));
+//! let bent = load(&output, &WeldOptions::default(), &Watch::default())?.model.rest_positions();
+//! assert_eq!([bent[0].z, bent[4].z], [0.0, 1.0]);
+//! assert!(bent[2].z > 0.0 && bent[2].z < 1.0);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod apply;
 pub mod control_mesh;

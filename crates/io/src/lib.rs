@@ -4,6 +4,41 @@
 //! [`Scene::save`] gives bytes back in which only the moved vertices' numbers differ, or the same shape as another
 //! kind of file. Bytes come in and go out; neighbours (a `.gltf`'s buffers, an `.obj`'s materials) are asked for
 //! through a [`Resolver`], so nothing here knows a path.
+//!
+//! One vertex of an OFF file is moved; all else in it stays as it was:
+//!
+//! ```
+//! use pliant_io::{Bytes, Format, Placement, Resolver, Save, SceneAndDrawn, read};
+//! use pliant_mesh::{Cancel, Progress};
+//!
+//! /// A file that needs no other.
+//! struct Alone;
+//!
+//! impl Resolver for Alone {
+//!     fn read(&self, uri: &str) -> Result<Bytes, String> {
+//!         Err(format!("there is no {uri}"))
+//!     }
+//! }
+//!
+//! let file = "OFF # a triangle\n3 1 0\n0 0 0\n1.50 0 0\n0 1 0\n3 0 1 2\n";
+//! let (progress, cancel) = (Progress::new(), Cancel::new());
+//! let SceneAndDrawn { scene, drawn } =
+//!     read(file.into(), Format::Off, "triangle.off", &Alone, &progress, &cancel)?;
+//! let mut positions = drawn.positions.clone();
+//! positions[2].y = 2.25;
+//! let save = Save {
+//!     drawn: &drawn,
+//!     positions: &positions,
+//!     format: Format::Off,
+//!     name: "triangle.off",
+//!     placement: Placement::SameFile,
+//! };
+//! let saved = scene.save(&save, &progress, &cancel)?;
+//!
+//! let expected = "OFF # a triangle\n3 1 0\n0 0 0\n1.50 0 0\n0 2.25 0\n3 0 1 2\n";
+//! assert_eq!(saved.files[0].bytes, expected.as_bytes());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod appearance;
 mod bytes;

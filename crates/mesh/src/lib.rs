@@ -7,6 +7,31 @@
 //!
 //! Long loops run on the rayon pool that the caller installed. How work is cut into pieces never depends on the
 //! number of threads, so results are the same bits whatever it is.
+//!
+//! A square of two triangles that don't share their vertices, welded into a surface:
+//!
+//! ```
+//! use glam::DVec3;
+//! use pliant_mesh::{Cancel, Drawn, DrawnVertex, Model, Progress, SurfaceVertex, WeldOptions, vertex_normals};
+//!
+//! let corner = |x, y| DVec3::new(x, y, 0.0);
+//! let positions = vec![
+//!     corner(0.0, 0.0), corner(1.0, 0.0), corner(1.0, 1.0),
+//!     corner(0.0, 0.0), corner(1.0, 1.0), corner(0.0, 1.0),
+//! ];
+//! let triangles = vec![[0, 1, 2].map(DrawnVertex), [3, 4, 5].map(DrawnVertex)];
+//! let drawn = Drawn::once(positions, triangles);
+//! let model = Model::weld(drawn, &WeldOptions::default(), &Progress::new(), &Cancel::new())?;
+//!
+//! assert_eq!(model.drawn.vertex_count(), 6);
+//! assert_eq!(model.surface.positions.len(), 4);
+//! assert_eq!(model.topology.components().len(), 1);
+//! assert_eq!(model.drawn.surface_vertex(DrawnVertex(3)), Some(SurfaceVertex(0)));
+//! let mut normals = Vec::new();
+//! vertex_normals(&model.surface.triangles, &model.topology, &model.surface.positions, &mut normals);
+//! assert_eq!(normals, [DVec3::Z; 4]);
+//! # Ok::<(), pliant_mesh::Cancelled>(())
+//! ```
 
 mod bvh;
 mod findings;

@@ -1,5 +1,9 @@
-//! Pliant for Python: numpy arrays or a file in, bent positions out. The package `pliant` re-exports what is here, and
-//! its docstrings and stubs (`python/pliant/__init__.pyi`) say it to those who write Python.
+#![doc = include_str!("../README.md")]
+//!
+//! # This crate
+//!
+//! What is here the package `pliant` re-exports, and its docstrings and stubs (`python/pliant/__init__.pyi`) say it to
+//! those who write Python.
 //!
 //! An edit is put together as the edit format has it ([`edit`]), so that methods, options, selections and refusals are
 //! the same; only the handles' transforms come later, with every step. Whatever takes long runs without Python's lock

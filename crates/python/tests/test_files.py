@@ -99,6 +99,16 @@ def test_files_that_are_none_are_refused_and_nothing_is_replaced(tmp_path):
     assert sorted(path.name for path in tmp_path.iterdir()) == ["broken.glb", "kept.glb"]
 
 
+def test_the_first_page_s_program_runs(tmp_path, monkeypatch):
+    page = (ROOT / "crates/python/README.md").read_text()
+    program = page.split("```python\n")[1].split("```")[0]
+    (tmp_path / "scan.glb").write_bytes((ASSETS / "creature.glb").read_bytes())
+    monkeypatch.chdir(tmp_path)
+    exec(compile(program, "README.md", "exec"), {})
+    rest, bent = pliant.load("scan.glb").vertices, pliant.load("bent.glb").vertices
+    assert np.abs(bent - rest).max() > 0.1
+
+
 def test_findings_are_sentences():
     assert all(finding.endswith(".") for finding in pliant.load(ASSETS / "creature.glb").findings)
     square = pliant.bind([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 3]], handles=[[0]])

@@ -10,6 +10,39 @@
 //! coordinates, for which f32 is too coarse. Depth is reversed: 1 at the near plane, 0 at infinity.
 //!
 //! Invariant: this crate knows no mesh type, no solver, no egui, no camera and no files.
+//!
+//! A triangle, drawn without a window:
+//!
+//! ```
+//! use glam::Vec3;
+//! use pliant_render::{Frame, Headless, Samples, Style, Surface, SurfaceData, View};
+//!
+//! # match Headless::new() {
+//! #     Err(error) => return Ok(println!("skipped: pictures ({error})")),
+//! #     Ok(_) => {}
+//! # }
+//! let mut headless = Headless::new()?;
+//! let triangle = SurfaceData {
+//!     positions: &[[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [0.0, 1.0, 0.0]],
+//!     normals: &[[0.0, 0.0, 1.0]; 3],
+//!     triangles: &[[0, 1, 2]],
+//!     ..Default::default()
+//! };
+//! let surface = Surface::new(&headless.renderer, &triangle)?;
+//! let eye = View::look_at(Vec3::new(0.0, 0.0, 4.0), Vec3::ZERO, Vec3::Y);
+//! let frame = Frame {
+//!     view: &View::perspective(0.8, 1.5, 0.01, eye),
+//!     style: &Style::default(),
+//!     surfaces: &[&surface],
+//!     grid: None,
+//!     overlays: &[],
+//! };
+//! let image = headless.renderer.draw_to_image([120, 80], Samples::Four, &frame)?;
+//!
+//! let (middle, corner) = (image.pixel(60, 40), image.pixel(0, 0));
+//! assert_ne!(middle, corner, "clay in the middle, the background in the corner");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod device;
 mod frame;
