@@ -15,7 +15,8 @@ use std::time::{Duration, Instant};
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, Rect};
 use egui_kittest::kittest::{NodeT, Queryable};
-use pliant_app::window::{AppDirectories, Source};
+use pliant_app::cli::{Console, run};
+use pliant_app::window::{AppDirectories, KeepOriginal, Source, original_name};
 use pliant_tests::Folder;
 use window_rig::Session;
 
@@ -28,6 +29,64 @@ fn begin(folder: &Folder) -> Option<Session> {
     ball("old/third.off", 1);
     folder.write("note.txt", "not a model");
     Session::begin_in(Source::File(first), AppDirectories::default())
+}
+
+#[test]
+fn a_file_is_opened_with_an_edit_and_saved_in_its_place() {
+    let folder = Folder::new();
+    let file = folder.write_mesh("ball.off", &pliant_mesh::shapes::icosphere(3));
+    let edit = r#"{
+        "version": 1,
+        "method": { "name": "bilaplacian" },
+        "fixed": { "slab": { "axis": "z", "from": 0, "to": 0.3 } },
+        "handles": [ {
+            "name": "top",
+            "select": { "slab": { "axis": "z", "from": 0.9, "to": 1 } },
+            "transform": { "translation": [0, 0, 0.5] }
+        } ]
+    }"#;
+    let edit = folder.write("ball.edit.json", edit);
+    let source = Source::of(Some(file.clone()), Some(edit.clone()));
+    let Some(mut session) = Session::begin_in(source, AppDirectories::default()) else {
+        return;
+    };
+    let view = session.harness.state().editor().view();
+    assert_eq!((view.handles.len(), &*view.handles[0].name), (1, "top"));
+    let moved = view.displacements.iter().map(|way| way.z).fold(0.0, f64::max);
+    assert!((moved - 0.5).abs() < 1e-12, "the edit is made: {moved}");
+
+    session.harness.state_mut().save_to(file.clone(), KeepOriginal::Yes);
+    session.settle();
+    let output = folder.at("applied.off");
+    let words = ["pliant".into(), "apply".into(), original_name(&file).into()];
+    let options = ["--edit".into(), edit.into(), "--output".into(), output.clone().into()];
+    let (mut out, mut err) = (Vec::new(), Vec::new());
+    let mut console = Console {
+        out: &mut out,
+        err: &mut err,
+        watch: Default::default(),
+        staging: Default::default(),
+    };
+    assert_eq!(run(words.into_iter().chain(options).collect(), &mut console), 0);
+    assert_eq!(fs::read(file).unwrap(), fs::read(output).unwrap());
+}
+
+#[test]
+fn an_edit_that_can_t_be_read_is_named_and_nothing_is_opened() {
+    let folder = Folder::new();
+    let file = folder.write_mesh("ball.off", &pliant_mesh::shapes::icosphere(2));
+    let edit = folder.write("ball.edit.json", r#"{ "version": 1, "method": { "name": "arab" } }"#);
+    let source = Source::of(Some(file), Some(edit));
+    let Some(mut session) = Session::start(source, AppDirectories::default()) else {
+        return;
+    };
+    let start = Instant::now();
+    while session.harness.query_by_label_contains("ball.edit.json").is_none() {
+        assert!(start.elapsed() < Duration::from_secs(60), "the edit is not named");
+        std::thread::sleep(Duration::from_millis(5));
+        session.harness.step();
+    }
+    assert!(session.harness.state().editor().view().model.is_none());
 }
 
 /// Where an entry of the list is.

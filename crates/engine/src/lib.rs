@@ -46,6 +46,7 @@
 
 mod apply;
 pub mod control_mesh;
+mod edit;
 mod error;
 pub mod examples;
 pub mod files;
@@ -57,6 +58,7 @@ mod transfer;
 pub mod watch;
 
 pub use apply::{Apply, Prepared, Solved, apply, bind, check_bends, check_not_empty, order, prepare, settle, solved};
+pub use edit::read_edit;
 pub use error::EngineError;
 pub use loading::{Loaded, is_project, load, load_bytes, open};
 pub use transfer::{Transfer, transfer};

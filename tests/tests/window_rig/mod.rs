@@ -28,6 +28,13 @@ impl Session {
 
     /// The application of a person with these folders, with `source` open; `None` without a graphics device.
     pub fn begin_in(source: Source, places: AppDirectories) -> Option<Self> {
+        let mut session = Self::start(source, places)?;
+        session.settle();
+        Some(session)
+    }
+
+    /// The same when the window has just appeared.
+    pub fn start(source: Source, places: AppDirectories) -> Option<Self> {
         if let Err(error) = pliant_render::Headless::new() {
             eprintln!("skipped: the window's session ({error})");
             return None;
@@ -39,9 +46,7 @@ impl Session {
             .build_eframe(move |context| {
                 Application::with_places(context, source, &places).expect("the device was just there")
             });
-        let mut session = Self { harness };
-        session.settle();
-        Some(session)
+        Some(Self { harness })
     }
 
     /// Lets frames pass until nothing is under way.

@@ -1,15 +1,11 @@
 //! `pliant apply`: an edit applied to a file.
 
-use std::path::{Path, PathBuf};
-
-use pliant_editor::{Beginning, Project};
 use pliant_io::Format;
 
 use super::arguments::ApplyArguments;
 use super::method_argument::method_argument;
 use super::{Console, on_threads};
-use pliant_engine::watch::Watch;
-use pliant_engine::{EngineError, control_mesh, examples, files, memory};
+use pliant_engine::{EngineError, files, memory, read_edit};
 
 pub(super) fn run(arguments: &ApplyArguments, console: &mut Console<'_>) -> Result<(), EngineError> {
     let ApplyArguments {
@@ -57,22 +53,4 @@ pub(super) fn run(arguments: &ApplyArguments, console: &mut Console<'_>) -> Resu
     let (watch, staging) = (&console.watch, &console.staging);
     on_threads(*compute, || pliant_engine::apply(&job, watch, staging))??;
     Ok(())
-}
-
-/// Reads the file of an edit or of a project, and the cages that it names. With it the paths of all files that it names;
-/// examples are read once the mesh is.
-pub(super) fn read_edit(path: &Path, watch: &Watch) -> Result<(Beginning, Vec<PathBuf>), EngineError> {
-    let text = files::read_text(path)?;
-    let read = if pliant_engine::is_project(path) {
-        Project::parse(&text).map(Beginning::from)
-    } else {
-        Beginning::parse(&text)
-    };
-    let mut edit = read.map_err(|source| EngineError::Edit {
-        edit: path.to_owned(),
-        source,
-    })?;
-    let mut named = control_mesh::bring(&mut edit, path, watch)?;
-    named.extend(examples::files(&mut edit, path));
-    Ok((edit, named))
 }

@@ -24,6 +24,9 @@ use crate::version::VERSION;
 pub(crate) struct Arguments {
     /// The file to open in the window; without it, the built-in sample
     pub file: Option<PathBuf>,
+    /// Begin with this edit, in the window on FILE
+    #[arg(long, value_name = "EDIT.json", requires = "file")]
+    pub edit: Option<PathBuf>,
     #[command(subcommand)]
     pub command: Option<Command>,
 }

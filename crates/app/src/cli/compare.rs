@@ -11,7 +11,6 @@ use pliant_mesh::{Model, WeldOptions, mean_curvatures, mixed_voronoi_areas};
 use pliant_render::{Background, Frame, Headless, Image, Samples};
 use serde::Serialize;
 
-use super::apply::read_edit;
 use super::arguments::{self, CompareArguments, PictureSize};
 use super::method_argument::method_argument;
 use super::render::{self, Posed, Shape, Uploaded};
@@ -22,7 +21,7 @@ use crate::{legend, painting, picture_file};
 use pliant_engine::files::Destination;
 use pliant_engine::report::Report;
 use pliant_engine::watch::Watch;
-use pliant_engine::{EngineError, Loaded, Solved, examples, files};
+use pliant_engine::{EngineError, Loaded, Solved, examples, files, read_edit};
 
 pub(super) fn run(arguments: &CompareArguments, console: &mut Console<'_>) -> Result<(), EngineError> {
     render::check_png(&arguments.output)?;

@@ -21,6 +21,7 @@ pub use arguments::{LookArguments, PictureSize, RenderArguments, Shading, Up, Vi
 use pliant_io::steers;
 use pliant_mesh::Vectors;
 
+use crate::window::{self, Source};
 use arguments::{Command, ComputeArguments};
 use pliant_engine::EngineError;
 use pliant_engine::files::Staging;
@@ -66,7 +67,7 @@ pub fn run(arguments: Vec<OsString>, console: &mut Console<'_>) -> u8 {
             Some(Command::Diff(arguments)) => diff::run(&arguments, console),
             Some(Command::Transfer(arguments)) => transfer::run(&arguments, console),
             Some(Command::Generate(arguments)) => generate::run(&arguments),
-            None => crate::window::run(arguments.file),
+            None => window::run(Source::of(arguments.file, arguments.edit)),
         },
         Err(help) if !help.use_stderr() => print(console.out, &help.render().to_string()),
         Err(error) => Err(EngineError::Arguments(arguments::one_line(&error))),

@@ -12,14 +12,13 @@ use pliant_editor::{
 use pliant_mesh::{Cancel, Model, WeldOptions};
 use pliant_render::{Background, Frame, Headless, RenderError, Renderer, Samples, Surface, SurfaceLine};
 
-use super::apply::read_edit;
 use super::arguments::{self, ComputeArguments, PictureSize, ProjectionName, RenderArguments, Up, View};
 use super::{Console, on_threads, print};
 use crate::drawing::{self, Drawing, Pose, Scale};
 use crate::{legend, painting, picture_file};
 use pliant_engine::files::Destination;
 use pliant_engine::watch::Watch;
-use pliant_engine::{EngineError, Loaded, examples, files};
+use pliant_engine::{EngineError, Loaded, examples, files, read_edit};
 
 pub(super) fn run(arguments: &RenderArguments, console: &mut Console<'_>) -> Result<(), EngineError> {
     check_png(&arguments.output)?;

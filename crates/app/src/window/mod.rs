@@ -16,7 +16,6 @@ mod viewport;
 mod widgets;
 
 use std::cell::{Cell, RefCell};
-use std::path::PathBuf;
 use std::rc::Rc;
 use std::sync::Arc;
 
@@ -41,11 +40,11 @@ use pliant_engine::EngineError;
 /// The variables that tell of a display, on systems with X11 or Wayland.
 const DISPLAYS: [&str; 3] = ["WAYLAND_DISPLAY", "WAYLAND_SOCKET", "DISPLAY"];
 
-/// Opens the window on a file, or on the built-in sample, and returns when it is closed.
+/// Opens the window and returns when it is closed.
 ///
 /// # Errors
 /// Where no window or no graphics device can be had.
-pub fn run(file: Option<PathBuf>) -> Result<(), EngineError> {
+pub fn run(source: Source) -> Result<(), EngineError> {
     if cfg!(all(unix, not(target_os = "macos"))) && DISPLAYS.iter().all(|name| std::env::var_os(name).is_none()) {
         return Err(EngineError::System(format!(
             "there is no display to open a window on (none of {} is set): start it in a desktop session, or use \
@@ -57,7 +56,6 @@ pub fn run(file: Option<PathBuf>) -> Result<(), EngineError> {
     if let Some(folder) = &places.recovery {
         fault::listen(folder.clone());
     }
-    let source = file.map_or(Source::Sample, Source::File);
     let refused = |reason: String| EngineError::System(sentence(&reason));
     let mut event_loop = EventLoop::<UserEvent>::with_user_event()
         .build()

@@ -13,7 +13,7 @@ use crate::drawing::Drawing;
 use crate::window::threads::message::ModelToShow;
 use crate::window::viewport::gpu::Gpu;
 use pliant_engine::watch::Watch;
-use pliant_engine::{EngineError, files};
+use pliant_engine::{EngineError, examples, files};
 
 /// Where a model comes from.
 #[derive(Clone, Debug)]
@@ -22,8 +22,26 @@ pub enum Source {
     Sample,
     /// A mesh or a project.
     File(PathBuf),
+    /// A mesh, with an edit or a project to begin with.
+    Edited {
+        /// The mesh.
+        file: PathBuf,
+        /// What is set up on it.
+        edit: PathBuf,
+    },
     /// A project that was left by a session that ended without saving.
     Recovered(PathBuf),
+}
+
+impl Source {
+    /// What a person names: a mesh or a project with the edit on it, or nothing.
+    pub fn of(file: Option<PathBuf>, edit: Option<PathBuf>) -> Self {
+        match (file, edit) {
+            (None, _) => Self::Sample,
+            (Some(file), None) => Self::File(file),
+            (Some(file), Some(edit)) => Self::Edited { file, edit },
+        }
+    }
 }
 
 /// Reads, welds and uploads.
@@ -42,6 +60,13 @@ pub(super) fn open(source: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<Mode
             Some(path.clone()),
             MeshSource::File(path.clone()),
         ),
+        Source::Edited { file, edit } => {
+            let loaded = pliant_engine::load(file, &weld, watch)?;
+            let (mut read, _) = pliant_engine::read_edit(edit, watch)?;
+            examples::bring(&mut read, edit, &loaded, watch)?;
+            beginning = Some(read);
+            (loaded, Some(file.clone()), MeshSource::File(file.clone()))
+        }
         Source::File(path) | Source::Recovered(path) => {
             let opened = project_file::read(path, watch)?;
             match source {
