@@ -1,5 +1,7 @@
-"""To Pliant's window and back: the mesh as a file, whose vertices keep their order."""
+"""To Pliant's window and back: the mesh as a file, whose vertices keep their order, and what is chosen for it in the
+panel as an edit beside it."""
 
+import json
 import os
 import shutil
 import subprocess
@@ -10,8 +12,9 @@ import bpy
 import numpy as np
 import pliant
 
+from . import live
 from .preferences import program
-from .settings import Refused
+from .settings import Refused, method_of, parts_of
 
 KEY = "Pliant (window)"
 
@@ -38,15 +41,38 @@ def write(obj, path):
     path.write_bytes(header.encode() + vertices.astype("<f4").tobytes() + faces.astype("<i4").tobytes())
 
 
-def open_window(obj):
-    """Opens the mesh in Pliant's window."""
+def edit_of(obj, transforms):
+    """What is chosen in the panel, in the edit format: method, handles with where they go, fixed vertices, stiffness."""
+    parts = parts_of(obj)
+    numbers = lambda mask: {"vertices": np.flatnonzero(mask).tolist()}
+    handles = []
+    for name, handle in parts["handles"].items():
+        entry = {**handle, "name": name, "select": numbers(handle["select"])}
+        if name in transforms:
+            # Column by column.
+            entry["transform"] = {"matrix": transforms[name].T.ravel().tolist()}
+        handles.append(entry)
+    edit = {"version": 1, "method": method_of(obj.pliant), "handles": handles}
+    if "fixed" in parts:
+        edit["fixed"] = numbers(parts["fixed"])
+    if "stiffness" in parts:
+        edit["stiffness"] = [{"per_vertex": parts["stiffness"].tolist()}]
+    return edit
+
+
+def open_window(obj, depsgraph):
+    """Opens the mesh in Pliant's window, with the handles where their targets have them if it is bent live."""
     path = program()
     if shutil.which(path) is None:
         raise Refused(f"The program {path} is not there: give its path in the add-on's preferences")
+    session = live.session_of(obj)
+    edit = edit_of(obj, session.transforms(depsgraph) if session else {})
     folder = Path(tempfile.mkdtemp(prefix="pliant-"))
     file = folder / (bpy.path.clean_name(obj.name) + ".ply")
     write(obj, file)
-    window = subprocess.Popen([path, os.fspath(file)], stdin=subprocess.DEVNULL)
+    beside = file.with_suffix(".edit.json")
+    beside.write_text(json.dumps(edit))
+    window = subprocess.Popen([path, os.fspath(file), "--edit", os.fspath(beside)], stdin=subprocess.DEVNULL)
     opened[obj.session_uid] = (file, file.stat().st_mtime_ns, window)
     return file
 

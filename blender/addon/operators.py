@@ -128,14 +128,15 @@ class PLIANT_OT_cancel(PliantOperator, bpy.types.Operator):
 
 
 class PLIANT_OT_open_window(PliantOperator, bpy.types.Operator):
-    """Opens the mesh in Pliant's window. Save it there, then take the shape back"""
+    """Opens the mesh with its handles in Pliant's window. Save it there, then take the shape back"""
 
     bl_idname = "pliant.open_window"
     bl_label = "Open in Pliant"
     bl_options = {"REGISTER"}
 
-    def act(self, _context, obj):
-        self.report({"INFO"}, f"Opened {exchange.open_window(obj).name}: save it in Pliant, then take the shape back")
+    def act(self, context, obj):
+        file = exchange.open_window(obj, context.evaluated_depsgraph_get())
+        self.report({"INFO"}, f"Opened {file.name}: save it in Pliant, then take the shape back")
 
 
 class PLIANT_OT_take_back(PliantOperator, bpy.types.Operator):

@@ -87,9 +87,14 @@ def weights(mesh, index):
 
 def region_of(obj):
     """The arguments of `pliant.bind` beside the mesh and the method: handles, fixed vertices and stiffness."""
-    settings = obj.pliant
-    if not settings.handles:
+    if not obj.pliant.handles:
         raise Refused(f"{obj.name} has no handle: add one, and choose its vertex group and its target")
+    return parts_of(obj)
+
+
+def parts_of(obj):
+    """The same, of an object that may have no handle yet."""
+    settings = obj.pliant
     handles = {}
     for handle in settings.handles:
         select = group_of(obj, handle.group, "handle") >= 0.5

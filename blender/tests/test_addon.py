@@ -1,5 +1,6 @@
 """The add-on in Blender, without its window: `bpy` from PyPI."""
 
+import json
 import os
 import subprocess
 import sys
@@ -279,22 +280,45 @@ def test_an_undo_of_the_target_s_move_is_followed(addon, bent):
     assert bpy.ops.pliant.bake() == {"FINISHED"} and addon.live.sessions == {}
 
 
-def test_the_window_gets_the_mesh_and_its_shape_comes_back_by_vertex_order(addon, bent, tmp_path, monkeypatch):
+# In the place of the window's person: makes the edit, bends what comes of it further, and saves it.
+WINDOW = """#!{python}
+import json, sys, pliant
+file, option, edit = sys.argv[1:]
+assert option == "--edit"
+edit = json.load(open(edit))
+handles = {{own.pop("name"): own for own in edit["handles"]}}
+transforms = {{name: own.pop("transform", {{}}) for name, own in handles.items()}}
+members = {{name: edit[name] for name in ("method", "fixed", "stiffness") if name in edit}}
+mesh = pliant.load(file)
+shape = mesh.bind(handles=handles, **members).step(transforms)
+shape[:, 0] += {shear} * mesh.vertices[:, 2]
+pliant.save(file, mesh, shape)
+"""
+
+
+@pytest.fixture
+def window(addon, tmp_path, monkeypatch):
+    """Opens the active object in a window whose person shears it, saves it and leaves. The files that were handed over."""
+    program = tmp_path / "window.py"
+    monkeypatch.setattr(addon.exchange, "program", lambda: str(program))
+
+    def opened(obj, shear=0.0):
+        program.write_text(WINDOW.format(python=sys.executable, shear=shear))
+        program.chmod(0o755)
+        assert bpy.ops.pliant.open_window() == {"FINISHED"}
+        file, _, process = addon.exchange.opened[obj.session_uid]
+        assert process.wait(60) == 0
+        return file, json.loads(file.with_suffix(".edit.json").read_text())
+
+    return opened
+
+
+def test_the_window_gets_the_mesh_and_its_shape_comes_back_by_vertex_order(bent, window):
     obj, _ = bent
-    # In the place of the window's person: bends the file and saves it.
-    window = tmp_path / "window.py"
-    window.write_text(
-        f"#!{sys.executable}\nimport sys, pliant\nmesh = pliant.load(sys.argv[1])\n"
-        "shape = mesh.vertices\nshape[:, 0] += shape[:, 2]\npliant.save(sys.argv[1], mesh, shape)\n"
-    )
-    window.chmod(0o755)
-    monkeypatch.setattr(addon.exchange, "program", lambda: str(window))
     rest = stored(obj.data)
     with pytest.raises(RuntimeError, match="open it first"):
         bpy.ops.pliant.take_back()
-    assert bpy.ops.pliant.open_window() == {"FINISHED"}
-    file, _, process = addon.exchange.opened[obj.session_uid]
-    assert process.wait(60) == 0
+    file, _ = window(obj, shear=1.0)
     assert bpy.ops.pliant.take_back() == {"FINISHED"}
     assert np.array_equal(shown(obj), rest + rest[:, [2]] * np.float32([1, 0, 0]))
     bound = pliant.load(file)
@@ -303,6 +327,43 @@ def test_the_window_gets_the_mesh_and_its_shape_comes_back_by_vertex_order(addon
     obj.data.clear_geometry()
     with pytest.raises(RuntimeError, match="0 vertices and the saved file 360"):
         bpy.ops.pliant.take_back()
+
+
+def test_the_window_gets_method_handles_and_what_is_held_and_stiff(bent, window):
+    obj, _ = bent
+    rest = stored(obj.data)
+    group(obj, "hard", np.flatnonzero(rest[:, 2] > 1.0))
+    obj.pliant.stiffness, obj.pliant.stiffest = "hard", 100
+    obj.pliant.options = '"energy": "smooth"'
+    obj.pliant.handles[0].is_soft, obj.pliant.handles[0].weight = True, 0.5
+    _, edit = window(obj)
+    assert edit["method"] == {"name": "arap", "energy": "smooth"}
+    top, foot = np.flatnonzero(rest[:, 2] > 1.8), np.flatnonzero(rest[:, 2] < 0.2)
+    assert edit["handles"] == [{"name": "top", "select": {"vertices": top.tolist()}, "soft": 0.5}]
+    assert edit["fixed"] == {"vertices": foot.tolist()}
+    assert edit["stiffness"] == [{"per_vertex": [100.0 if z > 1.0 else 1.0 for z in rest[:, 2]]}]
+
+
+def test_the_window_goes_on_from_where_the_targets_are(bent, window):
+    obj, target = bent
+    obj.pliant.method = "bilaplacian"
+    bpy.ops.pliant.begin()
+    target.location.x, target.rotation_euler = 0.5, (0, 0.4, 0)
+    bpy.context.view_layer.update()
+    live = shown(obj)
+    window(obj)
+    bpy.ops.pliant.cancel()
+    assert bpy.ops.pliant.take_back() == {"FINISHED"}
+    assert np.abs(live - stored(obj.data)).max() > 0.4
+    assert np.array_equal(shown(obj), live)
+
+
+def test_a_mesh_without_handles_is_opened_as_it_is(bent, window):
+    obj, _ = bent
+    obj.pliant.handles.clear()
+    obj.pliant.fixed = ""
+    _, edit = window(obj)
+    assert edit == {"version": 1, "method": {"name": "arap"}, "handles": []}
 
 
 def test_blender_installs_the_packed_add_on(tmp_path):
