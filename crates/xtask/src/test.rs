@@ -6,6 +6,7 @@ use std::time::Instant;
 use crate::check;
 use crate::display::Display;
 use crate::install::{Consent, Prepared, prepare, prepare_toolchain};
+use crate::manual;
 use crate::process;
 use crate::requirement::{PICTURES, TESTS, WINDOW};
 use crate::system;
@@ -40,6 +41,7 @@ pub fn test(filters: &[String], consent: Consent) -> Result<(), String> {
     verdict.tests("workspace", &mut tests);
     if filters.is_empty() {
         validation::pictures(&mut verdict);
+        manual::check(&mut verdict);
     }
     let in_ci = std::env::var_os("CI").is_some_and(|value| !value.is_empty() && value != "false");
     let skips = match prepared {
