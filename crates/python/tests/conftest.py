@@ -7,7 +7,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import pliant
+
 ROOT = Path(__file__).parents[3]
+
+# A build with the workspace's tests has one more method, which shows how one is added.
+METHODS = [name for name in pliant.methods() if name != "identity"]
 
 
 def bar(around=12, along=40):

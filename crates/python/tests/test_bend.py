@@ -13,9 +13,7 @@ import numpy as np
 import pytest
 
 import pliant
-from conftest import bar, quarter_turn
-
-METHODS = sorted(pliant.methods())
+from conftest import METHODS, bar, quarter_turn
 
 
 @pytest.mark.parametrize("method", METHODS)

@@ -8,6 +8,7 @@ use crate::display::Display;
 use crate::install::{Consent, Prepared, prepare, prepare_toolchain};
 use crate::manual;
 use crate::process;
+use crate::python;
 use crate::requirement::{PICTURES, TESTS, WINDOW};
 use crate::system;
 use crate::validation;
@@ -41,6 +42,7 @@ pub fn test(filters: &[String], consent: Consent) -> Result<(), String> {
     verdict.tests("workspace", &mut tests);
     if filters.is_empty() {
         validation::pictures(&mut verdict);
+        python::unpacked::tests(&mut verdict);
         manual::check(&mut verdict);
     }
     let in_ci = std::env::var_os("CI").is_some_and(|value| !value.is_empty() && value != "false");

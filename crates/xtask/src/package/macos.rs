@@ -8,7 +8,7 @@ use std::process::Command;
 use super::release::Release;
 use super::{icons, inventory, program};
 use crate::files;
-use crate::process::{succeed, target_folder};
+use crate::process::succeed;
 use crate::tool::{Tool, all_there};
 
 const TOOLS: &[Tool] = &[
@@ -28,8 +28,7 @@ const TOOLS: &[Tool] = &[
 /// One sentence naming what is missing or what failed.
 pub fn image(release: &Release, folder: &Path) -> Result<Vec<PathBuf>, String> {
     all_there(&[TOOLS, inventory::TOOLS].concat())?;
-    program::compile(&[])?;
-    let built = target_folder().join("dist/pliant");
+    let built = program::compile(&[])?;
     let bundle = folder.join("pliant.dSYM");
     succeed(Command::new("dsymutil").arg(&built).arg("-o").arg(&bundle))?;
     let debug_info = folder.join(format!("{}.dSYM.zip", release.name()));

@@ -6,10 +6,10 @@
 mod archive;
 mod debian;
 mod icons;
-mod inventory;
+pub mod inventory;
 mod macos;
-mod program;
-mod release;
+pub mod program;
+pub mod release;
 mod tree;
 mod validation;
 mod windows;

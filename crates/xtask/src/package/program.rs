@@ -26,12 +26,11 @@ pub struct Program {
 /// # Errors
 /// One sentence naming the command that failed.
 pub fn build(release: &Release, folder: &Path) -> Result<Program, String> {
-    compile(&[])?;
+    let with_all = compile(&[])?;
     let built = Program {
         program: folder.join("pliant"),
         debug_info: folder.join(format!("{}.debug", release.name())),
     };
-    let with_all = target_folder().join("dist/pliant");
     let objcopy = || Command::new("objcopy");
     succeed(
         objcopy()
@@ -44,11 +43,11 @@ pub fn build(release: &Release, folder: &Path) -> Result<Program, String> {
     Ok(built)
 }
 
-/// Compiles the program with more arguments for its linker, into `target/dist`.
+/// Compiles the program with more arguments for its linker, into `target/dist`, and gives its path.
 ///
 /// # Errors
 /// One sentence if it can't be compiled.
-pub fn compile(link_arguments: &[String]) -> Result<(), String> {
+pub fn compile(link_arguments: &[String]) -> Result<PathBuf, String> {
     println!("Building Pliant for its packages; the first time takes some minutes.");
     let mut rustc = cargo(&["rustc", "--locked", "--profile", "dist"]);
     rustc.args(["--package", "pliant-app", "--bin", "pliant", "--"]);
@@ -57,11 +56,13 @@ pub fn compile(link_arguments: &[String]) -> Result<(), String> {
             .iter()
             .flat_map(|argument| ["-C".to_owned(), format!("link-arg={argument}")]),
     );
-    succeed(rustc.env("RUSTFLAGS", neutral_paths()))
+    succeed(rustc.env("RUSTFLAGS", neutral_paths()))?;
+    let name = format!("pliant{}", std::env::consts::EXE_SUFFIX);
+    Ok(target_folder().join("dist").join(name))
 }
 
-/// Compiler flags that leave the folders of this machine out of the program.
-fn neutral_paths() -> String {
+/// Compiler flags that leave the folders of this machine out of what is compiled.
+pub fn neutral_paths() -> String {
     let given = std::env::var("RUSTFLAGS").unwrap_or_default();
     let neutral = |folder: &Path, name: &str| format!("--remap-path-prefix={}={name}", folder.display());
     let flags = [

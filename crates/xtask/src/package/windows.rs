@@ -8,7 +8,7 @@ use std::process::Command;
 use super::release::Release;
 use super::{icons, inventory, program};
 use crate::files;
-use crate::process::{succeed, target_folder};
+use crate::process::succeed;
 use crate::tool::{Tool, all_there};
 
 const TOOLS: &[Tool] = &[
@@ -30,13 +30,12 @@ pub fn zip(release: &Release, folder: &Path) -> Result<Vec<PathBuf>, String> {
     all_there(&[TOOLS, inventory::TOOLS].concat())?;
     let name = release.name();
     let resource = resource(release, folder)?;
-    program::compile(&[resource.display().to_string()])?;
-    let built = target_folder().join("dist");
+    let built = program::compile(&[resource.display().to_string()])?;
     let debug_info = folder.join(format!("{name}.pdb"));
-    files::copy(&built.join("pliant.pdb"), &debug_info)?;
+    files::copy(&built.with_extension("pdb"), &debug_info)?;
     let papers = inventory::write(release, folder)?;
     let unpacked = folder.join(&name);
-    files::copy(&built.join("pliant.exe"), &unpacked.join("pliant.exe"))?;
+    files::copy(&built, &unpacked.join("pliant.exe"))?;
     for name in ["LICENSE-MIT", "LICENSE-APACHE", "README.md"] {
         files::copy(&crate::root().join(name), &unpacked.join(name))?;
     }

@@ -1,10 +1,14 @@
 //! `cargo xtask python`: the Python package as a wheel and the Blender add-on around it, and the tests of both, each in
 //! an environment of its own.
 
+pub mod unpacked;
+
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::process::{build_program, said, succeed, target_folder};
+use crate::package::release::Release;
+use crate::package::{inventory, program};
+use crate::process::{said, succeed, target_folder};
 use crate::tool::Tool;
 use crate::{files, root};
 
@@ -12,6 +16,8 @@ const PYTHON: Tool = Tool {
     program: "python3",
     install: "apt install python3 python3-venv",
 };
+
+const MANIFEST: &str = "crates/python/Cargo.toml";
 
 /// What the add-on's tests run on; there is a build of it for one version of Python alone.
 const BLENDER: &str = "bpy==4.2.0";
@@ -27,9 +33,10 @@ const BLENDER_PYTHON: Tool = Tool {
 /// One sentence naming what is missing or what failed.
 pub fn python() -> Result<(), String> {
     let python = PYTHON.find()?;
+    let release = Release::read()?;
     let folder = target_folder().join("python");
-    build_program()?;
-    let wheel = wheel(&python, &folder)?;
+    let program = program::compile(&[])?;
+    let wheel = wheel(&release, &python, &folder)?;
     println!("made: {}", wheel.display());
     let extension = extension(&python, &wheel, &folder)?;
     println!("made: {}", extension.display());
@@ -39,7 +46,7 @@ pub fn python() -> Result<(), String> {
     let clean = environment(&python, &clean)?;
     let with_tests = format!("{}[test]", wheel.display());
     install(&clean, &[&with_tests])?;
-    tests(&clean, "crates/python/tests", &extension)?;
+    tests(&clean, "crates/python/tests", &extension, &program)?;
 
     let Ok(python) = BLENDER_PYTHON.find() else {
         println!(
@@ -55,25 +62,46 @@ pub fn python() -> Result<(), String> {
         &blender,
         &["--force-reinstall", "--no-deps", &wheel.display().to_string()],
     )?;
-    tests(&blender, "blender/tests", &extension)
+    tests(&blender, "blender/tests", &extension, &program)
 }
 
-/// The wheel, built by maturin.
-fn wheel(python: &Path, folder: &Path) -> Result<PathBuf, String> {
+/// The wheel, built by maturin: from the commit and the tools alone, as packages are, and with the same licences.
+fn wheel(release: &Release, python: &Path, folder: &Path) -> Result<PathBuf, String> {
     let tools = environment(python, &folder.join("tools"))?;
     install(&tools, &["maturin>=1.9.4,<2"])?;
     let wheels = folder.join("wheels");
     files::fresh_folder(&wheels)?;
+    licences(&root().join("crates/python/licenses"))?;
     let mut maturin = Command::new(&tools);
-    maturin.args(["-m", "maturin", "build", "--release", "--locked"]);
-    maturin.args(["--manifest-path", "crates/python/Cargo.toml", "--out"]);
-    succeed(maturin.arg(&wheels).current_dir(root()))?;
+    maturin.args(["-m", "maturin", "build", "--profile", "dist", "--locked"]);
+    maturin.args(["--manifest-path", MANIFEST, "--out"]);
+    maturin.arg(&wheels).current_dir(root());
+    maturin.env("SOURCE_DATE_EPOCH", release.epoch.to_string());
+    succeed(maturin.env("RUSTFLAGS", program::neutral_paths()))?;
     let made = files::all_files(&wheels)?;
     let made = made
         .into_iter()
         .find(|file| file.extension().is_some_and(|extension| extension == "whl"));
     made.map(|file| wheels.join(file))
         .ok_or_else(|| format!("maturin left no wheel in {}.", wheels.display()))
+}
+
+/// Puts what the wheel is to have beside its code into a folder: our licences, and those of all that it contains.
+fn licences(folder: &Path) -> Result<(), String> {
+    files::fresh_folder(folder)?;
+    for name in ["LICENSE-MIT", "LICENSE-APACHE"] {
+        files::copy(&root().join(name), &folder.join(name))?;
+    }
+    match inventory::CARGO_ABOUT.find() {
+        Ok(_) => files::write(
+            &folder.join("licences-of-dependencies.txt"),
+            inventory::licences(MANIFEST)?,
+        ),
+        Err(sentence) => {
+            println!("left out of the wheel, so it is not to be passed on: the dependencies' licences ({sentence})");
+            Ok(())
+        }
+    }
 }
 
 /// The add-on with the wheel in it, as Blender installs it.
@@ -112,8 +140,9 @@ fn install(python: &Path, packages: &[&str]) -> Result<(), String> {
     succeed(pip.args(packages))
 }
 
-fn tests(python: &Path, folder: &str, extension: &Path) -> Result<(), String> {
+/// Runs a folder's tests, which compare shapes with those of `program`.
+fn tests(python: &Path, folder: &str, extension: &Path, program: &Path) -> Result<(), String> {
     let mut pytest = Command::new(python);
     pytest.args(["-m", "pytest", "--quiet", folder]).current_dir(root());
-    succeed(pytest.env("PLIANT_EXTENSION", extension))
+    succeed(pytest.env("PLIANT_EXTENSION", extension).env("PLIANT", program))
 }

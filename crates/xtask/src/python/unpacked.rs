@@ -1,0 +1,63 @@
+//! The Python package as an ordinary build leaves it: no wheel, no environment, no network. Its tests are among all
+//! tests where there is a Python to run them.
+
+use std::env::consts::{DLL_PREFIX, DLL_SUFFIX, EXE_SUFFIX};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::Instant;
+
+use crate::process::{cargo, output, program, succeed, target_folder};
+use crate::verdict::Verdict;
+use crate::{files, root};
+
+/// Builds the module in the development profile and runs the package's tests on it, apart from the notebook's, which
+/// measure. Where no Python has what they need, they are named as skipped.
+pub fn tests(verdict: &mut Verdict) {
+    let has_all = |name: &&str| output(name, &["-c", "import numpy, pytest"]).is_some();
+    let Some(python) = ["python3", "python"].into_iter().find(has_all).and_then(program) else {
+        return verdict.skip(
+            "Python's tests (there is no python3 with numpy and pytest: pip install numpy pytest, or cargo xtask python, \
+             which makes an environment of its own)",
+        );
+    };
+    println!("\n── Python: {} -m pytest crates/python/tests", python.display());
+    let started = Instant::now();
+    verdict.record("Python", run(&python), started);
+}
+
+fn run(python: &Path) -> Result<(), String> {
+    // All targets, because other features than those of the tests would build the dependencies a second time.
+    succeed(&mut cargo(&["build", "--locked", "--workspace", "--all-targets"]))?;
+    let built = target_folder().join("debug");
+    let folder = lay_out(&built)?;
+    let mut pytest = Command::new(python);
+    pytest.args([
+        "-m",
+        "pytest",
+        "--quiet",
+        "-p",
+        "no:cacheprovider",
+        "crates/python/tests",
+    ]);
+    pytest
+        .args(["--ignore", "crates/python/tests/test_notebook.py"])
+        .current_dir(root());
+    pytest.env("PYTHONPATH", folder).env("PYTHONDONTWRITEBYTECODE", "1");
+    succeed(pytest.env("PLIANT", built.join(format!("pliant{EXE_SUFFIX}"))))
+}
+
+/// Puts the module and the package's own files together, in a folder that Python finds them in.
+fn lay_out(built: &Path) -> Result<PathBuf, String> {
+    let folder = target_folder().join("python/unpacked");
+    let package = folder.join("pliant");
+    files::fresh_folder(&package)?;
+    files::copy_folder(&root().join("crates/python/python/pliant"), &package)?;
+    let module = built.join(format!("{DLL_PREFIX}pliant_native{DLL_SUFFIX}"));
+    let name = if cfg!(windows) {
+        "_native.pyd"
+    } else {
+        "_native.abi3.so"
+    };
+    files::copy(&module, &package.join(name))?;
+    Ok(folder)
+}
