@@ -1,6 +1,6 @@
 //! Which factor a thin plate is bound with: its own, or the Laplacian's where its own would not fit the budget.
 
-use pliant_mesh::{Cancel, Progress, Topology};
+use pliant_mesh::{Cancel, Topology};
 
 use crate::BindError;
 use crate::bilaplacian::system_error::SystemError;
@@ -13,6 +13,8 @@ pub(crate) struct EliminationPlan<'a> {
     ordering: &'a Ordering,
     topology: &'a Topology,
     solved: &'a [u32],
+    /// Whether the factor of the Laplacian does in place of the method's own.
+    takes_first_power: bool,
 }
 
 impl<'a> EliminationPlan<'a> {
@@ -21,11 +23,13 @@ impl<'a> EliminationPlan<'a> {
     /// # Errors
     /// There is no ordering of the method's power, or of power 1 in its place, or it is another mesh's.
     pub fn of(input: &BindInput<'a>) -> Result<Self, BindError> {
+        let takes_first_power = input.problem.method.implementation().takes_first_power();
         let ordering = match input.ordering_of(1) {
-            Ok(first) if input.problem.method.implementation().takes_first_power() => first,
+            Ok(first) if takes_first_power => first,
             _ => input.ordering()?,
         };
         Ok(Self {
+            takes_first_power,
             ordering,
             topology: input.problem.topology,
             solved: &input.partition.solved,
@@ -35,9 +39,10 @@ impl<'a> EliminationPlan<'a> {
     /// The order for the matrix of this power, if the ordering is for it and the factor can be expected to fit.
     pub fn direct(&self, power: u32, budget: Budget) -> Option<Elimination> {
         let is_its_own = self.ordering.power() >= power;
-        // Half the estimate: it need not be analysed where it is sure to exceed the budget.
-        let is_hopeless = power == 2 && plate_bytes(self.solved.len()) / 2 > budget.bytes;
-        (is_its_own && !is_hopeless).then(|| self.ordering.elimination(self.solved))
+        // Where there is another way, the choice is that of the ordering. Else it is tried unless it is sure not to fit.
+        let estimate = plate_bytes(self.solved.len()) / if self.takes_first_power { 1 } else { 2 };
+        let is_too_large = power == 2 && estimate > budget.bytes;
+        (is_its_own && !is_too_large).then(|| self.ordering.elimination(self.solved))
     }
 
     /// The order for the Laplacian.
@@ -45,13 +50,13 @@ impl<'a> EliminationPlan<'a> {
     /// # Errors
     /// [`SystemError::Budget`], [`SystemError::Cancelled`].
     pub fn of_laplacian(&self, budget: Budget, cancel: &Cancel) -> Result<Elimination, SystemError> {
-        if self.ordering.power() == 1 {
-            return Ok(self.ordering.elimination(self.solved));
+        if self.ordering.known_of_laplacian().is_none() {
+            let bytes = bytes_of(self.topology.vertex_count(), ORDERING_ROW);
+            budget.without(bytes).map_err(SystemError::Budget)?;
         }
-        let bytes = bytes_of(self.topology.vertex_count(), ORDERING_ROW);
-        budget.without(bytes).map_err(SystemError::Budget)?;
-        let made = Ordering::of(self.topology, 1, &Progress::new(), cancel);
-        made.map(|ordering| ordering.elimination(self.solved))
+        let ordering = self.ordering.of_laplacian(self.topology, cancel);
+        ordering
+            .map(|ordering| ordering.elimination(self.solved))
             .map_err(|_| SystemError::Cancelled)
     }
 }

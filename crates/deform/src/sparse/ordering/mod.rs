@@ -6,12 +6,14 @@
 
 mod bisection;
 mod crumbs;
-mod dissection;
+pub(crate) mod dissection;
 pub(crate) mod elimination;
 pub(crate) mod graph;
 pub(crate) mod hubs;
 mod labels;
 mod leaf;
+
+use std::sync::OnceLock;
 
 use pliant_mesh::{Cancel, Cancelled, Progress, Topology};
 
@@ -19,7 +21,7 @@ use crate::sparse::ordering::dissection::dissect;
 use crate::sparse::ordering::elimination::Elimination;
 
 /// An elimination order of all surface vertices for systems with the graph of Lᵏ.
-#[derive(Clone, PartialEq, Eq, Debug)]
+#[derive(Clone, Debug)]
 pub struct Ordering {
     power: u32,
     /// The vertices in the order of elimination.
@@ -28,7 +30,18 @@ pub struct Ordering {
     rank: Vec<u32>,
     /// Where each block of it ends.
     ends: Vec<u32>,
+    /// Of the Laplacian's own graph, once a binding whose factor does not fit has asked for it.
+    of_laplacian: OnceLock<Box<Ordering>>,
 }
+
+/// Equal where they order alike, whatever is kept beside them.
+impl PartialEq for Ordering {
+    fn eq(&self, other: &Self) -> bool {
+        (self.power, &self.order, &self.ends) == (other.power, &other.order, &other.ends)
+    }
+}
+
+impl Eq for Ordering {}
 
 impl Ordering {
     /// Orders the graph of the `power`-th power of the Laplacian by nested dissection of the surface.
@@ -50,7 +63,29 @@ impl Ordering {
             order,
             rank,
             ends,
+            of_laplacian: OnceLock::new(),
         })
+    }
+
+    /// The ordering of power 1 of the same surface: this one, or one that is made when first asked for and kept beside it,
+    /// so that the next binding finds it.
+    ///
+    /// # Errors
+    /// [`Cancelled`] soon after `cancel` is raised.
+    pub(crate) fn of_laplacian(&self, topology: &Topology, cancel: &Cancel) -> Result<&Self, Cancelled> {
+        if let Some(known) = self.known_of_laplacian() {
+            return Ok(known);
+        }
+        let made = Self::of(topology, 1, &Progress::new(), cancel)?;
+        Ok(self.of_laplacian.get_or_init(|| Box::new(made)))
+    }
+
+    /// As [`Ordering::of_laplacian`], where it needs not be made.
+    pub(crate) fn known_of_laplacian(&self) -> Option<&Self> {
+        match self.power {
+            1 => Some(self),
+            _ => self.of_laplacian.get().map(Box::as_ref),
+        }
     }
 
     /// The operator power that the order was made for.
@@ -94,5 +129,35 @@ impl Ordering {
             first = block.end;
         }
         elimination
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test that can't go on fails")]
+mod tests {
+    use pliant_mesh::{Model, WeldOptions, shapes};
+
+    use super::*;
+
+    #[test]
+    fn the_laplacian_s_ordering_is_made_once_and_kept() {
+        let (progress, cancel) = (Progress::new(), Cancel::new());
+        let model = Model::weld(shapes::icosphere(4), &WeldOptions::default(), &progress, &cancel).unwrap();
+        let of_power = |power| Ordering::of(&model.topology, power, &progress, &Cancel::new()).unwrap();
+        let (first, second) = (of_power(1), of_power(2));
+        assert!(std::ptr::eq(
+            first.of_laplacian(&model.topology, &cancel).unwrap(),
+            &first
+        ));
+        assert!(second.known_of_laplacian().is_none());
+        let made = second.of_laplacian(&model.topology, &cancel).unwrap();
+        assert_eq!(*made, first);
+        // Nothing is made again: a raised flag would end that.
+        cancel.cancel();
+        assert!(std::ptr::eq(
+            second.of_laplacian(&model.topology, &cancel).unwrap(),
+            made
+        ));
+        assert_eq!(second, of_power(2), "what is kept beside it does not count");
     }
 }
