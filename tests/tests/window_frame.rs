@@ -14,7 +14,7 @@ use std::fs;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use egui::{Rect, vec2};
+use egui::{Key, Modifiers, Rect, vec2};
 use egui_kittest::kittest::Queryable;
 use glam::DVec2;
 use image::Rgba;
@@ -156,6 +156,50 @@ fn a_maximised_window_is_remembered() {
     }
 }
 
+/// How much memory binding may take is chosen by pointer and keyboard, reaches the editor and is there the next time.
+#[test]
+fn the_memory_that_binding_may_take_is_remembered() {
+    let folder = Folder::new();
+    let Some(mut session) = Session::begin_in(Source::Sample, places(&folder)) else {
+        return;
+    };
+    let most = |session: &Session| session.harness.state().editor().most_memory();
+    let kept = || {
+        let text = fs::read_to_string(folder.at("settings.json")).unwrap_or_default();
+        let settings: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
+        settings["memory"].clone()
+    };
+    assert_eq!(most(&session), None, "what the machine leaves");
+    session.palette("memory");
+    session.key(Key::Enter, Modifiers::NONE);
+    session.harness.get_by_label("At most").click();
+    session.harness.run_steps(2);
+    assert_eq!(most(&session), Some(8_000_000_000));
+    session.click_into("Most memory in GB");
+    session.harness.event(egui::Event::Text("1.5".to_owned()));
+    session.harness.run_steps(2);
+    session.key(Key::Enter, Modifiers::NONE);
+    session.settle();
+    assert_eq!((most(&session), kept()), (Some(1_500_000_000), "1.5GB".into()));
+    // The second view's bindings, too.
+    session.palette("compare two methods");
+    session.key(Key::Enter, Modifiers::NONE);
+    session.settle();
+    let compared = session.harness.state().compared().unwrap();
+    assert_eq!(compared.most_memory(), Some(1_500_000_000));
+    drop(session);
+
+    let mut session = Session::begin_in(Source::Sample, places(&folder)).unwrap();
+    assert_eq!(most(&session), Some(1_500_000_000));
+    session.palette("memory");
+    session.key(Key::Enter, Modifiers::NONE);
+    session.harness.get_by_label("What the machine leaves").click();
+    session.harness.run_steps(2);
+    assert_eq!((most(&session), kept()), (None, serde_json::Value::Null));
+    session.key(Key::Escape, Modifiers::NONE);
+    assert!(session.harness.query_by_label("At most").is_none());
+}
+
 /// What a session left behind is listed by the model's name, and messages about it use that name.
 #[test]
 fn a_recovery_names_its_file() {
@@ -205,7 +249,7 @@ fn z_up_frames_the_model_and_ends_with_the_file() {
         })
     };
     for _ in 0..3 {
-        session.key(egui::Key::Home, egui::Modifiers::NONE);
+        session.key(Key::Home, Modifiers::NONE);
     }
     command(&mut session, Command::SetUp(UpAxis::Z));
     assert!(is_all_in_view(&session), "turned to Z");

@@ -43,6 +43,15 @@ impl Default for Budget {
 }
 
 impl Budget {
+    /// The default one, with `most` bytes in place of its own where somebody has set them.
+    pub fn of_most(most: Option<u64>) -> Self {
+        let own = Self::default();
+        Self {
+            bytes: most.unwrap_or(own.bytes),
+            ..own
+        }
+    }
+
     /// What is left when `bytes` are taken.
     pub(crate) fn without(self, bytes: u64) -> Result<Self, Limit> {
         let left = self.bytes.checked_sub(bytes);

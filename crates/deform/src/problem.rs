@@ -2,7 +2,7 @@
 
 use pliant_mesh::{Bounds, Cancel, Progress, Surface, Topology, bounding_box};
 
-use crate::budget::{ORDERING_ROW, bytes_of, plate_bytes};
+use crate::budget::{ORDERING_ROW, bytes_of};
 use crate::sparse::refactorisation::Refactorisation;
 use crate::{Attachment, BindError, Bound, Budget, Constraints, Examples, Method, Ordering, ReusableFactor};
 
@@ -102,17 +102,10 @@ impl Problem<'_> {
         self.bounds().map_or(0.0, |bounds| bounds.diagonal())
     }
 
-    /// The power of the ordering to make for [`Problem::bind_within`] this budget: the method's, or 1 where the factor of
-    /// the method's own system can be expected not to fit and the Laplacian's is enough. `None` if the method needs no
-    /// ordering. The factor's size is estimated from the number of free vertices.
+    /// The power of the ordering to make for [`Problem::bind_within`] this budget: see
+    /// [`Method::ordering_power_within`].
     pub fn ordering_power_within(&self, budget: Budget) -> Option<u32> {
-        let power = self.method.ordering_power()?;
-        let fits = || plate_bytes(self.free_count()) <= budget.bytes;
-        Some(if !self.method.implementation().takes_first_power() || fits() {
-            power
-        } else {
-            1
-        })
+        self.method.ordering_power_within(self.free_count(), budget)
     }
 
     fn free_count(&self) -> usize {

@@ -57,6 +57,8 @@ pub enum Event {
     Command(Command),
     /// A person's choice of keys.
     Keys(KeyMap),
+    /// The most memory in bytes that a person lets bindings take; `None`: what there is.
+    Memory(Option<u64>),
     /// A widget is being dragged: the command's change is shown, and becomes one step of the history with all that
     /// follow until [`Event::Adjusted`].
     Adjust(Command),

@@ -186,8 +186,8 @@ impl Executor for Poor {
         self.0.start(job);
     }
 
-    fn budget(&self) -> fn() -> Budget {
-        || Budget {
+    fn budget(&self) -> fn(Option<u64>) -> Budget {
+        |_| Budget {
             bytes: 200_000,
             ..Budget::default()
         }

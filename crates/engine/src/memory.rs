@@ -15,14 +15,14 @@ pub fn budget() -> Budget {
 
 /// As [`budget`], with `most` bytes in place of the solver's own budget, where somebody has set them.
 pub fn budget_within(most: Option<u64>) -> Budget {
-    let own = most.unwrap_or(Budget::default().bytes);
+    let own = Budget::of_most(most);
     let left = [left_in_machine(), left_in_group(), left_to_process()]
         .into_iter()
         .flatten()
         .min();
     Budget {
-        bytes: left.map_or(own, |left| left.min(own)),
-        ..Budget::default()
+        bytes: left.map_or(own.bytes, |left| left.min(own.bytes)),
+        ..own
     }
 }
 

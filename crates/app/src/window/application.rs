@@ -14,6 +14,7 @@ use pliant_mesh::Cancel;
 use super::bars::toast::Toast;
 use super::dialogs::keys_window::KeysWindow;
 use super::dialogs::log::Log;
+use super::dialogs::memory_window::MemoryWindow;
 use super::dialogs::palette::Palette;
 use super::dialogs::question::{Question, Then};
 use super::files::app_directories::AppDirectories;
@@ -64,6 +65,7 @@ pub struct Application {
     pub(super) is_panel_hidden: bool,
     pub(super) log: Log,
     pub(super) keys: KeysWindow,
+    pub(super) memory: MemoryWindow,
     pub(super) question: Option<Question>,
     /// What to do once the save that was asked for first has ended.
     pub(super) after_saving: Option<Then>,
@@ -149,6 +151,7 @@ impl Application {
             is_panel_hidden: false,
             log: Log::default(),
             keys: KeysWindow::default(),
+            memory: MemoryWindow::default(),
             recovery,
             question: (!left.is_empty()).then_some(Question::Recover(left)),
             after_saving: None,
@@ -165,6 +168,7 @@ impl Application {
             title: String::new(),
         };
         application.take_keys();
+        application.take_memory();
         Ok(application)
     }
 
@@ -338,6 +342,12 @@ impl Application {
 
     pub(super) fn fail(&mut self, sentence: String) {
         self.notes.headline = Some(Note::Failed(sentence));
+    }
+
+    /// Tells the editor how much memory a person lets bindings take.
+    pub(super) fn take_memory(&mut self) {
+        let most = self.settings.get().memory;
+        self.editor.handle(Event::Memory(most.map(|most| most.0)));
     }
 
     /// Tells the editor which keys a person has chosen.

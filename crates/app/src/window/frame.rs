@@ -7,7 +7,7 @@ use eframe::egui::{self, CentralPanel, Panel};
 use super::application::Application;
 use super::bars::{status, tool_column, top_bar, view_bar};
 use super::dialogs::palette::{Found, Outcome};
-use super::dialogs::{keys_window, log, question};
+use super::dialogs::{keys_window, log, memory_window, question};
 use super::files::file_command::FileCommand;
 use super::files::session::OpenFile;
 use super::input::event_queue::EventQueue;
@@ -143,6 +143,9 @@ impl Application {
         if self.keys.show(context, &self.editor, &mut self.settings) {
             self.take_keys();
         }
+        if self.memory.show(context, &mut self.settings) {
+            self.take_memory();
+        }
         let question = self.question.as_mut();
         if let Some(answer) = question.and_then(|question| question::ask(context, question)) {
             self.answer(answer);
@@ -165,8 +168,8 @@ impl Application {
     }
 
     /// Esc means the nearest thing: a question, the palette, an open menu, a field that is typed into and what a tool is
-    /// doing come first; then it closes the list of keys or the log, and only where neither is open does the editor
-    /// get it.
+    /// doing come first; then it closes the window that lies on top of the list of keys, the choice of memory and the log,
+    /// and only where none is open does the editor get it.
     fn close_by_escape(&mut self, context: &egui::Context) {
         let is_taken = self.question.is_some()
             || self.palette.is_some()
@@ -175,11 +178,13 @@ impl Application {
             || context.egui_wants_keyboard_input()
             || EventQueue::is_typing(context)
             || self.editor.is_acting();
-        let open = [
-            self.keys.open.then_some(keys_window::ID),
-            self.log.open.then_some(log::ID),
+        let windows = [
+            (keys_window::ID, &mut self.keys.open),
+            (memory_window::ID, &mut self.memory.open),
+            (log::ID, &mut self.log.open),
         ];
-        if is_taken || open == [None, None] {
+        let mut open: Vec<_> = windows.into_iter().filter(|(_, open)| **open).collect();
+        if is_taken || open.is_empty() {
             return;
         }
         if !context.input_mut(|input| input.consume_key(egui::Modifiers::NONE, egui::Key::Escape)) {
@@ -187,11 +192,8 @@ impl Application {
         }
         let top = context.memory(|memory| memory.areas().top_layer_id(egui::Order::Middle));
         let is_top = |name: &str| top.is_some_and(|layer| layer.id == egui::Id::unique(name));
-        if self.keys.open && (!self.log.open || !is_top(log::ID)) {
-            self.keys.open = false;
-        } else {
-            self.log.open = false;
-        }
+        let nearest = open.iter().position(|(name, _)| is_top(name)).unwrap_or(0);
+        *open[nearest].1 = false;
     }
 
     /// With which energy the shape has settled, for the log.

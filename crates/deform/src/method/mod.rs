@@ -23,7 +23,8 @@ pub use self::declaration::{ConstraintKind, MethodDeclaration, Needs, Solve};
 pub use self::option::{OptionDeclaration, OptionKind, OptionRefused, OptionValue};
 pub use self::traits::HandleFit;
 pub(crate) use self::traits::{BindInput, BoundMethod, DeformMethod, Finite, Options, Stepped};
-use crate::{BindError, Ordering};
+use crate::budget::plate_bytes;
+use crate::{BindError, Budget, Ordering};
 
 /// Every method, in the order in which they are shown. A new one adds its line here.
 pub const METHODS: &[&MethodDeclaration] = &[
@@ -90,6 +91,19 @@ impl Method {
     /// The power of the Laplacian whose graph the ordering is made for, if it needs one.
     pub fn ordering_power(&self) -> Option<u32> {
         self.needs().ordering_power()
+    }
+
+    /// The power of the ordering for so many free vertices within a budget: [`Method::ordering_power`], or 1 where the
+    /// factor of the method's own system can be expected not to fit and the Laplacian's is enough. `None` if it needs no
+    /// ordering. The factor's size is estimated from the number of vertices.
+    pub fn ordering_power_within(&self, free_count: usize, budget: Budget) -> Option<u32> {
+        let power = self.ordering_power()?;
+        let fits = || plate_bytes(free_count) <= budget.bytes;
+        Some(if !self.implementation().takes_first_power() || fits() {
+            power
+        } else {
+            1
+        })
     }
 
     /// The ordering that it needs, if it needs one.

@@ -122,6 +122,12 @@ impl Editor {
             Event::KeyReleased(key) => self.key_released(key),
             Event::Command(command) => self.execute(command),
             Event::Keys(key_map) => self.key_map = key_map,
+            Event::Memory(most) => {
+                let Workspace { jobs, document, .. } = &mut self.workspace;
+                if jobs.allow_memory(most, document) {
+                    self.workspace.refusal = None;
+                }
+            }
             Event::Adjust(command) => self.adjust(command),
             Event::Adjusted => {
                 if self.workspace.is_adjusting() {

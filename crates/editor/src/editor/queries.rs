@@ -110,6 +110,11 @@ impl Editor {
         &self.workspace.computed().example_weights
     }
 
+    /// The most memory in bytes that bindings may take, where a person has said so.
+    pub fn most_memory(&self) -> Option<u64> {
+        self.workspace.jobs.most_memory()
+    }
+
     /// The document.
     pub fn document(&self) -> &Document {
         &self.workspace.document

@@ -6,9 +6,10 @@ use glam::DVec3;
 use pliant_deform::Method;
 use pliant_mesh::{Distortion, Model, SurfaceVertex};
 
+use super::allowance::Allowance;
 use super::compared::{Binding, Compared, Edit, Figures};
 use super::computed::Computed;
-use super::job::{Executor, JobOutcome, Solved, Work};
+use super::job::{JobOutcome, Solved, Work};
 use super::solving::Wanted;
 use crate::Setup;
 use crate::document::Document;
@@ -67,7 +68,13 @@ impl Alternative {
     }
 
     /// Binds the method where it is not, and takes the next steps; `None` where the ordering is missing.
-    pub(super) fn work(&self, document: &Document, computed: &Computed, executor: &dyn Executor) -> Option<Work> {
+    pub(super) fn work(
+        &self,
+        document: &Document,
+        computed: &Computed,
+        allowance: Allowance,
+        clock_ms: fn() -> f64,
+    ) -> Option<Work> {
         let model = computed.model.clone()?;
         let ordering = match self.method.ordering_power() {
             Some(power) => Some(computed.ordering(power)?),
@@ -83,7 +90,6 @@ impl Alternative {
         let (document, region, binding) = (document.clone(), computed.region.clone(), self.binding.clone());
         let method = self.method.clone();
         let of = Edit::of(&document);
-        let (budget, clock_ms) = (executor.budget(), executor.clock_ms());
         Some(Box::new(move |progress, cancel| {
             let known = |vertex| model.first_file_vertex(SurfaceVertex(vertex)).0;
             let start_ms = clock_ms();
@@ -100,7 +106,7 @@ impl Alternative {
                         ..Setup::of_document(&document, &region)
                     };
                     let problem = setup.problem(&model);
-                    let bound = problem.bind_within(ordering.as_deref(), budget(), progress, cancel);
+                    let bound = problem.bind_within(ordering.as_deref(), allowance.budget(), progress, cancel);
                     match bound {
                         Ok(bound) => Binding {
                             bound: Arc::new(Mutex::new(bound)),

@@ -5,10 +5,11 @@
 
 use pliant_deform::METHODS;
 
+use super::allowance::Allowance;
 use super::alternative::Alternative;
 use super::compared::Edit;
 use super::computed::Computed;
-use super::job::{Executor, JobOutcome, Work};
+use super::job::{JobOutcome, Work};
 use crate::document::Document;
 
 /// What each method makes of the present edit.
@@ -73,10 +74,10 @@ impl Comparison {
         &mut self,
         document: &Document,
         computed: &Computed,
-        executor: &dyn Executor,
+        (allowance, clock_ms): (Allowance, fn() -> f64),
     ) -> Option<Work> {
         let number = self.turn()?;
-        let work = self.alternatives[number].work(document, computed, executor)?;
+        let work = self.alternatives[number].work(document, computed, allowance, clock_ms)?;
         self.under_way = Some((number, Edit::of(document)));
         self.next = number + 1;
         Some(work)

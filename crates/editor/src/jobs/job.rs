@@ -133,9 +133,10 @@ pub trait Executor {
     /// answered with [`JobOutcome::Failed`].
     fn start(&mut self, job: Job);
 
-    /// Tells how much memory a binding may take; a job asks it when it begins, on the thread that it runs on.
-    fn budget(&self) -> fn() -> Budget {
-        Budget::default
+    /// Tells how much memory a binding may take, given the most bytes that a person allows, if one has said so; a job
+    /// asks it when it begins, on the thread that it runs on.
+    fn budget(&self) -> fn(Option<u64>) -> Budget {
+        Budget::of_most
     }
 
     /// Tells the time in milliseconds since some moment, for figures that a person reads and for nothing else. It stands

@@ -1,5 +1,6 @@
 //! What follows from the document and is computed beside the window: the jobs, their queues and their last results.
 
+mod allowance;
 mod alternative;
 mod both_sides;
 mod bound_controls;

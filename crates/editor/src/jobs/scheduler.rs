@@ -10,6 +10,7 @@ use std::sync::{Arc, Mutex};
 
 use pliant_mesh::{Joint, Model, SurfaceVertex};
 
+use super::allowance::Allowance;
 use super::both_sides::BothSides;
 use super::bound_controls::BoundControls;
 use super::comparison::Comparison;
@@ -39,6 +40,7 @@ pub(crate) enum Activity {
 /// The jobs and their last results.
 pub(crate) struct Jobs {
     executor: Box<dyn Executor>,
+    allowance: Allowance,
     queues: [JobQueue<Work>; JobKind::ALL.len()],
     /// For each kind the revision that failed or was stopped by the person: it is not tried again.
     given_up: [Option<Revision>; JobKind::ALL.len()],
@@ -105,6 +107,7 @@ pub(crate) enum Finality {
 impl Jobs {
     pub(crate) fn new(executor: Box<dyn Executor>) -> Self {
         Self {
+            allowance: Allowance::new(executor.budget()),
             executor,
             queues: std::array::from_fn(|_| JobQueue::default()),
             given_up: [None; JobKind::ALL.len()],
@@ -165,6 +168,29 @@ impl Jobs {
         self.queues[JobKind::Bind as usize].cancel();
         self.drop_solves();
         self.targets_changed();
+    }
+
+    /// Bindings may take so many bytes at most, or what there is, from now on. Where that chooses another factor than the
+    /// one that is bound, it is bound anew, and what was refused is tried again. Whether it is.
+    pub(crate) fn allow_memory(&mut self, most: Option<u64>, document: &Document) -> bool {
+        let free_count = self.computed.region.counts.free;
+        let before = self.allowance;
+        self.allowance = before.with_most(most);
+        let chooses_otherwise = self.allowance.chooses_otherwise(before, &document.method, free_count);
+        let binds_anew = before.most() != most && (self.has_given_up(JobKind::Bind) || chooses_otherwise);
+        if binds_anew {
+            self.problem_changed();
+        }
+        if before.most() != most && self.comparison.is_some() {
+            self.end_comparing();
+            self.begin_comparing(document);
+        }
+        binds_anew
+    }
+
+    /// The most bytes that bindings may take, where somebody has said so.
+    pub(crate) fn most_memory(&self) -> Option<u64> {
+        self.allowance.most()
     }
 
     /// The handles' transforms are no longer what they were.
@@ -386,9 +412,9 @@ impl Jobs {
                     region_work(region_input(&model, document, &computed.contacts))
                 });
             } else if missing.is_none() && !self.is_bound() && self.binds_something(document) {
-                let (revision, budget) = (self.problem_revision.0, self.executor.budget());
+                let (revision, allowance) = (self.problem_revision.0, self.allowance);
                 self.want(JobKind::Bind, |computed| {
-                    bind_work(computed, &model, document, revision, budget)
+                    bind_work(computed, &model, document, revision, allowance)
                 });
             }
             if self.is_bound() && !document.settled {
@@ -431,7 +457,9 @@ impl Jobs {
                 comparison.stop(document);
             }
             self.want(JobKind::Order, |_| order_work(model, power));
-        } else if let Some(work) = comparison.next_work(document, &self.computed, &*self.executor) {
+        } else if let Some(work) =
+            comparison.next_work(document, &self.computed, (self.allowance, self.executor.clock_ms()))
+        {
             self.compare_revision = self.next_revision();
             self.queues[JobKind::Compare as usize].request(self.compare_revision, work);
         }

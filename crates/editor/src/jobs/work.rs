@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
-use pliant_deform::{BindError, Budget, Ordering, Problem};
+use pliant_deform::{BindError, Ordering, Problem};
 use pliant_mesh::{Bvh, Model, SurfaceVertex};
 
+use super::allowance::Allowance;
 use super::computed::Computed;
 use super::inspected::Inspectable;
 use super::intersections::Intersections;
@@ -71,7 +72,7 @@ pub(super) fn bind_work(
     model: &Arc<Model>,
     document: &Document,
     revision: u64,
-    budget: fn() -> Budget,
+    allowance: Allowance,
 ) -> Option<Work> {
     let ordering = match document.method.ordering_power() {
         Some(power) => Some(computed.ordering(power)?),
@@ -86,7 +87,7 @@ pub(super) fn bind_work(
             ..setup.problem(&model)
         };
         let (ordering, reusable_factor) = (ordering.as_deref(), reusable_factor.as_ref());
-        match problem.rebind_within(ordering, reusable_factor, budget(), progress, cancel) {
+        match problem.rebind_within(ordering, reusable_factor, allowance.budget(), progress, cancel) {
             Ok(bound) => {
                 let inspectable = Inspectable::of(&bound, &problem.surface.positions);
                 JobOutcome::Bound(Box::new(bound), inspectable)

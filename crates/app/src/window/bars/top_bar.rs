@@ -178,7 +178,7 @@ fn region_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
 type Groups<'a> = [&'a [(FileCommand, Option<&'static str>)]];
 
 /// How the window itself looks.
-const WINDOW_MENU: [&[(FileCommand, Option<&str>)]; 3] = [
+const WINDOW_MENU: [&[(FileCommand, Option<&str>)]; 4] = [
     &[(FileCommand::Panel, None)],
     &[(FileCommand::Compare, None)],
     &[
@@ -186,6 +186,7 @@ const WINDOW_MENU: [&[(FileCommand, Option<&str>)]; 3] = [
         (FileCommand::Scale(1), Some("Larger")),
         (FileCommand::Scale(-1), Some("Smaller")),
     ],
+    &[(FileCommand::Memory, None)],
 ];
 
 /// What the window can tell.

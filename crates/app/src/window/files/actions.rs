@@ -179,6 +179,7 @@ impl Application {
             FileCommand::Panel => self.is_panel_hidden = !self.is_panel_hidden,
             FileCommand::Log => self.log.open = true,
             FileCommand::Keys => self.keys.open = true,
+            FileCommand::Memory => self.memory.open = true,
             FileCommand::NextTheme => {
                 self.settings.change(|settings| settings.theme = settings.theme.next());
                 theme::apply(context, self.settings.get());

@@ -37,6 +37,8 @@ pub enum FileCommand {
     Panel,
     /// Show the commands' keys, to be changed.
     Keys,
+    /// Choose how much memory binding may take.
+    Memory,
     /// Light, dark, or as the system is.
     NextTheme,
     /// Everything larger (above 0) or smaller, in tenths.
@@ -94,6 +96,7 @@ impl FileCommand {
             | Self::LoadCage
             | Self::Log
             | Self::Keys
+            | Self::Memory
             | Self::NextTheme
             | Self::Compare
             | Self::Hints
@@ -103,7 +106,7 @@ impl FileCommand {
     }
 
     /// All that need no path, in the order of the menu.
-    pub const LISTED: [Self; 17] = [
+    pub const LISTED: [Self; 18] = [
         Self::Open,
         Self::Save,
         Self::SaveAs,
@@ -120,6 +123,7 @@ impl FileCommand {
         Self::Panel,
         Self::Log,
         Self::Keys,
+        Self::Memory,
         Self::NextTheme,
         Self::Compare,
         Self::Hints,
@@ -140,6 +144,7 @@ impl FileCommand {
             Self::Panel => "Panel",
             Self::Log => "Log…",
             Self::Keys => "Keys…",
+            Self::Memory => "Memory…",
             Self::NextTheme => "Light or dark",
             Self::Scale(_) => "Size of everything",
             Self::Compare => "Compare two methods",
@@ -162,6 +167,7 @@ impl FileCommand {
             Self::Panel => "sidebar show hide full screen",
             Self::Log => "messages errors",
             Self::Keys => "shortcuts bindings keyboard rebind",
+            Self::Memory => "ram limit budget gigabytes settings preferences",
             Self::NextTheme => "theme dark mode",
             Self::Scale(_) => "ui zoom",
             Self::Compare => "split view side by side",

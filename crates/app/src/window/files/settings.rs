@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use pliant_engine::files::{self, Staging, shown};
+use pliant_engine::memory;
 
 /// How many files are remembered.
 const RECENT: usize = 10;
@@ -31,6 +32,8 @@ pub struct Settings {
     pub folded: std::collections::BTreeSet<String>,
     /// Whether the hints on the canvas were put away.
     pub hints_seen: bool,
+    /// The most memory that binding may take; without one what the machine leaves.
+    pub memory: Option<MostMemory>,
     /// Keys of commands, by the commands' names, if they differ from the program's own.
     pub keys: std::collections::BTreeMap<String, Vec<String>>,
 }
@@ -97,6 +100,25 @@ impl ThemeChoice {
     }
 }
 
+/// So many bytes of memory at most, in the file as the command line takes it: "8GB".
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub struct MostMemory(pub u64);
+
+impl TryFrom<String> for MostMemory {
+    type Error = String;
+
+    fn try_from(text: String) -> Result<Self, String> {
+        memory::bytes(&text).map(Self)
+    }
+}
+
+impl From<MostMemory> for String {
+    fn from(most: MostMemory) -> Self {
+        format!("{}GB", most.0 as f64 / 1e9)
+    }
+}
+
 impl Default for Settings {
     fn default() -> Self {
         Self {
@@ -108,6 +130,7 @@ impl Default for Settings {
             maximised: false,
             folded: Default::default(),
             hints_seen: false,
+            memory: None,
             keys: Default::default(),
         }
     }
@@ -177,7 +200,26 @@ impl Settings {
 #[cfg(test)]
 #[expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 mod tests {
-    use super::Settings;
+    use super::{MostMemory, Settings};
+
+    #[test]
+    fn memory_is_kept_as_the_command_line_takes_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("settings.json");
+        for bytes in [500_000_000, 1_610_612_736, 8_000_000_000] {
+            let settings = Settings {
+                memory: Some(MostMemory(bytes)),
+                ..Settings::default()
+            };
+            settings.write(&path).unwrap();
+            assert_eq!(Settings::read(&path), (settings, None));
+        }
+        assert!(std::fs::read_to_string(&path).unwrap().contains(r#""memory": "8GB""#));
+        std::fs::write(&path, r#"{ "memory": "a lot" }"#).unwrap();
+        let (settings, problem) = Settings::read(&path);
+        assert_eq!(settings, Settings::default());
+        assert!(problem.unwrap().contains("such as 8GB"));
+    }
 
     #[test]
     fn a_recent_file_that_is_gone_is_forgotten_once_it_was_asked_for() {

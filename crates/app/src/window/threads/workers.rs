@@ -129,8 +129,8 @@ impl Workers {
 }
 
 impl Executor for Workers {
-    fn budget(&self) -> fn() -> Budget {
-        memory::budget
+    fn budget(&self) -> fn(Option<u64>) -> Budget {
+        memory::budget_within
     }
 
     fn clock_ms(&self) -> fn() -> f64 {

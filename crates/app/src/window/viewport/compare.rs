@@ -53,6 +53,9 @@ impl Compare {
     /// Takes over what the first view and its editor have, and what has ended elsewhere.
     pub fn follow(&mut self, leader: &Editor, first: &Viewport, stage: &Stage) {
         self.side.workers.set_stage(stage.clone());
+        if self.editor.most_memory() != leader.most_memory() {
+            self.editor.handle(Event::Memory(leader.most_memory()));
+        }
         while let Some(message) = self.side.receive() {
             let posed = match message {
                 Message::Job(done, posed) => {

@@ -1,0 +1,78 @@
+//! How much memory binding may take: what the machine leaves, or a number of a person's own.
+
+use eframe::egui::{self, DragValue, RichText};
+
+use crate::window::files::settings::{MostMemory, SettingsFile};
+use crate::window::widgets::number_field::number_field;
+
+/// What egui tells its window by.
+pub const ID: &str = "memory window";
+
+/// What is offered first, in bytes.
+const FIRST: u64 = 8_000_000_000;
+
+/// What can be chosen, in gigabytes.
+const RANGE_GB: std::ops::RangeInclusive<f64> = 0.1..=4096.0;
+
+/// The choice.
+#[derive(Debug, Default)]
+pub struct MemoryWindow {
+    /// Whether it is open.
+    pub open: bool,
+    /// The number while it is being dragged: it counts once it is let go.
+    dragged_gb: Option<f64>,
+}
+
+impl MemoryWindow {
+    /// Shows it, if it is open; true when another choice was made.
+    pub fn show(&mut self, context: &egui::Context, settings: &mut SettingsFile) -> bool {
+        let before = settings.get().memory;
+        let mut most = before;
+        let Self { open, dragged_gb } = self;
+        egui::Window::new("Memory")
+            .id(egui::Id::unique(ID))
+            .open(open)
+            .default_width(360.0)
+            .resizable(false)
+            .show(context, |ui| choose(ui, &mut most, dragged_gb));
+        if most != before {
+            settings.change(|settings| settings.memory = most);
+        }
+        most != before
+    }
+}
+
+fn choose(ui: &mut egui::Ui, most: &mut Option<MostMemory>, dragged_gb: &mut Option<f64>) {
+    ui.label("Binding may take, beside the mesh:");
+    if ui.radio(most.is_none(), "What the machine leaves").clicked() {
+        *most = None;
+    }
+    ui.horizontal(|ui| {
+        if ui.radio(most.is_some(), "At most").clicked() && most.is_none() {
+            *most = Some(MostMemory(FIRST));
+        }
+        ui.add_enabled_ui(most.is_some(), |ui| {
+            let chosen_gb = most.map_or(FIRST, |most| most.0) as f64 / 1e9;
+            let mut shown_gb = dragged_gb.unwrap_or(chosen_gb);
+            let field = number_field(ui, &mut shown_gb, |ui, shown_gb| {
+                ui.add(
+                    DragValue::new(shown_gb)
+                        .range(RANGE_GB)
+                        .speed(0.1)
+                        .max_decimals(1)
+                        .suffix(" GB")
+                        .update_while_editing(false),
+                )
+            });
+            field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::SpinButton, true, "Most memory in GB"));
+            if field.dragged() {
+                *dragged_gb = Some(shown_gb);
+            } else if dragged_gb.take().is_some() || field.changed() {
+                *most = Some(MostMemory((shown_gb * 1e9) as u64));
+            }
+        });
+    });
+    let note = "What does not fit is solved in a way that takes less memory and more time, or refused. Without a number \
+                of your own it is 16 GiB at most.";
+    ui.label(RichText::new(note).weak().small());
+}
