@@ -232,6 +232,6 @@ fn by_laplacian(
         RenewableFactor::of(matrix, elimination, &SHIFTS, refactorisation, budget, cancel).map_err(refused)?;
     let taken = bytes_of(factored.factor.stored(), size_of::<f64>());
     let left = budget.without(taken).map_err(SystemError::Budget)?;
-    let capacitance = Capacitance::new(operator, (&columns, &column_of), factored, left);
+    let capacitance = Capacitance::new(operator, (&columns, &column_of), factored, left, cancel);
     Ok(((columns, column_of), Solution::Capacitance(Box::new(capacitance))))
 }

@@ -120,7 +120,29 @@ impl Factor {
 
     /// Solves for K right-hand sides in place.
     pub fn solve<const K: usize>(&self, x: &mut [[f64; K]]) {
-        solve::solve_in_place(&self.symbolic, &self.assembly_tree, &self.numbers, x);
+        solve::solve_in_place(&self.symbolic, &self.assembly_tree, &self.numbers, x, |_| true);
+    }
+
+    /// As [`Factor::solve`], but only in the columns of these parts, which [`Factor::parts_above`] gives; elsewhere `x` is
+    /// of no use.
+    pub fn solve_in<const K: usize>(&self, parts: &[bool], x: &mut [[f64; K]]) {
+        solve::solve_in_place(&self.symbolic, &self.assembly_tree, &self.numbers, x, |part| {
+            parts[part]
+        });
+    }
+
+    /// For each part whether the solution in one of these columns depends on it: those of the columns, and all above.
+    pub fn parts_above(&self, columns: impl IntoIterator<Item = u32>) -> Vec<bool> {
+        let parts = &self.assembly_tree.parts;
+        let mut are_above = vec![false; parts.len()];
+        for column in columns {
+            let mut next = Some(parts.partition_point(|part| part.columns.end <= column as usize));
+            while let Some(part) = next.filter(|&part| !are_above[part]) {
+                are_above[part] = true;
+                next = parts[part].parent;
+            }
+        }
+        are_above
     }
 }
 

@@ -147,6 +147,25 @@ fn where_the_own_factor_does_not_fit_the_laplacian_s_is_taken_and_said_and_below
     assert!(taken > 0 && refused > 0, "{taken} {refused}");
 }
 
+/// The plate near the rim foresees what waves along it, so that few directions are left to be found.
+#[test]
+fn the_directions_are_few_beside_the_rim_s_vertices() {
+    let scene = Scene::new(shapes::tube(128, 400, 3.0)).with_ends(true);
+    let bound = by_laplacian(&scene).unwrap();
+    let sentence = bound
+        .warnings()
+        .iter()
+        .map(ToString::to_string)
+        .find(|said| said.contains("rim"));
+    let sentence = sentence.unwrap();
+    let before = |words: &str| -> usize {
+        let (left, _) = sentence.split_once(words).unwrap();
+        left.rsplit(' ').next().unwrap().parse().unwrap()
+    };
+    let (directions, rim) = (before(" conjugate directions"), before(" vertices at the rim"));
+    assert!(rim > 100 && 10 * directions < rim, "{sentence}");
+}
+
 #[test]
 fn options_that_the_laplacian_s_factor_can_not_solve_are_refused_as_before() {
     let mut scene = Scene::new(shapes::icosphere(5)).with_ends(true);

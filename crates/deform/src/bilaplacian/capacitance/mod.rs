@@ -12,11 +12,12 @@
 //!
 //! the capacitance matrix method [BDGG71], which [Bjo83] uses for the biharmonic equation. S is never formed. It is
 //! solved by conjugate directions ([`directions`]) that take all right-hand sides together, are as long as the rim,
-//! and are kept for the next right-hand side.
+//! are found with the plate near the rim as preconditioner ([`near_rim`]), and are kept for the next right-hand side.
 //!
 //! The factor of P has 0.4 of the numbers of A's on scans, because its separators are one vertex wide in place of two. Multigrid with point smoothers on A itself was tried first, and lost: see `docs/measurements.md`.
 
 mod directions;
+mod near_rim;
 mod rows;
 
 use std::sync::{Arc, PoisonError, RwLock};
@@ -25,6 +26,7 @@ use pliant_mesh::Cancel;
 use rayon::prelude::*;
 
 use self::directions::{Directions, norms, orthonormalised};
+use self::near_rim::NearRim;
 use self::rows::CapacitanceRows;
 use crate::bilaplacian::operator::BilaplacianOperator;
 use crate::budget::{Budget, bytes_of};
@@ -45,6 +47,9 @@ pub(crate) struct Capacitance {
     middle: Vec<f64>,
     /// D^½ C T.
     rows: CapacitanceRows,
+    near_rim: Option<NearRim>,
+    /// The parts of the factor that the rows' columns depend on.
+    beside_rim: Vec<bool>,
     kept: RwLock<Directions>,
     most_kept: usize,
     /// Whether directions are added to those that are kept.
@@ -63,6 +68,7 @@ impl Capacitance {
         (columns, column_of): (&[u32], &[u32]),
         factored: RenewableFactor,
         budget: Budget,
+        cancel: &Cancel,
     ) -> Self {
         let scale = factored.scale();
         let resistance = |local: usize| {
@@ -70,12 +76,17 @@ impl Capacitance {
         };
         let middle = columns.iter().zip(scale);
         let middle = middle.map(|(&local, scale)| scale * scale / resistance(local as usize));
+        let middle = middle.collect();
         let rows = CapacitanceRows::of(operator, column_of, scale, resistance);
+        let near_rim = NearRim::of(operator, (columns, column_of, scale), &rows, budget, cancel);
         // A direction and its image.
         let each = bytes_of(rows.len().max(1), 2 * size_of::<f64>());
+        let left = budget.bytes.saturating_sub(near_rim.as_ref().map_or(0, NearRim::bytes));
         Self {
-            middle: middle.collect(),
-            most_kept: ((budget.bytes / each) as usize).min(MOST_KEPT),
+            middle,
+            most_kept: ((left / each) as usize).min(MOST_KEPT),
+            beside_rim: factored.factor.parts_above(rows.columns()),
+            near_rim,
             rows,
             kept: RwLock::default(),
             is_learning: true,
@@ -91,7 +102,8 @@ impl Capacitance {
     /// How many numbers are stored.
     pub fn stored(&self) -> usize {
         let kept = self.kept.read().unwrap_or_else(PoisonError::into_inner);
-        self.factored.factor.stored() + self.middle.len() + 2 * kept.len() * self.rows.len()
+        let near_rim = self.near_rim.as_ref().map_or(0, NearRim::stored);
+        self.factored.factor.stored() + near_rim + self.middle.len() + 2 * kept.len() * self.rows.len()
     }
 
     /// From now on no solve leaves anything behind, so that solves may run beside each other and in any order.
@@ -119,11 +131,11 @@ impl Capacitance {
 
     /// x ← (T A T)⁻¹ x in the scaled columns, leaving the share `left` of the rim's right-hand side.
     pub fn solve<const K: usize>(&self, x: &mut [[f64; K]], left: f64, cancel: &Cancel) {
-        let load = x.to_vec();
-        self.solve_supported(x);
         if self.rows.len() == 0 {
-            return;
+            return self.solve_supported(x);
         }
+        let load = x.to_vec();
+        self.solve_supported_beside_rim(x);
         let pulls = self.solve_rim(self.rows.product(x), left, cancel);
         x.copy_from_slice(&load);
         drop(load);
@@ -133,19 +145,30 @@ impl Capacitance {
 
     /// x ← F⁻¹ (T N T) F⁻¹ x with the factor F: the plate whose rim is free to turn.
     fn solve_supported<const K: usize>(&self, x: &mut [[f64; K]]) {
+        self.solve_load(x);
+        self.factored.factor.solve(x);
+    }
+
+    /// As [`Capacitance::solve_supported`] in the columns that rows have entries in; elsewhere anything.
+    fn solve_supported_beside_rim<const K: usize>(&self, x: &mut [[f64; K]]) {
+        self.solve_load(x);
+        self.factored.factor.solve_in(&self.beside_rim, x);
+    }
+
+    /// x ← (T N T) F⁻¹ x.
+    fn solve_load<const K: usize>(&self, x: &mut [[f64; K]]) {
         self.factored.factor.solve(x);
         x.par_iter_mut()
             .with_min_len(CHUNK)
             .zip(&self.middle)
             .for_each(|(x, middle)| *x = x.map(|value| value * middle));
-        self.factored.factor.solve(x);
     }
 
     /// (1 + D^½ C B Cᵀ D^½) q.
     fn apply<const K: usize>(&self, q: &[[f64; K]]) -> Vec<[f64; K]> {
         let mut x = vec![[0.0; K]; self.middle.len()];
         self.rows.subtract_transposed(q, &mut x);
-        self.solve_supported(&mut x);
+        self.solve_supported_beside_rim(&mut x);
         let mut image = self.rows.product(&x);
         for (image, q) in image.iter_mut().zip(q) {
             for k in 0..K {
@@ -170,6 +193,9 @@ impl Capacitance {
             }
             let factor: [f64; K] = std::array::from_fn(|k| if is_open[k] { left[k].recip() } else { 0.0 });
             let mut block: Vec<[f64; K]> = r.iter().map(|r| std::array::from_fn(|k| r[k] * factor[k])).collect();
+            if let Some(near_rim) = &self.near_rim {
+                near_rim.precondition(&mut block);
+            }
             // Once leaves what was rounded, twice is enough.
             for _ in 0..2 {
                 kept.remove_from(&mut block);

@@ -46,6 +46,21 @@ impl CapacitanceRows {
         rows
     }
 
+    /// The columns that have entries, as often as they have.
+    pub fn columns(&self) -> impl Iterator<Item = u32> {
+        self.columns.iter().copied()
+    }
+
+    /// The same rows over other columns: where each entry goes, and by what it is multiplied.
+    pub fn moved(&self, to: impl Fn(u32) -> u32, factor: impl Fn(u32) -> f64) -> Self {
+        let entries = self.columns.iter().zip(&self.values);
+        Self {
+            starts: self.starts.clone(),
+            columns: self.columns.iter().map(|&column| to(column)).collect(),
+            values: entries.map(|(&column, value)| value * factor(column)).collect(),
+        }
+    }
+
     /// Adds a row, if it has entries.
     fn push(&mut self, entries: impl Iterator<Item = (u32, f64)>) {
         let before = self.columns.len();

@@ -42,12 +42,14 @@ impl<const K: usize> Room<K> {
     }
 }
 
-/// Solves L Lᵀ x = b in place; `x` has one row per column of the factor.
+/// Solves L Lᵀ x = b in place; `x` has one row per column of the factor. In parts that are not wanted it
+/// is left half solved; those above a wanted part are to be wanted, too.
 pub(crate) fn solve_in_place<const K: usize>(
     symbolic: &Symbolic,
     assembly_tree: &AssemblyTree,
     numbers: &[Numbers],
     x: &mut [[f64; K]],
+    is_wanted: impl Fn(usize) -> bool + Sync,
 ) {
     let rooms = Mutex::new(Vec::<Room<K>>::new());
     let with_room = |run: &mut dyn FnMut(&mut Room<K>)| {
@@ -76,6 +78,9 @@ pub(crate) fn solve_in_place<const K: usize>(
         });
     };
     let backward_part = |part: usize, rows: &mut [[f64; K]]| {
+        if !is_wanted(part) {
+            return;
+        }
         with_room(&mut |room| {
             let mut panels = numbers[part].panels.as_slice();
             for s in assembly_tree.parts[part].supernodes.clone().rev() {
