@@ -169,6 +169,13 @@ pub fn keep(name: &str, rows: &[Row]) -> Result<(), String> {
     write(&path, format!("[\n{}\n]\n", lines.join(",\n")).as_bytes())
 }
 
+/// A section's rows as they were saved last; none where they were not.
+pub fn kept(name: &str) -> Vec<Row> {
+    let text = std::fs::read_to_string(folder().join(format!("{name}.json"))).unwrap_or_default();
+    let lines = text.lines().map(|line| line.trim().trim_end_matches(','));
+    lines.filter_map(Row::parse).collect()
+}
+
 /// The folder of measurements and their meshes.
 pub fn folder() -> std::path::PathBuf {
     target_folder().join("bench")

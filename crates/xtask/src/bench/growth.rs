@@ -1,0 +1,97 @@
+//! How binding grows with the mesh, by the thin plate's own factor and by the Laplacian's, by the example `capacitance`
+//! of `deform`: a table, and with the large meshes the picture `docs/growth.svg`.
+
+use super::Scale;
+use super::chart::{Limit, Line, Panel, chart};
+use super::machine::machine;
+use super::meshes::creature_off;
+use super::table::{self, Row, measured};
+
+/// The meshes: vertices, and how often each is subdivided.
+const USUAL: &[(usize, u32)] = &[(50_000, 0), (50_000, 1)];
+const FULL: &[(usize, u32)] = &[(50_000, 0), (50_000, 1), (50_000, 2), (83_000, 3)];
+
+/// What each way is called in the example and in the picture, and its colour.
+const WAYS: [(&str, &str, &str); 2] = [
+    ("factor", "own factor", "#b4552d"),
+    ("laplacian", "the Laplacian's factor", "#2d6fb4"),
+];
+
+/// What is asked for at so many free vertices: seconds to bind, and bytes.
+const ASKED: (f64, f64, f64) = (5e6, 60.0, 10e9);
+
+/// One row for each mesh and way, on all threads. What an interrupted run has measured is taken from
+/// `target/bench/growth.json`; without that file everything is measured anew.
+pub fn rows(scale: Scale) -> Result<Vec<Row>, String> {
+    let meshes = match scale {
+        Scale::Usual => USUAL,
+        Scale::Full => FULL,
+    };
+    let all = std::thread::available_parallelism().map_or(1, usize::from).to_string();
+    let mut rows = table::kept("growth");
+    for &(vertices, times) in meshes {
+        let file = creature_off(vertices)?;
+        let mesh = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        for (way, ..) in WAYS {
+            let is_it = |row: &Row| {
+                let is = |name: &str, value: &str| row.get(name).is_some_and(|own| own.trim_matches('"') == value);
+                is("way", way) && is("mesh", &mesh) && is("subdivided", &times.to_string())
+            };
+            if rows.iter().any(is_it) {
+                continue;
+            }
+            // One process for each, so that its peak of memory is its own.
+            let arguments = [
+                file.display().to_string(),
+                all.clone(),
+                times.to_string(),
+                way.to_owned(),
+            ];
+            let measured = measured("pliant-deform", "capacitance", &arguments)?;
+            rows.extend(measured.into_iter().map(|row| Row::default().text("way", way).and(row)));
+            table::keep("growth", &rows)?;
+        }
+    }
+    rows.sort_by(|a, b| number(a, "free").total_cmp(&number(b, "free")));
+    if scale == Scale::Full {
+        table::write(&crate::root().join("docs/growth.svg"), picture(&rows).as_bytes())?;
+    }
+    Ok(rows)
+}
+
+fn number(row: &Row, name: &str) -> f64 {
+    row.get(name).and_then(|value| value.parse().ok()).unwrap_or(f64::NAN)
+}
+
+fn picture(rows: &[Row]) -> String {
+    let lines = |value: fn(&Row) -> f64| -> Vec<Line> {
+        let line = |(way, name, colour): (&str, &'static str, &'static str)| Line {
+            name,
+            colour,
+            points: rows
+                .iter()
+                .filter(|row| row.get("way").is_some_and(|own| own.trim_matches('"') == way))
+                .map(|row| [number(row, "free"), value(row)])
+                .collect(),
+        };
+        WAYS.into_iter().map(line).collect()
+    };
+    let (free, seconds, bytes) = ASKED;
+    let limit = |value: f64, name: &str| Limit {
+        at: [free, value],
+        name: name.to_owned(),
+    };
+    let panels = [
+        Panel {
+            title: "Ordering and binding, microseconds a free vertex",
+            lines: lines(|row| 1e6 * (number(row, "order_s") + number(row, "bind_s")) / number(row, "free")),
+            limit: limit(1e6 * seconds / free, "asked: 60 s"),
+        },
+        Panel {
+            title: "Most memory beyond the mesh, bytes a free vertex",
+            lines: lines(|row| 1024.0 * 1024.0 * number(row, "peak_mb") / number(row, "free")),
+            limit: limit(bytes / free, "asked: 10 GB"),
+        },
+    ];
+    chart(&panels, "free vertices", &machine())
+}
