@@ -77,12 +77,16 @@ pub(crate) fn begin(context: &mut Context<'_>, pointer: Pointer, button: Button)
         ToolMode::Select => select(context, pointer, button, pick),
         ToolMode::Pose => Some(Box::new(PoseDrag::begin(context, pointer, pick)?)),
         _ if shape == StrokeShape::Component => {
-            let mut stroke = PaintStroke::begin_without_dab(context.workspace, context.settings, pointer)?;
+            let mut stroke = PaintStroke::begin(context.workspace, context.settings, pointer)?;
             let part = context.workspace.part_of(pick.vertex);
-            stroke.finish_with(context.workspace, part);
+            stroke.finish_with(context.workspace, |stroke, workspace| stroke.take(workspace, part));
             None
         }
-        _ => Some(Box::new(PaintStroke::begin(context, pointer)?)),
+        _ => {
+            let mut stroke = PaintStroke::begin(context.workspace, context.settings, pointer)?;
+            stroke.dab(context, pointer.position_px);
+            Some(Box::new(stroke))
+        }
     }
 }
 

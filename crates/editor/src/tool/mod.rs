@@ -29,6 +29,7 @@ mod size;
 mod smooth;
 mod stiffness;
 mod stiffness_brush;
+mod stroke;
 mod symmetry;
 mod transform;
 mod transform_measure;

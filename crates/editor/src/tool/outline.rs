@@ -9,6 +9,7 @@ use super::gesture::{Gesture, Next};
 use super::mode::StrokeShape;
 use super::overlay::Lit;
 use super::paint::PaintStroke;
+use super::stroke::StrokeGesture;
 use crate::input::{Button, Pointer};
 use crate::jobs::{Activity, JobOutcome};
 use crate::scene_view::Cursor;
@@ -22,7 +23,7 @@ pub(crate) struct OutlineStroke {
     /// Corners in points of the view.
     points_px: Vec<DVec2>,
     /// What takes the vertices in the end.
-    stroke: PaintStroke,
+    stroke: StrokeGesture<PaintStroke>,
     phase: Phase,
 }
 
@@ -36,7 +37,7 @@ enum Phase {
 
 impl OutlineStroke {
     pub(super) fn begin(context: &mut Context<'_>, pointer: Pointer, shape: StrokeShape) -> Option<Self> {
-        let stroke = PaintStroke::begin_without_dab(context.workspace, context.settings, pointer)?;
+        let stroke = PaintStroke::begin(context.workspace, context.settings, pointer)?;
         Some(Self {
             shape,
             points_px: vec![pointer.position_px],
@@ -48,15 +49,15 @@ impl OutlineStroke {
 
 impl Gesture for OutlineStroke {
     fn activity(&self) -> Activity {
-        Activity::Painting
+        self.stroke.activity()
     }
 
     fn cursor(&self) -> Cursor {
-        Cursor::Brush
+        self.stroke.cursor()
     }
 
     fn lit(&self) -> Lit {
-        Lit::Ring
+        self.stroke.lit()
     }
 
     fn status(&self, _: &Workspace, _: &View) -> Option<String> {
@@ -109,12 +110,13 @@ impl Gesture for OutlineStroke {
     }
 
     fn found(&mut self, context: &mut Context<'_>, inside: Vec<SurfaceVertex>) -> Next {
-        self.stroke.finish_with(context.workspace, inside);
+        self.stroke
+            .finish_with(context.workspace, |stroke, workspace| stroke.take(workspace, inside));
         Next::End
     }
 
     fn abort(&mut self, context: &mut Context<'_>) {
         context.workspace.jobs.stop_enclosing();
-        self.stroke.take_back(context.workspace);
+        self.stroke.abort(context);
     }
 }

@@ -7,45 +7,28 @@ use glam::DVec2;
 use pliant_mesh::SurfaceVertex;
 
 use super::context::Context;
-use super::gesture::{Gesture, Next};
 use super::mode::ToolMode;
 use super::other_side::OtherSide;
-use super::overlay::Lit;
 use super::settings::ToolSettings;
-use crate::document::{HandleId, Paint, Transaction};
-use crate::input::{Button, Pointer};
-use crate::jobs::Activity;
-use crate::scene_view::Cursor;
-use crate::view::View;
+use super::stroke::{Stroke, StrokeGesture, meet};
+use crate::document::{Document, HandleId, Paint};
+use crate::input::Pointer;
 use crate::workspace::{Workspace, tidy_handles};
 
 /// What is said where paint does not take.
 const LOCKED_OBJECT: &str = "This object is locked: unlock it in the list of objects to paint on it.";
 
-/// A stroke that goes on.
+/// What the stroke does.
 #[derive(Debug)]
-pub(crate) struct PaintStroke {
-    transaction: Transaction,
+pub(super) struct PaintStroke {
     paint: Paint,
     other_side: Option<OtherSide>,
-    last_px: DVec2,
 }
 
 impl PaintStroke {
-    /// Begins a stroke with a first dab under the pointer and cancels the binding that is under way. `None`, with a
-    /// sentence, if the handle is locked.
-    pub(super) fn begin(context: &mut Context<'_>, pointer: Pointer) -> Option<Self> {
-        let mut stroke = Self::begin_without_dab(context.workspace, context.settings, pointer)?;
-        stroke.dab(context, pointer.position_px);
-        Some(stroke)
-    }
-
-    /// The same without a dab.
-    pub(super) fn begin_without_dab(
-        workspace: &mut Workspace,
-        settings: &ToolSettings,
-        pointer: Pointer,
-    ) -> Option<Self> {
+    /// Begins a stroke, without a dab, and cancels the binding that is under way. `None`, with a sentence, if the handle
+    /// is locked.
+    pub fn begin(workspace: &mut Workspace, settings: &ToolSettings, pointer: Pointer) -> Option<StrokeGesture<Self>> {
         let is_erasing = pointer.modifiers.ctrl || matches!(settings.mode, ToolMode::Erase | ToolMode::Select);
         if !is_erasing
             && settings.mode == ToolMode::PaintHandle
@@ -71,27 +54,48 @@ impl PaintStroke {
             }
         };
         transaction.rename(name);
-        Some(Self {
-            transaction,
+        let stroke = Self {
             paint,
             other_side: OtherSide::of(workspace),
-            last_px: pointer.position_px,
-        })
+        };
+        Some(StrokeGesture::new(transaction, stroke, pointer))
     }
 
-    /// Paints these vertices and ends.
-    pub(super) fn finish_with(&mut self, workspace: &mut Workspace, vertices: Vec<SurfaceVertex>) {
-        self.take(workspace, vertices);
-        self.finish(workspace);
+    /// Paints vertices, and those that go with them on the other side.
+    pub fn take(&mut self, workspace: &mut Workspace, mut vertices: Vec<SurfaceVertex>) {
+        if let Some(other_side) = &mut self.other_side {
+            vertices.sort_unstable();
+            vertices.dedup();
+            let (opposite, paint) = other_side.of_painted(workspace, self.paint, &vertices);
+            lay(workspace, opposite, paint);
+        }
+        lay(workspace, vertices, self.paint);
+    }
+}
+
+impl Stroke for PaintStroke {
+    fn doing(&self, workspace: &Workspace) -> String {
+        match self.paint {
+            Paint::Bare => "Erasing".to_owned(),
+            Paint::Fixed => "Painting what is held still".to_owned(),
+            Paint::Free => "Painting what may bend".to_owned(),
+            Paint::Handle(id) => {
+                let handle = workspace.document.handle(id);
+                format!("Painting {}", handle.map_or("a handle", |handle| handle.name.as_str()))
+            }
+        }
     }
 
-    /// Takes the stroke back.
-    pub(super) fn take_back(&self, workspace: &mut Workspace) {
-        workspace.abort(&self.transaction);
+    fn dab(&mut self, context: &mut Context<'_>, _: &Document, way_px: [DVec2; 2]) {
+        let mut met = Vec::new();
+        meet(context, way_px, |vertex, _| met.push(vertex));
+        let paint = context.workspace.document.paint();
+        met.retain(|vertex| paint[vertex.index()] != self.paint);
+        self.take(context.workspace, met);
     }
 
-    fn finish(&mut self, workspace: &mut Workspace) {
-        tidy_handles(workspace, self.transaction.before());
+    fn finish(&mut self, workspace: &mut Workspace, before: &Document) {
+        tidy_handles(workspace, before);
         if let Some(other_side) = &self.other_side {
             other_side.finish(workspace, self.paint);
         }
@@ -101,34 +105,6 @@ impl PaintStroke {
             workspace.selection.put(Some(id));
             workspace.selection.wants_new_handle = false;
         }
-        workspace.commit(&self.transaction);
-    }
-
-    fn dab(&mut self, context: &mut Context<'_>, to_px: DVec2) {
-        let mut met = Vec::new();
-        if let Some(picking) = context.workspace.picking(context.view) {
-            let paint = context.workspace.document.paint();
-            let visit = |vertex: SurfaceVertex, _| {
-                if paint[vertex.index()] != self.paint {
-                    met.push(vertex);
-                }
-            };
-            let size = &context.settings.brush;
-            context.brush.stroke(&picking, self.last_px, to_px, size, visit);
-        }
-        self.last_px = to_px;
-        self.take(context.workspace, met);
-    }
-
-    /// Paints vertices, and those that go with them on the other side.
-    fn take(&mut self, workspace: &mut Workspace, mut vertices: Vec<SurfaceVertex>) {
-        if let Some(other_side) = &mut self.other_side {
-            vertices.sort_unstable();
-            vertices.dedup();
-            let (opposite, paint) = other_side.of_painted(workspace, self.paint, &vertices);
-            lay(workspace, opposite, paint);
-        }
-        lay(workspace, vertices, self.paint);
     }
 }
 
@@ -156,53 +132,6 @@ pub(super) fn lay(workspace: &mut Workspace, mut vertices: Vec<SurfaceVertex>, l
         let document = &mut workspace.document;
         document.keep_shape();
         document.paint_vertices(vertices.into_iter().map(|vertex| (vertex, laid)));
-    }
-}
-
-impl Gesture for PaintStroke {
-    fn activity(&self) -> Activity {
-        Activity::Painting
-    }
-
-    fn cursor(&self) -> Cursor {
-        Cursor::Brush
-    }
-
-    fn lit(&self) -> Lit {
-        Lit::Ring
-    }
-
-    fn status(&self, workspace: &Workspace, _: &View) -> Option<String> {
-        let painting = match self.paint {
-            Paint::Bare => "Erasing".to_owned(),
-            Paint::Fixed => "Painting what is held still".to_owned(),
-            Paint::Free => "Painting what may bend".to_owned(),
-            Paint::Handle(id) => {
-                let handle = workspace.document.handle(id);
-                format!("Painting {}", handle.map_or("a handle", |handle| handle.name.as_str()))
-            }
-        };
-        Some(format!("{painting}: Esc takes it back"))
-    }
-
-    fn moved(&mut self, context: &mut Context<'_>, pointer: Pointer) -> Next {
-        self.dab(context, pointer.position_px);
-        Next::Stay
-    }
-
-    fn released(&mut self, context: &mut Context<'_>, pointer: Pointer, button: Button) -> Next {
-        if button != Button::Primary {
-            return Next::Stay;
-        }
-        if pointer.position_px != self.last_px {
-            self.dab(context, pointer.position_px);
-        }
-        self.finish(context.workspace);
-        Next::End
-    }
-
-    fn abort(&mut self, context: &mut Context<'_>) {
-        self.take_back(context.workspace);
     }
 }
 

@@ -6,42 +6,35 @@ use glam::DVec2;
 use pliant_mesh::{SurfaceVertex, Topology};
 
 use super::context::Context;
-use super::gesture::{Gesture, Next};
-use super::overlay::Lit;
 use super::paint::lay;
-use crate::document::{Paint, Transaction};
-use crate::input::{Button, Pointer};
-use crate::jobs::Activity;
-use crate::scene_view::Cursor;
-use crate::view::View;
+use super::stroke::{Stroke, StrokeGesture, meet};
+use crate::document::{Document, Paint};
+use crate::input::Pointer;
 use crate::workspace::{Workspace, tidy_handles};
 
-/// A stroke that goes on.
+/// What the stroke does.
 #[derive(Debug)]
-pub(crate) struct SmoothStroke {
-    transaction: Transaction,
-    last_px: DVec2,
-}
+pub(super) struct SmoothStroke;
 
 impl SmoothStroke {
-    pub(super) fn begin(context: &mut Context<'_>, pointer: Pointer) -> Self {
-        let mut stroke = Self {
-            transaction: context.workspace.begin_stroke("Smooth regions"),
-            last_px: pointer.position_px,
-        };
-        stroke.dab(context, pointer.position_px);
-        stroke
+    pub fn begin(context: &mut Context<'_>, pointer: Pointer) -> StrokeGesture<Self> {
+        let transaction = context.workspace.begin_stroke("Smooth regions");
+        StrokeGesture::begin(context, transaction, Self, pointer)
+    }
+}
+
+impl Stroke for SmoothStroke {
+    fn doing(&self, _: &Workspace) -> String {
+        "Smoothing the borders of regions".to_owned()
     }
 
-    fn dab(&mut self, context: &mut Context<'_>, to_px: DVec2) {
+    fn finish(&mut self, workspace: &mut Workspace, before: &Document) {
+        tidy_handles(workspace, before);
+    }
+
+    fn dab(&mut self, context: &mut Context<'_>, _: &Document, way_px: [DVec2; 2]) {
         let mut met: Vec<SurfaceVertex> = Vec::new();
-        if let Some(picking) = context.workspace.picking(context.view) {
-            let size = &context.settings.brush;
-            context
-                .brush
-                .stroke(&picking, self.last_px, to_px, size, |vertex, _| met.push(vertex));
-        }
-        self.last_px = to_px;
+        meet(context, way_px, |vertex, _| met.push(vertex));
         let workspace = &mut *context.workspace;
         if let Some(sides) = workspace.both_sides().cloned() {
             met.extend(sides.opposite(met.clone()));
@@ -72,43 +65,4 @@ fn outvoted(vertex: SurfaceVertex, paint: &[Paint], topology: &Topology) -> Opti
     others
         .into_iter()
         .find(|other| 2 * neighbours.iter().filter(|v| of(v) == *other).count() > neighbours.len())
-}
-
-impl Gesture for SmoothStroke {
-    fn activity(&self) -> Activity {
-        Activity::Painting
-    }
-
-    fn cursor(&self) -> Cursor {
-        Cursor::Brush
-    }
-
-    fn lit(&self) -> Lit {
-        Lit::Ring
-    }
-
-    fn status(&self, _: &Workspace, _: &View) -> Option<String> {
-        Some("Smoothing the borders of regions: Esc takes it back".to_owned())
-    }
-
-    fn moved(&mut self, context: &mut Context<'_>, pointer: Pointer) -> Next {
-        self.dab(context, pointer.position_px);
-        Next::Stay
-    }
-
-    fn released(&mut self, context: &mut Context<'_>, pointer: Pointer, button: Button) -> Next {
-        if button != Button::Primary {
-            return Next::Stay;
-        }
-        if pointer.position_px != self.last_px {
-            self.dab(context, pointer.position_px);
-        }
-        tidy_handles(context.workspace, self.transaction.before());
-        context.workspace.commit(&self.transaction);
-        Next::End
-    }
-
-    fn abort(&mut self, context: &mut Context<'_>) {
-        context.workspace.abort(&self.transaction);
-    }
 }

@@ -8,29 +8,23 @@ use glam::DVec2;
 use pliant_mesh::{SurfaceVertex, Topology};
 
 use super::context::Context;
-use super::gesture::{Gesture, Next};
-use super::overlay::Lit;
 use super::stiffness_brush::{StiffnessAction, StiffnessBrush};
+use super::stroke::{Stroke, StrokeGesture, firmest};
 use crate::STIFFNESS_RANGE;
-use crate::document::Transaction;
-use crate::input::{Button, Pointer};
-use crate::jobs::Activity;
-use crate::scene_view::Cursor;
-use crate::view::View;
+use crate::document::Document;
+use crate::input::Pointer;
 use crate::workspace::Workspace;
 
-/// A stroke that goes on.
+/// What the stroke does.
 #[derive(Debug)]
-pub(crate) struct StiffnessStroke {
-    transaction: Transaction,
+pub(super) struct StiffnessStroke {
     brush: StiffnessBrush,
-    last_px: DVec2,
     /// The firmest that met each vertex in this stroke.
     firmest: Vec<f32>,
 }
 
 impl StiffnessStroke {
-    pub(super) fn begin(context: &mut Context<'_>, pointer: Pointer) -> Self {
+    pub fn begin(context: &mut Context<'_>, pointer: Pointer) -> StrokeGesture<Self> {
         let mut brush = context.settings.stiffness_brush;
         if pointer.modifiers.ctrl {
             brush.action = StiffnessAction::Erase;
@@ -47,41 +41,33 @@ impl StiffnessStroke {
             StiffnessAction::Smooth => "Smooth stiffness",
             StiffnessAction::Erase => "Erase stiffness",
         });
-        let mut stroke = Self {
-            transaction,
+        let stroke = Self {
             brush,
-            last_px: pointer.position_px,
             firmest: vec![0.0; context.workspace.document.paint().len()],
         };
-        stroke.dab(context, pointer.position_px);
-        stroke
+        StrokeGesture::begin(context, transaction, stroke, pointer)
+    }
+}
+
+impl Stroke for StiffnessStroke {
+    fn doing(&self, _: &Workspace) -> String {
+        match self.brush.action {
+            StiffnessAction::Rigid => "Painting what moves as one body".to_owned(),
+            _ => "Painting stiffness".to_owned(),
+        }
     }
 
-    fn dab(&mut self, context: &mut Context<'_>, to_px: DVec2) {
+    fn dab(&mut self, context: &mut Context<'_>, before: &Document, way_px: [DVec2; 2]) {
         let pressure = match self.brush.action {
             StiffnessAction::Rigid => 1.0,
             _ => context.settings.pressure.unwrap_or(1.0),
         };
-        let strength = self.brush.strength * pressure;
-        let mut met: Vec<(SurfaceVertex, f64)> = Vec::new();
-        if let Some(picking) = context.workspace.picking(context.view) {
-            let firmness = |share| strength * self.brush.firmness(share);
-            let size = &context.settings.brush;
-            context
-                .brush
-                .stroke(&picking, self.last_px, to_px, size, |vertex, share| {
-                    met.push((vertex, firmness(share)));
-                });
-        }
-        self.last_px = to_px;
-        let workspace = &mut *context.workspace;
-        if let Some(sides) = workspace.both_sides() {
-            met.extend(sides.opposite_with(&met));
-        }
-        met.retain(|(vertex, _)| workspace.vertex_access.may_be_painted(vertex.index()));
+        let (brush, strength) = (self.brush, self.brush.strength * pressure);
+        let met = firmest(context, way_px, |share| strength * brush.firmness(share));
         if met.is_empty() {
             return;
         }
+        let workspace = &mut *context.workspace;
         // The present shape was made with another stiffness; it is kept, as with every stroke.
         workspace.document.keep_shape();
         if self.brush.action == StiffnessAction::Smooth {
@@ -90,7 +76,7 @@ impl StiffnessStroke {
             }
             return;
         }
-        let before = self.transaction.before().stiffness();
+        let before = before.stiffness();
         let goal = match self.brush.action {
             StiffnessAction::Erase => 1.0,
             StiffnessAction::Rigid => f64::INFINITY,
@@ -116,56 +102,15 @@ impl StiffnessStroke {
             changed
         });
     }
-}
 
-impl Gesture for StiffnessStroke {
-    fn activity(&self) -> Activity {
-        Activity::Painting
-    }
-
-    fn cursor(&self) -> Cursor {
-        Cursor::Brush
-    }
-
-    fn lit(&self) -> Lit {
-        Lit::Ring
-    }
-
-    fn status(&self, _: &Workspace, _: &View) -> Option<String> {
-        Some(match self.brush.action {
-            StiffnessAction::Rigid => "Painting what moves as one body: Esc takes it back".to_owned(),
-            _ => "Painting stiffness: Esc takes it back".to_owned(),
-        })
-    }
-
-    fn moved(&mut self, context: &mut Context<'_>, pointer: Pointer) -> Next {
-        self.dab(context, pointer.position_px);
-        Next::Stay
-    }
-
-    fn released(&mut self, context: &mut Context<'_>, pointer: Pointer, button: Button) -> Next {
-        if button != Button::Primary {
-            return Next::Stay;
-        }
-        if pointer.position_px != self.last_px {
-            self.dab(context, pointer.position_px);
-        }
-        let before = self.transaction.before();
-        context.workspace.document.drop_plain_stiffness(before);
-        context.workspace.commit(&self.transaction);
-        Next::End
-    }
-
-    fn abort(&mut self, context: &mut Context<'_>) {
-        context.workspace.abort(&self.transaction);
+    fn finish(&mut self, workspace: &mut Workspace, before: &Document) {
+        workspace.document.drop_plain_stiffness(before);
     }
 }
 
 /// Moves vertices' values towards the mean of their neighbours, by their firmness in the dab; returns them.
-fn smooth(mut met: Vec<(SurfaceVertex, f64)>, field: &mut [f64], topology: &Topology) -> Vec<SurfaceVertex> {
+fn smooth(met: Vec<(SurfaceVertex, f64)>, field: &mut [f64], topology: &Topology) -> Vec<SurfaceVertex> {
     // Every new value comes from old ones, whatever the order of the vertices.
-    met.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(b.1.total_cmp(&a.1)));
-    met.dedup_by_key(|(vertex, _)| *vertex);
     let smoothed = met.iter().map(|&(vertex, firmness)| {
         if field[vertex.index()] == f64::INFINITY {
             return f64::INFINITY;

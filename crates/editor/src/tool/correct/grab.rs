@@ -4,21 +4,18 @@ use glam::{DMat3, DVec2, DVec3};
 use pliant_mesh::SurfaceVertex;
 
 use super::kelvinlet::Kelvinlet;
-use crate::document::Transaction;
-use crate::input::{Button, Pointer};
-use crate::jobs::Activity;
+use crate::document::Document;
+use crate::input::Pointer;
 use crate::scene_view::Cursor;
 use crate::tool::constraint::on_plane;
 use crate::tool::context::Context;
-use crate::tool::gesture::{Gesture, Next};
-use crate::tool::overlay::Lit;
-use crate::view::{Pick, View};
+use crate::tool::stroke::{Stroke, StrokeGesture};
+use crate::view::Pick;
 use crate::workspace::Workspace;
 
-/// A drag that goes on.
+/// What is taken along.
 #[derive(Debug)]
 pub(super) struct GrabShape {
-    transaction: Transaction,
     grip: DVec3,
     start_px: DVec2,
     /// The vertices that go along, with where they were in the shape and what takes the grip's way to theirs.
@@ -28,7 +25,7 @@ pub(super) struct GrabShape {
 impl GrabShape {
     /// Takes hold of the surface under the pointer: of the part that hangs together with it, and with symmetry of the other
     /// side's.
-    pub fn begin(context: &mut Context<'_>, pointer: Pointer, pick: &Pick) -> Self {
+    pub fn begin(context: &mut Context<'_>, pointer: Pointer, pick: &Pick) -> StrokeGesture<Self> {
         let radius = context.settings.brush.radius_px
             * context
                 .view
@@ -63,15 +60,29 @@ impl GrabShape {
             }
             (vertex, shape[vertex.index()], effect)
         };
-        Self {
+        let stroke = Self {
             taken: open.map(take).collect(),
-            transaction,
             grip: pick.point,
             start_px: pointer.position_px,
-        }
+        };
+        StrokeGesture::new(transaction, stroke, pointer)
+    }
+}
+
+impl Stroke for GrabShape {
+    fn doing(&self, _: &Workspace) -> String {
+        "Taking the surface along".to_owned()
     }
 
-    fn follow(&self, context: &mut Context<'_>, to_px: DVec2) {
+    fn cursor(&self) -> Cursor {
+        Cursor::Grabbing
+    }
+
+    fn holds_camera(&self) -> bool {
+        true
+    }
+
+    fn dab(&mut self, context: &mut Context<'_>, _: &Document, [_, to_px]: [DVec2; 2]) {
         let (camera, viewport_px) = (context.view.camera(), context.view.viewport_px());
         let [from, to] =
             [self.start_px, to_px].map(|px| on_plane(camera.ray(px, viewport_px), self.grip, camera.forward()));
@@ -82,47 +93,5 @@ impl GrabShape {
                 shape[vertex.index()] = *start + *effect * way;
             }
         });
-    }
-}
-
-impl Gesture for GrabShape {
-    fn activity(&self) -> Activity {
-        Activity::Painting
-    }
-
-    fn cursor(&self) -> Cursor {
-        Cursor::Grabbing
-    }
-
-    fn lit(&self) -> Lit {
-        Lit::Ring
-    }
-
-    fn status(&self, _: &Workspace, _: &View) -> Option<String> {
-        Some("Taking the surface along: Esc takes it back".to_owned())
-    }
-
-    fn holds_camera(&self) -> bool {
-        true
-    }
-
-    fn moved(&mut self, context: &mut Context<'_>, pointer: Pointer) -> Next {
-        self.follow(context, pointer.position_px);
-        Next::Stay
-    }
-
-    fn released(&mut self, context: &mut Context<'_>, pointer: Pointer, button: Button) -> Next {
-        if button != Button::Primary {
-            return Next::Stay;
-        }
-        if pointer.position_px != self.start_px {
-            self.follow(context, pointer.position_px);
-        }
-        context.workspace.commit(&self.transaction);
-        Next::End
-    }
-
-    fn abort(&mut self, context: &mut Context<'_>) {
-        context.workspace.abort(&self.transaction);
     }
 }

@@ -1,0 +1,147 @@
+//! Strokes of the brush, from button down to button up: each is one step, and Escape takes it back.
+//!
+//! What a stroke does to the vertices that it meets is a [`Stroke`]; when it does so is the same for all of them.
+
+use glam::DVec2;
+use pliant_mesh::SurfaceVertex;
+
+use super::context::Context;
+use super::gesture::{Gesture, Next};
+use super::overlay::Lit;
+use crate::document::{Document, Transaction};
+use crate::input::{Button, Pointer};
+use crate::jobs::Activity;
+use crate::scene_view::Cursor;
+use crate::view::View;
+use crate::workspace::Workspace;
+
+/// What a stroke does.
+pub(crate) trait Stroke: std::fmt::Debug {
+    /// The pointer went from one point of the viewport to another; `before` is the document as the stroke began.
+    fn dab(&mut self, context: &mut Context<'_>, before: &Document, way_px: [DVec2; 2]);
+
+    /// What the status line says that it does.
+    fn doing(&self, workspace: &Workspace) -> String;
+
+    /// The button went up: what is left to do before the step is done.
+    fn finish(&mut self, _workspace: &mut Workspace, _before: &Document) {}
+
+    /// What the pointer looks like.
+    fn cursor(&self) -> Cursor {
+        Cursor::Brush
+    }
+
+    /// Whether it measures with the camera that it began with.
+    fn holds_camera(&self) -> bool {
+        false
+    }
+}
+
+/// A stroke that goes on.
+#[derive(Debug)]
+pub(super) struct StrokeGesture<S> {
+    transaction: Transaction,
+    stroke: S,
+    last_px: DVec2,
+}
+
+impl<S: Stroke> StrokeGesture<S> {
+    /// Begins a stroke, without a dab.
+    pub fn new(transaction: Transaction, stroke: S, pointer: Pointer) -> Self {
+        Self {
+            transaction,
+            stroke,
+            last_px: pointer.position_px,
+        }
+    }
+
+    /// Begins a stroke with a first dab under the pointer.
+    pub fn begin(context: &mut Context<'_>, transaction: Transaction, stroke: S, pointer: Pointer) -> Self {
+        let mut gesture = Self::new(transaction, stroke, pointer);
+        gesture.dab(context, pointer.position_px);
+        gesture
+    }
+
+    /// Takes the brush to a point of the viewport.
+    pub fn dab(&mut self, context: &mut Context<'_>, to_px: DVec2) {
+        let from_px = std::mem::replace(&mut self.last_px, to_px);
+        self.stroke.dab(context, self.transaction.before(), [from_px, to_px]);
+    }
+
+    /// Changes vertices that the brush has not met, and ends.
+    pub fn finish_with(&mut self, workspace: &mut Workspace, change: impl FnOnce(&mut S, &mut Workspace)) {
+        change(&mut self.stroke, workspace);
+        self.stroke.finish(workspace, self.transaction.before());
+        workspace.commit(&self.transaction);
+    }
+}
+
+impl<S: Stroke> Gesture for StrokeGesture<S> {
+    fn activity(&self) -> Activity {
+        Activity::Painting
+    }
+
+    fn cursor(&self) -> Cursor {
+        self.stroke.cursor()
+    }
+
+    fn lit(&self) -> Lit {
+        Lit::Ring
+    }
+
+    fn status(&self, workspace: &Workspace, _: &View) -> Option<String> {
+        Some(format!("{}: Esc takes it back", self.stroke.doing(workspace)))
+    }
+
+    fn holds_camera(&self) -> bool {
+        self.stroke.holds_camera()
+    }
+
+    fn moved(&mut self, context: &mut Context<'_>, pointer: Pointer) -> Next {
+        self.dab(context, pointer.position_px);
+        Next::Stay
+    }
+
+    fn released(&mut self, context: &mut Context<'_>, pointer: Pointer, button: Button) -> Next {
+        if button != Button::Primary {
+            return Next::Stay;
+        }
+        if pointer.position_px != self.last_px {
+            self.dab(context, pointer.position_px);
+        }
+        self.finish_with(context.workspace, |_, _| {});
+        Next::End
+    }
+
+    fn abort(&mut self, context: &mut Context<'_>) {
+        context.workspace.abort(&self.transaction);
+    }
+}
+
+/// Calls `visit` for every vertex under the brush as it goes from one point of the viewport to another, with its distance
+/// from the brush's middle as a share of the radius; vertices may be visited more than once.
+pub(super) fn meet(context: &mut Context<'_>, [from_px, to_px]: [DVec2; 2], visit: impl FnMut(SurfaceVertex, f64)) {
+    if let Some(picking) = context.workspace.picking(context.view) {
+        let size = &context.settings.brush;
+        context.brush.stroke(&picking, from_px, to_px, size, visit);
+    }
+}
+
+/// The vertices that may be changed under the brush and, with symmetry, opposite it: in order, each once, with the firmest
+/// that it was met with. `firmness` takes the distance from the brush's middle as a share of the radius.
+pub(super) fn firmest(
+    context: &mut Context<'_>,
+    way_px: [DVec2; 2],
+    firmness: impl Fn(f64) -> f64,
+) -> Vec<(SurfaceVertex, f64)> {
+    let mut met: Vec<(SurfaceVertex, f64)> = Vec::new();
+    meet(context, way_px, |vertex, share| met.push((vertex, firmness(share))));
+    let workspace = &*context.workspace;
+    if let Some(sides) = workspace.both_sides() {
+        met.extend(sides.opposite_with(&met));
+    }
+    met.retain(|(vertex, _)| workspace.vertex_access.may_be_painted(vertex.index()));
+    met.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(b.1.total_cmp(&a.1)));
+    met.dedup_by_key(|(vertex, _)| *vertex);
+    met
+}
