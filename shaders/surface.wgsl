@@ -26,7 +26,7 @@ struct SurfaceFragment {
     // Not of unit length.
     @location(0) normal_view: vec3f,
     @location(1) position_view: vec3f,
-    // Linear; alpha is how much of the surface's own colour it replaces.
+    // As `region_share` gives it; alpha is how much of the surface's own colour it replaces.
     @location(2) region: vec4f,
 }
 

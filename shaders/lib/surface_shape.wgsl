@@ -14,16 +14,18 @@ fn position_to_view(position: vec3f) -> vec3f {
     return (frame.view_from_world * vec4f(position, 1.0)).xyz;
 }
 
-// The region colour, linear and premultiplied, so that between a vertex with a colour and one without only the colour's
-// weight falls and no other colour is mixed in.
+// The region colour as square roots of linear light and premultiplied, so that between a vertex with a colour and one
+// without only the colour's weight falls and no other colour is mixed in.
 fn region_share(region: vec4f) -> vec4f {
     let share = region.a * frame.region_share;
-    return vec4f(linear_from_srgb_fast(region.rgb) * share, share);
+    return vec4f(sqrt(linear_from_srgb_fast(region.rgb)) * share, share);
 }
 
-// A region colour composited over a colour.
+// A region colour composited over a linear colour. Square roots are mixed, because a share of them is seen as that share
+// of the difference; of linear light, a dark colour's share would hardly be seen.
 fn under_region(colour: vec3f, region: vec4f) -> vec3f {
-    return colour * (1.0 - region.a) + region.rgb;
+    let mixed = sqrt(colour) * (1.0 - region.a) + region.rgb;
+    return mixed * mixed;
 }
 
 // The unit normal of the visible side. Where interpolation turns it away from the eye, it is reflected into the visible

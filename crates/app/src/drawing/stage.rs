@@ -42,8 +42,8 @@ pub fn field(shading: Shading) -> Option<Field> {
 pub fn style(look: &Look, pixels_per_point: f32) -> Style {
     let (shading, region_share) = match look.shading {
         Shading::Clay => (pliant_render::Shading::Matcap(matcap(look.clay)), 1.0),
-        // The file's colours stay visible under the region colours.
-        Shading::Material => (pliant_render::Shading::Material, 0.45),
+        // The file's colours stay to be seen under painted stiffness, too.
+        Shading::Material => (pliant_render::Shading::Material, 0.8),
         Shading::Zebra => (pliant_render::Shading::Zebra, 0.0),
         Shading::Normals => (pliant_render::Shading::Normals, 0.0),
         Shading::Stiffness | Shading::Weights | Shading::Stretch | Shading::Area | Shading::Curvature => {

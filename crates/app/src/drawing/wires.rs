@@ -10,14 +10,15 @@ const BARE_COLOUR: [u8; 4] = [214, 208, 196, 255];
 const DOT_WIDTH: f32 = 3.0;
 const LINE_WIDTH: f32 = 1.2;
 
-/// The lines, then a dot for each bare point. `drawn_colours` are the regions' colours of the drawn vertices, whose
-/// alpha says how much they replace of the plain colour; there may be none.
+/// The lines, then a dot for each bare point. `drawn_colours` are the regions' colours of the drawn vertices; there may
+/// be none. Any share of them counts in full: a dot has no form to be seen under its colour.
 pub fn wires(model: &Model, drawn_colours: &[[u8; 4]]) -> Vec<SurfaceLine> {
     let drawn = &model.drawn;
     let colour = |vertex: DrawnVertex| {
         drawn_colours
             .get(vertex.index())
-            .map_or(BARE_COLOUR, |over| mixed(*over))
+            .filter(|[.., share]| *share > 0)
+            .map_or(BARE_COLOUR, |&[r, g, b, _]| [r, g, b, 255])
     };
     let is_finite = |end: &DrawnVertex| drawn.surface_vertex(*end).is_some();
     let lines = drawn.lines().iter().filter(|ends| ends.iter().all(is_finite));
@@ -48,14 +49,4 @@ pub fn wires(model: &Model, drawn_colours: &[[u8; 4]]) -> Vec<SurfaceLine> {
         (true, false) => lines.collect(),
         (false, _) => lines.chain(dots).collect(),
     }
-}
-
-/// A region's colour over the plain one.
-fn mixed([r, g, b, share]: [u8; 4]) -> [u8; 4] {
-    let over = |plain: u8, colour: u8| {
-        let (plain, colour, share) = (u32::from(plain), u32::from(colour), u32::from(share));
-        ((plain * (255 - share) + colour * share) / 255) as u8
-    };
-    let [x, y, z, alpha] = BARE_COLOUR;
-    [over(x, r), over(y, g), over(z, b), alpha]
 }

@@ -28,11 +28,16 @@ pub fn stiffness_colour(stiffness: f64) -> [u8; 4] {
     [r, g, b, 255]
 }
 
-/// What may bend, and what is held still.
-const FREE: [u8; 4] = [96, 150, 222, 255];
-const FIXED: [u8; 4] = [112, 112, 116, 255];
+/// How much of a region's or a handle's colour is seen over the surface's own, of 255: a tint, which leaves the form and
+/// the file's colours to be seen. Outlines and lists have the colours in full, and so have painted stiffness and what is
+/// lit up, which nothing outlines.
+const TINT: u8 = 102;
 
-/// What tells the colour of a vertex, sRGB with alpha.
+/// What may bend, and what is held still.
+const FREE: [u8; 4] = [96, 150, 222, TINT];
+const FIXED: [u8; 4] = [112, 112, 116, TINT];
+
+/// What tells the colour of a vertex, sRGB; alpha is how much of it is seen over the surface's own.
 pub(crate) fn region_colour(workspace: &Workspace) -> impl Fn(SurfaceVertex) -> [u8; 4] {
     // The clay or the material as it is: a share of any grey would wash it out.
     const STILL: [u8; 4] = [0; 4];
@@ -43,7 +48,8 @@ pub(crate) fn region_colour(workspace: &Workspace) -> impl Fn(SurfaceVertex) -> 
     let largest = handles.iter().map(|handle| usize::from(handle.id.0) + 1).max();
     let mut of_handle = vec![STILL; largest.unwrap_or(0)];
     for handle in handles.iter().filter(|handle| handle.visible) {
-        of_handle[usize::from(handle.id.0)] = handle.colour;
+        let [red, green, blue, _] = handle.colour;
+        of_handle[usize::from(handle.id.0)] = [red, green, blue, TINT];
     }
     let by = workspace.colours.by();
     move |vertex| {
@@ -97,7 +103,7 @@ pub(crate) fn rims(workspace: &Workspace) -> impl Iterator<Item = (&ContourLine,
 mod tests {
     use glam::{DMat3, DVec3};
 
-    use super::{FIXED, FREE};
+    use super::{FIXED, FREE, TINT};
     use crate::document::HANDLE_COLOURS;
 
     /// What is seen, in linear light, without and with the three blindnesses [MOF09, severity 1], by rows.
@@ -123,8 +129,8 @@ mod tests {
         ),
     ];
 
-    /// A colour in CIE L*a*b* as a vision sees it.
-    fn seen([red, green, blue, _]: [u8; 4], vision: &[f64; 9]) -> DVec3 {
+    /// A colour as linear light.
+    fn linear([red, green, blue, _]: [u8; 4]) -> DVec3 {
         let linear = |channel: u8| {
             let value = f64::from(channel) / 255.0;
             if value <= 0.04045 {
@@ -133,7 +139,11 @@ mod tests {
                 ((value + 0.055) / 1.055).powf(2.4)
             }
         };
-        let light = DVec3::new(linear(red), linear(green), linear(blue));
+        DVec3::new(linear(red), linear(green), linear(blue))
+    }
+
+    /// Linear light in CIE L*a*b* as a vision sees it.
+    fn seen(light: DVec3, vision: &[f64; 9]) -> DVec3 {
         let light = (DMat3::from_cols_array(vision).transpose() * light).clamp(DVec3::ZERO, DVec3::ONE);
         let to_xyz = DMat3::from_cols(
             DVec3::new(0.4124, 0.2126, 0.0193),
@@ -151,18 +161,39 @@ mod tests {
         DVec3::new(116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z))
     }
 
-    #[test]
-    fn regions_and_handles_are_told_apart_under_every_common_colour_blindness() {
-        // Two colours side by side are seen to differ from about 2 on.
-        const PLAIN: f64 = 15.0;
-        let all: Vec<[u8; 4]> = HANDLE_COLOURS.into_iter().chain([FREE, FIXED]).collect();
+    /// Asserts that every two of the colours are more than `least` apart under every vision. Two colours side by side are
+    /// seen to differ from about 2 on.
+    fn assert_apart(colours: impl Iterator<Item = DVec3>, least: f64) {
+        let colours: Vec<DVec3> = colours.collect();
         for (name, vision) in &VISIONS {
-            for (number, first) in all.iter().enumerate() {
-                for second in &all[..number] {
+            for (number, first) in colours.iter().enumerate() {
+                for (other, second) in colours[..number].iter().enumerate() {
                     let apart = seen(*first, vision).distance(seen(*second, vision));
-                    assert!(apart > PLAIN, "{name}: {first:?} {second:?} {apart:.1}");
+                    assert!(apart > least, "{name}: {number} and {other} are {apart:.1} apart");
                 }
             }
+        }
+    }
+
+    fn all() -> impl Iterator<Item = DVec3> {
+        HANDLE_COLOURS.into_iter().chain([FREE, FIXED]).map(linear)
+    }
+
+    #[test]
+    fn regions_and_handles_are_told_apart_under_every_common_colour_blindness() {
+        assert_apart(all(), 15.0);
+    }
+
+    #[test]
+    fn so_are_their_tints_on_dark_and_light_surfaces() {
+        // `under_region` in shaders/lib/surface_shape.wgsl.
+        let share = f64::from(TINT) / 255.0;
+        for grey in [0.15, 0.3, 0.45, 0.6] {
+            let tinted = |colour: DVec3| {
+                let mixed = DVec3::splat(f64::sqrt(grey)) * (1.0 - share) + colour.map(f64::sqrt) * share;
+                mixed * mixed
+            };
+            assert_apart(all().map(tinted), 5.0);
         }
     }
 }
