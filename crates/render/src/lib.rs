@@ -60,7 +60,7 @@ pub use frame::overlay::{Overlay, OverlayLine, OverlayTriangle};
 pub use frame::palette::{border, region};
 pub use frame::target::{Samples, Target};
 pub use frame::view::View;
-pub use frame::{Background, Borders, Detail, Faces, Frame, Outlines, Shading, Style, Wireframe};
+pub use frame::{Background, Borders, Detail, Faces, Frame, Outlines, Shading, Shadows, Style, Wireframe};
 pub use materials::Materials;
 pub use materials::matcap::Matcap;
 pub use materials::material::{AlphaMode, Lighting, Map, Material, MaterialGroup, UvSet, Wrap};

@@ -15,6 +15,7 @@ use crate::materials::matcap;
 use crate::materials::texture::TextureUploader;
 use crate::pipelines::Pipelines;
 use crate::surface::draw_calls::Batching;
+use crate::surface::shadow::ShadowTools;
 use crate::{
     Borders, Detail, Encoding, Frame, Matcap, Material, RenderError, Samples, Shading, Target, TextureData, Wireframe,
 };
@@ -33,6 +34,7 @@ pub struct Renderer {
     pub(crate) grid_group: wgpu::BindGroup,
     pub(crate) matcaps: HashMap<Matcap, wgpu::BindGroup>,
     pub(crate) environment: Option<wgpu::BindGroup>,
+    pub(crate) shadow_tools: Option<ShadowTools>,
     pub(crate) overlay_triangles: DynamicBuffer,
     pub(crate) overlay_lines: DynamicBuffer,
     timer: Option<Timer>,
@@ -82,6 +84,7 @@ impl Renderer {
             grid_group,
             matcaps: HashMap::new(),
             environment: None,
+            shadow_tools: None,
             overlay_triangles: DynamicBuffer::new("overlay triangles"),
             overlay_lines: DynamicBuffer::new("overlay lines"),
             timer: Timer::new(device, queue),

@@ -5,8 +5,8 @@ mod rig;
 
 use glam::Vec3;
 use pliant_render::{
-    AlphaMode, Background, Encoding, Frame, Map, Matcap, Material, MaterialGroup, RenderError, Samples, Shading, Style,
-    Surface, SurfaceData, Target, TextureData, Wireframe, Wrap, region,
+    AlphaMode, Background, Encoding, Frame, Grid, Map, Matcap, Material, MaterialGroup, RenderError, Samples, Shading,
+    Shadows, Style, Surface, SurfaceData, Target, TextureData, Wireframe, Wrap, region,
 };
 use rig::{SIZE_PX, Shape, brightness, draw, front_view, is_near, parallel_front_view, pixel_at, renderer};
 
@@ -200,6 +200,48 @@ fn edges_show_as_thin_dark_lines_that_leave_faces_alone() {
     );
     let of_face = [0.4, -0.2, 0.0];
     assert_eq!(pixel_at(&wired, &view, of_face), pixel_at(&plain, &view, of_face));
+}
+
+#[test]
+fn a_shadow_is_darker_under_what_is_nearer_to_the_ground_and_ends_beside_it() {
+    let Some(mut headless) = renderer() else { return };
+    let renderer = &mut headless.renderer;
+    // The squares face the eye, and the ground lies behind them.
+    let ground = |z: f32| Grid {
+        middle: [0.0, 0.0, z],
+        along: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+        step: 1.0,
+        reach: 1.0,
+        fine_share: 0.0,
+        axes: [0.0; 2],
+        colour: [0; 4],
+        axis_colours: [[0; 4]; 2],
+    };
+    let background = Background::Gradient {
+        top: [220; 3],
+        bottom: [220; 3],
+    };
+    let lit = Style {
+        background,
+        ..Style::default()
+    };
+    let shaded = Style {
+        shadows: Shadows::On,
+        ..lit
+    };
+    let view = parallel_front_view();
+    let mut surface = Shape::square(0.0, 0.0, 0.5).upload(renderer);
+    let mut at_height = |height: f32, position: [f32; 3]| {
+        surface.update_shadow(renderer, &ground(-height)).unwrap();
+        let [off, on] = [&lit, &shaded].map(|style| draw(renderer, &view, style, &[&surface], &[]));
+        brightness(pixel_at(&off, &view, position)) - brightness(pixel_at(&on, &view, position))
+    };
+    // Just outside of the square, which hides the ground behind it.
+    let beside = [0.52, 0.1, 0.0];
+    let [near, higher, far] = [0.01, 0.1, 0.9].map(|height| at_height(height, beside));
+    assert!(near > higher + 3.0 && higher > 3.0, "{near} {higher}");
+    assert_eq!(far, 0.0);
+    assert_eq!(at_height(0.01, [1.0, 0.1, 0.0]), 0.0);
 }
 
 #[test]

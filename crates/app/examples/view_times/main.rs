@@ -86,7 +86,22 @@ fn measure(triangles: usize) -> Result<(), Box<dyn std::error::Error>> {
     }
     surface.update_shape(&renderer, &pose.data())?;
     let view = |camera: &Camera| drawing::view(camera, size_px, drawing.centre);
+    let ground = drawing::ground(&camera, size_px, rest_height(&model), drawing.centre);
+    let made = (0..FRAMES).map(|_| {
+        let (ms, made) = timed(|| {
+            surface.update_shadow(&mut renderer, &ground)?;
+            renderer.finish()
+        });
+        made.map(|()| ms)
+    });
+    let shadow_ms = median(made.collect::<Result<Vec<f64>, pliant_render::RenderError>>()?);
+    println!("{{\"triangles\": {triangles}, \"shadow_ms\": {shadow_ms:.1}}}");
     measure_looks(&mut renderer, &surface, triangles, camera, view)
+}
+
+/// The height of the ground under the model.
+fn rest_height(model: &Model) -> f64 {
+    model.bounds().map_or(0.0, |bounds| bounds.min.y)
 }
 
 /// Measures frames in several looks, with one and four samples per pixel.
@@ -102,12 +117,14 @@ fn measure_looks(
     near.target += DVec3::X * 0.9;
     let clay = Look {
         grid: false,
+        shadow: false,
         ..Look::default()
     };
     let looks = [
         ("clay", clay, camera),
         ("clay, near", clay, near),
         ("clay, moving", clay, camera),
+        ("clay, shadow", Look { shadow: true, ..clay }, camera),
         (
             "material",
             Look {

@@ -257,6 +257,9 @@ pub struct RenderArguments {
     /// Draw the ground's grid
     #[arg(long)]
     pub grid: bool,
+    /// Draw the soft shadow on the ground
+    #[arg(long)]
+    pub shadow: bool,
     /// Leave the background transparent
     #[arg(long)]
     pub transparent: bool,

@@ -85,6 +85,7 @@ fn look(arguments: &RenderArguments) -> Look {
         regions: arguments.look.shading == arguments::Shading::Regions,
         outlines: arguments.outlines || arguments.look.shading == arguments::Shading::Regions,
         grid: arguments.grid,
+        shadow: arguments.shadow,
         original: false,
         base: false,
         before: Before::Off,
@@ -134,7 +135,11 @@ fn pictures(arguments: &RenderArguments, paths: &[PathBuf], watch: &Watch) -> Re
         .map_err(|error| EngineError::System(error.to_string()))?
         .renderer;
     let look = look(arguments);
-    let Uploaded { surface, scale, notes } = upload(&renderer, &drawing, &pose, model, &shape, &look, &watch.cancel)?;
+    let Uploaded {
+        mut surface,
+        scale,
+        notes,
+    } = upload(&renderer, &drawing, &pose, model, &shape, &look, &watch.cancel)?;
     progress.set(0.3);
 
     let PictureSize { width, height } = arguments.size;
@@ -154,6 +159,10 @@ fn pictures(arguments: &RenderArguments, paths: &[PathBuf], watch: &Watch) -> Re
         UpAxis::Y => bounds.min.y,
         UpAxis::Z => bounds.min.z,
     };
+    if look.shadow {
+        let ground = drawing::ground(&camera, size_px, low, drawing.centre);
+        surface.update_shadow(&mut renderer, &ground).map_err(refuse)?;
+    }
     let count = arguments.turntable.unwrap_or(1);
     let mut pngs = Vec::new();
     for number in 0..count {

@@ -2,7 +2,9 @@
 
 use glam::{DMat4, DVec2, DVec3};
 use pliant_editor::{Camera, Clay, Look, SceneView, Shading};
-use pliant_render::{Borders, Faces, Matcap, Outlines, Overlay, OverlayLine, OverlayTriangle, Style, View, Wireframe};
+use pliant_render::{
+    Borders, Faces, Matcap, Outlines, Overlay, OverlayLine, OverlayTriangle, Shadows, Style, View, Wireframe,
+};
 
 use super::field::Field;
 
@@ -61,6 +63,7 @@ pub fn style(look: &Look, pixels_per_point: f32) -> Style {
         wireframe: if look.wireframe { Wireframe::On } else { Wireframe::Off },
         borders: if look.borders { Borders::On } else { Borders::Off },
         outlines: if look.outlines { Outlines::On } else { Outlines::Off },
+        shadows: if look.shadow { Shadows::On } else { Shadows::Off },
         pixels_per_point,
         ..Style::default()
     }

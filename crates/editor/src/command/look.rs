@@ -273,6 +273,20 @@ pub(super) const TOGGLE_GRID: Entry<()> = Entry {
     action: Action::Do(|context, ()| context.view.look.grid = !context.view.look.grid),
 };
 
+/// Shows or hides the surface's shadow on the ground.
+pub(super) const TOGGLE_SHADOW: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Ground shadow",
+        "Shows or hides the soft shadow on the ground. It is made anew when the shape rests.",
+        "contact occlusion floor",
+        &[],
+    )],
+    scope: Scope::View,
+    unavailable: always,
+    action: Action::Do(|context, ()| context.view.look.shadow = !context.view.look.shadow),
+};
+
 /// Shows or hides the regions' colours over clay and material.
 pub(super) const TOGGLE_REGIONS: Entry<()> = Entry {
     listed: &[item(

@@ -276,6 +276,8 @@ commands! {
     ToggleOutlines = look::TOGGLE_OUTLINES;
     /// Shows or hides the ground's grid.
     ToggleGrid = look::TOGGLE_GRID;
+    /// Shows or hides the surface's shadow on the ground.
+    ToggleShadow = look::TOGGLE_SHADOW;
     /// Shows the file's own shape in place of the present one, or the present one again.
     ToggleOriginal = look::TOGGLE_ORIGINAL;
     /// Shows the file's own shape along with the present one in this way, or no longer.

@@ -19,6 +19,8 @@ pub struct Look {
     pub outlines: bool,
     /// Whether the ground's grid is shown.
     pub grid: bool,
+    /// Whether the surface throws a shadow on the ground.
+    pub shadow: bool,
     /// Whether the file's own shape is shown in place of the present one.
     pub original: bool,
     /// Whether the smooth base is shown in place of the surface, where the method has one.
@@ -38,6 +40,7 @@ impl Default for Look {
             regions: true,
             outlines: true,
             grid: true,
+            shadow: true,
             original: false,
             base: false,
             before: Before::Off,

@@ -41,6 +41,8 @@ pub struct Style {
     pub borders: Borders,
     /// Whether the lines on the surface are drawn.
     pub outlines: Outlines,
+    /// Whether the surfaces' shadows on the ground are drawn.
+    pub shadows: Shadows,
     /// The level of detail.
     pub detail: Detail,
     /// Pixels per point, which scales the widths of borders and outlines.
@@ -58,6 +60,7 @@ impl Default for Style {
             wireframe: Wireframe::default(),
             borders: Borders::default(),
             outlines: Outlines::default(),
+            shadows: Shadows::default(),
             detail: Detail::default(),
             pixels_per_point: 1.0,
             background: Background::default(),
@@ -123,6 +126,16 @@ pub enum Outlines {
     #[default]
     Off,
     /// Drawn where they are visible.
+    On,
+}
+
+/// Whether the shadows that surfaces have ([`crate::Surface::update_shadow`]) are drawn on the ground.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Shadows {
+    /// None.
+    #[default]
+    Off,
+    /// Drawn over the ground and its grid; from below they are not seen.
     On,
 }
 

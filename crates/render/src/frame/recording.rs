@@ -5,7 +5,9 @@ use crate::frame::target::{Attachments, cleared_depth};
 use crate::pipelines::{Alpha, Pipeline, Visibility};
 use crate::surface::draw_calls::DrawCall;
 use crate::surface::lines::LineSet;
-use crate::{Background, Borders, Frame, Matcap, Outlines, Renderer, Samples, Shading, Style, Surface, Wireframe};
+use crate::{
+    Background, Borders, Frame, Matcap, Outlines, Renderer, Samples, Shading, Shadows, Style, Surface, Wireframe,
+};
 
 /// A frame whose buffers and pipelines are prepared on the device.
 pub(crate) struct PreparedFrame<'a> {
@@ -16,8 +18,8 @@ pub(crate) struct PreparedFrame<'a> {
 }
 
 impl Renderer {
-    /// Records opaque triangles, the background, the ground, transparent triangles, lines on surfaces, and overlays, in
-    /// that order.
+    /// Records opaque triangles, the background, the ground, shadows, transparent triangles, lines on surfaces, and
+    /// overlays, in that order.
     pub(crate) fn record(&self, pass: &mut wgpu::RenderPass<'_>, prepared: &PreparedFrame<'_>, samples: Samples) {
         let style = prepared.frame.style;
         let set = |pass: &mut wgpu::RenderPass<'_>, pipeline| self.set_pipeline(pass, pipeline, samples);
@@ -57,6 +59,13 @@ impl Renderer {
             set(pass, Pipeline::Grid);
             pass.set_bind_group(1, &self.grid_group, &[]);
             pass.draw(0..4, 0..1);
+        }
+        if style.shadows == Shadows::On {
+            for shadow in prepared.frame.surfaces.iter().filter_map(|surface| surface.shadow()) {
+                set(pass, Pipeline::Shadow);
+                pass.set_bind_group(1, shadow, &[]);
+                pass.draw(0..4, 0..1);
+            }
         }
         if is_material {
             draw_surfaces(pass, &|call| call.alpha == Alpha::Blend);
@@ -151,6 +160,9 @@ impl PreparedFrame<'_> {
         }
         if self.frame.grid.is_some() {
             pipelines.push(Pipeline::Grid);
+        }
+        if style.shadows == Shadows::On {
+            pipelines.push(Pipeline::Shadow);
         }
         if style.wireframe == Wireframe::On {
             pipelines.push(Pipeline::Wireframe);

@@ -127,6 +127,18 @@ pub(crate) struct GridUniform {
     pub(crate) v_axis_colour: [f32; 4],
 }
 
+/// `Shadow` in `shaders/shadow.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub(crate) struct ShadowUniform {
+    pub(crate) middle: [f32; 3],
+    pub(crate) half_side: f32,
+    pub(crate) along_u: [f32; 3],
+    pub(crate) padding: f32,
+    pub(crate) along_v: [f32; 3],
+    pub(crate) padding_to_16: f32,
+}
+
 /// `MaterialVertex` in `shaders/material.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]

@@ -4,7 +4,7 @@ use super::shaders::Shader;
 use super::vertex_layouts::{
     OVERLAY_LINE_BUFFER, OVERLAY_TRIANGLE_BUFFER, SHAPE_BUFFERS, SURFACE_LINE_BUFFER, material_buffers,
 };
-use super::{Alpha, ID_FORMAT, MaterialAttributes, Pipeline, Visibility};
+use super::{Alpha, ID_FORMAT, MaterialAttributes, OCCLUSION_FORMAT, Pipeline, Visibility};
 use crate::{Samples, Target};
 
 /// The state in which pipelines differ.
@@ -61,6 +61,20 @@ impl PipelineDescription {
             Pipeline::Grid => Self {
                 topology: strip,
                 ..Self::blended(Shader::Grid, "vs_grid", "fs_grid")
+            },
+            Pipeline::Shadow => Self {
+                topology: strip,
+                ..Self::blended(Shader::Shadow, "vs_shadow", "fs_shadow")
+            },
+            Pipeline::Occlusion => Self {
+                shader: Shader::ShadowOcclusion,
+                vertex_entry: "vs_occlusion",
+                buffers: SHAPE_BUFFERS[..1].to_vec(),
+                colour: wgpu::ColorTargetState {
+                    format: OCCLUSION_FORMAT,
+                    ..OPAQUE
+                },
+                ..Self::opaque("fs_occlusion")
             },
             Pipeline::OverlayTriangles(visibility) => Self::with_visibility(
                 Shader::OverlayTriangle,

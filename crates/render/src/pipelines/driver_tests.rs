@@ -13,6 +13,7 @@ use super::shaders::Shader;
 use super::{Alpha, MaterialAttributes, Pipeline, Pipelines, Visibility};
 use crate::device::guard::guarded;
 use crate::materials::environment;
+use crate::surface::shadow;
 use crate::{Headless, Samples};
 
 /// All of them, since [`every_fragment_shader_belongs_to_a_pipeline`].
@@ -25,6 +26,8 @@ fn every_pipeline() -> Vec<Pipeline> {
         Pipeline::Wireframe,
         Pipeline::Background,
         Pipeline::Grid,
+        Pipeline::Occlusion,
+        Pipeline::Shadow,
         Pipeline::Id,
     ];
     for alpha in [Alpha::Opaque, Alpha::Mask, Alpha::Blend] {
@@ -42,7 +45,7 @@ fn every_pipeline() -> Vec<Pipeline> {
 
 #[test]
 fn every_fragment_shader_belongs_to_a_pipeline() {
-    let fullscreen = [Shader::Mipmap, Shader::Environment];
+    let fullscreen = [Shader::Mipmap, Shader::Environment, Shader::ShadowBlur];
     let mut written = BTreeSet::new();
     for shader in Shader::ALL.into_iter().filter(|shader| !fullscreen.contains(shader)) {
         let module = naga::front::wgsl::parse_str(&shader.composed()).unwrap();
@@ -83,15 +86,18 @@ fn the_driver_compiles_every_pipeline() {
     let mut pipelines = Pipelines::new(device);
     for pipeline in every_pipeline() {
         for samples in [Samples::One, Samples::Four] {
-            if pipeline == Pipeline::Id && samples == Samples::Four {
-                continue; // Ids are never mixed.
+            if matches!(pipeline, Pipeline::Id | Pipeline::Occlusion) && samples == Samples::Four {
+                continue; // These are drawn with one sample alone.
             }
             pipelines
                 .prepare(device, pipeline, samples)
                 .unwrap_or_else(|error| panic!("{pipeline:?}, {samples:?}: {error}"));
         }
     }
-    guarded(device, "while compiling shaders", || Ok(environment::pipelines(device))).unwrap();
+    guarded(device, "while compiling shaders", || {
+        Ok((environment::pipelines(device), shadow::blurs(device)))
+    })
+    .unwrap();
 }
 
 #[test]

@@ -18,6 +18,9 @@ use crate::{RenderError, Samples};
 /// The format of the id buffer.
 pub(crate) const ID_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
 
+/// The format of the picture of how near the ground a surface is.
+pub(crate) const OCCLUSION_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg8Unorm;
+
 /// The bind group layouts, and the pipelines created so far.
 #[derive(Debug)]
 pub(crate) struct Pipelines {
@@ -27,6 +30,7 @@ pub(crate) struct Pipelines {
     pub(crate) material_layout: wgpu::BindGroupLayout,
     pub(crate) environment_layout: wgpu::BindGroupLayout,
     pub(crate) positions_layout: wgpu::BindGroupLayout,
+    pub(crate) shadow_layout: wgpu::BindGroupLayout,
     modules: HashMap<Shader, wgpu::ShaderModule>,
     made: HashMap<(Pipeline, Samples), wgpu::RenderPipeline>,
 }
@@ -43,6 +47,8 @@ pub(crate) enum Pipeline {
     SurfaceLines(Visibility),
     Background,
     Grid,
+    Occlusion,
+    Shadow,
     OverlayTriangles(Visibility),
     OverlayLines(Visibility),
     Id,
@@ -102,6 +108,11 @@ impl Pipelines {
                 &[texture_entry(0, cube), texture_entry(1, cube), sampler_entry(2)],
             ),
             positions_layout: layout(device, "positions", &[storage_entry(0)]),
+            shadow_layout: layout(
+                device,
+                "shadow",
+                &[uniform_entry(0, both), texture_entry(1, flat), sampler_entry(2)],
+            ),
             modules: HashMap::new(),
             made: HashMap::new(),
         }
@@ -146,7 +157,8 @@ impl Pipelines {
                 vec![frame, surface, &self.matcap_layout]
             }
             Pipeline::Material(..) => vec![frame, surface, &self.material_layout, &self.environment_layout],
-            Pipeline::Wireframe | Pipeline::Id => vec![frame, surface],
+            Pipeline::Wireframe | Pipeline::Id | Pipeline::Occlusion => vec![frame, surface],
+            Pipeline::Shadow => vec![frame, &self.shadow_layout],
             Pipeline::SurfaceLines(_) => vec![frame, surface, &self.positions_layout],
             // The grid's uniform buffer takes the surface's bind group, whose layout is the same.
             Pipeline::Grid => vec![frame, surface],

@@ -9,7 +9,7 @@ use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use super::Shader;
 use crate::frame::uniforms::{
     EnvironmentUniform, FrameUniform, GridUniform, MapUniform, MatcapUniform, MaterialUniform, MaterialVertex,
-    OverlayLineInstance, OverlayVertex, SurfaceLineInstance, SurfaceUniform,
+    OverlayLineInstance, OverlayVertex, ShadowUniform, SurfaceLineInstance, SurfaceUniform,
 };
 use crate::pipelines::MaterialAttributes;
 use crate::pipelines::vertex_layouts::{
@@ -99,7 +99,7 @@ fn uniform_structs_are_laid_out_alike() {
         padding: f32,
         padding_to_16: [f32; 2],
     });
-    let frameless = [Shader::Mipmap, Shader::Environment];
+    let frameless = [Shader::Mipmap, Shader::Environment, Shader::ShadowBlur];
     for shader in Shader::ALL.into_iter().filter(|shader| !frameless.contains(shader)) {
         assert_eq!(wgsl_layout(shader, "Frame"), frame, "{}", shader.file_name());
     }
@@ -115,6 +115,7 @@ fn uniform_structs_are_laid_out_alike() {
         Shader::SurfaceId,
         Shader::Wireframe,
         Shader::SurfaceLine,
+        Shader::ShadowOcclusion,
     ] {
         assert_eq!(wgsl_layout(shader, "Surface"), surface, "{}", shader.file_name());
     }
@@ -159,6 +160,15 @@ fn uniform_structs_are_laid_out_alike() {
         v_axis_colour: [f32; 4],
     });
     assert_eq!(wgsl_layout(Shader::Grid, "Grid"), grid);
+    let shadow = layout!(ShadowUniform {
+        middle: [f32; 3],
+        half_side: f32,
+        along_u: [f32; 3],
+        padding: f32,
+        along_v: [f32; 3],
+        padding_to_16: f32,
+    });
+    assert_eq!(wgsl_layout(Shader::Shadow, "Shadow"), shadow);
     let environment = layout!(EnvironmentUniform {
         right: [f32; 4],
         down: [f32; 4],

@@ -14,6 +14,9 @@ pub(crate) enum Shader {
     SurfaceLine,
     Background,
     Grid,
+    Shadow,
+    ShadowOcclusion,
+    ShadowBlur,
     OverlayTriangle,
     OverlayLine,
     Mipmap,
@@ -22,7 +25,7 @@ pub(crate) enum Shader {
 impl Shader {
     /// All of them.
     #[cfg(test)]
-    pub(crate) const ALL: [Self; 11] = [
+    pub(crate) const ALL: [Self; 14] = [
         Self::Surface,
         Self::SurfaceId,
         Self::Material,
@@ -31,6 +34,9 @@ impl Shader {
         Self::SurfaceLine,
         Self::Background,
         Self::Grid,
+        Self::Shadow,
+        Self::ShadowOcclusion,
+        Self::ShadowBlur,
         Self::OverlayTriangle,
         Self::OverlayLine,
         Self::Mipmap,
@@ -47,6 +53,9 @@ impl Shader {
             Self::SurfaceLine => "surface_line.wgsl",
             Self::Background => "background.wgsl",
             Self::Grid => "grid.wgsl",
+            Self::Shadow => "shadow.wgsl",
+            Self::ShadowOcclusion => "shadow_occlusion.wgsl",
+            Self::ShadowBlur => "shadow_blur.wgsl",
             Self::OverlayTriangle => "overlay_triangle.wgsl",
             Self::OverlayLine => "overlay_line.wgsl",
             Self::Mipmap => "mipmap.wgsl",
@@ -68,6 +77,9 @@ impl Shader {
             Self::SurfaceLine => include_str!("../../../../shaders/surface_line.wgsl"),
             Self::Background => include_str!("../../../../shaders/background.wgsl"),
             Self::Grid => include_str!("../../../../shaders/grid.wgsl"),
+            Self::Shadow => include_str!("../../../../shaders/shadow.wgsl"),
+            Self::ShadowOcclusion => include_str!("../../../../shaders/shadow_occlusion.wgsl"),
+            Self::ShadowBlur => include_str!("../../../../shaders/shadow_blur.wgsl"),
             Self::OverlayTriangle => include_str!("../../../../shaders/overlay_triangle.wgsl"),
             Self::OverlayLine => include_str!("../../../../shaders/overlay_line.wgsl"),
             Self::Mipmap => include_str!("../../../../shaders/mipmap.wgsl"),

@@ -8,6 +8,7 @@ mod edges;
 pub(crate) mod lines;
 mod lod;
 mod pages;
+pub(crate) mod shadow;
 pub(crate) mod update;
 
 use std::sync::{Arc, OnceLock};
@@ -45,6 +46,7 @@ pub struct Surface {
     outlines: Vec<Option<LineSet>>,
     /// One entry per page: lines and points that are always drawn.
     wires: Vec<Option<LineSet>>,
+    shadow: Option<wgpu::BindGroup>,
 }
 
 impl Surface {
@@ -129,6 +131,7 @@ impl Surface {
             borders: OnceLock::new(),
             outlines: Vec::new(),
             wires: Vec::new(),
+            shadow: None,
         })
     }
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::Vec3;
 use pliant_render::{
     Background, Borders, EdgePoint, Faces, Grid, Matcap, Outlines, Overlay, OverlayLine, OverlayTriangle, Shading,
-    Style, Surface, SurfaceData, SurfaceLine, View, Wireframe, border,
+    Shadows, Style, Surface, SurfaceData, SurfaceLine, View, Wireframe, border,
 };
 
 use crate::rig::{Shape, renderer};
@@ -141,6 +141,42 @@ fn ground() {
         ..Shot::default()
     }
     .compare(&mut headless.renderer, "ground", &surface);
+}
+
+/// The ring stands on the ground: its shadow is dark where it touches it.
+#[test]
+fn shadow() {
+    let Some(mut headless) = renderer() else { return };
+    let renderer = &mut headless.renderer;
+    let mut surface = painted_ring(renderer);
+    let ground = Grid {
+        middle: [0.0, -1.25, 0.0],
+        along: [[0.0, 0.0, 1.0], [1.0, 0.0, 0.0]],
+        step: 0.2,
+        reach: 7.0,
+        fine_share: 0.8,
+        axes: [0.0, 2.0],
+        colour: [168, 176, 190, 110],
+        axis_colours: [[84, 126, 196, 200], [190, 84, 90, 200]],
+    };
+    surface.update_shadow(renderer, &ground).unwrap();
+    let view_from_world = View::look_at(Vec3::new(1.6, 3.0, 5.0), Vec3::new(0.0, -0.5, 0.0), Vec3::Y);
+    let view = View::perspective(0.62, 1.5, 0.01, view_from_world);
+    let background = Background::Gradient {
+        top: [200; 3],
+        bottom: [180; 3],
+    };
+    let style = Style {
+        shadows: Shadows::On,
+        background,
+        ..Style::default()
+    };
+    let shot = Shot {
+        view,
+        style,
+        ..Shot::default()
+    };
+    shot.compare(renderer, "shadow", &surface);
 }
 
 #[test]

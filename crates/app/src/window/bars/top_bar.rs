@@ -279,6 +279,7 @@ fn view_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     choice(ui, Command::ToggleRegions, look.regions);
     choice(ui, Command::ToggleOutlines, look.outlines);
     choice(ui, Command::ToggleGrid, look.grid);
+    choice(ui, Command::ToggleShadow, look.shadow);
     choice(ui, Command::ToggleBase, look.base);
     choice(ui, Command::ToggleOriginal, look.original);
     for before in [Before::Split, Before::Ghost] {

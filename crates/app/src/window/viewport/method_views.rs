@@ -124,6 +124,7 @@ fn draw(ui: &Ui, rect: Rect, view: &mut SideView, editor: &Editor, smooth: Smoot
         regions: false,
         outlines: false,
         grid: false,
+        shadow: false,
         ..main.look
     };
     let viewport_px = DVec2::new(f64::from(rect.width()), f64::from(rect.height()));

@@ -24,7 +24,7 @@ use eframe::egui_wgpu::RenderState;
 use glam::DVec3;
 use pliant_editor::{Editor, Look, SceneView, Shading};
 use pliant_render::{
-    Background, Detail, Frame, Image, Materials, RenderError, Renderer, Samples, Style, Surface, Target,
+    Background, Detail, Frame, Image, Materials, RenderError, Renderer, Samples, Shadows, Style, Surface, Target,
 };
 
 use crate::drawing::{self, Drawing, Field, Scale};
@@ -163,6 +163,7 @@ impl Viewport {
             weights: None,
             materials_revision: 0,
             shown: None,
+            shadow: None,
         });
     }
 
@@ -287,8 +288,15 @@ impl Viewport {
             Smoothness::Moving if software && self.may_be_reduced(view) => Detail::Reduced,
             Smoothness::Moving | Smoothness::Resting => Detail::Full,
         };
+        // What moves drags its last shadow along: a new one is made when it rests.
+        let wanted_shadow = self.surface.as_ref().and_then(|shown| shown.wanted_shadow(view));
+        let shadow = match smooth {
+            Smoothness::Moving => self.surface.as_ref().and_then(|shown| shown.shadow),
+            Smoothness::Resting => wanted_shadow,
+        };
         let key = DrawnKey {
             detail,
+            shadow,
             ..self.key(view, pixels_per_point, drawn_px, samples)
         };
         if !self.drawn.as_ref().is_some_and(|drawn| drawn.serves(&key, size_px)) {
@@ -312,7 +320,8 @@ impl Viewport {
         let is_less = |drawn: &DrawnKey| drawn.size_px != size_px || drawn.detail == Detail::Reduced;
         let is_coarse = self.drawn.as_ref().is_some_and(is_less);
         let is_jagged = self.drawn.as_ref().is_some_and(|drawn| drawn.samples == Samples::One);
-        Ok(is_coarse || (is_jagged && triangles <= SOFT_SMOOTH_TRIANGLES))
+        let is_stale = wanted_shadow.is_some() && shadow != wanted_shadow;
+        Ok(is_coarse || is_stale || (is_jagged && triangles <= SOFT_SMOOTH_TRIANGLES))
     }
 
     /// Whether the surface can be drawn with fewer triangles: not as materials and not with its edges.
@@ -340,6 +349,7 @@ impl Viewport {
             materials_revision: self.surface.as_ref().map_or(0, |shown| shown.materials_revision),
             rims: view.rims_revision,
             shown: self.surface.as_ref().map_or(0, |shown| address(shown.shown.as_ref())),
+            shadow: None,
             overlay: view.overlay_revision,
             camera: view.camera_revision,
             look: view.look,
@@ -364,9 +374,13 @@ impl Viewport {
         let drawn_share = f64::from(key.size_px[1]) / view.viewport_px.y.max(1.0);
         let pixels_per_point = drawn_share as f32;
         let overlays = drawing::overlays(view, centre, pixels_per_point);
+        if let Some(shown) = &mut self.surface {
+            shown.update_shadow(&mut renderer, view, key.shadow)?;
+        }
         let surfaces: Vec<&Surface> = self.surface.iter().map(|shown| &shown.surface).collect();
         let is_alone = self.opacity < 1.0;
-        let ground = self.surface.as_ref().and_then(|shown| shown.ground(view));
+        let ground = self.surface.as_ref().map(|shown| shown.ground(view));
+        let has_ground = view.look.grid && !is_alone;
         let frame = Frame {
             view: &eye,
             style: &Style {
@@ -375,10 +389,14 @@ impl Viewport {
                     true => Background::Transparent,
                     false => Background::default(),
                 },
+                shadows: match key.shadow {
+                    Some(_) if !is_alone => Shadows::On,
+                    _ => Shadows::Off,
+                },
                 ..drawing::style(&self.present_look(key.look), pixels_per_point)
             },
             surfaces: &surfaces,
-            grid: ground.as_ref().filter(|_| !is_alone),
+            grid: ground.as_ref().filter(|_| has_ground),
             overlays: &overlays,
         };
         let start = Instant::now();
@@ -402,9 +420,10 @@ impl Viewport {
             pixels(egui::vec2(width, height) * key.pixels_per_point).map(|side| side.max(1) * kind.scale.max(1));
         let pixels_per_point = key.pixels_per_point * kind.scale.max(1) as f32;
         let mut style = drawing::style(&self.present_look(view.look), pixels_per_point);
-        let mut ground = shown.ground(&view);
+        let mut ground = view.look.grid.then(|| shown.ground(&view));
         if kind.ground == Ground::Transparent {
             (style.background, ground) = (Background::Transparent, None);
+            style.shadows = Shadows::Off;
         }
         let frame = Frame {
             view: &drawing::view(view.camera, view.viewport_px, shown.drawing.centre),

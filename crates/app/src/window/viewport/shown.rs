@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::DVec3;
 use pliant_editor::{Editor, SceneView, UpAxis};
 use pliant_mesh::SurfaceVertex;
-use pliant_render::{Grid, Materials, RenderError, Surface};
+use pliant_render::{Grid, Materials, RenderError, Renderer, Surface};
 
 use super::gpu::Gpu;
 use crate::drawing::{self, Drawing, Field, Scale};
@@ -33,17 +33,48 @@ pub struct Shown {
     pub materials_revision: u64,
     /// The triangles that are drawn.
     pub shown: Option<Arc<Vec<bool>>>,
+    /// What its shadow was made of.
+    pub shadow: Option<ShadowKey>,
 }
 
+/// What a shadow is made of: the addresses of a shape and of the triangles that are drawn, and the axis that points up.
+pub type ShadowKey = (usize, usize, UpAxis);
+
 impl Shown {
-    /// The grid under the file's lowest point, where it is to be seen.
-    pub fn ground(&self, view: &SceneView<'_>) -> Option<Grid> {
+    /// The grid under the file's lowest point.
+    pub fn ground(&self, view: &SceneView<'_>) -> Grid {
         let height = match view.camera.up {
             UpAxis::Y => self.lowest.y,
             UpAxis::Z => self.lowest.z,
         };
-        let grid = || drawing::ground(view.camera, view.viewport_px, height, self.drawing.centre);
-        view.look.grid.then(grid)
+        drawing::ground(view.camera, view.viewport_px, height, self.drawing.centre)
+    }
+
+    /// The shadow that belongs to what is shown now.
+    pub fn wanted_shadow(&self, view: &SceneView<'_>) -> Option<ShadowKey> {
+        let shape = Arc::as_ptr(&self.displacements) as usize;
+        let key = (shape, address(self.shown.as_ref()), view.camera.up);
+        view.look.shadow.then_some(key)
+    }
+
+    /// Makes the shadow `wanted`.
+    ///
+    /// # Errors
+    /// As [`Surface::update_shadow`].
+    pub fn update_shadow(
+        &mut self,
+        renderer: &mut Renderer,
+        view: &SceneView<'_>,
+        wanted: Option<ShadowKey>,
+    ) -> Result<(), RenderError> {
+        if self.shadow != wanted {
+            if wanted.is_some() {
+                let ground = self.ground(view);
+                self.surface.update_shadow(renderer, &ground)?;
+            }
+            self.shadow = wanted;
+        }
+        Ok(())
     }
 
     /// Brings the colours and the shown triangles to what the editor has now.

@@ -3,7 +3,7 @@
 use pliant_editor::Look;
 use pliant_render::{Detail, Samples};
 
-use crate::window::viewport::shown::Colours;
+use crate::window::viewport::shown::{Colours, ShadowKey};
 
 /// What the picture in the texture was drawn from.
 #[derive(Clone, PartialEq)]
@@ -14,6 +14,7 @@ pub struct DrawnKey {
     pub materials_revision: u64,
     pub rims: u64,
     pub shown: usize,
+    pub shadow: Option<ShadowKey>,
     pub overlay: u64,
     pub camera: u64,
     pub look: Look,
