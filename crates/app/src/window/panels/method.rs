@@ -1,10 +1,10 @@
 //! The method and its options: widgets made of the methods' declarations, so that an option that is declared is shown.
 
-use eframe::egui::{self, ComboBox, DragValue, RichText};
+use eframe::egui::{self, Atom, Button, ComboBox, DragValue, RichText};
 use pliant_deform::{AttachmentKind, METHODS, Method, OptionDeclaration, OptionKind, OptionValue};
 use pliant_editor::{Command, Editor};
 
-use super::{examples, material};
+use super::{examples, material, method_picture};
 use crate::window::files::file_command::FileCommand;
 use crate::window::widgets::command_button::{command_button, command_choice};
 use crate::window::widgets::number_field::number_field;
@@ -58,7 +58,7 @@ fn options(ui: &mut egui::Ui, method: &Method, commands: &mut Outbox) {
                     ui.end_row();
                 }
             });
-            let back = ui.add_enabled(first_choice != *method, egui::Button::new("Defaults"));
+            let back = ui.add_enabled(first_choice != *method, Button::new("Defaults"));
             if back
                 .on_hover_text("Sets all options of the method, advanced ones, too.")
                 .clicked()
@@ -98,7 +98,7 @@ fn control_points(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     ui.horizontal_wrapped(|ui| {
         let make = ui.add_enabled(
             editor.is_enabled(&Command::MakeControls),
-            egui::Button::new(format!("Make {}", declared.title)),
+            Button::new(format!("Make {}", declared.title)),
         );
         let why = editor.unavailable_because(&Command::MakeControls);
         let make = make.on_hover_text(format!(
@@ -140,10 +140,16 @@ pub fn choose_method(ui: &mut egui::Ui, id: &str, present: &Method, width: f32) 
         // As high as all methods together: nothing tells that a list scrolls.
         .height(640.0)
         .show_ui(ui, |ui| {
+            // Pictures are apart from each other as they are.
+            ui.spacing_mut().item_spacing.y = 1.0;
+            ui.spacing_mut().button_padding.y = 1.0;
             for declaration in METHODS {
                 let is_present = present.name() == declaration.name;
+                let picture = Atom::paint(method_picture::SIZE, |ui: &egui::Ui, place| {
+                    method_picture::paint(ui, place.rect, declaration.name, place.fallback_text_color);
+                });
                 let choice = ui
-                    .selectable_label(is_present, declaration.title)
+                    .add(Button::selectable(is_present, (picture, declaration.title)))
                     .on_hover_text(declaration.when_to_use);
                 if choice.clicked() && !is_present {
                     chosen = Some((declaration.first_choice)());

@@ -10,6 +10,7 @@ mod intersections;
 pub(in crate::window) mod loose;
 mod material;
 pub(in crate::window) mod method;
+mod method_picture;
 pub(in crate::window) mod notes;
 pub(in crate::window) mod objects;
 mod part_name;

@@ -21,6 +21,8 @@ pub fn apply(context: &egui::Context, settings: &Settings) {
         style.spacing.item_spacing = egui::vec2(8.0, 6.0);
         style.spacing.button_padding = egui::vec2(9.0, 4.0);
         style.spacing.slider_width = 120.0;
+        // Lists are as high as what they hold, in place of 400.
+        style.spacing.default_area_size.y = 720.0;
         // Scroll bars float, and would cover what is at the right edge.
         style.spacing.scroll.floating_allocated_width = style.spacing.scroll.bar_width;
         style
