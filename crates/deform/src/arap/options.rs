@@ -22,7 +22,7 @@ options! {
             range: [1e-6, 10.0],
             unit: "",
             help: "how much the energy \"smooth\" resists bending, whatever the mesh's size and density",
-        },
+        }; only_with("energy", &["smooth"]),
         /// Iteration ends when a step lowers the energy by less than this share of it; above 0.
         tolerance: f64 = iteration::TOLERANCE; advanced,
         /// Iteration ends after this many steps towards one set of targets, converged or not; at least 1.

@@ -72,13 +72,13 @@ options! {
         base_order: BilaplacianOrder = Choice {
             default: BilaplacianOrder::ThinPlate,
             help: "for details: how smooth the surface below them is, from a membrane to the least change of curvature",
-        }; advanced,
+        }; advanced; only_with("detail", &["normal-displacements", "displacement-volumes", "deformation-transfer"]),
         /// How often displacement volumes are corrected in a frame.
         volume_iterations: u32 = Whole {
             default: 8,
             range: [1, 1000],
             help: "for \"displacement-volumes\": how often the volumes are corrected",
-        }; advanced,
+        }; advanced; only_with("detail", &["displacement-volumes"]),
     }
 }
 

@@ -257,6 +257,30 @@ mod tests {
     }
 
     #[test]
+    fn an_option_without_effect_says_which_choice_would_give_it_one() {
+        for declaration in METHODS {
+            let method = (declaration.default)();
+            for option in declaration.options {
+                let Some((other, names)) = option.only_with else {
+                    assert_eq!(option.idle_because(|name| method.value(name)), None);
+                    continue;
+                };
+                let declared = declaration.options.iter().find(|option| option.name == other);
+                let OptionKind::Named { choices } = declared.unwrap().kind else {
+                    panic!("{other} has no names")
+                };
+                assert!(names.iter().all(|name| choices.contains(name)) && names.len() < choices.len());
+                for choice in choices {
+                    let set = method.with([(other, OptionValue::Name(choice))]).unwrap();
+                    let idle = option.idle_because(|name| set.value(name));
+                    assert_eq!(idle.is_none(), names.contains(choice), "{}: {choice}", option.name);
+                    assert!(idle.is_none_or(|why| why.contains(other) && why.contains(names[0])));
+                }
+            }
+        }
+    }
+
+    #[test]
     fn every_option_takes_its_default_and_the_ends_of_its_range_and_refuses_what_lies_beyond() {
         for declaration in METHODS {
             let method = (declaration.default)();

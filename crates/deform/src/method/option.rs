@@ -13,6 +13,8 @@ pub struct OptionDeclaration {
     pub kind: OptionKind,
     /// Whether it is for those who know the method: the window folds such options away.
     pub is_advanced: bool,
+    /// The choice of the method and the names of it without which this option has no effect.
+    pub only_with: Option<(&'static str, &'static [&'static str])>,
 }
 
 /// Which values an option takes.
@@ -133,6 +135,24 @@ impl OptionDeclaration {
         }
     }
 
+    /// The same as an option that has an effect only where the choice `other` is one of `names`.
+    pub(crate) const fn only_with(self, other: &'static str, names: &'static [&'static str]) -> Self {
+        Self {
+            only_with: Some((other, names)),
+            ..self
+        }
+    }
+
+    /// Why it has no effect, if it has none where `value` tells what the method's options are set to.
+    pub fn idle_because(&self, value: impl Fn(&str) -> Option<OptionValue>) -> Option<String> {
+        let (other, names) = self.only_with?;
+        let has_effect = matches!(value(other), Some(OptionValue::Name(name)) if names.contains(&name));
+        (!has_effect).then(|| {
+            let names = joined(names.iter().map(|name| format!("\"{name}\"")), "or");
+            format!("Counts only where {other} is {names}.")
+        })
+    }
+
     /// The refusal of a value that it does not take.
     pub(crate) fn refused(&self) -> OptionRefused {
         OptionRefused {
@@ -206,6 +226,7 @@ impl Number {
                 unit: self.unit,
             },
             is_advanced: false,
+            only_with: None,
         }
     }
 }
@@ -217,6 +238,7 @@ impl Whole {
             help: self.help,
             kind: OptionKind::Whole { range: self.range },
             is_advanced: false,
+            only_with: None,
         }
     }
 }
@@ -228,6 +250,7 @@ impl<T: Choices> Choice<T> {
             help: self.help,
             kind: T::KIND,
             is_advanced: false,
+            only_with: None,
         }
     }
 }
@@ -312,14 +335,14 @@ macro_rules! named_choices {
 
 /// The options of a method: a struct with its defaults, its list of declarations, and access by name.
 ///
-/// A field `name: type = declaration` is an option; the declaration is a [`Number`], a [`Whole`] or a [`Choice`],
-/// and `; advanced` after it has the window fold it away.
+/// A field `name: type = declaration` is an option; the declaration is a [`Number`], a [`Whole`] or a [`Choice`].
+/// After it, `; advanced` has the window fold it away, and `; only_with(other, names)` tells what it depends on.
 /// Fields in `beside { .. }` are no options: only tests and measurements set them.
 macro_rules! options {
     (
         $(#[$meta:meta])*
         pub struct $type:ident {
-            $($(#[$doc:meta])* $option:ident: $kind:ty = $declaration:expr $(; $level:ident)?,)*
+            $($(#[$doc:meta])* $option:ident: $kind:ty = $declaration:expr $(; $level:ident $(($($argument:expr),*))?)*,)*
         }
         $(beside { $($(#[$beside_doc:meta])* $beside:ident: $beside_kind:ty = $beside_default:expr,)* })?
     ) => {
@@ -333,7 +356,7 @@ macro_rules! options {
 
         impl $type {
             pub(crate) const OPTIONS: &'static [$crate::OptionDeclaration] =
-                &[$($declaration.declare(stringify!($option))$(.$level())?),*];
+                &[$($declaration.declare(stringify!($option))$(.$level($($($argument),*)?))*),*];
         }
 
         impl Default for $type {

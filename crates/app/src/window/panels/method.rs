@@ -159,19 +159,36 @@ pub fn choose_method(ui: &mut egui::Ui, id: &str, present: &Method, width: f32) 
     (list.response, chosen)
 }
 
-/// An option's name and its widget. What the method refuses (nothing resists both bending and stretching, say) is not
-/// sent.
+/// An option's name and its widget, which can't be used where the option has no effect.
 fn row(ui: &mut egui::Ui, method: &Method, option: &OptionDeclaration, commands: &mut Outbox) {
     let default = (method.declaration().default)();
     let (Some(value), Some(default)) = (method.value(option.name), default.value(option.name)) else {
         return;
     };
-    let says = option.sentence(default);
+    let idle = option.idle_because(|other| method.value(other));
+    let says = [idle.clone(), Some(option.sentence(default))].into_iter().flatten();
+    let says = says.collect::<Vec<_>>().join(" ");
     let label = row_label(ui, title(&option.name.replace('_', " "))).on_hover_text(&says);
     let set = |value: OptionValue| {
         let set = method.with([(option.name, value)]);
         Command::SetMethod(set.unwrap_or_else(|_| method.clone()))
     };
+    let widget = ui.add_enabled_ui(idle.is_none(), |ui| widget(ui, option, value, set, commands));
+    if let Some(widget) = widget.inner {
+        let widget = widget.labelled_by(label.id).on_hover_text(&says);
+        widget.on_disabled_hover_text(says);
+    }
+}
+
+/// The widget of an option that is set to `value`. What the method refuses (nothing resists both bending and stretching,
+/// say) is not sent.
+fn widget(
+    ui: &mut egui::Ui,
+    option: &OptionDeclaration,
+    value: OptionValue,
+    set: impl Fn(OptionValue) -> Command,
+    commands: &mut Outbox,
+) -> Option<egui::Response> {
     let widget = match (option.kind, value) {
         (OptionKind::Number { range, unit }, OptionValue::Number(mut number)) => {
             // Small numbers go by their own size, so that one drag reaches from 1e-12 to 0.1.
@@ -220,9 +237,9 @@ fn row(ui: &mut egui::Ui, method: &Method, option: &OptionDeclaration, commands:
             switch
         }
         // A value is always of its option's kind.
-        _ => return,
+        _ => return None,
     };
-    widget.labelled_by(label.id).on_hover_text(says);
+    Some(widget)
 }
 
 /// A list to choose from.
