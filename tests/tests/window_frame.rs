@@ -109,7 +109,7 @@ fn a_message_does_not_move_the_view() {
     let message = place_of(&session, &sentence);
     assert_eq!(session.harness.state().view_rect(), before);
     assert!(before.contains_rect(message), "{message:?} in {before:?}");
-    session.harness.get_by_label("×").click();
+    session.harness.get_by_label(&format!("Dismiss: {sentence}")).click();
     session.harness.run_steps(3);
     assert_eq!(session.harness.state().headline(), None);
 }

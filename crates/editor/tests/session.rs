@@ -379,3 +379,18 @@ fn a_widget_that_is_dragged_is_one_step_and_escape_takes_it_back() {
     rig.drain();
     assert_eq!(rig.fingerprint(), before);
 }
+
+#[test]
+fn regions_can_be_cleared_where_there_are_some() {
+    let mut rig = Rig::open(shapes::icosphere(3));
+    let is_offered = |rig: &Rig| rig.editor.is_enabled(&Command::ClearRegions);
+    assert!(!is_offered(&rig));
+    rig.paint(ToolMode::PaintFixed, &[CENTRE_PX]);
+    assert!(is_offered(&rig));
+    rig.command(Command::ClearRegions);
+    assert!(!is_offered(&rig));
+    rig.undo();
+    assert!(is_offered(&rig));
+    rig.undo();
+    assert!(!is_offered(&rig));
+}

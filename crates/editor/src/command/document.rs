@@ -2,7 +2,6 @@
 
 use super::entry::{Action, Entry, Scope, ctrl, item, unless, when_open};
 use super::shortcut::Shortcut;
-use crate::document::Paint;
 use crate::input::{Key, Modifiers};
 use crate::jobs::JobKind;
 use crate::workspace::{apply_shape, clear_regions, reset_shape, set_loose, set_loose_part, set_method, set_strength};
@@ -128,15 +127,12 @@ pub(super) const CLEAR_REGIONS: Entry<()> = Entry {
     listed: &[item(
         (),
         "Clear regions",
-        "Removes all handles and regions; the shape stays as it is.",
+        "Removes all handles and regions. What is bent stays bent: Reset shape takes it back to the file's shape.",
         "remove delete all handles",
         &[],
     )],
     scope: Scope::Document,
-    unavailable: |state, ()| {
-        let mut paint = state.workspace.document.paint().iter();
-        unless(paint.any(|paint| *paint != Paint::Bare), "Nothing is painted.")
-    },
+    unavailable: |state, ()| unless(state.workspace.is_painted(), "Nothing is painted."),
     action: Action::Do(|context, ()| clear_regions(context.workspace)),
 };
 

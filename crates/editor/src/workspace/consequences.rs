@@ -6,7 +6,7 @@
 use super::colour_revisions::{ColouredBy, Sources};
 use super::state::Workspace;
 use super::symmetry::take_symmetry;
-use crate::document::{Aspect, VertexAccess};
+use crate::document::{Aspect, Paint, VertexAccess};
 use crate::jobs::{Activity, Arrival, Asked, Finality, Solved};
 
 impl Workspace {
@@ -15,6 +15,7 @@ impl Workspace {
         self.renew_vertex_access();
         self.settle_what_needs_no_solve();
         self.follow_versions(activity);
+        self.look_for_paint(activity);
         self.selection.drop_lost(&self.document);
         if !self.controls.is_empty() {
             let count = self.shown_controls().map_or(0, |shown| shown.positions.len());
@@ -37,6 +38,15 @@ impl Workspace {
             selected: self.selection.selected(),
         };
         self.colours.follow(sources, self.document.take_repainted());
+    }
+
+    /// Finds out whether anything is painted, once for each paint: commands ask at every frame.
+    fn look_for_paint(&mut self, activity: Activity) {
+        let version = self.document.versions().of(Aspect::Paint);
+        if activity != Activity::Painting && self.painted.1 != version {
+            let is_painted = self.document.paint().iter().any(|paint| *paint != Paint::Bare);
+            self.painted = (is_painted, version);
+        }
     }
 
     /// Tells the jobs what has changed. While a stroke goes on the problem changes with every event; it counts once, at

@@ -41,6 +41,8 @@ pub(crate) struct Workspace {
     pub(super) shape_revision: u64,
     /// The versions that jobs and colours were last made to follow.
     pub(super) seen: Versions,
+    /// Whether anything is painted, and of which paint that was found.
+    pub(super) painted: (bool, Version),
     /// The step that a widget is adjusting.
     adjusting: Option<Transaction>,
     pub(super) mirroring: Option<Mirroring>,
@@ -65,6 +67,7 @@ impl Workspace {
             jobs: Jobs::new(executor),
             history: History::new(&document, HISTORY_BYTES),
             seen: *document.versions(),
+            painted: (false, document.versions().of(Aspect::Paint)),
             document,
             selection: HandleSelection::default(),
             controls: ControlSelection::default(),
@@ -104,6 +107,11 @@ impl Workspace {
         self.seen = *self.document.versions();
         self.shape_revision += 1;
         self.colours.change_all();
+    }
+
+    /// Whether anything was painted when the last event ended that was none of a stroke.
+    pub(crate) fn is_painted(&self) -> bool {
+        self.painted.0
     }
 
     /// The open file's vertex sets.

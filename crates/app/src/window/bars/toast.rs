@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use eframe::egui::{self, Align2, Id, Rect, RichText, vec2};
+use eframe::egui::{self, Align2, Id, Rect, RichText, Role, WidgetInfo, vec2};
 
 use super::status::{done, failed};
 use crate::window::panels::notes::Note;
@@ -64,7 +64,11 @@ impl Toast {
                         Note::Failed(sentence) => (sentence, failed(ui)),
                     };
                     ui.horizontal_top(|ui| {
-                        if ui.small_button("×").on_hover_text("Dismiss").clicked() {
+                        let dismiss = ui.small_button("×").on_hover_text("Dismiss");
+                        // A cross says nothing to who hears the window.
+                        let name = format!("Dismiss: {sentence}");
+                        dismiss.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
+                        if dismiss.clicked() {
                             *headline = None;
                         }
                         ui.add(egui::Label::new(RichText::new(sentence).color(colour)).wrap());
