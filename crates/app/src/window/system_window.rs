@@ -53,7 +53,8 @@ impl Application {
         let about = match (&self.question, &self.session.open) {
             (Some(question), _) => question.title().to_owned(),
             (None, Some(open)) => open.name(),
-            (None, None) => "opening".to_owned(),
+            (None, None) if self.session.doing().is_some() => "opening".to_owned(),
+            (None, None) => "nothing is open".to_owned(),
         };
         let title = format!("Pliant — {about}");
         if self.title != title {

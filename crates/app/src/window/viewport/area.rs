@@ -15,6 +15,7 @@ use super::method_views::MethodViews;
 use crate::legend;
 use crate::window::application::{Application, REST};
 use crate::window::bars::hints;
+use crate::window::files::file_command::FileCommand;
 use crate::window::files::names::file_name;
 use crate::window::input::Attention;
 use crate::window::input::event_queue::EventQueue;
@@ -77,6 +78,7 @@ impl Application {
         self.picture(ui, rect, second)?;
         self.method_views(ui, strip)?;
         self.marks(ui, rect);
+        self.invitation(ui, rect);
         self.words(ui, rect, above);
         Ok(())
     }
@@ -241,6 +243,23 @@ impl Application {
             self.command(command);
             ui.ctx().request_repaint();
         }
+    }
+
+    /// While nothing is open and nothing is being opened: how to open something.
+    fn invitation(&mut self, ui: &mut egui::Ui, rect: egui::Rect) {
+        if self.editor.view().model.is_some() || self.session.doing().is_some() {
+            return;
+        }
+        let place = egui::Rect::from_center_size(rect.center(), vec2(150.0, 32.0));
+        if ui.put(place, egui::Button::new("Open a mesh…")).clicked() {
+            let context = ui.ctx().clone();
+            self.file_command(&context, FileCommand::Open);
+        }
+        axis_ball::readout(
+            ui.painter(),
+            place.center_bottom() + vec2(-74.0, 10.0),
+            "or drop one here",
+        );
     }
 
     /// Shows messages and the first steps over the corners of the views, which are `whole` together.
