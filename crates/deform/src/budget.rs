@@ -12,8 +12,8 @@ pub struct Budget {
     /// In bytes.
     pub bytes: u64,
     /// Multiplications and additions of one factorisation, all attempts with a larger diagonal together: the sum of the
-    /// squared column counts of its factor [Dav06]. What a surface of so many unknowns takes is always allowed, so that
-    /// this refuses only triangles that connect vertices at random.
+    /// squared column counts of its factor \[Dav06\]. What a surface of so many unknowns takes is always allowed, so
+    /// that this refuses only triangles that connect vertices at random.
     pub operations: u64,
 }
 

@@ -5,9 +5,9 @@
 //! What is here the package `pliant` re-exports, and its docstrings and stubs (`python/pliant/__init__.pyi`) say it to
 //! those who write Python.
 //!
-//! An edit is put together as the edit format has it ([`edit`]), so that methods, options, selections and refusals are
+//! An edit is put together as the edit format has it (`edit`), so that methods, options, selections and refusals are
 //! the same; only the handles' transforms come later, with every step. Whatever takes long runs without Python's lock
-//! and stops at Ctrl-C ([`interruptible`]).
+//! and stops at Ctrl-C (`interruptible`).
 
 mod arrays;
 mod bound;

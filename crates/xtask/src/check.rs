@@ -43,6 +43,12 @@ pub fn clippy(verdict: &mut Verdict) {
     verdict.step("clippy", &mut process::cargo(&arguments));
 }
 
+/// Checks that rustdoc has no warnings, such as links that lead nowhere.
+pub fn documentation(verdict: &mut Verdict) {
+    let mut doc = process::cargo(&["doc", "--locked", "--workspace", "--no-deps"]);
+    verdict.step("documentation", doc.env("RUSTDOCFLAGS", "-D warnings"));
+}
+
 /// What checks dependencies.
 const CARGO_DENY: Tool = Tool {
     program: "cargo-deny",

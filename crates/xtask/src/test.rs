@@ -30,6 +30,7 @@ pub fn test(filters: &[String], consent: Consent) -> Result<(), String> {
     if filters.is_empty() {
         check::formatting(&mut verdict);
         check::clippy(&mut verdict);
+        check::documentation(&mut verdict);
     }
     let mut tests = process::cargo(&["test", "--locked", "--workspace", "--no-fail-fast"]);
     // Show the output of passing tests, because it says what they skip.

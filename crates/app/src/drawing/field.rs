@@ -119,7 +119,7 @@ impl Spacing {
 }
 
 /// The colour at a position on the scale, 0 to 1: a diverging colour map from blue through grey to red, equally bright
-/// at both ends so that neither direction stands out, after [Mor09].
+/// at both ends so that neither direction stands out, after \[Mor09\].
 pub fn colour_at(share: f64) -> [u8; 4] {
     const STOPS: [[f64; 3]; 7] = [
         [40.0, 62.0, 176.0],

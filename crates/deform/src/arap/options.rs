@@ -40,13 +40,13 @@ named_choices! {
     /// Which edges an ARAP cell consists of.
     #[non_exhaustive]
     pub enum ArapEnergy {
-        /// Those from its vertex to the neighbours [SA07], negative weights floored.
+        /// Those from its vertex to the neighbours \[SA07\], negative weights floored.
         Spokes = "spokes",
-        /// All edges of its vertex's triangles [CPSS10], with plain cotangents; never negative.
+        /// All edges of its vertex's triangles \[CPSS10\], with plain cotangents; never negative.
         SpokesAndRims = "spokes-and-rims",
         /// Spokes and rims, with every cell tied to an affine map of its own: a thin plate that bumps and free borders
-        /// do not disturb, with the aim of [LG15] and [OHS25]. Handles of a single vertex make no spikes; twists spread
-        /// evenly.
+        /// do not disturb, with the aim of \[LG15\] and \[OHS25\]. Handles of a single vertex make no spikes; twists
+        /// spread evenly.
         Smooth = "smooth",
     }
 }

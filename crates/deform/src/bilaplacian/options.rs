@@ -54,7 +54,7 @@ options! {
         }; advanced,
         /// From 0, as the surface lies in space, to 1, as if it were stretched along the principal axes of the part
         /// that may move until that varied alike along all of them, though by no more than a factor 10: stiffer along
-        /// what is long [BK04].
+        /// what is long \[BK04\].
         anisotropy: f64 = Number {
             default: 0.0,
             range: [0.0, 1.0],
@@ -82,7 +82,7 @@ options! {
     }
 }
 
-/// The order n of the bi-Laplacian: its surfaces join what is held with continuity Cⁿ⁻¹ [BK04].
+/// The order n of the bi-Laplacian: its surfaces join what is held with continuity Cⁿ⁻¹ \[BK04\].
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum BilaplacianOrder {
     /// n = 1, −L d = 0: least area. Joins with a crease.
@@ -113,9 +113,9 @@ named_choices! {
         /// The surface's.
         AsIs = "as-is",
         /// The surface's, with edges flipped within it until no weight is negative, except at edges with more or less
-        /// than two triangles [FSBS06].
+        /// than two triangles \[FSBS06\].
         IntrinsicDelaunay = "intrinsic-delaunay",
-        /// The surface's tufted cover, flipped: no weight is negative on any triangles [SC20].
+        /// The surface's tufted cover, flipped: no weight is negative on any triangles \[SC20\].
         Tufted = "tufted",
     }
 }
@@ -129,7 +129,7 @@ named_choices! {
         /// Each vertex's displacement from its point of the base turns with the base there [BS08, equation 9].
         NormalDisplacements = "normal-displacements",
         /// As normal displacements, then the heights are corrected until the prisms between the base's triangles and
-        /// the surface's have their volumes of rest [BK03].
+        /// the surface's have their volumes of rest \[BK03\].
         DisplacementVolumes = "displacement-volumes",
         /// Each triangle takes on the deformation gradient of the base's triangle, and a Poisson system joins them
         /// [BSPG06, SP04].

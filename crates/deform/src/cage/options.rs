@@ -36,11 +36,11 @@ options! {
 named_choices! {
     /// The coordinates of points in a cage.
     pub enum CageCoordinates {
-        /// Of [JSW05]: defined everywhere, negative in places.
+        /// Of \[JSW05\]: defined everywhere, negative in places.
         MeanValue = "mean-value",
         /// Of [JMD+07]: never negative, by a solve on a grid inside the cage.
         Harmonic = "harmonic",
-        /// Of [LLC08]: with the normals of the faces, so that they keep angles.
+        /// Of \[LLC08\]: with the normals of the faces, so that they keep angles.
         Green = "green",
     }
 }

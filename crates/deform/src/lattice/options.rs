@@ -69,7 +69,7 @@ named_choices! {
     pub enum LatticeNorm {
         /// That of the least second differences of the control points.
         Bending = "bending",
-        /// That whose control points move least [HHK92].
+        /// That whose control points move least \[HHK92\].
         Displacement = "displacement",
     }
 }

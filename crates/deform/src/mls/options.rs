@@ -23,7 +23,7 @@ options! {
 }
 
 named_choices! {
-    /// The transformations that moving least squares fits [SMW06].
+    /// The transformations that moving least squares fits \[SMW06\].
     pub enum MlsTransforms {
         /// Any affine map (section 2.1).
         Affine = "affine",

@@ -290,7 +290,7 @@ impl Laplacian {
         self.offsets[local] < self.offsets[local + 1]
     }
 
-    /// 1 / M_ii, the mixed Voronoi area's inverse [MDSB03]; 0 where the row is not full.
+    /// 1 / M_ii, the mixed Voronoi area's inverse \[MDSB03\]; 0 where the row is not full.
     pub fn inverse_areas(&self) -> &[f64] {
         &self.inverse_areas
     }

@@ -19,7 +19,7 @@ pub struct Constraints<'a> {
     /// the mesh's resolution nor on its unit. The larger w, the closer to a hard handle.
     pub soft: &'a [Option<f64>],
     /// For each surface vertex that is constrained: the continuity Cᵏ with which the free surface joins it, from 0 to 2
-    /// [BK04] and at most Cⁿ⁻¹, n the bi-Laplacian's order. 0 is a hinge, 1 keeps the tangents, 2 the curvature; a
+    /// \[BK04\] and at most Cⁿ⁻¹, n the bi-Laplacian's order. 0 is a hinge, 1 keeps the tangents, 2 the curvature; a
     /// number between is a hinge with a spring, equally stiff at every resolution. Empty: 2 everywhere.
     pub continuity: &'a [f64],
     /// What single components that nothing holds do, by their number in the topology, in place of [`Problem::loose`].

@@ -6,8 +6,8 @@ use rayon::prelude::*;
 use super::{cotangents, edge_lengths, mixed_corner_areas};
 use crate::{Surface, SurfaceVertex, Topology};
 
-/// Mean curvature of each vertex with the surface's vertices at `positions`, by the cotangent formula ([MDSB03], eq. 8),
-/// in 1/unit, positive where it is convex; 0 at the boundary and where the area is zero.
+/// Mean curvature of each vertex with the surface's vertices at `positions`, by the cotangent formula (\[MDSB03\], eq.
+/// 8), in 1/unit, positive where it is convex; 0 at the boundary and where the area is zero.
 pub fn mean_curvatures(surface: &Surface, topology: &Topology, positions: &[DVec3]) -> Vec<f64> {
     let triangles = &surface.triangles;
     let faces: Vec<([f64; 3], [f64; 3], DVec3)> = triangles

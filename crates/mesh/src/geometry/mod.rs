@@ -1,7 +1,7 @@
 //! Lengths, areas, angles and normals of single triangles, and boxes.
 //!
-//! Angles and areas come from edge lengths [Kah14], so that the same functions serve mollified lengths, which belong to
-//! no positions.
+//! Angles and areas come from edge lengths \[Kah14\], so that the same functions serve mollified lengths, which belong
+//! to no positions.
 
 mod areas;
 mod curvature;

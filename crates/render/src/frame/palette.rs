@@ -1,6 +1,6 @@
 //! Colours with a meaning.
 
-/// Region colours for [`crate::Surface::update_regions`], as in the figures of [BS08]: grey is fixed, blue is free,
+/// Region colours for [`crate::Surface::update_regions`], as in the figures of \[BS08\]: grey is fixed, blue is free,
 /// gold is the handle.
 pub mod region {
     /// Fixed vertices.
