@@ -81,7 +81,15 @@ fn an_edit_that_can_t_be_read_is_named_and_nothing_is_opened() {
         return;
     };
     let start = Instant::now();
-    while session.harness.query_by_label_contains("ball.edit.json").is_none() {
+    // The message, and the button that dismisses it.
+    let is_named = |session: &Session| {
+        session
+            .harness
+            .query_all_by_label_contains("ball.edit.json")
+            .next()
+            .is_some()
+    };
+    while !is_named(&session) {
         assert!(start.elapsed() < Duration::from_secs(60), "the edit is not named");
         std::thread::sleep(Duration::from_millis(5));
         session.harness.step();
