@@ -10,6 +10,7 @@ use pliant_tests::sources::{self, Source};
 
 /// Which crate may depend on which others; `tests` and `xtask` are exempt.
 const ARROWS: &[(&str, &[&str])] = &[
+    ("pliant-assets", &[]),
     ("pliant-mesh", &[]),
     ("pliant-io", &["pliant-mesh"]),
     ("pliant-deform", &["pliant-mesh"]),
@@ -26,6 +27,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     (
         "pliant-app",
         &[
+            "pliant-assets",
             "pliant-deform",
             "pliant-editor",
             "pliant-engine",

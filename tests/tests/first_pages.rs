@@ -2,7 +2,10 @@
 //! smallest program that uses it, which is run as a test.
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+use std::collections::BTreeSet;
 use std::fs;
+use std::path::PathBuf;
+use std::process::Command;
 
 use cargo_metadata::{MetadataCommand, Package};
 
@@ -49,6 +52,56 @@ fn every_crate_says_what_it_is() {
             );
         }
     }
+}
+
+#[test]
+fn every_crate_carries_the_files_that_it_embeds() {
+    for package in crates() {
+        let listed = packaged(&package);
+        let folder = package.manifest_path.parent().unwrap().as_std_path();
+        let carried: BTreeSet<PathBuf> = listed
+            .iter()
+            .filter_map(|name| folder.join(name).canonicalize().ok())
+            .collect();
+        assert!(
+            listed.iter().any(|name| name == "Cargo.toml"),
+            "{}: {listed:?}",
+            package.name
+        );
+        for source in carried
+            .iter()
+            .filter(|file| file.extension().is_some_and(|extension| extension == "rs"))
+        {
+            for name in embedded(&fs::read_to_string(source).unwrap()) {
+                let file = source.parent().unwrap().join(name).canonicalize().unwrap();
+                assert!(carried.contains(&file), "{} lacks {}", package.name, file.display());
+            }
+        }
+    }
+}
+
+/// The files that a registry would be given of a crate.
+fn packaged(package: &Package) -> Vec<String> {
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let mut list = Command::new(cargo);
+    list.args(["package", "--list", "--offline", "--allow-dirty", "--manifest-path"]);
+    let said = list.arg(&package.manifest_path).output().unwrap();
+    assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
+    String::from_utf8(said.stdout)
+        .unwrap()
+        .lines()
+        .map(str::to_owned)
+        .collect()
+}
+
+/// The names in `include_str!("NAME")` and `include_bytes!("NAME")`.
+fn embedded(source: &str) -> impl Iterator<Item = &str> {
+    let after = ["include_str!(", "include_bytes!("].map(|mark| source.split(mark).skip(1));
+    let quoted = after
+        .into_iter()
+        .flatten()
+        .filter_map(|rest| rest.trim_start().strip_prefix('"'));
+    quoted.filter_map(|rest| Some(rest.split_once('"')?.0))
 }
 
 #[test]

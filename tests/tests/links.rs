@@ -11,7 +11,14 @@ use pliant_app::cli::{Console, run};
 fn pages() -> BTreeMap<PathBuf, String> {
     let root = root();
     let mut pages = BTreeMap::new();
-    for folder in ["", "crates", "crates/deform", "crates/python", "docs", "shaders"] {
+    for folder in [
+        "",
+        "crates",
+        "crates/deform",
+        "crates/python",
+        "crates/render/shaders",
+        "docs",
+    ] {
         for entry in fs::read_dir(root.join(folder)).unwrap() {
             let path = entry.unwrap().path();
             if path.extension().is_some_and(|extension| extension == "md") {

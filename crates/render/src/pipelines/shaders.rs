@@ -69,42 +69,42 @@ impl Shader {
 
     fn text(self) -> &'static str {
         match self {
-            Self::Surface => include_str!("../../../../shaders/surface.wgsl"),
-            Self::SurfaceId => include_str!("../../../../shaders/surface_id.wgsl"),
-            Self::Material => include_str!("../../../../shaders/material.wgsl"),
-            Self::Environment => include_str!("../../../../shaders/environment.wgsl"),
-            Self::Wireframe => include_str!("../../../../shaders/wireframe.wgsl"),
-            Self::SurfaceLine => include_str!("../../../../shaders/surface_line.wgsl"),
-            Self::Background => include_str!("../../../../shaders/background.wgsl"),
-            Self::Grid => include_str!("../../../../shaders/grid.wgsl"),
-            Self::Shadow => include_str!("../../../../shaders/shadow.wgsl"),
-            Self::ShadowOcclusion => include_str!("../../../../shaders/shadow_occlusion.wgsl"),
-            Self::ShadowBlur => include_str!("../../../../shaders/shadow_blur.wgsl"),
-            Self::OverlayTriangle => include_str!("../../../../shaders/overlay_triangle.wgsl"),
-            Self::OverlayLine => include_str!("../../../../shaders/overlay_line.wgsl"),
-            Self::Mipmap => include_str!("../../../../shaders/mipmap.wgsl"),
+            Self::Surface => include_str!("../../shaders/surface.wgsl"),
+            Self::SurfaceId => include_str!("../../shaders/surface_id.wgsl"),
+            Self::Material => include_str!("../../shaders/material.wgsl"),
+            Self::Environment => include_str!("../../shaders/environment.wgsl"),
+            Self::Wireframe => include_str!("../../shaders/wireframe.wgsl"),
+            Self::SurfaceLine => include_str!("../../shaders/surface_line.wgsl"),
+            Self::Background => include_str!("../../shaders/background.wgsl"),
+            Self::Grid => include_str!("../../shaders/grid.wgsl"),
+            Self::Shadow => include_str!("../../shaders/shadow.wgsl"),
+            Self::ShadowOcclusion => include_str!("../../shaders/shadow_occlusion.wgsl"),
+            Self::ShadowBlur => include_str!("../../shaders/shadow_blur.wgsl"),
+            Self::OverlayTriangle => include_str!("../../shaders/overlay_triangle.wgsl"),
+            Self::OverlayLine => include_str!("../../shaders/overlay_line.wgsl"),
+            Self::Mipmap => include_str!("../../shaders/mipmap.wgsl"),
         }
     }
 }
 
 /// The files that can be included.
 const LIBRARY: [(&str, &str); 7] = [
-    ("lib/frame.wgsl", include_str!("../../../../shaders/lib/frame.wgsl")),
-    ("lib/colour.wgsl", include_str!("../../../../shaders/lib/colour.wgsl")),
+    ("lib/frame.wgsl", include_str!("../../shaders/lib/frame.wgsl")),
+    ("lib/colour.wgsl", include_str!("../../shaders/lib/colour.wgsl")),
     (
         "lib/surface_vertex.wgsl",
-        include_str!("../../../../shaders/lib/surface_vertex.wgsl"),
+        include_str!("../../shaders/lib/surface_vertex.wgsl"),
     ),
     (
         "lib/surface_shape.wgsl",
-        include_str!("../../../../shaders/lib/surface_shape.wgsl"),
+        include_str!("../../shaders/lib/surface_shape.wgsl"),
     ),
-    ("lib/tone.wgsl", include_str!("../../../../shaders/lib/tone.wgsl")),
+    ("lib/tone.wgsl", include_str!("../../shaders/lib/tone.wgsl")),
     (
         "lib/reflectance.wgsl",
-        include_str!("../../../../shaders/lib/reflectance.wgsl"),
+        include_str!("../../shaders/lib/reflectance.wgsl"),
     ),
-    ("lib/line.wgsl", include_str!("../../../../shaders/lib/line.wgsl")),
+    ("lib/line.wgsl", include_str!("../../shaders/lib/line.wgsl")),
 ];
 
 /// `text` with its includes expanded. An include of an unknown file stays, so that the compiler reports it.

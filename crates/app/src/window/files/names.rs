@@ -3,9 +3,7 @@
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
-/// The sample that is shown when no file is named.
-pub(in crate::window) const SAMPLE: &[u8] = include_bytes!("../../../../../assets/creature.glb");
-/// Its name.
+/// The name of the sample that is shown when no file is named.
 pub(in crate::window) const SAMPLE_NAME: &str = "creature.glb";
 
 /// `NAME.original.EXT` beside `NAME.EXT`. A `.gltf`'s buffers are saved over along with it, so its original is kept as

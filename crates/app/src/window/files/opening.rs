@@ -4,10 +4,11 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use glam::DVec3;
+use pliant_assets::CREATURE;
 use pliant_editor::Beginning;
 use pliant_mesh::WeldOptions;
 
-use super::names::{SAMPLE, SAMPLE_NAME, saved_name};
+use super::names::{SAMPLE_NAME, saved_name};
 use super::project_file::{self, MeshSource};
 use crate::drawing::Drawing;
 use crate::window::threads::message::ModelToShow;
@@ -51,7 +52,7 @@ pub(super) fn open(source: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<Mode
     let (mut project, mut recovered) = (None, None);
     let (loaded, path, source) = match source {
         Source::Sample => (
-            pliant_engine::load_bytes(SAMPLE.to_vec(), Path::new(SAMPLE_NAME), &weld, watch)?,
+            pliant_engine::load_bytes(CREATURE.to_vec(), Path::new(SAMPLE_NAME), &weld, watch)?,
             None,
             MeshSource::Sample,
         ),

@@ -2,10 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
+use pliant_assets::CREATURE;
 use pliant_editor::{Beginning, MeshReference, Project, Snapshot, geometry_hash};
 use pliant_mesh::{Cancel, Progress, WeldOptions};
 
-use super::names::{SAMPLE, SAMPLE_NAME, file_name, original_name, saved_name};
+use super::names::{SAMPLE_NAME, file_name, original_name, saved_name};
 use pliant_engine::files::{self, Staging};
 use pliant_engine::saving::{self, SaveAs};
 use pliant_engine::watch::Watch;
@@ -133,7 +134,7 @@ pub fn read(path: &Path, watch: &Watch) -> Result<OpenedProject, EngineError> {
     };
     let weld = WeldOptions::default();
     let Some(named) = project.mesh().path.clone() else {
-        let loaded = pliant_engine::load_bytes(SAMPLE.to_vec(), Path::new(SAMPLE_NAME), &weld, watch)?;
+        let loaded = pliant_engine::load_bytes(CREATURE.to_vec(), Path::new(SAMPLE_NAME), &weld, watch)?;
         return if geometry_hash(&loaded.model) == project.mesh().geometry {
             Ok(OpenedProject {
                 project,
