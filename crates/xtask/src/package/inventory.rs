@@ -13,14 +13,14 @@ pub const CARGO_ABOUT: Tool = Tool {
     install: "cargo install cargo-about --features cli",
 };
 
+/// What lists dependencies.
+pub const CARGO_CYCLONEDX: Tool = Tool {
+    program: "cargo-cyclonedx",
+    install: "cargo install cargo-cyclonedx",
+};
+
 /// What both are made with.
-pub const TOOLS: &[Tool] = &[
-    CARGO_ABOUT,
-    Tool {
-        program: "cargo-cyclonedx",
-        install: "cargo install cargo-cyclonedx",
-    },
-];
+pub const TOOLS: &[Tool] = &[CARGO_ABOUT, CARGO_CYCLONEDX];
 
 /// The papers that come with the program.
 pub struct Papers {
@@ -40,7 +40,8 @@ pub fn write(release: &Release, folder: &Path) -> Result<Papers, String> {
         bill_of_materials: folder.join(format!("{}.cdx.json", release.name())),
     };
     files::write(&papers.licences, licences("crates/app/Cargo.toml")?)?;
-    bill_of_materials(release, &papers.bill_of_materials)?;
+    let bill = bill_of_materials(release, "crates/app", "pliant_bin")?;
+    files::write(&papers.bill_of_materials, bill)?;
     Ok(papers)
 }
 
@@ -55,25 +56,33 @@ pub fn licences(manifest: &str) -> Result<String, String> {
     said(about.arg("packaging/licences/about.hbs"))
 }
 
-/// The tool writes beside every manifest of the workspace. Ours is taken from there, and the others are removed.
-fn bill_of_materials(release: &Release, file: &Path) -> Result<(), String> {
+/// What a crate's program or module is made of, in CycloneDX's format: of the crate in this folder (`crates/app`), by the
+/// name that the tool gives to it (`pliant_bin`).
+///
+/// # Errors
+/// One sentence if the tool fails.
+pub fn bill_of_materials(release: &Release, folder: &str, name: &str) -> Result<String, String> {
+    let manifest = format!("{folder}/Cargo.toml");
     let mut cyclonedx = cargo(&["cyclonedx", "--quiet", "--format", "json", "--describe", "binaries"]);
-    cyclonedx.args([
-        "--no-build-deps",
-        "--manifest-path",
-        "crates/app/Cargo.toml",
-        "--target",
-        &target()?,
-    ]);
+    cyclonedx.args(["--no-build-deps", "--manifest-path", &manifest, "--target", &target()?]);
     let made = succeed(cyclonedx.env("SOURCE_DATE_EPOCH", release.epoch.to_string()));
+    // The tool writes beside every manifest of the workspace. One is read, and all are removed.
+    let bill = made.and_then(|()| files::text(&format!("{folder}/{name}.cdx.json")));
     let crates = crate::root().join("crates");
-    let copied = made.and_then(|()| files::copy(&crates.join("app/pliant_bin.cdx.json"), file));
     for left in files::all_files(&crates)? {
-        if left.to_string_lossy().ends_with("_bin.cdx.json") {
+        if left.to_string_lossy().ends_with(".cdx.json") {
             files::remove_file(&crates.join(left))?;
         }
     }
-    copied
+    without_this_machine(&bill?, folder)
+}
+
+/// A bill of materials in which our crates do not lie where they lie on this machine.
+fn without_this_machine(bill: &str, folder: &str) -> Result<String, String> {
+    let first = bill.split_once("\"bom-ref\": \"path+");
+    let root = first.and_then(|(_, after)| Some(after.split_once(&format!("/{folder}#"))?.0));
+    let root = root.ok_or_else(|| format!("The bill of materials does not say first that it is of {folder}."))?;
+    Ok(bill.replace(root, "file:///pliant"))
 }
 
 /// The target that the compiler builds for.
@@ -96,6 +105,15 @@ mod tests {
         let (_, after) = text.split_once(mark).unwrap_or_default();
         let (inside, _) = after.split_once(']').unwrap_or_default();
         inside.split('"').skip(1).step_by(2).map(str::to_owned).collect()
+    }
+
+    #[test]
+    fn a_bill_of_materials_names_no_folder_of_this_machine() {
+        let bill = r#"{ "bom-ref": "path+file:///home/an%20owner/pliant/crates/app#1.0.0",
+            "ref": "path+file:///home/an%20owner/pliant/crates/mesh#1.0.0" }"#;
+        let neutral = bill.replace("/home/an%20owner/pliant", "/pliant");
+        assert_eq!(without_this_machine(bill, "crates/app"), Ok(neutral));
+        assert!(without_this_machine(bill, "crates/python").is_err());
     }
 
     #[test]

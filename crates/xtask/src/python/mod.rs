@@ -72,8 +72,12 @@ fn wheel(release: &Release, python: &Path, folder: &Path) -> Result<PathBuf, Str
     let wheels = folder.join("wheels");
     files::fresh_folder(&wheels)?;
     licences(&root().join("crates/python/licenses"))?;
+    let bill = bill_of_materials(release, folder)?;
     let mut maturin = Command::new(&tools);
     maturin.args(["-m", "maturin", "build", "--profile", "dist", "--locked"]);
+    if let Some(bill) = bill {
+        maturin.arg("--sbom-include").arg(bill);
+    }
     maturin.args(["--manifest-path", MANIFEST, "--out"]);
     maturin.arg(&wheels).current_dir(root());
     maturin.env("SOURCE_DATE_EPOCH", release.epoch.to_string());
@@ -102,6 +106,18 @@ fn licences(folder: &Path) -> Result<(), String> {
             Ok(())
         }
     }
+}
+
+/// What the wheel is made of, as packages have it: maturin's own would name the folders of this machine and the time.
+fn bill_of_materials(release: &Release, folder: &Path) -> Result<Option<PathBuf>, String> {
+    if let Err(sentence) = inventory::CARGO_CYCLONEDX.find() {
+        println!("left out of the wheel: its bill of materials ({sentence})");
+        return Ok(None);
+    }
+    let file = folder.join("pliant.cdx.json");
+    let bill = inventory::bill_of_materials(release, "crates/python", "pliant_native_cdylib")?;
+    files::write(&file, bill)?;
+    Ok(Some(file))
 }
 
 /// The add-on with the wheel in it, as Blender installs it.
