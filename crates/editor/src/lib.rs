@@ -68,8 +68,8 @@ pub use editor::Editor;
 pub use event::Event;
 pub use format::{
     AttachmentEntry, Axis, Beginning, EDIT_VERSION, EditError, EditFile, ExampleEntry, ExampleSource, ExportError,
-    FieldEntry, HandleEntry, HandleSetup, MeshReference, Project, Rest, SOFT_RANGE, STIFFNESS_RANGE, STRENGTH_RANGE,
-    Selector, Setup, geometry_hash,
+    FieldEntry, HandleEntry, HandleSetup, MeshReference, Project, Rest, SOFT_RANGE, STIFFNESS_RANGE, Selector, Setup,
+    geometry_hash,
 };
 pub use input::{Button, Key, Modifiers, Pointer};
 pub use jobs::{
@@ -82,11 +82,10 @@ pub use selection::Selection;
 pub use snapshot::Snapshot;
 pub use status::thousands;
 pub use tool::{
-    BRUSH_RADIUS_PX, BrushMetric, Constraint, Correction, CorrectionBrush, Depth, StiffnessAction, StiffnessBrush,
-    StrokeShape, ToolMode,
+    BrushMetric, Constraint, Correction, CorrectionBrush, Depth, StiffnessAction, StiffnessBrush, StrokeShape, ToolMode,
 };
 pub use view::{
     Before, Camera, Clay, ControlShape, GizmoAxes, GizmoMode, GizmoOrientation, GizmoPart, GizmoShape, Look, NamedView,
-    Orbit, Pick, Projection, Ray, Shading, UpAxis, gizmo_shapes, hit_gizmo,
+    Orbit, Pick, Projection, Ray, Shading, UpAxis, hit_gizmo,
 };
 pub use workspace::{RegionAction, SnapshotKey, StiffnessChange, stiffness_colour};

@@ -63,7 +63,6 @@ pub use bytes::Bytes;
 pub use error::{ImageError, ReadError, SaveError, UnknownFormat};
 pub use format::Format;
 pub use gltf::{bytes_of_name, is_same_document, name_of_bytes, neighbours_named, with_neighbours_renamed};
-pub use images::decode::decode_image;
 pub use images::pixels::Rgba8;
 pub use images::{DecodedImage, IMAGE_BYTES, decode_images};
 pub use quote::{quoted, steers};

@@ -38,7 +38,7 @@ mod widen;
 pub(crate) use adjust::Adjust;
 pub(crate) use begin::begin;
 pub(crate) use brush::Brush;
-pub use brush::{BRUSH_RADIUS_PX, BrushMetric};
+pub use brush::BrushMetric;
 pub use constraint::Constraint;
 pub(crate) use context::Context;
 pub use correct::{Correction, CorrectionBrush};

@@ -7,8 +7,8 @@ use pliant_deform::{Attachment, Loose, Method};
 
 use super::painting::members;
 use super::state::Workspace;
-use crate::STRENGTH_RANGE;
 use crate::document::{Document, HandleTransform, Tips};
+use crate::format::STRENGTH_RANGE;
 use crate::jobs::centroid;
 
 /// Makes the present shape the new rest shape.

@@ -10,12 +10,6 @@ use crate::ImageError;
 use crate::images::pixels::{LONGEST_SIDE_PX, Rgba8};
 use crate::quote::quoted;
 
-/// Decodes a PNG, JPEG, WebP or KTX2 (with Basis Universal in it), told by its first bytes. Images beyond 16384 pixels
-/// a side are refused.
-pub fn decode_image(encoded: &[u8]) -> Result<Rgba8, ImageError> {
-    decode(encoded, 0, &Cancel::new())
-}
-
 /// What an image's header tells.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) struct Header {
@@ -73,7 +67,8 @@ pub(crate) fn header(encoded: &[u8]) -> Result<Header, ImageError> {
     })
 }
 
-/// Decodes an image, with each side halved so many times. Raising `cancel` ends it with an error where the decoder next
+/// Decodes a PNG, JPEG, WebP or KTX2 (with Basis Universal in it), told by its first bytes, with each side halved so many
+/// times. Images beyond 16384 pixels a side are refused. Raising `cancel` ends it with an error where the decoder next
 /// asks for bytes, or at the next row that is halved.
 pub(crate) fn decode(encoded: &[u8], halvings: u32, cancel: &Cancel) -> Result<Rgba8, ImageError> {
     if mime_type(encoded) == Some("image/ktx2") {
@@ -238,3 +233,7 @@ pub(crate) fn mime_type(encoded: &[u8]) -> Option<&'static str> {
         _ => None,
     }
 }
+
+#[cfg(test)]
+#[path = "decode_tests.rs"]
+mod tests;

@@ -211,3 +211,7 @@ fn crossed_at_rest(pair: &SelfIntersection, surface: &Surface, topology: &Topolo
         .iter()
         .any(|own| others.iter().any(|other| triangle_intersection(*own, *other).is_some()))
 }
+
+#[cfg(test)]
+#[path = "self_intersections_tests.rs"]
+mod tests;

@@ -81,3 +81,29 @@ pub fn signed_volume(triangles: &[[SurfaceVertex; 3]], positions: &[DVec3]) -> f
         .collect();
     pieces.iter().sum::<f64>() / 6.0
 }
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+
+    use glam::DAffine3;
+
+    use super::*;
+    use crate::shapes;
+
+    #[test]
+    fn volumes_are_those_of_the_shapes_wherever_they_stand() {
+        let far = DAffine3::from_translation(DVec3::new(4e5, 5e6, 30.0));
+        for (drawn, volume, error) in [
+            (shapes::bar(3, 4, 5), 60.0, 1e-9),
+            (shapes::icosphere(4), 4.0 / 3.0 * PI, 0.01),
+            (shapes::torus(80, 40), 2.0 * PI * PI * 0.16, 0.03),
+        ] {
+            for drawn in [drawn.clone(), shapes::moved(&drawn, far)] {
+                let model = shapes::model(drawn);
+                let found = signed_volume(&model.surface.triangles, &model.surface.positions);
+                assert!((found - volume).abs() < error + 1e-6, "{found} {volume}");
+            }
+        }
+    }
+}

@@ -3,8 +3,9 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::signed_volume;
 use crate::surface::corners;
-use crate::{Surface, SurfaceVertex, Topology, bounding_box, signed_volume};
+use crate::{Surface, SurfaceVertex, Topology, bounding_box};
 
 /// The distortion figures of a deformed surface.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -15,13 +15,14 @@ mod vector3;
 use glam::DVec3;
 use rayon::prelude::*;
 
-pub use areas::{face_areas, mixed_corner_areas, mixed_voronoi_areas, signed_volume};
+pub(crate) use areas::signed_volume;
+pub use areas::{face_areas, mixed_corner_areas, mixed_voronoi_areas};
 pub use curvature::mean_curvatures;
 pub use distortion::Distortion;
 pub use gradient::face_gradient;
 pub use normals::vertex_normals;
 pub(crate) use triangle_distance::distance_to_triangle;
-pub use triangle_intersection::triangle_intersection;
+pub(crate) use triangle_intersection::triangle_intersection;
 pub use vector3::Vector3;
 
 /// An axis-aligned box, `min <= max` in each coordinate.

@@ -4,7 +4,14 @@
 use std::io::Cursor;
 
 use image::{ImageFormat, RgbaImage};
-use pliant_io::decode_image;
+use pliant_mesh::Cancel;
+
+use crate::ImageError;
+use crate::images::pixels::Rgba8;
+
+fn decoded(encoded: &[u8]) -> Result<Rgba8, ImageError> {
+    super::decode(encoded, 0, &Cancel::new())
+}
 
 /// Red rises to the right, green downwards; the left half is opaque.
 fn ramp(x: u32, y: u32) -> [u8; 4] {
@@ -26,13 +33,13 @@ fn encoded() -> Vec<(&'static str, Vec<u8>, RgbaImage)> {
         ("WebP", written(ImageFormat::WebP), picture.clone()),
         (
             "KTX2, ETC1S",
-            include_bytes!("corpus/ramp-etc1s.ktx2").to_vec(),
-            reference(include_bytes!("corpus/ramp-etc1s.png")),
+            include_bytes!("../../tests/corpus/ramp-etc1s.ktx2").to_vec(),
+            reference(include_bytes!("../../tests/corpus/ramp-etc1s.png")),
         ),
         (
             "KTX2, UASTC",
-            include_bytes!("corpus/ramp-uastc.ktx2").to_vec(),
-            reference(include_bytes!("corpus/ramp-uastc.png")),
+            include_bytes!("../../tests/corpus/ramp-uastc.ktx2").to_vec(),
+            reference(include_bytes!("../../tests/corpus/ramp-uastc.png")),
         ),
     ]
 }
@@ -40,7 +47,7 @@ fn encoded() -> Vec<(&'static str, Vec<u8>, RgbaImage)> {
 #[test]
 fn every_kind_gives_its_pixels() {
     for (name, bytes, wanted) in encoded() {
-        let decoded = decode_image(&bytes).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let decoded = decoded(&bytes).unwrap_or_else(|error| panic!("{name}: {error}"));
         assert_eq!((decoded.width, decoded.height), (16, 16), "{name}");
         assert!(decoded.pixels == *wanted.as_raw(), "{name}");
     }
@@ -48,12 +55,12 @@ fn every_kind_gives_its_pixels() {
 
 #[test]
 fn whatever_length_a_ktx2_tells_of_its_keys_it_is_read_and_no_further() {
-    let sound = include_bytes!("corpus/ramp-uastc.ktx2");
-    let pixels = decode_image(sound).unwrap().pixels;
+    let sound = include_bytes!("../../tests/corpus/ramp-uastc.ktx2");
+    let pixels = decoded(sound).unwrap().pixels;
     for length in 0..60_u32 {
         let mut file = sound.to_vec();
         file[60..64].copy_from_slice(&length.to_le_bytes());
-        assert!(decode_image(&file).unwrap().pixels == pixels, "{length}");
+        assert!(decoded(&file).unwrap().pixels == pixels, "{length}");
     }
 }
 
@@ -62,7 +69,7 @@ fn jpeg_gives_nearly_its_pixels() {
     let picture = image::RgbImage::from_fn(16, 16, |x, y| image::Rgb([40 + 4 * x as u8, 200 - 4 * y as u8, 90]));
     let mut out = Cursor::new(Vec::new());
     picture.write_to(&mut out, ImageFormat::Jpeg).unwrap();
-    let decoded = decode_image(&out.into_inner()).unwrap();
+    let decoded = decoded(&out.into_inner()).unwrap();
     assert_eq!((decoded.width, decoded.height), (16, 16));
     for (found, wanted) in decoded.pixels.chunks_exact(4).zip(picture.pixels()) {
         let off = (0..3).map(|k| found[k].abs_diff(wanted.0[k])).max().unwrap();
@@ -81,7 +88,7 @@ fn broken_images_are_refused_in_a_sentence_and_never_panic() {
     };
     for (name, bytes, _) in encoded() {
         for length in (0..bytes.len()).step_by(7) {
-            if let Err(error) = decode_image(&bytes[..length]) {
+            if let Err(error) = decoded(&bytes[..length]) {
                 assert!(!error.to_string().contains('\n'), "{name}");
             }
         }
@@ -91,7 +98,7 @@ fn broken_images_are_refused_in_a_sentence_and_never_panic() {
                 let at = next(broken.len());
                 broken[at] = next(256) as u8;
             }
-            let _ = decode_image(&broken);
+            let _ = decoded(&broken);
         }
     }
 }

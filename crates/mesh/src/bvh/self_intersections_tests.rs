@@ -2,10 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that fails may panic")]
 
+use crate::geometry::triangle_intersection;
+use crate::{Bvh, Cancel, Drawn, Model, Progress, SelfIntersections, SurfaceVertex, shapes};
 use glam::{DAffine3, DVec3};
-use pliant_mesh::{
-    Bvh, Cancel, Drawn, Model, Progress, SelfIntersections, SurfaceVertex, shapes, triangle_intersection,
-};
 
 /// What is found after the vertices were moved.
 fn found(model: &Model, moved: &[DVec3], most: usize) -> SelfIntersections {
