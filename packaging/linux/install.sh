@@ -35,6 +35,9 @@ refresh() {
   fi
 }
 
+# A path as desktop entries have it. `xdg-open` finds no program in quotes, so only what needs them gets them.
+quoted() { case $1 in *[\ ~]*) printf '"%s"' "$1" ;; *) printf '%s' "$1" ;; esac; }
+
 has() { [ -n "$(find "$1" -name "$2" -type f 2>/dev/null | head -n 1)" ]; }
 
 case $action in
@@ -43,7 +46,7 @@ case $action in
     cp -R bin share "$prefix/"
     # The prefix may not be in PATH.
     entry=$prefix/share/applications/pliant.desktop
-    sed -e "s|^Exec=pliant|Exec=\"$prefix/bin/pliant\"|" -e "s|^TryExec=pliant|TryExec=$prefix/bin/pliant|" \
+    sed -e "s|^Exec=pliant|Exec=$(quoted "$prefix/bin/pliant")|" -e "s|^TryExec=pliant|TryExec=$prefix/bin/pliant|" \
       share/applications/pliant.desktop >"$entry"
     refresh
     printf 'Pliant is installed: %s\nTo remove it: install.sh --remove %s\n' "$prefix/bin/pliant" "$prefix"
