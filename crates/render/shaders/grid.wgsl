@@ -2,6 +2,7 @@
 // distance and at grazing angles.
 #include "lib/frame.wgsl"
 #include "lib/colour.wgsl"
+#include "lib/ground.wgsl"
 
 // `GridUniform` in crates/render/src/frame/uniforms.rs.
 struct Grid {
@@ -36,7 +37,7 @@ struct GridFragment {
 
 @vertex
 fn vs_grid(@builtin(vertex_index) vertex: u32) -> GridFragment {
-    let corner = vec2f(f32(vertex & 1u), f32(vertex >> 1u)) * 2.0 - 1.0;
+    let corner = square_corner(vertex);
     let offset = corner * grid.reach;
     let position = vec4f(grid.middle + grid.along_u * offset.x + grid.along_v * offset.y, 1.0);
     var out: GridFragment;

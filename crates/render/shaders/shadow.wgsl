@@ -1,5 +1,6 @@
 // The surface's shadow on the ground.
 #include "lib/frame.wgsl"
+#include "lib/ground.wgsl"
 
 // `ShadowUniform` in crates/render/src/frame/uniforms.rs.
 struct Shadow {
@@ -30,7 +31,7 @@ struct ShadowFragment {
 
 @vertex
 fn vs_shadow(@builtin(vertex_index) vertex: u32) -> ShadowFragment {
-    let corner = vec2f(f32(vertex & 1u), f32(vertex >> 1u)) * 2.0 - 1.0;
+    let corner = square_corner(vertex);
     let offset = corner * shadow.half_side;
     let position = vec4f(shadow.middle + shadow.along_u * offset.x + shadow.along_v * offset.y, 1.0);
     var out: ShadowFragment;

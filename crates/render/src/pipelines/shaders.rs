@@ -88,8 +88,9 @@ impl Shader {
 }
 
 /// The files that can be included.
-const LIBRARY: [(&str, &str); 7] = [
+const LIBRARY: [(&str, &str); 8] = [
     ("lib/frame.wgsl", include_str!("../../shaders/lib/frame.wgsl")),
+    ("lib/ground.wgsl", include_str!("../../shaders/lib/ground.wgsl")),
     ("lib/colour.wgsl", include_str!("../../shaders/lib/colour.wgsl")),
     (
         "lib/surface_vertex.wgsl",
