@@ -27,6 +27,9 @@ pub(crate) struct Factor {
     pub(super) numbers: Vec<Numbers>,
 }
 
+/// The rows that each part of the assembly tree works on while K right-hand sides are solved for.
+pub(crate) type PartRows<const K: usize> = Vec<Vec<[f64; K]>>;
+
 /// Shifts of the unit diagonal that are tried one after the other for a preconditioner.
 const SHIFTS: [f64; 6] = [0.0, 1e-13, 1e-11, 1e-9, 1e-7, 1e-5];
 
@@ -120,15 +123,20 @@ impl Factor {
 
     /// Solves for K right-hand sides in place.
     pub fn solve<const K: usize>(&self, x: &mut [[f64; K]]) {
-        solve::solve_in_place(&self.symbolic, &self.assembly_tree, &self.numbers, x, |_| true);
+        self.solve_within(None, x, &mut Vec::new());
     }
 
-    /// As [`Factor::solve`], but only in the columns of these parts, which [`Factor::parts_above`] gives; elsewhere `x` is
-    /// of no use.
-    pub fn solve_in<const K: usize>(&self, parts: &[bool], x: &mut [[f64; K]]) {
-        solve::solve_in_place(&self.symbolic, &self.assembly_tree, &self.numbers, x, |part| {
-            parts[part]
-        });
+    /// As [`Factor::solve`], in memory that is kept from solve to solve. Where only some parts are wanted, which
+    /// [`Factor::parts_above`] gives, `x` is of no use in the columns of the others.
+    pub fn solve_within<const K: usize>(
+        &self,
+        parts: Option<&[bool]>,
+        x: &mut [[f64; K]],
+        part_rows: &mut PartRows<K>,
+    ) {
+        let is_wanted = |part: usize| parts.is_none_or(|parts| parts[part]);
+        let (symbolic, assembly_tree) = (&self.symbolic, &self.assembly_tree);
+        solve::solve_in_place(symbolic, assembly_tree, &self.numbers, x, part_rows, is_wanted);
     }
 
     /// For each part whether the solution in one of these columns depends on it: those of the columns, and all above.

@@ -31,6 +31,7 @@ use self::rows::CapacitanceRows;
 use crate::bilaplacian::operator::BilaplacianOperator;
 use crate::budget::{Budget, bytes_of};
 use crate::operators::CHUNK;
+use crate::sparse::cholesky::PartRows;
 use crate::sparse::refactorisation::RenewableFactor;
 
 /// The most times that a solve applies S.
@@ -54,6 +55,14 @@ pub(crate) struct Capacitance {
     most_kept: usize,
     /// Whether directions are added to those that are kept.
     is_learning: bool,
+}
+
+/// What a solve's passes work in, so that it is mapped once: at millions of vertices a page fault costs more than the
+/// arithmetic on its page.
+#[derive(Default)]
+struct SolveMemory<const K: usize> {
+    columns: Vec<[f64; K]>,
+    part_rows: PartRows<K>,
 }
 
 impl Capacitance {
@@ -131,33 +140,35 @@ impl Capacitance {
 
     /// x ← (T A T)⁻¹ x in the scaled columns, leaving the share `left` of the rim's right-hand side.
     pub fn solve<const K: usize>(&self, x: &mut [[f64; K]], left: f64, cancel: &Cancel) {
+        let mut memory = SolveMemory::default();
         if self.rows.len() == 0 {
-            return self.solve_supported(x);
+            return self.solve_supported(x, &mut memory);
         }
         let load = x.to_vec();
-        self.solve_supported_beside_rim(x);
-        let pulls = self.solve_rim(self.rows.product(x), left, cancel);
+        self.solve_supported_beside_rim(x, &mut memory);
+        let pulls = self.solve_rim(self.rows.product(x), left, &mut memory, cancel);
         x.copy_from_slice(&load);
         drop(load);
         self.rows.subtract_transposed(&pulls, x);
-        self.solve_supported(x);
+        self.solve_supported(x, &mut memory);
     }
 
     /// x ← F⁻¹ (T N T) F⁻¹ x with the factor F: the plate whose rim is free to turn.
-    fn solve_supported<const K: usize>(&self, x: &mut [[f64; K]]) {
-        self.solve_load(x);
-        self.factored.factor.solve(x);
+    fn solve_supported<const K: usize>(&self, x: &mut [[f64; K]], memory: &mut SolveMemory<K>) {
+        self.solve_load(x, memory);
+        self.factored.factor.solve_within(None, x, &mut memory.part_rows);
     }
 
     /// As [`Capacitance::solve_supported`] in the columns that rows have entries in; elsewhere anything.
-    fn solve_supported_beside_rim<const K: usize>(&self, x: &mut [[f64; K]]) {
-        self.solve_load(x);
-        self.factored.factor.solve_in(&self.beside_rim, x);
+    fn solve_supported_beside_rim<const K: usize>(&self, x: &mut [[f64; K]], memory: &mut SolveMemory<K>) {
+        self.solve_load(x, memory);
+        let parts = Some(&*self.beside_rim);
+        self.factored.factor.solve_within(parts, x, &mut memory.part_rows);
     }
 
     /// x ← (T N T) F⁻¹ x.
-    fn solve_load<const K: usize>(&self, x: &mut [[f64; K]]) {
-        self.factored.factor.solve(x);
+    fn solve_load<const K: usize>(&self, x: &mut [[f64; K]], memory: &mut SolveMemory<K>) {
+        self.factored.factor.solve_within(None, x, &mut memory.part_rows);
         x.par_iter_mut()
             .with_min_len(CHUNK)
             .zip(&self.middle)
@@ -165,11 +176,14 @@ impl Capacitance {
     }
 
     /// (1 + D^½ C B Cᵀ D^½) q.
-    fn apply<const K: usize>(&self, q: &[[f64; K]]) -> Vec<[f64; K]> {
-        let mut x = vec![[0.0; K]; self.middle.len()];
+    fn apply<const K: usize>(&self, q: &[[f64; K]], memory: &mut SolveMemory<K>) -> Vec<[f64; K]> {
+        let mut x = std::mem::take(&mut memory.columns);
+        x.clear();
+        x.resize(self.middle.len(), [0.0; K]);
         self.rows.subtract_transposed(q, &mut x);
-        self.solve_supported_beside_rim(&mut x);
+        self.solve_supported_beside_rim(&mut x, memory);
         let mut image = self.rows.product(&x);
+        memory.columns = x;
         for (image, q) in image.iter_mut().zip(q) {
             for k in 0..K {
                 image[k] = q[k] - image[k];
@@ -179,7 +193,13 @@ impl Capacitance {
     }
 
     /// Solves (1 + D^½ C B Cᵀ D^½) y = r until no residual is larger than the share `end` of its right-hand side.
-    fn solve_rim<const K: usize>(&self, mut r: Vec<[f64; K]>, end: f64, cancel: &Cancel) -> Vec<[f64; K]> {
+    fn solve_rim<const K: usize>(
+        &self,
+        mut r: Vec<[f64; K]>,
+        end: f64,
+        memory: &mut SolveMemory<K>,
+        cancel: &Cancel,
+    ) -> Vec<[f64; K]> {
         let kept = self.kept.read().unwrap_or_else(PoisonError::into_inner);
         let mut own = Directions::default();
         let mut y = vec![[0.0; K]; r.len()];
@@ -201,7 +221,7 @@ impl Capacitance {
                 kept.remove_from(&mut block);
                 own.remove_from(&mut block);
             }
-            let image = self.apply(&block);
+            let image = self.apply(&block, memory);
             let before = own.len();
             own.extend(orthonormalised(&block, &image));
             if own.len() == before {

@@ -14,6 +14,7 @@ use std::sync::{Mutex, PoisonError};
 
 use pliant_mesh::vectors;
 
+use crate::sparse::cholesky::PartRows;
 use crate::sparse::numeric::Numbers;
 use crate::sparse::numeric::line::{LANES, Line, Shape};
 use crate::sparse::solve::kernels::{Backward, Forward, Strip};
@@ -43,12 +44,13 @@ impl<const K: usize> Room<K> {
 }
 
 /// Solves L Lᵀ x = b in place; `x` has one row per column of the factor. In parts that are not wanted it
-/// is left half solved; those above a wanted part are to be wanted, too.
+/// is left half solved; those above a wanted part are to be wanted, too. `part_rows` is scratch memory.
 pub(crate) fn solve_in_place<const K: usize>(
     symbolic: &Symbolic,
     assembly_tree: &AssemblyTree,
     numbers: &[Numbers],
     x: &mut [[f64; K]],
+    part_rows: &mut PartRows<K>,
     is_wanted: impl Fn(usize) -> bool + Sync,
 ) {
     let rooms = Mutex::new(Vec::<Room<K>>::new());
@@ -96,15 +98,7 @@ pub(crate) fn solve_in_place<const K: usize>(
             row[k] += change[k];
         }
     };
-    forward_and_backward(
-        assembly_tree,
-        x,
-        &mut Vec::new(),
-        [0.0; K],
-        add,
-        forward_part,
-        backward_part,
-    );
+    forward_and_backward(assembly_tree, x, part_rows, [0.0; K], add, forward_part, backward_part);
 }
 
 /// x ← L⁻¹ x for the supernode's columns, their effect subtracted from the rows below.
