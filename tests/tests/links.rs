@@ -2,10 +2,11 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
 
 use std::collections::BTreeMap;
+use std::ffi::OsStr;
 use std::fs;
 use std::path::{Component, Path, PathBuf};
 
-use pliant_app::cli::{Console, run};
+use pliant_tests::run;
 
 /// The pages' texts by their paths from the root. The manual's generated pages stand where the manual has them.
 fn pages() -> BTreeMap<PathBuf, String> {
@@ -28,15 +29,7 @@ fn pages() -> BTreeMap<PathBuf, String> {
         }
     }
     let generated = tempfile::tempdir().unwrap();
-    let (mut out, mut err) = (Vec::new(), Vec::new());
-    let mut console = Console {
-        out: &mut out,
-        err: &mut err,
-        watch: Default::default(),
-        staging: Default::default(),
-    };
-    let arguments = vec!["pliant".into(), "generate".into(), generated.path().into()];
-    assert_eq!(run(arguments, &mut console), 0);
+    run([OsStr::new("generate"), generated.path().as_os_str()]).done();
     for name in ["commands.md", "command-line.md"] {
         let text = fs::read_to_string(generated.path().join(name)).unwrap();
         pages.insert(Path::new("docs").join(name), text);

@@ -9,15 +9,15 @@
 
 mod window_rig;
 
+use std::ffi::OsStr;
 use std::fs;
 use std::time::{Duration, Instant};
 
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, Rect};
 use egui_kittest::kittest::{NodeT, Queryable};
-use pliant_app::cli::{Console, run};
 use pliant_app::window::{AppDirectories, KeepOriginal, Source, original_name};
-use pliant_tests::Folder;
+use pliant_tests::{Folder, run};
 use window_rig::Session;
 
 /// A folder with two balls, a note and a folder with a third ball, the first of which is open.
@@ -58,16 +58,14 @@ fn a_file_is_opened_with_an_edit_and_saved_in_its_place() {
     session.harness.state_mut().save_to(file.clone(), KeepOriginal::Yes);
     session.settle();
     let output = folder.at("applied.off");
-    let words = ["pliant".into(), "apply".into(), original_name(&file).into()];
-    let options = ["--edit".into(), edit.into(), "--output".into(), output.clone().into()];
-    let (mut out, mut err) = (Vec::new(), Vec::new());
-    let mut console = Console {
-        out: &mut out,
-        err: &mut err,
-        watch: Default::default(),
-        staging: Default::default(),
-    };
-    assert_eq!(run(words.into_iter().chain(options).collect(), &mut console), 0);
+    let (original, apply) = (original_name(&file), OsStr::new("apply"));
+    let options = [
+        "--edit".as_ref(),
+        edit.as_os_str(),
+        "--output".as_ref(),
+        output.as_os_str(),
+    ];
+    run([apply, original.as_os_str()].into_iter().chain(options)).done();
     assert_eq!(fs::read(file).unwrap(), fs::read(output).unwrap());
 }
 

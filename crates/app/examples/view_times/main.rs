@@ -85,8 +85,8 @@ fn measure(triangles: usize) -> Result<(), Box<dyn std::error::Error>> {
         println!("{{\"triangles\": {triangles}, {row}}}");
     }
     surface.update_shape(&renderer, &pose.data())?;
-    let view = |camera: &Camera| drawing::view(camera, size_px, drawing.centre);
-    let ground = drawing::ground(&camera, size_px, rest_height(&model), drawing.centre);
+    let view = |camera: &Camera| drawing::view(camera, size_px, drawing.centre());
+    let ground = drawing::ground(&camera, size_px, rest_height(&model), drawing.centre());
     let made = (0..FRAMES).map(|_| {
         let (ms, made) = timed(|| {
             surface.update_shadow(&mut renderer, &ground)?;

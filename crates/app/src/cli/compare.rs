@@ -316,7 +316,7 @@ fn draw(
     style.background = Background::default();
     let size_px = DVec2::new(f64::from(layout.view_px[0]), f64::from(layout.view_px[1]));
     let camera = camera(arguments, model, outcomes, size_px);
-    let view = drawing::view(&camera, size_px, drawing.centre);
+    let view = drawing::view(&camera, size_px, drawing.centre());
     let mut cells = Vec::with_capacity(methods.len());
     for (number, (asked, outcome)) in methods.iter().zip(outcomes).enumerate() {
         if watch.cancel.is_cancelled() {

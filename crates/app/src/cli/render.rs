@@ -160,7 +160,7 @@ fn pictures(arguments: &RenderArguments, paths: &[PathBuf], watch: &Watch) -> Re
         UpAxis::Z => bounds.min.z,
     };
     if look.shadow {
-        let ground = drawing::ground(&camera, size_px, low, drawing.centre);
+        let ground = drawing::ground(&camera, size_px, low, drawing.centre());
         surface.update_shadow(&mut renderer, &ground).map_err(refuse)?;
     }
     let count = arguments.turntable.unwrap_or(1);
@@ -173,9 +173,9 @@ fn pictures(arguments: &RenderArguments, paths: &[PathBuf], watch: &Watch) -> Re
         turned.yaw_rad += TAU * f64::from(number) / f64::from(count);
         let ground = look
             .grid
-            .then(|| drawing::ground(&turned, size_px, low, drawing.centre));
+            .then(|| drawing::ground(&turned, size_px, low, drawing.centre()));
         let frame = Frame {
-            view: &drawing::view(&turned, size_px, drawing.centre),
+            view: &drawing::view(&turned, size_px, drawing.centre()),
             style: &style,
             surfaces: &[&surface],
             grid: ground.as_ref(),

@@ -38,8 +38,6 @@ use relative::Relative;
 /// What stays the same while the shape changes.
 #[derive(Debug)]
 pub struct Drawing {
-    /// The f64 point that GPU positions are relative to: the centre of the file's bounding box.
-    pub centre: DVec3,
     /// The file's materials and their encoded images.
     pub materials: EncodedMaterials,
     triangles: Vec<[u32; 3]>,
@@ -59,7 +57,6 @@ impl Drawing {
     pub fn new(model: &Model, mut appearance: Appearance) -> Self {
         materials::dim_bare(&mut appearance, model.drawn.triangle_count() as u32);
         let relative = Relative::of(model);
-        let centre = relative.centre;
         let materials = EncodedMaterials::new(&mut appearance);
         let groups: Vec<MaterialGroup> = appearance
             .groups
@@ -72,10 +69,11 @@ impl Drawing {
         let triangles = model.drawn_triangles().into_iter();
         let triangles: Vec<[u32; 3]> = triangles.map(|corners| corners.map(|vertex| vertex.0)).collect();
         let at_rest = model.rest_positions().into_iter();
-        let positions: Vec<[f32; 3]> = at_rest.map(|position| pose::finite(position - centre)).collect();
+        let positions: Vec<[f32; 3]> = at_rest
+            .map(|position| pose::finite(position - relative.centre))
+            .collect();
         let chunks = Chunks::new(&positions, &triangles, &groups, &materials.without_images());
         Self {
-            centre,
             materials,
             welded: welded(model),
             chunks: Arc::new(chunks),
@@ -88,6 +86,11 @@ impl Drawing {
             groups,
             triangles,
         }
+    }
+
+    /// The f64 point that GPU positions are relative to: the centre of the file's bounding box.
+    pub fn centre(&self) -> DVec3 {
+        self.relative.centre
     }
 
     /// The shape given by `displacements` (one per surface vertex, from the file's shape) for the renderer.

@@ -327,7 +327,7 @@ impl Viewport {
     /// Whether the surface can be drawn with fewer triangles: not as materials and not with its edges.
     fn may_be_reduced(&self, view: &SceneView<'_>) -> bool {
         let Some(shown) = &self.surface else { return false };
-        let eye = drawing::view(view.camera, view.viewport_px, shown.drawing.centre);
+        let eye = drawing::view(view.camera, view.viewport_px, shown.drawing.centre());
         self.present_look(view.look).shading != Shading::Material
             && !view.look.wireframe
             && shown.surface.has_reduced(&eye)
@@ -368,7 +368,10 @@ impl Viewport {
         if self.target.resize(&renderer, key.size_px, key.samples)? {
             self.register();
         }
-        let centre = self.surface.as_ref().map_or(DVec3::ZERO, |shown| shown.drawing.centre);
+        let centre = self
+            .surface
+            .as_ref()
+            .map_or(DVec3::ZERO, |shown| shown.drawing.centre());
         let eye = drawing::view(view.camera, view.viewport_px, centre);
         // Marks keep their width on the screen when the picture has fewer pixels.
         let drawn_share = f64::from(key.size_px[1]) / view.viewport_px.y.max(1.0);
@@ -426,7 +429,7 @@ impl Viewport {
             style.shadows = Shadows::Off;
         }
         let frame = Frame {
-            view: &drawing::view(view.camera, view.viewport_px, shown.drawing.centre),
+            view: &drawing::view(view.camera, view.viewport_px, shown.drawing.centre()),
             style: &style,
             surfaces: &[&shown.surface],
             grid: ground.as_ref(),

@@ -47,7 +47,7 @@ impl Shown {
             UpAxis::Y => self.lowest.y,
             UpAxis::Z => self.lowest.z,
         };
-        drawing::ground(view.camera, view.viewport_px, height, self.drawing.centre)
+        drawing::ground(view.camera, view.viewport_px, height, self.drawing.centre())
     }
 
     /// The shadow that belongs to what is shown now.
