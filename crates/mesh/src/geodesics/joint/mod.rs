@@ -4,6 +4,9 @@
 //! than what comes before and after it gives the limb; its farthest point is the tip. Rings around the tip run straight
 //! across the limb, where rings around a point on its side are askew. The narrowest of those gives a plane across the
 //! limb, and the joint is the narrowest ring at an even distance from that plane.
+//!
+//! Where a limb is as thick as it is long, no ring around a point on its side closes before it reaches the body. Its tip
+//! is looked for from the other end of the surface instead: the farthest of what lies beyond the point from there.
 
 mod level_set;
 mod rings;
@@ -76,18 +79,55 @@ pub fn joint_of(shape: &Shape<'_>, triangle: u32, point: DVec3, cancel: &Cancel)
     let seeds = corners.map(|v| (v, shape.positions[v.index()].distance(point)));
     let mut search = DistanceSearch::default();
     let near = FIRST_SHARE * extent(shape, corners[0]);
-    let Some(askew) = Cut::narrowest(&mut search, shape, &seeds, near, &corners, cancel)? else {
-        return Ok(None);
+    let (tip, near, source) = match Cut::narrowest(&mut search, shape, &seeds, near, &corners, Source::Point, cancel)? {
+        Some(askew) => {
+            let tip = askew.tip(shape);
+            let length = shape.positions[tip.index()].distance(askew.centre);
+            (tip, 1.6 * length + 4.0 * askew.radius, Source::Point)
+        }
+        None => (beyond(&mut search, shape, &seeds), f64::INFINITY, Source::Tip),
     };
-    let tip = askew.tip(shape);
-    let length = shape.positions[tip.index()].distance(askew.centre);
-    let near = 1.6 * length + 4.0 * askew.radius;
-    let Some(from_tip) = Cut::narrowest(&mut search, shape, &[(tip, 0.0)], near, &corners, cancel)? else {
+    cancel.check()?;
+    let tip = [(tip, 0.0)];
+    let Some(from_tip) = Cut::narrowest(&mut search, shape, &tip, near, &corners, source, cancel)? else {
         return Ok(None);
     };
     let straight = from_tip.straightened(&mut search, shape, &corners);
     cancel.check()?;
     Ok(straight.unwrap_or(from_tip).joint(&mut search, shape))
+}
+
+/// The farthest of what lies beyond the seeds, seen from the place that is farthest from them: with a seed on a limb, that
+/// limb's tip.
+fn beyond(search: &mut DistanceSearch, shape: &Shape<'_>, seeds: &[(SurfaceVertex, f64); 3]) -> SurfaceVertex {
+    let position = |v: SurfaceVertex| shape.positions[v.index()];
+    let reached = search.within(shape.triangles, shape.topology, position, seeds, f64::INFINITY);
+    let Some(&(other_end, _)) = reached.last() else {
+        return seeds[0].0;
+    };
+    let mut distance = vec![f64::NEG_INFINITY; shape.positions.len()];
+    let from_there = [(other_end, 0.0)];
+    for &(v, at) in search.within(shape.triangles, shape.topology, position, &from_there, f64::INFINITY) {
+        distance[v.index()] = at;
+    }
+    let least = seeds
+        .map(|(v, _)| distance[v.index()])
+        .into_iter()
+        .fold(f64::INFINITY, f64::min);
+    let mut waiting: Vec<SurfaceVertex> = seeds.map(|(v, _)| v).to_vec();
+    let (mut tip, mut most) = (waiting[0], f64::NEG_INFINITY);
+    while let Some(v) = waiting.pop() {
+        // Each is visited once.
+        let at = std::mem::replace(&mut distance[v.index()], f64::NEG_INFINITY);
+        if at < least {
+            continue;
+        }
+        if at > most {
+            (tip, most) = (v, at);
+        }
+        waiting.extend(shape.topology.neighbours(v));
+    }
+    tip
 }
 
 /// The diagonal of the box around a vertex's component.
@@ -120,6 +160,7 @@ impl Cut {
         seeds: &[(SurfaceVertex, f64)],
         near: f64,
         corners: &[SurfaceVertex; 3],
+        source: Source,
         cancel: &Cancel,
     ) -> Result<Option<Self>, Cancelled> {
         for limit in [near, f64::INFINITY] {
@@ -127,7 +168,7 @@ impl Cut {
             cancel.check()?;
             let rings = Rings::of(shape, &field, Body::Large);
             cancel.check()?;
-            match rings.narrowest(corners, Source::Point) {
+            match rings.narrowest(corners, source) {
                 Some(Narrowest { level, end }) if end == End::Widens || limit.is_infinite() => {
                     return Ok(Some(Self::of(shape, &field, &rings, level)));
                 }

@@ -23,6 +23,8 @@ const ROUND_SHARE: f64 = 0.5;
 /// Nor does it count if it is this many times longer than the ring at half its distance: that is 2 for a disc and for
 /// the corner of a sheet.
 const GROWS: f64 = 1.3;
+/// The same around a limb's tip, whose rings run across the limb: those of a thigh are longer than those of a shin.
+const GROWS_FROM_TIP: f64 = 1.7;
 /// A ring is the narrowest of its surroundings when a later one is this much longer.
 const WIDENS: f64 = 1.25;
 
@@ -82,6 +84,8 @@ pub(super) enum Body {
 pub(super) enum Source {
     /// A point, whose rings begin as those of a disc.
     Point,
+    /// The tip of a limb.
+    Tip,
     /// A section across the limb.
     Section,
 }
@@ -167,8 +171,13 @@ impl Rings {
         let mut narrowest: Option<usize> = None;
         for level in first..self.lengths.len() {
             let length = self.lengths[level];
-            let is_round = source == Source::Point
-                && (length > ROUND_SHARE * TAU * self.radii[level] || length > GROWS * self.lengths[level / 2]);
+            let grows = match source {
+                Source::Point => GROWS,
+                Source::Tip => GROWS_FROM_TIP,
+                Source::Section => f64::INFINITY,
+            };
+            let is_round = source != Source::Section
+                && (length > ROUND_SHARE * TAU * self.radii[level] || length > grows * self.lengths[level / 2]);
             match narrowest {
                 Some(level) if length > WIDENS * self.lengths[level] => {
                     return Some(Narrowest {

@@ -1,0 +1,54 @@
+//! Joints of limbs that are as thick as they are long.
+#![allow(clippy::unwrap_used, reason = "a test that can't go on fails")]
+
+use std::f64::consts::PI;
+
+use glam::DVec2;
+use pliant_mesh::{Cancel, Model, Shape, SurfaceVertex, joint_of, shapes};
+
+/// A triangle at about this height, on any side, and its middle.
+fn triangle_at(model: &Model, z: f64, side: usize) -> (u32, glam::DVec3) {
+    let middle = |t: u32| {
+        let corners = model.surface.triangles[t as usize].map(|v: SurfaceVertex| model.surface.positions[v.index()]);
+        (corners[0] + corners[1] + corners[2]) / 3.0
+    };
+    let all = 0..model.surface.triangles.len() as u32;
+    let near: Vec<u32> = all.filter(|&t| (middle(t).z - z).abs() < 0.1).collect();
+    let chosen = near[side % near.len()];
+    (chosen, middle(chosen))
+}
+
+#[test]
+fn a_limb_that_is_as_thick_as_it_is_long_bends_where_it_meets_the_body() {
+    // A ball of radius 1 about 0 with a stump that widens from 0.45 at the ball to 0.5 and ends at z = 2.2.
+    let profile = |share: f64| {
+        let z = 0.6 + 1.6 * (PI * share).cos();
+        let stump = (0.45 + 0.06 * (z - 0.9)) * (1.0 - ((z - 1.7).max(0.0) / 0.5).powi(2)).max(0.0).sqrt();
+        let ball = (1.0 - z * z).max(0.0).sqrt();
+        DVec2::new(if share % 1.0 == 0.0 { 0.0 } else { ball.max(stump) }, z)
+    };
+    let model = shapes::model(shapes::turned(72, 72, profile));
+    let shape = Shape {
+        triangles: &model.surface.triangles,
+        topology: &model.topology,
+        positions: &model.surface.positions,
+    };
+    for z in [2.1, 1.8, 1.5, 1.2] {
+        for side in [0, 5, 31] {
+            let (triangle, middle) = triangle_at(&model, z, side);
+            let joint = joint_of(&shape, triangle, middle, &Cancel::new()).unwrap();
+            let joint = joint.unwrap_or_else(|| panic!("no joint from {z}, side {side}"));
+            assert!(
+                (0.7..1.4).contains(&joint.centre.z),
+                "from {z}, side {side}: {}",
+                joint.centre
+            );
+            assert!(
+                (joint.radius - 0.46).abs() < 0.05,
+                "from {z}, side {side}: {}",
+                joint.radius
+            );
+            assert!(joint.axis.z > 0.95, "from {z}, side {side}: {}", joint.axis);
+        }
+    }
+}
