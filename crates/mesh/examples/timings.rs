@@ -89,6 +89,22 @@ fn main() {
         bvh.vertices_within(&[DVec3::Z.extend(-0.9)], |_, _| count += 1);
         count
     });
+    // A sphere that is pressed together until its poles pass through each other, as a bent limb may.
+    let pressed = |v: SurfaceVertex| {
+        let p = surface.positions[v.index()];
+        let pole = (1.0 - 4.0 * p.truncate().length_squared()).max(0.0);
+        DVec3::new(p.x, p.y, p.z - 1.2 * p.z.signum() * pole)
+    };
+    bvh.refit(pressed);
+    time("passing through itself", || {
+        let found = bvh.new_self_intersections(surface, topology, 200_000, &Progress::new(), &Cancel::new());
+        found.map_or(0, |found| found.pairs.len())
+    });
+    bvh.refit(|v| 1.5 * surface.positions[v.index()]);
+    time("all moved, none passing", || {
+        let found = bvh.new_self_intersections(surface, topology, 200_000, &Progress::new(), &Cancel::new());
+        found.map_or(0, |found| found.pairs.len())
+    });
     let mut search = DistanceSearch::default();
     let limits = [("distances within 0.1", 0.1), ("distances everywhere", f64::INFINITY)];
     for (what, limit) in limits {
