@@ -58,6 +58,35 @@ fn ends(loaded: &Loaded) -> [Vec<usize>; 2] {
 }
 
 #[test]
+fn a_scan_that_is_inside_out_bends_the_same_and_is_saved_facing_outwards() {
+    let mut drawn = shapes::icosphere(3);
+    for triangle in &mut drawn.triangles {
+        triangle.swap(1, 2);
+    }
+    let folder = Folder::new();
+    let file = folder.write_mesh("in.off", &drawn);
+    assert_eq!(open(&file).model.findings.inside_out_components.count, 1);
+    let mut edit = bend(&json!({ "translation": [0.0, 0.3, 0.1] }));
+    let out = folder.at("out.off");
+    folder.apply(&file, &edit, &out, &[]).done();
+    let as_read = open(&out);
+    assert_eq!(as_read.model.findings.inside_out_components.count, 1);
+    edit["inside_out"] = json!({ "component": 0 });
+    folder.apply(&file, &edit, &out, &[]).done();
+    let turned = open(&out);
+    assert_eq!(turned.model.rest_positions(), as_read.model.rest_positions());
+    assert!(turned.model.findings.inside_out_components.is_empty());
+    let wound_back = as_read.model.drawn_triangles().into_iter().map(|[a, b, c]| [a, c, b]);
+    assert!(turned.model.drawn_triangles().into_iter().eq(wound_back));
+    // It alone is an edit, too.
+    edit = bare_edit();
+    edit["inside_out"] = json!("all");
+    folder.apply(&file, &edit, &out, &[]).done();
+    assert!(open(&out).model.findings.inside_out_components.is_empty());
+    assert_eq!(open(&out).model.rest_positions(), open(&file).model.rest_positions());
+}
+
+#[test]
 fn on_every_file_the_handle_arrives_and_the_fixed_part_stays() {
     for path in data(&["scans", "survey", "gltf"]) {
         let before = open(&path);

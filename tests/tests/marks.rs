@@ -109,7 +109,7 @@ impl Stage {
     /// The view with its marks, as the window draws it.
     fn picture(&mut self) -> Image {
         let view = self.editor.view();
-        let drawing = Drawing::new(&self.model, Appearance::default());
+        let drawing = Drawing::new(&self.model, Appearance::default(), Default::default());
         let pose = drawing.pose(&self.model, view.displacements);
         let mut surface = drawing.upload(&self.renderer, &pose).unwrap();
         let mut colours = Vec::new();

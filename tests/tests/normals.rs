@@ -50,7 +50,7 @@ fn angle(a: [f32; 3], b: [f32; 3]) -> f32 {
 #[test]
 fn on_a_fine_surface_they_are_those_of_the_triangles() {
     let (model, displacements, jacobians) = bent(shapes::icosphere(5));
-    let drawing = Drawing::new(&model, Appearance::default());
+    let drawing = Drawing::new(&model, Appearance::default(), Default::default());
     let by_triangles = drawing.pose(&model, &displacements).normals;
     let turned = drawing.pose_turned(&model, &displacements, &jacobians).normals;
     let worst = by_triangles
@@ -87,7 +87,7 @@ fn loose_triangles_that_look_smooth_at_rest_look_smooth_when_bent() {
         normals: Some(smooth),
         ..Appearance::default()
     };
-    let drawing = Drawing::new(&model, appearance);
+    let drawing = Drawing::new(&model, appearance, Default::default());
     let apart = |normals: &[[f32; 3]]| {
         let mut first = HashMap::new();
         let others = corner_of.iter().zip(normals).map(|(corner, normal)| {

@@ -5,8 +5,11 @@ use std::ffi::OsStr;
 use std::path::Path;
 use std::sync::Arc;
 
-use glam::DVec3;
-use pliant_editor::{Command, Editor, Event, HandleTransform, InlineExecutor, MeshReference, geometry_hash};
+use glam::{DVec2, DVec3};
+use pliant_editor::{
+    Beginning, Button, Command, Correction, CorrectionBrush, Editor, Event, HandleTransform, InlineExecutor,
+    MeshReference, Modifiers, Pointer, ToolMode, geometry_hash,
+};
 use pliant_engine::Loaded;
 use pliant_mesh::shapes;
 use pliant_tests::{Ended, Folder, open, run};
@@ -110,6 +113,90 @@ fn a_project_bends_its_mesh_to_the_shape_that_was_on_the_screen_with_what_was_ap
     let output = folder.at("same.off");
     apply(&file, &project, &output).done();
     assert_eq!(std::fs::read(&file).unwrap(), std::fs::read(&output).unwrap());
+}
+
+/// Drags the surface under the view's middle by hand.
+fn grab(editor: &mut Editor, jobs: &InlineExecutor, by_px: DVec2) {
+    let size_px = DVec2::new(800.0, 600.0);
+    editor.handle(Event::Viewport { size_px });
+    let correction = CorrectionBrush {
+        correction: Correction::Grab,
+        ..CorrectionBrush::default()
+    };
+    for command in [
+        Command::FrameAll,
+        Command::SetTool(ToolMode::Correct),
+        Command::SetCorrection(correction),
+        Command::SetBrushRadius(60.0),
+    ] {
+        editor.handle(Event::Command(command));
+    }
+    drain(editor, jobs);
+    let at = |position_px| Pointer {
+        position_px,
+        modifiers: Modifiers::NONE,
+    };
+    let (from, to) = (size_px / 2.0, size_px / 2.0 + by_px);
+    editor.handle(Event::PointerMoved(at(from)));
+    editor.handle(Event::PointerPressed(at(from), Button::Primary));
+    editor.handle(Event::PointerMoved(at(to)));
+    editor.handle(Event::PointerReleased(at(to), Button::Primary));
+    drain(editor, jobs);
+}
+
+#[test]
+fn what_was_corrected_by_hand_is_in_the_project_and_in_the_exported_edit() {
+    let folder = Folder::new();
+    let file = folder.write_mesh("bar.off", &shapes::bar(12, 3, 3));
+    let loaded = open(&file);
+    let size = loaded.model.bounds().unwrap().diagonal();
+    let same = |editor: &Editor, case: &str| {
+        let mut shown = Vec::new();
+        loaded.model.drawn_positions(editor.view().displacements, &mut shown);
+        let mesh = MeshReference {
+            name: None,
+            path: None,
+            geometry: geometry_hash(&loaded.model),
+        };
+        let project = editor.snapshot().unwrap().project(mesh).to_json();
+        let edit = editor.edit_file().unwrap().to_json();
+        for (name, text) in [("bar.pliant", project), ("edit.json", edit)] {
+            let edit = folder.write(name, &text);
+            let output = folder.at("out.off");
+            apply(&file, &edit, &output).done();
+            let bent = open(&output).model.rest_positions();
+            let off = bent.iter().zip(&shown).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
+            assert!(off < 1e-6 * size, "{case}, {name}: {off}");
+            // And the window opens it in that shape.
+            let jobs = InlineExecutor::new();
+            let mut again = Editor::new(Box::new(jobs.clone()));
+            again.handle(Event::Opened {
+                model: Arc::clone(&loaded.model),
+                name: "again".to_owned(),
+                beginning: Some(Beginning::parse(&text).unwrap()),
+            });
+            drain(&mut again, &jobs);
+            let own = again
+                .document()
+                .from_file()
+                .iter()
+                .zip(editor.document().from_file().iter());
+            let off = own.map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
+            assert!(off < 1e-6 * size, "{case}, {name} opened: {off}");
+        }
+    };
+    let (mut editor, jobs) = editor(&loaded);
+    let largest = |editor: &Editor| {
+        let lengths = editor.document().from_file().iter().map(|d| d.length());
+        lengths.fold(0.0, f64::max)
+    };
+    grab(&mut editor, &jobs, DVec2::new(0.0, 30.0));
+    assert!(largest(&editor) > 0.01 * size, "it was dragged");
+    same(&editor, "corrected at rest");
+    move_end(&mut editor, &jobs, DVec3::new(0.0, 0.02, 0.01));
+    same(&editor, "bent a little from there");
+    grab(&mut editor, &jobs, DVec2::new(15.0, -20.0));
+    same(&editor, "corrected where it is bent");
 }
 
 #[test]

@@ -13,7 +13,7 @@ fn shown(model: &Model, stored: Option<&[[f32; 3]]>, displacements: &[DVec3]) ->
         normals: stored.map(<[_]>::to_vec),
         ..Appearance::default()
     };
-    let drawing = Drawing::new(model, appearance);
+    let drawing = Drawing::new(model, appearance, Default::default());
     // What another pose left in the memory changes nothing.
     drawing.put_back(drawing.pose(model, &vec![DVec3::ONE; displacements.len()]));
     let pose = drawing.pose(model, displacements);

@@ -44,7 +44,7 @@ fn bent(model: &Model) -> Vec<DVec3> {
 
 /// Which triangle each pixel shows.
 fn ids(renderer: &mut Renderer, model: &Model, displacements: &[DVec3], camera: &Camera) -> Vec<Option<u32>> {
-    let drawing = Drawing::new(model, pliant_io::Appearance::default());
+    let drawing = Drawing::new(model, pliant_io::Appearance::default(), Default::default());
     // As in the window, the chunks' boxes come from the rest shape and move with the displacements.
     let rest = vec![DVec3::ZERO; displacements.len()];
     let mut surface = drawing.upload(renderer, &drawing.pose(model, &rest)).unwrap();

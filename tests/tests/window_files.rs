@@ -17,6 +17,7 @@ use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, Rect};
 use egui_kittest::kittest::{NodeT, Queryable};
 use pliant_app::window::{AppDirectories, KeepOriginal, Source, original_name};
+use pliant_editor::Command;
 use pliant_tests::{Folder, run};
 use window_rig::Session;
 
@@ -67,6 +68,43 @@ fn a_file_is_opened_with_an_edit_and_saved_in_its_place() {
     ];
     run([apply, original.as_os_str()].into_iter().chain(options)).done();
     assert_eq!(fs::read(file).unwrap(), fs::read(output).unwrap());
+}
+
+#[test]
+fn a_scan_that_is_inside_out_is_shown_and_saved_facing_outwards() {
+    let folder = Folder::new();
+    let outwards = pliant_mesh::shapes::icosphere(3);
+    let mut inwards = outwards.clone();
+    inwards.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
+    let wanted = folder.write_mesh("outwards.off", &outwards);
+    let file = folder.write_mesh("inwards.off", &inwards);
+    let begin = |file| Session::begin_in(Source::File(file), AppDirectories::default());
+    let Some(mut session) = begin(wanted) else { return };
+    let view = session.harness.state().view_rect();
+    // The middle of the view, without what the panels say.
+    let middle = |session: &mut Session| {
+        let picture = session.harness.render().unwrap();
+        let (centre, scale) = (view.center(), session.harness.ctx.pixels_per_point());
+        let at = |x: f32, y: f32| *picture.get_pixel((x * scale) as u32, (y * scale) as u32);
+        let steps = (-8..=8).flat_map(|x| (-8..=8).map(move |y| (5.0 * x as f32, 5.0 * y as f32)));
+        steps.map(|(x, y)| at(centre.x + x, centre.y + y).0).collect::<Vec<_>>()
+    };
+    let faces_outwards = middle(&mut session);
+    drop(session);
+    let mut session = begin(file.clone()).unwrap();
+    assert_ne!(middle(&mut session), faces_outwards, "its inside is shown");
+    session.harness.state_mut().command(Command::TurnInsideOut);
+    session.settle();
+    assert_eq!(middle(&mut session), faces_outwards);
+    session.harness.state_mut().save_to(file.clone(), KeepOriginal::Yes);
+    session.settle();
+    let saved = pliant_tests::open(&file).model;
+    assert!(saved.inside_out.is_empty());
+    assert_eq!(saved.drawn_triangles(), outwards.triangles);
+    assert_eq!(pliant_tests::open(&original_name(&file)).model.inside_out, [0]);
+    session.harness.state_mut().command(Command::Undo);
+    session.settle();
+    assert_ne!(middle(&mut session), faces_outwards);
 }
 
 #[test]

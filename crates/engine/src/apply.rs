@@ -5,6 +5,7 @@
 //! all of them and measures their time.
 
 use std::path::Path;
+use std::sync::Arc;
 use std::time::Instant;
 
 use glam::DVec3;
@@ -143,6 +144,7 @@ pub fn apply(apply: &Apply<'_>, watch: &Watch, staging: &Staging) -> Result<Repo
     let start = Instant::now();
     let save = SaveAs {
         positions: &solution.positions,
+        inside_out: &setup.inside_out,
         morph: apply.morph.as_ref(),
         output: apply.output,
         beside: report_to.as_ref().map(|report| ("--report", report)),
@@ -279,9 +281,16 @@ fn example_weights(setup: &Setup, weights: &[f64]) -> Vec<ExampleWeight> {
 impl Solution {
     /// Nothing is solved where nothing is to change.
     fn at_rest(model: &Model, setup: &Setup) -> Self {
+        let (mut positions, mut surface_positions) = (model.rest_positions(), model.surface.positions.clone());
+        // What was corrected by hand, and is bent by nothing else.
+        if let Some(kept) = &setup.kept {
+            model.drawn_positions(&kept.shape.shape, &mut positions);
+            let moved = surface_positions.iter_mut().zip(kept.shape.shape.iter());
+            moved.for_each(|(position, by)| *position += *by);
+        }
         Self {
-            positions: model.rest_positions(),
-            surface_positions: model.surface.positions.clone(),
+            positions,
+            surface_positions,
             free_vertices: setup.free_count(),
             order_ms: 0.0,
             bind_ms: 0.0,
@@ -408,6 +417,25 @@ pub fn settle(
     Ok(last)
 }
 
+/// The solution for the handles as they stood when a shape was kept; `None` where none was.
+fn at_first(setup: &Setup, bound: &mut Bound, cancel: &Cancel) -> Result<Option<Vec<DVec3>>, SolveError> {
+    let Some(kept) = &setup.kept else { return Ok(None) };
+    let mut displacements = kept.shape.shape.to_vec();
+    bound.set_targets(&kept.targets)?;
+    // Points and weights of another method say nothing of this one's.
+    let controls = kept.shape.controls.as_ref();
+    let own = setup.controls(1.0);
+    let is_same = |kept: &&Arc<Vec<DVec3>>| own.as_ref().is_some_and(|own| own.len() == kept.len());
+    if let Some(controls) = controls.filter(is_same).or(own.as_ref()) {
+        bound.set_controls(controls)?;
+    }
+    if bound.weights().len() == kept.shape.weights.len() {
+        bound.set_weights(&kept.shape.weights)?;
+    }
+    settle(bound, &mut displacements, usize::MAX, cancel)?;
+    Ok(Some(displacements))
+}
+
 /// Takes the handles to their targets frame by frame.
 fn bend(
     file: &Path,
@@ -429,6 +457,11 @@ fn bend(
     let (mut solve_ms, mut normals_ms) = (Vec::with_capacity(count), Vec::with_capacity(count));
     let mut surface_positions = model.surface.positions.clone();
     let (mut iterations, mut last) = (0_u64, Step::default());
+    let at_first = at_first(setup, bound, &watch.cancel).map_err(refuse)?;
+    if let (Some(at_first), 1) = (&at_first, count) {
+        // From where the descent ended that the kept shape is compared with.
+        displacements.clone_from(at_first);
+    }
     for frame in 1..=count {
         if watch.cancel.is_cancelled() {
             return Err(EngineError::Interrupted);
@@ -443,7 +476,10 @@ fn bend(
             bound.set_weights(&weights).map_err(refuse)?;
         }
         last = settle(bound, &mut displacements, usize::MAX, &watch.cancel).map_err(refuse)?;
-        from_file.clone_from(&displacements);
+        match (&setup.kept, &at_first) {
+            (Some(kept), Some(at_first)) => from_file = kept.shape.carried(at_first, &displacements),
+            _ => from_file.clone_from(&displacements),
+        }
         if let Some(rest) = &setup.rest {
             from_file
                 .iter_mut()

@@ -1,5 +1,6 @@
 //! Saving a model: its files are encoded, named so that nothing is lost, written beside their places and read back.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 use std::time::Instant;
 
@@ -19,6 +20,8 @@ use crate::report::ms_since;
 pub struct SaveAs<'a> {
     /// The new world position of each drawn vertex.
     pub positions: &'a [DVec3],
+    /// The connected parts that are turned inside out, by their numbers.
+    pub inside_out: &'a BTreeSet<u32>,
     /// Saves the edit as a morph target beside the shape as it was.
     pub morph: Option<&'a MorphTarget<'a>>,
     /// The file to be written.
@@ -32,6 +35,7 @@ impl<'a> SaveAs<'a> {
     pub fn shape(positions: &'a [DVec3], output: &'a Path) -> Self {
         Self {
             positions,
+            inside_out: const { &BTreeSet::new() },
             morph: None,
             output,
             beside: None,
@@ -80,7 +84,9 @@ pub fn stage(
         _ => to.name().to_string_lossy().into_owned(),
     };
     let drawn = loaded.model.rest();
+    let turned = loaded.model.drawn_vertices_of(what.inside_out);
     let save = Save {
+        turned: &turned,
         drawn: &drawn,
         positions: what.positions,
         format,

@@ -73,10 +73,8 @@ pub fn transfer(job: &Transfer<'_>, watch: &Watch, staging: &Staging) -> Result<
 
     let progress = watch.begin("saving");
     let save = SaveAs {
-        positions: &positions,
         morph: job.morph.as_ref(),
-        output: job.output,
-        beside: None,
+        ..SaveAs::shape(&positions, job.output)
     };
     let saved = saving::stage(&loaded, &save, staging, &progress, &watch.cancel)?;
     if watch.cancel.is_cancelled() {

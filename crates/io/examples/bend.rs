@@ -100,6 +100,7 @@ fn bend(input: &Path, output: &Path, how: &str) -> Result<(), Box<dyn std::error
     let start = Instant::now();
     let saved = scene.save(
         &Save {
+            turned: &[],
             drawn: &drawn,
             positions: &new,
             format,

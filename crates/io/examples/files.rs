@@ -60,6 +60,7 @@ fn convert(from: &Path, to: &Path) {
     let opened = open(bytes, format(from), &name(from));
     let saved = opened.scene.save(
         &Save {
+            turned: &[],
             drawn: &opened.drawn,
             positions: &opened.drawn.positions,
             format: format(to),
@@ -95,6 +96,7 @@ fn measure(path: &Path) {
     let save_s = median(|| {
         let start = Instant::now();
         let save = Save {
+            turned: &[],
             drawn: &opened.drawn,
             positions: &positions,
             format,

@@ -29,6 +29,7 @@
 //! let save = Save {
 //!     drawn: &drawn,
 //!     positions: &positions,
+//!     turned: &[],
 //!     format: Format::Off,
 //!     name: "triangle.off",
 //!     placement: Placement::SameFile,

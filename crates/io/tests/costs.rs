@@ -49,6 +49,7 @@ fn cost(file: &Hostile) -> [usize; 2] {
             (Format::Obj, Placement::OtherFolder),
         ] {
             let save = Save {
+                turned: &[],
                 drawn: &opened.drawn,
                 positions: &positions,
                 format,
@@ -58,6 +59,7 @@ fn cost(file: &Hostile) -> [usize; 2] {
             let _ = opened.scene.save(&save, &Progress::new(), &cancel);
         }
         let save = Save {
+            turned: &[],
             drawn: &opened.drawn,
             positions: &positions,
             format: Format::Glb,

@@ -13,6 +13,7 @@ use serde_json::{Value, json};
 fn try_morph(opened: &SceneAndDrawn, positions: &[DVec3], name: &str, weight: f64) -> Result<Saved, SaveError> {
     opened.scene.save_as_morph(
         &Save {
+            turned: &[],
             drawn: &opened.drawn,
             positions,
             format: Format::of_name(name).unwrap(),

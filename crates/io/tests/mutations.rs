@@ -151,6 +151,7 @@ fn survive(format: Format, seeds: &[&[u8]], runs: usize) {
         {
             let name = format!("out.{}", target.extension());
             let request = Save {
+                turned: &[],
                 drawn,
                 positions: &positions,
                 format: target,

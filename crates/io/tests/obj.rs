@@ -275,6 +275,7 @@ fn a_copy_in_another_folder_brings_its_materials_along() {
     let opened = open_in(text, Format::Obj, &files).unwrap();
     let save = |placement| {
         let save = Save {
+            turned: &[],
             drawn: &opened.drawn,
             positions: &opened.drawn.positions,
             format: Format::Obj,

@@ -201,6 +201,7 @@ fn whole_number_positions_are_rounded_or_refused() {
     assert!(saved.warnings[0].contains("whole numbers"));
     let positions = moved(&opened, |file| file == 1, |p| p + DVec3::splat(300.0));
     let save = pliant_io::Save {
+        turned: &[],
         drawn: &opened.drawn,
         positions: &positions,
         format: Format::Ply,

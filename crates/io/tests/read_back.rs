@@ -73,6 +73,7 @@ fn what_was_saved_passes_and_anything_else_is_found_out() {
         for first in Format::ALL {
             let save = |of: &SceneAndDrawn, positions: &[DVec3], format: Format| {
                 let save = Save {
+                    turned: &[],
                     drawn: &of.drawn,
                     positions,
                     format,
@@ -90,6 +91,7 @@ fn what_was_saved_passes_and_anything_else_is_found_out() {
                 let found = back(&saved, second);
                 let check = |positions: &[DVec3], found: &SceneAndDrawn| {
                     let save = Save {
+                        turned: &[],
                         drawn: &opened.drawn,
                         positions,
                         format: second,
@@ -141,6 +143,7 @@ fn a_morph_target_shows_as_far_as_its_weight() {
     for weight in [0.0, 0.25, 1.0] {
         let morph = MorphTarget { name: "bent", weight };
         let save = Save {
+            turned: &[],
             drawn: &off.drawn,
             positions: &new,
             format: Format::Glb,
@@ -191,6 +194,7 @@ fn text_that_names_single_precision_passes_as_it_was_written() {
             *p += DVec3::new(1.0, 0.1, 0.001) * (k as f64).sin();
         }
         let mut save = Save {
+            turned: &[],
             drawn: &opened.drawn,
             positions: &positions,
             format: Format::Ply,

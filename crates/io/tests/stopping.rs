@@ -92,6 +92,7 @@ fn a_save_as_any_kind_stops_wherever_it_is_told_to_and_tells_its_way() {
         for to in KINDS.into_iter().filter(|to| *to == from || from == Format::Ply) {
             let name = format!("out.{}", to.extension());
             let request = Save {
+                turned: &[],
                 drawn: &opened.drawn,
                 positions: &positions,
                 format: to,
@@ -110,6 +111,7 @@ fn a_morph_target_stops_wherever_it_is_told_to() {
     let opened = sheet(Normals::None);
     let positions = bent(&opened.drawn.positions);
     let request = Save {
+        turned: &[],
         drawn: &opened.drawn,
         positions: &positions,
         format: Format::Glb,

@@ -35,7 +35,7 @@ fn measure(triangles: usize) -> Result<(), Box<dyn std::error::Error>> {
         &Cancel::default(),
     )?;
     let model = Arc::new(model);
-    let (drawing_ms, drawing) = timed(|| Drawing::new(&model, Appearance::default()));
+    let (drawing_ms, drawing) = timed(|| Drawing::new(&model, Appearance::default(), Arc::default()));
     let rest = vec![DVec3::ZERO; model.surface.positions.len()];
     let bent: Vec<DVec3> = model
         .surface

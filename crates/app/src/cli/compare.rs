@@ -299,7 +299,7 @@ fn draw(
     let model = &loaded.model;
     let mut shape = Shape::of(&arguments.file, loaded, Some(edit), Posed::AtRest, watch)?;
     let progress = watch.begin("drawing");
-    let drawing = Drawing::new(model, loaded.scene.appearance());
+    let drawing = Drawing::new(model, loaded.scene.appearance(), Arc::default());
     let mut renderer = Headless::new()
         .map_err(|error| EngineError::System(error.to_string()))?
         .renderer;

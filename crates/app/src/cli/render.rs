@@ -1,5 +1,6 @@
 //! `pliant render`: a picture of a file, at rest or with an edit applied, as the window shows it.
 
+use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -116,9 +117,11 @@ fn pictures(arguments: &RenderArguments, paths: &[PathBuf], watch: &Watch) -> Re
     let Some(bounds) = model.bounds() else {
         return Err(EngineError::Empty(arguments.file.clone()));
     };
+    let mut inside_out = BTreeSet::new();
     let edit = match arguments.edit.as_deref() {
         Some(path) => {
             let (edit, setup) = resolved(path, &loaded, watch)?;
+            inside_out.clone_from(&setup.inside_out);
             pliant_engine::check_bends(&arguments.file, model, &setup.method)?;
             Some(edit)
         }
@@ -127,7 +130,7 @@ fn pictures(arguments: &RenderArguments, paths: &[PathBuf], watch: &Watch) -> Re
     let posed = if edit.is_some() { Posed::Bent } else { Posed::AtRest };
     let shape = Shape::of(&arguments.file, &loaded, edit, posed, watch)?;
     let progress = watch.begin("drawing");
-    let drawing = Drawing::new(model, loaded.scene.appearance());
+    let drawing = Drawing::new(model, loaded.scene.appearance(), Arc::new(inside_out));
     let pose = drawing.pose(model, &shape.displacements);
     progress.set(0.2);
 

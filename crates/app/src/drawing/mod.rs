@@ -15,11 +15,12 @@ mod relative;
 mod stage;
 mod wires;
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use glam::{DVec3, Mat3};
 use pliant_io::Appearance;
-use pliant_mesh::Model;
+use pliant_mesh::{DrawnVertex, Model};
 use pliant_render::{Chunks, ColourSpace, MaterialGroup, RenderError, Renderer, Surface, SurfaceData};
 
 pub use drawn_colours::{drawn_colours, recolour};
@@ -40,6 +41,8 @@ use relative::Relative;
 pub struct Drawing {
     /// The file's materials and their encoded images.
     pub materials: EncodedMaterials,
+    /// The connected parts that are shown turned inside out, by their numbers.
+    pub inside_out: Arc<BTreeSet<u32>>,
     triangles: Vec<[u32; 3]>,
     welded: Vec<u32>,
     chunks: Arc<Chunks>,
@@ -53,8 +56,9 @@ pub struct Drawing {
 }
 
 impl Drawing {
-    /// Prepares a file for drawing. Its images are decoded separately: see [`EncodedMaterials::decode`].
-    pub fn new(model: &Model, mut appearance: Appearance) -> Self {
+    /// Prepares a file for drawing, with the connected parts `inside_out` turned inside out. Its images are decoded
+    /// separately: see [`EncodedMaterials::decode`].
+    pub fn new(model: &Model, mut appearance: Appearance, inside_out: Arc<BTreeSet<u32>>) -> Self {
         materials::dim_bare(&mut appearance, model.drawn.triangle_count() as u32);
         let relative = Relative::of(model);
         let materials = EncodedMaterials::new(&mut appearance);
@@ -67,7 +71,10 @@ impl Drawing {
             })
             .collect();
         let triangles = model.drawn_triangles().into_iter();
-        let triangles: Vec<[u32; 3]> = triangles.map(|corners| corners.map(|vertex| vertex.0)).collect();
+        let turned = model.drawn_vertices_of(&inside_out);
+        let is_turned = |vertex: DrawnVertex| turned.get(vertex.index()).is_some_and(|is_turned| *is_turned);
+        let wound = |[a, b, c]: [DrawnVertex; 3]| if is_turned(a) { [a, c, b] } else { [a, b, c] };
+        let triangles: Vec<[u32; 3]> = triangles.map(|corners| wound(corners).map(|vertex| vertex.0)).collect();
         let at_rest = model.rest_positions().into_iter();
         let positions: Vec<[f32; 3]> = at_rest
             .map(|position| pose::finite(position - relative.centre))
@@ -77,7 +84,8 @@ impl Drawing {
             materials,
             welded: welded(model),
             chunks: Arc::new(chunks),
-            normals: NormalGroups::of(model, &relative, &triangles, appearance.normals),
+            normals: NormalGroups::of(model, &relative, &triangles, appearance.normals, turned),
+            inside_out,
             relative,
             kept: Kept::default(),
             uvs: appearance.uvs,

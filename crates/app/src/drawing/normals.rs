@@ -26,6 +26,9 @@ pub struct NormalGroups {
     /// a part of them.
     group_of_drawn: Vec<u32>,
     parts: Parts,
+    /// Whether each drawn vertex is of a part that is turned inside out, so that its normal points the other way; empty
+    /// where none is. Groups are as in the file.
+    turned: Vec<bool>,
     /// Geometric normals at rest and stored normals of each group; `None` if the file stores no normals.
     rest: Option<RestNormals>,
     /// The normals of the groups that are shown at rest, once they were asked for.
@@ -48,13 +51,20 @@ struct RestNormals {
 }
 
 impl NormalGroups {
-    /// Groups the model's drawn vertices. `triangles` are in drawn vertices; `stored` has one world-space unit normal
-    /// per drawn vertex.
-    pub fn of(model: &Model, relative: &Relative, triangles: &[[u32; 3]], stored: Option<Vec<[f32; 3]>>) -> Self {
+    /// Groups the model's drawn vertices. `triangles` are in drawn vertices, wound as in the file where not `turned`;
+    /// `stored` has one world-space unit normal per drawn vertex.
+    pub fn of(
+        model: &Model,
+        relative: &Relative,
+        triangles: &[[u32; 3]],
+        stored: Option<Vec<[f32; 3]>>,
+        turned: Vec<bool>,
+    ) -> Self {
         let (group_of_drawn, stored_of_group) = group_vertices(model, stored.as_deref());
         let mut groups = Self {
-            parts: Parts::of(model, triangles, &group_of_drawn, stored_of_group.len()),
+            parts: Parts::of(model, triangles, &turned, &group_of_drawn, stored_of_group.len()),
             group_of_drawn,
+            turned,
             rest: None,
             shown_at_rest: OnceLock::new(),
         };
@@ -93,6 +103,18 @@ impl NormalGroups {
             .with_min_len(CHUNK)
             .map(shown)
             .collect_into_vec(out);
+        self.turn(out);
+    }
+
+    /// Turns the normals of parts that are turned inside out.
+    fn turn(&self, normals: &mut [[f32; 3]]) {
+        for (normal, _) in normals
+            .iter_mut()
+            .zip(&self.turned)
+            .filter(|(_, is_turned)| **is_turned)
+        {
+            *normal = normal.map(|number| -number);
+        }
     }
 
     /// As [`NormalGroups::at`], from those at rest and the Jacobian J of the displacements at each surface vertex: a
@@ -128,6 +150,7 @@ impl NormalGroups {
             .with_min_len(CHUNK)
             .map(turned)
             .collect_into_vec(out);
+        self.turn(out);
     }
 
     /// The geometric normal of each group; none where its triangles have no area.
@@ -152,7 +175,7 @@ impl NormalGroups {
 }
 
 impl Parts {
-    fn of(model: &Model, triangles: &[[u32; 3]], group_of_drawn: &[u32], group_count: usize) -> Self {
+    fn of(model: &Model, triangles: &[[u32; 3]], turned: &[bool], group_of_drawn: &[u32], group_count: usize) -> Self {
         let whole = model.surface.positions.len();
         let part_of = |drawn: u32| (group_of_drawn[drawn as usize] as usize).checked_sub(whole);
         let mut offsets = vec![0_u32; group_count - whole + 1];
@@ -170,7 +193,8 @@ impl Parts {
                 let corner = |drawn| model.drawn.surface_vertex(DrawnVertex(drawn));
                 let [a, b, c] = corners.map(corner);
                 if let (Some(a), Some(b), Some(c)) = (a, b, c) {
-                    listed[next[part] as usize] = [a, b, c];
+                    let is_turned = turned.get(corners[0] as usize).is_some_and(|is_turned| *is_turned);
+                    listed[next[part] as usize] = if is_turned { [a, c, b] } else { [a, b, c] };
                 }
                 next[part] += 1;
             }

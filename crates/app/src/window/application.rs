@@ -1,6 +1,6 @@
 //! The application: the window's state beside the editor's, and what can be asked of it from outside.
 
-use std::collections::VecDeque;
+use std::collections::{BTreeSet, VecDeque};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};
@@ -80,6 +80,8 @@ pub struct Application {
     pub(super) is_to_fill_screen: bool,
     /// Where the window's content, its bars and its panel were in the last frame.
     pub(super) layout: [egui::Rect; 6],
+    /// Which parts are turned inside out in the drawing that is being made.
+    pub(super) redrawing: Option<Arc<BTreeSet<u32>>>,
     /// Stops the decoding of the open file's images, once that was asked for.
     pub(super) images: Option<Cancel>,
     pub(super) view_rect: egui::Rect,
@@ -163,6 +165,7 @@ impl Application {
             longest_frame: Duration::ZERO,
             is_to_fill_screen,
             layout: [egui::Rect::NOTHING; 6],
+            redrawing: None,
             images: None,
             view_rect: egui::Rect::ZERO,
             title: String::new(),
@@ -250,7 +253,9 @@ impl Application {
         let comparison = self.editor.comparison();
         let compared = compared && comparison.is_none_or(|comparison| self.method_views.are_settled(comparison));
         let original = self.original.as_ref().is_none_or(|original| original.is_settled(&view));
-        view.settled && shown && compared && original && self.session.doing().is_none() && !self.is_loading_textures()
+        let drawn = self.redrawing.is_none() && self.shows_what_is_turned();
+        let is_idle = self.session.doing().is_none() && !self.is_loading_textures();
+        view.settled && shown && compared && original && drawn && is_idle
     }
 
     /// The shape in the GPU's buffers, per surface vertex, from the file's.
@@ -316,8 +321,8 @@ impl Application {
 
     /// Saves under `path`, without asking whether a source may be written over.
     pub fn save_to(&mut self, path: PathBuf, keep_original: KeepOriginal) {
-        let displacements = Arc::clone(self.editor.view().displacements);
-        self.session.save(path, &displacements, keep_original, &self.workers);
+        let shape = (self.editor.view().displacements, self.editor.document().inside_out());
+        self.session.save(path, shape, keep_original, &self.workers);
     }
 
     /// Has unsaved work written where the next session finds it.

@@ -2,7 +2,7 @@
 
 use super::entry::{Action, Entry, Scope, alt, character, item, shift, unless, when_open};
 use crate::document::ObjectAction;
-use crate::workspace::{act_on_object_here, act_on_objects, isolate, show_everything};
+use crate::workspace::{act_on_object_here, act_on_objects, isolate, show_everything, turn_inside_out};
 
 /// The same with the object under the pointer.
 pub(super) const OBJECT_HERE: Entry<ObjectAction> = Entry {
@@ -60,6 +60,20 @@ pub(super) const ISOLATE: Entry<()> = Entry {
         let pointed_at = context.pointed_at();
         isolate(context.workspace, pointed_at);
     }),
+};
+
+/// Turns connected parts inside out, or back again.
+pub(super) const TURN_INSIDE_OUT: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Turn inside out",
+        "Swaps outside and inside of the parts that face inwards, or of all that is shown where none does: their triangles and normals are saved the other way round. What is bent stays.",
+        "flip normals faces winding reverse recalculate outside",
+        &[],
+    )],
+    scope: Scope::Document,
+    unavailable: when_open,
+    action: Action::Do(|context, ()| turn_inside_out(context.workspace)),
 };
 
 /// Shows everything that is hidden.

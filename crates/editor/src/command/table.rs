@@ -233,6 +233,8 @@ commands! {
     Objects(action: ObjectAction, objects: Vec<u32>) = object::OBJECTS;
     /// Shows nothing but the connected part under the pointer; once more shows the others again.
     Isolate = object::ISOLATE;
+    /// Swaps outside and inside of the parts that face inwards, or of all that is shown.
+    TurnInsideOut = object::TURN_INSIDE_OUT;
     /// Shows everything that is hidden.
     ShowEverything = object::SHOW_EVERYTHING;
     /// Frames everything.

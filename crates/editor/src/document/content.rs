@@ -1,6 +1,6 @@
 //! What a document holds, to be read by all and changed by the document alone.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -55,6 +55,9 @@ pub struct Content {
     pub(crate) loose: Loose,
     /// What single parts do that nothing holds, by their component's number, in place of `loose`.
     pub(crate) loose_parts: Arc<BTreeMap<u32, Loose>>,
+    /// The connected parts that are turned inside out when the file is shown and saved, by their numbers. What bends stays
+    /// wound as in the file.
+    pub(crate) inside_out: Arc<BTreeSet<u32>>,
     /// What is hidden and locked.
     pub(crate) access: Arc<Access>,
     /// The rest shape's displacements from the file's.
@@ -90,6 +93,7 @@ impl Content {
             tips: Tips::default(),
             loose: Loose::default(),
             loose_parts: Arc::default(),
+            inside_out: Arc::default(),
             access: Arc::default(),
             rest: Arc::clone(&zero),
             applied: false,

@@ -7,7 +7,7 @@
 //! still running, a surface that catches up with an early drag). The history therefore remembers the shape that its
 //! deltas are relative to, and [`History::sync`] re-bases the two neighbouring steps onto the one that is shown.
 
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -45,6 +45,8 @@ pub(crate) enum Change {
     Rest(Sparse<DVec3>, bool),
     /// Whether tips come along.
     Tips(Tips),
+    /// Which parts are turned inside out.
+    InsideOut(Arc<BTreeSet<u32>>),
     /// What is hidden and locked.
     Access(Arc<Access>),
     /// What was seen when what holds the surface changed last.
@@ -77,6 +79,7 @@ impl Step {
                 Change::Stiffness(sparse, _) => sparse.bytes(),
                 Change::Continuity(Some(field)) => field.len() * size_of::<f64>(),
                 Change::Handles(handles, _) => handles.len() * size_of::<Handle>(),
+                Change::InsideOut(parts) => size_of::<Change>() + parts.len() * size_of::<u32>(),
                 Change::Access(access) => {
                     size_of::<Access>() + (access.hidden.len() + access.locked.len()) * size_of::<u32>()
                 }
@@ -286,6 +289,7 @@ fn swap(change: &mut Change, document: &mut Document, strength: &mut Option<Arc<
         Change::Attachments(attachments) => document.swap_attachments(attachments),
         Change::Tips(tips) => document.swap_tips(tips),
         Change::Rest(sparse, applied) => document.swap_rest(sparse, applied),
+        Change::InsideOut(parts) => document.swap_inside_out(parts),
         Change::Access(access) => document.swap_access(access),
         Change::Kept(kept) => document.swap_kept(kept),
         Change::Settled(settled) => document.swap_settled(settled),

@@ -97,6 +97,9 @@ fn differences(before: &Document, after: &Document) -> Vec<Change> {
     if before.tips != after.tips {
         changes.push(Change::Tips(before.tips));
     }
+    if before.inside_out != after.inside_out {
+        changes.push(Change::InsideOut(Arc::clone(&before.inside_out)));
+    }
     if before.access != after.access {
         changes.push(Change::Access(Arc::clone(&before.access)));
     }

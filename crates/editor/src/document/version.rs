@@ -27,6 +27,8 @@ pub(crate) enum Aspect {
     Shape,
     /// What is drawn: the present shape, as displacements from the file's.
     Drawn,
+    /// Which parts are turned inside out.
+    InsideOut,
     /// What is hidden and locked.
     Access,
     /// What of that is locked.
@@ -42,7 +44,7 @@ pub(crate) enum Aspect {
 }
 
 impl Aspect {
-    pub(crate) const ALL: [Self; 16] = [
+    pub(crate) const ALL: [Self; 17] = [
         Self::Paint,
         Self::Stiffness,
         Self::Continuity,
@@ -53,6 +55,7 @@ impl Aspect {
         Self::Rest,
         Self::Shape,
         Self::Drawn,
+        Self::InsideOut,
         Self::Access,
         Self::Locks,
         Self::Handles,

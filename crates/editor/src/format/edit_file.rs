@@ -14,6 +14,7 @@ use super::field::{FieldEntry, FieldKind};
 use super::json::parse;
 use super::loose::{OneOrList, StoredLoose};
 use super::method::{method_to_value, read_method};
+use super::project::StoredKept;
 use super::reader::read;
 use super::refusal::shortened;
 use super::selector::Selector;
@@ -53,6 +54,12 @@ pub struct EditFile {
     pub loose: Loose,
     /// What single ones do instead: those with a selected vertex; the later entry wins.
     pub loose_parts: Vec<(Selector, Loose)>,
+    /// The connected parts with a selected vertex are inside out and are saved the other way round: their faces' corners
+    /// in reverse order, their normals pointing the other way. It bends nothing.
+    pub inside_out: Selector,
+    /// The shape that was seen when what holds the surface changed or it was corrected by hand, with the handles, by
+    /// their place in the list, as they stood then: it is carried along from there.
+    pub kept: Option<StoredKept>,
     /// How much of the edit is made, in [`STRENGTH_RANGE`]: handles, control points and weights that bend the surface
     /// go this share of their way ([`HandleTransform::part`]).
     pub strength: f64,
@@ -96,6 +103,10 @@ struct StoredEdit {
     continuity: Option<OneOrList<f64, FieldEntry>>,
     #[serde(default = "follow")]
     loose: OneOrList<StoredLoose, LooseEntry>,
+    #[serde(default = "nothing", skip_serializing_if = "is_nothing")]
+    inside_out: Selector,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    kept: Option<StoredKept>,
     #[serde(default = "all_of_it", skip_serializing_if = "is_all")]
     strength: f64,
 }
@@ -124,6 +135,10 @@ fn all_of_it() -> f64 {
     1.0
 }
 
+fn is_nothing(selector: &Selector) -> bool {
+    *selector == Selector::None
+}
+
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes by reference")]
 fn is_all(strength: &f64) -> bool {
     *strength == 1.0
@@ -142,6 +157,8 @@ impl Default for EditFile {
             continuity: Vec::new(),
             loose: Loose::Follow,
             loose_parts: Vec::new(),
+            inside_out: nothing(),
+            kept: None,
             strength: 1.0,
         }
     }
@@ -180,6 +197,8 @@ impl EditFile {
         let (method, attachments) = read_method(&stored.method).map_err(|error| error.under("method"))?;
         stored.region.check().map_err(|error| error.under("region"))?;
         stored.fixed.check().map_err(|error| error.under("fixed"))?;
+        let inside_out = stored.inside_out.check();
+        inside_out.map_err(|error| error.under("inside_out"))?;
         let mut handles = stored.handles;
         for (index, handle) in handles.iter_mut().enumerate() {
             if handle.name.is_empty() {
@@ -242,6 +261,8 @@ impl EditFile {
             continuity,
             loose,
             loose_parts,
+            inside_out: stored.inside_out,
+            kept: stored.kept,
             strength: stored.strength,
         })
     }
@@ -271,6 +292,8 @@ impl EditFile {
                     )
                 }
             },
+            inside_out: self.inside_out.clone(),
+            kept: self.kept.clone(),
             strength: self.strength,
         };
         json!(stored)
@@ -284,6 +307,10 @@ impl EditFile {
     /// Whether neither a handle of the edit, nor a control point that was moved by hand, nor an example's weight moves
     /// anything, or nothing of that is made.
     pub fn changes_nothing(&self) -> bool {
+        // Without handles nothing is solved: the shape that was kept is the shape.
+        if self.kept.is_some() && !self.handles.is_empty() {
+            return false;
+        }
         if self.strength == 0.0 {
             return true;
         }

@@ -8,6 +8,8 @@ use pliant_mesh::Model;
 
 use super::attachment::AttachmentEntry;
 use super::examples::entries_of;
+use super::project::StoredKept;
+use super::selector::ranges_of;
 use crate::document::followed;
 use crate::document::{Content, Document, Handle, HandleId, Paint, PivotPlace, Reach};
 use crate::jobs::{FileContacts, Region, region_input};
@@ -101,6 +103,14 @@ pub(crate) fn export(document: &Document, model: &Arc<Model>) -> Result<EditFile
             .iter()
             .map(|(part, loose)| (Selector::Component(*part), *loose))
             .collect(),
+        inside_out: match document.inside_out.is_empty() {
+            true => Selector::None,
+            false => Selector::Union(document.inside_out.iter().copied().map(Selector::Component).collect()),
+        },
+        kept: document.kept.as_ref().map(|kept| {
+            let place = |id: HandleId| region.handles.iter().position(|other| *other == id);
+            StoredKept::of(kept, model).renumbered(|id| place(id).map(|place| place as u32))
+        }),
         strength,
     };
     let setup = edit.resolve(model)?;
@@ -161,11 +171,15 @@ pub(crate) fn import(edit: &EditFile, model: &Model) -> Result<Document, EditErr
     let continuity = edit.painted_continuity(model)?;
     document.continuity = (!continuity.is_empty()).then(|| Arc::new(continuity));
     document.loose_parts = Arc::new(setup.loose_parts.into_iter().collect());
+    document.inside_out = Arc::new(setup.inside_out);
     document.method = setup.method;
     document.attachments = Arc::new(setup.attachments.into_iter().collect());
     document.loose = setup.loose;
     let mut document = Document::from(document);
     document.take_part(edit.strength);
+    if let Some(kept) = &edit.kept {
+        document.go_on_from(kept.on(model, "kept")?);
+    }
     if document.is_moved() {
         document.unsettle();
     }
@@ -198,17 +212,4 @@ fn pivoted(transform: HandleTransform, pivot: Option<DVec3>) -> HandleTransform 
         },
         HandleTransform::Matrix(_) => transform,
     }
-}
-
-/// The set flags as ranges with both ends.
-pub(crate) fn ranges_of(selected: &[bool]) -> Vec<[u32; 2]> {
-    let mut ranges: Vec<[u32; 2]> = Vec::new();
-    for (vertex, _) in selected.iter().enumerate().filter(|(_, selected)| **selected) {
-        let vertex = vertex as u32;
-        match ranges.last_mut() {
-            Some([_, last]) if *last + 1 == vertex => *last = vertex,
-            _ => ranges.push([vertex, vertex]),
-        }
-    }
-    ranges
 }

@@ -116,3 +116,16 @@ fn out_of_range(found: &impl Serialize, allowed: &str) -> EditError {
         allowed: allowed.to_owned(),
     }
 }
+
+/// The set flags as ranges with both ends.
+pub(crate) fn ranges_of(selected: &[bool]) -> Vec<[u32; 2]> {
+    let mut ranges: Vec<[u32; 2]> = Vec::new();
+    for (vertex, _) in selected.iter().enumerate().filter(|(_, selected)| **selected) {
+        let vertex = vertex as u32;
+        match ranges.last_mut() {
+            Some([_, last]) if *last + 1 == vertex => *last = vertex,
+            _ => ranges.push([vertex, vertex]),
+        }
+    }
+    ranges
+}

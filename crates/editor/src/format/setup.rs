@@ -1,5 +1,6 @@
 //! An edit resolved on a model: what every surface vertex does, how stiff it is and how each handle moves.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
@@ -12,7 +13,7 @@ use super::edit_file::EditFile;
 use super::exchange::with_pivot;
 use super::refusal::shortened;
 use crate::HandleTransform;
-use crate::document::{Document, attachment_part};
+use crate::document::{Document, HandleId, KeptShape, attachment_part};
 use crate::jobs::Region;
 use crate::warning::worded;
 
@@ -33,12 +34,36 @@ pub struct Setup {
     pub loose: Loose,
     /// What single components do in place of that.
     pub loose_parts: Vec<(u32, Loose)>,
+    /// The connected parts that are turned inside out in what is saved, by their numbers.
+    pub inside_out: BTreeSet<u32>,
     /// The method and its options.
     pub method: Method,
     /// What was brought beside the handles, by its declared name.
     pub attachments: Vec<(&'static str, Attachment)>,
     /// The shape that is bent, where it is another than the file's.
     pub rest: Option<Rest>,
+    /// The shape that was seen and is carried along, where it is another than the handles' transforms mean.
+    pub kept: Option<Kept>,
+}
+
+/// A shape that was seen when what holds the surface changed or it was corrected by hand.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Kept {
+    /// The shape, as displacements from the rest shape.
+    pub shape: Arc<KeptShape>,
+    /// Where the handles stood then.
+    pub targets: Vec<DAffine3>,
+}
+
+impl Kept {
+    /// `None` where a handle was not there yet.
+    fn of(shape: &Arc<KeptShape>, handles: impl Iterator<Item = HandleId>) -> Option<Self> {
+        let targets: Option<Vec<DAffine3>> = handles.map(|id| shape.targets.get(&id).copied()).collect();
+        Some(Self {
+            shape: Arc::clone(shape),
+            targets: targets?,
+        })
+    }
 }
 
 /// A rest shape.
@@ -115,12 +140,17 @@ impl Setup {
                 .iter()
                 .map(|(part, loose)| (*part, *loose))
                 .collect(),
+            inside_out: (*document.inside_out).clone(),
             method: document.method.clone(),
             attachments: document
                 .attachments
                 .iter()
                 .map(|(name, attachment)| (*name, attachment.clone()))
                 .collect(),
+            kept: document
+                .kept
+                .as_ref()
+                .and_then(|kept| Kept::of(kept, region.handles.iter().copied())),
             rest: region.rest_surface.as_ref().map(|surface| Rest {
                 displacements: Arc::clone(&document.rest),
                 surface: Arc::clone(surface),
@@ -239,8 +269,10 @@ impl EditFile {
             continuity,
             loose: self.loose,
             loose_parts: self.loose_parts_on(model)?,
+            inside_out: self.inside_out_on(model)?,
             method: self.method.clone(),
             attachments: self.attachments_on(model)?,
+            kept: self.kept_on(model)?,
             rest: None,
         })
     }
@@ -278,6 +310,23 @@ impl EditFile {
             entry.paint(&mut continuity, model, "continuity", index)?;
         }
         Ok(continuity)
+    }
+
+    fn kept_on(&self, model: &Model) -> Result<Option<Kept>, EditError> {
+        let Some(kept) = &self.kept else {
+            return Ok(None);
+        };
+        let kept = Arc::new(kept.on(model, "kept")?);
+        Ok(Kept::of(
+            &kept,
+            (0..self.handles.len()).map(|place| HandleId(place as u16)),
+        ))
+    }
+
+    /// The components with a vertex that is selected as inside out.
+    fn inside_out_on(&self, model: &Model) -> Result<BTreeSet<u32>, EditError> {
+        let selected = self.inside_out.evaluate_at(model, "inside_out")?;
+        Ok(selected.iter().map(|vertex| model.topology.component(vertex)).collect())
     }
 
     /// What single components do, the later entry winning.

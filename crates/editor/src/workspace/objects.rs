@@ -1,6 +1,9 @@
 //! What is done with objects: hidden, shown alone, locked, by the list or under the pointer.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
+
+use pliant_mesh::Model;
 
 use super::state::Workspace;
 use crate::document::{Access, ObjectAction, object_name};
@@ -54,6 +57,36 @@ pub(crate) fn isolate(workspace: &mut Workspace, pointed_at: Option<Pick>) {
     };
     let isolated = Some(model.topology.component(pick.vertex));
     set_access(workspace, "Isolate part".to_owned(), Access { isolated, ..access });
+}
+
+/// Swaps outside and inside of the part that is shown alone; else of those that face inwards; else of all that are
+/// shown. Once more swaps them back.
+pub(crate) fn turn_inside_out(workspace: &mut Workspace) {
+    let Some(model) = workspace.model().cloned() else {
+        return;
+    };
+    let parts = match workspace.document.access().isolated {
+        Some(part) => BTreeSet::from([part]),
+        None if !model.inside_out.is_empty() => model.inside_out.iter().copied().collect(),
+        None => shown_parts(&model, workspace.document.access()),
+    };
+    let name = match parts.len() {
+        0 => return workspace.refuse("Nothing that has triangles is shown: show an object first."),
+        1 => "Turn 1 part inside out".to_owned(),
+        several => format!("Turn {several} parts inside out"),
+    };
+    workspace.change(name, |document| {
+        let turned = document.inside_out().symmetric_difference(&parts).copied().collect();
+        document.set_inside_out(Arc::new(turned));
+    });
+}
+
+/// The connected parts with a triangle of an object that is not hidden.
+fn shown_parts(model: &Model, access: &Access) -> BTreeSet<u32> {
+    let shown = model.triangles_of_objects(|object| !access.hidden.contains(&(object as u32)));
+    let surface = model.surface.triangles.iter().zip(model.drawn.triangle_of_surface());
+    let shown = surface.filter(|(_, drawn)| shown.get(**drawn as usize).is_some_and(|is_shown| *is_shown));
+    shown.map(|([first, ..], _)| model.topology.component(*first)).collect()
 }
 
 /// Does something with the object that is pointed at.

@@ -2,7 +2,7 @@
 #![allow(dead_code, reason = "each test file uses the verbs it needs")]
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test that can't go on fails")]
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec2, DVec3};
@@ -62,6 +62,7 @@ pub struct Fingerprint {
     from_rest: Vec<[u64; 3]>,
     from_file: Vec<[u64; 3]>,
     access: Access,
+    inside_out: BTreeSet<u32>,
     tips: Tips,
     loose: (Loose, BTreeMap<u32, Loose>),
     settled: bool,
@@ -79,6 +80,7 @@ impl Fingerprint {
             rest: bits(document.rest()),
             from_rest: bits(document.from_rest()),
             from_file: bits(document.from_file()),
+            inside_out: (**document.inside_out()).clone(),
             access: document.access().clone(),
             tips: document.tips(),
             loose: (document.loose(), document.loose_parts().clone()),

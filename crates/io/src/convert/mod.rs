@@ -2,6 +2,7 @@
 
 pub(crate) mod faces;
 
+use std::borrow::Cow;
 use std::ops::Range;
 
 use glam::DVec3;
@@ -9,6 +10,7 @@ use pliant_mesh::{DrawnVertex, FileVertex};
 
 use crate::save::course::Course;
 use crate::save::moved::{Moved, check_single};
+use crate::save::turned::wound_back;
 use crate::{Appearance, SaveError};
 
 /// A deformed shape with its appearance, independent of the format that it came from.
@@ -21,7 +23,7 @@ pub(crate) struct NewMesh<'a> {
     /// New world positions, one per drawn vertex; may be non-finite where the file's were.
     pub positions: &'a [DVec3],
     /// Triangles over drawn vertices, in `appearance.groups`' order.
-    pub triangles: &'a [[DrawnVertex; 3]],
+    pub triangles: Cow<'a, [[DrawnVertex; 3]]>,
     /// The file's own polygons, where it has any that are not triangles.
     pub polygons: Option<Polygons>,
     /// The file vertex behind each drawn vertex.
@@ -58,6 +60,21 @@ impl Polygons {
         self.offsets.len().saturating_sub(1)
     }
 
+    /// The faces as they are to be wound.
+    fn turned(mut self, moved: &Moved<'_>) -> Self {
+        if moved.turns_any() {
+            for face in 0..self.len() {
+                let corners = self.face(face);
+                if corners.first().is_some_and(|first| moved.turns(*first)) {
+                    let corners: Vec<DrawnVertex> = wound_back(corners).copied().collect();
+                    let start = self.offsets[face] as usize;
+                    self.corners[start..start + corners.len()].copy_from_slice(&corners);
+                }
+            }
+        }
+        self
+    }
+
     /// The corners of a face.
     pub fn face(&self, face: usize) -> &[DrawnVertex] {
         let span: Range<usize> = self.offsets[face] as usize..self.offsets[face + 1] as usize;
@@ -85,7 +102,7 @@ impl<'a> NewMesh<'a> {
             }
         }
         if let Some(normals) = appearance.normals.as_mut()
-            && !moved.is_nothing()
+            && !moved.moves_nothing()
         {
             let rest: Vec<DVec3> = normals.iter().map(|&n| glam::Vec3::from(n).as_dvec3()).collect();
             let (of_frames, course) = course.split(0.9);
@@ -99,11 +116,18 @@ impl<'a> NewMesh<'a> {
                 }
             }
         }
+        if let Some(normals) = appearance.normals.as_mut() {
+            for (v, normal) in normals.iter_mut().enumerate() {
+                if moved.turns(DrawnVertex(v as u32)) {
+                    *normal = normal.map(|number| -number);
+                }
+            }
+        }
         Ok(Self {
             name,
             positions: moved.positions,
-            triangles: &moved.drawn.triangles,
-            polygons,
+            triangles: moved.triangles(),
+            polygons: polygons.map(|polygons| polygons.turned(moved)),
             file_vertex: &moved.drawn.file_vertex,
             file_vertex_count: moved.drawn.file_vertex_count,
             parting,

@@ -10,6 +10,7 @@ mod materials;
 mod patch;
 mod rename;
 mod statements;
+mod turned;
 mod write;
 
 use std::sync::Arc;
@@ -228,6 +229,26 @@ impl Stored {
 
     /// The file with the moved vertices' numbers changed, and warnings.
     pub(crate) fn write(&self, moved: &Moved<'_>, course: &Course<'_>) -> Result<(Vec<u8>, Vec<String>), SaveError> {
-        Ok(patch::patched(self, moved, course)?)
+        let (bytes, mut warnings) = patch::patched(self, moved, course)?;
+        if !moved.turns_any() {
+            return Ok((bytes, warnings));
+        }
+        // Of each `vn` line, whether it is of parts that are turned, and whether of others.
+        let mut uses = vec![(false, false); self.statements.normals.len()];
+        for (v, &normal) in self.normal.iter().enumerate().filter(|(_, normal)| **normal != NONE) {
+            let (by_turned, by_others) = &mut uses[normal as usize];
+            match moved.turns(DrawnVertex(v as u32)) {
+                true => *by_turned = true,
+                false => *by_others = true,
+            }
+        }
+        let kept = uses.iter().filter(|uses| **uses == (true, true)).count();
+        if kept > 0 {
+            warnings.push(format!(
+                "{kept} normals ('vn' lines) kept their side, because parts that were not turned inside out share them."
+            ));
+        }
+        let normals: Vec<bool> = uses.iter().map(|uses| *uses == (true, false)).collect();
+        Ok((turned::turned(&bytes, &moved.turned_of_file(), &normals), warnings))
     }
 }

@@ -4,6 +4,7 @@
 mod header;
 mod patch;
 mod records;
+mod turned;
 mod write;
 
 use std::sync::Arc;
@@ -31,6 +32,8 @@ pub(crate) struct Stored {
     /// The faces, where one has more than three corners.
     polygons: Option<Polygons>,
     triangle_count: u32,
+    /// How many faces the file has, those that aren't drawn among them.
+    face_count: usize,
     notes: Vec<String>,
 }
 
@@ -51,6 +54,7 @@ pub(crate) fn read(source: &Source<'_>) -> Result<(Stored, Drawn), ReadError> {
             records,
             polygons,
             triangle_count,
+            face_count: header.faces,
             notes,
         },
         drawn,
@@ -94,6 +98,13 @@ impl Stored {
 
     /// The file with the moved vertices' numbers changed, and warnings.
     pub(crate) fn write(&self, moved: &Moved<'_>, course: &Course<'_>) -> Result<(Vec<u8>, Vec<String>), SaveError> {
-        Ok((patch::patched(self, moved, course)?, Vec::new()))
+        let bytes = patch::patched(self, moved, course)?;
+        let Some(&first) = self.records.vertex_at.first().filter(|_| moved.turns_any()) else {
+            return Ok((bytes, Vec::new()));
+        };
+        let has_normals = !self.records.normals.is_empty();
+        // What moved has no other place for the first record.
+        let bytes = turned::turned(&bytes, first, &moved.turned_of_file(), has_normals, self.face_count);
+        Ok((bytes, Vec::new()))
     }
 }

@@ -8,6 +8,7 @@ mod header;
 mod patch;
 mod records;
 mod scalar;
+mod turned;
 mod write;
 
 use std::sync::Arc;
@@ -113,7 +114,12 @@ impl Stored {
 
     /// The file with the moved vertices' numbers changed, and warnings.
     pub(crate) fn write(&self, moved: &Moved<'_>, course: &Course<'_>) -> Result<(Vec<u8>, Vec<String>), SaveError> {
-        patch::patched(self, moved, course)
+        let (bytes, warnings) = patch::patched(self, moved, course)?;
+        let bytes = match moved.turns_any() {
+            true => turned::turned(self, &bytes, &moved.turned_of_file())?,
+            false => bytes,
+        };
+        Ok((bytes, warnings))
     }
 
     fn cannot_hold(what: String, remedy: &str) -> SaveError {

@@ -5,6 +5,7 @@ pub(crate) mod course;
 pub(crate) mod frames;
 pub(crate) mod moved;
 mod rename;
+pub(crate) mod turned;
 
 use glam::DVec3;
 use pliant_mesh::Drawn;
@@ -18,6 +19,9 @@ pub struct Save<'a> {
     pub drawn: &'a Drawn,
     /// The new world position of each drawn vertex. A vertex moved if it is not bit-equal to `drawn.positions`.
     pub positions: &'a [DVec3],
+    /// Of each drawn vertex, whether its connected part is turned inside out: its faces are wound the other way, and its
+    /// normals point the other way. Empty: none is. All drawn vertices of one triangle are turned, or none of them.
+    pub turned: &'a [bool],
     /// The format of OUT.
     pub format: Format,
     /// OUT's file name, without a folder.

@@ -1,14 +1,17 @@
-//! Which vertices moved, and to where.
+//! Which vertices moved, and to where, and which are turned inside out.
 
+use std::borrow::Cow;
 use std::sync::OnceLock;
 
 use glam::DVec3;
 use pliant_mesh::{Cancelled, Drawn, DrawnVertex, FileVertex};
 
+use crate::Format;
 use crate::SaveError;
 use crate::save::bits::bit_equal;
 use crate::save::course::Course;
 use crate::save::frames::Frames;
+use crate::save::turned::triangle_wound_back;
 
 /// Refuses a position that single precision can't hold.
 pub(crate) fn check_single(position: DVec3, file_vertex: FileVertex) -> Result<(), SaveError> {
@@ -29,14 +32,21 @@ pub(crate) struct Moved<'a> {
     pub drawn: &'a Drawn,
     /// New world positions, one per drawn vertex.
     pub positions: &'a [DVec3],
+    /// Whether each drawn vertex's part is turned inside out; empty where none is.
+    turned: &'a [bool],
     any: bool,
     of_file: OnceLock<Vec<Option<DVec3>>>,
 }
 
 impl<'a> Moved<'a> {
     /// Compares new positions with the rest shape. Refuses a wrong count and a moved vertex that is not finite.
-    pub fn of(drawn: &'a Drawn, positions: &'a [DVec3]) -> Result<Self, SaveError> {
-        if positions.len() != drawn.positions.len() || drawn.file_vertex.len() != drawn.positions.len() {
+    ///
+    /// # Errors
+    /// Besides these a file vertex that is turned inside out in one of the places where it is shown.
+    pub fn of(drawn: &'a Drawn, positions: &'a [DVec3], turned: &'a [bool], format: Format) -> Result<Self, SaveError> {
+        let is_of_scene = turned.is_empty() || turned.len() == positions.len();
+        if positions.len() != drawn.positions.len() || drawn.file_vertex.len() != drawn.positions.len() || !is_of_scene
+        {
             return Err(SaveError::OtherScene {
                 given: positions.len(),
                 wanted: drawn.positions.len(),
@@ -49,17 +59,68 @@ impl<'a> Moved<'a> {
                 check_single(*new, *file)?;
             }
         }
+        let is_any_turned = turned.contains(&true);
+        if is_any_turned && !is_same_for_file_vertices(drawn, turned) {
+            return Err(SaveError::CannotHold {
+                what: "a mesh that several nodes show and that is turned inside out in some of them".to_owned(),
+                format,
+                remedy: "turn all of them, or none".to_owned(),
+            });
+        }
         Ok(Self {
             drawn,
             positions,
+            turned: if is_any_turned { turned } else { &[] },
             any,
             of_file: OnceLock::new(),
         })
     }
 
     /// Whether no vertex moved.
-    pub fn is_nothing(&self) -> bool {
+    pub fn moves_nothing(&self) -> bool {
         !self.any
+    }
+
+    /// Whether some part is turned inside out.
+    pub fn turns_any(&self) -> bool {
+        !self.turned.is_empty()
+    }
+
+    /// Whether the file stays as it is.
+    pub fn is_nothing(&self) -> bool {
+        self.moves_nothing() && !self.turns_any()
+    }
+
+    /// Whether a drawn vertex's part is turned inside out.
+    pub fn turns(&self, vertex: DrawnVertex) -> bool {
+        self.turned.get(vertex.index()).is_some_and(|is_turned| *is_turned)
+    }
+
+    /// Whether each *file* vertex's part is turned inside out.
+    pub fn turned_of_file(&self) -> Vec<bool> {
+        let mut out = vec![false; self.drawn.file_vertex_count];
+        for (file, &is_turned) in self.drawn.file_vertex.iter().zip(self.turned) {
+            if let Some(slot) = out.get_mut(file.index()) {
+                *slot |= is_turned;
+            }
+        }
+        out
+    }
+
+    /// The drawn triangles as they are to be wound.
+    pub fn triangles(&self) -> Cow<'a, [[DrawnVertex; 3]]> {
+        if !self.turns_any() {
+            return Cow::Borrowed(&self.drawn.triangles);
+        }
+        let triangles = self
+            .drawn
+            .triangles
+            .iter()
+            .map(|&triangle| match self.turns(triangle[0]) {
+                true => triangle_wound_back(triangle),
+                false => triangle,
+            });
+        Cow::Owned(triangles.collect())
     }
 
     /// Whether a drawn vertex moved.
@@ -90,4 +151,15 @@ impl<'a> Moved<'a> {
     pub fn frames(&self, normals: &[DVec3], course: &Course<'_>) -> Result<Frames, Cancelled> {
         Frames::of(self.drawn, self.positions, normals, course)
     }
+}
+
+/// Whether all drawn vertices of each file vertex are turned, or none.
+fn is_same_for_file_vertices(drawn: &Drawn, turned: &[bool]) -> bool {
+    let mut first: Vec<Option<bool>> = vec![None; drawn.file_vertex_count];
+    let mut all = drawn.file_vertex.iter().zip(turned);
+    all.all(|(file, &is_turned)| {
+        first
+            .get_mut(file.index())
+            .is_none_or(|first| *first.get_or_insert(is_turned) == is_turned)
+    })
 }

@@ -7,6 +7,7 @@ use pliant_mesh::{Drawn, DrawnVertex};
 
 use crate::convert::Polygons;
 use crate::save::bits::bit_equal;
+use crate::save::turned::{triangle_wound_back, wound_back};
 use crate::scene::{Scene, SceneAndDrawn, Stored};
 use crate::{Format, MorphTarget, Save};
 
@@ -37,30 +38,43 @@ impl Scene {
             }
         };
         let stored = Precision::of(back);
+        let is_turned = |vertex: DrawnVertex| save.turned.get(vertex.index()).is_some_and(|is_turned| *is_turned);
+        let wound = |triangle: [DrawnVertex; 3]| match is_turned(triangle[0]) {
+            true => triangle_wound_back(triangle),
+            false => triangle,
+        };
         match (self.stored(), save.format) {
             (Stored::Gltf(_), Format::Glb | Format::Gltf) => {
                 same_count("vertices", back.drawn.positions.len(), save.drawn.positions.len())?;
                 let vertices = 0..save.drawn.positions.len();
                 each(vertices.map(|vertex| (vertex, wanted(vertex))), back, &stored)?;
-                if back.drawn.triangles == save.drawn.triangles {
+                if back
+                    .drawn
+                    .triangles
+                    .iter()
+                    .copied()
+                    .eq(save.drawn.triangles.iter().copied().map(wound))
+                {
                     Ok(())
                 } else {
                     Err("its triangles join other vertices".to_owned())
                 }
             }
-            (_, format) if format == self.format() => {
+            // An STL's corners are its vertices: those of a turned facet change their places.
+            (_, format) if format == self.format() && !(format == Format::Stl && save.turned.contains(&true)) => {
                 same_count("vertices", back.drawn.file_vertex_count, save.drawn.file_vertex_count)?;
                 same_count("triangles", back.drawn.triangles.len(), save.drawn.triangles.len())?;
                 let wanted = of_file_vertices(save.drawn, wanted);
                 let of_file = back.drawn.file_vertex.iter().enumerate();
-                each(of_file.map(|(v, file)| (v, wanted[file.index()])), back, &stored)
+                each(of_file.map(|(v, file)| (v, wanted[file.index()])), back, &stored)?;
+                same_windings(self, save, back, is_turned)
             }
             (_, Format::Glb | Format::Gltf | Format::Stl) => {
                 let count = triangles.map_or(save.drawn.triangles.len(), <[u32]>::len);
                 same_count("triangles", back.drawn.triangles.len(), count)?;
                 let source = |place: usize| triangles.map_or(place, |triangles| triangles[place] as usize);
                 let corners = back.drawn.triangles.iter().enumerate().flat_map(|(place, triangle)| {
-                    let from = save.drawn.triangles[source(place)];
+                    let from = wound(save.drawn.triangles[source(place)]);
                     triangle.iter().zip(from).map(|(v, from)| (v.index(), from.index()))
                 });
                 each(corners.map(|(v, from)| (v, wanted(from))), back, &stored)
@@ -72,7 +86,7 @@ impl Scene {
                     match (of_save.next(), of_back.next()) {
                         (None, None) => break,
                         (Some(from), Some(corners)) if from.len() == corners.len() => {
-                            let corners = corners.iter().zip(from);
+                            let corners = corners.iter().zip(as_wound(from, &is_turned));
                             let corners = corners.map(|(v, from)| (v.index(), wanted(from.index())));
                             each(corners, back, &stored)?;
                         }
@@ -83,6 +97,33 @@ impl Scene {
             }
         }
     }
+}
+
+/// A face's corners as they are to be written.
+fn as_wound(face: &[DrawnVertex], is_turned: impl Fn(DrawnVertex) -> bool) -> impl Iterator<Item = &DrawnVertex> {
+    let is_turned = face.first().is_some_and(|first| is_turned(*first));
+    let (turned, as_read) = match is_turned {
+        true => (Some(wound_back(face)), None),
+        false => (None, Some(face.iter())),
+    };
+    let corners = turned.into_iter().flatten();
+    corners.chain(as_read.into_iter().flatten())
+}
+
+/// Compares the corners of every face by the file's own numbers.
+fn same_windings(
+    scene: &Scene,
+    save: &Save<'_>,
+    back: &SceneAndDrawn,
+    is_turned: impl Fn(DrawnVertex) -> bool,
+) -> Result<(), String> {
+    let (of_save, of_back) = (Faces::of(scene, save.drawn), Faces::of(&back.scene, &back.drawn));
+    let mut pairs = of_save.iter().zip(of_back.iter());
+    let wrong = pairs.position(|(from, found)| {
+        let wanted = as_wound(from, &is_turned).map(|corner| save.drawn.file_vertex[corner.index()]);
+        !wanted.eq(found.iter().map(|corner| back.drawn.file_vertex[corner.index()]))
+    });
+    wrong.map_or(Ok(()), |face| Err(format!("face {face} joins other vertices")))
 }
 
 /// How the format of a file that was read back stores positions.

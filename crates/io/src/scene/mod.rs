@@ -199,7 +199,7 @@ impl Scene {
 
     fn save_parted(&self, save: &Save<'_>, parting: Parting, course: &Course<'_>) -> Result<Saved, SaveError> {
         course.reach(0, 1)?;
-        let moved = Moved::of(save.drawn, save.positions)?;
+        let moved = Moved::of(save.drawn, save.positions, save.turned, save.format)?;
         let own = |(bytes, warnings)| Saved::alone(save.name, bytes, warnings);
         match (&self.stored, save.format) {
             (Stored::Gltf(stored), Format::Glb | Format::Gltf) => stored.save(save, &moved, course),
@@ -218,7 +218,7 @@ impl Scene {
             (Stored::Off(stored), Format::Off) => stored.write(&moved, course).map(own),
             (_, format) => {
                 let appearance = self.appearance();
-                let has_normals = appearance.normals.is_some() && !moved.is_nothing();
+                let has_normals = appearance.normals.is_some() && !moved.moves_nothing();
                 let (of_looks, course) = course.split(if has_normals { 0.4 } else { 0.0 });
                 let mesh = NewMesh::of(&moved, appearance, save.name, self.polygons(), parting, &of_looks)?;
                 let mut saved = match format {
@@ -265,13 +265,19 @@ impl Scene {
                 remedy: "save as .glb".to_owned(),
             });
         }
-        let moved = Moved::of(save.drawn, save.positions)?;
-        if let Stored::Gltf(stored) = &self.stored {
+        let moved = Moved::of(save.drawn, save.positions, save.turned, save.format)?;
+        if let Stored::Gltf(stored) = &self.stored
+            && !moved.turns_any()
+        {
             return stored.save_as_morph(save, &moved, target, course);
         }
-        // With `Parting::Joined` the written vertices are the drawn ones.
+        // With `Parting::Joined` the written vertices are the drawn ones. A GLB has all of its neighbours in itself.
         let at_rest = Save {
             positions: &save.drawn.positions,
+            format: match self.stored {
+                Stored::Gltf(_) => Format::Glb,
+                _ => save.format,
+            },
             ..*save
         };
         let (of_rest, course) = course.split(0.4);
@@ -283,7 +289,14 @@ impl Scene {
             remedy: "this is a fault of the program, so report it with the file".to_owned(),
         };
         let file = rest.files[0].bytes.clone();
-        let written = read(file, save.format, save.name, &rest, &of_reading.progress, course.cancel);
+        let written = read(
+            file,
+            at_rest.format,
+            save.name,
+            &rest,
+            &of_reading.progress,
+            course.cancel,
+        );
         let written = written.map_err(|error| match error {
             ReadError::Cancelled(cancelled) => SaveError::Cancelled(cancelled),
             error => fault(error.to_string()),
@@ -306,6 +319,7 @@ impl Scene {
             &Save {
                 drawn: &written.drawn,
                 positions: &positions,
+                turned: &[],
                 placement: Placement::OtherFolder,
                 ..*save
             },
@@ -351,6 +365,7 @@ impl Scene {
             let save = Save {
                 drawn,
                 positions: &other_drawn.positions,
+                turned: &[],
                 format: self.format,
                 name: "same",
                 placement: Placement::SameFolder,

@@ -1,5 +1,7 @@
 //! Ascii STL: `solid`s of `facet normal … outer loop vertex … vertex … vertex … endloop endfacet`.
 
+use std::ops::Range;
+
 use glam::DVec3;
 use pliant_mesh::Cancelled;
 
@@ -7,6 +9,7 @@ use super::{changed_facets, facet_normal};
 use crate::convert::faces::coarse_in_f32;
 use crate::save::course::{Course, STEP};
 use crate::save::moved::Moved;
+use crate::save::turned::push_negated;
 use crate::source::{Looks, Source};
 use crate::text::{Cursor, Splice, excerpt, malformed_at, push_f32, push_f64};
 use crate::{Format, ReadError};
@@ -132,4 +135,57 @@ pub(super) fn patched(
         }
     }
     Ok(splice.finish())
+}
+
+/// The bytes with facets wound the other way and their normals turned.
+pub(super) fn turned(bytes: &[u8], is_turned: impl Fn(usize) -> bool) -> Vec<u8> {
+    let mut splice = Splice::new(bytes);
+    let mut cursor = Cursor::new(bytes, 0);
+    let mut facet = 0;
+    loop {
+        cursor.skip_space();
+        if cursor.is_done() {
+            return splice.finish();
+        }
+        let word = cursor.word();
+        if word.eq_ignore_ascii_case(b"solid") || word.eq_ignore_ascii_case(b"endsolid") {
+            cursor.next_line();
+        } else if word.eq_ignore_ascii_case(b"facet") {
+            if is_turned(facet) {
+                turn(&mut cursor, bytes, &mut splice);
+            }
+            facet += 1;
+        }
+    }
+}
+
+/// Turns the facet whose keyword was read.
+fn turn(cursor: &mut Cursor<'_>, bytes: &[u8], splice: &mut Splice<'_>) {
+    let mut numbers: Vec<Range<usize>> = Vec::with_capacity(12);
+    while numbers.len() < 12 && !cursor.is_done() {
+        cursor.skip_space();
+        let start = cursor.at();
+        // The keywords between the numbers never parse as numbers.
+        match cursor.real() {
+            Some(_) => numbers.push(start..cursor.at()),
+            None => {
+                cursor.word();
+            }
+        }
+    }
+    for (slot, old) in numbers.iter().enumerate() {
+        let (second, third) = (6..9, 9..12);
+        let from = match slot {
+            0..3 => {
+                splice.replace(old.clone(), |out| push_negated(&bytes[old.clone()], out));
+                continue;
+            }
+            _ if second.contains(&slot) => slot + 3,
+            _ if third.contains(&slot) => slot - 3,
+            _ => continue,
+        };
+        if let Some(new) = numbers.get(from) {
+            splice.replace(old.clone(), |out| out.extend_from_slice(&bytes[new.clone()]));
+        }
+    }
 }

@@ -98,3 +98,17 @@ pub(super) fn patched(
     }
     Ok(out)
 }
+
+/// The bytes with facets wound the other way and their normals turned.
+pub(super) fn turned(mut bytes: Vec<u8>, facet_count: usize, is_turned: impl Fn(usize) -> bool) -> Vec<u8> {
+    let facets = bytes[HEADER..].chunks_exact_mut(FACET).take(facet_count).enumerate();
+    for (_, facet) in facets.filter(|(number, _)| is_turned(*number)) {
+        for number in facet[..12].chunks_exact_mut(4) {
+            // The sign of a little-endian f32.
+            number[3] ^= 0x80;
+        }
+        let (second, third) = facet[24..48].split_at_mut(12);
+        second.swap_with_slice(third);
+    }
+    bytes
+}

@@ -88,6 +88,15 @@ impl Stored {
             Layout::Binary => binary::patched(&self.bytes, self.facet_count, moved, course)?,
             Layout::Ascii(facets) => ascii::patched(&self.bytes, facets, moved, course)?,
         };
+        if !moved.turns_any() {
+            return Ok((bytes, Vec::new()));
+        }
+        let turned = moved.turned_of_file();
+        let is_turned = |facet: usize| turned.get(3 * facet).is_some_and(|is_turned| *is_turned);
+        let bytes = match &self.layout {
+            Layout::Binary => binary::turned(bytes, self.facet_count, is_turned),
+            Layout::Ascii(_) => ascii::turned(&bytes, is_turned),
+        };
         Ok((bytes, Vec::new()))
     }
 }

@@ -425,6 +425,7 @@ pub fn exercise(bytes: &[u8], kind: Kind, other: Format, beside: &Beside, after_
         let placement = Placement::OtherFolder;
         scene.save(
             &Save {
+                turned: &[],
                 drawn,
                 positions,
                 format,
@@ -466,6 +467,7 @@ pub fn exercise(bytes: &[u8], kind: Kind, other: Format, beside: &Beside, after_
     if matches!(format, Format::Glb | Format::Gltf) {
         let _ = scene.save_as_morph(
             &Save {
+                turned: &[],
                 drawn,
                 positions: &positions,
                 format: Format::Glb,

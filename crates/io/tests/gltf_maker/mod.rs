@@ -335,6 +335,7 @@ pub fn try_save(
     let format = Format::of_name(name).unwrap();
     opened.scene.save(
         &Save {
+            turned: &[],
             drawn: &opened.drawn,
             positions,
             format,

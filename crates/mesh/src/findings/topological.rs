@@ -22,8 +22,9 @@ pub(crate) struct Parts<'a> {
 }
 
 impl Parts<'_> {
-    /// Reports what was found at surface vertices in terms of file vertices.
-    pub(crate) fn report(&self, found: &TopologyFindings, findings: &mut Findings) {
+    /// Reports what was found at surface vertices in terms of file vertices. Returns the components that are inside out,
+    /// ascending.
+    pub(crate) fn report(&self, found: &TopologyFindings, findings: &mut Findings) -> Vec<u32> {
         let range = found.range();
         let first_file_vertices = self.drawn.first_file_vertices(range.clone());
         let file_vertex = |v: &SurfaceVertex| first_file_vertices[v.index() - range.start].0;
@@ -38,7 +39,12 @@ impl Parts<'_> {
         let firsts: Vec<u32> = of_triangles.iter().map(|part| part.first_file_vertex.0).collect();
         findings.components = Finding::of(&firsts);
         findings.loose_bits = loose_bits(of_triangles);
-        findings.inside_out_components = self.inside_out(found);
+        let inside_out = self.inside_out(found);
+        let firsts = inside_out
+            .iter()
+            .map(|&component| self.components.all[component as usize].first_file_vertex.0);
+        findings.inside_out_components = Finding::at_vertices(firsts);
+        inside_out
     }
 
     fn component(&self, v: SurfaceVertex) -> usize {
@@ -46,7 +52,7 @@ impl Parts<'_> {
     }
 
     /// Closed, consistently wound parts that enclose a negative volume and lie within no other closed part's box.
-    fn inside_out(&self, found: &TopologyFindings) -> Finding {
+    fn inside_out(&self, found: &TopologyFindings) -> Vec<u32> {
         let surface = self.surface;
         let count = of_triangles(&self.components.all).len();
         let mut is_closed = vec![true; count];
@@ -95,10 +101,10 @@ impl Parts<'_> {
             let holds = |outer: &Bounds| outer.min.cmple(own.min).all() && outer.max.cmpge(own.max).all();
             hollow.iter().any(|(_, outer)| holds(outer))
         };
-        let found = (0..count)
+        (0..count)
             .filter(|&component| is_closed[component] && six_volumes[component] < 0.0 && !is_cavity(component))
-            .map(|component| self.components.all[component].first_file_vertex.0);
-        Finding::at_vertices(found)
+            .map(|component| component as u32)
+            .collect()
     }
 }
 

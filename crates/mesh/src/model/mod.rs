@@ -5,6 +5,8 @@ pub(crate) mod drawn_set;
 pub(crate) mod drawn_triangles;
 mod object;
 
+use std::collections::BTreeSet;
+
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -43,6 +45,8 @@ pub struct Model {
     pub topology: Topology,
     /// What is wrong with the mesh.
     pub findings: Findings,
+    /// The connected parts that [`Findings::inside_out_components`] counts, ascending.
+    pub inside_out: Vec<u32>,
     /// What the file itself tells apart; empty where nobody said.
     pub objects: Vec<Object>,
 }
@@ -62,13 +66,14 @@ impl Model {
             drawn: &drawn,
             components: topology.parts(),
         };
-        parts.report(topology.findings(), &mut welded.findings);
+        let inside_out = parts.report(topology.findings(), &mut welded.findings);
         progress.set(1.0);
         Ok(Self {
             drawn,
             surface: welded.surface,
             topology,
             findings: welded.findings,
+            inside_out,
             objects: Vec::new(),
         })
     }
@@ -82,6 +87,20 @@ impl Model {
     /// The positions that say where the model is and how large: see [`Topology::main_positions`].
     pub fn main_positions(&self) -> &[DVec3] {
         self.topology.main_positions(&self.surface.positions)
+    }
+
+    /// Of each drawn vertex, whether it is of one of these connected parts, or is another place where a file vertex of
+    /// theirs is shown. Empty where none is chosen.
+    pub fn drawn_vertices_of(&self, parts: &BTreeSet<u32>) -> Vec<bool> {
+        if parts.is_empty() {
+            return Vec::new();
+        }
+        let is_of_parts = |vertex: SurfaceVertex| parts.contains(&self.topology.component(vertex));
+        let mut chosen = vec![false; self.drawn.file_vertex_count()];
+        for (file, surface) in self.drawn.file_vertices().zip(self.drawn.surface_vertices()) {
+            chosen[file.index()] |= surface.is_some_and(is_of_parts);
+        }
+        self.drawn.file_vertices().map(|file| chosen[file.index()]).collect()
     }
 
     /// The lowest of the file's vertices behind a surface vertex.

@@ -109,7 +109,12 @@ fn edit_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
             Command::DeleteHandle,
             Command::ResetHandle,
         ],
-        &[Command::Apply, Command::ResetShape, Command::ClearRegions],
+        &[
+            Command::Apply,
+            Command::ResetShape,
+            Command::ClearRegions,
+            Command::TurnInsideOut,
+        ],
     ];
     for (number, group) in groups.into_iter().enumerate() {
         if number > 0 {

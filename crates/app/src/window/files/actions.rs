@@ -234,8 +234,8 @@ impl Application {
 
     /// Saves a copy whose mesh rests, with the present shape as a morph target of weight 1, under `path`.
     pub fn save_morph_to(&mut self, path: PathBuf) {
-        let displacements = Arc::clone(self.editor.view().displacements);
-        self.session.save_morph(path, &displacements, &self.workers);
+        let shape = (self.editor.view().displacements, self.editor.document().inside_out());
+        self.session.save_morph(path, shape, &self.workers);
     }
 
     /// Saves the project under `path`, which gets its extension if it has none.

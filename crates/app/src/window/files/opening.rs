@@ -89,7 +89,7 @@ pub(super) fn open(source: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<Mode
     };
     let progress = watch.begin("getting the picture ready");
     let notes: Vec<String> = loaded.scene.notes().to_vec();
-    let drawing = Drawing::new(&loaded.model, loaded.scene.appearance());
+    let drawing = Drawing::new(&loaded.model, loaded.scene.appearance(), Arc::default());
     progress.set(0.7);
     let displacements = Arc::new(vec![DVec3::ZERO; loaded.model.surface.positions.len()]);
     let pose = drawing.pose(&loaded.model, &displacements);

@@ -1,5 +1,6 @@
 //! The open file, and the jobs that load and save it.
 
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -31,6 +32,9 @@ pub struct Session {
     watch: Watch,
     saving: JobQueue<SaveRequest>,
 }
+
+/// Displacements of the surface from the file's shape, and the connected parts that are turned inside out.
+pub type Shape<'a> = (&'a Arc<Vec<DVec3>>, &'a Arc<BTreeSet<u32>>);
 
 /// What is open.
 pub struct OpenFile {
@@ -100,7 +104,7 @@ impl Session {
     pub fn save(
         &mut self,
         path: PathBuf,
-        displacements: &Arc<Vec<DVec3>>,
+        (displacements, inside_out): Shape<'_>,
         keep_original: KeepOriginal,
         workers: &Workers,
     ) {
@@ -108,6 +112,7 @@ impl Session {
         let content = Content::Model(Model {
             loaded: Arc::clone(&open.loaded),
             displacements: Arc::clone(displacements),
+            inside_out: Arc::clone(inside_out),
             keep_original,
             source: open.source.clone(),
         });
@@ -115,11 +120,12 @@ impl Session {
     }
 
     /// Writes the model at rest with the present shape as a morph target, off the window's thread.
-    pub fn save_morph(&mut self, path: PathBuf, displacements: &Arc<Vec<DVec3>>, workers: &Workers) {
+    pub fn save_morph(&mut self, path: PathBuf, (displacements, inside_out): Shape<'_>, workers: &Workers) {
         let Some(open) = &self.open else { return };
         let content = Content::Morph {
             loaded: Arc::clone(&open.loaded),
             displacements: Arc::clone(displacements),
+            inside_out: Arc::clone(inside_out),
         };
         self.write(path, content, workers);
     }

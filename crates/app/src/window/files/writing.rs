@@ -1,5 +1,6 @@
 //! Writing the model, a project, an edit or a picture, off the window's thread.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -37,6 +38,7 @@ pub(super) enum Content {
     Morph {
         loaded: Arc<Loaded>,
         displacements: Arc<Vec<DVec3>>,
+        inside_out: Arc<BTreeSet<u32>>,
     },
     Edit(Box<EditFile>),
     Picture(Image),
@@ -46,6 +48,8 @@ pub(super) enum Content {
 pub(super) struct Model {
     pub loaded: Arc<Loaded>,
     pub displacements: Arc<Vec<DVec3>>,
+    /// The connected parts that are turned inside out, by their numbers.
+    pub inside_out: Arc<BTreeSet<u32>>,
     pub keep_original: KeepOriginal,
     pub source: MeshSource,
 }
@@ -104,7 +108,11 @@ fn write_unless_stopped(request: SaveRequest, progress: &Progress, cancel: &Canc
             project_file::write(&snapshot, &loaded, &source, &path, &staging, &progress, cancel)?;
             Ok(written(path, WrittenKind::Project, Vec::new()))
         }
-        Content::Morph { loaded, displacements } => {
+        Content::Morph {
+            loaded,
+            displacements,
+            inside_out,
+        } => {
             let mut positions = Vec::new();
             loaded.model.drawn_positions(&displacements, &mut positions);
             let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
@@ -114,6 +122,7 @@ fn write_unless_stopped(request: SaveRequest, progress: &Progress, cancel: &Canc
             };
             let save = SaveAs {
                 morph: Some(&morph),
+                inside_out: &inside_out,
                 ..SaveAs::shape(&positions, &path)
             };
             let saved = saving::stage(&loaded, &save, &staging, &progress, cancel)?;
@@ -150,7 +159,10 @@ fn write_model(
         .iter()
         .map(|path| ("a file that the open one needs", &**path));
     files::refuse_shared(("the file to be saved,", path), neighbours)?;
-    let save = SaveAs::shape(&positions, path);
+    let save = SaveAs {
+        inside_out: &model.inside_out,
+        ..SaveAs::shape(&positions, path)
+    };
     let saved = saving::stage(loaded, &save, staging, &of_save, cancel)?;
     let (mut staged, warnings) = (saved.staged, saved.warnings);
     let is_source = matches!(&model.source, MeshSource::File(mesh) if files::is_same(mesh, path));

@@ -5,6 +5,7 @@ use pliant_editor::{Command, Editor, thousands};
 use pliant_mesh::{FindingKind, Model, Named};
 
 use super::notes::Notes;
+use crate::window::widgets::command_button::command_button;
 use crate::window::widgets::outbox::Outbox;
 
 /// Shows the file's numbers, notes and findings.
@@ -21,11 +22,27 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, notes: &Notes, commands: &mut Ou
     for kind in FindingKind::ALL {
         if let Some(sentence) = model.findings.sentence(kind) {
             finding(ui, model, kind, &sentence, commands);
+            if kind == FindingKind::InsideOutComponents {
+                turn(ui, editor, model, commands);
+            }
         }
     }
     for note in &notes.about_file {
         ui.add(egui::Label::new(RichText::new(note).weak().small()).wrap());
     }
+}
+
+/// Whether what faces inwards was turned, and the button that does it.
+fn turn(ui: &mut egui::Ui, editor: &Editor, model: &Model, commands: &mut Outbox) {
+    ui.horizontal_wrapped(|ui| {
+        let turned = editor.document().inside_out();
+        if model.inside_out.iter().all(|part| turned.contains(part)) {
+            ui.label(RichText::new("Turned: it is saved facing outwards.").weak().small());
+        }
+        if command_button(ui, editor, &Command::TurnInsideOut) {
+            commands.push(Command::TurnInsideOut);
+        }
+    });
 }
 
 /// A sentence, and a button for each of its examples.

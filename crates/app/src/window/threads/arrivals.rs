@@ -46,6 +46,7 @@ impl Application {
                 }
                 // That goes to the second view.
                 Message::Uploaded(..) => {}
+                Message::Redrawn(result) => self.take_drawing(result),
                 Message::LoadedMaterials(of, result) => self.set_materials(&of, result),
                 Message::Opened(stamp, result) => match self.session.loaded(stamp, result, &self.workers) {
                     Some(Ok(opened)) => self.adopt(*opened),
@@ -84,6 +85,7 @@ impl Application {
 
     fn adopt(&mut self, opened: ModelToShow) {
         self.session.adopt(&opened);
+        self.redrawing = None;
         let ModelToShow {
             loaded,
             drawing,

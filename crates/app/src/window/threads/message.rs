@@ -21,6 +21,8 @@ pub enum Message {
     Posed(Revision, Result<Posed, String>),
     /// A file was uploaded once more, for a second view.
     Uploaded(Arc<Drawing>, Result<Surface, String>),
+    /// The open file was made ready to be drawn with other parts turned inside out, or why not.
+    Redrawn(Result<Box<Redrawn>, String>),
     /// The images of a file were decoded and uploaded, or why not.
     LoadedMaterials(ImagesOf, Result<LoadedMaterials, String>),
     /// A file was opened, or why it was not.
@@ -39,8 +41,22 @@ pub enum Message {
     NoDialog(Purpose),
 }
 
+/// A file in another drawing.
+pub struct Redrawn {
+    /// The file.
+    pub loaded: Arc<Loaded>,
+    /// What the renderer takes of it now.
+    pub drawing: Arc<Drawing>,
+    /// Its surface in GPU buffers, in the shape of `displacements`.
+    pub surface: Surface,
+    /// The shape.
+    pub displacements: Arc<Vec<DVec3>>,
+}
+
 /// A shape with its pose.
 pub struct Posed {
+    /// What it is a pose of.
+    pub drawing: Arc<Drawing>,
     /// The shape, as the editor shares it; compared by its address.
     pub displacements: Arc<Vec<DVec3>>,
     /// The same for the renderer.

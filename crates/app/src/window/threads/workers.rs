@@ -62,6 +62,7 @@ impl Stage {
             }
         });
         Posed {
+            drawing: Arc::clone(&self.drawing),
             displacements,
             pose,
             painted,

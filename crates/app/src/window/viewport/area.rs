@@ -65,6 +65,7 @@ impl Application {
             self.editor.handle(event);
             ui.ctx().request_repaint();
         }
+        self.request_drawing();
         self.request_pose();
         self.request_images();
         ui.ctx().set_cursor_icon(match self.editor.view().cursor {

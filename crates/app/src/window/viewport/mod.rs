@@ -12,6 +12,7 @@ pub(in crate::window) mod compare;
 mod context_menu;
 pub(in crate::window) mod gpu;
 pub(in crate::window) mod method_views;
+mod redrawing;
 pub(in crate::window) mod shown;
 pub(in crate::window) mod side_view;
 
@@ -230,12 +231,15 @@ impl Viewport {
         self.surface.as_ref()?.scale.as_deref()
     }
 
-    /// Moves the surface to a pose of the file that is shown.
+    /// Moves the surface to a pose of what is shown; one of another drawing changes nothing.
     ///
     /// # Errors
     /// As [`Surface::update_shape`].
     pub fn pose(&mut self, posed: Posed) -> Result<(), RenderError> {
         let Some(shown) = &mut self.surface else { return Ok(()) };
+        if !Arc::ptr_eq(&posed.drawing, &shown.drawing) {
+            return Ok(());
+        }
         let renderer = self.gpu.read();
         shown.surface.update_shape(&renderer, &posed.pose.data())?;
         shown.displacements = posed.displacements;

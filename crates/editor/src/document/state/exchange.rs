@@ -1,6 +1,6 @@
 //! How a document takes back what was changed, and takes over what another has.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -138,6 +138,11 @@ impl Document {
         std::mem::swap(applied, &mut self.content.applied);
         self.content.sum_shapes();
         self.marks.mark(&[Aspect::Rest, Aspect::Drawn]);
+    }
+
+    pub(in crate::document) fn swap_inside_out(&mut self, inside_out: &mut Arc<BTreeSet<u32>>) {
+        std::mem::swap(inside_out, &mut self.content.inside_out);
+        self.marks.mark(&[Aspect::InsideOut]);
     }
 
     pub(in crate::document) fn swap_access(&mut self, access: &mut Arc<Access>) {

@@ -11,7 +11,7 @@ mod poses;
 mod shapes;
 mod strength;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Deref;
 use std::sync::Arc;
 
@@ -213,6 +213,11 @@ impl Document {
             _ => painted.map_or(highest, |field| field[vertex]),
         };
         Some(self.content.paint.iter().enumerate().map(joint).collect())
+    }
+
+    /// The connected parts that are turned inside out, by their numbers.
+    pub fn inside_out(&self) -> &Arc<BTreeSet<u32>> {
+        &self.content.inside_out
     }
 
     /// What of the file is hidden and locked.
@@ -425,6 +430,13 @@ impl Document {
         if self.content.loose != loose || *self.content.loose_parts != parts {
             (self.content.loose, self.content.loose_parts) = (loose, Arc::new(parts));
             self.marks.mark(&[Aspect::Loose]);
+        }
+    }
+
+    /// Chooses which parts are turned inside out.
+    pub(crate) fn set_inside_out(&mut self, mut inside_out: Arc<BTreeSet<u32>>) {
+        if self.content.inside_out != inside_out {
+            self.swap_inside_out(&mut inside_out);
         }
     }
 

@@ -87,6 +87,15 @@ impl Document {
         self.marks.mark(&[Aspect::Shape, Aspect::Drawn]);
     }
 
+    /// Shows a shape that was seen, to go on from.
+    pub(crate) fn go_on_from(&mut self, kept: KeptShape) {
+        self.bend(kept.shape.to_vec());
+        self.content.kept = Some(Arc::new(kept));
+        if !self.content.handles.is_empty() {
+            self.unsettle();
+        }
+    }
+
     /// Shows the rest shape, which is final.
     pub(crate) fn unbend(&mut self) {
         self.bend(vec![DVec3::ZERO; self.content.from_rest.len()]);

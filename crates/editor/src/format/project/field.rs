@@ -14,7 +14,7 @@ use pliant_mesh::{DrawnVertex, Model, SurfaceVertex};
 use serde::{Deserialize, Serialize};
 
 use crate::EditError;
-use crate::format::exchange::ranges_of;
+use crate::format::selector::ranges_of;
 
 /// First and last drawn vertex of runs, ascending.
 pub(crate) type Ranges = Vec<[u32; 2]>;

@@ -1,17 +1,20 @@
-//! The kept shape (see `document/kept_shape`), as a project stores it.
+//! The kept shape (see `document/kept_shape`), as a project stores it, and an edit.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
+use pliant_mesh::Model;
 use serde::{Deserialize, Serialize};
 
 use super::field::Field;
-use crate::document::{HandleId, KeptShape};
+use crate::EditError;
+use crate::document::{HandleId, KeptShape, bits_equal};
 
+/// A kept shape: which shape was seen, and where handles, control points and examples' weights stood then.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct StoredKept {
+pub struct StoredKept {
     /// Each handle's map of rest positions, by its number: three columns and the translation.
     handles: BTreeMap<u32, [f64; 12]>,
     /// Where control points were moved to.
@@ -22,11 +25,15 @@ pub(super) struct StoredKept {
     weights: Vec<Option<f64>>,
     /// Displacements from the rest shape; `None` is the rest shape.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(super) shape: Option<Field>,
+    shape: Option<Field>,
 }
 
 impl StoredKept {
-    pub(super) fn of(kept: &KeptShape, shape: Option<Field>) -> Self {
+    pub(crate) fn of(kept: &KeptShape, model: &Model) -> Self {
+        let shape = Field::of(model, |vertex| {
+            let value = kept.shape[vertex.index()];
+            (!bits_equal(value, DVec3::ZERO)).then_some(value.to_array())
+        });
         let handles = kept.targets.iter();
         Self {
             handles: handles
@@ -41,9 +48,17 @@ impl StoredKept {
         }
     }
 
-    pub(super) fn kept(&self, shape: Arc<Vec<DVec3>>) -> KeptShape {
+    /// The shape on its mesh; `name` is the member's, for messages.
+    ///
+    /// # Errors
+    /// As [`Field::displacements`].
+    pub(crate) fn on(&self, model: &Model, name: &str) -> Result<KeptShape, EditError> {
+        let shape = match &self.shape {
+            Some(shape) => shape.displacements(&format!("{name}: shape"), model)?,
+            None => Arc::new(vec![DVec3::ZERO; model.surface.positions.len()]),
+        };
         let handles = self.handles.iter();
-        KeptShape {
+        Ok(KeptShape {
             targets: handles
                 .map(|(id, map)| {
                     (
@@ -58,6 +73,14 @@ impl StoredKept {
             }),
             weights: self.weights.clone(),
             shape,
-        }
+        })
+    }
+
+    /// The same with other numbers for the handles; those without one are left out.
+    pub(crate) fn renumbered(mut self, number: impl Fn(HandleId) -> Option<u32>) -> Self {
+        let handles = self.handles.into_iter();
+        let handles = handles.filter_map(|(id, map)| Some((number(HandleId(u16::try_from(id).ok()?))?, map)));
+        self.handles = handles.collect();
+        self
     }
 }

@@ -13,7 +13,7 @@ mod kept;
 mod objects;
 mod poses;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -27,7 +27,7 @@ use self::camera::StoredCamera;
 use self::examples::{are_weighed, read_examples, stored_examples};
 use self::field::{Field, Ranges, for_each_drawn, ranges_where};
 use self::handle::StoredHandle;
-use self::kept::StoredKept;
+pub use self::kept::StoredKept;
 use self::objects::{StoredObject, access, stored_objects};
 use self::poses::StoredPose;
 use super::attachment::{read_stored_attachments, stored_attachments};
@@ -74,6 +74,9 @@ pub struct Project {
     handles: Vec<StoredHandle>,
     #[serde(default)]
     next_handle: u16,
+    /// The connected parts that are turned inside out, by their component's number.
+    #[serde(default, skip_serializing_if = "BTreeSet::is_empty")]
+    inside_out: BTreeSet<u32>,
     /// Objects that are hidden or locked.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     objects: Vec<StoredObject>,
@@ -216,6 +219,7 @@ impl Project {
             mesh,
             method: method_to_value(&document.method, &BTreeMap::new()),
             attachments,
+            inside_out: (*document.inside_out).clone(),
             loose: document.loose.into(),
             loose_parts: document
                 .loose_parts
@@ -238,10 +242,7 @@ impl Project {
             rest: document.applied.then(|| displacements(&document.rest)).flatten(),
             applied: document.applied,
             shape: displacements(&document.from_rest),
-            kept: document
-                .kept
-                .as_ref()
-                .map(|kept| StoredKept::of(kept, displacements(&kept.shape))),
+            kept: document.kept.as_ref().map(|kept| StoredKept::of(kept, model)),
             settled: document.settled,
             strength: document.strength.as_ref().map(|strength| strength.share),
             poses: document.poses.iter().map(StoredPose::of).collect(),
@@ -296,6 +297,9 @@ impl Project {
             .attachments
             .iter()
             .any(|(name, attachment)| own(name) && moves(attachment));
+        if self.kept.is_some() && !self.handles.is_empty() {
+            return false;
+        }
         let is_at_rest = !has_moved && self.handles.iter().all(StoredHandle::is_at_rest);
         self.rest.is_none() && (is_at_rest || self.strength == Some(0.0))
     }
@@ -333,6 +337,7 @@ impl Project {
             Some(StoredTips::Held) => Tips::Held,
             None | Some(StoredTips::ComeAlong) => Tips::ComeAlong,
         };
+        document.inside_out = Arc::new(self.inside_out.clone());
         document.loose_parts = Arc::new(
             self.loose_parts
                 .iter()
@@ -360,11 +365,7 @@ impl Project {
             document.from_rest = shape.displacements("shape", model)?;
         }
         if let Some(kept) = &self.kept {
-            let shape = match &kept.shape {
-                Some(shape) => shape.displacements("kept: shape", model)?,
-                None => Arc::new(vec![DVec3::ZERO; model.surface.positions.len()]),
-            };
-            document.kept = Some(Arc::new(kept.kept(shape)));
+            document.kept = Some(Arc::new(kept.on(model, "kept")?));
         }
         document.settled = self.settled;
         document.poses = Arc::new(self.poses.iter().map(StoredPose::pose).collect());

@@ -13,17 +13,18 @@ use crate::gltf::save::changes::{Change, InstanceChange, Semantic};
 use crate::gltf::save::copy_on_write::{self, AccessorPlan, AccessorVersion};
 use crate::gltf::save::overlap::Places;
 use crate::gltf::save::patch::{Patch, Patched, cannot_hold};
+use crate::gltf::save::turned::Turned;
 use crate::quote::quoted;
 use crate::save::course::Course;
 use crate::source::notes::Notes;
 use crate::{Format, SaveError};
 
-/// The document with each instance's attributes changed.
+/// The document with each instance's attributes changed and its triangles turned.
 pub(crate) fn with_changes<'a>(
     document: &'a Document,
     meshes: &[Vec<Primitive>],
     pieces: &Pieces,
-    changes: &[InstanceChange],
+    (changes, turned): (&[InstanceChange], &Turned),
     format: Format,
     course: &Course<'_>,
 ) -> Result<Patched<'a>, SaveError> {
@@ -55,7 +56,8 @@ pub(crate) fn with_changes<'a>(
             }
         }
     }
-    patch.unpack(meshes, &copies, &plans, format)?;
+    patch.unpack(meshes, &copies, &plans, turned, format)?;
+    patch.turn(meshes, &copies, turned, &places, format)?;
     patch.clone_meshes(&copies);
     let mut patched = patch.finished(format)?;
     patched

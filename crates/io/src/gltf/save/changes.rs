@@ -1,4 +1,4 @@
-//! The new numbers of moved vertices, in each node's own space.
+//! The new numbers of moved and of turned vertices, in each node's own space.
 
 use std::collections::BTreeMap;
 
@@ -127,7 +127,8 @@ fn instance_change(
     let vertex = |element: u32| DrawnVertex(instance.vertices.start + element);
     let count = instance.vertices.end - instance.vertices.start;
     course.reach(0, 1)?;
-    let elements: Vec<u32> = (0..count).filter(|&element| moved.moves(vertex(element))).collect();
+    let changes = |element: &u32| moved.moves(vertex(*element)) || moved.turns(vertex(*element));
+    let elements: Vec<u32> = (0..count).filter(changes).collect();
     if elements.is_empty() {
         return Ok(InstanceChange::default());
     }
@@ -146,6 +147,9 @@ fn instance_change(
         // begins here.
         let v = vertex(element).index();
         let by = node_from_world * (moved.positions[v] - moved.drawn.positions[v]);
+        if by == DVec3::ZERO {
+            return Vec4::from_array(stored);
+        }
         (xyz(stored) + by).as_vec3().extend(0.0)
     })?;
     if let Some(&(element, _)) = position.iter().find(|(_, new)| !new.iter().all(|x| x.is_finite())) {
@@ -159,14 +163,19 @@ fn instance_change(
     };
     let normal = normals.as_deref().unwrap_or_default();
     let normal = changed(&elements, normal, &of_normals, |element, stored| {
-        match gradient(element) {
+        let carried = match gradient(element) {
             Some(gradient) => carried_normal(gradient, xyz(stored)).as_vec3().extend(0.0),
             None => Vec4::from_array(stored),
+        };
+        if moved.turns(vertex(element)) {
+            (-carried.truncate()).extend(0.0)
+        } else {
+            carried
         }
     })?;
     let tangent = tangents.as_deref().unwrap_or_default();
     let tangent = changed(&elements, tangent, &of_tangents, |element, stored| {
-        match gradient(element) {
+        let carried = match gradient(element) {
             Some(gradient) => {
                 let up = normals
                     .as_ref()
@@ -177,7 +186,10 @@ fn instance_change(
                     .extend(stored[3])
             }
             None => Vec4::from_array(stored),
-        }
+        };
+        // The bitangent, which is the normal × the tangent by this sign, stays along the texture.
+        let sign = if moved.turns(vertex(element)) { -1.0 } else { 1.0 };
+        carried.truncate().extend(sign * carried.w)
     })?;
     Ok(InstanceChange {
         position,

@@ -8,6 +8,7 @@ mod morph;
 mod overlap;
 mod pack;
 mod patch;
+mod turned;
 mod unpack;
 
 use super::Stored;
@@ -30,7 +31,9 @@ impl Stored {
             Patched::unchanged(document)
         } else {
             let changes = changes::changes(document, meshes, pieces, moved, &course.part(0.0, 0.8))?;
-            accessors::with_changes(document, meshes, pieces, &changes, save.format, &course.part(0.8, 0.9))?
+            let turned = turned::turned(pieces, moved);
+            let course = course.part(0.8, 0.9);
+            accessors::with_changes(document, meshes, pieces, (&changes, &turned), save.format, &course)?
         };
         course.reach(9, 10)?;
         self.deliver(patched, save)

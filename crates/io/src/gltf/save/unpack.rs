@@ -1,4 +1,4 @@
-//! Writes Draco-compressed meshes that an edit changed without compression.
+//! Writes Draco-compressed meshes that an edit changed or turned without compression.
 //!
 //! A mesh's compressed data holds all its attributes at once, so that one of them can't change alone: its accessors
 //! get bytes of their own and its primitives lose the extension, in the mesh and in its clones alike.
@@ -11,15 +11,17 @@ use crate::gltf::geometry::draco::{self, Filled};
 use crate::gltf::geometry::primitive::Primitive;
 use crate::gltf::save::copy_on_write::{AccessorPlan, MeshCopy};
 use crate::gltf::save::patch::{Patch, cannot_hold};
+use crate::gltf::save::turned::Turned;
 use crate::{Format, SaveError};
 
 impl Patch<'_> {
-    /// Unpacks every mesh of which a compressed accessor changed.
+    /// Unpacks every mesh of which a compressed accessor changed or triangles are turned.
     pub(crate) fn unpack(
         &mut self,
         meshes: &[Vec<Primitive>],
         copies: &[MeshCopy],
         plans: &BTreeMap<usize, AccessorPlan<'_>>,
+        turned: &Turned,
         format: Format,
     ) -> Result<(), SaveError> {
         let document = self.document;
@@ -38,7 +40,8 @@ impl Patch<'_> {
                     Some((primitive, Filled::of(document, primitive, extension)))
                 })
                 .collect();
-            if !compressed.iter().any(|(_, filled)| filled.accessors().any(is_changed)) {
+            let is_turned = (0..primitives.len()).any(|primitive| turned.contains_key(&(mesh, primitive)));
+            if !is_turned && !compressed.iter().any(|(_, filled)| filled.accessors().any(is_changed)) {
                 packed += compressed.len();
                 continue;
             }

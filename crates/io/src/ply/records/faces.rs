@@ -8,7 +8,7 @@ use crate::source::Source;
 use crate::{Format, ReadError};
 
 /// The list of corner numbers among an element's properties.
-fn corner_list(element: &Element) -> Option<usize> {
+pub(crate) fn corner_list(element: &Element) -> Option<usize> {
     let is_list = |&index: &usize| matches!(element.properties[index].kind, Kind::List { .. });
     let named = element
         .property(&["vertex_indices", "vertex_index", "vertex_indexes", "vertices"])

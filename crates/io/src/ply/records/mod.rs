@@ -10,6 +10,7 @@ use super::header::{Element, Header};
 use super::scalar::Walk;
 use crate::source::Source;
 use crate::{Format, ReadError, quoted};
+pub(super) use faces::corner_list;
 use faces::{read_faces, read_strips};
 use record::pass_over;
 pub(super) use vertices::Columns;

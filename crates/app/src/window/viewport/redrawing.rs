@@ -1,0 +1,78 @@
+//! The open file in another drawing, once other parts of it are turned inside out.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use crate::drawing::Drawing;
+use crate::window::application::Application;
+use crate::window::threads::message::{Message, Redrawn};
+
+impl Application {
+    /// Whether the parts that are drawn turned inside out are those that the document turns.
+    pub(in crate::window) fn shows_what_is_turned(&self) -> bool {
+        let open = self.session.open.as_ref();
+        open.is_none_or(|open| open.drawing.inside_out == *self.editor.document().inside_out())
+    }
+
+    /// Has the file drawn with the parts turned inside out that the document turns, off the window's thread.
+    pub(in crate::window) fn request_drawing(&mut self) {
+        let Some(open) = &self.session.open else { return };
+        if self.shows_what_is_turned() || self.redrawing.is_some() {
+            return;
+        }
+        let wanted = self.editor.document().inside_out();
+        self.redrawing = Some(Arc::clone(wanted));
+        let (gpu, loaded, wanted) = (self.viewport.gpu(), Arc::clone(&open.loaded), Arc::clone(wanted));
+        let displacements = Arc::clone(self.editor.view().drawn);
+        self.workers.spawn(
+            "redrawing",
+            move || {
+                let drawing = Drawing::new(&loaded.model, loaded.scene.appearance(), wanted);
+                let pose = drawing.pose(&loaded.model, &displacements);
+                let uploaded = gpu.upload(&drawing, &pose).map_err(|error| error.to_string());
+                Message::Redrawn(uploaded.map(|surface| {
+                    Box::new(Redrawn {
+                        loaded,
+                        drawing: Arc::new(drawing),
+                        surface,
+                        displacements,
+                    })
+                }))
+            },
+            |sentence| Message::Redrawn(Err(sentence)),
+        );
+    }
+
+    /// Shows the other drawing, if its file is still open.
+    pub(in crate::window) fn take_drawing(&mut self, result: Result<Box<Redrawn>, String>) {
+        let wanted = self.redrawing.take();
+        let redrawn = match result {
+            Ok(redrawn) => redrawn,
+            Err(sentence) => {
+                // Not asked for again and again.
+                self.redrawing = wanted;
+                return self.fail(format!("the view does not show what is turned inside out: {sentence}"));
+            }
+        };
+        let Redrawn {
+            loaded,
+            drawing,
+            surface,
+            displacements,
+        } = *redrawn;
+        let (Some(open), Some(mut stage)) = (&mut self.session.open, self.workers.stage()) else {
+            return;
+        };
+        if !Arc::ptr_eq(&open.loaded, &loaded) {
+            return;
+        }
+        open.drawing = Arc::clone(&drawing);
+        stage.drawing = Arc::clone(&drawing);
+        self.workers.set_stage(stage);
+        self.poses.cancel();
+        self.stop_images();
+        let lowest = loaded.model.bounds().map_or(DVec3::ZERO, |bounds| bounds.min);
+        self.viewport.show(drawing, surface, displacements, lowest);
+    }
+}

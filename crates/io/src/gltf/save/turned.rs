@@ -1,0 +1,133 @@
+//! Triangles of parts that are turned inside out: their indices, over their own bytes where these can hold them, else
+//! as a new list of triangles.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use ::gltf::json::accessor::ComponentType;
+
+use crate::gltf::document::Buffer;
+use crate::gltf::geometry::Pieces;
+use crate::gltf::geometry::primitive::{Mode, Primitive};
+use crate::gltf::save::copy_on_write::MeshCopy;
+use crate::gltf::save::overlap::Places;
+use crate::gltf::save::patch::{Patch, cannot_hold};
+use crate::save::moved::Moved;
+use crate::save::turned::triangle_wound_back;
+use crate::{Format, SaveError};
+
+/// The triangles of a primitive, some of them wound the other way: elements of its attributes.
+pub(crate) type Turned = BTreeMap<(usize, usize), Vec<[u32; 3]>>;
+
+/// By mesh and primitive: the triangles of those of which some are turned. What shows a mesh through several nodes
+/// turns the same triangles in all of them.
+pub(crate) fn turned(pieces: &Pieces, moved: &Moved<'_>) -> Turned {
+    let mut turned = Turned::new();
+    if !moved.turns_any() {
+        return turned;
+    }
+    for piece in &pieces.pieces {
+        let instance = &pieces.instances[piece.instance];
+        let triangles = &moved.drawn.triangles[piece.triangles.start as usize..piece.triangles.end as usize];
+        let key = (instance.mesh, piece.primitive);
+        if turned.contains_key(&key) || !triangles.iter().any(|&[first, ..]| moved.turns(first)) {
+            continue;
+        }
+        let is_mirrored = instance.world_from_node.matrix3.determinant() < 0.0;
+        let stored = triangles.iter().map(|&triangle| {
+            // A mirrored node winds what is stored the other way.
+            let is_as_drawn = is_mirrored == moved.turns(triangle[0]);
+            let triangle = if is_as_drawn {
+                triangle
+            } else {
+                triangle_wound_back(triangle)
+            };
+            triangle.map(|vertex| vertex.0 - instance.vertices.start)
+        });
+        turned.insert(key, stored.collect());
+    }
+    turned
+}
+
+impl Patch<'_> {
+    /// Gives primitives their turned triangles.
+    pub(crate) fn turn(
+        &mut self,
+        meshes: &[Vec<Primitive>],
+        copies: &[MeshCopy],
+        turned: &Turned,
+        places: &Places,
+        format: Format,
+    ) -> Result<(), SaveError> {
+        let mut written: BTreeSet<usize> = BTreeSet::new();
+        for (&(mesh, number), triangles) in turned {
+            let primitive = &meshes[mesh][number];
+            if let Some(indices) = primitive.indices {
+                let is_alike = |(key, other): ((usize, usize), &Primitive)| {
+                    other.indices != Some(indices)
+                        || (other.mode == Some(Mode::Triangles) && turned.get(&key) == Some(triangles))
+                };
+                let all = meshes.iter().enumerate();
+                let mut all = all.flat_map(|(mesh, primitives)| {
+                    let numbered = primitives.iter().enumerate();
+                    numbered.map(move |(number, primitive)| ((mesh, number), primitive))
+                });
+                let is_written = written.contains(&indices);
+                if is_written || (all.all(is_alike) && self.indices_in_place(indices, triangles, places).is_some()) {
+                    written.insert(indices);
+                    continue;
+                }
+            }
+            let accessor = self.new_indices(triangles, format)?;
+            for copy in (0..copies.len()).filter(|&copy| copies[copy].mesh == mesh) {
+                let json = &self.document.json;
+                let edits = self.edits_of_copy(copies, copy);
+                edits.set_member(json, primitive.at, "indices", &accessor.to_string());
+                if primitive.mode != Some(Mode::Triangles) {
+                    edits.set_member(json, primitive.at, "mode", "4");
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes indices over the accessor's own bytes. `None`, with nothing written, if they can't hold them.
+    fn indices_in_place(&mut self, accessor: usize, triangles: &[[u32; 3]], places: &Places) -> Option<()> {
+        let document = self.document;
+        let layout = document.layout(accessor).ok()?;
+        let dense = layout.dense.filter(|_| layout.sparse.is_none())?;
+        let is_its_own = places.twins(accessor).1.len() == 1 && !places.is_overlapped(accessor);
+        let is_decoded = matches!(document.buffers[dense.buffer], Buffer::Decoded(_));
+        let is_whole = dense.count / 3 == triangles.len() && dense.stride == dense.size;
+        if !is_its_own || is_decoded || !is_whole || document.is_filled(accessor) {
+            return None;
+        }
+        let bytes = self.own(dense.buffer)?;
+        for (element, index) in triangles.as_flattened().iter().enumerate() {
+            let own = &mut bytes[dense.element(element)];
+            own.copy_from_slice(&index.to_le_bytes()[..dense.size]);
+        }
+        Some(())
+    }
+
+    /// Adds an accessor of indices, and gives its number.
+    fn new_indices(&mut self, triangles: &[[u32; 3]], format: Format) -> Result<usize, SaveError> {
+        let indices = triangles.as_flattened();
+        // The highest index of a type is reserved.
+        let is_short = indices.iter().all(|&index| index < u32::from(u16::MAX));
+        let (component, size) = match is_short {
+            true => (ComponentType::U16, 2),
+            false => (ComponentType::U32, 4),
+        };
+        let bytes = indices
+            .iter()
+            .flat_map(|index| index.to_le_bytes().into_iter().take(size));
+        let view = self.new_view(None, bytes, ",\"target\":34963");
+        let view =
+            view.ok_or_else(|| cannot_hold("a mesh that is turned inside out without a buffer".to_owned(), format))?;
+        Ok(self.push_accessor(format!(
+            "{{\"bufferView\":{view},\"componentType\":{},\"count\":{},\"type\":\"SCALAR\"}}",
+            component.as_gl_enum(),
+            indices.len()
+        )))
+    }
+}
