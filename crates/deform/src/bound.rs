@@ -424,10 +424,13 @@ impl Bound {
         (handle < self.handles.len() && self.method.weights_of(handle, &mut weights)).then_some(weights)
     }
 
-    /// Replaces the rest positions of the surface's vertices by those of the smooth base that is bent in its place,
-    /// where the method has one. Whether it has.
-    pub fn base(&self, positions: &mut [DVec3]) -> bool {
-        positions.len() == self.vertex_count && self.method.base(positions)
+    /// Replaces the displacements that the last step has filled by those that take the surface's vertices to the smooth
+    /// base that was bent in its place, where the method has one; before the first step, and where all handles rest, it
+    /// is the base at rest. What is not solved for keeps its displacement. Whether the method has a base; only linear
+    /// methods do.
+    pub fn base(&self, displacements: &mut [DVec3]) -> bool {
+        let bound = self.rigid.as_ref().map_or(self, |rigid| &rigid.bound);
+        displacements.len() == self.vertex_count && bound.method.base(displacements)
     }
 
     /// The Jacobian J of the displacements at each surface vertex, as of the last step; `None` where the method does not

@@ -26,7 +26,7 @@ pub struct SceneView<'a> {
     /// Per surface vertex, from the file's shape: hand it to [`Model::drawn_positions`]. Shared, never changed in
     /// place.
     pub displacements: &'a Arc<Vec<DVec3>>,
-    /// What is drawn, from the file's shape: the displacements, or the smooth base at rest where that is shown.
+    /// What is drawn, from the file's shape: the displacements, or the smooth base, bent alike, where that is shown.
     pub drawn: &'a Arc<Vec<DVec3>>,
     /// No displacement of any vertex: the file's own shape.
     pub original: &'a Arc<Vec<DVec3>>,

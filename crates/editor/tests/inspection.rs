@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use pliant_deform::{Method, OptionValue, Role};
-use pliant_editor::{Command, Key, Shading, ToolMode};
+use pliant_editor::{Command, Event, JobKind, Key, Shading, ToolMode};
 use pliant_mesh::shapes;
 use rig::{CENTRE_PX, Rig};
 
@@ -98,14 +98,14 @@ fn the_smooth_base_is_shown_in_place_of_the_surface_and_nothing_else_changes() {
     rig.drain();
     let view = rig.editor.view();
     assert!(!Arc::ptr_eq(view.drawn, view.displacements));
-    let mut moved = 0;
-    for (way, role) in view.drawn.iter().zip(rig.editor.roles()) {
+    let mut faired = 0;
+    for ((base, shape), role) in view.drawn.iter().zip(view.displacements.iter()).zip(rig.editor.roles()) {
         match role {
-            Role::Free => moved += usize::from(*way != DVec3::ZERO),
-            _ => assert_eq!(*way, DVec3::ZERO, "what is held is as it was"),
+            Role::Free => faired += usize::from(base != shape),
+            _ => assert_eq!(base, shape, "what is held is where the shape has it"),
         }
     }
-    assert!(moved > 10, "{moved}");
+    assert!(faired > 10, "{faired}");
     assert_eq!((rig.fingerprint(), rig.drawn()), before);
     // Where there is none, the surface is shown.
     rig.choose("arap");
@@ -119,4 +119,83 @@ fn the_smooth_base_is_shown_in_place_of_the_surface_and_nothing_else_changes() {
     rig.command(Command::ToggleBase);
     rig.drain();
     assert!(!rig.editor.view().look.base);
+}
+
+/// The base that is drawn.
+fn base(rig: &Rig) -> Arc<Vec<DVec3>> {
+    let view = rig.editor.view();
+    assert!(!Arc::ptr_eq(view.drawn, view.displacements), "the base is drawn");
+    Arc::clone(view.drawn)
+}
+
+#[test]
+fn the_smooth_base_bends_with_the_edit_and_rests_with_it() {
+    let mut rig = tube();
+    rig.choose("bilaplacian");
+    rig.paint_handle();
+    set(&mut rig, "bilaplacian", "detail", "deformation-transfer");
+    rig.command(Command::ToggleBase);
+    rig.drain();
+    let at_rest = base(&rig);
+    rig.type_keys("gz.3");
+    rig.drain();
+    let dragged = base(&rig);
+    assert_ne!(dragged, at_rest, "it bends while the handle is moved");
+    rig.key(Key::Enter);
+    rig.drain();
+    assert_eq!(base(&rig), dragged);
+    rig.type_keys("rx40");
+    rig.key(Key::Enter);
+    rig.drain();
+    let turned = base(&rig);
+    assert_ne!(turned, dragged);
+    rig.undo();
+    rig.drain();
+    assert_eq!(base(&rig), dragged, "one step back");
+    rig.undo();
+    rig.drain();
+    assert_eq!(base(&rig), at_rest, "all handles rest");
+    rig.command(Command::Redo);
+    rig.drain();
+    rig.command(Command::Redo);
+    rig.drain();
+    assert_eq!(base(&rig), turned);
+    set(&mut rig, "bilaplacian", "detail", "none");
+    let view = rig.editor.view();
+    assert!(Arc::ptr_eq(view.drawn, view.displacements), "there is no base");
+    rig.undo();
+    rig.drain();
+    assert_eq!(base(&rig), turned);
+    // Applied, what is bent is another surface with another base, at rest again.
+    rig.command(Command::Apply);
+    rig.drain();
+    let view = rig.editor.view();
+    for ((base, shape), role) in view.drawn.iter().zip(view.displacements.iter()).zip(rig.editor.roles()) {
+        assert!(
+            *role == Role::Free || base == shape,
+            "what is held is where the shape has it"
+        );
+    }
+    assert_ne!(base(&rig), at_rest);
+}
+
+#[test]
+fn a_base_that_is_looked_up_along_a_drag_is_not_thrown_away_for_a_newer_one() {
+    let mut rig = tube();
+    rig.choose("bilaplacian");
+    rig.paint_handle();
+    set(&mut rig, "bilaplacian", "detail", "normal-displacements");
+    rig.command(Command::ToggleBase);
+    rig.drain();
+    rig.type_keys("gz.1");
+    rig.drain();
+    let before = base(&rig);
+    rig.type_keys("2");
+    let first = rig.jobs.take(JobKind::Inspect).unwrap();
+    rig.type_keys("3");
+    rig.send(Event::JobDone(first.run()));
+    let on_the_way = base(&rig);
+    assert_ne!(on_the_way, before, "what ran is shown");
+    rig.drain();
+    assert_ne!(base(&rig), on_the_way, "the newest follows");
 }

@@ -173,9 +173,9 @@ pub(crate) trait BoundMethod: Debug + Send + Sync {
         false
     }
 
-    /// Replaces the rest positions of the surface's vertices by those of the smooth base, where the method bends one
-    /// and puts the details back on it. Whether it does.
-    fn base(&self, _positions: &mut [DVec3]) -> bool {
+    /// Replaces the surface's displacements by those that take its vertices to the smooth base, bent as the last step has
+    /// bent it, where the method bends one and puts the details back on it. Whether it does. Only linear methods may.
+    fn base(&self, _displacements: &mut [DVec3]) -> bool {
         false
     }
 

@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use crate::rig::{Scene, apart, back_substitute, step};
 use glam::{DAffine3, DVec3};
-use pliant_deform::{Method, OptionValue, Role};
+use pliant_deform::{Bound, Method, OptionValue, Role};
 use pliant_mesh::{Drawn, SurfaceVertex, shapes};
 
 /// Every way to put details back.
@@ -64,11 +64,12 @@ fn bent(height: f64, detail: &'static str, target: DAffine3) -> Bent {
     let scene = plate(CELLS, height, detail);
     let moved = |from: &[DVec3], by: &[DVec3]| from.iter().zip(by).map(|(p, d)| *p + *d).collect();
     let mut bound = scene.bind();
-    let mut base = scene.positions().to_vec();
+    let displacements = step(&mut bound, &[target]);
+    let mut base = displacements.clone();
     assert_eq!(bound.base(&mut base), detail != "none");
     Bent {
-        shape: moved(scene.positions(), &step(&mut bound, &[target])),
-        base: moved(&base, &plate(CELLS, height, "none").moved(&[target])),
+        shape: moved(scene.positions(), &displacements),
+        base: moved(scene.positions(), &base),
         scene,
     }
 }
@@ -133,6 +134,56 @@ fn bumps_turn_with_the_plate_below_them_and_shear_without_details() {
     }
 }
 
+/// The displacements that take the surface to its base as the last step has bent it.
+fn base_of(bound: &Bound) -> Vec<DVec3> {
+    let mut base = vec![DVec3::ZERO; bound.vertex_count()];
+    assert!(bound.base(&mut base));
+    base
+}
+
+#[test]
+fn the_base_is_bent_as_the_plain_thin_plate_bends_the_surface_and_rests_with_the_handles() {
+    let target = arc(FRAC_PI_2);
+    let plain = plate(CELLS, 0.12, "none").moved(&[target]);
+    for detail in DETAILS {
+        let mut bound = plate(CELLS, 0.12, detail).bind();
+        let at_rest = base_of(&bound);
+        assert!(
+            at_rest.iter().any(|d| d.z < -0.1),
+            "{detail}: the bumps are faired away"
+        );
+        step(&mut bound, &[target]);
+        let expected: Vec<DVec3> = at_rest.iter().zip(&plain).map(|(rest, bent)| *rest + *bent).collect();
+        let mut base = step(&mut bound, &[target]);
+        assert!(bound.base(&mut base));
+        // The plain method's bases are in single precision.
+        assert!(apart(&base, &expected) < 1e-6, "{detail} {}", apart(&base, &expected));
+        step(&mut bound, &[DAffine3::IDENTITY]);
+        assert!(base_of(&bound) == at_rest, "{detail}: not the very base at rest");
+    }
+}
+
+#[test]
+fn a_base_turns_with_its_surface_where_nothing_holds_it() {
+    let target = DAffine3::from_translation(DVec3::new(0.2, -0.1, 0.4)) * DAffine3::from_rotation_x(2.5);
+    for detail in DETAILS {
+        let mut scene = plate(CELLS, 0.12, detail);
+        scene
+            .roles
+            .iter_mut()
+            .filter(|role| **role == Role::Fixed)
+            .for_each(|role| *role = Role::Free);
+        let mut bound = scene.bind();
+        let rest = base_of(&bound);
+        let mut base = step(&mut bound, &[target]);
+        assert!(bound.base(&mut base));
+        let expected: Vec<DVec3> = (scene.positions().iter().zip(&rest))
+            .map(|(p, d)| target.transform_point3(*p + *d) - *p)
+            .collect();
+        assert!(apart(&base, &expected) < 1e-6, "{detail} {}", apart(&base, &expected));
+    }
+}
+
 #[test]
 fn a_flat_plate_is_its_own_base_and_bends_as_without_details() {
     let target = arc(FRAC_PI_2);
@@ -155,10 +206,10 @@ fn every_base_order_bends_bumps_with_the_plate() {
             let mut scene = plate(CELLS, 0.1, detail);
             scene.method = scene.method.with([("base_order", OptionValue::Whole(order))]).unwrap();
             let mut bound = scene.bind();
-            let mut base = scene.positions().to_vec();
-            assert!(bound.base(&mut base));
             // The plate's rim is flat: so is its base.
-            assert!(base.iter().all(|p| p.z.abs() < 1e-7), "{order}");
+            let base = base_of(&bound);
+            let mut heights = scene.positions().iter().zip(&base).map(|(p, d)| p.z + d.z);
+            assert!(heights.all(|height| height.abs() < 1e-7), "{order}");
             let target = arc(1.0);
             let shape = step(&mut bound, &[target]);
             let solved = back_substitute(&mut bound, &[target]);

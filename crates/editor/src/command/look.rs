@@ -162,7 +162,7 @@ pub(super) const TOGGLE_BASE: Entry<()> = Entry {
     listed: &[item(
         (),
         "Smooth base",
-        "Shows the smooth base that is bent in place of the surface, at rest and without its details.",
+        "Shows the smooth base that is bent in place of the surface, as the handles bend it, without the details.",
         "fairing multiresolution detail",
         &[],
     )],

@@ -30,16 +30,16 @@ pub(crate) struct Asked {
 pub struct Inspected {
     /// The handle's weight at each surface vertex, from 0 to 1.
     pub(crate) weights: Option<Arc<Vec<f64>>>,
-    /// The smooth base at rest, as displacements of the surface's vertices from the file's shape.
+    /// The smooth base as the handles bend it, as displacements of the surface's vertices from the file's shape.
     pub(crate) base: Option<Arc<Vec<DVec3>>>,
 }
 
 impl Inspectable {
-    /// Asks a binding of a surface with these rest positions. It costs a pass over the surface.
-    pub(super) fn of(bound: &Bound, rest: &[DVec3]) -> Self {
+    /// Asks a binding. It costs a pass over the surface.
+    pub(super) fn of(bound: &Bound) -> Self {
         Self {
             weights: bound.handle_weights(0).is_some(),
-            base: bound.base(&mut rest.to_vec()),
+            base: bound.base(&mut vec![DVec3::ZERO; bound.vertex_count()]),
         }
     }
 }

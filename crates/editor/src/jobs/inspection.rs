@@ -1,34 +1,47 @@
-//! Looks up what a person looks at of the present binding: the weights of a handle, and the smooth base.
+//! Looks up what a person looks at of the present binding: the weights of a handle, and the smooth base as the handles
+//! bend it.
 
 use std::sync::{Arc, PoisonError};
+
+use glam::{DAffine3, DVec3};
+use pliant_deform::Bound;
 
 use super::computed::Computed;
 use super::inspected::{Asked, Inspected};
 use super::job::{JobOutcome, Work};
-use crate::document::HandleId;
+use super::solving::targets;
+use crate::document::{Document, HandleId, sum_of_shapes};
 
 /// Looks into the present binding; `None` while there is none.
-pub(super) fn inspect_work(computed: &Computed, asked: Asked) -> Option<Work> {
-    let (bound, model) = (computed.bound.clone()?, computed.model.clone()?);
-    let region = computed.region.clone();
+pub(super) fn inspect_work(computed: &Computed, document: &Document, asked: Asked) -> Option<Work> {
+    let bound = computed.bound.clone()?;
+    let handles = computed.region.handles.clone();
+    let is_base_wanted = asked.base && computed.inspectable.base;
+    let targets = is_base_wanted.then(|| targets(document, &handles)).flatten();
+    let rest = document.applied.then(|| Arc::clone(&document.rest));
     Some(Box::new(move |_, cancel| {
         if cancel.is_cancelled() {
             return JobOutcome::Cancelled;
         }
-        let bound = bound.lock().unwrap_or_else(PoisonError::into_inner);
-        let number = |id: HandleId| region.handles.iter().position(|handle| *handle == id);
+        let mut bound = bound.lock().unwrap_or_else(PoisonError::into_inner);
+        let number = |id: HandleId| handles.iter().position(|handle| *handle == id);
         let weights = asked.weights_of.and_then(number);
-        let base = || {
-            let surface = region.rest_surface.as_deref().unwrap_or(&model.surface);
-            let mut positions = surface.positions.clone();
-            bound.base(&mut positions).then(|| {
-                let file = model.surface.positions.iter();
-                Arc::new(file.zip(&positions).map(|(file, base)| *base - *file).collect())
-            })
-        };
+        let base = targets.and_then(|targets| bent_base(&mut bound, &targets));
         JobOutcome::Inspected(Inspected {
             weights: weights.and_then(|number| bound.handle_weights(number)).map(Arc::new),
-            base: asked.base.then(base).flatten(),
+            base: base.map(|base| sum_of_shapes(rest.as_ref(), &Arc::new(base))),
         })
     }))
+}
+
+/// The smooth base as the handles bend it with these targets, from the rest shape; `None` where that can't be solved,
+/// which the solve itself reports.
+///
+/// The last solve may have been for other targets than the document's, after an undo for one, so it is solved here: only
+/// linear methods have a base, so nothing hangs on where they began.
+fn bent_base(bound: &mut Bound, targets: &[DAffine3]) -> Option<Vec<DVec3>> {
+    let mut base = vec![DVec3::ZERO; bound.vertex_count()];
+    bound.set_targets(targets).ok()?;
+    bound.step(&mut base).ok()?;
+    bound.base(&mut base).then_some(base)
 }

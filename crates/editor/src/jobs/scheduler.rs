@@ -71,8 +71,10 @@ pub(crate) struct Jobs {
     joint_floor: Revision,
     /// Of which shape and under which triangle a joint was asked for last.
     joint_asked: Option<(Revision, u32)>,
-    /// What is looked at of which binding, from when it was asked for.
-    inspection: (Revision, Asked),
+    /// What is looked at of which binding, and with which targets, where it depends on them, from when it was asked for.
+    inspection: (Revision, Asked, Revision),
+    /// What was asked for before this is dropped.
+    inspect_floor: Revision,
 }
 
 /// What a job's result means for the editor.
@@ -132,7 +134,8 @@ impl Jobs {
             joint_revision: Revision(0),
             joint_floor: Revision(0),
             joint_asked: None,
-            inspection: (Revision(0), Asked::default()),
+            inspection: (Revision(0), Asked::default(), Revision(0)),
+            inspect_floor: Revision(0),
         }
     }
 
@@ -271,16 +274,24 @@ impl Jobs {
         self.queues[JobKind::Compare as usize].cancel();
     }
 
-    /// Has looked up what is asked of the present binding, unless it is known or under way.
-    pub(crate) fn inspect(&mut self, asked: Asked) {
-        let wanted = (self.bound_revision, asked);
+    /// Has looked up what is asked of the present binding, unless it is known or under way. Where only the targets are
+    /// others, what runs goes on, so that the base is seen to bend along a drag; the newest waits.
+    pub(crate) fn inspect(&mut self, asked: Asked, document: &Document) {
+        let has_binding = self.binds_something(document) && !self.has_given_up(JobKind::Bind);
+        let asked = if has_binding { asked } else { Asked::default() };
+        let targets = if asked.base { self.target_revision } else { Revision(0) };
+        let wanted = (self.bound_revision, asked, targets);
         if self.inspection == wanted || !(self.is_bound() || asked == Asked::default()) {
             return;
         }
-        self.inspection = wanted;
+        let (bound, before, _) = std::mem::replace(&mut self.inspection, wanted);
         self.inspect_revision = self.next_revision();
-        self.queues[JobKind::Inspect as usize].cancel();
-        match inspect_work(&self.computed, asked).filter(|_| asked != Asked::default()) {
+        if (bound, before) != (self.bound_revision, asked) {
+            self.queues[JobKind::Inspect as usize].cancel();
+            self.inspect_floor = self.inspect_revision;
+        }
+        let work = inspect_work(&self.computed, document, asked);
+        match work.filter(|_| asked != Asked::default()) {
             Some(work) => self.queues[JobKind::Inspect as usize].request(self.inspect_revision, work),
             None => self.computed.inspected = Inspected::default(),
         }
@@ -517,7 +528,7 @@ impl Jobs {
                 self.bound_revision = stamp;
             }
             JobOutcome::Controls(places) if stamp >= self.solve_floor => self.put_controls(&places, stamp),
-            JobOutcome::Inspected(inspected) if stamp == self.inspect_revision => self.computed.inspected = inspected,
+            JobOutcome::Inspected(inspected) if stamp >= self.inspect_floor => self.computed.inspected = inspected,
             JobOutcome::Joint(joint) if stamp > self.joint_floor => {
                 self.computed.joint = joint;
                 return Arrival::Joint;

@@ -271,7 +271,7 @@ fn steps(
 }
 
 /// The maps of the handles in the region's order; `None` if one of them is gone.
-fn targets(document: &Document, handles: &[HandleId]) -> Option<Vec<DAffine3>> {
+pub(super) fn targets(document: &Document, handles: &[HandleId]) -> Option<Vec<DAffine3>> {
     handles
         .iter()
         .map(|&id| document.handle(id).map(|handle| handle.affine()))

@@ -89,7 +89,7 @@ pub(super) fn bind_work(
         let (ordering, reusable_factor) = (ordering.as_deref(), reusable_factor.as_ref());
         match problem.rebind_within(ordering, reusable_factor, allowance.budget(), progress, cancel) {
             Ok(bound) => {
-                let inspectable = Inspectable::of(&bound, &problem.surface.positions);
+                let inspectable = Inspectable::of(&bound);
                 JobOutcome::Bound(Box::new(bound), inspectable)
             }
             Err(BindError::Cancelled(_)) => JobOutcome::Cancelled,

@@ -21,7 +21,7 @@ impl Workspace {
             let count = self.shown_controls().map_or(0, |shown| shown.positions.len());
             self.controls.drop_lost(count);
         }
-        self.jobs.inspect(asked);
+        self.jobs.inspect(asked, &self.document);
         let is_at_rest = activity == Activity::Still && self.document.is_settled();
         let is_bent = self.document.is_displaced() || self.document.is_applied();
         // One that follows another is looked at, and not edited.

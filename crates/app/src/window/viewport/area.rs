@@ -235,7 +235,7 @@ impl Application {
             let shows = if shown.look.original {
                 "As it was opened"
             } else {
-                "Smooth base, at rest"
+                "Smooth base"
             };
             axis_ball::readout(ui.painter(), at, shows);
         }

@@ -165,10 +165,10 @@ impl Base {
         self.carried.correct(&self.patch.rows, turns, posed);
     }
 
-    /// Moves the rest positions of the surface's vertices to the base.
-    pub fn show(&self, positions: &mut [DVec3]) {
-        for (&local, offset) in self.patch.rows.iter().zip(&self.offsets) {
-            positions[self.patch.vertices[local as usize] as usize] -= *offset;
-        }
+    /// Replaces the solved vertices' displacements by those that take the surface to the `posed` base.
+    pub fn show(&self, posed: &[DVec3], displacements: &mut [DVec3]) {
+        self.patch.write(displacements, |row, local| {
+            (posed[local] - self.patch.rest[local]) - self.offsets[row]
+        });
     }
 }

@@ -32,6 +32,7 @@ pub(crate) struct Multiresolution {
     bending: BilaplacianSolver<f64>,
     base: Base,
     reconstruction: Reconstruction,
+    /// The base's points as the last step has bent them, one for each local vertex.
     posed: Vec<DVec3>,
 }
 
@@ -78,9 +79,9 @@ impl Multiresolution {
         progress.set(1.0);
         Ok(Self {
             bending,
+            posed: base.patch.rest.clone(),
             base,
             reconstruction,
-            posed: Vec::new(),
         })
     }
 
@@ -136,8 +137,12 @@ impl BoundMethod for Multiresolution {
         Ok(Stepped::at_once(energy, Finite::Unknown))
     }
 
-    fn base(&self, positions: &mut [DVec3]) -> bool {
-        self.base.show(positions);
+    fn rest(&mut self) {
+        self.posed.clone_from(&self.base.patch.rest);
+    }
+
+    fn base(&self, displacements: &mut [DVec3]) -> bool {
+        self.base.show(&self.posed, displacements);
         true
     }
 
