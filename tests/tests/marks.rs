@@ -119,11 +119,11 @@ impl Stage {
         let outlines = drawing::outlines(&self.editor, &self.model);
         surface.update_lines(&self.renderer, &outlines).unwrap();
         let frame = Frame {
-            view: &drawing::view(view.camera, view.viewport_px, drawing.centre),
+            view: &drawing::view(view.camera, view.viewport_px, drawing.centre()),
             style: &drawing::style(&view.look, PIXELS_PER_POINT as f32),
             surfaces: &[&surface],
             grid: None,
-            overlays: &drawing::overlays(&view, drawing.centre, PIXELS_PER_POINT as f32),
+            overlays: &drawing::overlays(&view, drawing.centre(), PIXELS_PER_POINT as f32),
         };
         let size_px = (VIEWPORT_PX * PIXELS_PER_POINT).to_array().map(|side| side as u32);
         self.renderer.draw_to_image(size_px, Samples::Four, &frame).unwrap()
