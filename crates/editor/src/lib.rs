@@ -59,7 +59,7 @@ mod view;
 mod warning;
 mod workspace;
 
-pub use command::{Command, KeyMap, Listed, Shortcut};
+pub use command::{Command, KeyMap, Listed, Shortcut, WITHOUT_EXAMPLES};
 pub use document::{
     Access, Content, Document, HANDLE_COLOURS, HISTORY_BYTES, Handle, HandleId, HandleTransform, History, KeptShape,
     ObjectAction, Paint, PivotPlace, Pose, Reach, Tips, Twin, object_name,

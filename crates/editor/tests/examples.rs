@@ -3,7 +3,10 @@
 
 mod rig;
 
+use std::sync::Arc;
+
 use glam::DVec3;
+use pliant_deform::ExampleShape;
 use pliant_editor::{Command, Document, Event, HandleTransform, JobKind, MeshReference, Project, geometry_hash};
 use pliant_mesh::shapes;
 use rig::{Fingerprint, Rig};
@@ -155,6 +158,73 @@ fn another_rest_shape_leaves_examples_the_shapes_that_they_are() {
             .fold(0.0, f64::max);
         assert!(apart < 1e-12, "{command:?}: {apart}");
     }
+}
+
+/// The ball's vertices, each a tenth of the radius higher.
+fn lifted(rig: &Rig, name: &str) -> ExampleShape {
+    ExampleShape {
+        name: name.to_owned(),
+        displacements: Arc::new(vec![DVec3::Z * 0.1; rig.model.surface.positions.len()]),
+    }
+}
+
+#[test]
+fn a_shape_that_is_brought_is_one_step_and_stands_where_its_file_has_it() {
+    let mut rig = with_example();
+    let id = rig.editor.document().handles()[0].id;
+    rig.command(Command::SetHandleTransform(id, moved_up(0.3)));
+    rig.drain();
+    // The rest shape is no longer the file's.
+    rig.command(Command::Apply);
+    rig.drain();
+    let before = Fingerprint::of(rig.editor.document());
+    let seen = Arc::clone(rig.editor.document().from_file());
+    for name in ["Smile", "Smile", ""] {
+        rig.command(Command::AddExample(lifted(&rig, name)));
+        rig.drain();
+    }
+    let document = rig.editor.document();
+    assert_eq!(*document.from_file(), seen, "an example moved something");
+    let examples = document.examples().unwrap();
+    let names: Vec<&str> = examples.shapes.iter().map(|shape| &*shape.name).collect();
+    assert_eq!(names, ["example 1", "Smile", "Smile 1", "example 2"]);
+    assert_eq!(weights(document), [Some(0.0); 4]);
+    // The rest shape is given by its displacements from the file's.
+    let places = document.rest().iter().zip(&*examples.shapes[1].displacements);
+    let away = places.map(|(rest, own)| (*rest + *own).distance(DVec3::Z * 0.1));
+    assert!(away.fold(0.0, f64::max) < 1e-12);
+    assert!(document.rest().iter().any(|rest| rest.length() > 0.1));
+    assert_eq!(rig.editor.view().undo, Some("Add example"));
+    for _ in 0..3 {
+        rig.command(Command::Undo);
+        rig.drain();
+    }
+    assert_eq!(Fingerprint::of(rig.editor.document()), before);
+    assert_eq!(weights(rig.editor.document()), [Some(0.0)]);
+}
+
+#[test]
+fn a_shape_of_another_mesh_is_refused() {
+    let mut rig = with_example();
+    let mut other = lifted(&rig, "other");
+    Arc::make_mut(&mut other.displacements).pop();
+    let command = Command::AddExample(other);
+    assert!(
+        rig.editor
+            .unavailable_because(&command)
+            .unwrap()
+            .contains("another mesh")
+    );
+    rig.command(command);
+    assert_eq!(weights(rig.editor.document()).len(), 1);
+    rig.choose("arap");
+    let command = Command::AddExample(lifted(&rig, "Smile"));
+    assert!(
+        rig.editor
+            .unavailable_because(&command)
+            .unwrap()
+            .contains("Discrete shells")
+    );
 }
 
 #[test]

@@ -30,20 +30,41 @@ pub fn files(edit: &mut Beginning, edit_path: &Path) -> Vec<PathBuf> {
 pub fn bring(edit: &mut Beginning, edit_path: &Path, loaded: &Loaded, watch: &Watch) -> Result<(), EngineError> {
     let folder = edit_path.parent().unwrap_or(Path::new(""));
     for example in edit.examples_mut() {
-        let of_drawn = match &example.source {
-            ExampleSource::File(file) => displacements_to(&folder.join(file), loaded, watch)?,
-            ExampleSource::MorphTarget(target) => morph_target(target, loaded, watch)?,
+        let displacements = match &example.source {
+            ExampleSource::File(file) => from_file(&folder.join(file), loaded, watch)?,
+            ExampleSource::MorphTarget(target) => from_morph_target(target, loaded, watch)?,
             ExampleSource::PerVertex(_) => continue,
         };
-        example.displacements = Some(Arc::new(of_surface(&loaded.model, &of_drawn)));
+        example.displacements = Some(Arc::new(displacements));
     }
     Ok(())
+}
+
+/// How far the surface's vertices are moved in the shape that the file at `path` has.
+///
+/// # Errors
+/// A file that can't be read, or has other vertices or triangles.
+pub fn from_file(path: &Path, loaded: &Loaded, watch: &Watch) -> Result<Vec<DVec3>, EngineError> {
+    Ok(of_surface(&loaded.model, &displacements_to(path, loaded, watch)?))
+}
+
+/// How far the file's morph targets of this name, applied whole, move the surface's vertices.
+///
+/// # Errors
+/// The file has none of this name, or it can't be read.
+pub fn from_morph_target(target: &str, loaded: &Loaded, watch: &Watch) -> Result<Vec<DVec3>, EngineError> {
+    Ok(of_surface(&loaded.model, &morph_target(target, loaded, watch)?))
 }
 
 fn displacements_to(path: &Path, loaded: &Loaded, watch: &Watch) -> Result<Vec<DVec3>, EngineError> {
     let other = open(path, watch)?.drawn;
     let own = loaded.model.rest();
     check_connectivity((path, &other), (&loaded.path, &own))?;
+    if let Some(vertex) = other.positions.iter().position(|position| !position.is_finite()) {
+        let shown = shown(path);
+        let sentence = format!("{shown}: vertex {vertex} has no finite position: give an example without gaps");
+        return Err(EngineError::Unsupported(sentence));
+    }
     let each = other.positions.iter().zip(&own.positions);
     Ok(each.map(|(to, from)| *to - *from).collect())
 }

@@ -112,7 +112,9 @@ impl Application {
             .min_size(220.0)
             .show(ui, |ui| {
                 let folded = &self.settings.get().folded;
-                panels::show(ui, &self.editor, &self.notes, folded, commands)
+                let open = self.session.open.as_ref();
+                let morph_targets = open.map_or(&[][..], |open| &open.morph_targets);
+                panels::show(ui, &self.editor, &self.notes, morph_targets, folded, commands)
             });
         if let Some(title) = panel.inner {
             self.settings.change(|settings| {

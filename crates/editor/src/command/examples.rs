@@ -1,7 +1,9 @@
 //! What is done with the examples that lead the method.
 
+use pliant_deform::ExampleShape;
+
 use super::entry::{Action, Entry, Reason, Scope, State, item, unless};
-use crate::workspace::{examples_name, keep_example, remove_example, rename_example, set_example_weight};
+use crate::workspace::{add_example, examples_name, keep_example, remove_example, rename_example, set_example_weight};
 
 /// Keeps the present shape as one more example.
 pub(super) const KEEP_EXAMPLE: Entry<()> = Entry {
@@ -21,6 +23,19 @@ pub(super) const KEEP_EXAMPLE: Entry<()> = Entry {
         })
     },
     action: Action::Do(|context, ()| keep_example(context.workspace)),
+};
+
+/// Takes a shape as one more example.
+pub(super) const ADD_EXAMPLE: Entry<ExampleShape> = Entry {
+    listed: &[],
+    scope: Scope::Document,
+    unavailable: |state, shape| {
+        without_examples(state).or_else(|| {
+            let fits = shape.displacements.len() == state.workspace.document.rest().len();
+            unless(fits, "That example is of another mesh.")
+        })
+    },
+    action: Action::Do(|context, shape| add_example(context.workspace, shape)),
 };
 
 /// Sets the weight of an example, by its place in the list; `None` has the solver find it.
@@ -47,14 +62,14 @@ pub(super) const REMOVE_EXAMPLE: Entry<usize> = Entry {
     action: Action::Do(|context, place| remove_example(context.workspace, place)),
 };
 
+/// Said where the method takes no examples.
+pub const WITHOUT_EXAMPLES: &str = "The method takes no examples: choose Discrete shells or Wrinkles from examples.";
+
 /// The reason where the method takes no examples.
 fn without_examples(state: &State<'_>) -> Option<Reason> {
     state.unopened().or_else(|| {
         let are_taken = examples_name(&state.workspace.document).is_some();
-        unless(
-            are_taken,
-            "The method takes no examples: choose Discrete shells or Wrinkles from examples.",
-        )
+        unless(are_taken, WITHOUT_EXAMPLES)
     })
 }
 

@@ -20,6 +20,7 @@ mod transform;
 mod view;
 
 pub(crate) use entry::{Scope, State};
+pub use examples::WITHOUT_EXAMPLES;
 pub use key_map::KeyMap;
 pub use shortcut::Shortcut;
 pub use table::{Command, Listed};

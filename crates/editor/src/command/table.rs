@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::sync::LazyLock;
 
 use glam::DVec3;
-use pliant_deform::{Attachment, Loose, Method};
+use pliant_deform::{Attachment, ExampleShape, Loose, Method};
 
 use super::entry::{Action, Entry, Reason, Scope, State};
 use super::shortcut::Shortcut;
@@ -113,6 +113,8 @@ commands! {
     DeselectControls = controls::DESELECT_CONTROLS;
     /// Keeps the present shape as one more example.
     KeepExample = examples::KEEP_EXAMPLE;
+    /// Takes a shape as one more example: displacements from the file's shape, per surface vertex.
+    AddExample(shape: ExampleShape) = examples::ADD_EXAMPLE;
     /// Sets the weight of an example, by its place in the list; `None` has the solver find it.
     SetExampleWeight(place: usize, weight: Option<f64>) = examples::SET_EXAMPLE_WEIGHT;
     /// Gives an example another name.

@@ -18,14 +18,27 @@ pub(crate) fn examples_name(document: &Document) -> Option<&'static str> {
 /// Keeps the present shape as one more example.
 pub(crate) fn keep_example(workspace: &mut Workspace) {
     let displacements = Arc::clone(&workspace.document.from_rest);
-    let name = free_name(&workspace.document);
-    add_example(workspace, ExampleShape { name, displacements });
+    let name = numbered("example", &workspace.document);
+    push(workspace, "Keep example", ExampleShape { name, displacements });
+}
+
+/// Takes a shape, whose displacements are those from the file's shape, as one more example.
+pub(crate) fn add_example(workspace: &mut Workspace, shape: ExampleShape) {
+    let document = &workspace.document;
+    let from_file = shape.displacements.iter().zip(document.rest());
+    let displacements = Arc::new(from_file.map(|(displacement, rest)| *displacement - *rest).collect());
+    let name = match &*shape.name {
+        "" => numbered("example", document),
+        own if names(document).any(|name| name == own) => numbered(own, document),
+        _ => shape.name,
+    };
+    push(workspace, "Add example", ExampleShape { name, displacements });
 }
 
 /// Adds an example. Where its weight bends the surface it is 0, so that nothing moves.
-pub(crate) fn add_example(workspace: &mut Workspace, shape: ExampleShape) {
+fn push(workspace: &mut Workspace, step: &'static str, shape: ExampleShape) {
     let weight = workspace.document.method().examples_bend().then_some(0.0);
-    change(workspace, "Keep example", |examples| {
+    change(workspace, step, |examples| {
         Arc::make_mut(&mut examples.shapes).push(shape);
         examples.weights.push(weight);
     });
@@ -77,10 +90,13 @@ fn change(workspace: &mut Workspace, name: &'static str, change: impl FnOnce(&mu
     });
 }
 
-/// "example 1", or with the next number that no example has.
-fn free_name(document: &Document) -> String {
+/// The name with the first number after it that no example has.
+fn numbered(name: &str, document: &Document) -> String {
+    let number = (1..).find(|number| names(document).all(|other| other != format!("{name} {number}")));
+    format!("{name} {}", number.unwrap_or(1))
+}
+
+fn names(document: &Document) -> impl Iterator<Item = &str> {
     let shapes = document.examples().map_or(&[][..], |examples| &examples.shapes);
-    let name = |number: usize| format!("example {number}");
-    let is_free = |number: &usize| shapes.iter().all(|shape| shape.name != name(*number));
-    name((1..=shapes.len() + 1).find(is_free).unwrap_or(1))
+    shapes.iter().map(|shape| &*shape.name)
 }

@@ -33,6 +33,7 @@ fn request(purpose: Purpose) -> Request {
             &["glb", "gltf", "obj", "ply", "stl", "off", "pliant"],
         ),
         Purpose::LoadCage => ("Load a cage", Asked::ToOpen, "Models", MODELS),
+        Purpose::AddExample => ("Add an example", Asked::ToOpen, "Models", MODELS),
         Purpose::SaveAs => ("Save the model as", Asked::ToSave, "Models", MODELS),
         Purpose::SaveMorph => ("Save as morph target", Asked::ToSave, "glTF", &["glb", "gltf"]),
         Purpose::SaveProject => ("Save the project as", Asked::ToSave, "Projects", &["pliant"]),

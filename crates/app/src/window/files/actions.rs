@@ -1,15 +1,16 @@
 //! The window's file commands, the questions that they raise, and their results.
 
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use eframe::egui;
 use glam::DVec3;
-use pliant_deform::{Attachment, ControlMesh};
+use pliant_deform::{Attachment, ControlMesh, ExampleShape};
 use pliant_editor::{Command, Event, Revision};
 
 use super::recovery::left;
-use super::session::{KeepOriginal, Source};
+use super::session::{KeepOriginal, OpenFile, Source};
 use crate::window::application::Application;
 use crate::window::dialogs::file_dialog;
 use crate::window::dialogs::folder_browser::listing;
@@ -22,8 +23,8 @@ use crate::window::threads::message::{Message, Purpose, Written, WrittenKind};
 use crate::window::widgets::theme;
 use pliant_engine::control_mesh::control_mesh;
 use pliant_engine::files::{is_same, shown};
-use pliant_engine::is_project;
 use pliant_engine::watch::Watch;
+use pliant_engine::{EngineError, Loaded, examples, is_project};
 
 impl Application {
     pub(in crate::window) fn file_shortcuts(&mut self, context: &egui::Context) {
@@ -74,6 +75,7 @@ impl Application {
                 Err(error) => self.fail(error.to_string()),
             },
             (Purpose::LoadCage, Some(path)) => self.load_cage(path),
+            (Purpose::AddExample, Some(path)) => self.load_example(path),
             (Purpose::SavePicture(kind), Some(path)) => match self.viewport.picture(&self.editor, kind) {
                 Ok(Some(image)) => self.session.save_picture(path, image, &self.workers),
                 Ok(None) => self.fail("the view is busy or empty: try again".to_owned()),
@@ -126,12 +128,14 @@ impl Application {
     pub(in crate::window) fn suggested_path(&self, purpose: Purpose) -> PathBuf {
         let beside = |path: &Path, ending: &str| path.with_extension(ending);
         match (purpose, self.path()) {
-            (Purpose::Open | Purpose::LoadCage | Purpose::SaveAs, Some(path)) => path.to_owned(),
+            (Purpose::Open | Purpose::LoadCage | Purpose::AddExample | Purpose::SaveAs, Some(path)) => path.to_owned(),
             (Purpose::SaveMorph, Some(path)) => beside(path, "morph.glb"),
             (Purpose::ExportEdit, Some(path)) => beside(path, "edit.json"),
             (Purpose::SaveProject, Some(path)) => beside(path, "pliant"),
             (Purpose::SavePicture(_), Some(path)) => beside(path, "png"),
-            (Purpose::Open | Purpose::LoadCage | Purpose::SaveAs, None) => PathBuf::from("edited.glb"),
+            (Purpose::Open | Purpose::LoadCage | Purpose::AddExample | Purpose::SaveAs, None) => {
+                PathBuf::from("edited.glb")
+            }
             (Purpose::SaveMorph, None) => PathBuf::from("morph.glb"),
             (Purpose::SaveProject, None) => PathBuf::from("edited.pliant"),
             (Purpose::ExportEdit, None) => PathBuf::from("edit.json"),
@@ -148,7 +152,7 @@ impl Application {
         };
         let project = self.session.open.as_ref().and_then(|open| open.project.as_deref());
         let is_own = |own: Option<&Path>| own.is_some_and(|own| is_same(own, &path));
-        !matches!(purpose, Purpose::Open | Purpose::LoadCage)
+        !matches!(purpose, Purpose::Open | Purpose::LoadCage | Purpose::AddExample)
             && path.is_file()
             && !is_own(self.path())
             && !is_own(project)
@@ -171,10 +175,14 @@ impl Application {
             },
             FileCommand::SaveProjectAs => self.choose(Purpose::SaveProject),
             FileCommand::ExportEdit => self.choose(Purpose::ExportEdit),
-            FileCommand::LoadCage => match command.unavailable_because(&self.editor) {
-                Some(why) => self.fail(why.to_owned()),
-                None => self.choose(Purpose::LoadCage),
-            },
+            FileCommand::LoadCage | FileCommand::AddExample | FileCommand::AddMorphTarget(_) => {
+                match (command.unavailable_because(&self.editor), command) {
+                    (Some(why), _) => self.fail(why.to_owned()),
+                    (None, FileCommand::LoadCage) => self.choose(Purpose::LoadCage),
+                    (None, FileCommand::AddMorphTarget(target)) => self.load_morph_target(target),
+                    (None, _) => self.choose(Purpose::AddExample),
+                }
+            }
             FileCommand::Palette => self.palette = Some(Palette::default()),
             FileCommand::Panel => self.is_panel_hidden = !self.is_panel_hidden,
             FileCommand::Log => self.log.open = true,
@@ -220,6 +228,54 @@ impl Application {
                 });
                 self.command(Command::BringAttachment(cage));
             }
+            Err(sentence) => self.fail(sentence),
+        }
+    }
+
+    /// Reads a shape of the open file that is to be an example, off the window's thread.
+    pub fn load_example(&mut self, path: PathBuf) {
+        self.read_example(move |loaded| {
+            let displacements = examples::from_file(&path, loaded, &Watch::default())?;
+            Ok(example(
+                &path.file_stem().unwrap_or_default().to_string_lossy(),
+                displacements,
+            ))
+        });
+    }
+
+    /// Reads a morph target of the open file that is to be an example, off the window's thread.
+    fn load_morph_target(&mut self, target: String) {
+        self.read_example(move |loaded| {
+            let displacements = examples::from_morph_target(&target, loaded, &Watch::default())?;
+            Ok(example(&target, displacements))
+        });
+    }
+
+    fn read_example(&mut self, read: impl FnOnce(&Loaded) -> Result<ExampleShape, EngineError> + Send + 'static) {
+        let Some(open) = &self.session.open else { return };
+        let loaded = Arc::clone(&open.loaded);
+        let unread = Arc::clone(&loaded);
+        self.workers.spawn(
+            "example",
+            move || {
+                let shape = read(&loaded).map_err(|error| error.to_string());
+                Message::Example(loaded, shape)
+            },
+            move |sentence| Message::Example(unread.clone(), Err(sentence)),
+        );
+    }
+
+    /// Takes the example that was read, unless another file is open by now.
+    pub(in crate::window) fn take_example(&mut self, of: &Arc<Loaded>, shape: Result<ExampleShape, String>) {
+        let is_open = |open: &OpenFile| Arc::ptr_eq(&open.loaded, of);
+        if !self.session.open.as_ref().is_some_and(is_open) {
+            return;
+        }
+        match shape.map(Command::AddExample) {
+            Ok(command) => match self.editor.unavailable_because(&command).map(Cow::into_owned) {
+                Some(why) => self.fail(why),
+                None => self.command(command),
+            },
             Err(sentence) => self.fail(sentence),
         }
     }
@@ -350,4 +406,11 @@ fn take_plain_key(input: &mut egui::InputState, plain: egui::Key) -> bool {
         !matches!(event, egui::Event::Key { key, pressed: true, modifiers, .. } if *key == plain && modifiers.is_none())
     });
     input.events.len() < before
+}
+
+fn example(name: &str, displacements: Vec<DVec3>) -> ExampleShape {
+    ExampleShape {
+        name: name.to_owned(),
+        displacements: Arc::new(displacements),
+    }
 }

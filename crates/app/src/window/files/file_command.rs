@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use eframe::egui::{Key, KeyboardShortcut, Modifiers};
 use pliant_deform::AttachmentKind;
-use pliant_editor::Editor;
+use pliant_editor::{Editor, WITHOUT_EXAMPLES};
 
 use crate::window::threads::message::{Ground, PictureKind};
 
@@ -29,6 +29,10 @@ pub enum FileCommand {
     ExportEdit,
     /// Take a cage from a file.
     LoadCage,
+    /// Take an example from a file of the same vertices.
+    AddExample,
+    /// Take the file's morph target of this name as an example.
+    AddMorphTarget(String),
     /// Find a command by its name.
     Palette,
     /// Show what was said.
@@ -56,11 +60,16 @@ pub enum FileCommand {
 impl FileCommand {
     /// Why it can't be done now; `None` where it can.
     pub fn unavailable_because(&self, editor: &Editor) -> Option<&'static str> {
-        let takes_cage = || {
-            let attachments = editor.document().method().declaration().attachments;
-            attachments.iter().any(|own| own.kind == AttachmentKind::ControlMesh)
+        let takes = |kind: AttachmentKind| {
+            let mut attachments = editor.document().method().declaration().attachments.iter();
+            attachments.any(|own| own.kind == kind)
         };
-        (*self == Self::LoadCage && !takes_cage()).then_some("The method takes no cage: choose the method Cage first.")
+        match self {
+            Self::LoadCage => (!takes(AttachmentKind::ControlMesh))
+                .then_some("The method takes no cage: choose the method Cage first."),
+            Self::AddExample | Self::AddMorphTarget(_) => (!takes(AttachmentKind::Shapes)).then_some(WITHOUT_EXAMPLES),
+            _ => None,
+        }
     }
 
     /// The ones that have a key.
@@ -94,6 +103,8 @@ impl FileCommand {
             Self::SaveProjectAs
             | Self::SaveMorph
             | Self::LoadCage
+            | Self::AddExample
+            | Self::AddMorphTarget(_)
             | Self::Log
             | Self::Keys
             | Self::Memory
@@ -106,7 +117,7 @@ impl FileCommand {
     }
 
     /// All that need no path, in the order of the menu.
-    pub const LISTED: [Self; 18] = [
+    pub const LISTED: [Self; 19] = [
         Self::Open,
         Self::Save,
         Self::SaveAs,
@@ -115,6 +126,7 @@ impl FileCommand {
         Self::SaveProjectAs,
         Self::ExportEdit,
         Self::LoadCage,
+        Self::AddExample,
         Self::SavePicture(PictureKind {
             scale: 1,
             ground: Ground::AsShown,
@@ -140,6 +152,8 @@ impl FileCommand {
             Self::SaveProject => "Save project",
             Self::SaveProjectAs => "Save project as…",
             Self::LoadCage => "Load cage…",
+            Self::AddExample => "Add example from file…",
+            Self::AddMorphTarget(_) => "Add a morph target",
             Self::Palette => "Find a command…",
             Self::Panel => "Panel",
             Self::Log => "Log…",
@@ -163,6 +177,7 @@ impl FileCommand {
             Self::SaveMorph => "blend shape key gltf glb write file",
             Self::SaveProject | Self::SaveProjectAs => "pliant file document",
             Self::LoadCage => "open import control mesh",
+            Self::AddExample | Self::AddMorphTarget(_) => "open import pose shape blend morph in-between",
             Self::Palette => "palette search",
             Self::Panel => "sidebar show hide full screen",
             Self::Log => "messages errors",

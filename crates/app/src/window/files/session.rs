@@ -42,6 +42,8 @@ pub struct OpenFile {
     pub path: Option<PathBuf>,
     /// The file as stored when it was opened, and its vertex sets: what every save patches.
     pub loaded: Arc<Loaded>,
+    /// The names of its morph targets.
+    pub morph_targets: Vec<String>,
     /// What the renderer takes of it.
     pub drawing: Arc<Drawing>,
     /// Where the mesh as it was read stands now.
@@ -92,6 +94,7 @@ impl Session {
         self.open = Some(OpenFile {
             path: opened.path.clone(),
             loaded: Arc::clone(&opened.loaded),
+            morph_targets: opened.loaded.scene.morph_targets(),
             drawing: Arc::clone(&opened.drawing),
             source: opened.source.clone(),
             project: opened.project.clone(),

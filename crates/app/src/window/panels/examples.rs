@@ -1,22 +1,44 @@
 //! The examples that the method is led by or learns from: a list with a weight each.
 
-use eframe::egui::{self, RichText, Slider, SliderClamping};
+use eframe::egui::{self, RichText, ScrollArea, Slider, SliderClamping};
 use pliant_deform::{AttachmentKind, LARGEST_WEIGHT};
 use pliant_editor::{Command, Editor};
 
+use crate::window::files::file_command::FileCommand;
 use crate::window::widgets::command_button::command_button;
 use crate::window::widgets::name_label::name_label;
 use crate::window::widgets::outbox::Outbox;
 
 /// Shows the list, where the method takes examples.
-pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
+///
+/// `morph_targets` are the names of the file's own.
+pub fn show(ui: &mut egui::Ui, editor: &Editor, morph_targets: &[String], commands: &mut Outbox) {
     let mut declared = editor.document().method().declaration().attachments.iter();
     if !declared.any(|own| own.kind == AttachmentKind::Shapes) {
         return;
     }
-    if command_button(ui, editor, &Command::KeepExample) {
-        commands.push(Command::KeepExample);
-    }
+    ui.horizontal_wrapped(|ui| {
+        if command_button(ui, editor, &Command::KeepExample) {
+            commands.push(Command::KeepExample);
+        }
+        let says = "Takes a shape of the same vertices and triangles as an example: another pose of the same mesh.";
+        if ui.button("Add from file…").on_hover_text(says).clicked() {
+            commands.push_file(FileCommand::AddExample);
+        }
+        if !morph_targets.is_empty() {
+            ui.menu_button(FileCommand::AddMorphTarget(String::new()).name(), |ui| {
+                ScrollArea::vertical().show(ui, |ui| {
+                    for target in morph_targets {
+                        if ui.button(target).clicked() {
+                            commands.push_file(FileCommand::AddMorphTarget(target.clone()));
+                        }
+                    }
+                });
+            })
+            .response
+            .on_hover_text("Takes a morph target of the file as an example.");
+        }
+    });
     let Some(examples) = editor.document().examples() else {
         return;
     };
@@ -29,9 +51,9 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     for (place, (shape, weight)) in examples.shapes.iter().zip(&examples.weights).enumerate() {
         let found = editor.example_weights().get(place).copied();
         ui.push_id(("example", place), |ui| {
-            ui.horizontal(|ui| {
+            let label = ui.horizontal(|ui| {
                 let (label, renamed) = name_label(ui, "the example", place, &shape.name, false);
-                label.on_hover_text("Double-click to rename.");
+                let label = label.on_hover_text("Double-click to rename.").id;
                 if let Some(name) = renamed {
                     commands.push(Command::RenameExample(place, name));
                 }
@@ -47,7 +69,9 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
                 if remove.clicked() {
                     commands.push(Command::RemoveExample(place));
                 }
+                label
             });
+            let label = label.inner;
             let (without, range, says) = match they_bend {
                 true => (0.0, -0.5..=1.5, "0 is rest, 1 is the example, beyond goes on"),
                 false => (
@@ -62,10 +86,9 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
                 .fixed_decimals(2);
             let slider = ui.add_enabled(weight.is_some() || !they_bend, slider);
             let slider = slider
+                .labelled_by(label)
                 .on_hover_text(format!("{says}; double-click the number to type one."))
                 .on_disabled_hover_text("It is found: clear \"found\" to set it.");
-            let value = shown;
-            slider.widget_info(|| egui::WidgetInfo::slider(true, value, format!("Weight of {}", shape.name)));
             commands.adjust(&slider, || {
                 let weight = if shown.is_finite() { shown } else { without };
                 Command::SetExampleWeight(place, Some(weight.clamp(-LARGEST_WEIGHT, LARGEST_WEIGHT)))

@@ -11,8 +11,8 @@ use crate::window::widgets::number_field::number_field;
 use crate::window::widgets::outbox::Outbox;
 use crate::window::widgets::row_label::row_label;
 
-/// Shows the method and its options.
-pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
+/// Shows the method and its options; `morph_targets` are the names of the file's own.
+pub fn show(ui: &mut egui::Ui, editor: &Editor, morph_targets: &[String], commands: &mut Outbox) {
     let method = editor.document().method();
     let declaration = method.declaration();
     ui.horizontal(|ui| {
@@ -33,7 +33,7 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
         commands.push(Command::CompareMethods);
     }
     material::show(ui, editor, commands);
-    examples::show(ui, editor, commands);
+    examples::show(ui, editor, morph_targets, commands);
     control_points(ui, editor, commands);
     options(ui, method, commands);
 }

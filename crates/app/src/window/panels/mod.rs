@@ -32,6 +32,7 @@ pub fn show(
     ui: &mut egui::Ui,
     editor: &Editor,
     notes: &Notes,
+    morph_targets: &[String],
     folded: &BTreeSet<String>,
     commands: &mut Outbox,
 ) -> Option<&'static str> {
@@ -51,7 +52,7 @@ pub fn show(
         }
         section(ui, "Objects", &mut |ui| objects::show(ui, editor, commands));
         section(ui, "Brush", &mut |ui| brush::show(ui, editor, commands));
-        section(ui, "Bending", &mut |ui| bending(ui, editor, commands));
+        section(ui, "Bending", &mut |ui| bending(ui, editor, morph_targets, commands));
         section(ui, "History", &mut |ui| history::show(ui, editor, commands));
         section(ui, "File", &mut |ui| file::show(ui, editor, notes, commands));
     });
@@ -77,8 +78,8 @@ fn section(ui: &mut egui::Ui, title: &str, folded: &BTreeSet<String>, contents: 
     header.header_response.clicked()
 }
 
-fn bending(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
-    method::show(ui, editor, commands);
+fn bending(ui: &mut egui::Ui, editor: &Editor, morph_targets: &[String], commands: &mut Outbox) {
+    method::show(ui, editor, morph_targets, commands);
     loose::show(ui, editor, commands);
     strength::show(ui, editor, commands);
     intersections::show(ui, editor, commands);

@@ -67,6 +67,7 @@ impl Application {
                     }
                 }
                 Message::Cage(mesh) => self.take_cage(mesh),
+                Message::Example(loaded, shape) => self.take_example(&loaded, shape),
                 Message::Folder(folder, contents) => {
                     if let Some(Question::File(_, browser)) = &mut self.question {
                         browser.set_contents(&folder, contents);

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use glam::DVec3;
+use pliant_deform::ExampleShape;
 use pliant_editor::{Beginning, JobDone, Revision, SnapshotKey};
 use pliant_mesh::Cancel;
 use pliant_render::{Materials, Surface};
@@ -33,6 +34,8 @@ pub enum Message {
     Autosaved(SnapshotKey, Result<(), String>),
     /// A cage was read, its vertices and triangles, or why it was not.
     Cage(Result<(Vec<DVec3>, Vec<[u32; 3]>), String>),
+    /// A shape was read that is to be an example for this file, or why it was not.
+    Example(Arc<Loaded>, Result<ExampleShape, String>),
     /// What is in a folder, or why it can't be read.
     Folder(PathBuf, Result<Vec<Entry>, String>),
     /// A person chose a path in a dialog; `None` if they chose none.
@@ -156,6 +159,8 @@ pub enum Purpose {
     ExportEdit,
     /// To take a cage from.
     LoadCage,
+    /// To take an example from.
+    AddExample,
     /// To save a picture of the view under.
     SavePicture(PictureKind),
 }
