@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::DVec3;
 use pliant_deform::Method;
-use pliant_mesh::{Distortion, Model, SurfaceVertex};
+use pliant_mesh::{Distortion, Model, SurfaceVertex, bounding_box};
 
 use super::allowance::Allowance;
 use super::compared::{Binding, Compared, Edit, Figures};
@@ -182,6 +182,7 @@ fn after(binding: Binding, solved: Solved, frame_ms: f64, model: &Model) -> Comp
             frame_ms,
             edge_stretch_mean: distortion.edge_stretch_mean,
             edge_stretch_max: distortion.edge_stretch_max,
+            bounds: bounding_box(model.topology.main_positions(&moved)),
         }
     });
     Compared {

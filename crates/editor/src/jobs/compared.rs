@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex};
 
 use glam::{DAffine3, DVec3};
 use pliant_deform::{Attachment, Bound};
+use pliant_mesh::Bounds;
 
 use super::carried::Carried;
 use crate::document::{Document, HandleId, KeptShape, Versions};
@@ -30,6 +31,8 @@ pub struct Figures {
     pub edge_stretch_mean: f64,
     /// The largest.
     pub edge_stretch_max: f64,
+    /// The box around the shape; `None` of an empty surface.
+    pub bounds: Option<Bounds>,
 }
 
 /// A bound method and where its steps are.

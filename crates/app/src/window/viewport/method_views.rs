@@ -8,6 +8,7 @@ use eframe::egui::{self, Color32, FontId, Pos2, Rect, Sense, Stroke, StrokeKind,
 use glam::{BVec3, DVec2, DVec3};
 use pliant_deform::Method;
 use pliant_editor::{Alternative, Camera, Comparison, Editor, Look, SceneView, Shading};
+use pliant_mesh::Bounds;
 use pliant_render::RenderError;
 
 use super::side_view::SideView;
@@ -91,6 +92,8 @@ impl MethodViews {
         let columns = sheet::columns(self.views.len() as u32, rect.size().into(), CAPTION) as usize;
         let rows = self.views.len().div_ceil(columns);
         let size = vec2(rect.width() / columns as f32, rect.height() / rows as f32);
+        let main = editor.view();
+        let share = share_in_sight(&main, comparison);
         let pairs = self.views.iter_mut().zip(comparison.alternatives());
         for (number, (view, alternative)) in pairs.enumerate() {
             let corner = rect.min + vec2((number % columns) as f32 * size.x, (number / columns) as f32 * size.y);
@@ -100,7 +103,7 @@ impl MethodViews {
                 continue;
             }
             if alternative.refusal.is_none() {
-                shown.again |= draw(ui, picture, view, editor, smooth)?;
+                shown.again |= draw(ui, picture, view, share, editor, smooth)?;
             }
             let is_own = *editor.document().method() == alternative.method;
             caption(ui, cell, picture, alternative, view.problem.as_deref(), is_own);
@@ -112,8 +115,16 @@ impl MethodViews {
     }
 }
 
-/// Draws a method's shape as the main view sees it, without what belongs to the pointer there.
-fn draw(ui: &Ui, rect: Rect, view: &mut SideView, editor: &Editor, smooth: Smoothness) -> Result<bool, RenderError> {
+/// Draws a method's shape as the main view sees it, with this share of its width and height, and without what belongs to
+/// the pointer there.
+fn draw(
+    ui: &Ui,
+    rect: Rect,
+    view: &mut SideView,
+    share: DVec2,
+    editor: &Editor,
+    smooth: Smoothness,
+) -> Result<bool, RenderError> {
     let main = editor.view();
     // Nothing but the shape: it is small enough. Weights are the document's own method's.
     let look = Look {
@@ -128,7 +139,7 @@ fn draw(ui: &Ui, rect: Rect, view: &mut SideView, editor: &Editor, smooth: Smoot
         ..main.look
     };
     let viewport_px = DVec2::new(f64::from(rect.width()), f64::from(rect.height()));
-    let camera = as_wide(main.camera, main.viewport_px, share_of_width(&main), viewport_px);
+    let camera = as_wide(main.camera, main.viewport_px, share, viewport_px);
     let scene = SceneView {
         camera: &camera,
         viewport_px,
@@ -143,32 +154,54 @@ fn draw(ui: &Ui, rect: Rect, view: &mut SideView, editor: &Editor, smooth: Smoot
     view.viewport.paint(ui, rect, &scene, editor, smooth)
 }
 
-/// The camera that shows in `to` at least the middle `share` of the width of what `camera` shows in `from`, and all of
-/// its height, in the same perspective.
-fn as_wide(camera: &Camera, from: DVec2, share: f64, to: DVec2) -> Camera {
-    let wider = ((share * from.x / from.y) / (to.x / to.y)).max(1.0);
+/// The camera that shows in `to` at least the middle `share` of the width and of the height of what `camera` shows in
+/// `from`, in the same perspective.
+fn as_wide(camera: &Camera, from: DVec2, share: DVec2, to: DVec2) -> Camera {
+    let wider = ((share.x * from.x / from.y) / (to.x / to.y)).max(share.y);
     Camera {
         fov_y_rad: 2.0 * ((0.5 * camera.fov_y_rad).tan() * wider).atan(),
         ..*camera
     }
 }
 
-/// The share of the main view's width, about its middle, that holds what is seen of the model there.
-fn share_of_width(main: &SceneView<'_>) -> f64 {
-    let size_px = main.viewport_px;
+/// The share of the main view's width and height, about its middle, that the small views show: all of its height at
+/// least, and in width what holds every method's shape. Where a person sees all of the model, that is more than the main
+/// view's where a method has bent its shape beyond it; where a person has come nearer, the main view's is the most.
+fn share_in_sight(main: &SceneView<'_>, comparison: &Comparison) -> DVec2 {
     let bounds = main.model.and_then(|model| model.bounds());
-    let shares = bounds.into_iter().flat_map(|bounds| {
-        let corner = move |number: u32| {
+    let figures = comparison
+        .alternatives()
+        .iter()
+        .filter_map(|alternative| alternative.figures);
+    let bent = figures.filter_map(|figures| figures.bounds);
+    let at_rest = reach(main.camera, main.viewport_px, bounds);
+    let most = if at_rest.max_element() <= 1.0 { FARTHEST } else { 1.0 };
+    let all = reach(main.camera, main.viewport_px, bounds.into_iter().chain(bent));
+    // With a little room at the sides, and above and below what the main view does not show.
+    let height = if all.y > 1.0 { ROOM * all.y } else { 1.0 };
+    DVec2::new((ROOM * all.x).clamp(0.2, most), height.min(most))
+}
+
+/// The room around a shape, as a factor of what it takes.
+const ROOM: f64 = 1.1;
+
+/// A small view shows at most so many times what the main view does: a shape that some method has thrown far away does
+/// not make all the others dots.
+const FARTHEST: f64 = 3.0;
+
+/// How far boxes reach from the middle of a view to its edges, the edges being at 1; 1 where a corner is behind the eye.
+fn reach(camera: &Camera, size_px: DVec2, boxes: impl IntoIterator<Item = Bounds>) -> DVec2 {
+    let corners = boxes.into_iter().flat_map(|bounds| {
+        (0..8).map(move |number: u32| {
             let is_high = [0, 1, 2].map(|axis| number >> axis & 1 == 1);
             DVec3::select(BVec3::from_array(is_high), bounds.max, bounds.min)
-        };
-        (0..8).map(move |number| {
-            let seen = main.camera.project(corner(number), size_px);
-            seen.map_or(1.0, |at_px| (2.0 * at_px.x / size_px.x - 1.0).abs())
         })
     });
-    // With a little room at both sides.
-    (1.1 * shares.fold(0.0, f64::max)).clamp(0.2, 1.0)
+    let reached = corners.map(|corner| {
+        let seen = camera.project(corner, size_px);
+        seen.map_or(DVec2::ONE, |at_px| (2.0 * at_px / size_px - DVec2::ONE).abs())
+    });
+    reached.fold(DVec2::ZERO, DVec2::max)
 }
 
 /// Writes a method's name and figures beneath its picture, or why there is none in the picture's place.
@@ -233,9 +266,29 @@ mod tests {
         let (main, cell) = (DVec2::new(1200.0, 700.0), DVec2::new(150.0, 200.0));
         let width = |camera: &Camera, size: DVec2| (0.5 * camera.fov_y_rad).tan() * size.x / size.y;
         for share in [0.5, 1.0] {
+            let share = DVec2::new(share, 1.0);
             let narrow = as_wide(&camera, main, share, cell);
-            assert!((width(&narrow, cell) - share * width(&camera, main)).abs() < 1e-12);
+            assert!((width(&narrow, cell) - share.x * width(&camera, main)).abs() < 1e-12);
             assert_eq!(as_wide(&camera, cell, share, main).fov_y_rad, camera.fov_y_rad);
+        }
+    }
+
+    #[test]
+    fn a_box_that_reaches_beyond_the_view_is_in_sight_of_a_camera_with_its_share() {
+        let camera = Camera::default();
+        let size_px = DVec2::new(1200.0, 700.0);
+        let middle = camera.target;
+        let half = DVec3::new(2.0, 0.1, 0.1) * camera.distance;
+        let far = Bounds {
+            min: middle - half,
+            max: middle + half,
+        };
+        let before = reach(&camera, size_px, [far]);
+        assert!(before.x > 1.0, "{before}");
+        let share = before * ROOM;
+        for cell in [DVec2::new(150.0, 200.0), DVec2::new(400.0, 120.0)] {
+            let after = reach(&as_wide(&camera, size_px, share, cell), cell, [far]);
+            assert!(after.max_element() <= 1.0, "{after}");
         }
     }
 }
