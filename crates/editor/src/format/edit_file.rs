@@ -60,7 +60,7 @@ pub struct EditFile {
     /// The shape that was seen when what holds the surface changed or it was corrected by hand, with the handles, by
     /// their place in the list, as they stood then: it is carried along from there.
     pub kept: Option<StoredKept>,
-    /// How much of the edit is made, in [`STRENGTH_RANGE`]: handles, control points and weights that bend the surface
+    /// How much of the edit is made, in 0 to 1: handles, control points and weights that bend the surface
     /// go this share of their way ([`HandleTransform::part`]).
     pub strength: f64,
 }
