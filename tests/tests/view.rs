@@ -53,7 +53,11 @@ fn ids(renderer: &mut Renderer, model: &Model, displacements: &[DVec3], camera: 
         .unwrap();
     let [width, height] = SIZE_PX;
     let frame = Frame {
-        view: &drawing::view(camera, DVec2::new(f64::from(width), f64::from(height)), drawing.centre()),
+        view: &drawing::view(
+            camera,
+            DVec2::new(f64::from(width), f64::from(height)),
+            drawing.centre(),
+        ),
         style: &drawing::style(&Look::default(), 1.0),
         surfaces: &[&surface],
         grid: None,
