@@ -27,9 +27,6 @@ pub(crate) struct Factor {
     pub(super) numbers: Vec<Numbers>,
 }
 
-/// The rows that each part of the assembly tree works on while K right-hand sides are solved for.
-pub(crate) type PartRows<const K: usize> = Vec<Vec<[f64; K]>>;
-
 /// Shifts of the unit diagonal that are tried one after the other for a preconditioner.
 const SHIFTS: [f64; 6] = [0.0, 1e-13, 1e-11, 1e-9, 1e-7, 1e-5];
 

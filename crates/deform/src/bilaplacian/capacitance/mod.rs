@@ -31,8 +31,8 @@ use self::rows::CapacitanceRows;
 use crate::bilaplacian::operator::BilaplacianOperator;
 use crate::budget::{Budget, bytes_of};
 use crate::operators::CHUNK;
-use crate::sparse::cholesky::PartRows;
 use crate::sparse::refactorisation::RenewableFactor;
+use crate::sparse::solve::PartRows;
 
 /// The most times that a solve applies S.
 const ROUNDS: usize = 100;

@@ -14,7 +14,6 @@ use std::sync::{Mutex, PoisonError};
 
 use pliant_mesh::vectors;
 
-use crate::sparse::cholesky::PartRows;
 use crate::sparse::numeric::Numbers;
 use crate::sparse::numeric::line::{LANES, Line, Shape};
 use crate::sparse::solve::kernels::{Backward, Forward, Strip};
@@ -42,6 +41,9 @@ impl<const K: usize> Room<K> {
         }
     }
 }
+
+/// The rows that each part of the assembly tree works on while K right-hand sides are solved for.
+pub(crate) type PartRows<const K: usize> = Vec<Vec<[f64; K]>>;
 
 /// Solves L Lᵀ x = b in place; `x` has one row per column of the factor. In parts that are not wanted it
 /// is left half solved; those above a wanted part are to be wanted, too. `part_rows` is scratch memory.
