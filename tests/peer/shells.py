@@ -1,4 +1,5 @@
-"""Discrete shells by direct Gauss-Newton with scipy and libigl, timed: edges' lengths and the angles between triangles.
+"""Discrete shells by direct Gauss-Newton with scipy and libigl, timed: edges' lengths, the angles between triangles and
+their areas.
 
 usage: shells.py MESH.off
   MESH.off   with MESH.sel and MESH.def beside it (the survey's), or else the edit that all peers are timed on (arap.py)
@@ -25,12 +26,12 @@ from scipy.spatial.transform import Rotation
 from arap import edit, read_off
 
 NONE = np.zeros(0, dtype=np.int64)
-STRETCHING, BENDING = 1.0, 1e-4
+STRETCHING, BENDING, AREA = 1.0, 1e-4, 0.125
 TOLERANCE, MOST_STEPS = 1e-7, 40
 
 
 class Shells:
-    """The residuals of a mesh: sqrt(weight) (length - rest), sqrt(weight) (angle - rest)."""
+    """The residuals of a mesh: sqrt(weight) (length - rest), and the same for angles and areas."""
 
     def __init__(self, vertices, faces, free):
         self.place = np.full(len(vertices), -1)
@@ -63,9 +64,19 @@ class Shells:
         squares = ((vertices[b] - vertices[a]) ** 2).sum(1)
         self.hinge_weights = np.sqrt(BENDING * diagonal**2 * squares / np.array(hinge_areas))
         self.angles = self.angle(vertices)
+        self.faces = faces[is_free[faces].any(1)]
+        self.areas = self.face_area(vertices)
+        self.face_weights = np.sqrt(AREA * STRETCHING / self.areas)
 
     def length(self, x):
         return np.linalg.norm(x[self.edges[:, 1]] - x[self.edges[:, 0]], axis=1)
+
+    def face_normals(self, x):
+        a, b, c = (x[self.faces[:, k]] for k in range(3))
+        return np.cross(b - a, c - a)
+
+    def face_area(self, x):
+        return 0.5 * np.linalg.norm(self.face_normals(x), axis=1)
 
     def normals(self, x):
         a, b, c, d = (x[self.hinges[:, k]] for k in range(4))
@@ -82,7 +93,8 @@ class Shells:
         angles += 2 * np.pi * np.round((near - angles) / (2 * np.pi))
         stretched = self.edge_weights * (self.length(x) - self.lengths)
         bent = self.hinge_weights * (angles - self.angles)
-        return np.concatenate([stretched, bent]), angles
+        grown = self.face_weights * (self.face_area(x) - self.areas)
+        return np.concatenate([stretched, bent, grown]), angles
 
     def jacobian(self, x):
         along = x[self.edges[:, 1]] - x[self.edges[:, 0]]
@@ -94,9 +106,15 @@ class Shells:
         s, t = ((ca * edge).sum(1) / square)[:, None], ((da * edge).sum(1) / square)[:, None]
         slopes = np.stack([u * (1 - s) + v * (1 - t), u * s + v * t, -u, -v], axis=1)
         slopes *= self.hinge_weights[:, None, None]
+        normals = self.face_normals(x)
+        normals *= (0.5 * self.face_weights / np.linalg.norm(normals, axis=1))[:, None]
+        at = x[self.faces]
+        growing = np.cross(normals[:, None], at[:, [2, 0, 1]] - at[:, [1, 2, 0]])
+        hinges = len(self.edges) + len(self.hinges)
         rows, columns, values = [], [], []
         for first, corners, gradients in ((0, self.edges, np.stack([-along, along], axis=1)),
-                                          (len(self.edges), self.hinges, slopes)):
+                                          (len(self.edges), self.hinges, slopes),
+                                          (hinges, self.faces, growing)):
             for corner in range(corners.shape[1]):
                 place = self.place[corners[:, corner]]
                 own = np.flatnonzero(place >= 0)
@@ -104,7 +122,7 @@ class Shells:
                     rows.append(first + own)
                     columns.append(3 * place[own] + axis)
                     values.append(gradients[own, corner, axis])
-        shape = (len(self.edges) + len(self.hinges), 3 * len(self.free))
+        shape = (hinges + len(self.faces), 3 * len(self.free))
         return sp.csr_matrix((np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))), shape)
 
 

@@ -25,9 +25,9 @@ pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     attachments: &[AttachmentDeclaration {
         name: EXAMPLES,
         title: "examples",
-        help: "further shapes of the same vertices and triangles, which say what lengths, angles and volumes the surface \
-               may have: a list with the `file` or the `morph_target` of each and its `weight`, 0 for rest and 1 for the \
-               example; a weight that is left out is found",
+        help: "further shapes of the same vertices and triangles, which say what lengths, angles, areas and volumes the \
+               surface may have: a list with the `file` or the `morph_target` of each and its `weight`, 0 for rest and \
+               1 for the example; a weight that is left out is found",
         kind: AttachmentKind::Shapes,
     }],
     heeds: &[ConstraintKind::SoftHandles, ConstraintKind::Stiffness],

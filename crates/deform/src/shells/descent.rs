@@ -1,10 +1,9 @@
 //! One quasi-Newton step with a line search: Gauss–Newton, corrected by what the last steps told of the curvature that
 //! JᵀJ leaves out.
 //!
-//! Where a surface buckles, the residuals stay large and their own curvature counts: on the bar and the cylinder of
-//! [BS08] the energy was within 1% of its value after 500 steps in 0.2 s, and hundreds of steps followed that gained
-//! little each. A matrix with the edges' tension, and one with as much of all residuals' own curvature as left it positive
-//! definite, took as many.
+//! By lengths and angles alone the bar and the cylinder of [BS08] had not converged after 500 steps: triangles with
+//! compressed edges lost their area, and the angle's gradient grows without bound where a triangle's height vanishes. With
+//! areas they converge from rest in 9 and 12 steps.
 
 use super::shape::{Energy, Slopes};
 use super::system::System;

@@ -1,9 +1,9 @@
-//! The edges and hinges that the solved vertices take part in, numbered for the solver.
+//! The edges, hinges and triangles that the solved vertices take part in, numbered for the solver.
 //!
 //! Local vertices are first the solved ones, in the order of elimination, then all others that an edge or a hinge needs.
 
 use glam::DVec3;
-use pliant_mesh::{Cancel, Surface, SurfaceVertex};
+use pliant_mesh::{Cancel, Surface, SurfaceVertex, face_area};
 use rayon::prelude::*;
 
 use super::Shells;
@@ -17,8 +17,12 @@ use crate::{BindError, Problem};
 /// No local vertex.
 pub(super) const ABSENT: u32 = u32::MAX;
 
+/// k_a, in units of `stretching`. Without it a triangle whose edges are compressed gives way within its plane until it has
+/// no area; with more, the surface would narrow more where it is stretched.
+const AREA: f64 = 0.125;
+
 /// An edge counts as at least this share of the longest one of its triangles, so that one without a length resists
-/// stretching firmly, but not beyond what can be computed.
+/// stretching firmly, but not beyond what can be computed; a triangle as at least this share of that edge's square.
 const LENGTH_FLOOR: f64 = 1e-2;
 
 /// Triangles that are lower than this share of their edge hold the hinge there less firmly, by the square: their angle
@@ -39,6 +43,7 @@ pub(super) struct Elements {
     pub rest: Vec<DVec3>,
     pub edges: Vec<Edge>,
     pub hinges: Vec<Hinge>,
+    pub faces: Vec<Face>,
     /// The area that the edges stand for, in squared world units.
     pub area: f64,
     /// Triangles that are too flat to have an angle with others.
@@ -62,6 +67,14 @@ pub(super) struct Hinge {
     pub weight: f64,
 }
 
+/// A triangle: ½ weight (A − area)².
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Face {
+    pub corners: [u32; 3],
+    pub area: f64,
+    pub weight: f64,
+}
+
 /// A side of a triangle: the edge's lower vertex, its higher one, and the triangle.
 type Side = (u32, u32, u32);
 
@@ -70,6 +83,7 @@ type Side = (u32, u32, u32);
 struct Collected {
     edges: Vec<Edge>,
     hinges: Vec<Hinge>,
+    faces: Vec<Face>,
     area: f64,
     flat: Vec<u32>,
 }
@@ -115,9 +129,14 @@ impl Elements {
             .hinges
             .iter_mut()
             .for_each(|hinge| hinge.corners.iter_mut().for_each(&mut numbered));
+        found
+            .faces
+            .iter_mut()
+            .for_each(|face| face.corners.iter_mut().for_each(&mut numbered));
         // Neighbours in the numbering are neighbours in memory.
         found.edges.par_sort_unstable_by_key(|edge| edge.ends);
         found.hinges.par_sort_unstable_by_key(|hinge| hinge.corners);
+        found.faces.par_sort_unstable_by_key(|face| face.corners);
         found.flat.sort_unstable();
         found.flat.dedup();
         let elements = Self {
@@ -129,6 +148,7 @@ impl Elements {
             solved_count: solved.len(),
             edges: found.edges,
             hinges: found.hinges,
+            faces: found.faces,
             area: found.area,
             flat_faces: found.flat.len(),
         };
@@ -190,6 +210,12 @@ fn collected(problem: &Problem, options: &Shells, number: &[u32], world_origin: 
         }
         material.add_hinges(group, &is_solved, &mut found);
     }
+    for (face, corners) in (0..).zip(&surface.triangles) {
+        let corners = corners.map(|corner| corner.0);
+        if corners.into_iter().any(is_solved) {
+            material.add_face(face, corners, &mut found);
+        }
+    }
     found
 }
 
@@ -227,6 +253,17 @@ impl Material<'_> {
                 length,
                 weight: self.stretching * self.stiffness(a, b) * share / (floored * floored),
             });
+        }
+    }
+
+    fn add_face(&self, number: u32, corners: [u32; 3], found: &mut Collected) {
+        // As the energy measures it, so that it is zero at rest to the last bit.
+        let area = face_area(corners.map(|corner| self.at(corner)));
+        let floored = area.max(LENGTH_FLOOR * self.longest(number).powi(2));
+        if area > 0.0 {
+            let [a, b, c] = corners.map(|corner| self.stiffness[corner as usize]);
+            let weight = AREA * self.stretching * (a + b + c) / 3.0 * area / (floored * floored);
+            found.faces.push(Face { corners, area, weight });
         }
     }
 

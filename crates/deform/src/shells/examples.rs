@@ -1,9 +1,9 @@
-//! Examples: further shapes that say what lengths, angles and volumes the surface may have [FB11].
+//! Examples: further shapes that say what lengths, angles, areas and volumes the surface may have [FB11].
 //!
-//! With the weights w the energy's targets are l*(w) = l̄ + Σ_k w_k (l_k − l̄), and the same for angles and volumes. An
-//! angle's difference is the one of at most half a turn. Weights are given or free. The residuals are linear in the free
-//! ones, so those that are best for a shape come from a small dense system, and the energy is a function of the shape
-//! alone (variable projection [GP73]):
+//! With the weights w the energy's targets are l*(w) = l̄ + Σ_k w_k (l_k − l̄), and the same for angles, areas and
+//! volumes. An angle's difference is the one of at most half a turn. Weights are given or free. The residuals are linear
+//! in the free ones, so those that are best for a shape come from a small dense system, and the energy is a function of
+//! the shape alone (variable projection [GP73]):
 //!
 //! E(x) = min_w ½ Σ_i W_i (v_i(x) − v̄_i − Σ_k w_k Δ_ik)² + ½ ε Σ_k G_kk w_k²,  G_kl = Σ_i W_i Δ_ik Δ_il.
 //!
@@ -12,9 +12,10 @@
 
 use faer::Mat;
 use glam::DVec3;
+use pliant_mesh::face_area;
 use rayon::prelude::*;
 
-use super::elements::{Edge, Elements, Hinge};
+use super::elements::{Edge, Elements, Face, Hinge};
 use super::enclosed::Enclosed;
 use super::hinge::{angle_rad, unwrapped};
 use crate::numerical::dense::{Lu, solved};
@@ -24,8 +25,8 @@ use crate::operators::CHUNK;
 /// ε.
 const MILD: f64 = 1e-6;
 
-/// The examples, as far as the energy sees them. Tables have a row for each edge, hinge or component, with one entry an
-/// example.
+/// The examples, as far as the energy sees them. Tables have a row for each edge, hinge, triangle or component, with one
+/// entry an example.
 #[derive(Debug, Default)]
 pub(super) struct Examples {
     /// Of each example: how far its local vertices are from rest.
@@ -33,6 +34,7 @@ pub(super) struct Examples {
     /// Δ.
     lengths: Vec<f64>,
     angles_rad: Vec<f64>,
+    areas: Vec<f64>,
     volumes: Vec<f64>,
     /// G, row by row.
     products: Vec<f64>,
@@ -73,6 +75,14 @@ impl Examples {
             let turned = |own: &Vec<DVec3>| unwrapped(angle_rad(corners.map(|corner| places(own, corner))) - rest, 0.0);
             angles_rad.extend(displacements.iter().map(turned));
         }
+        let mut areas = Vec::with_capacity(elements.faces.len() * shapes.len());
+        for Face {
+            corners, area: rest, ..
+        } in &elements.faces
+        {
+            let grown = |own: &Vec<DVec3>| face_area(corners.map(|corner| places(own, corner))) - rest;
+            areas.extend(displacements.iter().map(grown));
+        }
         let mut volumes = Vec::new();
         for part in &enclosed.parts {
             let swollen = |own: &Vec<DVec3>| part.volume_at(&|local| places(own, local)) - part.volume;
@@ -82,6 +92,7 @@ impl Examples {
             displacements,
             lengths,
             angles_rad,
+            areas,
             volumes,
             products: Vec::new(),
             given: Vec::new(),
@@ -94,6 +105,7 @@ impl Examples {
                 enclosed,
                 &|edge| examples.lengths[edge * shapes.len() + other],
                 &|hinge| examples.angles_rad[hinge * shapes.len() + other],
+                &|face| examples.areas[face * shapes.len() + other],
                 &|part| examples.volumes[part * shapes.len() + other],
             ));
         }
@@ -101,8 +113,8 @@ impl Examples {
         examples
     }
 
-    /// Bytes of each local vertex for each example, with its edges, hinges and column.
-    pub const ROW: usize = 24 + 6 * 8 + 2 * 24 + 56;
+    /// Bytes of each local vertex for each example, with its edges, hinges, triangles and column.
+    pub const ROW: usize = 24 + 8 * 8 + 2 * 24 + 56;
 
     pub fn count(&self) -> usize {
         self.displacements.len()
@@ -156,15 +168,21 @@ impl Examples {
         blended(&self.angles_rad, hinge, weights)
     }
 
+    /// A* − Ā of a triangle.
+    pub fn area(&self, face: usize, weights: &[f64]) -> f64 {
+        blended(&self.areas, face, weights)
+    }
+
     /// V* − V̄ of a closed component.
     pub fn volume(&self, part: usize, weights: &[f64]) -> f64 {
         blended(&self.volumes, part, weights)
     }
 
-    /// Δ of an example at an edge, a hinge and a closed component.
-    pub fn differences(&self, example: usize) -> [impl Fn(usize) -> f64 + Sync + '_; 3] {
+    /// Δ of an example at an edge, a hinge, a triangle and a closed component.
+    pub fn differences(&self, example: usize) -> [impl Fn(usize) -> f64 + Sync + '_; 4] {
         let count = self.count();
-        [&self.lengths, &self.angles_rad, &self.volumes].map(|rows| move |place: usize| rows[place * count + example])
+        [&self.lengths, &self.angles_rad, &self.areas, &self.volumes]
+            .map(|rows| move |place: usize| rows[place * count + example])
     }
 
     /// ½ ε Σ G_kk w_k² over the free weights.
@@ -196,6 +214,12 @@ impl Examples {
                 at(a).distance(at(b)) - length
             },
             &|hinge| angles_rad[hinge] - elements.hinges[hinge].angle_rad,
+            &|face| {
+                let Face {
+                    corners, area: rest, ..
+                } = elements.faces[face];
+                face_area(corners.map(at)) - rest
+            },
             &|part| enclosed.parts[part].volume_at(&at) - enclosed.parts[part].volume,
         );
         let right = Mat::from_fn(self.free.len(), 1, |row, _| {
@@ -209,13 +233,14 @@ impl Examples {
         }
     }
 
-    /// Σ_i W_i Δ_ik v_i for each example k, of values v of the edges, hinges and components.
+    /// Σ_i W_i Δ_ik v_i for each example k, of values v of the edges, hinges, triangles and components.
     fn moments(
         &self,
         elements: &Elements,
         enclosed: &Enclosed,
         of_edge: &(impl Fn(usize) -> f64 + Sync),
         of_hinge: &(impl Fn(usize) -> f64 + Sync),
+        of_face: &(impl Fn(usize) -> f64 + Sync),
         of_part: &impl Fn(usize) -> f64,
     ) -> Vec<f64> {
         let mut sums = vec![0.0; self.count()];
@@ -245,6 +270,8 @@ impl Examples {
             &self.angles_rad,
             hinges.len(),
         );
+        let faces = &elements.faces;
+        add(&|face| faces[face].weight * of_face(face), &self.areas, faces.len());
         for (number, part) in enclosed.parts.iter().enumerate() {
             let value = part.weight * of_part(number);
             let row = &self.volumes[number * self.count()..(number + 1) * self.count()];

@@ -61,7 +61,7 @@ impl Leaning {
 /// The column of C of a free example: how the energy's gradient changes with its weight, but for the sign.
 fn column(energy: &Energy, slopes: &Slopes, example: usize) -> Field {
     let elements = &energy.elements;
-    let [length, angle_rad, volume] = energy.examples.differences(example);
+    let [length, angle_rad, area, volume] = energy.examples.differences(example);
     let mut column: Field = (0..elements.solved_count)
         .into_par_iter()
         .with_min_len(CHUNK)
@@ -76,6 +76,10 @@ fn column(energy: &Energy, slopes: &Slopes, example: usize) -> Field {
                 let (place, corner) = (entry as usize / 4, entry as usize % 4);
                 let turn = elements.hinges[place].weight * angle_rad(place);
                 sum += slopes.hinges[place][corner] * turn;
+            }
+            for &entry in energy.faces_at(vertex) {
+                let (place, corner) = (entry as usize / 4, entry as usize % 4);
+                sum += slopes.faces[place][corner] * (elements.faces[place].weight * area(place));
             }
             sum.to_array()
         })

@@ -1,13 +1,16 @@
-//! Discrete shells [GHDS03]: a surface keeps the lengths of its edges, the angles at them and, if wished, the volume
-//! that it encloses. Minimised by Gauss–Newton as in [FB11].
+//! Discrete shells [GHDS03]: a surface keeps the lengths of its edges, the angles at them, a little of its triangles'
+//! areas and, if wished, the volume that it encloses. Minimised by Gauss–Newton as in [FB11].
 //!
-//! E = ½ Σ_e k_s s_e A_e (l_e / l̄_e − 1)² + ½ Σ_e k_b D² s_e (l̄_e² / A_e) (θ_e − θ̄_e)² + ½ Σ_c k_v A_c (V_c / V̄_c − 1)²
+//! E = ½ Σ_e k_s s_e A_e (l_e / l̄_e − 1)² + ½ Σ_t k_a k_s s_t Ā_t (A_t / Ā_t − 1)²
+//!   + ½ Σ_e k_b D² s_e (l̄_e² / A_e) (θ_e − θ̄_e)² + ½ Σ_c k_v A_c (V_c / V̄_c − 1)²
 //!
-//! over the edges e and the closed components c: l is an edge's length, θ the angle between the normals of its two
-//! triangles, V a component's volume, and the bar marks the rest shape. A_e is a third of the areas of the edge's
-//! triangles, as in [GHDS03] and [SHHR20], so that the energy hardly depends on the mesh; A_c is a component's area, D the
-//! model's diagonal and s_e the mean of the painted stiffness of the edge's ends. k_s, k_b and k_v are the options
-//! `stretching`, `bending` and `volume`.
+//! over the edges e, the triangles t and the closed components c: l is an edge's length, θ the angle between the normals
+//! of its two triangles, A_t a triangle's area, V a component's volume, and the bar marks the rest shape. A_e is a third
+//! of the areas of the edge's triangles, as in [GHDS03] and [SHHR20], so that the energy hardly depends on the mesh; A_c is
+//! a component's area, D the model's diagonal, and s_e and s_t are the means of the painted stiffness of the edge's ends
+//! and the triangle's corners. k_s, k_b and k_v are the options `stretching`, `bending` and `volume`. k_a = 1/8: [FB11]
+//! leaves out the areas of [GHDS03], but edges alone are a truss, in which triangles that are compressed give way within
+//! their plane until they have no area.
 //!
 //! The angle is followed from step to step (`hinge`), so that it does not jump where a fold passes half a turn and a
 //! surface that went through itself finds back. An edge at a border has no angle. Where more than two triangles meet at
@@ -19,13 +22,14 @@
 //! Morrison, component by component, since components do not meet in the matrix. A line search on the true energy ends
 //! each step, so it never rises; where no length lowers it, the diagonal is raised [NW06, section 10.3].
 //!
-//! Examples lead the targets l̄, θ̄ and V̄ by weights that are given or found (`examples`, `leaning`). Where they alone move a part,
-//! `frames` says where it stands.
+//! Examples lead the targets l̄, θ̄, Ā and V̄ by weights that are given or found (`examples`, `leaning`). Where they alone
+//! move a part, `frames` says where it stands.
 //!
-//! Parts: `elements` are the edges and hinges, `hinge` the angle and its gradient, `enclosed` the volumes, `springs` the
-//! soft handles, `shape` where the vertices are and their energy, `system` the matrix, `unfolded` a quadratic energy that
-//! gives the handles' weights, `start` chooses where to begin, `blended` is the start for examples, and `descent` takes a step. A
-//! large surface has a `coarse` level that takes the `lead`; `carry` brings over what it does.
+//! Parts: `elements` are the edges, hinges and triangles, `hinge` the angle and its gradient, `face` the area's gradient,
+//! `enclosed` the volumes, `springs` the soft handles, `shape` where the vertices are and their energy, `system` the
+//! matrix, `unfolded` a quadratic energy that gives the handles' weights, `start` chooses where to begin, `blended` is the
+//! start for examples, and `descent` takes a step. A large surface has a `coarse` level that takes the `lead`; `carry`
+//! brings over what it does.
 
 mod blended;
 mod carry;
@@ -35,6 +39,7 @@ mod descent;
 mod elements;
 mod enclosed;
 mod examples;
+mod face;
 mod frames;
 mod hinge;
 mod lead;
@@ -164,6 +169,7 @@ impl ShellsSolver {
         let examples = energy.examples.count();
         let row = examples * Examples::ROW + if is_led { LED_ROW } else { 0 };
         let kept = bytes_of(elements.hinges.len(), size_of::<[DVec3; 4]>())
+            .saturating_add(bytes_of(elements.faces.len(), size_of::<[DVec3; 3]>()))
             .saturating_add(bytes_of(elements.solved_count, row));
         let budget = partition.budget.without(kept);
         let budget = budget.map_err(|limit| BindError::budget(free_count, limit))?;

@@ -1,12 +1,14 @@
 //! Where the vertices are, the energy there, and its gradient.
 
 use glam::DVec3;
+use pliant_mesh::face_area;
 use rayon::prelude::*;
 
 use super::Shells;
-use super::elements::{Edge, Elements, Hinge};
+use super::elements::{Edge, Elements, Face, Hinge};
 use super::enclosed::Enclosed;
 use super::examples::Examples;
+use super::face;
 use super::frames::Frame;
 use super::hinge;
 use super::springs::Springs;
@@ -61,6 +63,8 @@ pub(super) struct Energy {
     edges_at: Rows,
     /// Of each solved vertex: its hinges, four times, plus which corner it is.
     hinges_at: Rows,
+    /// Of each solved vertex: its triangles, four times, plus which corner it is.
+    faces_at: Rows,
 }
 
 /// Lists by solved vertex.
@@ -77,6 +81,8 @@ pub(super) struct Slopes {
     pub edges: Vec<DVec3>,
     /// Of each hinge at its corners.
     pub hinges: Vec<[DVec3; 4]>,
+    /// Of each triangle at its corners.
+    pub faces: Vec<[DVec3; 3]>,
     /// Of each solved vertex: that of its component's volume; empty if none counts.
     pub volume: Field,
     /// Of the energy at the solved vertices.
@@ -126,7 +132,12 @@ impl Energy {
         let corners = corners.flat_map(|(hinge, Hinge { corners, .. })| {
             [0, 1, 2, 3].map(|corner| (corners[corner as usize], 4 * hinge + corner))
         });
+        let of_faces = (0..).zip(&elements.faces);
+        let of_faces = of_faces.flat_map(|(face, Face { corners, .. })| {
+            [0, 1, 2].map(|corner| (corners[corner as usize], 4 * face + corner))
+        });
         Self {
+            faces_at: Rows::of(count, of_faces),
             edges_at: Rows::of(count, ends),
             hinges_at: Rows::of(count, corners),
             enclosed,
@@ -184,6 +195,11 @@ impl Energy {
         self.hinges_at.at(vertex)
     }
 
+    /// The triangles that a solved vertex is a corner of, four times, plus which corner it is.
+    pub fn faces_at(&self, vertex: usize) -> &[u32] {
+        self.faces_at.at(vertex)
+    }
+
     /// What is added to a matrix' diagonal at a solved vertex: the springs, and the inertia of what nothing holds.
     pub fn on_diagonal(&self) -> impl Iterator<Item = (u32, f64)> + '_ {
         let springs = self.springs.all().iter().map(|spring| (spring.local, spring.strength));
@@ -208,6 +224,10 @@ impl Energy {
         let mut energy = partial_sums(&elements.edges, |place, edge| {
             let [a, b] = edge.ends.map(at);
             edge.weight * (a.distance(b) - edge.length - examples.length(place, weights)).powi(2)
+        });
+        energy += partial_sums(&elements.faces, |place, own| {
+            let area = face_area(own.corners.map(at));
+            own.weight * (area - own.area - examples.area(place, weights)).powi(2)
         });
         let bent: Vec<f64> = shape
             .angles_rad
@@ -252,7 +272,7 @@ impl Energy {
             let [a, b] = edge.ends.map(at);
             (b - a).try_normalize().unwrap_or_default()
         };
-        let (edges, hinges) = (&elements.edges, &elements.hinges);
+        let (edges, hinges, faces) = (&elements.edges, &elements.hinges, &elements.faces);
         edges
             .par_iter()
             .with_min_len(CHUNK)
@@ -264,6 +284,12 @@ impl Energy {
             .with_min_len(CHUNK)
             .map(turning)
             .collect_into_vec(&mut slopes.hinges);
+        let growing = |own: &Face| face::gradient(own.corners.map(at));
+        faces
+            .par_iter()
+            .with_min_len(CHUNK)
+            .map(growing)
+            .collect_into_vec(&mut slopes.faces);
         slopes.volume.clear();
         let mut pressures = vec![];
         if !self.enclosed.parts.is_empty() {
@@ -273,7 +299,7 @@ impl Energy {
             part.add_gradient(&at, &mut slopes.volume);
             pressures.push(part.weight * (part.volume_at(&at) - part.volume - examples.volume(number, weights)));
         }
-        let (along, turning) = (&slopes.edges, &slopes.hinges);
+        let (along, turning, growing) = (&slopes.edges, &slopes.hinges, &slopes.faces);
         (0..elements.solved_count)
             .into_par_iter()
             .with_min_len(CHUNK)
@@ -292,6 +318,12 @@ impl Energy {
                     let hinge = &hinges[place];
                     let bent = shape.angles_rad[place] - hinge.angle_rad - examples.angle_rad(place, weights);
                     sum += turning[place][corner] * (hinge.weight * bent);
+                }
+                for &entry in self.faces_at(vertex) {
+                    let (place, corner) = (entry as usize / 4, entry as usize % 4);
+                    let own = &faces[place];
+                    let grown = face_area(own.corners.map(at)) - own.area - examples.area(place, weights);
+                    sum += growing[place][corner] * (own.weight * grown);
                 }
                 sum.to_array()
             })

@@ -1,8 +1,8 @@
 //! The matrix JᵀJ of the residuals, whose pattern is analysed once.
 //!
-//! A column's rows are the vertices that share an edge or a hinge with its own. Volumes are left out of it: their
-//! gradients g enter the solution by the formula of Sherman and Morrison, (K + w g gᵀ)⁻¹ b = y − z w gᵀy / (1 + w gᵀz)
-//! with y = K⁻¹ b and z = K⁻¹ g, component by component.
+//! A column's rows are the vertices that share an edge or a hinge with its own; those of a triangle share its edges.
+//! Volumes are left out of it: their gradients g enter the solution by the formula of Sherman and Morrison,
+//! (K + w g gᵀ)⁻¹ b = y − z w gᵀy / (1 + w gᵀz) with y = K⁻¹ b and z = K⁻¹ g, component by component.
 
 use glam::DVec3;
 use pliant_mesh::Cancel;
@@ -323,6 +323,14 @@ fn add_blocks(energy: &Energy, slopes: &Slopes, vertex: usize, rows: &[u32], blo
         let along = slopes.edges[place];
         add(vertex as u32, edge.weight, along, along);
         add(edge.ends[1 - end], edge.weight, -along, along);
+    }
+    for &entry in energy.faces_at(vertex) {
+        let (place, corner) = (entry as usize / 4, entry as usize % 4);
+        let face = &energy.elements.faces[place];
+        let slopes = &slopes.faces[place];
+        for (&row, &slope) in face.corners.iter().zip(slopes) {
+            add(row, face.weight, slope, slopes[corner]);
+        }
     }
     for &entry in energy.hinges_at(vertex) {
         let (place, corner) = (entry as usize / 4, entry as usize % 4);

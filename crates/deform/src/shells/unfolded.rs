@@ -2,10 +2,13 @@
 //!
 //! ½ Σ_e k_s s_e A_e (x_a − x_b)² / l̄² + ½ Σ_e k_b D² s_e l̄² (Σ_i f_i x_i)² / A_e
 //!
-//! with the linear angle's factors f (`hinge::flat`): a thin plate on a membrane. Its matrix is no less than JᵀJ where the
-//! surface is about flat. It gives the handles' weights, which minimise it: how much of a handle's motion each vertex
-//! begins with. Constants cost nothing, so that where nothing is fixed the weights sum to 1. A large surface's steps
-//! descend on top of its factor, and what its coarse level does is carried over by it (`carry`).
+//! with the linear angle's factors f (`hinge::flat`): a thin plate on a membrane. Its matrix is no less than that of the
+//! edges and hinges in JᵀJ where the surface is about flat. It gives the handles' weights, which minimise it: how much of
+//! a handle's motion each vertex begins with. Constants cost nothing, so that where nothing is fixed the weights sum to 1.
+//! A large surface's steps descend on top of its factor, and what its coarse level does is carried over by it (`carry`).
+//!
+//! Areas are left out: with edges 1.5 times as stiff, which outweighs them too, the steps of a scan of 43k vertices
+//! lowered the energy as much as without.
 
 use pliant_mesh::{Cancel, SurfaceVertex};
 use rayon::prelude::*;

@@ -226,6 +226,11 @@ fn residuals(scene: &Scene, [stretching, bending, stiff_volume]: [f64; 3], displ
             .sum::<f64>()
             / 6.0
     };
+    for face in &faces {
+        let [now, before] = [normal(face, &moved), normal(face, &rest)].map(|normal| 0.5 * normal.length());
+        let stiffness = face.iter().map(|&v| scene.stiffness[v]).sum::<f64>() / 3.0;
+        all.push((0.125 * stretching * stiffness * before).sqrt() * (now / before - 1.0));
+    }
     let area: f64 = faces.iter().map(|face| 0.5 * normal(face, &rest).length()).sum();
     all.push((stiff_volume * area).sqrt() * (enclosed(&moved) / enclosed(&rest) - 1.0));
     all
