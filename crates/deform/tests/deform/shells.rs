@@ -3,7 +3,7 @@
 use crate::rig::{Scene, apart, eliminated, settle, turned};
 use glam::{DAffine3, DMat3, DVec3};
 use pliant_deform::{Method, OptionValue, Role, Shells};
-use pliant_mesh::{Drawn, shapes};
+use pliant_mesh::{Drawn, face_area, shapes};
 
 /// With `stretching`, `bending` and `volume`.
 fn shells(stiffnesses: [f64; 3]) -> Method {
@@ -118,6 +118,27 @@ fn the_volume_of_a_bar_is_kept_at_135_degrees() {
         volume(&scene, &displacements) / volume(&scene, &vec![DVec3::ZERO; scene.roles.len()])
     });
     assert!((kept[0] - 1.0).abs() > 0.01 && (kept[1] - 1.0).abs() < 0.01, "{kept:?}");
+}
+
+/// Lengths alone let a triangle whose edges are pressed together give way within its plane.
+#[test]
+fn triangles_at_the_inside_of_a_bend_keep_an_area() {
+    let tube = Scene::new(shapes::tube(32, 24, 3.0))
+        .with(Role::Fixed, |p| p.z < 0.3)
+        .with(Role::Handle(0), |p| p.z > 2.7);
+    let bent_tube = turned(DVec3::Z * 1.5, 1.5, DVec3::X * 0.5);
+    let bar = bar([1.0, 1e-4, 0.0]);
+    let bent_bar = arc(&bar, 2.3);
+    for (mut scene, target) in [(tube, bent_tube), (bar, bent_bar)] {
+        scene.method = Method::from_name("shells").unwrap();
+        let (displacements, energies) = settle(&mut scene.bind(), &[target]);
+        assert!(energies.len() < 40, "{}", energies.len());
+        for face in &scene.model.surface.triangles {
+            let now = face_area(face.map(|v| scene.positions()[v.index()] + displacements[v.index()]));
+            let ratio = now / face_area(face.map(|v| scene.positions()[v.index()]));
+            assert!(ratio > 0.2, "{ratio:e}");
+        }
+    }
 }
 
 #[test]
