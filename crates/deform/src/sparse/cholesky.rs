@@ -12,6 +12,7 @@ use crate::budget::Budget;
 use crate::sparse::factor_error::FactorError;
 use crate::sparse::matrix::ScaledMatrix;
 use crate::sparse::numeric::Numbers;
+use crate::sparse::solve::PartRows;
 use crate::sparse::solve::rhs::Real;
 use crate::sparse::solve::substitution::Substitution;
 use crate::sparse::symbolic::Symbolic;
