@@ -26,7 +26,7 @@ from scipy.spatial.transform import Rotation
 from arap import edit, read_off
 
 NONE = np.zeros(0, dtype=np.int64)
-STRETCHING, BENDING, AREA = 1.0, 1e-4, 0.125
+STRETCHING, BENDING, AREA = 1.0, 1e-4, 0.25
 TOLERANCE, MOST_STEPS = 1e-7, 40
 
 

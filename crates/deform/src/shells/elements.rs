@@ -18,10 +18,9 @@ use crate::{BindError, Problem};
 pub(super) const ABSENT: u32 = u32::MAX;
 
 /// k_a, in units of `stretching`. Without it triangles at the inside of a bend give way within their plane until they have
-/// no area. It makes a surface of equilateral triangles that is stretched narrow by a half as much, as rubber does, in
-/// place of a third; with more it would narrow more. A sheet that is pressed together by 30% within its plane still loses
-/// triangles.
-const AREA: f64 = 0.125;
+/// no area; with half of it those of a tube that is bent far and of a sheet that is pressed together by 30% still do.
+/// Stretched, a surface of equilateral triangles narrows by 0.6 as much: by a third with edges alone, and rubber by a half.
+const AREA: f64 = 0.25;
 
 /// An edge counts as at least this share of the longest one of its triangles, so that one without a length resists
 /// stretching firmly, but not beyond what can be computed; a triangle as at least this share of that edge's square.

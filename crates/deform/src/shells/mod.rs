@@ -1,4 +1,4 @@
-//! Discrete shells [GHDS03]: a surface keeps the lengths of its edges, the angles at them, a little of its triangles'
+//! Discrete shells [GHDS03]: a surface keeps the lengths of its edges, the angles at them, its triangles'
 //! areas and, if wished, the volume that it encloses. Minimised by Gauss–Newton as in [FB11].
 //!
 //! E = ½ Σ_e k_s s_e A_e (l_e / l̄_e − 1)² + ½ Σ_t k_a k_s s_t Ā_t (A_t / Ā_t − 1)²
@@ -8,7 +8,7 @@
 //! of its two triangles, A_t a triangle's area, V a component's volume, and the bar marks the rest shape. A_e is a third
 //! of the areas of the edge's triangles, as in [GHDS03] and [SHHR20], so that the energy hardly depends on the mesh; A_c is
 //! a component's area, D the model's diagonal, and s_e and s_t are the means of the painted stiffness of the edge's ends
-//! and the triangle's corners. k_s, k_b and k_v are the options `stretching`, `bending` and `volume`. k_a = 1/8: [FB11]
+//! and the triangle's corners. k_s, k_b and k_v are the options `stretching`, `bending` and `volume`. k_a = 1/4: [FB11]
 //! leaves out the areas of [GHDS03], but edges alone are a truss, in which triangles that are compressed give way within
 //! their plane until they have no area.
 //!

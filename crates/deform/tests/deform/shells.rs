@@ -123,20 +123,22 @@ fn the_volume_of_a_bar_is_kept_at_135_degrees() {
 /// Lengths alone let a triangle whose edges are pressed together give way within its plane.
 #[test]
 fn triangles_at_the_inside_of_a_bend_keep_an_area() {
-    let tube = Scene::new(shapes::tube(32, 24, 3.0))
-        .with(Role::Fixed, |p| p.z < 0.3)
-        .with(Role::Handle(0), |p| p.z > 2.7);
-    let bent_tube = turned(DVec3::Z * 1.5, 1.5, DVec3::X * 0.5);
+    let tube = || {
+        Scene::new(shapes::tube(32, 24, 3.0))
+            .with(Role::Fixed, |p| p.z < 0.3)
+            .with(Role::Handle(0), |p| p.z > 2.7)
+    };
+    let bent_tube = |angle| turned(DVec3::Z * 1.5, angle, DVec3::X * 0.5);
     let bar = bar([1.0, 1e-4, 0.0]);
     let bent_bar = arc(&bar, 2.3);
-    for (mut scene, target) in [(tube, bent_tube), (bar, bent_bar)] {
+    for (mut scene, target) in [(tube(), bent_tube(1.5)), (tube(), bent_tube(2.3)), (bar, bent_bar)] {
         scene.method = Method::from_name("shells").unwrap();
         let (displacements, energies) = settle(&mut scene.bind(), &[target]);
         assert!(energies.len() < 40, "{}", energies.len());
         for face in &scene.model.surface.triangles {
             let now = face_area(face.map(|v| scene.positions()[v.index()] + displacements[v.index()]));
             let ratio = now / face_area(face.map(|v| scene.positions()[v.index()]));
-            assert!(ratio > 0.2, "{ratio:e}");
+            assert!(ratio > 0.1, "{ratio:e}");
         }
     }
 }
@@ -250,7 +252,7 @@ fn residuals(scene: &Scene, [stretching, bending, stiff_volume]: [f64; 3], displ
     for face in &faces {
         let [now, before] = [normal(face, &moved), normal(face, &rest)].map(|normal| 0.5 * normal.length());
         let stiffness = face.iter().map(|&v| scene.stiffness[v]).sum::<f64>() / 3.0;
-        all.push((0.125 * stretching * stiffness * before).sqrt() * (now / before - 1.0));
+        all.push((0.25 * stretching * stiffness * before).sqrt() * (now / before - 1.0));
     }
     let area: f64 = faces.iter().map(|face| 0.5 * normal(face, &rest).length()).sum();
     all.push((stiff_volume * area).sqrt() * (enclosed(&moved) / enclosed(&rest) - 1.0));
