@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use eframe::egui::{self, Sense, vec2};
+use eframe::egui::{self, Align2, FontId, Sense, vec2};
 use glam::DVec2;
 use pliant_editor::{Before, Command, Cursor, Event};
 
@@ -256,10 +256,12 @@ impl Application {
             let context = ui.ctx().clone();
             self.file_command(&context, FileCommand::Open);
         }
-        axis_ball::readout(
-            ui.painter(),
-            place.center_bottom() + vec2(-74.0, 10.0),
+        ui.painter().text(
+            place.center_bottom() + vec2(0.0, 10.0),
+            Align2::CENTER_TOP,
             "or drop one here",
+            FontId::proportional(14.0),
+            ui.visuals().text_color(),
         );
     }
 

@@ -6,6 +6,7 @@
 
 pub(in crate::window) mod area;
 pub(in crate::window) mod axis_ball;
+pub(in crate::window) mod backdrop;
 pub(in crate::window) mod before;
 pub(in crate::window) mod coarseness;
 pub(in crate::window) mod compare;
@@ -33,6 +34,7 @@ use crate::legend;
 use crate::painting;
 use crate::window::threads::message::{Ground, PictureKind, Posed};
 use crate::window::widgets::drawn_key::DrawnKey;
+use backdrop::Backdrop;
 use coarseness::Coarseness;
 use gpu::Gpu;
 use shown::{Colours, Shown, address};
@@ -301,6 +303,7 @@ impl Viewport {
         let key = DrawnKey {
             detail,
             shadow,
+            backdrop: Backdrop::of(ui.visuals()),
             ..self.key(view, pixels_per_point, drawn_px, samples)
         };
         if !self.drawn.as_ref().is_some_and(|drawn| drawn.serves(&key, size_px)) {
@@ -360,6 +363,7 @@ impl Viewport {
             size_px,
             samples,
             detail: Detail::Full,
+            backdrop: Backdrop::Dark,
         }
     }
 
@@ -386,7 +390,7 @@ impl Viewport {
         }
         let surfaces: Vec<&Surface> = self.surface.iter().map(|shown| &shown.surface).collect();
         let is_alone = self.opacity < 1.0;
-        let ground = self.surface.as_ref().map(|shown| shown.ground(view));
+        let ground = self.surface.as_ref().map(|shown| key.backdrop.grid(shown.ground(view)));
         let has_ground = view.look.grid && !is_alone;
         let frame = Frame {
             view: &eye,
@@ -394,7 +398,7 @@ impl Viewport {
                 detail: key.detail,
                 background: match is_alone {
                     true => Background::Transparent,
-                    false => Background::default(),
+                    false => key.backdrop.background(),
                 },
                 shadows: match key.shadow {
                     Some(_) if !is_alone => Shadows::On,
@@ -427,7 +431,8 @@ impl Viewport {
             pixels(egui::vec2(width, height) * key.pixels_per_point).map(|side| side.max(1) * kind.scale.max(1));
         let pixels_per_point = key.pixels_per_point * kind.scale.max(1) as f32;
         let mut style = drawing::style(&self.present_look(view.look), pixels_per_point);
-        let mut ground = view.look.grid.then(|| shown.ground(&view));
+        style.background = key.backdrop.background();
+        let mut ground = view.look.grid.then(|| key.backdrop.grid(shown.ground(&view)));
         if kind.ground == Ground::Transparent {
             (style.background, ground) = (Background::Transparent, None);
             style.shadows = Shadows::Off;

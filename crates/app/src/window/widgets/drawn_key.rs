@@ -3,6 +3,7 @@
 use pliant_editor::Look;
 use pliant_render::{Detail, Samples};
 
+use crate::window::viewport::backdrop::Backdrop;
 use crate::window::viewport::shown::{Colours, ShadowKey};
 
 /// What the picture in the texture was drawn from.
@@ -21,6 +22,7 @@ pub struct DrawnKey {
     pub size_px: [u32; 2],
     pub samples: Samples,
     pub detail: Detail,
+    pub backdrop: Backdrop,
 }
 
 impl DrawnKey {

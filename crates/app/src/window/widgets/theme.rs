@@ -76,8 +76,11 @@ fn rounded(mut visuals: Visuals) -> Visuals {
 
 #[cfg(test)]
 mod tests {
+    use pliant_render::Background;
+
     use super::*;
     use crate::window::bars::status;
+    use crate::window::viewport::backdrop::Backdrop;
 
     /// The least contrast of text, by the Web Content Accessibility Guidelines 2.2 (1.4.3).
     const LEAST: f64 = 4.5;
@@ -142,6 +145,11 @@ mod tests {
                 own.text_color(),
                 &[&frames[..], &[("their own", own.weak_bg_fill), ("boxes", own.bg_fill)]].concat(),
             );
+        }
+        if let Background::Gradient { top, bottom } = Backdrop::of(visuals).background() {
+            let [top, bottom] = [top, bottom].map(|[r, g, b]| Color32::from_rgb(r, g, b));
+            let view = [("the view's top", top), ("the view's bottom", bottom)];
+            add("text", visuals.text_color(), &view);
         }
         add("text of what is selected", visuals.selection.stroke.color, &selected);
         for (name, text) in [

@@ -1,0 +1,41 @@
+//! What is behind the surface in the window: dim in the dark theme, pale in the light one, with lines that stand out.
+
+use eframe::egui::Visuals;
+use pliant_render::{Background, Grid};
+
+/// A theme's backdrop.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Backdrop {
+    Dark,
+    Light,
+}
+
+/// Lines on the light backdrop, sRGB with straight alpha.
+const DARK_LINES: [u8; 3] = [58, 62, 70];
+
+impl Backdrop {
+    pub fn of(visuals: &Visuals) -> Self {
+        match visuals.dark_mode {
+            true => Self::Dark,
+            false => Self::Light,
+        }
+    }
+
+    pub fn background(self) -> Background {
+        match self {
+            Self::Dark => Background::default(),
+            Self::Light => Background::Gradient {
+                top: [204, 208, 214],
+                bottom: [150, 154, 161],
+            },
+        }
+    }
+
+    /// The grid in colours that are seen on this backdrop.
+    pub fn grid(self, mut grid: Grid) -> Grid {
+        if self == Self::Light {
+            grid.colour[..3].copy_from_slice(&DARK_LINES);
+        }
+        grid
+    }
+}
