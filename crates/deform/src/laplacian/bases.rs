@@ -53,11 +53,11 @@ impl ImplicitBases {
             ImplicitSystem::of(energy, &elimination, budget, cancel).map_err(|error| refuse(of_factor(error)))?;
         let check = |error: f64, local: u32| {
             cancel.check()?;
-            let vertex = at(local as usize);
-            // Also where it is not a number.
+            // Also where it is not a number. Where nothing is free there is no vertex to name, and no error.
             if error <= TOLERANCE {
                 Ok(())
             } else {
+                let vertex = at(local as usize);
                 Err(refuse(SystemError::Inaccurate { vertex, error }))
             }
         };
