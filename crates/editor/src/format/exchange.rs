@@ -43,6 +43,9 @@ pub(crate) fn export(document: &Document, model: &Arc<Model>) -> Result<EditFile
     if document.applied {
         return Err(ExportError::Applied);
     }
+    let kept = document.to_go_on_from();
+    // A shape that only the way explains is the method's own; corrections by hand outlive another method.
+    let is_of_method = document.kept.is_none();
     // An edit counts no full turns: what depends on them is said as it is shown.
     let in_full = Some(document.in_full()).filter(Document::goes_the_short_way);
     let strength = if in_full.is_some() { document.strength() } else { 1.0 };
@@ -107,9 +110,14 @@ pub(crate) fn export(document: &Document, model: &Arc<Model>) -> Result<EditFile
             true => Selector::None,
             false => Selector::Union(document.inside_out.iter().copied().map(Selector::Component).collect()),
         },
-        kept: document.kept.as_ref().map(|kept| {
+        kept: kept.map(|kept| {
             let place = |id: HandleId| region.handles.iter().position(|other| *other == id);
-            StoredKept::of(kept, model).renumbered(|id| place(id).map(|place| place as u32))
+            let stored = StoredKept::of(&kept, model).renumbered(|id| place(id).map(|place| place as u32));
+            if is_of_method {
+                stored.by(&document.method)
+            } else {
+                stored
+            }
         }),
         strength,
     };
@@ -177,7 +185,7 @@ pub(crate) fn import(edit: &EditFile, model: &Model) -> Result<Document, EditErr
     document.loose = setup.loose;
     let mut document = Document::from(document);
     document.take_part(edit.strength);
-    if let Some(kept) = &edit.kept {
+    if let Some(kept) = edit.kept.as_ref().filter(|kept| kept.is_for(&edit.method)) {
         document.go_on_from(kept.on(model, "kept")?);
     }
     if document.is_moved() {

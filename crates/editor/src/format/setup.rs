@@ -148,9 +148,8 @@ impl Setup {
                 .map(|(name, attachment)| (*name, attachment.clone()))
                 .collect(),
             kept: document
-                .kept
-                .as_ref()
-                .and_then(|kept| Kept::of(kept, region.handles.iter().copied())),
+                .to_go_on_from()
+                .and_then(|kept| Kept::of(&kept, region.handles.iter().copied())),
             rest: region.rest_surface.as_ref().map(|surface| Rest {
                 displacements: Arc::clone(&document.rest),
                 surface: Arc::clone(surface),
@@ -313,7 +312,7 @@ impl EditFile {
     }
 
     fn kept_on(&self, model: &Model) -> Result<Option<Kept>, EditError> {
-        let Some(kept) = &self.kept else {
+        let Some(kept) = self.kept.as_ref().filter(|kept| kept.is_for(&self.method)) else {
             return Ok(None);
         };
         let kept = Arc::new(kept.on(model, "kept")?);

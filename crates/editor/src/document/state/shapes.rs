@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use pliant_deform::{Attachment, Examples};
+use pliant_deform::{Attachment, Examples, Solve};
 
 use super::Document;
 use crate::document::handle_transform::HandleTransform;
@@ -49,15 +49,57 @@ impl Document {
         if !self.is_displaced() {
             return;
         }
+        self.content.settled = true;
+        if !self.shows_kept_shape() {
+            self.content.kept = Some(Arc::new(self.seen()));
+        }
+    }
+
+    /// The shape that is seen, and where handles, control points and examples stand.
+    fn seen(&self) -> KeptShape {
         let controls = self.moved_controls().cloned();
-        let weights = self.example_weights().to_vec();
-        let content = &mut self.content;
-        content.settled = true;
-        let kept = content.kept.as_ref();
-        let own = controls.as_deref();
-        if kept.is_none_or(|kept| !kept.is_of(&content.handles, own, &weights, &content.from_rest)) {
-            let kept = KeptShape::of(&content.handles, controls, &weights, &content.from_rest);
-            content.kept = Some(Arc::new(kept));
+        let content = &self.content;
+        KeptShape::of(&content.handles, controls, self.example_weights(), &content.from_rest)
+    }
+
+    /// Whether the kept shape is the one that is seen, with all in the same places.
+    fn shows_kept_shape(&self) -> bool {
+        let (controls, weights, content) = (self.moved_controls(), self.example_weights(), &self.content);
+        let is_seen = |kept: &Arc<KeptShape>| {
+            kept.is_of(
+                &content.handles,
+                controls.map(|own| &**own),
+                weights,
+                &content.from_rest,
+            )
+        };
+        content.kept.as_ref().is_some_and(is_seen)
+    }
+
+    /// Whether handles and method alone may not lead back to the shape that is seen: where a descent ends can depend on
+    /// the way that it took.
+    pub(crate) fn depends_on_way(&self) -> bool {
+        self.content.settled && self.is_moved() && self.content.method.solve() != Solve::Direct
+    }
+
+    /// The shape from which a solve that does not know the way goes on: the one that is seen where it
+    /// [depends on the way](Self::depends_on_way), else the kept one.
+    pub(crate) fn to_go_on_from(&self) -> Option<Arc<KeptShape>> {
+        match &self.content.kept {
+            _ if self.depends_on_way() && !self.shows_kept_shape() => Some(Arc::new(self.seen())),
+            kept => kept.clone(),
+        }
+    }
+
+    /// Whether opening a project makes the kept shape anew ([`Self::keep_way`]).
+    pub(crate) fn keeps_way_alone(&self) -> bool {
+        self.depends_on_way() && self.shows_kept_shape()
+    }
+
+    /// Keeps the shape that is seen where it depends on the way, so that the next drag begins from it.
+    pub(crate) fn keep_way(&mut self) {
+        if self.depends_on_way() {
+            self.keep_shape();
         }
     }
 
@@ -66,12 +108,8 @@ impl Document {
         let mut from_rest = self.content.from_rest.to_vec();
         change(&mut from_rest);
         self.bend(from_rest);
-        let controls = self.moved_controls().cloned();
-        let weights = self.example_weights().to_vec();
-        let content = &mut self.content;
-        content.settled = true;
-        let kept = KeptShape::of(&content.handles, controls, &weights, &content.from_rest);
-        content.kept = Some(Arc::new(kept));
+        self.content.settled = true;
+        self.content.kept = Some(Arc::new(self.seen()));
     }
 
     /// Shows a shape that the handles have brought about; `from_file` is its sum with the rest shape.
@@ -142,14 +180,7 @@ impl Document {
             .iter()
             .any(|displacement| *displacement != DVec3::ZERO)
         {
-            let controls = self.moved_controls().cloned();
-            let kept = KeptShape::of(
-                &self.content.handles,
-                controls,
-                self.example_weights(),
-                &self.content.from_rest,
-            );
-            self.content.kept = Some(Arc::new(kept));
+            self.content.kept = Some(Arc::new(self.seen()));
         }
     }
 

@@ -4,17 +4,24 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
+use pliant_deform::Method;
 use pliant_mesh::Model;
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
 use super::field::Field;
 use crate::EditError;
 use crate::document::{HandleId, KeptShape, bits_equal};
+use crate::format::method::method_to_value;
 
 /// A kept shape: which shape was seen, and where handles, control points and examples' weights stood then.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StoredKept {
+    /// The method, with its options, whose descent ended at the shape; no other method takes the shape. Without it the
+    /// shape is carried along by every method.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    method: Option<Value>,
     /// Each handle's map of rest positions, by its number: three columns and the translation.
     handles: BTreeMap<u32, [f64; 12]>,
     /// Where control points were moved to.
@@ -36,6 +43,7 @@ impl StoredKept {
         });
         let handles = kept.targets.iter();
         Self {
+            method: None,
             handles: handles
                 .map(|(id, map)| (u32::from(id.0), map.to_cols_array()))
                 .collect(),
@@ -74,6 +82,20 @@ impl StoredKept {
             weights: self.weights.clone(),
             shape,
         })
+    }
+
+    /// The same as the end of a descent by `method`.
+    pub(crate) fn by(self, method: &Method) -> Self {
+        Self {
+            method: Some(method_to_value(method, &BTreeMap::new())),
+            ..self
+        }
+    }
+
+    /// Whether `method` takes the shape.
+    pub(crate) fn is_for(&self, method: &Method) -> bool {
+        let own = || method_to_value(method, &BTreeMap::new());
+        self.method.as_ref().is_none_or(|by| *by == own())
     }
 
     /// The same with other numbers for the handles; those without one are left out.

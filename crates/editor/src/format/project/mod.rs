@@ -242,7 +242,12 @@ impl Project {
             rest: document.applied.then(|| displacements(&document.rest)).flatten(),
             applied: document.applied,
             shape: displacements(&document.from_rest),
-            kept: document.kept.as_ref().map(|kept| StoredKept::of(kept, model)),
+            // What opening makes anew from the shape is not stored twice.
+            kept: document
+                .kept
+                .as_ref()
+                .filter(|_| !document.keeps_way_alone())
+                .map(|kept| StoredKept::of(kept, model)),
             settled: document.settled,
             strength: document.strength.as_ref().map(|strength| strength.share),
             poses: document.poses.iter().map(StoredPose::of).collect(),
@@ -383,6 +388,7 @@ impl Project {
                 None => document.unbend(),
             }
         }
+        document.keep_way();
         Ok(document)
     }
 
