@@ -12,6 +12,8 @@ pub enum Backdrop {
 
 /// Lines on the light backdrop, sRGB with straight alpha.
 const DARK_LINES: [u8; 3] = [58, 62, 70];
+/// Factors of the axes' colours and of their alpha on the light backdrop: dark and nearly opaque, each hue still told.
+const DARK_AXES: [f32; 4] = [0.48, 0.48, 0.48, 1.3];
 
 impl Backdrop {
     pub fn of(visuals: &Visuals) -> Self {
@@ -35,6 +37,13 @@ impl Backdrop {
     pub fn grid(self, mut grid: Grid) -> Grid {
         if self == Self::Light {
             grid.colour[..3].copy_from_slice(&DARK_LINES);
+            for (byte, factor) in grid
+                .axis_colours
+                .iter_mut()
+                .flat_map(|colour| colour.iter_mut().zip(DARK_AXES))
+            {
+                *byte = (f32::from(*byte) * factor) as u8;
+            }
         }
         grid
     }

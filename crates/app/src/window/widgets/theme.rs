@@ -76,9 +76,12 @@ fn rounded(mut visuals: Visuals) -> Visuals {
 
 #[cfg(test)]
 mod tests {
+    use glam::{DVec2, DVec3};
+    use pliant_editor::{Camera, UpAxis};
     use pliant_render::Background;
 
     use super::*;
+    use crate::drawing::ground;
     use crate::window::bars::status;
     use crate::window::viewport::backdrop::Backdrop;
 
@@ -178,6 +181,30 @@ mod tests {
                     .collect();
                 assert!(poor.is_empty(), "{theme}: {poor:#?}");
             });
+        }
+    }
+
+    /// The least contrast of graphics that a person has to tell, by the same guidelines (1.4.11).
+    const LEAST_OF_GRAPHICS: f64 = 3.0;
+
+    #[test]
+    fn the_axes_on_the_ground_stand_out_from_the_pale_view() {
+        let Background::Gradient { top, bottom } = Backdrop::Light.background() else {
+            unreachable!("the pale view is a gradient");
+        };
+        for up in [UpAxis::Y, UpAxis::Z] {
+            let camera = Camera {
+                up,
+                ..Camera::default()
+            };
+            let grid = Backdrop::Light.grid(ground(&camera, DVec2::new(800.0, 600.0), 0.0, DVec3::ZERO));
+            for [red, green, blue, alpha] in grid.axis_colours {
+                let axis = Color32::from_rgba_unmultiplied(red, green, blue, alpha);
+                for [red, green, blue] in [top, bottom] {
+                    let contrast = contrast(axis, Color32::from_rgb(red, green, blue));
+                    assert!(contrast > LEAST_OF_GRAPHICS, "{axis:?}: {contrast:.2}");
+                }
+            }
         }
     }
 
