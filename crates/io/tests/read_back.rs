@@ -217,3 +217,95 @@ fn text_that_names_single_precision_passes_as_it_was_written() {
         );
     }
 }
+
+/// The grid of [`source`] as text of each kind, its coordinates written by `number`.
+fn texts(number: impl Fn(f64) -> String) -> Vec<(Format, String)> {
+    let grid = shapes::grid(4, 3);
+    let vector = |p: DVec3| format!("{} {} {}", number(p.x), number(p.y), number(p.z));
+    let points: Vec<String> = (grid.positions.iter())
+        .map(|p| vector(DVec3::new(p.x / 3.0, p.y / 7.0, (p.x * 0.7 - p.y).sin())))
+        .collect();
+    let (vertices, faces) = (points.len(), grid.triangles.len());
+    let mut ply = format!("ply\nformat ascii 1.0\nelement vertex {vertices}\nproperty float x\nproperty float y\n");
+    ply += &format!("property float z\nelement face {faces}\nproperty list uchar int vertex_indices\nend_header\n");
+    let (mut obj, mut stl, mut off) = (
+        String::new(),
+        "solid\n".to_owned(),
+        format!("OFF\n{vertices} {faces} 0\n"),
+    );
+    for point in &points {
+        ply += &format!("{point}\n");
+        off += &format!("{point}\n");
+        obj += &format!("v {point}\n");
+    }
+    for corners in &grid.triangles {
+        let [a, b, c] = corners.map(|corner| corner.index());
+        ply += &format!("3 {a} {b} {c}\n");
+        off += &format!("3 {a} {b} {c}\n");
+        obj += &format!("f {} {} {}\n", a + 1, b + 1, c + 1);
+        stl += "facet normal 0 0 1\nouter loop\n";
+        for v in [a, b, c] {
+            stl += &format!("vertex {}\n", points[v]);
+        }
+        stl += "endloop\nendfacet\n";
+    }
+    stl += "endsolid\n";
+    vec![
+        (Format::Ply, ply),
+        (Format::Off, off),
+        (Format::Obj, obj),
+        (Format::Stl, stl),
+    ]
+}
+
+#[test]
+fn text_of_any_number_of_digits_is_saved_and_read_back() {
+    type Writer = fn(f64) -> String;
+    type Way = fn(DVec3) -> DVec3;
+    let writers: [(&str, Writer); 4] = [
+        ("three digits", |x| format!("{x:.3}")),
+        ("as f32", |x| format!("{}", x as f32)),
+        ("nine decimals with an exponent", |x| format!("{x:.9e}")),
+        ("as f64", |x| format!("{x}")),
+    ];
+    let ways: [(&str, Way); 3] = [
+        ("turned", |p| {
+            p + DVec3::new(0.3 * p.y, -0.2 * p.x, 0.1 * p.x * p.y + 0.01)
+        }),
+        ("moved along one axis", |p| p + DVec3::Z * 0.123_456_789),
+        ("moved by less than f32 resolves", |p| p + p * 1e-12),
+    ];
+    for (digits, writer) in writers {
+        for (format, text) in texts(writer) {
+            let read = |bytes: Vec<u8>| {
+                let empty = Saved {
+                    files: Vec::new(),
+                    warnings: Vec::new(),
+                    triangles: None,
+                };
+                read(bytes, format, "a", &empty, &Progress::new(), &Cancel::new()).unwrap()
+            };
+            let opened = read(text.into_bytes());
+            for (named, way) in ways {
+                let positions: Vec<DVec3> = opened.drawn.positions.iter().map(|p| way(*p)).collect();
+                let mut save = Save {
+                    turned: &[],
+                    drawn: &opened.drawn,
+                    positions: &positions,
+                    format,
+                    name: "b",
+                    placement: Placement::OtherFolder,
+                };
+                let saved = opened.scene.save(&save, &Progress::new(), &Cancel::new()).unwrap();
+                let found = read(saved.files[0].bytes.clone());
+                let checked = opened.scene.check_read_back(&save, None, None, &found);
+                assert_eq!(checked, Ok(()), "{format} of {digits}, {named}");
+                let mut other = positions.clone();
+                other[5].y += 1e-6;
+                save.positions = &other;
+                let checked = opened.scene.check_read_back(&save, None, None, &found);
+                assert!(checked.is_err(), "{format} of {digits}, {named}");
+            }
+        }
+    }
+}

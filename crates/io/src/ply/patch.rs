@@ -10,7 +10,7 @@ use crate::SaveError;
 use crate::convert::faces::coarse_in_f32;
 use crate::save::course::Course;
 use crate::save::moved::Moved;
-use crate::text::{Cursor, Splice, push_f32, push_f64};
+use crate::text::{Splice, push_f32, push_f64, shortest_f32};
 
 /// The new bytes and the warnings.
 ///
@@ -39,12 +39,7 @@ pub(super) fn nearest(stored: &Stored, axis: usize, value: f64) -> f64 {
     let element = stored.vertex_element.map(|index| &stored.header.elements[index]);
     let scalar = element.and_then(|element| scalar_of(element, stored.columns[axis]?));
     match (scalar, stored.header.encoding) {
-        // Text is read as f64, and the shortest decimals of an f32 are another number than the f32 itself.
-        (Some(Scalar::F32), Encoding::Ascii) => {
-            let mut text = Vec::new();
-            push_f32(&mut text, value as f32);
-            Cursor::new(&text, 0).real().unwrap_or(value)
-        }
+        (Some(Scalar::F32), Encoding::Ascii) => shortest_f32(value),
         (scalar, _) => scalar.map_or(value, |scalar| scalar.nearest(value)),
     }
 }
@@ -98,8 +93,10 @@ impl Edits {
             }
             if let Some(frames) = &frames {
                 let normal = frames.carry_normal(DrawnVertex(vertex as u32), rest[vertex]);
-                if normal != rest[vertex] && normal.is_finite() {
-                    numbers[3..].copy_from_slice(&normal.to_array().map(Some));
+                if normal.is_finite() {
+                    for axis in (0..3).filter(|&axis| normal[axis] != rest[vertex][axis]) {
+                        numbers[3 + axis] = Some(normal[axis]);
+                    }
                 }
             }
             edits.push(Edit { vertex, numbers });
@@ -132,18 +129,18 @@ impl Edits {
         let mut splice = Splice::new(&stored.bytes);
         self.visit(stored, element, course, |scalar, span, value, old| {
             let is_short = scalar == Scalar::F32 && !is_finer;
-            let value = if is_short || scalar != Scalar::F32 {
-                scalar.nearest(value)
-            } else {
-                value
+            let nearest = match scalar {
+                Scalar::F32 if is_short => shortest_f32(value),
+                Scalar::F32 => value,
+                _ => scalar.nearest(value),
             };
-            let old = if is_short { scalar.nearest(old) } else { old };
-            if value.to_bits() != old.to_bits() {
+            // What did not change keeps its digits, be they more than its type holds.
+            if ![value, nearest].map(f64::to_bits).contains(&old.to_bits()) {
                 splice.replace(span, |out| {
                     if is_short {
                         push_f32(out, value as f32)
                     } else {
-                        push_f64(out, value)
+                        push_f64(out, nearest)
                     }
                 });
             }

@@ -387,8 +387,7 @@ impl Scene {
     pub(crate) fn nearest_stored(&self, axis: usize, value: f64) -> f64 {
         match &self.stored {
             Stored::Ply(stored) => stored.nearest(axis, value),
-            // f32: binary STL holds nothing finer. Ascii STL may, and then stores the value itself.
-            Stored::Stl(_) => f64::from(value as f32),
+            Stored::Stl(stored) => stored.nearest(value),
             Stored::Gltf(_) | Stored::Obj(_) | Stored::Off(_) => value,
         }
     }

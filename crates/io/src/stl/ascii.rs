@@ -11,7 +11,7 @@ use crate::save::course::{Course, STEP};
 use crate::save::moved::Moved;
 use crate::save::turned::push_negated;
 use crate::source::{Looks, Source};
-use crate::text::{Cursor, Splice, excerpt, malformed_at, push_f32, push_f64};
+use crate::text::{Cursor, Splice, excerpt, malformed_at, push_f32, push_f64, shortest_f32};
 use crate::{Format, ReadError};
 
 /// The corners in order, and the byte position of each facet's keyword.
@@ -108,7 +108,9 @@ pub(super) fn patched(
             push_f32(out, value as f32)
         }
     };
-    let is_same = |old: f64, new: f64| if is_finer { old == new } else { old as f32 == new as f32 };
+    // A number of more digits than f32 keeps is replaced by one of less, so that a save reads back as one of two
+    // numbers: the new one, or the nearest one that the file is given.
+    let is_same = |old: f64, new: f64| old == new || (!is_finer && old == shortest_f32(new));
     let mut splice = Splice::new(bytes);
     let changed = changed_facets(moved).take_while(|(number, ..)| *number < facets.len());
     for (place, (number, corners, has_moved)) in changed.enumerate() {

@@ -16,6 +16,7 @@ use crate::save::course::Course;
 use crate::save::moved::Moved;
 use crate::scene::summary::Summary;
 use crate::source::Source;
+use crate::text::shortest_f32;
 use crate::{Appearance, ReadError, SaveError};
 
 pub(crate) use write::write_new;
@@ -80,6 +81,15 @@ impl Stored {
     /// No normals are taken from the file: with facet normals every triangle of a scan would show.
     pub(crate) fn appearance(&self) -> Appearance {
         Appearance::plain(self.facet_count as u32)
+    }
+
+    /// The number nearest to `value` that the file is given for a coordinate, as it is read back.
+    pub(crate) fn nearest(&self, value: f64) -> f64 {
+        match self.layout {
+            // f32 is what the format stores.
+            Layout::Binary => f64::from(value as f32),
+            Layout::Ascii(_) => shortest_f32(value),
+        }
     }
 
     /// The file with the moved corners and their facets' normals replaced, and warnings.

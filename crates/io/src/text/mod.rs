@@ -10,7 +10,7 @@ use crate::source::Source;
 use crate::{Format, ReadError, quoted};
 use number::parse_real;
 
-pub(crate) use number::{push_f32, push_f64};
+pub(crate) use number::{push_f32, push_f64, shortest_f32};
 pub(crate) use splice::Splice;
 
 /// A position in a text file that moves forward.
