@@ -328,10 +328,24 @@ fn neighbours_go_where_out_goes_and_never_outside() {
     let save = |name, placement| try_save(&opened, &positions, name, placement).unwrap();
     let other = save("out.gltf", Placement::OtherFolder);
     assert_eq!(names(&other), ["out.gltf", "sub/a.bin", "textures/skin 1.png"]);
-    assert_eq!(
-        names(&save("test.gltf", Placement::SameFile)),
-        ["test.gltf", "sub/a.bin"]
-    );
+    // Another file may need a buffer that is not called as this one is.
+    let over_itself = names(&save("test.gltf", Placement::SameFile));
+    assert_eq!(over_itself, ["test.gltf", "test.bin"]);
+    for (own, is_kept) in [
+        ("test.bin", true),
+        ("test_2.bin", true),
+        ("test-0.bin", true),
+        ("test3.bin", true),
+        ("testing.bin", false),
+        ("test_data.bin", false),
+        ("sub/test.bin", false),
+    ] {
+        let mut folder = folder.clone();
+        folder.0.insert(own.to_owned(), maker.bin.clone());
+        let opened = try_open(&gltf(own), Format::Gltf, &folder).unwrap();
+        let saved = try_save(&opened, &positions, "test.gltf", Placement::SameFile).unwrap();
+        assert_eq!(names(&saved)[1] == own, is_kept, "{own}: {:?}", names(&saved));
+    }
     assert_eq!(names(&save("out.gltf", Placement::SameFolder)), ["out.gltf", "out.bin"]);
     for saved in [&other, &save("out.gltf", Placement::SameFolder)] {
         let mut beside = folder.clone();

@@ -45,7 +45,13 @@ pub(crate) fn in_its_kind(document: &Document, patched: Patched<'_>, save: &Save
                 let name = match save.placement {
                     Placement::SameFile if !is_changed => continue,
                     Placement::SameFolder if is_unchanged => continue,
-                    Placement::SameFile | Placement::OtherFolder => inside(path)?,
+                    Placement::OtherFolder => inside(path)?,
+                    // Files of other names and in other folders may need what is called otherwise.
+                    Placement::SameFile => {
+                        let name = inside(path)?;
+                        let is_own = is_own_name(&name, save.name);
+                        if is_own { name } else { own_names[buffer].clone() }
+                    }
                     Placement::SameFolder => own_names[buffer].clone(),
                 };
                 let name = gathered.add(name, Role::Buffer, bytes);
@@ -223,6 +229,18 @@ fn bring_images(
         }
     }
     Ok(())
+}
+
+/// Whether a buffer is called as OUT is, but for a number behind the stem and the extension.
+fn is_own_name(name: &str, out: &str) -> bool {
+    let behind = name.strip_prefix(&own_stem(out));
+    let number = behind
+        .and_then(|behind| behind.rsplit_once('.'))
+        .map(|(number, _)| number);
+    number.is_some_and(|number| {
+        let digits = number.trim_start_matches(['_', '-']);
+        digits.bytes().all(|byte| byte.is_ascii_digit())
+    })
 }
 
 /// A name for each buffer that is OUT's own: its stem, numbered from the second one on, and none that a neighbour of
