@@ -19,7 +19,7 @@ pub use neighbours::{is_same_document, neighbours_named, with_neighbours_renamed
 use document::fault::Fault;
 use document::{Document, container, uri};
 use geometry::primitive::{self, Primitive};
-use geometry::{Pieces, draco, meshopt, targets, tree};
+use geometry::{Linear, Pieces, Pose, draco, meshopt, targets, tree};
 
 use crate::scene::summary::Summary;
 use crate::source::Source;
@@ -49,7 +49,7 @@ fn open(source: &Source<'_>, format: Format) -> Result<(Stored, Drawn), Fault> {
     let meshes = primitive::primitives(&document, source.cancel)?;
     draco::decode(&mut document, &meshes, source.cancel)?;
     let placed = tree::placed_meshes(&document, &mut notes, source.cancel)?;
-    let (drawn, pieces) = geometry::drawn(&document, &meshes, &placed, source.progress, source.cancel)?;
+    let (drawn, pieces) = geometry::drawn(&document, &meshes, &placed, &mut notes, source.progress, source.cancel)?;
     Ok((
         Stored {
             format,
@@ -137,23 +137,39 @@ impl Stored {
     /// Positions are rounded to f32 in the node's space, and nodes that share a mesh keep sharing it where they differ
     /// by four such roundings of its largest coordinate.
     pub fn roundings(&self, drawn: &Drawn) -> Vec<(Range<u32>, DVec3)> {
-        let of_instance = |instance: &geometry::Instance| {
+        let mut roundings = Vec::new();
+        for instance in &self.pieces.instances {
             let vertices = instance.vertices.start as usize..instance.vertices.end as usize;
-            let positions = || drawn.positions[vertices.clone()].iter().filter(|p| p.is_finite());
-            let node_from_world = instance.world_from_node.inverse();
+            let positions = &drawn.positions[vertices];
             let largest = |most: DVec3, p: DVec3| most.max(p.abs());
-            let in_node = positions().map(|p| node_from_world.transform_point3(*p));
-            let in_node = in_node.filter(|p| p.is_finite()).fold(DVec3::ZERO, largest);
-            let in_world = positions().copied().fold(DVec3::ZERO, largest);
-            let matrix = instance.world_from_node.matrix3;
-            let by_axes = [matrix.x_axis, matrix.y_axis, matrix.z_axis].map(DVec3::abs);
-            let of_node = in_node.max_element() * (by_axes[0] + by_axes[1] + by_axes[2]);
-            let within = 16.0 * (f64::from(f32::EPSILON) * of_node + f64::EPSILON * in_world);
-            // Below f32's normal numbers, roundings are no longer relative.
-            let smallest = f64::from(f32::MIN_POSITIVE) * (by_axes[0] + by_axes[1] + by_axes[2]);
-            (instance.vertices.clone(), within + smallest)
-        };
-        self.pieces.instances.iter().map(of_instance).collect()
+            let finite = positions.iter().copied().filter(|p| p.is_finite());
+            let in_world = finite.fold(DVec3::ZERO, largest);
+            let in_mesh = positions.iter().enumerate();
+            let in_mesh = in_mesh.map(|(element, p)| instance.pose.at(element).inverse().transform_point3(*p));
+            let in_mesh = in_mesh.filter(|p| p.is_finite()).fold(DVec3::ZERO, largest);
+            let within = |element: usize, linear: Option<Linear>| {
+                // What a skin flattens is left as it is, wherever it was moved.
+                let Some(Linear { world_from_mesh, .. }) = linear else {
+                    return DVec3::INFINITY;
+                };
+                let by_axes = [world_from_mesh.x_axis, world_from_mesh.y_axis, world_from_mesh.z_axis];
+                let by_axes: DVec3 = by_axes.into_iter().map(DVec3::abs).sum();
+                let of_mesh = f64::from(f32::EPSILON) * in_mesh.max_element() * by_axes;
+                let of_place = instance.pose.at(element).translation.abs();
+                let of_world = f64::EPSILON * in_world.max(of_place);
+                // Below f32's normal numbers, roundings are no longer relative.
+                16.0 * (of_mesh + of_world) + f64::from(f32::MIN_POSITIVE) * by_axes
+            };
+            let linear = instance.pose.linear();
+            match instance.pose {
+                Pose::Node(_) => roundings.push((instance.vertices.clone(), within(0, linear(0)))),
+                Pose::Skin(_) => roundings.extend(instance.vertices.clone().enumerate().map(|(element, vertex)| {
+                    let range = vertex..vertex + 1;
+                    (range, within(element, linear(element)))
+                })),
+            }
+        }
+        roundings
     }
 
     /// What differs between this file and another, in the order of this one's text.

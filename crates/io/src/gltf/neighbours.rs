@@ -146,8 +146,8 @@ pub fn with_neighbours_renamed(file: &[u8], names: &[(&str, String)]) -> Option<
 ///
 /// A save changes numbers in buffers and what describes them (accessors, views, buffers), clones meshes, adds morph
 /// targets, writes compressed ones out plainly and gives neighbours other names. It never changes how many elements an
-/// accessor has, nor scenes, materials, textures, skins, cameras, extras, or what nodes are called and how many there
-/// are.
+/// accessor has, nor scenes, materials, textures, skins, cameras, extras, or what nodes are called; it adds nodes behind
+/// the others alone.
 pub fn is_same_document(a: &[u8], b: &[u8]) -> bool {
     let parsed = |file: &[u8]| Json::parse(text_of(file)?.to_vec()).ok();
     let (Some(a), Some(b)) = (parsed(a), parsed(b)) else {
@@ -171,14 +171,18 @@ pub fn is_same_document(a: &[u8], b: &[u8]) -> bool {
             .collect()
     };
     kept(&a) == kept(&b)
-        && said(&a, "nodes", &["name"]) == said(&b, "nodes", &["name"])
+        && begin_alike(&said(&a, "nodes", &["name"]), &said(&b, "nodes", &["name"]))
         && said(&a, "images", &["name", "mimeType"]) == said(&b, "images", &["name", "mimeType"])
         && said(&a, "buffers", &["name"]) == said(&b, "buffers", &["name"])
-        // Both begin with those that were read.
-        && said(&a, "accessors", &["count", "type"])
-            .iter()
-            .zip(&said(&b, "accessors", &["count", "type"]))
-            .all(|(a, b)| a == b)
+        && begin_alike(
+            &said(&a, "accessors", &["count", "type"]),
+            &said(&b, "accessors", &["count", "type"]),
+        )
+}
+
+/// Whether both lists begin with those elements that were read.
+fn begin_alike<T: PartialEq>(a: &[T], b: &[T]) -> bool {
+    a.iter().zip(b).all(|(a, b)| a == b)
 }
 
 /// What the elements of a section say by `keys`, as written.

@@ -7,7 +7,7 @@ use std::collections::HashMap;
 
 use ::gltf::json;
 use ::gltf::json::validation::Checked;
-use glam::{DMat3, DVec3, Vec3};
+use glam::{DVec3, Vec3};
 use pliant_mesh::{Cancel, Object};
 use rayon::prelude::*;
 
@@ -27,14 +27,8 @@ pub(crate) fn appearance(document: &Document, meshes: &[Vec<Primitive>], pieces:
     let mut out = Appearance {
         normals: gather(pieces, [0.0; 3], |instance| {
             let normals = normals(document, instance, primitive(meshes, instance))?;
-            let world = normal_matrix(instance);
-            let turn = |n: &[f32; 3]| {
-                (world * Vec3::from_array(*n).as_dvec3())
-                    .normalize_or_zero()
-                    .as_vec3()
-                    .to_array()
-            };
-            Some(normals.par_iter().with_min_len(CHUNK).map(turn).collect())
+            let in_world = in_world(instance, &normals);
+            Some(in_world.map(|normal| normal.as_vec3().to_array()).collect())
         }),
         uvs: gather(pieces, [0.0; 2], |instance| {
             let primitive = primitive(meshes, instance);
@@ -145,11 +139,23 @@ pub(crate) fn world_normals(document: &Document, meshes: &[Vec<Primitive>], piec
     for instance in &pieces.instances {
         let normals = normals(document, instance, primitive(meshes, instance));
         let normals = normals.unwrap_or_else(|| vec![[0.0; 3]; instance.vertices.len()]);
-        let world = normal_matrix(instance);
-        let turn = |n: &[f32; 3]| (world * Vec3::from_array(*n).as_dvec3()).normalize_or_zero();
-        out.par_extend(normals.par_iter().with_min_len(CHUNK).map(turn));
+        out.par_extend(in_world(instance, &normals));
     }
     out
+}
+
+/// An instance's normals in world space, of unit length; zero for those that its skin flattens.
+fn in_world<'a>(instance: &'a Instance, normals: &'a [[f32; 3]]) -> impl IndexedParallelIterator<Item = DVec3> + 'a {
+    let linear = instance.pose.linear();
+    normals
+        .par_iter()
+        .enumerate()
+        .with_min_len(CHUNK)
+        .map(move |(element, normal)| {
+            let normal = Vec3::from_array(*normal).as_dvec3();
+            let world = linear(element).map(|linear| linear.mesh_from_world.transpose() * normal);
+            world.unwrap_or_default().normalize_or_zero()
+        })
 }
 
 /// An instance's rest normals in its node's space, default morph targets applied; `None` where it has none.
@@ -180,10 +186,6 @@ fn primitive<'a>(meshes: &'a [Vec<Primitive>], instance: &Instance) -> &'a Primi
 
 fn of_piece<'a>(meshes: &'a [Vec<Primitive>], pieces: &Pieces, instance: usize, primitive: usize) -> &'a Primitive {
     &meshes[pieces.instances[instance].mesh][primitive]
-}
-
-fn normal_matrix(instance: &Instance) -> DMat3 {
-    instance.world_from_node.matrix3.inverse().transpose()
 }
 
 /// One attribute of all drawn vertices; `None` where no instance has it.

@@ -73,7 +73,8 @@ impl Document {
         }
     }
 
-    fn place_of_view(&self, view: usize) -> Option<(usize, Range<usize>)> {
+    /// The buffer that a view is of, and its bytes there.
+    pub fn place_of_view(&self, view: usize) -> Option<(usize, Range<usize>)> {
         let view = self.views.get(view)?;
         let start = usize::try_from(view.byte_offset.map_or(0, |offset| offset.0)).ok()?;
         let length = usize::try_from(view.byte_length.0).ok()?;

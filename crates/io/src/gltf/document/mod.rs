@@ -161,6 +161,16 @@ impl Document {
         }
     }
 
+    /// A node by its number and name, for messages.
+    pub fn called(&self, node: usize) -> String {
+        let name = self.name(self.nodes_at[node]);
+        if name.is_empty() {
+            format!("node {node}")
+        } else {
+            format!("node {node} ({})", quoted(&name))
+        }
+    }
+
     /// A node's, mesh's or image's name; empty where it has none.
     pub fn name(&self, object: At) -> String {
         self.json

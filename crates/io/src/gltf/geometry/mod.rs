@@ -4,14 +4,17 @@
 //! file's primitives first name them: meshes in the file's order, a mesh's primitives in theirs, whether drawn or not
 //! and whatever their mode; one that several primitives name is counted once.
 //!
-//! Drawn vertices come node by node (depth first), primitive by primitive: those of triangles, then those of lines and
+//! Drawn vertices come node by node (depth first), copy by copy where a node shows several, primitive by primitive: those of triangles, then those of lines and
 //! points. Primitives of one mesh that name the same accessors share their drawn vertices, so that a mesh cut into a
 //! hundred materials is not multiplied by a hundred. Lines and points share those of any primitive with the same
 //! positions.
 
 pub(crate) mod draco;
+pub(crate) mod instancing;
 pub(crate) mod meshopt;
+mod pose;
 pub(crate) mod primitive;
+mod skins;
 pub(crate) mod targets;
 pub(crate) mod tree;
 
@@ -26,15 +29,20 @@ use crate::gltf::document::Document;
 use crate::gltf::document::fault::Fault;
 use crate::gltf::document::json::At;
 use crate::gltf::document::layout::Layout;
+pub(crate) use crate::gltf::geometry::pose::{Linear, Pose};
 use crate::gltf::geometry::primitive::{Mode, Primitive};
 use crate::gltf::geometry::tree::Placed;
+use crate::quote::quoted;
+use crate::source::notes::Notes;
 
 /// The drawn vertices of one attribute set seen through one node.
 #[derive(Clone, PartialEq, Debug)]
 pub(crate) struct Instance {
     pub node: usize,
+    /// Which of its node's copies it is; 0 where there is one.
+    pub copy: usize,
     pub mesh: usize,
-    pub world_from_node: DAffine3,
+    pub pose: Pose,
     /// Its drawn vertices: element `e` is vertex `vertices.start + e`.
     pub vertices: Range<u32>,
     /// The primitive whose attributes these are (others of the mesh may name the same).
@@ -70,6 +78,7 @@ pub(crate) fn drawn(
     document: &Document,
     meshes: &[Vec<Primitive>],
     placed: &[Placed],
+    notes: &mut Notes,
     progress: &Progress,
     cancel: &Cancel,
 ) -> Result<(Drawn, Pieces), Fault> {
@@ -82,6 +91,7 @@ pub(crate) fn drawn(
             ..Drawn::default()
         },
         pieces: Pieces::default(),
+        notes,
         budget: document.drawing_budget(),
     };
     let mut weights = Weights::default();
@@ -144,6 +154,7 @@ struct Gathering<'a> {
     cancel: &'a Cancel,
     drawn: Drawn,
     pieces: Pieces,
+    notes: &'a mut Notes,
     /// The bytes that may still be spent.
     budget: usize,
 }
@@ -180,21 +191,48 @@ impl Gathering<'_> {
             .iter()
             .map(|&(target, weight)| (primitive.targets[target].position, weight));
         apply_targets(self.document, &mut positions, targets, self.cancel)?;
-        place_vertices(&positions, place.world_from_node, first_file_vertex, &mut self.drawn);
-        let Placed {
-            node,
-            mesh,
-            world_from_node,
-        } = *place;
+        let pose = self.pose(place, primitive, layout.count)?;
+        place_vertices(&positions, &pose, first_file_vertex, &mut self.drawn);
         self.pieces.instances.push(Instance {
-            node,
-            mesh,
-            world_from_node,
+            node: place.node,
+            copy: place.copy,
+            mesh: place.mesh,
+            pose,
             vertices: start..self.drawn.positions.len() as u32,
             primitive: number,
             weights,
         });
         Ok(self.pieces.instances.len() - 1)
+    }
+
+    /// Where the skin or the node puts the primitive's vertices. A skin that can't be read is noted.
+    fn pose(&mut self, place: &Placed, primitive: &Primitive, count: usize) -> Result<Pose, Fault> {
+        let by_node = Pose::Node(place.world_from_node);
+        let Some(skin) = &place.skin else {
+            return Ok(by_node);
+        };
+        spend(&mut self.budget, count, size_of::<DAffine3>(), "vertices of a skin")?;
+        let called = self.document.called(place.node);
+        match skins::transforms(self.document, primitive, skin, count) {
+            Ok(Some(transforms)) => {
+                let pose = Pose::Skin(transforms);
+                let flattened = pose.flattened_count();
+                let note = (flattened > 0).then(|| {
+                    let vertices = if flattened == 1 { "vertex" } else { "vertices" };
+                    format!(
+                        "The skin of {called} flattens {flattened} {vertices}, so a move can't be brought back to the \
+                         file: what is saved leaves them as they are."
+                    )
+                });
+                self.notes.add("skins", note);
+                Ok(pose)
+            }
+            Ok(None) => Ok(by_node),
+            Err(reason) => {
+                self.notes.add("skins", Some(unread_skin(&called, &reason)));
+                Ok(by_node)
+            }
+        }
     }
 
     /// Adds the triangles or lines of primitive `number`, whose `vertex_count` vertices are those of `instance`.
@@ -221,13 +259,13 @@ impl Gathering<'_> {
         let corners = corners(self.document, primitive, vertex_count)
             .map_err(|what| format!("mesh {} primitive {number} {what}", place.mesh))?;
         let start = self.drawn.triangles.len() as u32;
-        let is_mirrored = place.world_from_node.matrix3.determinant() < 0.0;
-        let winding = if is_mirrored {
+        let of_piece = &self.pieces.instances[instance];
+        let winding = if of_piece.pose.is_mirrored() {
             Winding::Flipped
         } else {
             Winding::AsStored
         };
-        let first = self.pieces.instances[instance].vertices.start;
+        let first = of_piece.vertices.start;
         if mode.makes_triangles() {
             corners.triangles(mode, winding, first, &mut self.drawn.triangles);
         } else {
@@ -321,17 +359,17 @@ pub(crate) fn apply_targets(
     Ok(())
 }
 
-fn place_vertices(
-    positions: &[[f32; 3]],
-    world_from_node: DAffine3,
-    first_file_vertex: Option<u32>,
-    drawn: &mut Drawn,
-) {
+/// The note about a skin that can't be read.
+fn unread_skin(called: &str, reason: &str) -> String {
+    let reason = quoted(reason);
+    format!("The skin of {called} can't be read ({reason}), so its mesh is placed by its node.")
+}
+
+fn place_vertices(positions: &[[f32; 3]], pose: &Pose, first_file_vertex: Option<u32>, drawn: &mut Drawn) {
     let first = first_file_vertex.unwrap_or(0);
-    let world = |p: &[f32; 3]| world_from_node.transform_point3(Vec3::from_array(*p).as_dvec3());
-    drawn
-        .positions
-        .par_extend(positions.par_iter().with_min_len(CHUNK).map(world));
+    let positioned = positions.par_iter().enumerate().with_min_len(CHUNK);
+    let world = |(element, p): (usize, &[f32; 3])| pose.at(element).transform_point3(Vec3::from_array(*p).as_dvec3());
+    drawn.positions.par_extend(positioned.map(world));
     drawn
         .file_vertex
         .extend((first..).take(positions.len()).map(FileVertex));

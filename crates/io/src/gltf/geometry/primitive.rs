@@ -48,6 +48,8 @@ pub(crate) struct Primitive {
     pub indices: Option<usize>,
     pub material: Option<usize>,
     pub targets: Vec<Target>,
+    /// The accessors of joints and of their weights, set by set; empty where it isn't bound to joints.
+    pub influences: Vec<(usize, usize)>,
 }
 
 /// A morph target: the ways of the base's numbers.
@@ -57,8 +59,8 @@ pub(crate) struct Target {
     pub normal: Option<usize>,
 }
 
-/// The accessors, morph targets and transform of texture coordinates of a primitive's vertices.
-type Attributes<'a> = ([Option<usize>; 6], &'a [Target], Option<[u32; 5]>);
+/// The accessors, morph targets, influences and transform of texture coordinates of a primitive's vertices.
+type Attributes<'a> = ([Option<usize>; 6], &'a [Target], &'a [(usize, usize)], Option<[u32; 5]>);
 
 /// The primitives that are drawn, with their number and mode: those that make triangles, then lines and points.
 pub(crate) fn triangles_first(primitives: &[Primitive]) -> impl Iterator<Item = (usize, &Primitive, Mode)> {
@@ -116,6 +118,13 @@ impl Primitive {
         let material = document.index(at, "material", document.materials.len(), &what)?;
         let maps = material.map_or_else(MaterialMaps::default, |material| document.material_maps[material]);
         let targets = json.member(at, "targets");
+        let mut influences = Vec::new();
+        while let (Some(joints), Some(weights)) = (
+            attribute(&format!("JOINTS_{}", influences.len()))?,
+            attribute(&format!("WEIGHTS_{}", influences.len()))?,
+        ) {
+            influences.push((joints, weights));
+        }
         Ok(Self {
             at,
             mode,
@@ -141,12 +150,14 @@ impl Primitive {
                     })
                 })
                 .collect::<Result<_, String>>()?,
+            influences,
         })
     }
 
-    /// Whether its vertices are where the other's are, whatever the weights of morph targets.
+    /// Whether its vertices are where the other's are, whatever the weights of morph targets and the skin's pose.
     pub fn moves_as(&self, other: &Self) -> bool {
-        self.position == other.position && self.targets == other.targets
+        let is_bound_alike = self.influences == other.influences;
+        self.position == other.position && self.targets == other.targets && is_bound_alike
     }
 
     /// Everything that a primitive's drawn vertices are made of: equal for two whose drawn vertices are the same.
@@ -159,7 +170,8 @@ impl Primitive {
             self.uv,
             self.second_uv,
         ];
-        (accessors, &self.targets, self.uv.map(|_| self.uv_transform.bits()))
+        let transform = self.uv.map(|_| self.uv_transform.bits());
+        (accessors, &self.targets, &self.influences, transform)
     }
 
     /// Refuses compressed accessors that could not be decoded.
@@ -176,7 +188,8 @@ impl Primitive {
             self.second_uv,
             self.indices,
         ];
-        for accessor in read.into_iter().flatten() {
+        let influences = self.influences.iter().flat_map(|&(joints, weights)| [joints, weights]);
+        for accessor in read.into_iter().flatten().chain(influences) {
             let accessor = &document.accessors[accessor];
             let sparse = accessor
                 .sparse

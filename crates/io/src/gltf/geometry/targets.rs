@@ -58,9 +58,9 @@ pub(crate) fn displacements(
         let applied = instance.weights.iter().find(|(own, _)| *own == target);
         let left = 1.0 - applied.map_or(0.0, |(_, weight)| *weight);
         let ways = layout.floats::<3>(document);
-        for (displacement, way) in displacements[vertices].iter_mut().zip(ways) {
+        for (element, (displacement, way)) in displacements[vertices].iter_mut().zip(ways).enumerate() {
             let way = Vec3::from_array(way).as_dvec3();
-            *displacement = instance.world_from_node.transform_vector3(way) * left;
+            *displacement = instance.pose.at(element).transform_vector3(way) * left;
         }
     }
     Ok(Some(displacements))

@@ -1,29 +1,34 @@
 //! The node tree: the meshes of the default scene and their world transforms.
 
-use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3};
+use glam::{DAffine3, DMat4, DQuat, DVec3};
 use pliant_mesh::Cancel;
 
 use crate::gltf::document::Document;
 use crate::gltf::document::fault::Fault;
 use crate::gltf::document::json::At;
+use crate::gltf::geometry::instancing;
+use crate::gltf::geometry::pose::is_invertible;
+use crate::gltf::geometry::skins::{self, Skin};
+use crate::gltf::geometry::unread_skin;
 use crate::quote::quoted;
 use crate::source::notes::Notes;
 
 /// A mesh seen through a node.
-#[derive(Clone, Copy, PartialEq, Debug)]
+#[derive(Clone, PartialEq, Debug)]
 pub(crate) struct Placed {
     pub node: usize,
+    /// Which of the node's copies it is; 0 where there is one.
+    pub copy: usize,
     pub mesh: usize,
+    /// Of a copy, the copy's own.
     pub world_from_node: DAffine3,
+    /// What places what is bound to joints in its stead.
+    pub skin: Option<Skin>,
 }
 
-/// A determinant below this share of the product of the axes' lengths is a node flattened to a plane or less.
-const FLAT: f64 = 1e-12;
-
 /// The default scene's meshes in the order of its nodes, depth first; without a default scene those of all root
-/// nodes. Nodes whose world transform can't be inverted are left out and named in `notes`.
-///
-/// A skinned mesh is placed by its node, with the positions of its POSITION accessor: joints are not applied.
+/// nodes. Nodes whose world transform can't be inverted are left out and named in `notes`, but for those whose skin
+/// places their mesh.
 pub(crate) fn placed_meshes(document: &Document, notes: &mut Notes, cancel: &Cancel) -> Result<Vec<Placed>, Fault> {
     let json = &document.json;
     let node_count = document.nodes_at.len();
@@ -35,8 +40,9 @@ pub(crate) fn placed_meshes(document: &Document, notes: &mut Notes, cancel: &Can
         })?);
     }
     let roots = roots(document, &children)?;
-    let mut placed = Vec::new();
+    let mut shown = Vec::new();
     let mut seen = vec![false; node_count];
+    let mut world = vec![DAffine3::IDENTITY; node_count];
     let mut open: Vec<(usize, DAffine3)> = roots.into_iter().rev().map(|root| (root, DAffine3::IDENTITY)).collect();
     while let Some((node, world_from_parent)) = open.pop() {
         cancel.check()?;
@@ -46,24 +52,8 @@ pub(crate) fn placed_meshes(document: &Document, notes: &mut Notes, cancel: &Can
         let at = document.nodes_at[node];
         let world_from_node = world_from_parent * parent_from_node(document, at);
         let mesh = document.index(at, "mesh", document.meshes_at.len(), || format!("node {node}"))?;
-        if let Some(mesh) = mesh {
-            if is_invertible(world_from_node) {
-                placed.push(Placed {
-                    node,
-                    mesh,
-                    world_from_node,
-                });
-            } else {
-                let name = document.name(at);
-                let called = if name.is_empty() {
-                    String::new()
-                } else {
-                    format!(" ({})", quoted(&name))
-                };
-                let note = format!("Node {node}{called} is left out: its transform flattens it and can't be undone.");
-                notes.add("nodes", Some(note));
-            }
-        }
+        world[node] = world_from_node;
+        shown.extend(mesh.map(|mesh| (node, mesh)));
         open.extend(children[node].iter().rev().map(|&child| (child, world_from_node)));
     }
     // A ring of nodes has no root, so it is found as nodes that were not reached.
@@ -71,15 +61,119 @@ pub(crate) fn placed_meshes(document: &Document, notes: &mut Notes, cancel: &Can
         let node = seen.iter().position(|seen| !seen).unwrap_or(0);
         return Err(format!("node {node} is its own ancestor: its nodes are not a tree").into());
     }
+    note_unseen(document, &seen, notes);
+    place_others(document, &children, &mut seen, &mut world, cancel)?;
+    let mut placed = Vec::new();
+    for (node, mesh) in shown {
+        cancel.check()?;
+        let world_from_node = world[node];
+        let skin = skins::of_node(document, document.nodes_at[node], &world).unwrap_or_else(|reason| {
+            notes.add("skins", Some(unread_skin(&document.called(node), &reason)));
+            None
+        });
+        let copies = instancing::copies(document, document.nodes_at[node]).unwrap_or_else(|reason| {
+            let called = document.called(node);
+            let reason = quoted(&reason);
+            let note = format!("The copies of {called} can't be read ({reason}), so its mesh is shown once.");
+            notes.add("nodes with copies", Some(note));
+            None
+        });
+        let transforms = match copies {
+            Some(copies) if skin.is_none() => {
+                let each = copies.iter();
+                each.map(|copy| world_from_node * copy.node_from_copy()).collect()
+            }
+            _ => vec![world_from_node],
+        };
+        for (copy, world_from_node) in transforms.into_iter().enumerate() {
+            if skin.is_some() || is_invertible(&world_from_node) {
+                placed.push(Placed {
+                    node,
+                    copy,
+                    mesh,
+                    world_from_node,
+                    skin: skin.clone(),
+                });
+            } else {
+                let called = document.called(node);
+                let note = format!("The mesh of {called} is left out: its transform flattens it and can't be undone.");
+                notes.add("nodes", Some(note));
+            }
+        }
+    }
     Ok(placed)
+}
+
+/// Tells of the meshes that are not drawn because the default scene does not show them, and of hidden ones that are.
+fn note_unseen(document: &Document, seen: &[bool], notes: &mut Notes) {
+    let json = &document.json;
+    let has_mesh = |&node: &usize| json.member(document.nodes_at[node], "mesh").is_some();
+    let unseen: Vec<usize> = (0..seen.len()).filter(|&node| !seen[node]).filter(has_mesh).collect();
+    if let Some(&first) = unseen.first() {
+        let nodes = if unseen.len() == 1 {
+            "1 node with a mesh is"
+        } else {
+            &format!("{} nodes with meshes are", unseen.len())
+        };
+        let called = document.called(first);
+        let note = format!(
+            "{nodes} not drawn, because the default scene does not show them ({called} is the first); an edit leaves them as they are."
+        );
+        notes.add("scenes", Some(note));
+    }
+    let is_hidden = |&node: &usize| {
+        let visible = json.path(
+            document.nodes_at[node],
+            &["extensions", "KHR_node_visibility", "visible"],
+        );
+        seen[node] && visible.is_some_and(|visible| json.raw(visible) == b"false")
+    };
+    let hidden: Vec<usize> = (0..seen.len()).filter(is_hidden).collect();
+    if let Some(&first) = hidden.first() {
+        let nodes = if hidden.len() == 1 {
+            "1 node"
+        } else {
+            &format!("{} nodes", hidden.len())
+        };
+        let called = document.called(first);
+        let note = format!(
+            "{nodes} hidden by KHR_node_visibility ({called} is the first) and what is below is drawn all the same."
+        );
+        notes.add("hidden nodes", Some(note));
+    }
+}
+
+/// The world transforms of the nodes that the default scene does not show, among which a skin may have its joints.
+fn place_others(
+    document: &Document,
+    children: &[Vec<usize>],
+    seen: &mut [bool],
+    world: &mut [DAffine3],
+    cancel: &Cancel,
+) -> Result<(), Fault> {
+    let mut open: Vec<(usize, DAffine3)> = loose_roots(children).map(|root| (root, DAffine3::IDENTITY)).collect();
+    while let Some((node, world_from_parent)) = open.pop() {
+        cancel.check()?;
+        if !std::mem::replace(&mut seen[node], true) {
+            world[node] = world_from_parent * parent_from_node(document, document.nodes_at[node]);
+        }
+        let of_children = children[node].iter().filter(|child| !seen[**child]);
+        open.extend(of_children.map(|&child| (child, world[node])));
+    }
+    Ok(())
+}
+
+/// The nodes that are no node's child.
+fn loose_roots(children: &[Vec<usize>]) -> impl Iterator<Item = usize> + use<> {
+    let mut is_child = vec![false; children.len()];
+    children.iter().flatten().for_each(|&child| is_child[child] = true);
+    (0..children.len()).filter(move |&node| !is_child[node])
 }
 
 fn roots(document: &Document, children: &[Vec<usize>]) -> Result<Vec<usize>, String> {
     let json = &document.json;
     let Some(scene) = json.member(json.root(), "scene") else {
-        let mut is_child = vec![false; children.len()];
-        children.iter().flatten().for_each(|&child| is_child[child] = true);
-        return Ok((0..children.len()).filter(|&node| !is_child[node]).collect());
+        return Ok(loose_roots(children).collect());
     };
     let scenes = json.member(json.root(), "scenes");
     let scenes: Vec<At> = scenes.map_or_else(Vec::new, |at| json.elements(at).collect());
@@ -122,11 +216,4 @@ fn numbers<const N: usize>(document: &Document, object: At, key: &str) -> Option
         *slot = json.number(elements.next()?)?;
     }
     Some(out)
-}
-
-fn is_invertible(world_from_node: DAffine3) -> bool {
-    let DMat3 { x_axis, y_axis, z_axis } = world_from_node.matrix3;
-    let volume = x_axis.length() * y_axis.length() * z_axis.length();
-    let determinant = world_from_node.matrix3.determinant();
-    world_from_node.is_finite() && determinant.abs() > FLAT * volume && world_from_node.inverse().is_finite()
 }

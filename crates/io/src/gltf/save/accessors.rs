@@ -30,7 +30,7 @@ pub(crate) fn with_changes<'a>(
 ) -> Result<Patched<'a>, SaveError> {
     let (of_plan, course) = course.split(0.5);
     let hashes = copy_on_write::hashes(changes);
-    let copies = copy_on_write::plan_meshes(document, meshes, pieces, changes, &hashes, &of_plan)?;
+    let copies = copy_on_write::plan_meshes(document, meshes, pieces, (changes, turned), &hashes, &of_plan)?;
     let plans = copy_on_write::plan_accessors(document, meshes, &copies, changes, &hashes, &of_plan)?;
     let mut patch = Patch::new(document);
     let places = Places::of(document);
@@ -58,7 +58,7 @@ pub(crate) fn with_changes<'a>(
     }
     patch.unpack(meshes, &copies, &plans, turned, format)?;
     patch.turn(meshes, &copies, turned, &places, format)?;
-    patch.clone_meshes(&copies);
+    patch.clone_meshes(&copies, format)?;
     let mut patched = patch.finished(format)?;
     patched
         .warnings

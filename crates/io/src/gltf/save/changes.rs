@@ -133,8 +133,9 @@ fn instance_change(
         return Ok(InstanceChange::default());
     }
     let primitive = &meshes[instance.mesh][instance.primitive];
-    let world_from_node = instance.world_from_node.matrix3;
-    let node_from_world = world_from_node.inverse();
+    // What a skin flattens stays as it is: a move can't be brought back through it.
+    let linear = instance.pose.linear();
+    let elements: Vec<u32> = elements.into_iter().filter(|&e| linear(e as usize).is_some()).collect();
     let stored = |accessor: Option<usize>| appearance::attribute::<4>(document, instance, accessor);
     let positions = stored(primitive.position).unwrap_or_default();
     let normals = stored(primitive.normal);
@@ -146,7 +147,8 @@ fn instance_change(
         // The displacement, not the position, is transformed back, so that far from the origin no digits are lost. f32
         // begins here.
         let v = vertex(element).index();
-        let by = node_from_world * (moved.positions[v] - moved.drawn.positions[v]);
+        let way = moved.positions[v] - moved.drawn.positions[v];
+        let by = linear(element as usize).map_or(DVec3::ZERO, |linear| linear.mesh_from_world * way);
         if by == DVec3::ZERO {
             return Vec4::from_array(stored);
         }
@@ -159,7 +161,8 @@ fn instance_change(
     }
     let gradient = |element: u32| -> Option<DMat3> {
         let world = frames?.gradient(vertex(element))?;
-        Some(node_from_world * world * world_from_node)
+        let linear = linear(element as usize)?;
+        Some(linear.mesh_from_world * world * linear.world_from_mesh)
     };
     let normal = normals.as_deref().unwrap_or_default();
     let normal = changed(&elements, normal, &of_normals, |element, stored| {

@@ -1,19 +1,20 @@
 //! The copy-on-write plan of a save: which meshes are cloned and which accessors are copied, so that unchanged parts
 //! stay shared.
 //!
-//! A mesh that several nodes show is cloned if the edit makes them differ; the nodes that did not move, or else the
-//! first ones, keep the original. An accessor that several primitives use is copied if they differ; unchanged uses, and
+//! A mesh that several nodes, or several copies of one node, show is cloned if the edit makes them differ; those that did
+//! not move, or else the first ones, keep the original. What shows it without being drawn did not move. An accessor that several primitives use is copied if they differ; unchanged uses, and
 //! those that are no vertex attributes (morph targets, animations, skins), keep the original.
 
 use std::collections::hash_map::Entry;
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeMap, HashMap};
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 
 use crate::gltf::document::Document;
-use crate::gltf::document::json::At;
 use crate::gltf::geometry::Pieces;
 use crate::gltf::geometry::primitive::Primitive;
 use crate::gltf::save::changes::{Change, InstanceChange, Rest, Semantic};
+use crate::gltf::save::elsewhere;
+use crate::gltf::save::turned::Turned;
 use crate::save::course::Course;
 use pliant_mesh::Cancelled;
 use rayon::prelude::*;
@@ -22,13 +23,22 @@ use rayon::prelude::*;
 #[derive(Clone, PartialEq, Debug)]
 pub(crate) struct MeshCopy {
     pub mesh: usize,
-    /// `None` for the file's own mesh; the nodes that a clone is for.
-    pub clone_for: Option<Vec<usize>>,
+    pub is_clone: bool,
+    /// Where it is drawn.
+    pub uses: Vec<MeshUse>,
     /// The instance that each primitive's attributes come from, where it is drawn.
     pub instances: Vec<Option<usize>>,
 }
 
+/// A node that shows a mesh, and the number of the copy where it shows several.
+pub(crate) type MeshUse = (usize, usize);
+
 impl MeshCopy {
+    /// Whether it is drawn: the file's own mesh may be left to what is not.
+    pub fn is_drawn(&self) -> bool {
+        !self.uses.is_empty()
+    }
+
     /// The instance that determines each primitive's change. A primitive that is not drawn (for example lines along a
     /// surface's edges) follows a drawn one of its mesh with the same positions.
     pub fn followed_instances(&self, primitives: &[Primitive]) -> Vec<Option<usize>> {
@@ -102,7 +112,7 @@ pub(crate) fn plan_meshes(
     document: &Document,
     meshes: &[Vec<Primitive>],
     pieces: &Pieces,
-    changes: &[InstanceChange],
+    (changes, turned): (&[InstanceChange], &Turned),
     hashes: &[[u64; 3]],
     course: &Course<'_>,
 ) -> Result<Vec<MeshCopy>, Cancelled> {
@@ -111,12 +121,14 @@ pub(crate) fn plan_meshes(
         .enumerate()
         .map(|(mesh, primitives)| MeshCopy {
             mesh,
-            clone_for: None,
+            is_clone: false,
+            uses: Vec::new(),
             instances: vec![None; primitives.len()],
         })
         .collect();
     let mut clones = Vec::new();
     let mut rest = Rest::default();
+    let elsewhere = elsewhere::meshes(document, pieces);
     for (mesh, uses) in uses(meshes, pieces) {
         let mut is_same = |a: &[Option<usize>], b: &[Option<usize>]| {
             let mut primitives = meshes[mesh].iter().zip(a.iter().zip(b));
@@ -129,9 +141,9 @@ pub(crate) fn plan_meshes(
                 (a, b) => a == b,
             })
         };
-        let mut classes: Vec<(Vec<Option<usize>>, Vec<usize>)> = Vec::new();
+        let mut classes: Vec<(Vec<Option<usize>>, Vec<MeshUse>)> = Vec::new();
         let mut class_of: HashMap<u64, usize> = HashMap::new();
-        for (node, instances) in uses {
+        for (place, instances) in uses {
             course.reach(0, 1)?;
             let mut hasher = DefaultHasher::new();
             instances
@@ -146,25 +158,28 @@ pub(crate) fn plan_meshes(
             let class = class.unwrap_or(classes.len());
             likely.or_insert(class);
             match classes.get_mut(class) {
-                Some((_, nodes)) => nodes.push(node),
-                None => classes.push((instances, vec![node])),
+                Some((_, places)) => places.push(place),
+                None => classes.push((instances, vec![place])),
             }
         }
-        let is_unmoved =
-            |instances: &[Option<usize>]| instances.iter().flatten().all(|&instance| changes[instance].is_empty());
-        let own = classes
-            .iter()
-            .position(|(instances, _)| is_unmoved(instances))
-            .unwrap_or(0);
-        for (number, (instances, nodes)) in classes.into_iter().enumerate() {
-            if number == own {
-                copies[mesh].instances = instances;
-            } else {
-                clones.push(MeshCopy {
-                    mesh,
-                    clone_for: Some(nodes),
-                    instances,
-                });
+        let is_turned = turned.range((mesh, 0)..(mesh + 1, 0)).next().is_some();
+        let is_unmoved = |instances: &[Option<usize>]| {
+            let mut instances = instances.iter().flatten();
+            !is_turned && instances.all(|&instance| changes[instance].is_empty())
+        };
+        let unmoved = classes.iter().position(|(instances, _)| is_unmoved(instances));
+        let own = unmoved.or((!elsewhere.contains(&mesh)).then_some(0));
+        for (number, (instances, uses)) in classes.into_iter().enumerate() {
+            let is_clone = own != Some(number);
+            let copy = MeshCopy {
+                mesh,
+                is_clone,
+                uses,
+                instances,
+            };
+            match is_clone {
+                true => clones.push(copy),
+                false => copies[mesh] = copy,
             }
         }
     }
@@ -172,18 +187,19 @@ pub(crate) fn plan_meshes(
     Ok(copies)
 }
 
-/// A node that shows a mesh, and the instance of each primitive.
-type NodeUse = (usize, Vec<Option<usize>>);
+/// Where a mesh is shown, and the instance of each primitive.
+type DrawnUse = (MeshUse, Vec<Option<usize>>);
 
-/// By mesh: the nodes that show it, in the order of drawing, with the instance of each primitive.
-fn uses(meshes: &[Vec<Primitive>], pieces: &Pieces) -> BTreeMap<usize, Vec<NodeUse>> {
-    let mut uses: BTreeMap<usize, Vec<NodeUse>> = BTreeMap::new();
+/// By mesh: where it is shown, in the order of drawing, with the instance of each primitive.
+fn uses(meshes: &[Vec<Primitive>], pieces: &Pieces) -> BTreeMap<usize, Vec<DrawnUse>> {
+    let mut uses: BTreeMap<usize, Vec<DrawnUse>> = BTreeMap::new();
     for piece in &pieces.pieces {
         let instance = &pieces.instances[piece.instance];
         let of_mesh = uses.entry(instance.mesh).or_default();
-        // Pieces of one node stand together.
-        if of_mesh.last().is_none_or(|(node, _)| *node != instance.node) {
-            of_mesh.push((instance.node, vec![None; meshes[instance.mesh].len()]));
+        let place = (instance.node, instance.copy);
+        // Pieces of one node, and of one copy, stand together.
+        if of_mesh.last().is_none_or(|(last, _)| *last != place) {
+            of_mesh.push((place, vec![None; meshes[instance.mesh].len()]));
         }
         if let Some((_, instances)) = of_mesh.last_mut() {
             instances[piece.primitive] = Some(piece.instance);
@@ -203,7 +219,7 @@ pub(crate) fn plan_accessors<'a>(
 ) -> Result<BTreeMap<usize, AccessorPlan<'a>>, Cancelled> {
     let mut versions = versions_of_accessors(meshes, copies, changes, hashes, course)?;
     versions.retain(|_, versions| versions.iter().any(|version| !version.change.is_empty()));
-    let elsewhere = used_elsewhere(document, meshes);
+    let elsewhere = elsewhere::accessors(document, meshes);
     let plans = versions
         .into_iter()
         .filter_map(|(accessor, mut versions)| {
@@ -306,42 +322,3 @@ fn leaders(primitives: &[Primitive], copy: &MeshCopy) -> HashMap<(usize, usize),
 
 /// Stands for the hash of what does not change.
 const UNCHANGED_HASH: u64 = 0;
-
-/// Accessors that something else than a primitive's POSITION, NORMAL or TANGENT reads.
-fn used_elsewhere(document: &Document, meshes: &[Vec<Primitive>]) -> BTreeSet<usize> {
-    let json = &document.json;
-    let section = |key: &str| {
-        json.member(json.root(), key)
-            .into_iter()
-            .flat_map(|list| json.elements(list))
-    };
-    let mut named: Vec<At> = Vec::new();
-    for primitive in meshes.iter().flatten() {
-        let targets = json
-            .member(primitive.at, "targets")
-            .into_iter()
-            .flat_map(|targets| json.elements(targets));
-        named.extend(targets.flat_map(|target| json.members(target)).map(|(_, value)| value));
-        named.extend(json.member(primitive.at, "indices"));
-        let attributes = json
-            .member(primitive.at, "attributes")
-            .into_iter()
-            .flat_map(|at| json.members(at));
-        let ours = Semantic::ALL.map(|semantic| Some(semantic.key().to_owned()));
-        named.extend(
-            attributes
-                .filter(|&(key, _)| !ours.contains(&json.string(key)))
-                .map(|(_, value)| value),
-        );
-    }
-    named.extend(section("skins").filter_map(|skin| json.member(skin, "inverseBindMatrices")));
-    let samplers = section("animations").filter_map(|animation| json.member(animation, "samplers"));
-    for sampler in samplers.flat_map(|samplers| json.elements(samplers)) {
-        named.extend(["input", "output"].iter().filter_map(|key| json.member(sampler, key)));
-    }
-    named
-        .into_iter()
-        .filter_map(|at| json.number(at))
-        .map(|number| number as usize)
-        .collect()
-}

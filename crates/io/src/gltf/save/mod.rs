@@ -4,12 +4,14 @@ mod accessors;
 mod changes;
 mod copy_on_write;
 mod deliver;
+mod elsewhere;
 mod morph;
 mod overlap;
 mod pack;
 mod patch;
 mod turned;
 mod unpack;
+mod unpack_copies;
 
 use super::Stored;
 use crate::save::course::Course;

@@ -14,6 +14,7 @@ use crate::gltf::save::accessors::{Bounds, number};
 use crate::gltf::save::changes::{InstanceChange, Semantic};
 use crate::gltf::save::copy_on_write::{self, MeshCopy};
 use crate::gltf::save::patch::{Patch, Patched, cannot_hold};
+use crate::gltf::save::turned::Turned;
 use crate::quote::quoted;
 use crate::save::MorphTarget;
 use crate::save::course::Course;
@@ -31,7 +32,7 @@ pub(crate) fn with_target<'a>(
 ) -> Result<Patched<'a>, SaveError> {
     let (of_plan, course) = course.split(0.3);
     let hashes = copy_on_write::hashes(changes);
-    let copies = copy_on_write::plan_meshes(document, meshes, pieces, changes, &hashes, &of_plan)?;
+    let copies = copy_on_write::plan_meshes(document, meshes, pieces, (changes, &Turned::new()), &hashes, &of_plan)?;
     let nodes = nodes_of_copies(document, &copies);
     let mut maker = TargetMaker {
         patch: Patch::new(document),
@@ -59,7 +60,7 @@ pub(crate) fn with_target<'a>(
     for (list, texts) in samplers.into_values() {
         maker.patch.edits.append_elements(&document.json, list, &texts);
     }
-    maker.patch.clone_meshes(&copies);
+    maker.patch.clone_meshes(&copies, format)?;
     maker.patch.finished(format)
 }
 
@@ -323,7 +324,7 @@ fn nodes_of_copies(document: &Document, copies: &[MeshCopy]) -> Vec<Vec<usize>> 
     let json = &document.json;
     let mut copy_of: HashMap<usize, usize> = HashMap::new();
     for (number, copy) in copies.iter().enumerate() {
-        copy_of.extend(copy.clone_for.iter().flatten().map(|&node| (node, number)));
+        copy_of.extend(copy.uses.iter().map(|&(node, _)| (node, number)));
     }
     let mut nodes = vec![Vec::new(); copies.len()];
     for (node, &at) in document.nodes_at.iter().enumerate() {

@@ -48,6 +48,7 @@ pub(crate) struct Patch<'a> {
     clone_edits: BTreeMap<usize, Edits>,
     new_accessors: Vec<String>,
     new_views: Vec<String>,
+    pub(super) new_nodes: Vec<String>,
     /// How many bytes buffers may yet take for themselves.
     room: Option<usize>,
     /// For each group of accessors at one place whether all of them become the same.
@@ -64,6 +65,7 @@ impl<'a> Patch<'a> {
             clone_edits: BTreeMap::new(),
             new_accessors: Vec::new(),
             new_views: Vec::new(),
+            new_nodes: Vec::new(),
             room: Some(document.drawing_budget().saturating_mul(MOST_SAVED)),
             are_twins_alike: HashMap::new(),
         }
@@ -137,28 +139,47 @@ impl<'a> Patch<'a> {
 
     /// The edits of a mesh's own text, or of the text that its clone gets.
     pub(crate) fn edits_of_copy(&mut self, copies: &[MeshCopy], number: usize) -> &mut Edits {
-        match copies[number].clone_for {
-            None => &mut self.edits,
-            Some(_) => self.clone_edits.entry(number).or_default(),
+        match copies[number].is_clone {
+            false => &mut self.edits,
+            true => self.clone_edits.entry(number).or_default(),
         }
     }
 
     /// Adds the clones after the meshes and makes their nodes refer to them.
-    pub(crate) fn clone_meshes(&mut self, copies: &[MeshCopy]) {
+    ///
+    /// # Errors
+    /// Copies of one node that differ, where they can't become nodes.
+    pub(crate) fn clone_meshes(&mut self, copies: &[MeshCopy], format: Format) -> Result<(), SaveError> {
         let json = &self.document.json;
         let mut clones = Vec::new();
+        // By node: the mesh that each of its copies shows.
+        let mut shown: BTreeMap<usize, Vec<(usize, usize)>> = BTreeMap::new();
         for (number, copy) in copies.iter().enumerate() {
-            let Some(nodes) = &copy.clone_for else { continue };
-            let span = json.span(self.document.meshes_at[copy.mesh]);
-            let edits = self.clone_edits.remove(&number).unwrap_or_default();
-            clones.push(String::from_utf8_lossy(&edits.apply(json.text(), span)).into_owned());
-            for &node in nodes {
-                if let Some(at) = json.member(self.document.nodes_at[node], "mesh") {
-                    self.edits.replace(json.span(at), number.to_string());
+            for &(node, copy_of_node) in &copy.uses {
+                shown.entry(node).or_default().push((copy_of_node, number));
+            }
+            if copy.is_clone {
+                let span = json.span(self.document.meshes_at[copy.mesh]);
+                let edits = self.clone_edits.remove(&number).unwrap_or_default();
+                clones.push(String::from_utf8_lossy(&edits.apply(json.text(), span)).into_owned());
+            }
+        }
+        for (node, mut of_node) in shown {
+            of_node.sort_unstable();
+            let numbers: Vec<usize> = of_node.into_iter().map(|(_, number)| number).collect();
+            let at = json.member(self.document.nodes_at[node], "mesh");
+            match (numbers.iter().all(|number| *number == numbers[0]), at) {
+                (false, _) => self.unpack_copies(node, &numbers, format)?,
+                (true, Some(at)) if copies[numbers[0]].is_clone => {
+                    self.edits.replace(json.span(at), numbers[0].to_string());
                 }
+                (true, _) => {}
             }
         }
         self.append("meshes", &clones);
+        let nodes = std::mem::take(&mut self.new_nodes);
+        self.append("nodes", &nodes);
+        Ok(())
     }
 
     /// The whole, put together.

@@ -32,7 +32,7 @@ pub(crate) fn turned(pieces: &Pieces, moved: &Moved<'_>) -> Turned {
         if turned.contains_key(&key) || !triangles.iter().any(|&[first, ..]| moved.turns(first)) {
             continue;
         }
-        let is_mirrored = instance.world_from_node.matrix3.determinant() < 0.0;
+        let is_mirrored = instance.pose.is_mirrored();
         let stored = triangles.iter().map(|&triangle| {
             // A mirrored node winds what is stored the other way.
             let is_as_drawn = is_mirrored == moved.turns(triangle[0]);
@@ -59,12 +59,16 @@ impl Patch<'_> {
         format: Format,
     ) -> Result<(), SaveError> {
         let mut written: BTreeSet<usize> = BTreeSet::new();
+        // What shows a mesh without being drawn is not turned.
+        let is_shared = |mesh: usize| copies[..meshes.len()].get(mesh).is_some_and(|own| !own.is_drawn());
         for (&(mesh, number), triangles) in turned {
             let primitive = &meshes[mesh][number];
             if let Some(indices) = primitive.indices {
                 let is_alike = |(key, other): ((usize, usize), &Primitive)| {
                     other.indices != Some(indices)
-                        || (other.mode == Some(Mode::Triangles) && turned.get(&key) == Some(triangles))
+                        || (other.mode == Some(Mode::Triangles)
+                            && turned.get(&key) == Some(triangles)
+                            && !is_shared(key.0))
                 };
                 let all = meshes.iter().enumerate();
                 let mut all = all.flat_map(|(mesh, primitives)| {
@@ -78,7 +82,8 @@ impl Patch<'_> {
                 }
             }
             let accessor = self.new_indices(triangles, format)?;
-            for copy in (0..copies.len()).filter(|&copy| copies[copy].mesh == mesh) {
+            let of_mesh = |&copy: &usize| copies[copy].mesh == mesh && copies[copy].is_drawn();
+            for copy in (0..copies.len()).filter(of_mesh) {
                 let json = &self.document.json;
                 let edits = self.edits_of_copy(copies, copy);
                 edits.set_member(json, primitive.at, "indices", &accessor.to_string());

@@ -1,0 +1,80 @@
+//! How the vertices of an instance get from the mesh's own space into the world.
+
+use glam::{DAffine3, DMat3};
+
+/// The transforms of an instance's vertices.
+#[derive(Clone, PartialEq, Debug)]
+pub(crate) enum Pose {
+    /// All of them by their node.
+    Node(DAffine3),
+    /// Each by the weighted mean of its joints' transforms; glTF ignores the node's own.
+    Skin(Vec<DAffine3>),
+}
+
+/// The linear part of a vertex's transform, and its inverse.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(crate) struct Linear {
+    pub world_from_mesh: DMat3,
+    pub mesh_from_world: DMat3,
+}
+
+impl Pose {
+    /// The transform of an element.
+    pub fn at(&self, element: usize) -> DAffine3 {
+        match self {
+            Self::Node(world_from_node) => *world_from_node,
+            Self::Skin(transforms) => transforms[element],
+        }
+    }
+
+    /// The linear part of each element's transform; `None` where that can't be undone.
+    pub fn linear(&self) -> impl Fn(usize) -> Option<Linear> + '_ {
+        let of = |transform: &DAffine3| {
+            is_invertible(transform).then(|| Linear {
+                world_from_mesh: transform.matrix3,
+                mesh_from_world: transform.matrix3.inverse(),
+            })
+        };
+        // A node's is computed once.
+        let of_node = match self {
+            Self::Node(world_from_node) => of(world_from_node),
+            Self::Skin(_) => None,
+        };
+        move |element| match self {
+            Self::Node(_) => of_node,
+            Self::Skin(transforms) => of(&transforms[element]),
+        }
+    }
+
+    /// Whether the triangles are seen wound the other way than they are stored: of a skin, whether more of its vertices
+    /// are mirrored than not.
+    pub fn is_mirrored(&self) -> bool {
+        match self {
+            Self::Node(world_from_node) => world_from_node.matrix3.determinant() < 0.0,
+            Self::Skin(transforms) => {
+                let determinants = || transforms.iter().map(|transform| transform.matrix3.determinant());
+                let mirrored = determinants().filter(|determinant| *determinant < 0.0).count();
+                mirrored > determinants().filter(|determinant| *determinant > 0.0).count()
+            }
+        }
+    }
+
+    /// How many vertices a skin flattens, so that a move of them can't be undone.
+    pub fn flattened_count(&self) -> usize {
+        match self {
+            Self::Node(_) => 0,
+            Self::Skin(transforms) => transforms.iter().filter(|transform| !is_invertible(transform)).count(),
+        }
+    }
+}
+
+/// A determinant below this share of the product of the axes' lengths is a transform that flattens to a plane or less.
+const FLAT: f64 = 1e-12;
+
+/// Whether a transform can be undone.
+pub(crate) fn is_invertible(transform: &DAffine3) -> bool {
+    let DMat3 { x_axis, y_axis, z_axis } = transform.matrix3;
+    let volume = x_axis.length() * y_axis.length() * z_axis.length();
+    let determinant = transform.matrix3.determinant();
+    transform.is_finite() && determinant.abs() > FLAT * volume && transform.inverse().is_finite()
+}
