@@ -8,7 +8,7 @@ use std::f64::consts::{PI, TAU};
 
 use glam::{DAffine3, DVec2, DVec3};
 
-use crate::{Cancel, Drawn, DrawnVertex, FileVertex, Model, Progress, WeldOptions};
+use crate::{Cancel, Drawn, DrawnVertex, FileVertex, Model, Progress, Rounding, WeldOptions};
 
 /// The unit sphere about the origin, poles on z: `rings` (2 or more) bands of `segments` (3 or more).
 /// `segments (rings - 1) + 2` vertices.
@@ -244,6 +244,10 @@ pub fn together(parts: &[Drawn]) -> Drawn {
         all.file_vertex
             .extend(part.file_vertex.iter().map(|v| FileVertex(v.0 + file)));
         all.file_vertex_count += part.file_vertex_count;
+        all.roundings.extend(part.roundings.iter().map(|run| Rounding {
+            vertices: run.vertices.start + drawn..run.vertices.end + drawn,
+            ..*run
+        }));
     }
     all
 }

@@ -70,14 +70,14 @@ fn points_beside_a_surface_leave_it_as_it_is() {
 }
 
 #[test]
-fn points_within_the_tolerance_are_one_and_those_on_a_vertex_are_its_twins() {
+fn equal_points_are_one_and_those_on_a_vertex_are_its_twins() {
     let shape = shapes::icosphere(2);
     let corner = shape.positions[7];
     let strays = vec![
         corner,
         corner + DVec3::X * 1e-9,
         DVec3::ZERO,
-        DVec3::new(0.0, 1e-9, 0.0),
+        DVec3::ZERO,
         DVec3::X * 1e-3,
     ];
     for order in [0, 1] {
@@ -94,9 +94,9 @@ fn points_within_the_tolerance_are_one_and_those_on_a_vertex_are_its_twins() {
         assert_ne!(at(2), at(4));
         assert_eq!(model.topology.bare_points().len(), 2);
         assert_eq!(model.rest().positions, drawn.positions, "no drawn vertex moves");
-        let apart = WeldOptions { tolerance: None };
-        let apart = Model::weld(drawn, &apart, &Progress::new(), &Cancel::new()).unwrap();
-        assert_eq!(apart.topology.bare_points().len(), strays.len());
+        let given = WeldOptions { distance: Some(2e-3) };
+        let given = Model::weld(drawn, &given, &Progress::new(), &Cancel::new()).unwrap();
+        assert_eq!(given.topology.bare_points().len(), 1, "the last one joins those at 0");
     }
 }
 

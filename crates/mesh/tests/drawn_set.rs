@@ -53,10 +53,10 @@ fn variants(shape: &Drawn) -> Vec<Drawn> {
 fn what_was_welded_comes_back_to_the_bit() {
     for (class, shape) in shapes::classes() {
         for (variant, drawn) in variants(&shape).into_iter().enumerate() {
-            for tolerance in [None, Some(0.0), Some(1e-7)] {
-                let options = WeldOptions { tolerance };
+            for distance in [None, Some(0.0), Some(1e-7)] {
+                let options = WeldOptions { distance };
                 let model = Model::weld(drawn.clone(), &options, &Progress::new(), &Cancel::new()).unwrap();
-                let here = format!("{class}, variant {variant}, {tolerance:?}");
+                let here = format!("{class}, variant {variant}, {distance:?}");
                 let rest = model.rest();
                 assert_eq!(bits(&rest.positions), bits(&drawn.positions), "{here}");
                 assert_eq!(rest.triangles, drawn.triangles, "{here}");

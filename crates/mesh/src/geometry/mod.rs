@@ -57,15 +57,35 @@ impl Bounds {
             max: self.max.max(other.max),
         }
     }
+
+    /// The smallest box around positions; `None` for none.
+    pub(crate) fn around(positions: impl Iterator<Item = DVec3>) -> Option<Self> {
+        positions.map(|p| Self { min: p, max: p }).reduce(|a, b| a.union(&b))
+    }
+
+    /// The same, larger by `distance` on each side.
+    pub(crate) fn grown(&self, distance: f64) -> Self {
+        Self {
+            min: self.min - distance,
+            max: self.max + distance,
+        }
+    }
+
+    /// Whether the two have a point in common.
+    pub(crate) fn meets(&self, other: &Self) -> bool {
+        self.min.cmple(other.max).all() && self.max.cmpge(other.min).all()
+    }
+
+    /// The distance of a point, 0 inside.
+    pub(crate) fn distance(&self, point: DVec3) -> f64 {
+        (self.min - point).max(point - self.max).max(DVec3::ZERO).length()
+    }
 }
 
 /// The smallest box that contains all `positions`; `None` for none. It runs on the caller's thread: the window asks for
 /// it too, and would wait behind a job's loops for longer than this takes.
 pub fn bounding_box(positions: &[DVec3]) -> Option<Bounds> {
-    positions
-        .iter()
-        .map(|&p| Bounds { min: p, max: p })
-        .reduce(|a, b| a.union(&b))
+    Bounds::around(positions.iter().copied())
 }
 
 /// The smallest box of a parallel iterator's positions. Minima and maxima don't depend on the order.

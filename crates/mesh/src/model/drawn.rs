@@ -1,8 +1,19 @@
 //! What a file shows: every vertex seen through its node, in world space.
 
+use std::ops::Range;
+
 use glam::DVec3;
 
 use crate::{DrawnVertex, FileVertex};
+
+/// Drawn vertices whose positions one grid holds, as integers or single-precision numbers do.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Rounding {
+    /// The drawn vertices.
+    pub vertices: Range<u32>,
+    /// How far, at most, a position is from the one that was rounded to it, in world units.
+    pub distance: f64,
+}
 
 /// The drawn vertices and triangles of a file's default scene, in world space.
 ///
@@ -20,6 +31,9 @@ pub struct Drawn {
     pub file_vertex: Vec<FileVertex>,
     /// How many vertices the file has, drawn or not.
     pub file_vertex_count: usize,
+    /// Runs of drawn vertices that were rounded each to a grid of its own: ascending, none in two of them. Borders of
+    /// different runs are welded up to the distances of their rounding.
+    pub roundings: Vec<Rounding>,
 }
 
 impl Drawn {
@@ -33,6 +47,7 @@ impl Drawn {
             lines: Vec::new(),
             file_vertex,
             file_vertex_count,
+            roundings: Vec::new(),
         }
     }
 }

@@ -226,6 +226,7 @@ impl Model {
             lines: self.drawn.lines.clone(),
             file_vertex: self.drawn.file_vertices().collect(),
             file_vertex_count: self.drawn.file_vertex_count(),
+            roundings: Vec::new(),
         }
     }
 

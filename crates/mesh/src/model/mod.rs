@@ -16,22 +16,16 @@ use crate::{
     Bounds, Cancel, Cancelled, FileVertex, Findings, Progress, Surface, SurfaceVertex, Topology, bounding_box,
 };
 
-pub use drawn::Drawn;
+pub use drawn::{Drawn, Rounding};
 pub use drawn_set::DrawnSet;
 pub use object::Object;
 
-/// How equal positions are joined.
-#[derive(Clone, Copy, PartialEq, Debug)]
+/// Which vertices count as one.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct WeldOptions {
-    /// Positions closer than this share of the bounding box's diagonal are joined, from 0 (equal ones only) to 1e-4
-    /// (larger shares are taken as that); `None` joins nothing.
-    pub tolerance: Option<f64>,
-}
-
-impl Default for WeldOptions {
-    fn default() -> Self {
-        Self { tolerance: Some(1e-7) }
-    }
+    /// Vertices closer than this are joined, in world units, 0 (equal ones only) or more; near triangles that are not
+    /// twice as long, half their length. `None` takes the distance from the mesh: see [`Model::weld`].
+    pub distance: Option<f64>,
 }
 
 /// The drawn set, the welded surface and the tables between them.
@@ -54,6 +48,10 @@ pub struct Model {
 impl Model {
     /// Welds `drawn` into a surface. Vertices that no kept triangle uses become bare points behind its other vertices
     /// ([`Topology::bare_points`]). Anything that can't be solved is set aside and told in the findings.
+    ///
+    /// Without a distance in the options, vertices on borders are joined within 1e-4 of the triangles' size near the
+    /// place and others within 1e-7 of it; borders of vertices that were rounded apart ([`Drawn::roundings`]) within
+    /// the distances of their rounding, but no further than a quarter of that size.
     pub fn weld(drawn: Drawn, options: &WeldOptions, progress: &Progress, cancel: &Cancel) -> Result<Self, Cancelled> {
         let mut welded = weld(drawn, options, progress, cancel)?;
         cancel.check()?;

@@ -1,42 +1,56 @@
 //! Bare points: drawn vertices that no kept triangle uses. Each gets a surface vertex behind those of the triangles, so
 //! that a file without them is welded in the same way, with the same memory.
 //!
-//! A point within the tolerance of a triangle's vertex becomes a twin of that vertex and moves with it. Points within
-//! the tolerance of each other become one.
+//! A point as near to a triangle's vertex as another vertex that would be joined to it becomes a twin of that vertex and
+//! moves with it. Equal points become one.
 
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::joining::{Joined, join};
+use super::closeness::Closeness;
+use super::joining::{Joined, join_equal};
+use super::nearby::{MayJoin, join_nearest};
 use crate::Bounds;
 use crate::geometry::bounds_of;
 use crate::model::drawn_set::NONE;
 
 /// Gives the drawn vertices `bare`, which have finite positions, a surface vertex each. `positions` holds those of the
-/// triangles' vertices; new ones are appended in Morton order, and `surface_vertices` is filled in. `tolerance_within`
-/// gives the length within which points of these bounds are joined; `None` joins none.
+/// triangles' vertices, whose distances `closeness` has; new ones are appended in Morton order, and `surface_vertices`
+/// is filled in.
 pub(super) fn add(
     drawn_positions: &[DVec3],
     bare: &[u32],
     positions: &mut Vec<DVec3>,
     surface_vertices: &mut [u32],
-    tolerance_within: impl FnOnce(&Bounds) -> Option<f64>,
+    closeness: &Closeness<'_>,
 ) {
     let Some(bounds) = bounds_of(bare.par_iter().map(|&v| drawn_positions[v as usize])) else {
         return;
     };
-    let tolerance = tolerance_within(&bounds);
-    let near = match tolerance {
-        Some(tolerance) => vertices_near(positions, &bounds, tolerance),
-        None => Vec::new(),
-    };
-    // The triangles' vertices come first, because a position joins the lowest one that it can.
+    let near = vertices_near(positions, &bounds, closeness);
+    // The triangles' vertices come first, because a position joins a lower one.
     let mut all = Vec::with_capacity(near.len() + bare.len());
     all.extend(near.iter().map(|&v| positions[v as usize]));
     all.extend(bare.iter().map(|&v| drawn_positions[v as usize]));
     let members = (0..all.len() as u32).collect();
     let bounds = bounds_of(all.par_iter().copied()).unwrap_or(bounds);
-    let Joined { order, representative } = join(&all, members, &bounds, tolerance);
+    let mut joined = join_equal(&all, members, &bounds);
+    let of_vertex = |index: u32| near.get(index as usize).map(|&v| closeness.reach(v));
+    let furthest = (0..near.len() as u32).filter_map(of_vertex).fold(0.0, f64::max);
+    let of_point = closeness.given().unwrap_or(furthest);
+    let order = joined.order.clone();
+    join_nearest(
+        &all,
+        &mut joined,
+        &bounds,
+        |place| of_vertex(order[place as usize]).unwrap_or(of_point),
+        |_| Rule {
+            order: &order,
+            vertices: near.len(),
+            is_given: closeness.given().is_some(),
+        },
+    );
+    let Joined { order, representative } = joined;
     let mut number = vec![NONE; all.len()];
     for (&index, &place) in order.iter().zip(&representative) {
         let of = order[place as usize] as usize;
@@ -58,13 +72,27 @@ pub(super) fn add(
     }
 }
 
-/// The vertices within `tolerance` of a box.
-fn vertices_near(positions: &[DVec3], bounds: &Bounds, tolerance: f64) -> Vec<u32> {
-    let (low, high) = (bounds.min - tolerance, bounds.max + tolerance);
-    let is_near = |position: &DVec3| position.cmpge(low).all() && position.cmple(high).all();
+/// Points join vertices, and each other within a distance that a person gives; vertices are apart already.
+struct Rule<'a> {
+    order: &'a [u32],
+    vertices: usize,
+    is_given: bool,
+}
+
+impl MayJoin for Rule<'_> {
+    fn may_join(&self, place: u32, other: u32, _: f64) -> bool {
+        let is_vertex = |place: u32| (self.order[place as usize] as usize) < self.vertices;
+        !is_vertex(place) && (is_vertex(other) || self.is_given)
+    }
+
+    fn has_joined(&mut self, _: u32, _: u32) {}
+}
+
+/// The vertices that a point of this box might join.
+fn vertices_near(positions: &[DVec3], bounds: &Bounds, closeness: &Closeness<'_>) -> Vec<u32> {
     (0..)
         .zip(positions)
-        .filter(|(_, position)| is_near(position))
+        .filter(|&(v, &position)| bounds.distance(position) <= closeness.reach(v))
         .map(|(v, _)| v)
         .collect()
 }

@@ -1,8 +1,10 @@
 //! Welds drawn vertices and triangles into a surface and counts everything that was left out.
 
 mod bare_points;
+mod closeness;
 mod joining;
 mod morton;
+pub(crate) mod nearby;
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -13,15 +15,15 @@ use crate::model::drawn_set::{DrawnSet, FileVertices, NONE};
 use crate::model::drawn_triangles::Corners;
 use crate::topology::components::Components;
 use crate::{
-    Cancel, Cancelled, Drawn, DrawnVertex, FileVertex, Finding, Findings, Progress, Surface, SurfaceVertex, WeldOptions,
+    Bounds, Cancel, Cancelled, Drawn, DrawnVertex, FileVertex, Finding, Findings, Progress, Surface, SurfaceVertex,
+    WeldOptions,
 };
-use joining::Joined;
+use closeness::Closeness;
+use joining::{Joined, join_equal};
+use nearby::join_nearest;
 
 /// Larger coordinates count as not finite, because areas and volumes of such a mesh would overflow.
 const LARGEST_COORDINATE: f64 = 1e60;
-
-/// The largest tolerance, as a share of the diagonal. A larger one would collapse the mesh and is clamped to this.
-const LARGEST_TOLERANCE: f64 = 1e-4;
 
 /// The result of welding.
 pub(crate) struct Welded {
@@ -56,7 +58,7 @@ pub(crate) fn weld(
     let drawn_positions = drawn.positions;
     let file_vertices = FileVertices::new(drawn.file_vertex_count, drawn.file_vertex);
     let corners = Corners::new(drawn.triangles);
-    let lines = drawn.lines;
+    let (lines, roundings) = (drawn.lines, drawn.roundings);
     let usable: Vec<bool> = drawn_positions.par_iter().map(is_usable).collect();
     let uses = uses_of_vertices(&corners, &usable);
     report_vertices(&file_vertices, &usable, &uses, &mut findings);
@@ -68,20 +70,30 @@ pub(crate) fn weld(
         .filter(|&v| uses[v as usize] == Use::Triangle)
         .collect();
     drop(uses);
-    let share = options.tolerance.map(|share| share.clamp(0.0, LARGEST_TOLERANCE));
+    let distance = options.distance.map(|distance| distance.max(0.0));
     let bounds = bounds_of(members.par_iter().map(|&v| drawn_positions[v as usize]));
-    let tolerance = share
-        .zip(bounds.as_ref())
-        .map(|(share, bounds)| share * bounds.diagonal());
     let Joining {
         mut positions,
         mut surface_vertices,
     } = match bounds {
         Some(bounds) => {
-            let joined = joining::join(&drawn_positions, members, &bounds, tolerance);
+            let mut joined = join_equal(&drawn_positions, members, &bounds);
             cancel.check()?;
-            progress.set(0.35);
-            joined_by_triangles(&drawn_positions, &corners, joined, &mut findings)
+            progress.set(0.3);
+            let groups = groups_by_vertex(drawn_positions.len(), &joined);
+            let groups = if distance == Some(0.0) {
+                groups
+            } else {
+                let closeness = Closeness::of(&drawn_positions, &corners, &groups, joined.order.len())
+                    .with_distance(distance)
+                    .with_roundings(&roundings);
+                joined_to_near_ones(&drawn_positions, &corners, &mut joined, &bounds, groups, &closeness)
+            };
+            let Joined { order, representative } = joined;
+            drop(representative);
+            cancel.check()?;
+            progress.set(0.4);
+            joined_by_triangles(&drawn_positions, &corners, order, groups, &mut findings)
         }
         None => {
             findings.non_finite_triangles = collect(corners.len(), |_| true);
@@ -98,9 +110,17 @@ pub(crate) fn weld(
     let bare: Vec<u32> = (0..drawn_positions.len() as u32)
         .filter(|&v| surface_vertices[v as usize] == NONE && is_usable(&drawn_positions[v as usize]))
         .collect();
-    bare_points::add(&drawn_positions, &bare, &mut positions, &mut surface_vertices, |own| {
-        tolerance.or_else(|| Some(share? * own.diagonal()))
-    });
+    if !bare.is_empty() {
+        let closeness =
+            Closeness::of(&drawn_positions, &corners, &surface_vertices, first_bare).with_distance(distance);
+        bare_points::add(
+            &drawn_positions,
+            &bare,
+            &mut positions,
+            &mut surface_vertices,
+            &closeness,
+        );
+    }
     drop(bare);
     cancel.check()?;
     let drawn = DrawnSet::new(drawn_positions, surface_vertices, &positions, file_vertices);
@@ -128,6 +148,24 @@ pub(crate) fn weld(
     })
 }
 
+/// The groups of drawn vertices, once those that are near enough are joined.
+fn joined_to_near_ones(
+    positions: &[DVec3],
+    corners: &Corners,
+    joined: &mut Joined,
+    bounds: &Bounds,
+    mut groups: Vec<u32>,
+    closeness: &Closeness<'_>,
+) -> Vec<u32> {
+    let rule = |near: &[u32]| closeness.rule(near, corners, &groups);
+    if join_nearest(positions, joined, bounds, |group| closeness.reach(group), rule) {
+        groups.par_iter_mut().for_each(|group| {
+            *group = joined.representative.get(*group as usize).copied().unwrap_or(NONE);
+        });
+    }
+    groups
+}
+
 /// Welded positions, in Morton order, and the one of each drawn vertex ([`NONE`] where it has none).
 struct Joining {
     positions: Vec<DVec3>,
@@ -138,12 +176,10 @@ struct Joining {
 fn joined_by_triangles(
     drawn_positions: &[DVec3],
     corners: &Corners,
-    joined: Joined,
+    order: Vec<u32>,
+    mut surface_vertices: Vec<u32>,
     findings: &mut Findings,
 ) -> Joining {
-    let mut surface_vertices = groups_by_vertex(drawn_positions.len(), &joined);
-    let Joined { order, representative } = joined;
-    drop(representative);
     let in_groups = |t: usize| corners.of(t).map(|v| surface_vertices[v.index()]);
     [findings.non_finite_triangles, findings.collapsed_triangles] = sort_out(corners.len(), |t| {
         let groups = in_groups(t);

@@ -5,7 +5,7 @@ use glam::DVec3;
 use crate::Bounds;
 
 /// Bits per coordinate: three coordinates fill all of a `u64` except its top bit.
-pub(crate) const BITS: u32 = 21;
+const BITS: u32 = 21;
 
 /// A cube around a bounding box, divided into `2^BITS` cells per side.
 #[derive(Clone, Copy, Debug)]
@@ -33,13 +33,8 @@ impl MortonGrid {
 
     /// Position in units of the finest cells, from 0 to `2^BITS` inside the box.
     #[inline]
-    pub(crate) fn in_cells(&self, position: DVec3) -> DVec3 {
+    fn in_cells(&self, position: DVec3) -> DVec3 {
         (position - self.origin) * self.cells_per_unit
-    }
-
-    /// How many of the finest cells a length spans.
-    pub(crate) fn length_in_cells(&self, length: f64) -> f64 {
-        length * self.cells_per_unit
     }
 
     /// The code of the finest cell that holds `position`.
@@ -53,7 +48,7 @@ impl MortonGrid {
 
 /// Interleaves three coordinates below `2^BITS`, with x in the lowest bits.
 #[inline]
-pub(crate) fn encode(cell: [u32; 3]) -> u64 {
+fn encode(cell: [u32; 3]) -> u64 {
     spread(cell[0]) | spread(cell[1]) << 1 | spread(cell[2]) << 2
 }
 

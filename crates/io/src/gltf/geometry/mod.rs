@@ -14,6 +14,7 @@ pub(crate) mod instancing;
 pub(crate) mod meshopt;
 mod pose;
 pub(crate) mod primitive;
+mod rounding;
 mod skins;
 pub(crate) mod targets;
 pub(crate) mod tree;
@@ -22,7 +23,7 @@ use std::collections::HashMap;
 use std::ops::Range;
 
 use glam::{DAffine3, Vec3};
-use pliant_mesh::{Cancel, Drawn, DrawnVertex, FileVertex, Progress};
+use pliant_mesh::{Cancel, Drawn, DrawnVertex, FileVertex, Progress, Rounding};
 use rayon::prelude::*;
 
 use crate::gltf::document::Document;
@@ -31,6 +32,7 @@ use crate::gltf::document::json::At;
 use crate::gltf::document::layout::Layout;
 pub(crate) use crate::gltf::geometry::pose::{Linear, Pose};
 use crate::gltf::geometry::primitive::{Mode, Primitive};
+use crate::gltf::geometry::rounding::Coding;
 use crate::gltf::geometry::tree::Placed;
 use crate::quote::quoted;
 use crate::source::notes::Notes;
@@ -187,12 +189,21 @@ impl Gathering<'_> {
             "numbers of morph targets",
         )?;
         let mut positions = layout.floats::<3>(self.document);
+        let coding = match draco::extension_of(self.document, primitive) {
+            Some(_) => Coding::Draco,
+            None => Coding::Plain,
+        };
+        let pose = self.pose(place, primitive, layout.count)?;
+        let rounding = rounding::distance(layout, coding, &positions, &pose);
         let targets = weights
             .iter()
             .map(|&(target, weight)| (primitive.targets[target].position, weight));
         apply_targets(self.document, &mut positions, targets, self.cancel)?;
-        let pose = self.pose(place, primitive, layout.count)?;
         place_vertices(&positions, &pose, first_file_vertex, &mut self.drawn);
+        self.drawn.roundings.push(Rounding {
+            vertices: start..self.drawn.positions.len() as u32,
+            distance: rounding,
+        });
         self.pieces.instances.push(Instance {
             node: place.node,
             copy: place.copy,

@@ -1,0 +1,201 @@
+//! The distance within which two vertices count as one, which follows from the mesh around each of them.
+//!
+//! A vertex's *size* is the longest edge of the smallest triangle that uses it. So the distance does not depend on the
+//! rest of the scene, is never above a share of the finer of two parts, and scales and turns with the mesh.
+
+use std::collections::HashMap;
+
+use glam::DVec3;
+
+use super::nearby::MayJoin;
+use crate::Rounding;
+use crate::model::drawn_set::NONE;
+use crate::model::drawn_triangles::Corners;
+
+/// Vertices on borders are joined within this share of their size: exporters that cut a mesh apart compute its corners
+/// anew, with the errors of single precision.
+const BORDERS: f64 = 1e-4;
+
+/// Other vertices are joined within this share of their size. A larger one would flatten thin plates.
+const ANY: f64 = 1e-7;
+
+/// Borders that were rounded apart are joined no further than this share of their size, and a distance that a person
+/// gives reaches no further than twice this: well-shaped triangles must not collapse.
+const LARGEST: f64 = 0.25;
+
+/// A little more than the rounding itself, for the errors of the transforms that place what was rounded.
+const ALLOWANCE: f64 = 1.001;
+
+/// The distances of a mesh's groups.
+pub(super) struct Closeness<'a> {
+    /// Zero where no proper triangle uses a group.
+    sizes: Vec<f64>,
+    /// The distance that a person gives.
+    given: Option<f64>,
+    roundings: &'a [Rounding],
+    /// The largest of their distances.
+    largest_rounding: f64,
+}
+
+impl<'a> Closeness<'a> {
+    /// Those of `count` groups, given the one of each drawn vertex.
+    pub(super) fn of(positions: &[DVec3], corners: &Corners, groups: &[u32], count: usize) -> Self {
+        let mut squared = vec![f64::INFINITY; count];
+        for triangle in corners.iter() {
+            let of_corners = triangle.map(|v| groups[v.index()]);
+            if !is_proper(of_corners) {
+                continue;
+            }
+            let [a, b, c] = triangle.map(|v| positions[v.index()]);
+            let longest = a
+                .distance_squared(b)
+                .max(b.distance_squared(c))
+                .max(c.distance_squared(a));
+            for group in of_corners {
+                let size = &mut squared[group as usize];
+                *size = size.min(longest);
+            }
+        }
+        let size = |squared: f64| if squared.is_finite() { squared.sqrt() } else { 0.0 };
+        Self {
+            sizes: squared.into_iter().map(size).collect(),
+            given: None,
+            roundings: &[],
+            largest_rounding: 0.0,
+        }
+    }
+
+    /// The same with the distance that a person gives, if any.
+    pub(super) fn with_distance(self, given: Option<f64>) -> Self {
+        Self { given, ..self }
+    }
+
+    /// The same where runs of drawn vertices were rounded apart.
+    pub(super) fn with_roundings(self, roundings: &'a [Rounding]) -> Self {
+        Self {
+            roundings,
+            largest_rounding: roundings.iter().map(|run| run.distance).fold(0.0, f64::max),
+            ..self
+        }
+    }
+
+    /// The distance that a person gives.
+    pub(super) fn given(&self) -> Option<f64> {
+        self.given
+    }
+
+    /// The distance that a group's own never exceeds.
+    pub(super) fn reach(&self, group: u32) -> f64 {
+        let size = self.sizes[group as usize];
+        match self.given {
+            Some(given) => given.min(2.0 * LARGEST * size),
+            None => (2.0 * ALLOWANCE * self.largest_rounding)
+                .min(LARGEST * size)
+                .max(BORDERS * size),
+        }
+    }
+
+    /// The rule for groups that have neighbours, given `groups` of all drawn vertices.
+    pub(super) fn rule(&self, near: &[u32], corners: &Corners, groups: &[u32]) -> Rule<'_> {
+        if self.given.is_some() {
+            return Rule {
+                closeness: self,
+                of_group: HashMap::new(),
+            };
+        }
+        let mut of_group: HashMap<u32, Surroundings> = near.iter().map(|&g| (g, Surroundings::default())).collect();
+        for (vertex, group) in (0..).zip(groups) {
+            if let Some(known) = of_group.get_mut(group) {
+                let (run, rounding) = self.run_of(vertex);
+                if !known.runs.contains(&run) {
+                    known.runs.push(run);
+                }
+                known.rounding = known.rounding.max(rounding);
+            }
+        }
+        for group in groups_on_borders(corners, groups, |group| of_group.contains_key(&group)) {
+            if let Some(known) = of_group.get_mut(&group) {
+                known.is_on_border = true;
+            }
+        }
+        Rule {
+            closeness: self,
+            of_group,
+        }
+    }
+
+    /// The run that a drawn vertex was rounded with, and by how much.
+    fn run_of(&self, vertex: u32) -> (u32, f64) {
+        let after = self.roundings.partition_point(|run| run.vertices.start <= vertex);
+        match self.roundings[..after].last() {
+            Some(run) if run.vertices.contains(&vertex) => (after as u32, run.distance),
+            _ => (0, 0.0),
+        }
+    }
+}
+
+/// The groups at edges that one triangle uses, among those that are `wanted`; some several times.
+fn groups_on_borders(corners: &Corners, groups: &[u32], wanted: impl Fn(u32) -> bool) -> Vec<u32> {
+    let mut edges: Vec<[u32; 2]> = Vec::new();
+    for triangle in corners.iter() {
+        let [a, b, c] = triangle.map(|v| groups[v.index()]);
+        if is_proper([a, b, c]) && [a, b, c].into_iter().any(&wanted) {
+            let of_triangle = [[a, b], [b, c], [c, a]].map(|[a, b]| [a.min(b), a.max(b)]);
+            edges.extend(of_triangle.into_iter().filter(|edge| edge.iter().any(|&v| wanted(v))));
+        }
+    }
+    edges.sort_unstable();
+    let once = edges.chunk_by(|a, b| a == b).filter(|same| same.len() == 1);
+    once.flatten().flatten().copied().collect()
+}
+
+/// Whether a triangle's corners are in three groups.
+fn is_proper([a, b, c]: [u32; 3]) -> bool {
+    ![a, b, c].contains(&NONE) && a != b && b != c && c != a
+}
+
+/// What is known of a group that has neighbours.
+#[derive(Default)]
+struct Surroundings {
+    is_on_border: bool,
+    /// The runs that its members were rounded with.
+    runs: Vec<u32>,
+    /// The largest of their roundings.
+    rounding: f64,
+}
+
+/// Which groups may be joined.
+pub(super) struct Rule<'a> {
+    closeness: &'a Closeness<'a>,
+    of_group: HashMap<u32, Surroundings>,
+}
+
+impl MayJoin for Rule<'_> {
+    fn may_join(&self, place: u32, other: u32, distance: f64) -> bool {
+        if self.closeness.given.is_some() {
+            // Both reach that far.
+            return true;
+        }
+        let size = |group: u32| self.closeness.sizes[group as usize];
+        let size = size(place).min(size(other));
+        let (Some(a), Some(b)) = (self.of_group.get(&place), self.of_group.get(&other)) else {
+            return false;
+        };
+        if !(a.is_on_border && b.is_on_border) {
+            return distance <= ANY * size;
+        }
+        let were_rounded_apart = a.runs.iter().all(|run| !b.runs.contains(run));
+        let rounding = ALLOWANCE * (a.rounding + b.rounding);
+        distance <= BORDERS * size || (were_rounded_apart && distance <= rounding.min(LARGEST * size))
+    }
+
+    fn has_joined(&mut self, place: u32, other: u32) {
+        let Some(joined) = self.of_group.remove(&place) else {
+            return;
+        };
+        if let Some(known) = self.of_group.get_mut(&other) {
+            known.runs.extend(joined.runs);
+            known.rounding = known.rounding.max(joined.rounding);
+        }
+    }
+}

@@ -1,0 +1,262 @@
+//! Finds positions near each other, and joins each to the nearest that it may join.
+//!
+//! Runs of positions along the Morton curve are patches, so a tree of boxes around such runs answers which positions
+//! are within a distance. Each position has a distance of its own, which may differ by orders of magnitude over a
+//! scene; cells of one size, which earlier welds took, would be crowded where the scene is finer.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::joining::Joined;
+use super::morton::MortonGrid;
+use crate::Bounds;
+
+/// Positions that share a box, and boxes that share a parent.
+const RUN: usize = 8;
+
+/// Runs of one Morton code that are longer than this are sorted along a finer curve.
+const CROWD: usize = 32;
+
+/// Joins groups of equal positions to others: by ascending index, each joins the nearest representative of lower index
+/// that the rule allows (equally near ones: the lowest), or stays a representative itself. So no position moves
+/// further than the rule allows, and a row of positions does not collapse into one.
+///
+/// Two groups are neighbours if their distance is at most the reach of both, which `reach` gives for their
+/// representative's place; a reach of zero has none. `prepare` is told the groups that have neighbours and gives the
+/// rule, which is asked about neighbours alone. Returns whether any were joined.
+pub(super) fn join_nearest<J: MayJoin>(
+    positions: &[DVec3],
+    joined: &mut Joined,
+    bounds: &Bounds,
+    reach: impl Fn(u32) -> f64 + Sync,
+    prepare: impl FnOnce(&[u32]) -> J,
+) -> bool {
+    let order = &joined.order;
+    let position = |place: u32| positions[order[place as usize] as usize];
+    let mut standing: Vec<u32> = (0..order.len() as u32)
+        .filter(|&place| joined.representative[place as usize] == place)
+        .collect();
+    spread_crowds(&position, &mut standing, bounds);
+    let tree = Tree::over(&position, &standing);
+    // By their numbers in `standing`.
+    let mut with_neighbours = tree.with_neighbours(&reach);
+    if with_neighbours.is_empty() {
+        return false;
+    }
+    with_neighbours.sort_unstable_by_key(|&number| order[standing[number as usize] as usize]);
+    let near: Vec<u32> = with_neighbours.iter().map(|&n| standing[n as usize]).collect();
+    let mut rule = prepare(&near);
+    let mut representatives = Occupied::none(&tree);
+    let mut have_joined = false;
+    for (number, place) in with_neighbours.into_iter().zip(near) {
+        let here = position(place);
+        let mut nearest: Option<(f64, u32)> = None;
+        tree.visit(&representatives, here, reach(place), |other, distance| {
+            let closer = |(best, of): (f64, u32)| (distance, order[other as usize]) < (best, order[of as usize]);
+            if distance <= reach(other) && nearest.is_none_or(closer) && rule.may_join(place, other, distance) {
+                nearest = Some((distance, other));
+            }
+        });
+        match nearest {
+            Some((_, other)) => {
+                joined.representative[place as usize] = other;
+                rule.has_joined(place, other);
+                have_joined = true;
+            }
+            None => representatives.add(number as usize),
+        }
+    }
+    // The members of a group follow their representative. One hop is enough, because no representative moves twice.
+    for place in 0..joined.representative.len() {
+        joined.representative[place] = joined.representative[joined.representative[place] as usize];
+    }
+    have_joined
+}
+
+/// Which groups may be joined.
+pub(super) trait MayJoin {
+    /// Whether the group at a place may join the one at another, which is this far away.
+    fn may_join(&self, place: u32, other: u32, distance: f64) -> bool;
+
+    /// The group at `place` is now part of the one at `other`.
+    fn has_joined(&mut self, place: u32, other: u32);
+}
+
+/// Sorts runs that fall into one cell of the grid over `bounds` along curves of their own, so that neighbours in the
+/// list are neighbours in space though the box is much larger than most of its contents.
+fn spread_crowds(position: &(impl Fn(u32) -> DVec3 + Sync), places: &mut [u32], bounds: &Bounds) {
+    let grid = MortonGrid::over(bounds);
+    let mut first = 0;
+    while first + CROWD < places.len() {
+        // Whoever shares a cell with the entry that is CROWD further on has a run of that length between them.
+        if grid.code(position(places[first])) != grid.code(position(places[first + CROWD])) {
+            first += CROWD;
+            continue;
+        }
+        let code = grid.code(position(places[first]));
+        let before = places[..first].partition_point(|&place| grid.code(position(place)) < code);
+        let length = places[first..].partition_point(|&place| grid.code(position(place)) <= code);
+        sort_along_curve(position, &mut places[before..first + length]);
+        first += length;
+    }
+}
+
+/// Sorts distinct positions along the curve over their own box.
+fn sort_along_curve(position: &(impl Fn(u32) -> DVec3 + Sync), places: &mut [u32]) {
+    let Some(bounds) = Bounds::around(places.iter().map(|&place| position(place))) else {
+        return;
+    };
+    let grid = MortonGrid::over(&bounds);
+    let code = |place: u32| grid.code(position(place));
+    if code_range_is_one(&grid, &bounds) {
+        // They are so close together that no number tells their cells apart.
+        return;
+    }
+    places.par_sort_by_cached_key(|&place| (code(place), place));
+    spread_crowds(position, places, &bounds);
+}
+
+fn code_range_is_one(grid: &MortonGrid, bounds: &Bounds) -> bool {
+    grid.code(bounds.min) == grid.code(bounds.max)
+}
+
+/// A tree of boxes around runs of places.
+struct Tree<'a, P> {
+    position: &'a P,
+    places: &'a [u32],
+    /// The boxes of runs of places, then those of runs of these, up to a single one.
+    levels: Vec<Vec<Bounds>>,
+}
+
+impl<'a, P: Fn(u32) -> DVec3 + Sync> Tree<'a, P> {
+    fn over(position: &'a P, places: &'a [u32]) -> Self {
+        let of_run = |run: &[u32]| Bounds::around(run.iter().map(|&place| position(place)));
+        let mut levels: Vec<Vec<Bounds>> = vec![places.par_chunks(RUN).filter_map(of_run).collect()];
+        while let Some(below) = levels.last().filter(|below| below.len() > 1) {
+            let parents = below
+                .par_chunks(RUN)
+                .filter_map(|run| run.iter().copied().reduce(|a, b| a.union(&b)));
+            let parents: Vec<Bounds> = parents.collect();
+            levels.push(parents);
+        }
+        Self {
+            position,
+            places,
+            levels,
+        }
+    }
+
+    /// Those that have another within the reach of both, by their numbers among the places.
+    fn with_neighbours(&self, reach: &(impl Fn(u32) -> f64 + Sync)) -> Vec<u32> {
+        let runs: Vec<&[u32]> = self.places.chunks(RUN).collect();
+        let found: Vec<Vec<u32>> = runs
+            .par_iter()
+            .enumerate()
+            .with_min_len(512)
+            .fold_chunks(512, Vec::new, |mut found, (number, run)| {
+                self.with_neighbours_in(number, run, reach, &mut found);
+                found
+            })
+            .collect();
+        found.concat()
+    }
+
+    fn with_neighbours_in(&self, number: usize, run: &[u32], reach: &impl Fn(u32) -> f64, found: &mut Vec<u32>) {
+        let mut reaches = [0.0; RUN];
+        for (reach_of, &place) in reaches.iter_mut().zip(run) {
+            *reach_of = reach(place);
+        }
+        let furthest = reaches.iter().copied().fold(0.0, f64::max);
+        if furthest <= 0.0 {
+            return;
+        }
+        let mut has_neighbour = [false; RUN];
+        let around = self.levels[0][number].grown(furthest);
+        self.runs_within(&around, &|_, _| true, |other| {
+            let box_of_other = &self.levels[0][other];
+            for (k, &place) in run.iter().enumerate() {
+                let here = (self.position)(place);
+                if has_neighbour[k] || (other != number && box_of_other.distance(here) > reaches[k]) {
+                    continue;
+                }
+                has_neighbour[k] = self.run(other).iter().any(|&near| {
+                    let distance = (self.position)(near).distance(here);
+                    near != place && distance <= reaches[k] && distance <= reach(near)
+                });
+            }
+        });
+        let with_neighbours = ((number * RUN) as u32..).zip(has_neighbour).filter(|(_, has)| *has);
+        found.extend(with_neighbours.map(|(place, _)| place));
+    }
+
+    /// Calls `found` with every occupied place within `radius` of a point and its distance.
+    fn visit(&self, occupied: &Occupied, centre: DVec3, radius: f64, mut found: impl FnMut(u32, f64)) {
+        let point = Bounds {
+            min: centre,
+            max: centre,
+        };
+        let is_occupied = |level: usize, number: usize| occupied.counts[level][number] > 0;
+        self.runs_within(&point.grown(radius), &is_occupied, |run| {
+            for (number, &place) in (run * RUN..).zip(self.run(run)) {
+                let distance = (self.position)(place).distance(centre);
+                if distance <= radius && occupied.is_occupied[number] {
+                    found(place, distance);
+                }
+            }
+        });
+    }
+
+    fn run(&self, number: usize) -> &[u32] {
+        &self.places[number * RUN..((number + 1) * RUN).min(self.places.len())]
+    }
+
+    /// Calls `found` with every run whose box meets `bounds`, leaving out boxes that `is_wanted` does not want, by
+    /// level and number.
+    fn runs_within(&self, bounds: &Bounds, is_wanted: &impl Fn(usize, usize) -> bool, mut found: impl FnMut(usize)) {
+        self.descend(self.levels.len() - 1, 0, bounds, is_wanted, &mut found);
+    }
+
+    fn descend(
+        &self,
+        level: usize,
+        first: usize,
+        bounds: &Bounds,
+        is_wanted: &impl Fn(usize, usize) -> bool,
+        found: &mut impl FnMut(usize),
+    ) {
+        let boxes = &self.levels[level];
+        for number in first..(first + RUN).min(boxes.len()) {
+            if boxes[number].meets(bounds) && is_wanted(level, number) {
+                match level.checked_sub(1) {
+                    None => found(number),
+                    Some(below) => self.descend(below, number * RUN, bounds, is_wanted, found),
+                }
+            }
+        }
+    }
+}
+
+/// Some of a tree's places, and how many of them each box holds.
+struct Occupied {
+    is_occupied: Vec<bool>,
+    counts: Vec<Vec<u32>>,
+}
+
+impl Occupied {
+    fn none<P>(tree: &Tree<'_, P>) -> Self {
+        Self {
+            is_occupied: vec![false; tree.places.len()],
+            counts: tree.levels.iter().map(|level| vec![0; level.len()]).collect(),
+        }
+    }
+
+    /// Adds the place of this number.
+    fn add(&mut self, number: usize) {
+        self.is_occupied[number] = true;
+        let mut number = number;
+        for counts in &mut self.counts {
+            number /= RUN;
+            counts[number] += 1;
+        }
+    }
+}
