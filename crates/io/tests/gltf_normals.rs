@@ -202,3 +202,28 @@ fn custom_normals_keep_their_angle_to_the_surface_and_their_length() {
         assert!(wanted.distance(Vec3::from(*new)) < 1e-6);
     }
 }
+
+#[test]
+fn no_seam_shows_where_its_sides_differ_by_roundings() {
+    let n = 12;
+    let ring = 2 * n + 1;
+    for (off, turn) in [(0.0, 0.0), (1e-6, 0.001), (6e-5, 0.01)] {
+        let mut shape = sphere(n);
+        for k in 0..=n {
+            let v = (k * ring + 2 * n) as usize;
+            let by = Vec3::new(0.7, -0.5, 0.3) * off;
+            shape.positions[v] = (Vec3::from(shape.positions[v]) + by).to_array();
+            let normal = Vec3::from(shape.normals[v]) + Vec3::new(-0.4, 0.8, 0.2) * turn;
+            shape.normals[v] = normal.normalize().to_array();
+        }
+        let opened = open(&Maker::of(&shape).glb());
+        let twist = |p: DVec3| DQuat::from_rotation_z(1.5 * p.z) * (p + DVec3::X * p.z * p.z);
+        let after = stored::<3>(&saved_glb(&opened, &moved(&opened, |_| true, twist)), "NORMAL");
+        for k in 1..n {
+            let first = (k * ring) as usize;
+            let [a, b] = [first, first + 2 * n as usize].map(|v| Vec3::from(after[v]).as_dvec3());
+            let angle = a.angle_between(b);
+            assert!(angle < 2.0 * f64::from(turn) + 1e-5, "ring {k} off by {off}: {angle}");
+        }
+    }
+}

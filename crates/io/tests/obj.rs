@@ -217,21 +217,118 @@ fn normals_turn_with_a_rigid_motion_and_keep_their_length() {
     );
 }
 
+/// The normal that each corner of each face names, looked up as a reader does that comes from line to line.
+fn normals_of_corners(text: &[u8]) -> Vec<Vec<DVec3>> {
+    let text = String::from_utf8(text.to_vec()).unwrap();
+    let (mut normals, mut faces) = (Vec::new(), Vec::new());
+    for line in text.lines() {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        match words.first() {
+            Some(&"vn") => {
+                let numbers: Vec<f64> = words[1..].iter().map(|word| word.parse().unwrap()).collect();
+                normals.push(DVec3::from_slice(&numbers));
+            }
+            Some(&"f") => {
+                let of_corner = |word: &&str| {
+                    let named: i64 = word.rsplit('/').next().unwrap().parse().unwrap();
+                    let place = if named > 0 {
+                        named - 1
+                    } else {
+                        normals.len() as i64 + named
+                    };
+                    normals[place as usize]
+                };
+                faces.push(words[1..].iter().map(of_corner).collect());
+            }
+            _ => {}
+        }
+    }
+    faces
+}
+
+fn angle(a: DVec3, b: DVec3) -> f64 {
+    a.angle_between(b).to_degrees()
+}
+
+/// Two ribbons, each behind its own `v` and `vn` lines, as Blender writes objects: one `vn` line for a whole flat side.
+/// `counting` writes the name of a normal whose number from 1 is given, with how many there are so far.
+fn ribbons(counting: impl Fn(usize, usize) -> String) -> String {
+    let mut text = String::new();
+    let n = 12;
+    for ribbon in 0..2 {
+        text += &format!("o ribbon{ribbon}\n");
+        for k in 0..=n {
+            let x = k as f64 / 2.0;
+            text += &format!("v {x} {ribbon} 0\nv {x} {ribbon} 0.5\n");
+        }
+        text += "vn 0 1 0\n";
+        for k in 0..n {
+            let a = ribbon * 2 * (n + 1) + 2 * k + 1;
+            let name = counting(ribbon + 1, ribbon + 1);
+            let corners = [a, a + 1, a + 3, a + 2].map(|v| format!("{v}//{name}"));
+            text += &format!("f {}\n", corners.join(" "));
+        }
+    }
+    text
+}
+
 #[test]
-fn a_normal_that_an_unmoved_vertex_shares_keeps_its_bytes() {
+fn a_normal_that_is_shared_by_what_bends_apart_becomes_several() {
+    type Counting = fn(usize, usize) -> String;
+    let countings: [Counting; 2] = [
+        |number, _| number.to_string(),
+        |number, so_far| format!("-{}", so_far + 1 - number),
+    ];
+    // Around the ribbons' end, and of the second ribbon the first half at rest.
+    let curl = |p: DVec3, from: f64| match p.x > from {
+        true => {
+            let angle = (p.x - from) * 0.4;
+            DVec3::new(from + angle.sin() / 0.4, p.y + (1.0 - angle.cos()) / 0.4, p.z)
+        }
+        false => p,
+    };
+    for counting in countings {
+        let text = ribbons(counting);
+        let opened = open(text.as_bytes(), Format::Obj);
+        for (from_first, from_second) in [(0.0, 0.0), (3.0, 1.5), (9.0, 3.0), (0.0, 9.0)] {
+            let new = |p: DVec3| curl(p, if p.y < 0.5 { from_first } else { from_second });
+            let positions: Vec<DVec3> = opened.drawn.positions.iter().map(|p| new(*p)).collect();
+            let saved = save_as(&opened, &positions, Format::Obj);
+            assert!(saved.warnings.is_empty(), "{:?}", saved.warnings);
+            let bytes = &saved.files[0].bytes;
+            let again = open(bytes, Format::Obj);
+            let polygons = normals_of_corners(bytes);
+            assert_eq!(polygons.len(), 24);
+            for (face, normals) in polygons.into_iter().enumerate() {
+                let (ribbon, k) = (face / 12, face % 12);
+                let first = ribbon * 26 + 2 * k;
+                for (normal, vertex) in normals.into_iter().zip([first, first + 1, first + 3, first + 2]) {
+                    let rest = opened.drawn.positions[vertex];
+                    let from = if ribbon == 0 { from_first } else { from_second };
+                    let turned = ((rest.x - from) * 0.4).max(0.0);
+                    let wanted = DVec3::new(-turned.sin(), turned.cos(), 0.0);
+                    // A vertex's frame is the mean of the faces around it, of which there is one at an end.
+                    let most = if k == 0 || k == 11 { 6.5 } else { 3.5 };
+                    assert!(angle(normal, wanted) < most, "face {face}: {normal} is not {wanted}");
+                }
+            }
+            assert_eq!(again.drawn.file_vertex_count, opened.drawn.file_vertex_count);
+            let of_file = |drawn: &pliant_mesh::Drawn| {
+                let corners = drawn.triangles.iter().flatten();
+                corners
+                    .map(|corner| drawn.file_vertex[corner.index()])
+                    .collect::<Vec<_>>()
+            };
+            assert_eq!(of_file(&again.drawn), of_file(&opened.drawn));
+        }
+    }
+}
+
+#[test]
+fn one_normal_of_all_turns_where_all_turn() {
     let text = grid(6, |_| 7);
     let opened = open(text.as_bytes(), Format::Obj);
     let turn = DQuat::from_rotation_x(1.0);
-    let positions = moved(&opened, |file| file > 20, |p| turn * p);
-    let saved = save_as(&opened, &positions, Format::Obj);
-    assert!(
-        saved.warnings[0].contains("kept their old direction"),
-        "{:?}",
-        saved.warnings
-    );
-    let changed = changed_lines(text.as_bytes(), &saved.files[0].bytes);
-    assert!(changed.iter().all(|line| line % 2 == 0 && line / 2 > 20), "{changed:?}");
-    // Where everyone moves alike, the one normal turns.
     let all = save_as(
         &opened,
         &moved(&opened, |_| true, |p| turn * p + DVec3::ONE),
@@ -239,6 +336,39 @@ fn a_normal_that_an_unmoved_vertex_shares_keeps_its_bytes() {
     );
     assert!(all.warnings.is_empty(), "{:?}", all.warnings);
     assert!(changed_lines(text.as_bytes(), &all.files[0].bytes).contains(&15));
+    // What moves without turning changes none.
+    let shifted = save(&opened, &moved(&opened, |_| true, |p| p + DVec3::Y));
+    let changed = changed_lines(text.as_bytes(), &shifted);
+    assert!(changed.iter().all(|line| line % 2 == 0), "{changed:?}");
+}
+
+#[test]
+fn a_part_that_is_turned_inside_out_after_its_normals_were_divided_has_them_turned() {
+    let text = ribbons(|number, _| number.to_string());
+    let opened = open(text.as_bytes(), Format::Obj);
+    let positions: Vec<DVec3> = (opened.drawn.positions.iter())
+        .map(|p| DVec3::new(p.x, p.y + 0.05 * p.x * p.x, p.z))
+        .collect();
+    let turned: Vec<bool> = opened.drawn.positions.iter().map(|p| p.y > 0.5).collect();
+    let save = |turned: &[bool]| {
+        let save = Save {
+            turned,
+            drawn: &opened.drawn,
+            positions: &positions,
+            format: Format::Obj,
+            name: "b.obj",
+            placement: Placement::SameFolder,
+        };
+        let saved = opened.scene.save(&save, &Progress::new(), &Cancel::new()).unwrap();
+        normals_of_corners(&saved.files[0].bytes)
+    };
+    for (face, (as_is, turned)) in save(&[]).into_iter().zip(save(&turned)).enumerate() {
+        let sign = if face < 12 { 1.0 } else { -1.0 };
+        // A turned face has its corners in reverse, but for the first.
+        assert!((as_is[0] * sign).distance(turned[0]) < 1e-6, "face {face}");
+        let last = if face < 12 { 3 } else { 1 };
+        assert!((as_is[3] * sign).distance(turned[last]) < 1e-6, "face {face}");
+    }
 }
 
 #[test]

@@ -273,3 +273,78 @@ fn any_number_of_records_that_take_no_bytes_is_passed_over() {
         assert_eq!(open(file.as_bytes(), Format::Ply).drawn.triangles.len(), 1, "{name}");
     }
 }
+
+#[test]
+fn normals_of_faces_turn_with_them() {
+    let header = |format: &str| {
+        format!(
+            "ply\nformat {format} 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\n\
+             element face 2\nproperty float ny\nproperty list uchar int vertex_indices\nproperty uchar hue\n\
+             property float nx\nproperty float nz\nend_header\n"
+        )
+    };
+    let points = [
+        [0.0, 0.0, 0.0],
+        [1.0, 0.0, 0.0],
+        [1.0, 1.0, 0.0],
+        [0.0, 1.0, 0.0],
+        [9.0, 9.0, 9.0_f32],
+    ];
+    let ascii = header("ascii") + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n9 9 9\n0.0 4 0 1 2 3 77 0.00 2\n-1 3 0 1 4 78 0 0\n";
+    let mut binary = header("binary_big_endian").into_bytes();
+    binary.extend(points.as_flattened().iter().flat_map(|number| number.to_be_bytes()));
+    for (normal, corners, hue) in [
+        ([0.0, 0.0, 2.0_f32], vec![0, 1, 2, 3_i32], 77),
+        ([0.0, -1.0, 0.0], vec![0, 1, 4], 78),
+    ] {
+        binary.extend(normal[1].to_be_bytes());
+        binary.push(corners.len() as u8);
+        binary.extend(corners.iter().flat_map(|corner| corner.to_be_bytes()));
+        binary.push(hue);
+        binary.extend([normal[0], normal[2]].iter().flat_map(|number| number.to_be_bytes()));
+    }
+    // A quarter turn about x takes the quad's normal from z to -y; the triangle at the fifth vertex bends.
+    let quarter = |p: DVec3| DVec3::new(p.x, -p.z, p.y);
+    for (bytes, is_text) in [(ascii.into_bytes(), true), (binary, false)] {
+        let opened = open(&bytes, Format::Ply);
+        assert_eq!(save(&opened, &opened.drawn.positions), bytes);
+        let after = save(&opened, &moved(&opened, |vertex| vertex < 4, quarter));
+        if is_text {
+            let text = String::from_utf8(after.clone()).unwrap();
+            assert!(text.contains("\n-2 4 0 1 2 3 77 0 0\n"), "{text}");
+        } else {
+            let faces = &after[after.len() - 2 * 13 - 28 - 2..];
+            let number = |at: usize| f32::from_be_bytes(faces[at..at + 4].try_into().unwrap());
+            let (ny, nx, nz) = (number(0), number(22), number(26));
+            assert!(
+                (ny + 2.0).abs() < 1e-6 && nx.abs() < 1e-6 && nz.abs() < 1e-6,
+                "{nx} {ny} {nz}"
+            );
+        }
+        // Only the triangle's own vertex moves: the quad's normal keeps its bytes.
+        let bent = save(&opened, &moved(&opened, |vertex| vertex == 4, |p| p + DVec3::Y * 5.0));
+        if is_text {
+            assert_eq!(changed_lines(&bytes, &bent), [17, 19]);
+        }
+        let turned = vec![true; 5];
+        let inside_out = pliant_io::Save {
+            turned: &turned,
+            drawn: &opened.drawn,
+            positions: &opened.drawn.positions,
+            format: Format::Ply,
+            name: "b.ply",
+            placement: pliant_io::Placement::SameFolder,
+        };
+        let saved = opened
+            .scene
+            .save(&inside_out, &Progress::new(), &Cancel::new())
+            .unwrap();
+        if is_text {
+            let text = String::from_utf8(saved.files[0].bytes.clone()).unwrap();
+            assert!(
+                text.contains("\n-0.0 4 0 3 2 1 77 -0.00 -2\n1 3 0 4 1 78 -0 -0\n"),
+                "{text}"
+            );
+        }
+    }
+}

@@ -1,12 +1,14 @@
 //! Wavefront OBJ, read with the place of every number, so that saving changes the moved vertices' `v` lines (and the
-//! `vn` lines that only they use) and no other byte.
+//! `vn` lines around them) and no other byte.
 //!
 //! Our own reader instead of `tobj`'s, which renumbers vertices, drops unused ones and keeps f32. `tobj` reads the
 //! materials. Every `v` line is a file vertex; see [`corners`] for how corners with texture coordinates and normals
 //! are drawn.
 
 mod corners;
+mod faces;
 mod materials;
+mod normals;
 mod patch;
 mod rename;
 mod statements;
@@ -229,13 +231,13 @@ impl Stored {
 
     /// The file with the moved vertices' numbers changed, and warnings.
     pub(crate) fn write(&self, moved: &Moved<'_>, course: &Course<'_>) -> Result<(Vec<u8>, Vec<String>), SaveError> {
-        let (bytes, mut warnings) = patch::patched(self, moved, course)?;
+        let patched = patch::patched(self, moved, course)?;
         if !moved.turns_any() {
-            return Ok((bytes, warnings));
+            return Ok((patched.bytes, Vec::new()));
         }
         // Of each `vn` line, whether it is of parts that are turned, and whether of others.
-        let mut uses = vec![(false, false); self.statements.normals.len()];
-        for (v, &normal) in self.normal.iter().enumerate().filter(|(_, normal)| **normal != NONE) {
+        let mut uses = vec![(false, false); patched.normal_count];
+        for (v, &normal) in patched.normal.iter().enumerate().filter(|(_, normal)| **normal != NONE) {
             let (by_turned, by_others) = &mut uses[normal as usize];
             match moved.turns(DrawnVertex(v as u32)) {
                 true => *by_turned = true,
@@ -243,12 +245,13 @@ impl Stored {
             }
         }
         let kept = uses.iter().filter(|uses| **uses == (true, true)).count();
-        if kept > 0 {
-            warnings.push(format!(
+        let warning = (kept > 0).then(|| {
+            format!(
                 "{kept} normals ('vn' lines) kept their side, because parts that were not turned inside out share them."
-            ));
-        }
+            )
+        });
         let normals: Vec<bool> = uses.iter().map(|uses| *uses == (true, false)).collect();
-        Ok((turned::turned(&bytes, &moved.turned_of_file(), &normals), warnings))
+        let bytes = turned::turned(&patched.bytes, &moved.turned_of_file(), &normals);
+        Ok((bytes, warning.into_iter().collect()))
     }
 }

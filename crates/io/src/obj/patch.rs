@@ -1,62 +1,180 @@
 //! An edited OBJ file: the bytes as read, with other numbers in the `v` lines of moved vertices and in the `vn` lines
-//! that only moved vertices use.
-//!
-//! Exporters share one `vn` line among all corners with the same normal, so a `vn` has no single vertex to follow. The
-//! rule: a `vn` is rotated only if every vertex that uses it moved, and then by the mean of their rotations. One that
-//! is also used by a vertex at rest keeps its bytes, because that vertex must look as before. Both compromises are
-//! reported if they are visible. New `vn` lines are not made, because faces would have to change with them.
+//! that turn. Where one `vn` line no longer fits all its users, new lines stand before the first face that names one,
+//! because many readers look normals up as they come to a face, and corners name other lines.
+
+use std::ops::Range;
 
 use glam::DVec3;
-use pliant_mesh::{Cancelled, DrawnVertex};
+use pliant_mesh::Cancelled;
 
 use super::Stored;
+use super::faces::{self, Face};
+use super::normals::Normals;
 use super::statements::NONE;
-use crate::save::course::{Course, STEP};
+use crate::save::course::Course;
 use crate::save::moved::Moved;
 use crate::text::{Cursor, Splice, push_f32, push_f64};
 
-/// Users of one `vn` that deviate from their mean by more than this are reported: the cosine of 5 degrees.
-const AGREEMENT: f64 = 0.996_194_698;
+/// An edited file.
+#[derive(Debug)]
+pub(super) struct Patched {
+    pub(super) bytes: Vec<u8>,
+    /// The `vn` line of each drawn vertex in it; [`NONE`] for those without one.
+    pub(super) normal: Vec<u32>,
+    /// How many `vn` lines it has.
+    pub(super) normal_count: usize,
+}
 
-/// The new bytes and the warnings.
-pub(super) fn patched(
-    stored: &Stored,
-    moved: &Moved<'_>,
-    course: &Course<'_>,
-) -> Result<(Vec<u8>, Vec<String>), Cancelled> {
-    let mut warnings = Vec::new();
+/// A change at a place of the bytes.
+enum Change {
+    Position(DVec3),
+    Normal(DVec3),
+    /// The digits up to here name this `vn` line, counted from 0.
+    Name(usize, u32),
+    /// New lines.
+    Lines,
+}
+
+/// The file with the moved vertices' numbers and the normals around them changed.
+pub(super) fn patched(stored: &Stored, moved: &Moved<'_>, course: &Course<'_>) -> Result<Patched, Cancelled> {
     let (of_normals, course) = course.split(if stored.normal.is_empty() { 0.0 } else { 0.5 });
-    let normals = carried_normals(stored, moved, &mut warnings, &of_normals)?;
-    let positions = moved.of_file();
+    let normals = Normals::of(stored, moved, &of_normals)?;
+    let statements = &stored.statements;
+    let named = Renamed::of(stored, moved, &normals);
+    let moved_vertices = moved.of_file().iter().enumerate();
+    let positions = moved_vertices.filter_map(|(vertex, new)| {
+        let new = (*new)?;
+        Some((statements.position_at[vertex], Change::Position(new)))
+    });
+    let mut changes: Vec<(usize, Change)> = positions.collect();
+    let of_lines = normals.changed.iter();
+    changes.extend(of_lines.map(|&(index, normal)| (statements.normal_at[index as usize], Change::Normal(normal))));
+    changes.extend(named.place.map(|at| (at, Change::Lines)));
+    changes.extend(
+        named
+            .corners
+            .iter()
+            .map(|(span, line)| (span.start, Change::Name(span.end, *line))),
+    );
+    // Each of these lists is in order, and merging such is what a stable sort is quick at.
+    changes.sort_by_key(|(at, _)| *at);
+
     let mut splice = Splice::new(&stored.bytes);
-    let mut normals = normals.into_iter().peekable();
-    let write_normal = |splice: &mut Splice<'_>, (index, normal): (u32, DVec3)| {
-        // f32 is a hundred times finer than an eye sees, and half as long as f64 in decimals.
-        let numbers = normal.to_array().map(|component| component as f32);
-        replace_numbers(
-            splice,
-            &stored.bytes,
-            stored.statements.normal_at[index as usize],
-            numbers,
-            push_f32,
-        );
-    };
-    for (vertex, new) in positions.iter().enumerate() {
-        course.pass(vertex, positions.len())?;
-        let Some(new) = new else { continue };
-        let at = stored.statements.position_at[vertex];
-        while let Some(normal) = normals.next_if(|(index, _)| stored.statements.normal_at[*index as usize] < at) {
-            write_normal(&mut splice, normal);
+    let count = changes.len();
+    for (place, (at, change)) in changes.into_iter().enumerate() {
+        course.pass(place, count)?;
+        match change {
+            Change::Position(new) => replace_numbers(&mut splice, &stored.bytes, at, new.to_array(), push_f64),
+            // f32 is a hundred times finer than an eye sees, and half as long as f64 in decimals.
+            Change::Normal(normal) => {
+                replace_numbers(&mut splice, &stored.bytes, at, normal.as_vec3().to_array(), push_f32);
+            }
+            Change::Name(end, line) => splice.replace(at..end, |out| push_f64(out, f64::from(line) + 1.0)),
+            Change::Lines => splice.replace(at..at, |out| push_lines(out, &normals.added, line_end(&stored.bytes))),
         }
-        replace_numbers(&mut splice, &stored.bytes, at, new.to_array(), push_f64);
     }
-    for (place, normal) in normals.enumerate() {
-        if place.is_multiple_of(STEP) {
-            course.reach(1, 1)?;
+    Ok(Patched {
+        bytes: splice.finish(),
+        normal: named.of_vertex,
+        normal_count: statements.normals.len() + normals.added.len(),
+    })
+}
+
+/// The names of normals in an edited file.
+struct Renamed {
+    /// Where the new lines go; `None` where there are none.
+    place: Option<usize>,
+    /// The corners that need another name, in the order of the bytes, with the number of the line.
+    corners: Vec<(Range<usize>, u32)>,
+    of_vertex: Vec<u32>,
+}
+
+impl Renamed {
+    fn of(stored: &Stored, moved: &Moved<'_>, normals: &Normals) -> Self {
+        let mut out = Self {
+            place: None,
+            corners: Vec::new(),
+            of_vertex: stored.normal.clone(),
+        };
+        let (old_count, added) = (stored.statements.normals.len() as u32, normals.added.len() as u32);
+        if added == 0 {
+            return out;
         }
-        write_normal(&mut splice, normal);
+        let is_added = |vertex: usize| (old_count..NONE).contains(&normals.of_vertex[vertex]);
+        let mut before = 0;
+        for_each_face(stored, moved, |face, drawn| {
+            if out.place.is_none() && drawn.iter().any(|&vertex| is_added(vertex)) {
+                out.place = Some(face.line_at);
+                before = face.normals_before as u32;
+            }
+        });
+        // The number of a line in the edited file, by that in the file as read.
+        let renamed = |line: u32| match line {
+            NONE => NONE,
+            line if line < before => line,
+            line if line < old_count => line + added,
+            line => line - old_count + before,
+        };
+        out.of_vertex = normals.of_vertex.iter().map(|&line| renamed(line)).collect();
+        let place = out.place.unwrap_or(usize::MAX);
+        for_each_face(stored, moved, |face, drawn| {
+            for (number, corner) in face.corners.iter().enumerate() {
+                let Some((old, span)) = &corner.normal else { continue };
+                let wanted = match drawn.get(number) {
+                    Some(&vertex) => out.of_vertex[vertex],
+                    None => renamed(*old),
+                };
+                // A name that counts back from the face counts the new lines, too, once it is behind them.
+                let counts_back = stored.bytes[span.start] == b'-';
+                let found = if counts_back && face.line_at >= place {
+                    old + added
+                } else {
+                    *old
+                };
+                if wanted != found && wanted != NONE {
+                    out.corners.push((span.clone(), wanted));
+                }
+            }
+        });
+        out
     }
-    Ok((splice.finish(), warnings))
+}
+
+/// Calls `visit` with each face and the drawn vertices of its corners, of which one that is not drawn has none.
+fn for_each_face(stored: &Stored, moved: &Moved<'_>, mut visit: impl FnMut(&Face<'_>, &[usize])) {
+    let of_polygons = stored.polygons.as_ref().map(|polygons| &polygons.corners[..]);
+    let mut drawn = of_polygons.unwrap_or(moved.drawn.triangles.as_flattened()).iter();
+    let mut own = Vec::new();
+    faces::for_each(
+        &stored.bytes,
+        |face| {
+            own.clear();
+            if face.corners.len() > 2 {
+                own.extend(drawn.by_ref().take(face.corners.len()).map(|vertex| vertex.index()));
+            }
+            visit(face, &own);
+        },
+        |_, _| (),
+    );
+}
+
+/// How the file ends its lines.
+fn line_end(bytes: &[u8]) -> &'static [u8] {
+    match bytes.iter().position(|&byte| byte == b'\n') {
+        Some(at) if at > 0 && bytes[at - 1] == b'\r' => b"\r\n",
+        _ => b"\n",
+    }
+}
+
+fn push_lines(out: &mut Vec<u8>, normals: &[DVec3], end: &[u8]) {
+    for normal in normals {
+        out.extend_from_slice(b"vn");
+        for number in normal.as_vec3().to_array() {
+            out.push(b' ');
+            push_f32(out, number);
+        }
+        out.extend_from_slice(end);
+    }
 }
 
 /// Replaces the three numbers that begin at byte `at`, each where it changes.
@@ -76,85 +194,4 @@ fn replace_numbers<T: Copy + Into<f64>>(
             splice.replace(start..cursor.at(), |out| push(out, number));
         }
     }
-}
-
-/// What the users of one `vn` want of it.
-#[derive(Clone, Copy, Default)]
-struct Wanted {
-    sum: DVec3,
-    users: u32,
-    resting_users: u32,
-    changed_users: u32,
-}
-
-/// The `vn` lines that change, in rising order, each with its new value.
-fn carried_normals(
-    stored: &Stored,
-    moved: &Moved<'_>,
-    warnings: &mut Vec<String>,
-    course: &Course<'_>,
-) -> Result<Vec<(u32, DVec3)>, Cancelled> {
-    if stored.normal.is_empty() {
-        return Ok(Vec::new());
-    }
-    let old = &stored.statements.normals;
-    let of_vertex = |v: usize| {
-        Some(stored.normal[v])
-            .filter(|&index| index != NONE)
-            .map(|index| old[index as usize])
-    };
-    let rest: Vec<DVec3> = (0..stored.normal.len())
-        .map(|v| of_vertex(v).unwrap_or_default())
-        .collect();
-    let (of_frames, course) = course.split(0.8);
-    let frames = moved.frames(&rest, &of_frames)?;
-    let carried = |v: usize| {
-        let vertex = DrawnVertex(v as u32);
-        if moved.moves(vertex) {
-            frames.carry_normal(vertex, rest[v])
-        } else {
-            rest[v]
-        }
-    };
-    let mut wanted = vec![Wanted::default(); old.len()];
-    for v in 0..rest.len() {
-        course.pass(v, rest.len())?;
-        if stored.normal[v] == NONE || !rest[v].is_finite() {
-            continue;
-        }
-        let new = carried(v);
-        let entry = &mut wanted[stored.normal[v] as usize];
-        entry.sum += new.normalize_or_zero();
-        entry.users += 1;
-        entry.resting_users += u32::from(!moved.moves(DrawnVertex(v as u32)));
-        entry.changed_users += u32::from(new != rest[v]);
-    }
-    let mut kept = 0usize;
-    let mut blended = vec![false; wanted.len()];
-    let mut changes = Vec::new();
-    for (index, entry) in wanted.iter().enumerate() {
-        if entry.changed_users == 0 {
-            continue;
-        }
-        match entry.sum.try_normalize() {
-            Some(direction) if entry.resting_users == 0 => {
-                // The mean of users that agree has the length of their number; far less means that they differ.
-                blended[index] = entry.sum.length() < AGREEMENT * f64::from(entry.users);
-                changes.push((index as u32, direction * old[index].length()));
-            }
-            _ => kept += 1,
-        }
-    }
-    let blended = blended.into_iter().filter(|&is_blended| is_blended).count();
-    if kept > 0 {
-        warnings.push(format!(
-            "{kept} normals ('vn' lines) kept their old direction, because vertices that did not move share them."
-        ));
-    }
-    if blended > 0 {
-        warnings.push(format!(
-            "{blended} normals ('vn' lines) turned by the mean of the vertices that share them, which bent apart by more than 5 degrees."
-        ));
-    }
-    Ok(changes)
 }

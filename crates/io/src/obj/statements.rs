@@ -359,7 +359,7 @@ fn note(counted: &mut (usize, usize), at: usize) {
 }
 
 /// An index as written (from 1, or from the end when negative) as a number from 0; `None` where it can't exist.
-fn resolve(index: i64, count: usize) -> Option<u32> {
+pub(super) fn resolve(index: i64, count: usize) -> Option<u32> {
     let number = if index > 0 {
         index - 1
     } else {

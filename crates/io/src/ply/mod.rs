@@ -4,9 +4,11 @@
 //! Elements and properties may come in any order and of any type; those that nothing is known of are passed over and
 //! stay in the bytes. Faces are lists of corners or, in older scans, strips of triangles.
 
+mod face_normals;
 mod header;
 mod patch;
 mod records;
+mod rewriting;
 mod scalar;
 mod turned;
 mod write;
@@ -115,8 +117,14 @@ impl Stored {
     /// The file with the moved vertices' numbers changed, and warnings.
     pub(crate) fn write(&self, moved: &Moved<'_>, course: &Course<'_>) -> Result<(Vec<u8>, Vec<String>), SaveError> {
         let (bytes, warnings) = patch::patched(self, moved, course)?;
+        let bytes = face_normals::carried(self, bytes, moved);
         let bytes = match moved.turns_any() {
-            true => turned::turned(self, &bytes, &moved.turned_of_file())?,
+            true => {
+                let turned = moved.turned_of_file();
+                // While each face still begins with the corner that it is read with.
+                let bytes = face_normals::negated(self, bytes, &turned);
+                turned::turned(self, &bytes, &turned)?
+            }
             false => bytes,
         };
         Ok((bytes, warnings))

@@ -1,17 +1,12 @@
 //! A PLY file with some parts turned inside out: the corners of their faces in reverse, and normals with other signs.
 
-use std::ops::Range;
-
 use super::Stored;
-use super::header::{Element, Kind};
+use super::header::Kind;
 use super::records::corner_list;
-use super::scalar::{Encoding, Scalar, Walk, encode};
+use super::rewriting::{Out, record};
+use super::scalar::Walk;
 use crate::SaveError;
-use crate::save::turned::{push_negated, wound_back};
-use crate::text::Splice;
-
-/// A number of a record, and where it stands.
-type Number = (f64, Range<usize>);
+use crate::save::turned::wound_back;
 
 /// The new bytes; `turned` tells of each vertex whether its part is turned.
 ///
@@ -77,61 +72,4 @@ pub(super) fn turned(stored: &Stored, bytes: &[u8], turned: &[bool]) -> Result<V
         }
     }
     Ok(out.finish())
-}
-
-/// The numbers of the next record, property by property: a list's items, or the one number.
-fn record(element: &Element, walk: &mut Walk<'_>) -> Option<Vec<Vec<Number>>> {
-    let properties = element.properties.iter();
-    let numbers = properties.map(|property| match property.kind {
-        Kind::Scalar(scalar) => Some(vec![walk.number(scalar)?]),
-        Kind::List { count, item } => {
-            let count = walk.number(count)?.0;
-            // The file was read, so its lists are no longer than itself.
-            (0..count as u64).map(|_| walk.number(item)).collect()
-        }
-    });
-    numbers.collect()
-}
-
-/// The bytes while they change. Changes come in the order of the bytes.
-enum Out<'a> {
-    Text(&'a [u8], Splice<'a>),
-    /// Numbers of one type are as long as each other.
-    Binary(&'a [u8], Vec<u8>, Encoding),
-}
-
-impl<'a> Out<'a> {
-    fn of(bytes: &'a [u8], encoding: Encoding) -> Self {
-        match encoding {
-            Encoding::Ascii => Self::Text(bytes, Splice::new(bytes)),
-            _ => Self::Binary(bytes, bytes.to_vec(), encoding),
-        }
-    }
-
-    fn copy(&mut self, to: &Range<usize>, from: &Range<usize>) {
-        match self {
-            Self::Text(bytes, splice) => {
-                let number = &bytes[from.clone()];
-                splice.replace(to.clone(), |out| out.extend_from_slice(number));
-            }
-            Self::Binary(bytes, out, _) => out[to.clone()].copy_from_slice(&bytes[from.clone()]),
-        }
-    }
-
-    fn negate(&mut self, (value, at): &Number, scalar: Scalar) {
-        match self {
-            Self::Text(bytes, splice) => {
-                let number = &bytes[at.clone()];
-                splice.replace(at.clone(), |out| push_negated(number, out));
-            }
-            Self::Binary(_, out, encoding) => encode(out, at.start, scalar.nearest(-value), scalar, *encoding),
-        }
-    }
-
-    fn finish(self) -> Vec<u8> {
-        match self {
-            Self::Text(_, splice) => splice.finish(),
-            Self::Binary(_, out, _) => out,
-        }
-    }
 }

@@ -1,10 +1,9 @@
 //! Local frames of a deformation: how normals and tangents are carried along with the vertices that moved.
 //!
 //! Normals are not recomputed, since a file's own may be custom, smoothed across seams or hard at edges. Each is
-//! turned by the deformation gradient F of the faces around it: n' ∝ F⁻ᵀ n and t' ∝ F t. Drawn vertices with
-//! bit-equal rest position and bit-equal rest normal are twins split by a texture seam, so they share one F (the
-//! area-weighted mean over the faces of all of them) and no seam shows; the two sides of a hard edge have different
-//! normals, so each keeps to its own faces.
+//! turned by the deformation gradient F of the faces around it: n' ∝ F⁻ᵀ n and t' ∝ F t. [Twins](super::twins) that a
+//! seam split share one F (the area-weighted mean over the faces of all of them), so that no seam shows; the two sides of
+//! a hard edge have different normals, so each keeps to its own faces.
 
 use glam::{DMat3, DVec3};
 use pliant_mesh::{Cancelled, Drawn, DrawnVertex, face_gradient};
@@ -12,6 +11,7 @@ use rayon::prelude::*;
 
 use crate::save::bits::bit_equal;
 use crate::save::course::Course;
+use crate::save::twins;
 
 /// Frames closer to the identity than this leave stored numbers unchanged: f32 resolves 6e-8.
 const UNTURNED: f64 = 1e-7;
@@ -168,6 +168,15 @@ fn group(
             group_of[v as usize] = twin.map_or(v, |&(_, other)| group_of[other as usize]);
         }
     }
+    let moved: Vec<u32> = moved
+        .into_iter()
+        .map(|(_, v)| v)
+        .filter(|&v| group_of[v as usize] == v)
+        .collect();
+    twins::for_each(drawn, normals, &moved, |v, twin| {
+        let [own, other] = [v, twin].map(|v| root(&mut group_of, v));
+        group_of[own.max(other) as usize] = own.min(other);
+    });
     course.reach(3, 4)?;
     // A twin never has a higher index, so its group is already numbered.
     let mut group_count = 0;
@@ -180,6 +189,15 @@ fn group(
         }
     }
     Ok((group_of, group_count as usize))
+}
+
+/// The lowest twin that is known of a vertex, to which it is then led in fewer steps.
+fn root(group_of: &mut [u32], mut v: u32) -> u32 {
+    while group_of[v as usize] != v {
+        group_of[v as usize] = group_of[group_of[v as usize] as usize];
+        v = group_of[v as usize];
+    }
+    v
 }
 
 /// A multiplicative hash of the key's words.

@@ -6,6 +6,7 @@ pub(crate) mod frames;
 pub(crate) mod moved;
 mod rename;
 pub(crate) mod turned;
+mod twins;
 
 use glam::DVec3;
 use pliant_mesh::Drawn;
