@@ -405,3 +405,59 @@ fn broken_compressed_data_is_refused_in_a_sentence() {
     meshopt.root["bufferViews"][0]["extensions"]["EXT_meshopt_compression"]["count"] = 4_000_000_000_u64.into();
     assert!(refusal(&meshopt.glb()).contains("more than a file of its size can hold"));
 }
+
+/// The curved square again, each vertex with a byte of its own, 7 times its number (modulo 256).
+const WITH_BYTES: &[u8] = include_bytes!("corpus/curved-square-features.drc");
+
+#[test]
+fn what_is_written_out_keeps_the_rules_for_attributes_and_tells_its_own_bounds() {
+    let mut maker = Maker::default();
+    let view = maker.view(WITH_BYTES);
+    let (position, feature, indices) = (0, 1, 2);
+    for (kind, component, count) in [("VEC3", 5126, 16), ("SCALAR", 5121, 16), ("SCALAR", 5123, 54)] {
+        maker.accessor(json!({ "componentType": component, "count": count, "type": kind }));
+    }
+    for (accessor, least, most) in [
+        (position, json!([0, 0, 0]), json!([9, 9, 9])),
+        (feature, json!([3]), json!([200])),
+    ] {
+        maker.root["accessors"][accessor]["min"] = least;
+        maker.root["accessors"][accessor]["max"] = most;
+    }
+    // As many vertices as there were before compression.
+    maker.root["accessors"][indices]["min"] = json!([0]);
+    maker.root["accessors"][indices]["max"] = json!([9]);
+    maker.mesh_of(vec![json!({
+        "attributes": { "POSITION": position, "_FEATURE_ID_0": feature }, "indices": indices,
+        "extensions": { "KHR_draco_mesh_compression": {
+            "bufferView": view, "attributes": { "POSITION": 0, "_FEATURE_ID_0": 1 },
+        } },
+    })]);
+    maker.node(json!({ "mesh": 0 }));
+    maker.root["extensionsUsed"] = json!(["KHR_draco_mesh_compression"]);
+    maker.root["extensionsRequired"] = json!(["KHR_draco_mesh_compression"]);
+    let opened = open(&maker.glb());
+    let after = saved_glb(&opened, &moved(&opened, |v| v == 5, |p| p + DVec3::Z));
+    let (text, bin) = split(&after);
+    let root: Value = serde_json::from_str(&text).unwrap();
+    let view =
+        |accessor: usize| &root["bufferViews"][root["accessors"][accessor]["bufferView"].as_u64().unwrap() as usize];
+    let of_feature = view(feature);
+    assert_eq!(
+        (&of_feature["byteStride"], &of_feature["target"]),
+        (&json!(4), &json!(34962))
+    );
+    assert_eq!(view(indices)["target"], 34963);
+    let start = of_feature["byteOffset"].as_u64().unwrap() as usize;
+    let mut features: Vec<u8> = (0..16).map(|vertex| bin[start + 4 * vertex]).collect();
+    features.sort_unstable();
+    assert_eq!(features, (0..16).map(|k| k * 7).collect::<Vec<u8>>());
+    assert_eq!(
+        (&root["accessors"][feature]["min"], &root["accessors"][feature]["max"]),
+        (&json!([0]), &json!([105]))
+    );
+    assert_eq!(
+        (&root["accessors"][indices]["min"], &root["accessors"][indices]["max"]),
+        (&json!([0]), &json!([15]))
+    );
+}

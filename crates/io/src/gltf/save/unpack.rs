@@ -5,14 +5,27 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use ::gltf::json::accessor::ComponentType;
+
 use crate::gltf::document::Document;
 use crate::gltf::document::json::{At, Edits};
+use crate::gltf::document::layout::Layout;
 use crate::gltf::geometry::draco::{self, Filled};
 use crate::gltf::geometry::primitive::Primitive;
+use crate::gltf::save::accessors::number;
 use crate::gltf::save::copy_on_write::{AccessorPlan, MeshCopy};
 use crate::gltf::save::patch::{Patch, cannot_hold};
 use crate::gltf::save::turned::Turned;
 use crate::{Format, SaveError};
+
+/// What compressed data fills.
+#[derive(Clone, Copy, PartialEq)]
+enum Filling {
+    /// Numbers of a primitive's corners.
+    Corners,
+    /// An attribute of vertices.
+    Attribute,
+}
 
 impl Patch<'_> {
     /// Unpacks every mesh of which a compressed accessor changed or triangles are turned.
@@ -31,6 +44,7 @@ impl Patch<'_> {
             copies_of_mesh[copy.mesh].push(number);
         }
         let mut plain: BTreeSet<usize> = BTreeSet::new();
+        let mut lists_of_corners: BTreeSet<usize> = BTreeSet::new();
         let (mut unpacked, mut packed) = (0, 0);
         for (mesh, primitives) in meshes.iter().enumerate() {
             let compressed: Vec<(&Primitive, Filled)> = primitives
@@ -48,6 +62,7 @@ impl Patch<'_> {
             unpacked += compressed.len();
             for (primitive, filled) in &compressed {
                 plain.extend(filled.accessors());
+                lists_of_corners.extend(filled.indices);
                 for &number in &copies_of_mesh[mesh] {
                     remove_extension(document, self.edits_of_copy(copies, number), primitive.at);
                 }
@@ -59,7 +74,11 @@ impl Patch<'_> {
                 .get(&accessor)
                 .is_some_and(|plan| !plan.in_place.change.is_empty());
             if document.is_filled(accessor) && !is_written {
-                self.write_out(accessor, format)?;
+                let role = match lists_of_corners.contains(&accessor) {
+                    true => Filling::Corners,
+                    false => Filling::Attribute,
+                };
+                self.write_out(accessor, role, format)?;
             }
         }
         if unpacked > 0 && packed == 0 {
@@ -68,27 +87,26 @@ impl Patch<'_> {
         Ok(())
     }
 
-    /// Gives an accessor the bytes that it was decoded to.
-    fn write_out(&mut self, accessor: usize, format: Format) -> Result<(), SaveError> {
+    /// Gives an accessor the bytes that it was decoded to, and its min and max what these hold: they may say what was
+    /// compressed.
+    fn write_out(&mut self, accessor: usize, role: Filling, format: Format) -> Result<(), SaveError> {
         let document = self.document;
         let layout = document.layout(accessor).map_err(|what| cannot_hold(what, format))?;
         let Some(dense) = layout.dense else { return Ok(()) };
-        let is_indices = layout.lanes == 1;
         // Vertex attributes begin at multiples of four.
-        let padding = if is_indices {
-            0
-        } else {
-            dense.size.next_multiple_of(4) - dense.size
+        let padding = match role {
+            Filling::Corners => 0,
+            Filling::Attribute => dense.size.next_multiple_of(4) - dense.size,
         };
         let bytes = document.buffer(dense.buffer);
         let content = (0..dense.count).flat_map(|element| {
             let element = bytes[dense.element(element)].iter().copied();
             element.chain(std::iter::repeat_n(0, padding))
         });
-        let members = match (is_indices, padding) {
-            (true, _) => ",\"target\":34963".to_owned(),
-            (false, 0) => ",\"target\":34962".to_owned(),
-            (false, _) => format!(",\"byteStride\":{},\"target\":34962", dense.size + padding),
+        let members = match (role, padding) {
+            (Filling::Corners, _) => ",\"target\":34963".to_owned(),
+            (Filling::Attribute, 0) => ",\"target\":34962".to_owned(),
+            (Filling::Attribute, _) => format!(",\"byteStride\":{},\"target\":34962", dense.size + padding),
         };
         let view = self.new_view(None, content, &members);
         let view = view.ok_or_else(|| cannot_hold(self.why_no_view(accessor), format))?;
@@ -99,7 +117,52 @@ impl Patch<'_> {
         if let Some(offset) = document.json.member(at, "byteOffset") {
             self.edits.replace(document.json.span(offset), "0");
         }
+        self.renew_bounds(accessor, &layout);
         Ok(())
+    }
+
+    /// Gives an accessor's min and max, where it has them, the least and the most of its numbers as they are stored.
+    fn renew_bounds(&mut self, accessor: usize, layout: &Layout) {
+        let json = &self.document.json;
+        let at = self.document.accessors_at[accessor];
+        let bounds = ["min", "max"].map(|key| json.member(at, key));
+        if bounds == [None, None] || layout.lanes > 4 {
+            return;
+        }
+        let stored = Layout {
+            normalized: false,
+            ..layout.clone()
+        };
+        // f32 holds whole numbers of 16 bits, and corners that it doesn't hold are read by themselves.
+        let numbers: Vec<[f64; 4]> = match stored.component {
+            ComponentType::U32 => {
+                let corners = stored.indices(self.document).unwrap_or_default();
+                corners
+                    .into_iter()
+                    .map(|corner| [f64::from(corner), 0.0, 0.0, 0.0])
+                    .collect()
+            }
+            _ => stored
+                .floats::<4>(self.document)
+                .into_iter()
+                .map(|element| element.map(f64::from))
+                .collect(),
+        };
+        let least = |a: [f64; 4], b: &[f64; 4]| std::array::from_fn(|lane| a[lane].min(b[lane]));
+        let most = |a: [f64; 4], b: &[f64; 4]| std::array::from_fn(|lane| a[lane].max(b[lane]));
+        let new = [
+            numbers.iter().fold([f64::INFINITY; 4], least),
+            numbers.iter().fold([f64::NEG_INFINITY; 4], most),
+        ];
+        for (list, new) in bounds.into_iter().zip(new) {
+            let told: Vec<At> = list.into_iter().flat_map(|list| json.elements(list)).collect();
+            for (at, new) in told.into_iter().zip(new).take(layout.lanes) {
+                let is_said = json.number(at).is_some_and(|old| old as f32 == new as f32);
+                if new.is_finite() && !is_said {
+                    self.edits.replace(json.span(at), number(new as f32));
+                }
+            }
+        }
     }
 
     /// Removes an extension from the lists of those used and required.
