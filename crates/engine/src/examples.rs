@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use pliant_editor::{Beginning, ExampleSource};
+use pliant_io::{Scene, SceneAndDrawn};
 use pliant_mesh::{Drawn, Model};
 
 use crate::EngineError;
@@ -57,40 +58,42 @@ pub fn from_morph_target(target: &str, loaded: &Loaded, watch: &Watch) -> Result
 }
 
 fn displacements_to(path: &Path, loaded: &Loaded, watch: &Watch) -> Result<Vec<DVec3>, EngineError> {
-    let other = open(path, watch)?.drawn;
+    let other = open(path, watch)?;
     let own = loaded.model.rest();
-    check_connectivity((path, &other), (&loaded.path, &own))?;
-    if let Some(vertex) = other.positions.iter().position(|position| !position.is_finite()) {
+    let positions = positions_in_pose((path, &other), (&loaded.path, &loaded.scene, &own))?;
+    if let Some(vertex) = positions.iter().position(|position| !position.is_finite()) {
         let shown = shown(path);
         let sentence = format!("{shown}: vertex {vertex} has no finite position: give an example without gaps");
         return Err(EngineError::Unsupported(sentence));
     }
-    let each = other.positions.iter().zip(&own.positions);
+    let each = positions.iter().zip(&own.positions);
     Ok(each.map(|(to, from)| *to - *from).collect())
 }
 
-/// Refuses a shape of other vertices or triangles than those of the file that it is to be a pose of.
+/// Where a pose puts the vertices that the file draws.
 ///
 /// # Errors
-/// [`EngineError::Example`].
-pub fn check_connectivity((path, other): (&Path, &Drawn), (file, own): (&Path, &Drawn)) -> Result<(), EngineError> {
-    let counts = |drawn: &Drawn| {
-        let (positions, triangles) = (drawn.positions.len(), drawn.triangles.len());
-        format!("{positions} vertices and {triangles} triangles")
-    };
-    let (found, expected) = (counts(other), counts(own));
-    let what = if found != expected {
-        found
-    } else if other.triangles != own.triangles {
-        format!("{found}, but other triangles")
-    } else {
-        return Ok(());
-    };
-    Err(EngineError::Example {
-        example: path.to_owned(),
-        what,
-        file: file.to_owned(),
-        expected,
+/// [`EngineError::Example`] if it has other vertices or faces than the file.
+pub fn positions_in_pose(
+    (path, pose): (&Path, &SceneAndDrawn),
+    (file, scene, own): (&Path, &Scene, &Drawn),
+) -> Result<Vec<DVec3>, EngineError> {
+    let found = pliant_io::positions_in_pose((scene, own), (&pose.scene, &pose.drawn));
+    found.ok_or_else(|| {
+        let counts = |drawn: &Drawn| {
+            let (vertices, triangles) = (drawn.file_vertex_count, drawn.triangles.len());
+            format!("{vertices} vertices and {triangles} triangles")
+        };
+        let (found, expected) = (counts(&pose.drawn), counts(own));
+        EngineError::Example {
+            example: path.to_owned(),
+            what: match found == expected {
+                true => format!("{found}, but other triangles"),
+                false => found,
+            },
+            file: file.to_owned(),
+            expected,
+        }
     })
 }
 

@@ -8,7 +8,7 @@ use pliant_mesh::{Drawn, SurfaceVertex, WeldOptions};
 use serde_json::Value;
 
 use crate::apply::{check_not_empty, refused};
-use crate::examples::check_connectivity;
+use crate::examples::positions_in_pose;
 use crate::files::{self, Destination, Staging, shown};
 use crate::loading::{Loaded, load, open};
 use crate::saving::{self, SaveAs};
@@ -41,8 +41,9 @@ pub fn transfer(job: &Transfer<'_>, watch: &Watch, staging: &Staging) -> Result<
     let inputs = [("SOURCE", job.source), ("POSE", job.pose)].into_iter();
     let inputs = inputs.chain(job.correspondences.map(|path| ("--correspondences", path)));
     files::refuse_shared(("--output", job.output), inputs)?;
-    let (source, pose) = (open(job.source, watch)?.drawn, open(job.pose, watch)?.drawn);
-    check_connectivity((job.pose, &pose), (job.source, &source))?;
+    let (source, pose) = (open(job.source, watch)?, open(job.pose, watch)?);
+    let posed = positions_in_pose((job.pose, &pose), (job.source, &source.scene, &source.drawn))?;
+    let source = source.drawn;
     let loaded = load(job.target, &WeldOptions::default(), watch)?;
     files::refuse_shared(("--output", job.output), loaded.sources().skip(1))?;
     let model = &loaded.model;
@@ -59,7 +60,7 @@ pub fn transfer(job: &Transfer<'_>, watch: &Watch, staging: &Staging) -> Result<
     let triangles: Vec<[usize; 3]> = source.triangles.iter().map(|own| own.map(|v| v.index())).collect();
     let posed = PosedShape {
         rest: &source.positions,
-        posed: &pose.positions,
+        posed: &posed,
         triangles: &triangles,
     };
     let displacements = bound

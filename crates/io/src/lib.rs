@@ -69,6 +69,7 @@ pub use images::{DecodedImage, IMAGE_BYTES, decode_images};
 pub use quote::{quoted, steers};
 pub use save::{MorphTarget, OutputFile, Placement, Role, Save, Saved, numbered};
 pub use scene::difference::{Difference, What};
+pub use scene::pose::positions_in_pose;
 pub use scene::summary::Summary;
 pub use scene::{Scene, SceneAndDrawn, read};
 pub use source::Resolver;

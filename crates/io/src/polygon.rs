@@ -1,8 +1,11 @@
 //! Polygons as triangles: how a face with more than three corners is drawn and bent. The file keeps the polygon.
 //!
-//! A quad is cut along the shorter of its diagonals that don't fold it over; a larger polygon is cut by ears in the
+//! A quad is cut along the shorter of its diagonals that don't fold it over, of equal ones along [one that a mirror
+//! keeps](diagonals); a larger polygon is cut by ears in the
 //! plane of its Newell normal, which is right for every simple planar polygon, convex or not. Ears cost n times the
 //! reflex corners, so polygons beyond [`MOST_EARS`] corners, and those whose corners aren't finite, become a fan.
+
+pub(crate) mod diagonals;
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -11,6 +14,7 @@ use glam::{DVec2, DVec3};
 use pliant_mesh::{Cancel, Cancelled, DrawnVertex};
 
 use crate::convert::Polygons;
+use diagonals::Diagonals;
 
 /// The most corners that are cut by ears.
 const MOST_EARS: usize = 256;
@@ -27,6 +31,7 @@ pub(crate) fn cut_faces(
     cancel: &Cancel,
 ) -> Result<(Vec<[DrawnVertex; 3]>, Option<Polygons>), Cancelled> {
     let mut triangles = Vec::with_capacity(corners.len().saturating_sub(2 * face_ends.len()));
+    let diagonals = Diagonals::of(positions);
     let (mut start, mut looked_at) = (0, 0);
     for &end in face_ends {
         if end as usize >= looked_at {
@@ -37,6 +42,7 @@ pub(crate) fn cut_faces(
         triangulate(
             face.len(),
             |k| positions[face[k] as usize],
+            &diagonals,
             |triangle| triangles.push(triangle.map(|k| DrawnVertex(face[k]))),
         );
         start = end as usize;
@@ -58,8 +64,13 @@ pub(crate) fn left_out_note(count: usize) -> Option<String> {
 /// Calls `emit` with the three corners (numbers within the polygon) of each triangle that `corners` is cut into:
 /// n − 2 of them, wound as the polygon is; none for fewer than three corners.
 ///
-/// `position` gives the place of a corner, counted within the polygon.
-pub(crate) fn triangulate(corner_count: usize, position: impl Fn(usize) -> DVec3, mut emit: impl FnMut([usize; 3])) {
+/// `position` gives the place of a corner, counted within the polygon; `diagonals` are those of the polygon's file.
+pub(crate) fn triangulate(
+    corner_count: usize,
+    position: impl Fn(usize) -> DVec3,
+    diagonals: &Diagonals<'_>,
+    mut emit: impl FnMut([usize; 3]),
+) {
     match corner_count {
         0..=2 => {}
         3 => emit([0, 1, 2]),
@@ -69,7 +80,7 @@ pub(crate) fn triangulate(corner_count: usize, position: impl Fn(usize) -> DVec3
             let along_ac = normal(a, b, c).dot(normal(a, c, d));
             let along_bd = normal(a, b, d).dot(normal(b, c, d));
             let cut_bd = match (along_ac > 0.0, along_bd > 0.0) {
-                (true, true) => b.distance_squared(d) < a.distance_squared(c),
+                (true, true) => diagonals.takes_bd([a, b, c, d]),
                 (ac, bd) => bd && !ac,
             };
             let triangles = if cut_bd {
@@ -260,7 +271,13 @@ mod tests {
 
     fn cut(corners: &[DVec3]) -> Vec<[usize; 3]> {
         let mut triangles = Vec::new();
-        triangulate(corners.len(), |k| corners[k], |triangle| triangles.push(triangle));
+        let diagonals = Diagonals::of(corners);
+        triangulate(
+            corners.len(),
+            |k| corners[k],
+            &diagonals,
+            |triangle| triangles.push(triangle),
+        );
         triangles
     }
 
@@ -327,5 +344,97 @@ mod tests {
             assert_eq!(cut(&shape).len(), shape.len() - 2);
         }
         assert!(cut(&[DVec3::ZERO, DVec3::X]).is_empty());
+    }
+
+    /// Faces of a file, as cut: each triangle by the places of its corners, in an order that forgets how they are numbered.
+    fn cut_of(positions: &[DVec3], faces: &[[u32; 4]]) -> Vec<[[i64; 3]; 3]> {
+        let ends: Vec<u32> = (1..=faces.len() as u32).map(|face| 4 * face).collect();
+        let cut = cut_faces(positions, faces.as_flattened().to_vec(), &ends, &Cancel::new());
+        let (triangles, _) = cut.unwrap_or_default();
+        let mut places: Vec<[[i64; 3]; 3]> = (triangles.iter())
+            .map(|corners| {
+                let place =
+                    |corner: DrawnVertex| positions[corner.index()].to_array().map(|x| (x * 1e4).round() as i64);
+                let mut places = corners.map(place);
+                places.sort_unstable();
+                places
+            })
+            .collect();
+        places.sort_unstable();
+        places
+    }
+
+    /// A tower of square or round section whose quads all have equal diagonals; the corners of each face begin anywhere.
+    /// `lean` leaves it one plane of symmetry, across x.
+    fn tower(sides: usize, is_square: bool, lean: f64) -> (Vec<DVec3>, Vec<[u32; 4]>) {
+        let (mut positions, mut faces) = (Vec::new(), Vec::new());
+        let rings = 9;
+        for ring in 0..rings {
+            for side in 0..sides {
+                let turn = (side as f64 / sides as f64) * std::f64::consts::TAU;
+                let (sin, cos) = turn.sin_cos();
+                let out = if is_square { 1.0 / sin.abs().max(cos.abs()) } else { 1.0 };
+                let depth = if sin > 0.0 { 1.0 + lean } else { 1.0 };
+                let height = 0.4 * ring as f64 * (1.0 + lean * ring as f64 / 40.0);
+                positions.push(DVec3::new(out * cos, height, depth * out * sin));
+            }
+        }
+        for ring in 0..rings - 1 {
+            for side in 0..sides {
+                let corner = |ring: usize, side: usize| (ring * sides + side % sides) as u32;
+                let mut face = [
+                    corner(ring, side),
+                    corner(ring + 1, side),
+                    corner(ring + 1, side + 1),
+                    corner(ring, side + 1),
+                ];
+                face.rotate_left((ring * 3 + side * 5) % 4);
+                faces.push(face);
+            }
+        }
+        (positions, faces)
+    }
+
+    #[test]
+    fn a_mirror_image_is_cut_as_the_image_of_the_cut() {
+        let turned = glam::DQuat::from_rotation_y(0.4) * glam::DQuat::from_rotation_x(1.1);
+        let straight = glam::DQuat::IDENTITY;
+        for (sides, is_square) in [(16, true), (8, true), (12, false), (20, false)] {
+            // Of a figure with several planes that of the world's first axis is kept.
+            for (lean, turn, by) in [
+                (0.0, straight, DVec3::ZERO),
+                (0.0, straight, DVec3::ONE * 7.0),
+                (0.5, straight, DVec3::ONE * 7.0),
+                (0.5, turned, DVec3::X),
+            ] {
+                let (positions, faces) = tower(sides, is_square, lean);
+                let placed = |p: DVec3| turn * p + by;
+                let own: Vec<DVec3> = positions.iter().map(|p| placed(*p)).collect();
+                let images: Vec<DVec3> = positions
+                    .iter()
+                    .map(|p| placed(*p * DVec3::new(-1.0, 1.0, 1.0)))
+                    .collect();
+                let wound_back: Vec<[u32; 4]> = faces.iter().map(|&[a, b, c, d]| [a, d, c, b]).collect();
+                // The figure is its own image, so the image's triangles are its triangles.
+                let (cut, cut_of_image) = (cut_of(&own, &faces), cut_of(&images, &wound_back));
+                let differ = cut.iter().filter(|triangle| !cut_of_image.contains(triangle)).count();
+                assert_eq!(differ, 0, "{sides} sides, lean {lean}, at {by}");
+                // So are they when its corners are cut as a mirror has them.
+                let mirrored = |place: &[i64; 3]| -> [i64; 3] {
+                    let p = DVec3::from_array(place.map(|x| x as f64 / 1e4));
+                    let back = turn.inverse() * (p - by) * DVec3::new(-1.0, 1.0, 1.0);
+                    placed(back).to_array().map(|x| (x * 1e4).round() as i64)
+                };
+                let near = |a: &[i64; 3], b: &[i64; 3]| a.iter().zip(b).all(|(a, b)| (a - b).abs() <= 2);
+                let has_image = |triangle: &&[[i64; 3]; 3]| {
+                    let image = triangle.map(|place| mirrored(&place));
+                    let is_image = |other: &[[i64; 3]; 3]| image.iter().all(|a| other.iter().any(|b| near(a, b)));
+                    cut.iter().any(is_image)
+                };
+                // A face across the plane, of which there are none but in round sections of some sizes, has no such cut.
+                let lone = cut.iter().filter(|triangle| !has_image(triangle)).count();
+                assert_eq!(lone, 0, "{sides} sides, lean {lean}, at {by}");
+            }
+        }
     }
 }

@@ -309,3 +309,71 @@ fn text_of_any_number_of_digits_is_saved_and_read_back() {
         }
     }
 }
+
+/// A tube of quads whose diagonals are nearly as long, as OBJ with one `vn` line for all corners.
+fn tube() -> (String, usize) {
+    let (mut text, rings, sides) = (String::new(), 7, 9);
+    for ring in 0..rings {
+        for side in 0..sides {
+            let (sin, cos) = (side as f64 / sides as f64 * std::f64::consts::TAU).sin_cos();
+            text += &format!("v {cos} {} {sin}\n", 0.6 * ring as f64);
+        }
+    }
+    text += "vn 0 0 1\n";
+    for ring in 0..rings - 1 {
+        for side in 0..sides {
+            let next = (side + 1) % sides;
+            let corners = [(ring, side), (ring, next), (ring + 1, next), (ring + 1, side)];
+            let corners = corners.map(|(ring, side)| format!("{}//1", ring * sides + side + 1));
+            text += &format!("f {}\n", corners.join(" "));
+        }
+    }
+    (text, sides)
+}
+
+#[test]
+fn a_bent_file_is_a_pose_of_the_file_whatever_its_polygons_are_cut_by() {
+    let empty = Saved {
+        files: Vec::new(),
+        warnings: Vec::new(),
+        triangles: None,
+    };
+    let read = |bytes: Vec<u8>, format| read(bytes, format, "a", &empty, &Progress::new(), &Cancel::new()).unwrap();
+    let obj = read(tube().0.into_bytes(), Format::Obj);
+    for format in [Format::Obj, Format::Ply, Format::Off] {
+        let save = |of: &SceneAndDrawn, positions: &[DVec3]| {
+            let save = Save {
+                turned: &[],
+                drawn: &of.drawn,
+                positions,
+                format,
+                name: "b",
+                placement: Placement::OtherFolder,
+            };
+            let saved = of.scene.save(&save, &Progress::new(), &Cancel::new()).unwrap();
+            read(saved.files[0].bytes.clone(), format)
+        };
+        let rest = save(&obj, &obj.drawn.positions);
+        let twisted = |p: &DVec3| glam::DQuat::from_rotation_y(0.5 * p.y) * *p + DVec3::X * 0.1 * p.y * p.y;
+        let positions: Vec<DVec3> = rest.drawn.positions.iter().map(twisted).collect();
+        let pose = save(&rest, &positions);
+        assert_ne!(
+            pose.drawn.triangles, rest.drawn.triangles,
+            "{format}: it is cut otherwise, so the test tells something"
+        );
+        let found = pliant_io::positions_in_pose((&rest.scene, &rest.drawn), (&pose.scene, &pose.drawn)).unwrap();
+        assert_eq!(found.len(), positions.len());
+        for (found, wanted) in found.iter().zip(&positions) {
+            assert!(found.distance(*wanted) < 1e-5, "{format}: {found} is not {wanted}");
+        }
+        let triangles = |difference: &pliant_io::Difference| difference.place.contains("triangles");
+        let differences = rest.scene.differences(&rest.drawn, &pose.scene, &pose.drawn);
+        assert!(!differences.iter().any(triangles), "{differences:?}");
+        // Another face is no pose.
+        let text = tube()
+            .0
+            .replacen("f 1//1 2//1 11//1 10//1", "f 1//1 2//1 12//1 10//1", 1);
+        let other = read(text.into_bytes(), Format::Obj);
+        assert!(pliant_io::positions_in_pose((&rest.scene, &rest.drawn), (&other.scene, &other.drawn)).is_none());
+    }
+}

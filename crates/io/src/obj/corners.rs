@@ -9,6 +9,7 @@ use std::collections::HashMap;
 use pliant_mesh::{Cancel, Cancelled, Drawn, DrawnVertex, FileVertex};
 
 use super::statements::{NONE, Statements, UNUSED};
+use crate::polygon::diagonals::Diagonals;
 use crate::polygon::{CORNERS_BETWEEN_LOOKS, triangulate};
 
 /// How many combinations of one `v` line are searched linearly before a table is used.
@@ -109,6 +110,7 @@ fn number_combinations(statements: &Statements, out: &mut Corners, cancel: &Canc
 /// Cuts every face into triangles over drawn vertices.
 fn cut_faces(statements: &Statements, out: &mut Corners, cancel: &Cancel) -> Result<(), Cancelled> {
     let faces = statements.face_ends.len();
+    let diagonals = Diagonals::of(&statements.positions);
     out.drawn.triangles.reserve_exact(statements.corners.len() - 2 * faces);
     let (mut start, mut looked_at) = (0, 0);
     let mut runs = statements.runs.iter().peekable();
@@ -126,6 +128,7 @@ fn cut_faces(statements: &Statements, out: &mut Corners, cancel: &Cancel) -> Res
         triangulate(
             corners.len(),
             |k| positions[corners[k] as usize],
+            &diagonals,
             |triangle| triangles.push(triangle.map(|k| DrawnVertex(corners[k]))),
         );
         start = end;

@@ -205,19 +205,19 @@ fn of_file_vertices(drawn: &Drawn, wanted: impl Fn(usize) -> DVec3) -> Vec<DVec3
 }
 
 /// A file's own faces.
-enum Faces<'a> {
+pub(crate) enum Faces<'a> {
     Triangles(&'a [[DrawnVertex; 3]]),
     Polygons(Polygons),
 }
 
 impl<'a> Faces<'a> {
-    fn of(scene: &Scene, drawn: &'a Drawn) -> Self {
+    pub(crate) fn of(scene: &Scene, drawn: &'a Drawn) -> Self {
         let polygons = scene.polygons().map(Self::Polygons);
         polygons.unwrap_or(Self::Triangles(&drawn.triangles))
     }
 
     /// The faces that are drawn; those with fewer than three corners are not.
-    fn iter(&self) -> impl Iterator<Item = &[DrawnVertex]> {
+    pub(crate) fn iter(&self) -> impl Iterator<Item = &[DrawnVertex]> {
         let (triangles, polygons): (&[[DrawnVertex; 3]], _) = match self {
             Self::Triangles(triangles) => (triangles, None),
             Self::Polygons(polygons) => (&[], Some(polygons)),

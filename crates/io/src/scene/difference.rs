@@ -150,8 +150,12 @@ pub(crate) fn of_bytes(a: &[u8], b: &[u8]) -> Option<Difference> {
     })
 }
 
-/// The differences between what two files show.
-pub(crate) fn of_shapes((a, a_looks): (&Drawn, &Appearance), (b, b_looks): (&Drawn, &Appearance)) -> Vec<Difference> {
+/// The differences between what two files show. Where their faces are alike, triangles follow from positions alone.
+pub(crate) fn of_shapes(
+    (a, a_looks): (&Drawn, &Appearance),
+    (b, b_looks): (&Drawn, &Appearance),
+    are_faces_alike: bool,
+) -> Vec<Difference> {
     let mut out = Vec::new();
     let mut say = |place: &str, what: Option<What>| {
         out.extend(what.map(|what| Difference {
@@ -170,7 +174,7 @@ pub(crate) fn of_shapes((a, a_looks): (&Drawn, &Appearance), (b, b_looks): (&Dra
             of_elements(of_drawn(a).into_iter(), of_drawn(b).into_iter()),
         );
     }
-    if a.triangles.len() == b.triangles.len() {
+    if a.triangles.len() == b.triangles.len() && !are_faces_alike {
         let corners = |drawn: &Drawn| {
             let corners = drawn.triangles.iter().map(|t| t.map(|corner| f64::from(corner.0)));
             corners.collect::<Vec<_>>()

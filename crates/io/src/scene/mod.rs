@@ -8,6 +8,7 @@
 mod check;
 pub(crate) mod difference;
 pub(crate) mod objects;
+pub(crate) mod pose;
 pub(crate) mod summary;
 
 use std::sync::Arc;
@@ -357,7 +358,8 @@ impl Scene {
             return a.differences(b);
         }
         let shown = |scene: &Self| (scene.appearance(), scene.summary());
-        let mut out = difference::of_shapes((drawn, &shown(self).0), (other_drawn, &shown(other).0));
+        let are_faces_alike = pose::has_same_faces((self, drawn), (other, other_drawn));
+        let mut out = difference::of_shapes((drawn, &shown(self).0), (other_drawn, &shown(other).0), are_faces_alike);
         // An STL's normals follow from its shape, but were rounded from more digits than the file keeps.
         let is_comparable = self.format == other.format && self.format != Format::Stl;
         if is_comparable && drawn.positions.len() == other_drawn.positions.len() {
