@@ -13,7 +13,7 @@ use crate::gltf::save::changes::{Change, InstanceChange, Semantic};
 use crate::gltf::save::copy_on_write::{self, AccessorPlan, AccessorVersion};
 use crate::gltf::save::overlap::Places;
 use crate::gltf::save::patch::{Patch, Patched, cannot_hold};
-use crate::gltf::save::turned::Turned;
+use crate::gltf::save::turned_triangles::Turned;
 use crate::quote::quoted;
 use crate::save::course::Course;
 use crate::source::notes::Notes;

@@ -14,7 +14,7 @@ use crate::gltf::geometry::Pieces;
 use crate::gltf::geometry::primitive::Primitive;
 use crate::gltf::save::changes::{Change, InstanceChange, Rest, Semantic};
 use crate::gltf::save::elsewhere;
-use crate::gltf::save::turned::Turned;
+use crate::gltf::save::turned_triangles::Turned;
 use crate::save::course::Course;
 use pliant_mesh::Cancelled;
 use rayon::prelude::*;

@@ -10,6 +10,7 @@ mod overlap;
 mod pack;
 mod patch;
 mod turned;
+mod turned_triangles;
 mod unpack;
 mod unpack_copies;
 
@@ -33,7 +34,7 @@ impl Stored {
             Patched::unchanged(document)
         } else {
             let changes = changes::changes(document, meshes, pieces, moved, &course.part(0.0, 0.8))?;
-            let turned = turned::turned(pieces, moved);
+            let turned = turned_triangles::turned(pieces, moved);
             let course = course.part(0.8, 0.9);
             accessors::with_changes(document, meshes, pieces, (&changes, &turned), save.format, &course)?
         };

@@ -14,7 +14,7 @@ use crate::gltf::save::accessors::{Bounds, number};
 use crate::gltf::save::changes::{InstanceChange, Semantic};
 use crate::gltf::save::copy_on_write::{self, MeshCopy};
 use crate::gltf::save::patch::{Patch, Patched, cannot_hold};
-use crate::gltf::save::turned::Turned;
+use crate::gltf::save::turned_triangles::Turned;
 use crate::quote::quoted;
 use crate::save::MorphTarget;
 use crate::save::course::Course;

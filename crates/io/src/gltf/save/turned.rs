@@ -1,52 +1,17 @@
-//! Triangles of parts that are turned inside out: their indices, over their own bytes where these can hold them, else
-//! as a new list of triangles.
+//! Indices of triangles that are turned inside out: over their own bytes where these can hold them, else as a new list
+//! of triangles.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use ::gltf::json::accessor::ComponentType;
 
 use crate::gltf::document::Buffer;
-use crate::gltf::geometry::Pieces;
 use crate::gltf::geometry::primitive::{Mode, Primitive};
 use crate::gltf::save::copy_on_write::MeshCopy;
 use crate::gltf::save::overlap::Places;
 use crate::gltf::save::patch::{Patch, cannot_hold};
-use crate::save::moved::Moved;
-use crate::save::turned::triangle_wound_back;
+use crate::gltf::save::turned_triangles::Turned;
 use crate::{Format, SaveError};
-
-/// The triangles of a primitive, some of them wound the other way: elements of its attributes.
-pub(crate) type Turned = BTreeMap<(usize, usize), Vec<[u32; 3]>>;
-
-/// By mesh and primitive: the triangles of those of which some are turned. What shows a mesh through several nodes
-/// turns the same triangles in all of them.
-pub(crate) fn turned(pieces: &Pieces, moved: &Moved<'_>) -> Turned {
-    let mut turned = Turned::new();
-    if !moved.turns_any() {
-        return turned;
-    }
-    for piece in &pieces.pieces {
-        let instance = &pieces.instances[piece.instance];
-        let triangles = &moved.drawn.triangles[piece.triangles.start as usize..piece.triangles.end as usize];
-        let key = (instance.mesh, piece.primitive);
-        if turned.contains_key(&key) || !triangles.iter().any(|&[first, ..]| moved.turns(first)) {
-            continue;
-        }
-        let is_mirrored = instance.pose.is_mirrored();
-        let stored = triangles.iter().map(|&triangle| {
-            // A mirrored node winds what is stored the other way.
-            let is_as_drawn = is_mirrored == moved.turns(triangle[0]);
-            let triangle = if is_as_drawn {
-                triangle
-            } else {
-                triangle_wound_back(triangle)
-            };
-            triangle.map(|vertex| vertex.0 - instance.vertices.start)
-        });
-        turned.insert(key, stored.collect());
-    }
-    turned
-}
 
 impl Patch<'_> {
     /// Gives primitives their turned triangles.

@@ -15,7 +15,7 @@ use crate::gltf::geometry::primitive::Primitive;
 use crate::gltf::save::accessors::number;
 use crate::gltf::save::copy_on_write::{AccessorPlan, MeshCopy};
 use crate::gltf::save::patch::{Patch, cannot_hold};
-use crate::gltf::save::turned::Turned;
+use crate::gltf::save::turned_triangles::Turned;
 use crate::{Format, SaveError};
 
 /// What compressed data fills.
