@@ -99,6 +99,8 @@ pub struct Apply<'a> {
     pub report: Option<&'a Path>,
     /// Replays the edit as a drag of this many frames; `None` is one solve to the target.
     pub frames: Option<usize>,
+    /// The distance within which vertices of the file are joined, in world units; `None` is the edit's own.
+    pub weld: Option<f64>,
     /// The memory that binding may take.
     pub budget: Budget,
     /// Saves the edit as a morph target beside the shape as it was.
@@ -114,7 +116,11 @@ pub fn apply(apply: &Apply<'_>, watch: &Watch, staging: &Staging) -> Result<Repo
     Destination::of(apply.output)?;
     let report_to = apply.report.map(Destination::of).transpose()?;
     let start = Instant::now();
-    let loaded = load(apply.file, &WeldOptions::default(), watch)?;
+    let weld = match apply.weld {
+        None => apply.edit.weld_options(),
+        distance => WeldOptions { distance },
+    };
+    let loaded = load(apply.file, &weld, watch)?;
     let load_ms = ms_since(start);
     let neighbours = || loaded.sources().skip(1);
     files::refuse_shared(("--output", apply.output), neighbours())?;

@@ -32,6 +32,7 @@
 //!     output: &output,
 //!     report: None,
 //!     frames: None,
+//!     weld: None,
 //!     budget: memory::budget(),
 //!     morph: None,
 //! };

@@ -28,6 +28,8 @@ pub struct Transfer<'a> {
     pub correspondences: Option<&'a Path>,
     /// The file to be written.
     pub output: &'a Path,
+    /// How TARGET's vertices are joined.
+    pub weld: WeldOptions,
     /// Saves the pose as a morph target beside the shape as it was.
     pub morph: Option<MorphTarget<'a>>,
 }
@@ -44,7 +46,7 @@ pub fn transfer(job: &Transfer<'_>, watch: &Watch, staging: &Staging) -> Result<
     let (source, pose) = (open(job.source, watch)?, open(job.pose, watch)?);
     let posed = positions_in_pose((job.pose, &pose), (job.source, &source.scene, &source.drawn))?;
     let source = source.drawn;
-    let loaded = load(job.target, &WeldOptions::default(), watch)?;
+    let loaded = load(job.target, &job.weld, watch)?;
     files::refuse_shared(("--output", job.output), loaded.sources().skip(1))?;
     let model = &loaded.model;
     check_not_empty(job.target, model)?;

@@ -50,6 +50,30 @@ fn bits_beside_a_large_part_are_loose_and_equal_parts_are_not() {
     assert!(shapes::model(two).findings.loose_bits.is_empty());
 }
 
+#[test]
+fn borders_that_are_nearly_joined_are_told_and_a_distance_joins_them() {
+    let sheet = shapes::grid(8, 8);
+    let beside = |gap: f64| shapes::together(&[sheet.clone(), placed(&sheet, 1.0, DVec3::X * (1.0 + gap))]);
+    let count = |drawn: Drawn, distance: Option<f64>| {
+        let inspection = Inspection::of(drawn, &WeldOptions { distance }, &Progress::new(), &Cancel::new());
+        inspection
+            .expect("nobody cancels it")
+            .findings
+            .nearly_joined_vertices
+            .count
+    };
+    for gap in [1e-3, 5e-3] {
+        assert_eq!(count(beside(gap), None), 18, "both sides of the gap");
+        assert_eq!(count(beside(gap), Some(0.01)), 0);
+    }
+    for gap in [0.0, 0.1] {
+        assert_eq!(count(beside(gap), None), 0);
+    }
+    for (class, drawn) in shapes::classes() {
+        assert_eq!(count(drawn, None), 0, "{class}");
+    }
+}
+
 /// On every class of mesh, and on one with every fault: what is told is told with where it is.
 #[test]
 fn every_example_stands_where_it_was_found() {

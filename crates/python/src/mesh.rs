@@ -99,11 +99,17 @@ impl Mesh {
     }
 }
 
-/// Reads a mesh from a glTF, GLB, OBJ, PLY, STL or OFF file.
+/// Reads a mesh from a glTF, GLB, OBJ, PLY, STL or OFF file. Vertices closer than `weld`, in the file's units, are
+/// joined; without it, the distance follows from the mesh.
 #[pyfunction]
-pub fn load(py: Python<'_>, path: PathBuf) -> PyResult<Mesh> {
+#[pyo3(signature = (path, *, weld=None))]
+pub fn load(py: Python<'_>, path: PathBuf, weld: Option<f64>) -> PyResult<Mesh> {
+    if weld.is_some_and(|distance| !(distance.is_finite() && distance >= 0.0)) {
+        return Err(refused("weld is not a distance: give a number from 0"));
+    }
+    let options = WeldOptions { distance: weld };
     let loaded = interruptible(py, |pool, cancel| {
-        pool.install(|| load_file(&path, &WeldOptions::default(), &Watch::cancelled_by(cancel)))
+        pool.install(|| load_file(&path, &options, &Watch::cancelled_by(cancel)))
     })?;
     let loaded = loaded.map_err(|error| of_engine(&error))?;
     Ok(Mesh {

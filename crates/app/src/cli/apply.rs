@@ -17,6 +17,7 @@ pub(super) fn run(arguments: &ApplyArguments, console: &mut Console<'_>) -> Resu
         frames,
         method,
         memory: most_memory,
+        weld,
         compute,
     } = arguments;
     let output_name = output.to_string_lossy();
@@ -47,6 +48,7 @@ pub(super) fn run(arguments: &ApplyArguments, console: &mut Console<'_>) -> Resu
         output,
         report: report.as_deref(),
         frames: *frames,
+        weld: weld.weld,
         budget: memory::budget_within(*most_memory),
         morph,
     };

@@ -7,7 +7,7 @@ use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 use pliant_deform::{ConstraintKind, METHODS};
 use pliant_editor::Clay;
 use pliant_io::MorphTarget;
-use pliant_mesh::Vectors;
+use pliant_mesh::{Vectors, WeldOptions};
 
 use crate::version::VERSION;
 
@@ -62,6 +62,9 @@ pub(crate) struct InfoArguments {
     /// Print JSON instead of text
     #[arg(long)]
     pub json: bool,
+    /// Which vertices are one.
+    #[command(flatten)]
+    pub weld: WeldArguments,
 }
 
 #[derive(Args, Debug)]
@@ -101,9 +104,28 @@ pub(crate) struct ApplyArguments {
     /// than the machine has left. What does not fit is solved in a way that takes less, or refused
     #[arg(long, value_name = "SIZE", value_parser = pliant_engine::memory::bytes)]
     pub memory: Option<u64>,
+    /// Which vertices are one.
+    #[command(flatten)]
+    pub weld: WeldArguments,
     /// On how many threads, and with which vectors.
     #[command(flatten)]
     pub compute: ComputeArguments,
+}
+
+/// Which vertices of a file are one.
+#[derive(Args, Clone, Copy, PartialEq, Debug, Default)]
+pub struct WeldArguments {
+    /// Join vertices that are closer than this, in the file's units, before anything else; 0 joins equal ones alone.
+    /// Without it, the distance follows from the mesh's edges and from how the file rounds its numbers
+    #[arg(long, value_name = "DISTANCE", value_parser = length)]
+    pub weld: Option<f64>,
+}
+
+impl WeldArguments {
+    /// The same for loading.
+    pub fn options(self) -> WeldOptions {
+        WeldOptions { distance: self.weld }
+    }
 }
 
 /// Whether what comes out is a shape or a morph target.
@@ -147,6 +169,9 @@ pub(crate) struct TransferArguments {
     /// As a shape or as a morph target.
     #[command(flatten)]
     pub morph: MorphArguments,
+    /// Which vertices are one.
+    #[command(flatten)]
+    pub weld: WeldArguments,
     /// On how many threads, and with which vectors.
     #[command(flatten)]
     pub compute: ComputeArguments,
@@ -178,6 +203,9 @@ pub(crate) struct CompareArguments {
     /// From where, and in which colours.
     #[command(flatten)]
     pub look: LookArguments,
+    /// Which vertices are one.
+    #[command(flatten)]
+    pub weld: WeldArguments,
     /// On how many threads, and with which vectors.
     #[command(flatten)]
     pub compute: ComputeArguments,
@@ -219,7 +247,7 @@ pub struct LookArguments {
 }
 
 /// What `pliant render` draws, and how.
-#[derive(Args, Clone, PartialEq, Eq, Debug)]
+#[derive(Args, Clone, PartialEq, Debug)]
 pub struct RenderArguments {
     /// The file to draw: glb, gltf, obj, ply, stl or off
     pub file: PathBuf,
@@ -266,6 +294,9 @@ pub struct RenderArguments {
     /// Write N pictures all around the up axis (2 to 9999), as OUT-0001.png and so on
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=9999))]
     pub turntable: Option<u32>,
+    /// Which vertices are one.
+    #[command(flatten)]
+    pub weld: WeldArguments,
 }
 
 /// The axis that points up in a picture.
@@ -349,6 +380,13 @@ fn clay() -> impl TypedValueParser<Value = Clay> {
         let called = Clay::NAMES.into_iter().find(|(name, _)| *name == chosen);
         called.map_or(Clay::default(), |(_, clay)| clay)
     })
+}
+
+fn length(text: &str) -> Result<f64, String> {
+    text.parse()
+        .ok()
+        .filter(|number: &f64| number.is_finite() && *number >= 0.0)
+        .ok_or_else(|| "a distance is a number from 0".to_owned())
 }
 
 fn unit_number(text: &str) -> Result<f64, String> {

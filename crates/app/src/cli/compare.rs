@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 use pliant_deform::{METHODS, Method};
 use pliant_editor::{Beginning, Camera, Look};
 use pliant_io::quoted;
-use pliant_mesh::{Model, WeldOptions, mean_curvatures, mixed_voronoi_areas};
+use pliant_mesh::{Model, mean_curvatures, mixed_voronoi_areas};
 use pliant_render::{Background, Frame, Headless, Image, Samples};
 use serde::Serialize;
 
@@ -124,7 +124,11 @@ struct SheetReport<'a> {
 }
 
 fn compare(arguments: &CompareArguments, methods: &[Asked], watch: &Watch) -> Result<Compared, EngineError> {
-    let loaded = pliant_engine::load(&arguments.file, &WeldOptions::default(), watch)?;
+    let loaded = pliant_engine::load(
+        &arguments.file,
+        &render::weld_options(arguments.weld, Some(&arguments.edit), watch)?,
+        watch,
+    )?;
     files::refuse_shared(("--output", &arguments.output), loaded.sources())?;
     if let Some(report) = &arguments.report {
         files::refuse_shared(("--report", report), loaded.sources())?;

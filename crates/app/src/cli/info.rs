@@ -18,7 +18,9 @@ const LISTED_COMPONENTS: usize = 12;
 
 pub(super) fn run(arguments: &InfoArguments, console: &mut Console<'_>) -> Result<(), EngineError> {
     let watch = &console.watch;
-    let looked_at = on_threads(ComputeArguments::default(), || look_at(&arguments.file, watch))??;
+    let looked_at = on_threads(ComputeArguments::default(), || {
+        look_at(&arguments.file, arguments.weld.options(), watch)
+    })??;
     if arguments.json {
         print_json(console.out, &as_json(&looked_at))
     } else {
@@ -33,10 +35,10 @@ struct LookedAt<'a> {
     inspection: Inspection,
 }
 
-fn look_at<'a>(path: &'a Path, watch: &Watch) -> Result<LookedAt<'a>, EngineError> {
+fn look_at<'a>(path: &'a Path, weld: WeldOptions, watch: &Watch) -> Result<LookedAt<'a>, EngineError> {
     let SceneAndDrawn { scene, drawn } = pliant_engine::open(path, watch)?;
     let progress = watch.begin("welding");
-    let inspection = Inspection::of(drawn, &WeldOptions::default(), &progress, &watch.cancel);
+    let inspection = Inspection::of(drawn, &weld, &progress, &watch.cancel);
     let inspection = inspection.map_err(|_| EngineError::Interrupted)?;
     Ok(LookedAt {
         path,

@@ -13,7 +13,7 @@ use pliant_editor::{
 use pliant_mesh::{Cancel, Model, WeldOptions};
 use pliant_render::{Background, Frame, Headless, RenderError, Renderer, Samples, Surface, SurfaceLine};
 
-use super::arguments::{self, ComputeArguments, PictureSize, ProjectionName, RenderArguments, Up, View};
+use super::arguments::{self, ComputeArguments, PictureSize, ProjectionName, RenderArguments, Up, View, WeldArguments};
 use super::{Console, on_threads, print};
 use crate::drawing::{self, Drawing, Pose, Scale};
 use crate::{legend, painting, picture_file};
@@ -107,9 +107,22 @@ pub(super) fn shading(shading: arguments::Shading) -> Shading {
     }
 }
 
+/// How FILE's vertices are joined: as the arguments say, else as the edit does.
+pub(super) fn weld_options(
+    arguments: WeldArguments,
+    edit: Option<&Path>,
+    watch: &Watch,
+) -> Result<WeldOptions, EngineError> {
+    match (arguments.weld, edit) {
+        (None, Some(edit)) => Ok(read_edit(edit, watch)?.0.weld_options()),
+        _ => Ok(arguments.options()),
+    }
+}
+
 /// The pictures that go to `paths`.
 fn pictures(arguments: &RenderArguments, paths: &[PathBuf], watch: &Watch) -> Result<Pictures, EngineError> {
-    let loaded = pliant_engine::load(&arguments.file, &WeldOptions::default(), watch)?;
+    let weld = weld_options(arguments.weld, arguments.edit.as_deref(), watch)?;
+    let loaded = pliant_engine::load(&arguments.file, &weld, watch)?;
     for path in paths {
         files::refuse_shared(("--output", path), loaded.sources())?;
     }

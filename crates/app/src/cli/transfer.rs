@@ -16,6 +16,7 @@ pub(super) fn run(arguments: &TransferArguments, console: &mut Console<'_>) -> R
         target: &arguments.target,
         correspondences: arguments.correspondences.as_deref(),
         output: &arguments.output,
+        weld: arguments.weld.options(),
         morph: arguments.morph.target(&own_name),
     };
     let (watch, staging) = (&console.watch, &console.staging);

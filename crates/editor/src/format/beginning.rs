@@ -1,7 +1,7 @@
 //! What a file is opened with: an edit, or a project that was saved.
 
 use glam::DVec3;
-use pliant_mesh::Model;
+use pliant_mesh::{Model, WeldOptions};
 
 use super::json::parse;
 use crate::document::Document;
@@ -53,6 +53,14 @@ impl Beginning {
         match self {
             Self::Edit(edit) => edit.method.name(),
             Self::Project(project) => project.method_name(),
+        }
+    }
+
+    /// How the mesh's vertices are joined before this is resolved on it.
+    pub fn weld_options(&self) -> WeldOptions {
+        match self {
+            Self::Edit(edit) => WeldOptions { distance: edit.weld },
+            Self::Project(project) => project.weld_options(),
         }
     }
 

@@ -63,6 +63,9 @@ pub struct EditFile {
     /// How much of the edit is made, in 0 to 1: handles, control points and weights that bend the surface
     /// go this share of their way ([`HandleTransform::part`]).
     pub strength: f64,
+    /// The distance within which the mesh's vertices are joined before it is bent, in world units, at least 0;
+    /// `None` takes it from the mesh ([`pliant_mesh::WeldOptions`]).
+    pub weld: Option<f64>,
 }
 
 /// A handle: which vertices move, and how.
@@ -109,6 +112,8 @@ struct StoredEdit {
     kept: Option<StoredKept>,
     #[serde(default = "all_of_it", skip_serializing_if = "is_all")]
     strength: f64,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    weld: Option<f64>,
 }
 
 /// What the loose parts of a selection do.
@@ -160,6 +165,7 @@ impl Default for EditFile {
             inside_out: nothing(),
             kept: None,
             strength: 1.0,
+            weld: None,
         }
     }
 }
@@ -233,6 +239,9 @@ impl EditFile {
         strength_kind()
             .check(stored.strength)
             .map_err(|error| error.under("strength"))?;
+        if let Some(weld) = stored.weld {
+            WELD.check(weld).map_err(|error| error.under("weld"))?;
+        }
         let (mut loose, mut loose_parts) = (Loose::Follow, Vec::new());
         match stored.loose {
             OneOrList::One(does) => loose = does.into(),
@@ -264,6 +273,7 @@ impl EditFile {
             inside_out: stored.inside_out,
             kept: stored.kept,
             strength: stored.strength,
+            weld: stored.weld,
         })
     }
 
@@ -295,6 +305,7 @@ impl EditFile {
             inside_out: self.inside_out.clone(),
             kept: self.kept.clone(),
             strength: self.strength,
+            weld: self.weld,
         };
         json!(stored)
     }
@@ -392,6 +403,13 @@ pub(crate) fn strength_kind() -> FieldKind {
         may_be_rigid: false,
     }
 }
+
+/// What a weld distance may be.
+const WELD: FieldKind = FieldKind {
+    name: "a distance",
+    range: 0.0..=1e9,
+    may_be_rigid: false,
+};
 
 fn continuity_kind() -> FieldKind {
     FieldKind {

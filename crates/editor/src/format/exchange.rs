@@ -120,6 +120,7 @@ pub(crate) fn export(document: &Document, model: &Arc<Model>) -> Result<EditFile
             }
         }),
         strength,
+        weld: model.weld.distance,
     };
     let setup = edit.resolve(model)?;
     let differing = setup

@@ -3,6 +3,7 @@
 pub(crate) mod finding;
 mod inspection;
 mod located;
+mod nearly_joined;
 mod sentences;
 pub(crate) mod topological;
 
@@ -38,6 +39,8 @@ pub struct Findings {
     pub boundary_edges: Finding,
     /// Holes; the examples are vertices on their rims.
     pub boundary_loops: Finding,
+    /// Vertices on borders that run close beside others without being joined to them.
+    pub nearly_joined_vertices: Finding,
     /// Connected parts, largest first; the examples are their first vertices.
     pub components: Finding,
     /// Parts with less than a hundredth of the largest one's vertices; the examples are their first vertices.
@@ -60,6 +63,7 @@ pub enum FindingKind {
     InsideOutComponents,
     BoundaryEdges,
     BoundaryLoops,
+    NearlyJoinedVertices,
     Components,
     LooseBits,
 }
@@ -75,7 +79,7 @@ pub enum Named {
 
 impl FindingKind {
     /// Every kind, in the order in which they are told.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 15] = [
         Self::NonFiniteVertices,
         Self::NonFiniteTriangles,
         Self::UnreferencedVertices,
@@ -88,6 +92,7 @@ impl FindingKind {
         Self::InsideOutComponents,
         Self::BoundaryEdges,
         Self::BoundaryLoops,
+        Self::NearlyJoinedVertices,
         Self::Components,
         Self::LooseBits,
     ];
@@ -107,6 +112,7 @@ impl FindingKind {
             Self::InsideOutComponents => "inside_out_components",
             Self::BoundaryEdges => "boundary_edges",
             Self::BoundaryLoops => "boundary_loops",
+            Self::NearlyJoinedVertices => "nearly_joined_vertices",
             Self::Components => "components",
             Self::LooseBits => "loose_bits",
         }
@@ -143,6 +149,7 @@ impl Findings {
             FindingKind::InsideOutComponents => &self.inside_out_components,
             FindingKind::BoundaryEdges => &self.boundary_edges,
             FindingKind::BoundaryLoops => &self.boundary_loops,
+            FindingKind::NearlyJoinedVertices => &self.nearly_joined_vertices,
             FindingKind::Components => &self.components,
             FindingKind::LooseBits => &self.loose_bits,
         }

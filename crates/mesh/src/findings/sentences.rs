@@ -100,6 +100,16 @@ impl Wording {
                     "are inside out: their triangles face inwards",
                 ],
             ),
+            FindingKind::NearlyJoinedVertices => Self::new(
+                ["vertex on a border", "vertices on borders"],
+                AT_VERTEX,
+                [
+                    "is close to another border without being joined to it, and tears from it when bent: weld with a \
+                     distance",
+                    "are close to other borders without being joined to them, and tear from them when bent: weld with \
+                     a distance",
+                ],
+            ),
             FindingKind::LooseBits => Self::new(
                 ["loose bit", "loose bits"],
                 AT_VERTEX,

@@ -3,6 +3,7 @@
 
 use glam::DVec3;
 
+use crate::findings::nearly_joined::nearly_joined;
 use crate::topology::boundary::trace_loops;
 use crate::topology::components::Components;
 use crate::topology::rings::TopologyFindings;
@@ -35,6 +36,7 @@ impl Parts<'_> {
         findings.boundary_edges = Finding::at_vertices(found.boundary.iter().map(|[v, _]| file_vertex(v)));
         let rims = trace_loops(&found.boundary);
         findings.boundary_loops = Finding::at_vertices(rims.iter().filter_map(|rim| rim.iter().map(file_vertex).min()));
+        findings.nearly_joined_vertices = at(&nearly_joined(self.surface, found));
         let of_triangles = of_triangles(&self.components.all);
         let firsts: Vec<u32> = of_triangles.iter().map(|part| part.first_file_vertex.0).collect();
         findings.components = Finding::of(&firsts);

@@ -43,6 +43,8 @@ pub struct Model {
     pub inside_out: Vec<u32>,
     /// What the file itself tells apart; empty where nobody said.
     pub objects: Vec<Object>,
+    /// How its vertices were joined.
+    pub weld: WeldOptions,
 }
 
 impl Model {
@@ -73,6 +75,7 @@ impl Model {
             findings: welded.findings,
             inside_out,
             objects: Vec::new(),
+            weld: *options,
         })
     }
 

@@ -73,6 +73,15 @@ pub(super) fn join_nearest<J: MayJoin>(
     have_joined
 }
 
+/// The positions, in Morton order, that have another within the reach of both, by their numbers.
+pub(crate) fn with_neighbours(positions: &[DVec3], reach: impl Fn(u32) -> f64 + Sync) -> Vec<u32> {
+    let mut places: Vec<u32> = (0..positions.len() as u32).collect();
+    let position = |place: u32| positions[place as usize];
+    sort_along_curve(&position, &mut places);
+    let near = Tree::over(&position, &places).with_neighbours(&reach);
+    near.into_iter().map(|number| places[number as usize]).collect()
+}
+
 /// Which groups may be joined.
 pub(super) trait MayJoin {
     /// Whether the group at a place may join the one at another, which is this far away.

@@ -103,9 +103,11 @@ def bind(
     :raises ValueError: one sentence that names the culprit and the remedy.
     """
 
-def load(path: str | os.PathLike[str]) -> Mesh:
+def load(path: str | os.PathLike[str], *, weld: float | None = None) -> Mesh:
     """Reads a mesh from a glTF, GLB, OBJ, PLY, STL or OFF file.
 
+    :param weld: the distance within which vertices are joined, in the file's units; 0 joins equal ones alone. Without
+        it, the distance follows from the mesh's edges and from how the file rounds its numbers.
     :raises OSError: if the file can't be read.
     :raises ValueError: if it is no such file.
     """

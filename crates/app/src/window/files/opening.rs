@@ -62,8 +62,8 @@ pub(super) fn open(source: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<Mode
             MeshSource::File(path.clone()),
         ),
         Source::Edited { file, edit } => {
-            let loaded = pliant_engine::load(file, &weld, watch)?;
             let (mut read, _) = pliant_engine::read_edit(edit, watch)?;
+            let loaded = pliant_engine::load(file, &read.weld_options(), watch)?;
             examples::bring(&mut read, edit, &loaded, watch)?;
             beginning = Some(read);
             (loaded, Some(file.clone()), MeshSource::File(file.clone()))

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use pliant_assets::CREATURE;
 use pliant_editor::{Beginning, MeshReference, Project, Snapshot, geometry_hash};
-use pliant_mesh::{Cancel, Progress, WeldOptions};
+use pliant_mesh::{Cancel, Progress};
 
 use super::names::{SAMPLE_NAME, file_name, original_name, saved_name};
 use pliant_engine::files::{self, Staging};
@@ -132,7 +132,7 @@ pub fn read(path: &Path, watch: &Watch) -> Result<OpenedProject, EngineError> {
             )));
         }
     };
-    let weld = WeldOptions::default();
+    let weld = project.weld_options();
     let Some(named) = project.mesh().path.clone() else {
         let loaded = pliant_engine::load_bytes(CREATURE.to_vec(), Path::new(SAMPLE_NAME), &weld, watch)?;
         return if geometry_hash(&loaded.model) == project.mesh().geometry {

@@ -18,7 +18,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use pliant_deform::{Attachment, AttachmentKind, CONTINUITY_RANGE, METHODS, Method};
-use pliant_mesh::{Cancel, Model};
+use pliant_mesh::{Cancel, Model, WeldOptions};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
@@ -100,6 +100,9 @@ pub struct Project {
     kept: Option<StoredKept>,
     /// Whether that is what the handles' transforms mean; else it is computed on opening.
     settled: bool,
+    /// The distance within which the mesh's vertices are joined; without, it follows from the mesh.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    weld: Option<f64>,
     /// How much of handles and attachments, which stand here in full, is shown; without, all of it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     strength: Option<f64>,
@@ -249,9 +252,17 @@ impl Project {
                 .filter(|_| !document.keeps_way_alone())
                 .map(|kept| StoredKept::of(kept, model)),
             settled: document.settled,
+            weld: model.weld.distance,
             strength: document.strength.as_ref().map(|strength| strength.share),
             poses: document.poses.iter().map(StoredPose::of).collect(),
             camera: camera.map(StoredCamera::of),
+        }
+    }
+
+    /// How its mesh's vertices are joined.
+    pub fn weld_options(&self) -> WeldOptions {
+        WeldOptions {
+            distance: self.weld.filter(|distance| *distance >= 0.0),
         }
     }
 
