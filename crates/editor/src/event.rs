@@ -11,6 +11,7 @@ use pliant_mesh::Model;
 
 use crate::Beginning;
 use crate::command::{Command, KeyMap};
+use crate::document::{SaveMark, SavedAs};
 use crate::input::{Button, Key, Modifiers, Pointer};
 use crate::jobs::JobDone;
 use crate::snapshot::Snapshot;
@@ -83,8 +84,9 @@ pub enum Event {
         /// By which method this one bends.
         method: Method,
     },
-    /// The document was recovered from a session that ended without saving, so it counts as unsaved.
-    Recovered,
-    /// The document as it stands was written to a file: there is no unsaved work now.
-    Saved,
+    /// The document was recovered from a session that ended without saving, or carried over to a file that another program
+    /// has changed: no file has it, and such a one is needed.
+    Recovered(SavedAs),
+    /// The document was written to a file as it stood at the mark ([`Editor::save_mark`](crate::Editor::save_mark)).
+    Saved(SavedAs, SaveMark),
 }

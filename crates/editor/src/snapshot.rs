@@ -2,12 +2,14 @@
 
 use std::sync::Arc;
 
+use glam::DVec3;
 use pliant_mesh::Model;
 
+use crate::document::Matching;
 use crate::tool::ToolSettings;
 use crate::view::{Camera, Look};
 use crate::workspace::WorkspaceSnapshot;
-use crate::{MeshReference, Project};
+use crate::{Beginning, MeshReference, Project, geometry_hash};
 
 /// An immutable copy of the document, and how it is shown. Taking one is cheap: its long vectors are shared.
 #[derive(Clone, Debug)]
@@ -22,6 +24,21 @@ impl Snapshot {
     /// The project of this state. Takes some tens of milliseconds on a large mesh.
     pub fn project(&self, mesh: MeshReference) -> Project {
         Project::of(&self.work.document, &self.work.model, Some(&self.camera), mesh)
+    }
+
+    /// The document on its mesh as it was read again, after another program has changed the file, and how many vertices
+    /// of that stand for none of the former mesh. `saved` is what the file was moved by when it was saved last (an entry
+    /// per surface vertex), if it was.
+    pub fn on_changed_mesh(&self, model: &Model, saved: Option<&[DVec3]>) -> (Beginning, usize) {
+        let matching = Matching::of(&self.work.model, model, saved);
+        let document = self.work.document.onto(&matching, saved);
+        let mesh = MeshReference {
+            path: None,
+            name: None,
+            geometry: geometry_hash(model),
+        };
+        let project = Project::of(&document, model, Some(&self.camera), mesh);
+        (project.into(), matching.unmatched())
     }
 
     /// The mesh.

@@ -5,9 +5,10 @@
 mod rig;
 
 use glam::{DVec2, DVec3};
+use pliant_deform::Method;
 use pliant_editor::{
-    Command, Correction, CorrectionBrush, Document, Key, MeshReference, NamedView, Project, Symmetry, ToolMode,
-    geometry_hash,
+    Beginning, Carries, Command, Correction, CorrectionBrush, Document, Key, MeshReference, NamedView, Project,
+    Symmetry, ToolMode, geometry_hash,
 };
 use pliant_mesh::{Distortion, Drawn, SurfaceVertex, shapes};
 use rig::{CENTRE_PX, Fingerprint, Rig, VIEWPORT_PX};
@@ -249,5 +250,79 @@ fn with_symmetry_both_sides_are_corrected_alike() {
                 "{correction:?} {p}"
             );
         }
+    }
+}
+
+/// The front of a ball is grabbed, or not, while a handle at its top is moved by `methods[0]`, and `methods[1]` goes on.
+fn bent_by(methods: [&str; 2], is_corrected: bool) -> (Rig, Vec<DVec3>) {
+    let mut rig = opened(shapes::icosphere(4), Correction::Grab);
+    rig.choose(methods[0]);
+    rig.paint(ToolMode::PaintHandle, &[CENTRE_PX + DVec2::new(0.0, -150.0)]);
+    rig.drain();
+    rig.move_by('y', ".2");
+    rig.drain();
+    let before = rig.editor.document().from_file().to_vec();
+    if is_corrected {
+        rig.command(Command::SetTool(ToolMode::Correct));
+        rig.swipe(&[
+            CENTRE_PX,
+            CENTRE_PX + DVec2::new(20.0, 0.0),
+            CENTRE_PX + DVec2::new(40.0, 0.0),
+        ]);
+        rig.drain();
+    }
+    let after = rig.editor.document().from_file().to_vec();
+    let by_hand = after
+        .iter()
+        .zip(&before)
+        .map(|(after, before)| *after - *before)
+        .collect();
+    rig.choose(methods[1]);
+    rig.drain();
+    (rig, by_hand)
+}
+
+#[test]
+fn corrections_by_hand_are_carried_along_by_every_other_method() {
+    for methods in [
+        ["arap", "bilaplacian"],
+        ["bilaplacian", "arap"],
+        ["bilaplacian", "shells"],
+    ] {
+        let (mut corrected, by_hand) = bent_by(methods, true);
+        let (plain, _) = bent_by(methods, false);
+        assert!(by_hand.iter().any(|way| way.length() > 0.02), "{methods:?}");
+        let size = corrected.model.bounds().unwrap().diagonal();
+        let compare = |corrected: &Rig, by_hand: &[DVec3]| {
+            let shapes = [corrected, &plain].map(|rig| rig.editor.document().from_file());
+            let apart = shapes[0].iter().zip(&**shapes[1]).zip(by_hand);
+            let apart = apart.map(|((corrected, plain), by_hand)| (*corrected - *plain).distance(*by_hand));
+            apart.fold(0.0, f64::max) / size
+        };
+        assert!(compare(&corrected, &by_hand) < rig::ITERATED, "{methods:?}");
+        // The project and the edit on the command line's way: the method is chosen when they are read.
+        let shape = corrected.editor.document().from_file().clone();
+        corrected.undo();
+        corrected.drain();
+        let document = corrected.editor.document();
+        let geometry = geometry_hash(&corrected.model);
+        let mesh = MeshReference {
+            path: None,
+            name: None,
+            geometry,
+        };
+        let project = Project::of(document, &corrected.model, None, mesh);
+        let edit = corrected.editor.edit_file().unwrap();
+        for mut beginning in [Beginning::from(project), Beginning::from(edit)] {
+            beginning.set_method(Method::from_name(methods[1]).unwrap());
+            let kept = beginning.resolve(&corrected.model).unwrap().kept.unwrap();
+            let corrections = kept.shape.corrections.as_ref().unwrap();
+            let apart = corrections.iter().zip(&by_hand).map(|(a, b)| a.distance(*b));
+            assert!(apart.fold(0.0, f64::max) < 1e-12 * size);
+            assert_eq!(kept.shape.carries, Carries::Corrections);
+        }
+        corrected.redo();
+        corrected.drain();
+        assert_eq!(*corrected.editor.document().from_file(), shape, "to the bit");
     }
 }

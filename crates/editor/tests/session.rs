@@ -8,8 +8,8 @@ use std::sync::Arc;
 use glam::{DQuat, DVec2, DVec3};
 use pliant_deform::Role;
 use pliant_editor::{
-    Command, EditFile, Editor, Event, ExportError, GizmoPart, HandleTransform, InlineExecutor, Key, Modifiers, Paint,
-    ToolMode,
+    Command, EditFile, Editor, Event, ExportError, GizmoPart, HandleTransform, InlineExecutor, JobKind, Key, Modifiers,
+    Paint, SavedAs, ToolMode,
 };
 use pliant_mesh::shapes;
 use rig::{CENTRE_PX, ITERATED, Rig};
@@ -285,7 +285,8 @@ fn saving_is_remembered_through_undo_and_redo() {
     assert!(!rig.editor.view().unsaved);
     rig.paint_handle();
     rig.drain();
-    rig.editor.handle(Event::Saved);
+    let mark = rig.editor.save_mark();
+    rig.editor.handle(Event::Saved(SavedAs::Model, mark));
     assert!(!rig.editor.view().unsaved);
     rig.undo();
     assert!(rig.editor.view().unsaved);
@@ -294,6 +295,59 @@ fn saving_is_remembered_through_undo_and_redo() {
     rig.undo();
     rig.paint_handle();
     assert!(rig.editor.view().unsaved, "what was saved can't be reached any more");
+}
+
+#[test]
+fn a_save_has_the_state_at_which_it_began_and_no_later_one() {
+    let mut rig = Rig::open(shapes::icosphere(3));
+    rig.paint_handle();
+    rig.drain();
+    let mark = rig.editor.save_mark();
+    rig.move_by('x', ".1");
+    rig.drain();
+    rig.editor.handle(Event::Saved(SavedAs::Model, mark));
+    assert!(rig.editor.view().unsaved, "it was moved while the file was written");
+    rig.undo();
+    assert!(!rig.editor.view().unsaved);
+    // The same for a shape that arrives after its step.
+    let mut rig = Rig::open_with_jobs_waiting(shapes::icosphere(3));
+    rig.drain();
+    rig.choose("arap");
+    rig.paint_handle();
+    rig.drain();
+    rig.move_by('x', ".3");
+    assert!(rig.run(JobKind::Solve) && !rig.editor.document().is_settled());
+    for waits in [false, true] {
+        let mark = rig.editor.save_mark();
+        if waits {
+            rig.run(JobKind::Solve);
+        }
+        rig.editor.handle(Event::Saved(SavedAs::Model, mark));
+        assert_eq!(rig.editor.view().unsaved, waits);
+    }
+    rig.drain();
+    assert!(rig.editor.view().unsaved, "it has settled since");
+    let mark = rig.editor.save_mark();
+    rig.editor.handle(Event::Saved(SavedAs::Model, mark));
+    assert!(!rig.editor.view().unsaved);
+}
+
+#[test]
+fn what_a_project_has_is_saved_with_the_project_alone() {
+    let mut rig = Rig::open(shapes::icosphere(3));
+    let save = |rig: &mut Rig, what| {
+        let mark = rig.editor.save_mark();
+        rig.editor.handle(Event::Saved(what, mark));
+    };
+    rig.paint_handle();
+    rig.drain();
+    save(&mut rig, SavedAs::Project);
+    rig.move_by('x', ".1");
+    rig.drain();
+    save(&mut rig, SavedAs::Model);
+    assert!(rig.editor.view().unsaved, "the model has no handles");
+    save(&mut rig, SavedAs::Project);
+    assert!(!rig.editor.view().unsaved);
 }
 
 #[test]
@@ -337,7 +391,8 @@ fn nothing_open_nothing_breaks() {
         rig::at(CENTRE_PX),
         pliant_editor::Button::Primary,
     ));
-    editor.handle(Event::Saved);
+    let mark = editor.save_mark();
+    editor.handle(Event::Saved(SavedAs::Model, mark));
     assert_eq!(editor.edit_file(), Err(ExportError::NoFile));
     assert!(editor.view().model.is_none());
 }

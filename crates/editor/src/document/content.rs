@@ -70,6 +70,8 @@ pub struct Content {
     pub(crate) from_file: Arc<Vec<DVec3>>,
     /// What was seen when what holds the surface changed last; `None` where the shape is the one that the handles mean.
     pub(crate) kept: Option<Arc<KeptShape>>,
+    /// What of the present shape was corrected by hand, as far as that is still seen; `None` where nothing was.
+    pub(crate) corrections: Option<Arc<Vec<DVec3>>>,
     /// Whether `from_rest` is final for the handles' transforms.
     pub(crate) settled: bool,
     /// What handles and attachments are a share of; `None` where they are shown in full.
@@ -99,6 +101,7 @@ impl Content {
             applied: false,
             from_rest: Arc::clone(&zero),
             kept: None,
+            corrections: None,
             from_file: zero,
             settled: true,
             strength: None,

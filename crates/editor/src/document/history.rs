@@ -18,6 +18,7 @@ use super::content::{Paint, Tips};
 use super::handle::{Handle, HandleId};
 use super::kept_shape::KeptShape;
 use super::pose::{Placed, Pose};
+use super::saved::{SaveMark, Saved, SavedAs};
 use super::sparse::Sparse;
 use super::state::Document;
 use super::strength::{Stance, Strength};
@@ -63,6 +64,8 @@ pub(crate) enum Change {
 #[derive(Clone, Debug)]
 struct Step {
     name: String,
+    /// The state of the document after it.
+    state: u64,
     changes: Vec<Change>,
     /// The shape on the other side, relative to [`History::shape`] if the step is a neighbour of the present.
     shape: Sparse<DVec3>,
@@ -85,7 +88,10 @@ impl Step {
                 }
                 // Tables that steps share are counted in each.
                 Change::Attachments(attachments) => attachments.values().map(attachment_bytes).sum(),
-                Change::Kept(Some(kept)) => kept.shape.len() * size_of::<DVec3>(),
+                Change::Kept(Some(kept)) => {
+                    let corrections = kept.corrections.as_ref().map_or(0, |corrections| corrections.len());
+                    (kept.shape.len() + corrections) * size_of::<DVec3>()
+                }
                 Change::Strength(Some(strength)) => {
                     let attachments: usize = strength.attachments.values().map(attachment_bytes).sum();
                     attachments + strength.handles.len() * size_of::<(HandleId, Stance)>()
@@ -132,8 +138,12 @@ pub struct History {
     /// Which version of the document's shape that is.
     shape_version: Version,
     cap_bytes: usize,
-    /// How many steps lie behind the state that was saved; `None` when that state was forgotten.
-    saved_at: Option<usize>,
+    /// The state before the oldest step.
+    oldest: u64,
+    /// How many states there were so far: each has a number of its own.
+    states: u64,
+    /// Which of them files have.
+    saved: Saved,
     /// Grows with every step that is made, taken back or done again.
     revision: u64,
 }
@@ -147,7 +157,9 @@ impl History {
             shape: Arc::clone(&document.from_rest),
             shape_version: document.versions().of(Aspect::Shape),
             cap_bytes,
-            saved_at: Some(0),
+            oldest: 0,
+            states: 1,
+            saved: Saved::opened(0),
             revision: 0,
         }
     }
@@ -176,19 +188,43 @@ impl History {
         self.done.iter().chain(&self.undone).map(Step::bytes).sum()
     }
 
-    /// Whether the document differs from what was saved.
+    /// Whether the document differs from what was saved: in the project, where there is one, else as a model.
     pub fn is_unsaved(&self) -> bool {
-        self.saved_at != Some(self.done.len())
+        !self.saved.has(self.state())
     }
 
-    /// Notes that the present state was saved.
-    pub(crate) fn mark_saved(&mut self) {
-        self.saved_at = Some(self.done.len());
+    /// The present state and shape, for a save that begins now; `is_final` if no other shape can arrive for it.
+    pub(crate) fn mark(&self, document: &Document, is_final: bool) -> SaveMark {
+        SaveMark {
+            state: self.state(),
+            shape: document.versions().of(Aspect::Shape),
+            is_final,
+        }
     }
 
-    /// Notes that no state of this history was saved.
-    pub(crate) fn mark_unsaved(&mut self) {
-        self.saved_at = None;
+    /// Notes that a file was written with what the mark stands for.
+    pub(crate) fn mark_saved(&mut self, what: SavedAs, mark: SaveMark, document: &Document) {
+        let now = (self.state(), document.versions().of(Aspect::Shape));
+        self.saved.written(what, mark, now);
+    }
+
+    /// Notes that the document comes from such a file, without which work on it is lost.
+    pub(crate) fn needs(&mut self, file: SavedAs) {
+        self.saved.need(file);
+    }
+
+    /// Notes that no state of this history was saved, and which file is needed.
+    pub(crate) fn mark_unsaved(&mut self, needed: SavedAs) {
+        self.saved.forget(needed);
+    }
+
+    /// Notes that another shape has arrived for the present state, after its step was made.
+    pub(crate) fn reshaped(&mut self) {
+        self.saved.reshaped(self.state());
+    }
+
+    fn state(&self) -> u64 {
+        self.done.back().map_or(self.oldest, |step| step.state)
     }
 
     /// Makes the neighbouring steps relative to the shape that the document shows.
@@ -213,16 +249,15 @@ impl History {
     ///
     /// What was undone can't be done again after this.
     pub(crate) fn push(&mut self, name: String, changes: Vec<Change>, before: &Document) {
-        if self.saved_at.is_some_and(|saved_at| saved_at > self.done.len()) {
-            self.saved_at = None;
-        }
         self.revision += 1;
         self.undone.clear();
         self.done.push_back(Step {
             name,
+            state: self.states,
             changes,
             shape: Sparse::default(),
         });
+        self.states += 1;
         // The step's own shape delta is empty relative to what was shown when it began: `sync` makes it the
         // difference to what came of it.
         self.keep_shape_of(before);
@@ -272,7 +307,7 @@ impl History {
         while bytes > self.cap_bytes && self.done.len() > 1 {
             if let Some(oldest) = self.done.pop_front() {
                 bytes -= oldest.bytes();
-                self.saved_at = self.saved_at.and_then(|saved_at| saved_at.checked_sub(1));
+                self.oldest = oldest.state;
             }
         }
     }

@@ -8,6 +8,9 @@
 //!
 //! which is x at T₀. The residual x − S(T₀) fades at each vertex (f falls from 1 to 0) as S moves the vertex
 //! away from S(T₀): what is dragged freely ends at S(T) alone, and what nobody moves stays where it was seen.
+//!
+//! Another method or other options make another S, from which x differs by more than what a person has made. Then the
+//! residual is what was corrected by hand alone ([`Carries::Corrections`]).
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -32,6 +35,20 @@ pub struct KeptShape {
     pub weights: Vec<Option<f64>>,
     /// Displacements from the rest shape, per surface vertex.
     pub shape: Arc<Vec<DVec3>>,
+    /// What of these was corrected by hand; `None` where nothing was.
+    pub corrections: Option<Arc<Vec<DVec3>>>,
+    /// What the next drags carry along.
+    pub carries: Carries,
+}
+
+/// What is carried along beside the solution.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub enum Carries {
+    /// All by which the kept shape differs from the solution at its transforms.
+    #[default]
+    Difference,
+    /// What was corrected by hand.
+    Corrections,
 }
 
 impl KeptShape {
@@ -41,8 +58,11 @@ impl KeptShape {
         controls: Option<Arc<Vec<DVec3>>>,
         weights: &[Option<f64>],
         shape: &Arc<Vec<DVec3>>,
+        corrections: Option<&Arc<Vec<DVec3>>>,
     ) -> Self {
         Self {
+            corrections: corrections.cloned(),
+            carries: Carries::Difference,
             controls,
             weights: weights.to_vec(),
             targets: handles.iter().map(|handle| (handle.id, handle.affine())).collect(),
@@ -50,15 +70,28 @@ impl KeptShape {
         }
     }
 
-    /// Whether the same shape is seen with the same transforms.
+    /// What is left of it where the solution becomes another one, by another method or other options; `None` where nothing
+    /// was corrected by hand.
+    pub(crate) fn for_another_solution(&self) -> Option<Self> {
+        self.corrections.as_ref()?;
+        Some(Self {
+            carries: Carries::Corrections,
+            ..self.clone()
+        })
+    }
+
+    /// Whether the same shape is seen with the same transforms and corrections.
     pub(crate) fn is_of(
         &self,
         handles: &[Handle],
         controls: Option<&Vec<DVec3>>,
         weights: &[Option<f64>],
         shape: &Arc<Vec<DVec3>>,
+        corrections: Option<&Arc<Vec<DVec3>>>,
     ) -> bool {
         Arc::ptr_eq(&self.shape, shape)
+            && self.carries == Carries::Difference
+            && self.corrections.as_ref().map(Arc::as_ptr) == corrections.map(Arc::as_ptr)
             && self.weights == weights
             && self.controls.as_deref() == controls
             && self.targets.len() == handles.len()
@@ -69,22 +102,49 @@ impl KeptShape {
 
     /// x(T), given S(T₀) and S(T), all as displacements from the rest shape.
     pub fn carried(&self, at_first: &[DVec3], now: &[DVec3]) -> Vec<DVec3> {
-        let vertices = self.shape.par_iter().zip(at_first).zip(now);
+        let vertices = (0..self.shape.len()).into_par_iter();
         vertices
-            .map(|((&seen, &first), &now)| {
-                let residual = seen - first;
-                let length = FADES_WITHIN * residual.length();
-                let way = now.distance(first);
-                if residual == DVec3::ZERO || way >= length {
-                    now
-                } else if way == 0.0 {
+            .map(|vertex| {
+                let (first, now) = (at_first[vertex], now[vertex]);
+                let residual = self.residual(vertex, first);
+                match fading(residual, now.distance(first)) {
+                    0.0 => now,
                     // To the bit, which a sum would round.
-                    seen
-                } else {
-                    now + residual * (1.0 - (way / length).powi(2)).powi(2)
+                    1.0 if self.carries == Carries::Difference => self.shape[vertex],
+                    share => now + residual * share,
                 }
             })
             .collect()
+    }
+
+    /// What is left of the corrections in x(T), given the same; `None` where nothing was corrected by hand.
+    pub(crate) fn corrections_left(&self, at_first: &[DVec3], now: &[DVec3]) -> Option<Arc<Vec<DVec3>>> {
+        let corrections = self.corrections.as_ref()?.par_iter().enumerate();
+        let left = corrections.map(|(vertex, correction)| {
+            let first = at_first[vertex];
+            *correction * fading(self.residual(vertex, first), now[vertex].distance(first))
+        });
+        Some(Arc::new(left.collect()))
+    }
+
+    /// What is carried along at a vertex, given its S(T₀).
+    fn residual(&self, vertex: usize, first: DVec3) -> DVec3 {
+        match (&self.corrections, self.carries) {
+            (Some(corrections), Carries::Corrections) => corrections[vertex],
+            _ => self.shape[vertex] - first,
+        }
+    }
+}
+
+/// The share f of a residual that is left once the solution has moved so far.
+fn fading(residual: DVec3, way: f64) -> f64 {
+    let length = FADES_WITHIN * residual.length();
+    if residual == DVec3::ZERO || way >= length {
+        0.0
+    } else if way == 0.0 {
+        1.0
+    } else {
+        (1.0 - (way / length).powi(2)).powi(2)
     }
 }
 
@@ -101,6 +161,8 @@ mod tests {
             controls: None,
             weights: Vec::new(),
             shape: Arc::new(vec![seen]),
+            corrections: None,
+            carries: Carries::Difference,
         };
         let at = |way: f64| {
             let now = first + way * DVec3::Y;

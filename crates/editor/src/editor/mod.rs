@@ -11,7 +11,7 @@ use pliant_mesh::Model;
 
 use crate::Beginning;
 use crate::command::{Command, KeyMap, Scope, frame_all};
-use crate::document::Document;
+use crate::document::{Document, SavedAs};
 use crate::event::Event;
 use crate::input::{Button, Key, Modifiers, Pointer};
 use crate::jobs::{Activity, Arrival, Asked, Executor, JobDone, JobKind};
@@ -138,11 +138,11 @@ impl Editor {
             Event::JobDone(done) => self.job_done(done),
             Event::Opened { model, name, beginning } => self.open(model, name, beginning),
             Event::Follow { leader, method } => self.follow(&leader, &method),
-            Event::Recovered => self.workspace.history.mark_unsaved(),
-            Event::Saved => {
+            Event::Recovered(needed) => self.workspace.history.mark_unsaved(needed),
+            Event::Saved(what, mark) => {
                 let Workspace { history, document, .. } = &mut self.workspace;
                 history.sync(document);
-                history.mark_saved();
+                history.mark_saved(what, mark, document);
             }
         }
     }
@@ -354,6 +354,9 @@ impl Editor {
             workspace.open(model, name, document);
             workspace.refusal = refusal;
         });
+        if matches!(beginning, Some(Beginning::Project(_))) {
+            self.workspace.history.needs(SavedAs::Project);
+        }
         if let Some(camera) = beginning.as_ref().and_then(Beginning::camera) {
             self.view.travel(|present| *present = camera);
         }

@@ -10,7 +10,7 @@ use pliant_mesh::{ContourLine, SurfaceVertex};
 use super::Editor;
 use crate::EditFile;
 use crate::command::{Command, Shortcut, State};
-use crate::document::{Document, History};
+use crate::document::{Document, History, SaveMark};
 use crate::format::{ExportError, export};
 use crate::jobs::{Comparison, Intersections, JobKind, Revision, Rim};
 use crate::scene_view::{ControlPoints, Cursor, SceneView};
@@ -18,7 +18,7 @@ use crate::snapshot::Snapshot;
 use crate::status::status;
 use crate::tool::{Gesture, ToolMode};
 use crate::view::{Look, Pick};
-use crate::workspace::{SnapshotKey, WorkspaceSnapshot, region_colour, rims};
+use crate::workspace::{SnapshotKey, Workspace, WorkspaceSnapshot, region_colour, rims};
 use crate::{MeshReference, geometry_hash};
 
 impl Editor {
@@ -210,6 +210,12 @@ impl Editor {
             look: self.view.look,
             settings: self.settings.clone(),
         })
+    }
+
+    /// The state that a save which begins now writes.
+    pub fn save_mark(&self) -> SaveMark {
+        let Workspace { history, document, .. } = &self.workspace;
+        history.mark(document, self.is_settled() && document.is_settled())
     }
 
     /// Another value for every other state of the document.

@@ -4,6 +4,7 @@ use glam::DVec3;
 use pliant_mesh::{Model, WeldOptions};
 
 use super::json::parse;
+use super::project::StoredKept;
 use crate::document::Document;
 use crate::{Camera, EditError, EditFile, ExampleEntry, Project, Setup};
 
@@ -97,7 +98,10 @@ impl Beginning {
     pub fn set_method(&mut self, method: pliant_deform::Method) {
         match self {
             // What the other method takes stays: it is left alone by this one, and not written with it.
-            Self::Edit(edit) => edit.method = method,
+            Self::Edit(edit) => {
+                edit.method = method;
+                edit.kept = edit.kept.take().and_then(StoredKept::for_another_method);
+            }
             Self::Project(project) => project.set_method(&method),
         }
     }

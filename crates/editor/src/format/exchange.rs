@@ -44,8 +44,6 @@ pub(crate) fn export(document: &Document, model: &Arc<Model>) -> Result<EditFile
         return Err(ExportError::Applied);
     }
     let kept = document.to_go_on_from();
-    // A shape that only the way explains is the method's own; corrections by hand outlive another method.
-    let is_of_method = document.kept.is_none();
     // An edit counts no full turns: what depends on them is said as it is shown.
     let in_full = Some(document.in_full()).filter(Document::goes_the_short_way);
     let strength = if in_full.is_some() { document.strength() } else { 1.0 };
@@ -113,11 +111,7 @@ pub(crate) fn export(document: &Document, model: &Arc<Model>) -> Result<EditFile
         kept: kept.map(|kept| {
             let place = |id: HandleId| region.handles.iter().position(|other| *other == id);
             let stored = StoredKept::of(&kept, model).renumbered(|id| place(id).map(|place| place as u32));
-            if is_of_method {
-                stored.by(&document.method)
-            } else {
-                stored
-            }
+            stored.by(&document.method)
         }),
         strength,
         weld: model.weld.distance,
@@ -186,7 +180,7 @@ pub(crate) fn import(edit: &EditFile, model: &Model) -> Result<Document, EditErr
     document.loose = setup.loose;
     let mut document = Document::from(document);
     document.take_part(edit.strength);
-    if let Some(kept) = edit.kept.as_ref().filter(|kept| kept.is_for(&edit.method)) {
+    if let Some(kept) = edit.kept.as_ref().and_then(|kept| kept.taken_by(&edit.method)) {
         document.go_on_from(kept.on(model, "kept")?);
     }
     if document.is_moved() {

@@ -312,7 +312,7 @@ impl EditFile {
     }
 
     fn kept_on(&self, model: &Model) -> Result<Option<Kept>, EditError> {
-        let Some(kept) = self.kept.as_ref().filter(|kept| kept.is_for(&self.method)) else {
+        let Some(kept) = self.kept.as_ref().and_then(|kept| kept.taken_by(&self.method)) else {
             return Ok(None);
         };
         let kept = Arc::new(kept.on(model, "kept")?);

@@ -17,4 +17,6 @@ pub(crate) struct Carried {
     pub(crate) solution: Arc<Vec<DVec3>>,
     /// What is shown of it.
     pub(crate) shown: Arc<Vec<DVec3>>,
+    /// What of that was corrected by hand.
+    pub(crate) corrections: Option<Arc<Vec<DVec3>>>,
 }

@@ -239,6 +239,7 @@ impl Beginning {
         let step = steps(bound, targets, &mut solution, cancel)?;
         let shown = Arc::new(kept.carried(&at_first, &solution));
         let carried = Carried {
+            corrections: kept.corrections_left(&at_first, &solution),
             kept,
             at_first,
             solution: Arc::new(solution),

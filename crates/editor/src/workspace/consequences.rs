@@ -118,6 +118,12 @@ impl Workspace {
             return;
         }
         self.descent = solved.descent;
+        if solved.from_rest != self.document.from_rest {
+            self.history.reshaped();
+        }
+        if let Some(carried) = solved.carried {
+            self.document.see_corrections(carried.corrections);
+        }
         self.document.show(solved.from_rest, solved.from_file);
         if finality == Finality::Final {
             self.document.settle();

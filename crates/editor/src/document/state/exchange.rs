@@ -57,12 +57,14 @@ impl Document {
         self.repainted = Repainted::All;
         // What this method makes of the handles is to be compared, and not what was seen of the other.
         self.content.kept = None;
+        self.content.corrections = None;
         self.content.settled = true;
         self.unsettle();
     }
 
     pub(in crate::document) fn swap_kept(&mut self, kept: &mut Option<Arc<KeptShape>>) {
         std::mem::swap(kept, &mut self.content.kept);
+        self.renew_corrections();
     }
 
     pub(in crate::document) fn swap_paint(&mut self, paint: &mut Sparse<Paint>) {
@@ -164,6 +166,7 @@ impl Document {
     pub(in crate::document) fn swap_shape(&mut self, shape: &mut Sparse<DVec3>) {
         shape.swap(Arc::make_mut(&mut self.content.from_rest).as_mut_slice());
         self.content.sum_shapes();
+        self.renew_corrections();
         self.marks.mark(&[Aspect::Shape, Aspect::Drawn]);
     }
 }

@@ -8,6 +8,7 @@
 
 mod exchange;
 mod poses;
+mod reloaded;
 mod shapes;
 mod strength;
 
@@ -88,6 +89,7 @@ impl Deref for Document {
 impl From<Content> for Document {
     fn from(mut content: Content) -> Self {
         content.sum_shapes();
+        content.corrections = content.kept.as_ref().and_then(|kept| kept.corrections.clone());
         Self {
             content,
             marks: Marks::default(),

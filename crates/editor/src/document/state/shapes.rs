@@ -24,6 +24,7 @@ impl Document {
         content.applied = true;
         content.from_rest = Arc::new(vec![DVec3::ZERO; content.rest.len()]);
         content.kept = None;
+        content.corrections = None;
         content.settled = true;
         self.marks.mark(&[Aspect::Rest, Aspect::Shape]);
         let mut attachments = Arc::clone(&self.content.attachments);
@@ -59,7 +60,13 @@ impl Document {
     fn seen(&self) -> KeptShape {
         let controls = self.moved_controls().cloned();
         let content = &self.content;
-        KeptShape::of(&content.handles, controls, self.example_weights(), &content.from_rest)
+        KeptShape::of(
+            &content.handles,
+            controls,
+            self.example_weights(),
+            &content.from_rest,
+            content.corrections.as_ref(),
+        )
     }
 
     /// Whether the kept shape is the one that is seen, with all in the same places.
@@ -71,6 +78,7 @@ impl Document {
                 controls.map(|own| &**own),
                 weights,
                 &content.from_rest,
+                content.corrections.as_ref(),
             )
         };
         content.kept.as_ref().is_some_and(is_seen)
@@ -105,11 +113,29 @@ impl Document {
 
     /// Changes the present shape, displacements from the rest shape, by hand. It is kept: the next drag begins from it.
     pub(crate) fn correct(&mut self, change: impl FnOnce(&mut [DVec3])) {
-        let mut from_rest = self.content.from_rest.to_vec();
+        let before = Arc::clone(&self.content.from_rest);
+        let mut from_rest = before.to_vec();
         change(&mut from_rest);
         self.bend(from_rest);
-        self.content.settled = true;
+        let content = &mut self.content;
+        content.settled = true;
+        let none = || Arc::new(vec![DVec3::ZERO; before.len()]);
+        let corrections = Arc::make_mut(content.corrections.get_or_insert_with(none));
+        for ((correction, after), before) in corrections.iter_mut().zip(&*content.from_rest).zip(&*before) {
+            *correction += *after - *before;
+        }
         self.content.kept = Some(Arc::new(self.seen()));
+    }
+
+    /// Notes what a solve has left of the corrections by hand.
+    pub(crate) fn see_corrections(&mut self, left: Option<Arc<Vec<DVec3>>>) {
+        self.content.corrections = left;
+    }
+
+    /// The corrections are those of the kept shape, as long as no solve tells what is left of them.
+    pub(in crate::document) fn renew_corrections(&mut self) {
+        let kept = self.content.kept.as_ref();
+        self.content.corrections = kept.and_then(|kept| kept.corrections.clone());
     }
 
     /// Shows a shape that the handles have brought about; `from_file` is its sum with the rest shape.
@@ -129,6 +155,7 @@ impl Document {
     pub(crate) fn go_on_from(&mut self, kept: KeptShape) {
         self.bend(kept.shape.to_vec());
         self.content.kept = Some(Arc::new(kept));
+        self.renew_corrections();
         if !self.content.handles.is_empty() {
             self.unsettle();
         }
@@ -137,6 +164,7 @@ impl Document {
     /// Shows the rest shape, which is final.
     pub(crate) fn unbend(&mut self) {
         self.bend(vec![DVec3::ZERO; self.content.from_rest.len()]);
+        self.content.corrections = None;
         self.settle();
     }
 
@@ -150,6 +178,7 @@ impl Document {
         content.from_rest = Arc::clone(&content.rest);
         content.from_file = Arc::clone(&content.rest);
         content.kept = None;
+        content.corrections = None;
         content.settled = true;
         self.marks.mark(&[Aspect::Rest, Aspect::Shape, Aspect::Drawn]);
         self.rebase_examples(&before);
@@ -160,7 +189,11 @@ impl Document {
     pub(crate) fn forget_shape_at(&mut self, is_taken: &[bool]) {
         let content = &mut self.content;
         let before = Arc::clone(&content.rest);
-        for field in [&mut content.rest, &mut content.from_rest] {
+        let corrections = content.corrections.as_mut();
+        for field in [&mut content.rest, &mut content.from_rest]
+            .into_iter()
+            .chain(corrections)
+        {
             for (displacement, _) in Arc::make_mut(field)
                 .iter_mut()
                 .zip(is_taken)
@@ -233,11 +266,12 @@ impl Document {
         }
     }
 
-    /// The same, if any handle is elsewhere than where it rests; what the surface is to be is solved from the rest shape
-    /// alone.
+    /// The same, if any handle is elsewhere than where it rests. What the surface is to be is solved from the rest shape
+    /// alone, and what was corrected by hand is carried along beside that.
     pub(crate) fn unsettle_if_displaced(&mut self) {
         if self.is_displaced() {
-            self.content.kept = None;
+            let kept = self.content.kept.take();
+            self.content.kept = kept.and_then(|kept| kept.for_another_solution()).map(Arc::new);
             self.unsettle();
         }
     }

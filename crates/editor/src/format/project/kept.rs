@@ -1,5 +1,6 @@
 //! The kept shape (see `document/kept_shape`), as a project stores it, and an edit.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -11,15 +12,15 @@ use serde_json::Value;
 
 use super::field::Field;
 use crate::EditError;
-use crate::document::{HandleId, KeptShape, bits_equal};
+use crate::document::{Carries, HandleId, KeptShape, bits_equal};
 use crate::format::method::method_to_value;
 
 /// A kept shape: which shape was seen, and where handles, control points and examples' weights stood then.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StoredKept {
-    /// The method, with its options, whose descent ended at the shape; no other method takes the shape. Without it the
-    /// shape is carried along by every method.
+    /// The method, with its options, that has made the shape: another method takes only what was corrected by hand.
+    /// Without it every method takes all.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     method: Option<Value>,
     /// Each handle's map of rest positions, by its number: three columns and the translation.
@@ -33,14 +34,37 @@ pub struct StoredKept {
     /// Displacements from the rest shape; `None` is the rest shape.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     shape: Option<Field>,
+    /// What of these was corrected by hand; `None`: nothing.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    corrections: Option<Field>,
+    /// What is carried along beside the solution.
+    #[serde(default, skip_serializing_if = "StoredCarries::is_default")]
+    carries: StoredCarries,
+}
+
+/// [`Carries`] by its name.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case", expecting = "\"difference\" or \"corrections\"")]
+enum StoredCarries {
+    #[default]
+    Difference,
+    Corrections,
+}
+
+impl StoredCarries {
+    fn is_default(&self) -> bool {
+        *self == Self::default()
+    }
 }
 
 impl StoredKept {
     pub(crate) fn of(kept: &KeptShape, model: &Model) -> Self {
-        let shape = Field::of(model, |vertex| {
-            let value = kept.shape[vertex.index()];
-            (!bits_equal(value, DVec3::ZERO)).then_some(value.to_array())
-        });
+        let stored = |field: &[DVec3]| {
+            Field::of(model, |vertex| {
+                let value = field[vertex.index()];
+                (!bits_equal(value, DVec3::ZERO)).then_some(value.to_array())
+            })
+        };
         let handles = kept.targets.iter();
         Self {
             method: None,
@@ -52,8 +76,23 @@ impl StoredKept {
                 .as_ref()
                 .map(|controls| controls.iter().map(|point| point.to_array()).collect()),
             weights: kept.weights.clone(),
-            shape,
+            shape: stored(&kept.shape),
+            corrections: kept.corrections.as_ref().and_then(|corrections| stored(corrections)),
+            carries: match kept.carries {
+                Carries::Difference => StoredCarries::Difference,
+                Carries::Corrections => StoredCarries::Corrections,
+            },
         }
+    }
+
+    /// What is left of it for another method; `None` where nothing was corrected by hand.
+    pub(crate) fn for_another_method(self) -> Option<Self> {
+        self.corrections.as_ref()?;
+        Some(Self {
+            method: None,
+            carries: StoredCarries::Corrections,
+            ..self
+        })
     }
 
     /// The shape on its mesh; `name` is the member's, for messages.
@@ -65,6 +104,8 @@ impl StoredKept {
             Some(shape) => shape.displacements(&format!("{name}: shape"), model)?,
             None => Arc::new(vec![DVec3::ZERO; model.surface.positions.len()]),
         };
+        let corrections = self.corrections.as_ref();
+        let corrections = corrections.map(|field| field.displacements(&format!("{name}: corrections"), model));
         let handles = self.handles.iter();
         Ok(KeptShape {
             targets: handles
@@ -81,10 +122,15 @@ impl StoredKept {
             }),
             weights: self.weights.clone(),
             shape,
+            corrections: corrections.transpose()?,
+            carries: match self.carries {
+                StoredCarries::Difference => Carries::Difference,
+                StoredCarries::Corrections => Carries::Corrections,
+            },
         })
     }
 
-    /// The same as the end of a descent by `method`.
+    /// The same as a shape that `method` has made.
     pub(crate) fn by(self, method: &Method) -> Self {
         Self {
             method: Some(method_to_value(method, &BTreeMap::new())),
@@ -92,10 +138,14 @@ impl StoredKept {
         }
     }
 
-    /// Whether `method` takes the shape.
-    pub(crate) fn is_for(&self, method: &Method) -> bool {
-        let own = || method_to_value(method, &BTreeMap::new());
-        self.method.as_ref().is_none_or(|by| *by == own())
+    /// What `method` takes of it; `None`: nothing.
+    pub(crate) fn taken_by(&self, method: &Method) -> Option<Cow<'_, Self>> {
+        match &self.method {
+            Some(by) if *by != method_to_value(method, &BTreeMap::new()) => {
+                self.clone().for_another_method().map(Cow::Owned)
+            }
+            _ => Some(Cow::Borrowed(self)),
+        }
     }
 
     /// The same with other numbers for the handles; those without one are left out.

@@ -296,8 +296,8 @@ impl Project {
 
     pub(crate) fn set_method(&mut self, method: &Method) {
         self.method = method_to_value(method, &BTreeMap::new());
-        // The shape is another method's.
-        self.kept = None;
+        // The shape is another method's; what was corrected by hand is not.
+        self.kept = self.kept.take().and_then(StoredKept::for_another_method);
         self.settled = false;
     }
 

@@ -1,0 +1,98 @@
+//! A document on its mesh as it was read again, after another program has changed the file.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+use pliant_deform::Attachment;
+
+use super::Document;
+use crate::document::content::{Content, Paint};
+use crate::document::kept_shape::KeptShape;
+use crate::document::matching::Matching;
+
+impl Document {
+    /// The same regions, handles and shapes on the vertices that stand for its own; the others hold still. Where the file
+    /// was saved since it was opened, `saved` is what it was moved by then (an entry per surface vertex of this document),
+    /// and the rest shape is the file's without that.
+    pub(crate) fn onto(&self, matching: &Matching, saved: Option<&[DVec3]>) -> Self {
+        let map = Map(matching);
+        let mut content = Content {
+            handles: self.handles.clone(),
+            next_handle: self.next_handle,
+            method: self.method.clone(),
+            tips: self.tips,
+            loose: self.loose,
+            poses: Arc::clone(&self.poses),
+            strength: self.strength.clone(),
+            paint: Arc::new(map.field(&self.paint, Paint::Bare)),
+            stiffness: self.stiffness.as_ref().map(|field| Arc::new(map.field(field, 1.0))),
+            continuity: self.continuity.as_ref().map(|field| {
+                let highest = *pliant_deform::CONTINUITY_RANGE.end();
+                Arc::new(map.field(field, highest))
+            }),
+            from_rest: map.moved(&self.from_rest),
+            kept: self.kept.as_ref().map(|kept| {
+                Arc::new(KeptShape {
+                    shape: map.moved(&kept.shape),
+                    corrections: kept.corrections.as_ref().map(|corrections| map.moved(corrections)),
+                    ..KeptShape::clone(kept)
+                })
+            }),
+            applied: self.applied || saved.is_some(),
+            // The rest shape may be another one now.
+            settled: false,
+            ..Content::new(matching.of_new.len())
+        };
+        content.rest = match saved {
+            Some(saved) => {
+                let rest: Vec<DVec3> = self
+                    .rest
+                    .iter()
+                    .zip(saved)
+                    .map(|(rest, saved)| *rest - *saved)
+                    .collect();
+                map.moved(&rest)
+            }
+            None => map.moved(&self.rest),
+        };
+        let mut attachments = (*self.attachments).clone();
+        for attachment in attachments.values_mut() {
+            if let Attachment::Shapes(examples) = attachment {
+                for shape in Arc::make_mut(&mut examples.shapes) {
+                    shape.displacements = map.moved(&shape.displacements);
+                }
+            }
+        }
+        content.attachments = Arc::new(attachments);
+        if matching.is_same_mesh {
+            content.loose_parts = Arc::clone(&self.loose_parts);
+            content.inside_out = Arc::clone(&self.inside_out);
+            content.access = Arc::clone(&self.access);
+        }
+        let is_there = |paint: &Paint| content.paint.contains(paint);
+        let left: Vec<_> = content
+            .handles
+            .iter()
+            .filter(|handle| is_there(&Paint::Handle(handle.id)))
+            .cloned()
+            .collect();
+        content.handles = left;
+        content.into()
+    }
+}
+
+/// Fields of the old mesh's vertices on the new one's.
+struct Map<'a>(&'a Matching);
+
+impl Map<'_> {
+    fn field<T: Copy>(&self, old: &[T], otherwise: T) -> Vec<T> {
+        let of_new = self.0.of_new.iter();
+        of_new
+            .map(|vertex| vertex.map_or(otherwise, |vertex| old[vertex as usize]))
+            .collect()
+    }
+
+    fn moved(&self, old: &[DVec3]) -> Arc<Vec<DVec3>> {
+        Arc::new(self.field(old, DVec3::ZERO))
+    }
+}
