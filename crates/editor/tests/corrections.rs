@@ -183,7 +183,7 @@ fn the_next_drag_goes_on_from_what_was_corrected_and_a_project_keeps_it() {
         name: None,
         geometry: geometry_hash(&rig.model),
     });
-    let beginning = pliant_editor::Beginning::parse(&Project::parse(&project.to_json()).unwrap().to_json()).unwrap();
+    let beginning = Beginning::parse(&Project::parse(&project.to_json()).unwrap().to_json()).unwrap();
     let mut again = pliant_editor::Editor::new(Box::new(pliant_editor::InlineExecutor::new()));
     again.handle(pliant_editor::Event::Opened {
         model: std::sync::Arc::clone(&rig.model),

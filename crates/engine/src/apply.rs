@@ -16,7 +16,7 @@ use pliant_mesh::{Cancel, Model, Progress, SurfaceVertex, WeldOptions, vertex_no
 
 use crate::EngineError;
 use crate::examples;
-use crate::files::{self, Destination, NewFile, Staging};
+use crate::files::{Destination, NewFile, Staging};
 use crate::loading::{Loaded, load};
 use crate::memory;
 use crate::report::{Distortion, Energy, ExampleWeight, FrameTimes, Report, finite_or, ms_since};
@@ -122,15 +122,13 @@ pub fn apply(apply: &Apply<'_>, watch: &Watch, staging: &Staging) -> Result<Repo
     };
     let loaded = load(apply.file, &weld, watch)?;
     let load_ms = ms_since(start);
-    let neighbours = || loaded.sources().skip(1);
-    files::refuse_shared(("--output", apply.output), neighbours())?;
-    if let Some(report) = apply.report {
-        files::refuse_shared(("--report", report), neighbours())?;
-    }
     let model = &loaded.model;
     check_not_empty(apply.file, model)?;
     let mut edit = apply.edit.clone();
     examples::bring(&mut edit, apply.edit_path, &loaded, watch)?;
+    let report_at = apply.report.map(|report| ("--report", report));
+    let outputs: Vec<(&str, &Path)> = [("--output", apply.output)].into_iter().chain(report_at).collect();
+    watch.refuse_outputs(&outputs, Some(apply.file))?;
     let setup = edit.resolve(model).map_err(|source| EngineError::Edit {
         edit: apply.edit_path.to_owned(),
         source,
@@ -176,6 +174,7 @@ pub fn apply(apply: &Apply<'_>, watch: &Watch, staging: &Staging) -> Result<Repo
     if watch.cancel.is_cancelled() {
         return Err(EngineError::Interrupted);
     }
+    loaded.refuse_changed(&staged)?;
     staged.commit()?;
     Ok(report)
 }

@@ -1,7 +1,7 @@
 //! The files of meshes that an edit names: cages.
 
 use std::collections::{BTreeMap, HashMap};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use glam::DVec3;
 use pliant_editor::Beginning;
@@ -11,13 +11,11 @@ use crate::EngineError;
 use crate::loading::open;
 use crate::watch::Watch;
 
-/// Reads the meshes that an edit names, by names relative to its own folder, and puts them in their place. The paths
-/// that were read.
+/// Reads the meshes that an edit names, by names relative to its own folder, and puts them in their place.
 ///
 /// # Errors
 /// A file that can't be read, or a mesh that the method can't take.
-pub fn bring(edit: &mut Beginning, edit_path: &Path, watch: &Watch) -> Result<Vec<PathBuf>, EngineError> {
-    let mut read = Vec::new();
+pub fn bring(edit: &mut Beginning, edit_path: &Path, watch: &Watch) -> Result<(), EngineError> {
     for (name, file) in edit.attachment_files() {
         let path = edit_path.parent().unwrap_or(Path::new("")).join(file);
         let mesh = control_mesh(&path, watch)?;
@@ -25,9 +23,8 @@ pub fn bring(edit: &mut Beginning, edit_path: &Path, watch: &Watch) -> Result<Ve
             edit: edit_path.to_owned(),
             source,
         })?;
-        read.push(path);
     }
-    Ok(read)
+    Ok(())
 }
 
 /// The vertices and triangles of a mesh's file in world units: the file's own vertices in their order, those in the same

@@ -97,6 +97,12 @@ pub enum EngineError {
         /// What differs, or why it can't be read.
         what: String,
     },
+    /// A file that was to be replaced is another one than was read.
+    #[error(
+        "{} was changed by another program since it was read, so nothing was written: run the command again, or give \
+         another --output", shown(.0)
+    )]
+    Changed(PathBuf),
     /// Ctrl-C.
     #[error("stopped before the end, so nothing was written: run the command again for a result")]
     Interrupted,

@@ -1,6 +1,6 @@
 //! The examples that an edit names: files of the same vertices and triangles, and morph targets of the file itself.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -12,17 +12,6 @@ use crate::EngineError;
 use crate::files::shown;
 use crate::loading::{Loaded, open};
 use crate::watch::Watch;
-
-/// The files that the edit's examples name.
-pub fn files(edit: &mut Beginning, edit_path: &Path) -> Vec<PathBuf> {
-    let folder = edit_path.parent().unwrap_or(Path::new(""));
-    let examples = edit.examples_mut();
-    let files = examples.filter_map(|example| match &example.source {
-        ExampleSource::File(file) => Some(folder.join(file)),
-        ExampleSource::MorphTarget(_) | ExampleSource::PerVertex(_) => None,
-    });
-    files.collect()
-}
 
 /// Reads the files and the morph targets that the edit's examples name.
 ///

@@ -7,7 +7,7 @@ use pliant_io::{Format, Scene, SceneAndDrawn};
 use pliant_mesh::{Model, WeldOptions};
 
 use crate::EngineError;
-use crate::files::{self, Neighbours};
+use crate::files::{self, Neighbours, Staged, Stamp};
 use crate::watch::Watch;
 
 /// A file, read and welded.
@@ -19,15 +19,39 @@ pub struct Loaded {
     pub scene: Scene,
     /// Its geometry.
     pub model: Arc<Model>,
-    /// The files beside it that were read with it.
-    pub neighbours: Vec<PathBuf>,
+    /// The files beside it that were read with it, as they were then.
+    pub neighbours: Vec<(PathBuf, Stamp)>,
+    /// The file as it was when it was read; `None` if its bytes came from elsewhere.
+    pub stamp: Option<Stamp>,
 }
 
 impl Loaded {
     /// Every file that it was read from, with a description of each, to refuse outputs that would overwrite one.
     pub fn sources(&self) -> impl Iterator<Item = (&'static str, &Path)> {
-        let neighbours = self.neighbours.iter().map(|path| ("a file that FILE needs", &**path));
+        let neighbours = self.neighbours.iter();
+        let neighbours = neighbours.map(|(path, _)| ("a file that FILE needs", &**path));
         std::iter::once(("FILE", &*self.path)).chain(neighbours)
+    }
+
+    /// Refuses to replace one of them that another program has changed since it was read.
+    ///
+    /// # Errors
+    /// [`EngineError::Changed`], naming the file.
+    pub fn refuse_changed(&self, staged: &Staged) -> Result<(), EngineError> {
+        let is_changed = |target: &&Path| {
+            let mut read = self.stamps().filter(|(path, _)| files::is_same(path, target));
+            target.exists() && read.any(|(path, stamp)| !stamp.is_current(path))
+        };
+        match staged.targets().find(is_changed) {
+            Some(changed) => Err(EngineError::Changed(changed.to_owned())),
+            None => Ok(()),
+        }
+    }
+
+    /// The same as they were when they were read, without what came from elsewhere.
+    pub fn stamps(&self) -> impl Iterator<Item = (&Path, &Stamp)> {
+        let own = self.stamp.iter().map(|stamp| (&*self.path, stamp));
+        own.chain(self.neighbours.iter().map(|(path, stamp)| (&**path, stamp)))
     }
 }
 
@@ -36,7 +60,13 @@ impl Loaded {
 /// # Errors
 /// A file that can't be read; [`EngineError::Interrupted`] soon after `cancel` is raised.
 pub fn load(path: &Path, weld: &WeldOptions, watch: &Watch) -> Result<Loaded, EngineError> {
-    load_bytes(read_mesh(path, watch)?, path, weld, watch)
+    check_mesh(path)?;
+    watch.begin("reading");
+    let (bytes, stamp) = files::read_stamped(path)?;
+    Ok(Loaded {
+        stamp: Some(stamp),
+        ..load_bytes(bytes, path, weld, watch)?
+    })
 }
 
 /// Reads a file without welding it.
@@ -44,17 +74,19 @@ pub fn load(path: &Path, weld: &WeldOptions, watch: &Watch) -> Result<Loaded, En
 /// # Errors
 /// As [`load`].
 pub fn open(path: &Path, watch: &Watch) -> Result<SceneAndDrawn, EngineError> {
-    open_bytes(read_mesh(path, watch)?, path, &Neighbours::of(path), watch)
+    check_mesh(path)?;
+    watch.begin("reading");
+    let (bytes, neighbours) = (files::read(path)?, Neighbours::of(path));
+    open_bytes(bytes, path, &neighbours, watch)
 }
 
-/// The bytes of a mesh's file.
-fn read_mesh(path: &Path, watch: &Watch) -> Result<Vec<u8>, EngineError> {
+/// Refuses a path that is not called a mesh.
+fn check_mesh(path: &Path) -> Result<(), EngineError> {
     if is_project(path) {
         return Err(EngineError::ProjectAsFile(path.to_owned()));
     }
     Format::of_name(&path.to_string_lossy())?;
-    watch.begin("reading");
-    Ok(files::read(path)?)
+    Ok(())
 }
 
 /// Reads and welds a file's bytes; `path` gives its name and the folder of its neighbours.
@@ -81,6 +113,8 @@ fn open_bytes(
     let format = Format::of_name(&name)?;
     let progress = watch.begin("reading");
     let opened = pliant_io::read(bytes, format, &name, neighbours, &progress, &watch.cancel);
+    watch.note_read(path);
+    neighbours.places().iter().for_each(|place| watch.note_read(place));
     opened.map_err(EngineError::Read)
 }
 
@@ -93,6 +127,7 @@ fn welded(opened: SceneAndDrawn, path: &Path, weld: &WeldOptions, watch: &Watch)
         scene: opened.scene,
         model: Arc::new(model),
         neighbours: Vec::new(),
+        stamp: None,
     })
 }
 

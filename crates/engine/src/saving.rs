@@ -5,7 +5,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use glam::DVec3;
-use pliant_io::{Format, MorphTarget, Role, Save, SaveError, Saved, with_neighbours_renamed};
+use pliant_io::{Format, MorphTarget, Role, Save, SaveError, Saved, quoted, with_neighbours_renamed};
 use pliant_mesh::{Cancel, Progress};
 
 use crate::EngineError;
@@ -67,22 +67,20 @@ pub fn stage(
     cancel: &Cancel,
 ) -> Result<StagedSave, EngineError> {
     let to = Destination::of(what.output)?;
-    let refuse = |source| match source {
-        SaveError::Cancelled(_) => EngineError::Interrupted,
-        source => EngineError::Save {
-            file: what.output.to_owned(),
-            source,
-        },
-    };
+    if let Some(morph) = what.morph
+        && loaded.scene.morph_targets().iter().any(|name| name == morph.name)
+    {
+        return Err(EngineError::Unsupported(format!(
+            "{} has a morph target called {} already: give the new one another name",
+            files::shown(&loaded.path),
+            quoted(morph.name)
+        )));
+    }
     // Encoding takes about as long as writing to the disk; reading back takes less.
     let (of_making, of_writing) = (progress.part(0.0, 0.4), progress.part(0.4, 0.8));
     let of_check = progress.part(0.8, 1.0);
     let format = Format::of_name(&what.output.to_string_lossy())?;
-    // Only URIs have a way to name what is not UTF-8.
-    let name = match format {
-        Format::Glb | Format::Gltf => files::name_as_text(to.name()),
-        _ => to.name().to_string_lossy().into_owned(),
-    };
+    let name = name_in(format, &to);
     let drawn = loaded.model.rest();
     let turned = loaded.model.drawn_vertices_of(what.inside_out);
     let save = Save {
@@ -97,7 +95,7 @@ pub fn stage(
         None => loaded.scene.save(&save, &of_making, cancel),
         Some(morph) => loaded.scene.save_as_morph(&save, morph, &of_making, cancel),
     };
-    let mut saved = saved.map_err(refuse)?;
+    let mut saved = saved.map_err(|error| refused(what.output, error))?;
 
     // While files that name each other are written, no other save may write there.
     let is_alone = saved.files.len() > 1 || save.format == Format::Gltf;
@@ -137,6 +135,52 @@ pub fn stage(
         warnings,
         check_ms: ms_since(start),
     })
+}
+
+/// The bytes that [`stage`] writes for the model at rest under the name `output`; its neighbours apart.
+///
+/// # Errors
+/// As [`stage`].
+pub fn bytes_at_rest(
+    loaded: &Loaded,
+    output: &Path,
+    progress: &Progress,
+    cancel: &Cancel,
+) -> Result<Vec<u8>, EngineError> {
+    let to = Destination::of(output)?;
+    let format = Format::of_name(&output.to_string_lossy())?;
+    let drawn = loaded.model.rest();
+    let save = Save {
+        turned: &[],
+        drawn: &drawn,
+        positions: &drawn.positions,
+        format,
+        name: &name_in(format, &to),
+        placement: placement::placement(&loaded.path, &to),
+    };
+    let saved = loaded.scene.save(&save, progress, cancel);
+    let saved = saved.map_err(|error| refused(output, error))?;
+    let file = saved.files.into_iter().next();
+    Ok(file.map(|file| file.bytes).unwrap_or_default())
+}
+
+/// The name of OUT as its format has it.
+fn name_in(format: Format, to: &Destination) -> String {
+    match format {
+        // Only URIs have a way to name what is not UTF-8.
+        Format::Glb | Format::Gltf => files::name_as_text(to.name()),
+        _ => to.name().to_string_lossy().into_owned(),
+    }
+}
+
+fn refused(file: &Path, error: SaveError) -> EngineError {
+    match error {
+        SaveError::Cancelled(_) => EngineError::Interrupted,
+        source => EngineError::Save {
+            file: file.to_owned(),
+            source,
+        },
+    }
 }
 
 /// Writes OUT's neighbours and then OUT beside their places. Also the names of the neighbours that are written.

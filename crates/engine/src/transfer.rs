@@ -47,10 +47,10 @@ pub fn transfer(job: &Transfer<'_>, watch: &Watch, staging: &Staging) -> Result<
     let posed = positions_in_pose((job.pose, &pose), (job.source, &source.scene, &source.drawn))?;
     let source = source.drawn;
     let loaded = load(job.target, &job.weld, watch)?;
-    files::refuse_shared(("--output", job.output), loaded.sources().skip(1))?;
     let model = &loaded.model;
     check_not_empty(job.target, model)?;
-    let (partners, mut warnings) = partners(job, &source, &loaded)?;
+    let (partners, mut warnings) = partners(job, &source, &loaded, watch)?;
+    watch.refuse_outputs(&[("--output", job.output)], Some(job.target))?;
 
     let progress = watch.begin("ordering");
     let ordering = Ordering::of(&model.topology, 1, &progress, &watch.cancel).map_err(|_| EngineError::Interrupted)?;
@@ -83,6 +83,7 @@ pub fn transfer(job: &Transfer<'_>, watch: &Watch, staging: &Staging) -> Result<
     if watch.cancel.is_cancelled() {
         return Err(EngineError::Interrupted);
     }
+    loaded.refuse_changed(&saved.staged)?;
     saved.staged.commit()?;
     warnings.extend(saved.warnings);
     Ok(warnings)
@@ -93,8 +94,12 @@ fn partners(
     job: &Transfer<'_>,
     source: &Drawn,
     loaded: &Loaded,
+    watch: &Watch,
 ) -> Result<(Vec<Option<usize>>, Vec<String>), EngineError> {
     let target = loaded.model.rest();
+    if let Some(path) = job.correspondences {
+        watch.note_read(path);
+    }
     let of_drawn = match job.correspondences {
         Some(path) => read_correspondences(path, source.triangles.len(), target.triangles.len())?,
         None if target.triangles == source.triangles => (0..source.triangles.len()).map(Some).collect(),

@@ -1,8 +1,13 @@
-//! The stage and progress of long work, and its cancel flag.
+//! The stage and progress of long work, its cancel flag, and which files it has read.
 
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use pliant_mesh::{Cancel, Progress};
+
+use crate::EngineError;
+use crate::files::refuse_shared;
 
 /// Shared between the work and its watcher. Cloning shares it.
 #[derive(Clone, Debug, Default)]
@@ -10,6 +15,8 @@ pub struct Watch {
     /// Raised when the result is no longer wanted.
     pub cancel: Cancel,
     stage: Arc<Mutex<Option<(&'static str, Progress)>>>,
+    /// Every file that was read.
+    read: Arc<Mutex<BTreeSet<PathBuf>>>,
 }
 
 impl Watch {
@@ -17,7 +24,7 @@ impl Watch {
     pub fn cancelled_by(cancel: &Cancel) -> Self {
         Self {
             cancel: cancel.clone(),
-            stage: Arc::default(),
+            ..Self::default()
         }
     }
 
@@ -32,5 +39,27 @@ impl Watch {
     pub fn now(&self) -> Option<(&'static str, f32)> {
         let stage = self.stage.lock().unwrap_or_else(PoisonError::into_inner);
         stage.as_ref().map(|(doing, progress)| (*doing, progress.get()))
+    }
+
+    /// Notes that a file is read.
+    pub(crate) fn note_read(&self, path: &Path) {
+        let mut read = self.read.lock().unwrap_or_else(PoisonError::into_inner);
+        read.insert(path.to_owned());
+    }
+
+    /// Refuses outputs, each with its argument's name, of which one is another, or any file that was read: meshes, what
+    /// these and an edit name, and edits. `edited` is the file that the first output may replace.
+    ///
+    /// # Errors
+    /// [`EngineError::Arguments`], naming the output.
+    pub fn refuse_outputs(&self, outputs: &[(&str, &Path)], edited: Option<&Path>) -> Result<(), EngineError> {
+        let read = self.read.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        for (number, output) in outputs.iter().enumerate() {
+            refuse_shared(*output, outputs[..number].iter().copied())?;
+            let is_free = |path: &PathBuf| number == 0 && edited == Some(path);
+            let others = read.iter().filter(|path| !is_free(path));
+            refuse_shared(*output, others.map(|path| ("a file that is read", &**path)))?;
+        }
+        Ok(())
     }
 }

@@ -18,15 +18,17 @@ pub mod placement;
 mod read;
 mod same_file;
 mod staging;
+mod stamp;
 
 pub use destination::Destination;
 pub use error::FileError;
 pub(crate) use leftovers::passing_name;
 pub use lock::Share;
 pub use neighbours::{NEIGHBOUR_BYTES, Neighbours};
-pub use read::{read, read_text};
+pub use read::{holds, read, read_stamped, read_text, read_text_stamped};
 pub use same_file::{follow, is_same, refuse_shared};
 pub use staging::{Bridge, Held, NewFile, Staged, Staging};
+pub use stamp::{KnownFiles, Stamp};
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -49,6 +51,20 @@ pub fn name_as_text(name: &OsStr) -> String {
     {
         name.to_string_lossy().into_owned()
     }
+}
+
+/// A path with `/` between its folders, each called as [`name_as_text`] has it; [`path_of_text`] reads it back.
+pub fn path_as_text(path: &Path) -> String {
+    if cfg!(not(unix)) {
+        return path.to_string_lossy().replace('\\', "/");
+    }
+    let names: Vec<String> = path.iter().map(name_as_text).collect();
+    names.join("/").replacen("//", "/", usize::from(path.is_absolute()))
+}
+
+/// The path that a text stands for, as seen from `folder`; see [`path_as_text`].
+pub fn path_of_text(folder: &Path, text: &str) -> PathBuf {
+    neighbour_path(folder, text)
 }
 
 /// The path in `folder` that a neighbour's name stands for; see [`name_as_text`]. A file that is there by the very
@@ -75,4 +91,26 @@ pub(crate) fn neighbour_path(folder: &Path, name: &str) -> PathBuf {
 /// A path for a message: on one line and without control characters.
 pub fn shown(path: &Path) -> String {
     pliant_io::quoted(&path.to_string_lossy())
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_path_comes_back_from_its_text_whatever_bytes_are_in_it() {
+        use std::os::unix::ffi::OsStringExt;
+        let folder = Path::new("/somewhere");
+        let odd = PathBuf::from(std::ffi::OsString::from_vec(b"caf\xe9/sc\xffan.ply".to_vec()));
+        for path in [
+            Path::new("scan.ply"),
+            Path::new("a\\b/c d.ply"),
+            Path::new("a/../b.ply"),
+            &odd,
+        ] {
+            assert_eq!(path_of_text(folder, &path_as_text(path)), folder.join(path));
+            let whole = Path::new("/").join(path);
+            assert_eq!(path_of_text(folder, &path_as_text(&whole)), whole);
+        }
+    }
 }

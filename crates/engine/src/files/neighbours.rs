@@ -12,6 +12,7 @@ use std::path::{Path, PathBuf};
 use pliant_io::{Bytes, Resolver};
 
 use super::error::{in_words, reason};
+use super::stamp::Stamp;
 use super::{folder_of, follow, neighbour_path};
 
 /// What a file's neighbours may take in all, unless the caller says otherwise: 16 GiB, several times what the largest
@@ -33,7 +34,7 @@ pub struct Neighbours {
 struct Known {
     by_path: HashMap<String, Bytes>,
     /// By the place on disk, which several paths may lead to.
-    by_place: HashMap<PathBuf, Bytes>,
+    by_place: HashMap<PathBuf, (Bytes, fs::Metadata)>,
     bytes: u64,
 }
 
@@ -56,10 +57,20 @@ impl Neighbours {
         Self { budget, ..self }
     }
 
-    /// The places on disk of those that were read so far, sorted.
-    pub fn were_read(&self) -> Vec<PathBuf> {
-        let mut places: Vec<PathBuf> = self.known.borrow().by_place.keys().cloned().collect();
-        places.sort();
+    /// The places on disk of those that were read so far.
+    pub fn places(&self) -> Vec<PathBuf> {
+        self.known.borrow().by_place.keys().cloned().collect()
+    }
+
+    /// The places on disk of those that were read so far, sorted, each with its stamp.
+    pub fn were_read(&self) -> Vec<(PathBuf, Stamp)> {
+        let known = self.known.borrow();
+        let places = known.by_place.iter();
+        let stamped = |(place, (bytes, metadata)): (&PathBuf, &(Bytes, fs::Metadata))| {
+            (place.clone(), Stamp::of_bytes(place, metadata, bytes))
+        };
+        let mut places: Vec<_> = places.map(stamped).collect();
+        places.sort_by(|(a, _), (b, _)| a.cmp(b));
         places
     }
 
@@ -79,18 +90,18 @@ impl Neighbours {
         refuse_strange(&fs::metadata(&full)?)?;
         let place = fs::canonicalize(&full)?;
         let mut known = self.known.borrow_mut();
-        if let Some(bytes) = known.by_place.get(&place) {
+        if let Some((bytes, _)) = known.by_place.get(&place) {
             return Ok(bytes.clone());
         }
-        let bytes = self.read_ordinary(&full, self.budget.saturating_sub(known.bytes))?;
+        let (bytes, metadata) = self.read_ordinary(&full, self.budget.saturating_sub(known.bytes))?;
         known.bytes += bytes.len() as u64;
         let bytes = Bytes::from(bytes);
-        known.by_place.insert(place, bytes.clone());
+        known.by_place.insert(place, (bytes.clone(), metadata));
         Ok(bytes)
     }
 
     /// The bytes of an ordinary file if there are at most `left` of them.
-    fn read_ordinary(&self, path: &Path, left: u64) -> io::Result<Vec<u8>> {
+    fn read_ordinary(&self, path: &Path, left: u64) -> io::Result<(Vec<u8>, fs::Metadata)> {
         let file = open(path)?;
         let metadata = file.metadata()?;
         // It may be another one than a moment ago.
@@ -113,7 +124,7 @@ impl Neighbours {
         if bytes.len() as u64 > left {
             return Err(too_large());
         }
-        Ok(bytes)
+        Ok((bytes, metadata))
     }
 }
 

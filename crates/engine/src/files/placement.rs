@@ -12,8 +12,8 @@
 //! the folder's files; it needs no notes of our own.
 
 use std::collections::BTreeSet;
-use std::fs::{self, File};
-use std::io::{self, Read};
+use std::fs;
+use std::io;
 use std::path::{Path, PathBuf};
 
 use pliant_io::{Format, Placement, Role, Saved, is_same_document, neighbours_named, numbered, quoted};
@@ -21,7 +21,7 @@ use pliant_io::{Format, Placement, Role, Saved, is_same_document, neighbours_nam
 use super::leftovers::{is_passing, real_name};
 use super::named::names_in_folder;
 use super::same_file::FileSet;
-use super::{Destination, FileError, folder_of, follow, is_same, neighbour_path};
+use super::{Destination, FileError, folder_of, follow, holds, is_same, neighbour_path};
 use crate::EngineError;
 
 /// Where `output` stands as seen from `source`.
@@ -214,7 +214,7 @@ impl<'a> Folder<'a> {
         if self.taken.contains(&target) {
             return There::Taken;
         }
-        let metadata = match fs::metadata(&target) {
+        match fs::metadata(&target) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => {
                 let is_link = fs::symlink_metadata(&path).is_ok_and(|metadata| metadata.is_symlink());
                 // A link that leads nowhere is kept: its file may come back.
@@ -224,10 +224,10 @@ impl<'a> Folder<'a> {
                     There::Taken
                 };
             }
-            Ok(metadata) if metadata.is_file() => metadata,
+            Ok(metadata) if metadata.is_file() => {}
             _ => return There::Taken,
-        };
-        let is_equal = metadata.len() == bytes.len() as u64 && holds(&target, bytes);
+        }
+        let is_equal = holds(&target, bytes);
         let is_own = is_inside && self.own.contains(name) && !self.is_named_by_others(name);
         match (is_equal, is_own, role) {
             (true, true, _) => There::Same(target),
@@ -254,22 +254,4 @@ fn follow_to_new(path: &Path) -> io::Result<PathBuf> {
     }
     let name = path.file_name().ok_or(io::ErrorKind::NotFound)?;
     Ok(follow_to_new(folder_of(path))?.join(name))
-}
-
-/// Whether a file holds these bytes and no others.
-fn holds(path: &Path, bytes: &[u8]) -> bool {
-    let Ok(mut file) = File::open(path) else { return false };
-    let mut block = vec![0; 1 << 16];
-    let mut left = bytes;
-    loop {
-        match file.read(&mut block) {
-            Ok(0) => return left.is_empty(),
-            Ok(count) => match left.strip_prefix(&block[..count]) {
-                Some(behind) => left = behind,
-                None => return false,
-            },
-            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
-            Err(_) => return false,
-        }
-    }
 }

@@ -1,16 +1,35 @@
 //! Reading whole files.
 
-use std::fs;
-use std::io::ErrorKind;
+use std::fs::{self, File, Metadata};
+use std::io::{ErrorKind, Read};
 use std::path::Path;
 
 use super::error::{FileError, in_words};
+use super::stamp::Stamp;
 
 /// Reads a whole file. Anything but an ordinary file is refused: reading a pipe could block for ever.
 ///
 /// # Errors
 /// What the system says.
 pub fn read(path: &Path) -> Result<Vec<u8>, FileError> {
+    ordinary(path)?;
+    fs::read(path).map_err(|error| FileError::reading(path, error))
+}
+
+/// As [`read`], with the file's stamp.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_stamped(path: &Path) -> Result<(Vec<u8>, Stamp), FileError> {
+    // The metadata first: what is written after it shows in a later comparison.
+    let metadata = ordinary(path)?;
+    let bytes = fs::read(path).map_err(|error| FileError::reading(path, error))?;
+    let stamp = Stamp::of_bytes(path, &metadata, &bytes);
+    Ok((bytes, stamp))
+}
+
+/// The metadata of an ordinary file.
+fn ordinary(path: &Path) -> Result<Metadata, FileError> {
     let refuse = |error| FileError::reading(path, error);
     let metadata = fs::metadata(path).map_err(refuse)?;
     if metadata.is_dir() {
@@ -19,7 +38,7 @@ pub fn read(path: &Path) -> Result<Vec<u8>, FileError> {
     if !metadata.is_file() {
         return Err(refuse(in_words("it is no ordinary file; give the path of one")));
     }
-    fs::read(path).map_err(refuse)
+    Ok(metadata)
 }
 
 /// Reads a whole text file in UTF-8.
@@ -27,6 +46,37 @@ pub fn read(path: &Path) -> Result<Vec<u8>, FileError> {
 /// # Errors
 /// What the system says, or that it is no UTF-8.
 pub fn read_text(path: &Path) -> Result<String, FileError> {
-    let bytes = read(path)?;
-    String::from_utf8(bytes).map_err(|_| FileError::reading(path, ErrorKind::InvalidData.into()))
+    Ok(read_text_stamped(path)?.0)
+}
+
+/// As [`read_text`], with the file's stamp.
+///
+/// # Errors
+/// As [`read_text`].
+pub fn read_text_stamped(path: &Path) -> Result<(String, Stamp), FileError> {
+    let (bytes, stamp) = read_stamped(path)?;
+    let text = String::from_utf8(bytes);
+    let text = text.map_err(|_| FileError::reading(path, ErrorKind::InvalidData.into()))?;
+    Ok((text, stamp))
+}
+
+/// Whether an ordinary file holds these bytes and no others.
+pub fn holds(path: &Path, bytes: &[u8]) -> bool {
+    let has_length = ordinary(path).is_ok_and(|metadata| metadata.len() == bytes.len() as u64);
+    let Some(mut file) = has_length.then(|| File::open(path).ok()).flatten() else {
+        return false;
+    };
+    let mut block = vec![0; 1 << 16];
+    let mut left = bytes;
+    loop {
+        match file.read(&mut block) {
+            Ok(0) => return left.is_empty(),
+            Ok(count) => match left.strip_prefix(&block[..count]) {
+                Some(behind) => left = behind,
+                None => return false,
+            },
+            Err(error) if error.kind() == ErrorKind::Interrupted => {}
+            Err(_) => return false,
+        }
+    }
 }

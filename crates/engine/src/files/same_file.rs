@@ -38,7 +38,7 @@ pub fn follow(path: &Path) -> io::Result<PathBuf> {
 
 /// A file as the system knows it.
 #[derive(Clone, PartialEq, Eq, PartialOrd, Ord, Debug)]
-enum Identity {
+pub(super) enum Identity {
     /// One that is there: hard links share it.
     #[cfg(unix)]
     Node { device: u64, number: u64 },
@@ -46,7 +46,7 @@ enum Identity {
     Place(PathBuf),
 }
 
-fn identity(path: &Path) -> Option<Identity> {
+pub(super) fn identity(path: &Path) -> Option<Identity> {
     let place = follow(path).ok()?;
     #[cfg(unix)]
     if let Ok(metadata) = fs::metadata(&place) {

@@ -23,7 +23,7 @@ use tempfile::{NamedTempFile, TempPath};
 use super::attributes::{self, OtherNames};
 use super::leftovers::{self, PREFIX, TEMPORARY};
 use super::lock::{FolderLock, Share};
-use super::{Destination, FileError, shown};
+use super::{Destination, FileError, Stamp, shown};
 use crate::EngineError;
 
 /// Bytes written between two checks whether the save was cancelled.
@@ -367,6 +367,21 @@ impl Staged {
     /// Where the bytes of a file wait, by its place among those that were staged.
     pub fn temporary(&self, file: usize) -> &Path {
         &self.files[file].temporary
+    }
+
+    /// The places of the files, in the order in which they are written.
+    pub fn targets(&self) -> impl Iterator<Item = &Path> {
+        self.files.iter().map(|file| &*file.to.target)
+    }
+
+    /// Each file's place, and its stamp: a rename takes length, time and identity along.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn stamps(&self) -> Result<Vec<(PathBuf, Stamp)>, FileError> {
+        let files = self.files.iter();
+        let stamps = files.map(|file| Ok((file.to.target.clone(), Stamp::of(&file.temporary)?)));
+        stamps.collect()
     }
 
     /// Sentences about what can't be kept of the files that are replaced.
