@@ -4,7 +4,7 @@ use pliant_io::Format;
 
 use super::arguments::ApplyArguments;
 use super::method_argument::method_argument;
-use super::{Console, on_threads};
+use super::{Console, on_threads, warn};
 use pliant_engine::{EngineError, files, memory, read_edit};
 
 pub(super) fn run(arguments: &ApplyArguments, console: &mut Console<'_>) -> Result<(), EngineError> {
@@ -29,12 +29,7 @@ pub(super) fn run(arguments: &ApplyArguments, console: &mut Console<'_>) -> Resu
         let others = [("FILE", &**file), ("--edit", edit_path), ("--output", output)];
         files::refuse_shared(("--report", report), others)?;
     }
-    let (mut edit, named) = read_edit(edit_path, &console.watch)?;
-    let named = || named.iter().map(|path| ("a file that --edit needs", &**path));
-    files::refuse_shared(("--output", output), named())?;
-    if let Some(report) = report {
-        files::refuse_shared(("--report", report), named())?;
-    }
+    let mut edit = read_edit(edit_path, &console.watch)?;
     if let Some(method) = method {
         edit.set_method(method);
     }
@@ -53,6 +48,7 @@ pub(super) fn run(arguments: &ApplyArguments, console: &mut Console<'_>) -> Resu
         morph,
     };
     let (watch, staging) = (&console.watch, &console.staging);
-    on_threads(*compute, || pliant_engine::apply(&job, watch, staging))??;
+    let report = on_threads(*compute, || pliant_engine::apply(&job, watch, staging))??;
+    warn(console.err, &report.warnings);
     Ok(())
 }

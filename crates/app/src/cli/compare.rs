@@ -1,6 +1,7 @@
 //! `pliant compare`: one edit by several methods, in one picture and as data.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
@@ -14,7 +15,7 @@ use serde::Serialize;
 use super::arguments::{self, CompareArguments, PictureSize};
 use super::method_argument::method_argument;
 use super::render::{self, Posed, Shape, Uploaded};
-use super::{Console, on_threads, print};
+use super::{Console, on_threads, print, warn};
 use crate::drawing::{self, Drawing};
 use crate::sheet::{self, Caption, Cell, Layout};
 use crate::{legend, painting, picture_file};
@@ -35,7 +36,12 @@ pub(super) fn run(arguments: &CompareArguments, console: &mut Console<'_>) -> Re
         Destination::of(report)?;
     }
     let watch = &console.watch;
-    let Compared { sheet, report, table } = on_threads(arguments.compute, || compare(arguments, &methods, watch))??;
+    let Compared {
+        sheet,
+        report,
+        table,
+        warnings,
+    } = on_threads(arguments.compute, || compare(arguments, &methods, watch))??;
     if watch.cancel.is_cancelled() {
         return Err(EngineError::Interrupted);
     }
@@ -44,6 +50,7 @@ pub(super) fn run(arguments: &CompareArguments, console: &mut Console<'_>) -> Re
         files.push((path.clone(), report.as_bytes()));
     }
     console.staging.stage(files)?.commit()?;
+    warn(console.err, &warnings);
     print(console.out, &table)
 }
 
@@ -96,6 +103,8 @@ struct Compared {
     report: String,
     /// The figures as a table for a person.
     table: String,
+    /// What a person should know of each method's shape, as sentences that begin with its name.
+    warnings: Vec<String>,
 }
 
 /// What one method made of the edit.
@@ -129,13 +138,12 @@ fn compare(arguments: &CompareArguments, methods: &[Asked], watch: &Watch) -> Re
         &render::weld_options(arguments.weld, Some(&arguments.edit), watch)?,
         watch,
     )?;
-    files::refuse_shared(("--output", &arguments.output), loaded.sources())?;
-    if let Some(report) = &arguments.report {
-        files::refuse_shared(("--report", report), loaded.sources())?;
-    }
     let model = &loaded.model;
     pliant_engine::check_not_empty(&arguments.file, model)?;
     let (edit, _) = render::resolved(&arguments.edit, &loaded, watch)?;
+    let report = arguments.report.as_deref().map(|report| ("--report", report));
+    let outputs: Vec<(&str, &Path)> = [("--output", &*arguments.output)].into_iter().chain(report).collect();
+    watch.refuse_outputs(&outputs, None)?;
     let mut outcomes = Vec::with_capacity(methods.len());
     for method in methods {
         outcomes.push(outcome(arguments, &loaded, method, watch)?);
@@ -157,6 +165,7 @@ fn compare(arguments: &CompareArguments, methods: &[Asked], watch: &Watch) -> Re
     Ok(Compared {
         sheet: picture_file::png(image)?,
         table: table(methods, &outcomes),
+        warnings: warnings(methods, &outcomes),
         // Structs of numbers, strings and lists always serialise.
         report: serde_json::to_string_pretty(&report).unwrap_or_default() + "\n",
     })
@@ -172,7 +181,7 @@ fn outcome(
     asked: &Asked,
     watch: &Watch,
 ) -> Result<Outcome, EngineError> {
-    let (mut edit, _) = read_edit(&arguments.edit, watch)?;
+    let mut edit = read_edit(&arguments.edit, watch)?;
     if edit.method_name() != asked.name {
         edit.set_method(asked.method.clone());
     }
@@ -196,6 +205,20 @@ fn outcome(
             refused: refused.to_string(),
         }),
     }
+}
+
+fn warnings(methods: &[Asked], outcomes: &[Outcome]) -> Vec<String> {
+    let mut warnings = Vec::new();
+    for (asked, outcome) in methods.iter().zip(outcomes) {
+        if let Outcome::Bent { report, .. } = outcome {
+            let worded = report
+                .warnings
+                .iter()
+                .map(|warning| format!("{}: {warning}", asked.name));
+            warnings.extend(worded);
+        }
+    }
+    warnings
 }
 
 /// A line for each method: its times, how much it stretches, and how well it keeps volume and details.

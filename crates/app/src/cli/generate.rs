@@ -4,39 +4,62 @@
 use std::fmt::Write as _;
 use std::fs;
 use std::io;
-use std::path::Path;
 
-use clap_complete::Shell;
+use clap_complete::{Generator, Shell};
 use pliant_editor::{Command, Shortcut};
 
+use super::Console;
 use super::arguments::{GenerateArguments, definition};
 use pliant_engine::EngineError;
 use pliant_engine::files::shown;
 
-/// Writes `man/*.1`, `completions/*`, `command-line.md` and `commands.md` into a folder, over what has these names there.
+/// Writes `man/*.1`, `completions/*`, `command-line.md` and `commands.md` into a folder, over what has these names there:
+/// all of them or none.
 ///
 /// # Errors
-/// [`EngineError::System`] if the folder can't be written.
-pub(super) fn run(arguments: &GenerateArguments) -> Result<(), EngineError> {
+/// If the folder can't be written.
+pub(super) fn run(arguments: &GenerateArguments, console: &mut Console<'_>) -> Result<(), EngineError> {
     let folder = &arguments.folder;
-    write(folder).map_err(|error| {
+    let refuse = |error: io::Error| {
         EngineError::System(format!(
             "{} can't be written: {error}; choose another folder",
             shown(folder)
         ))
-    })
+    };
+    let files = files().map_err(refuse)?;
+    for part in [MAN, COMPLETIONS] {
+        fs::create_dir_all(folder.join(part)).map_err(refuse)?;
+    }
+    let files = files.iter().map(|(name, bytes)| (folder.join(name), &**bytes));
+    console.staging.stage(files)?.commit()?;
+    Ok(())
 }
 
-fn write(folder: &Path) -> io::Result<()> {
-    let (pages, completions) = (folder.join("man"), folder.join("completions"));
-    fs::create_dir_all(&pages)?;
-    fs::create_dir_all(&completions)?;
-    clap_mangen::generate_to(definition(), &pages)?;
-    for shell in [Shell::Bash, Shell::Zsh, Shell::Fish, Shell::PowerShell] {
-        clap_complete::generate_to(shell, &mut definition(), "pliant", &completions)?;
+/// The folders of manual pages and of completions.
+const MAN: &str = "man";
+const COMPLETIONS: &str = "completions";
+
+/// What is written, by its path in the folder.
+fn files() -> io::Result<Vec<(String, Vec<u8>)>> {
+    let mut program = definition().disable_help_subcommand(true);
+    program.build();
+    let commands = program.get_subcommands().filter(|command| !command.is_hide_set());
+    let mut files = Vec::new();
+    for command in std::iter::once(&program).chain(commands) {
+        let page = clap_mangen::Man::new(command.clone());
+        let name = page.get_filename();
+        let mut bytes = Vec::new();
+        page.render(&mut bytes)?;
+        files.push((format!("{MAN}/{name}"), bytes));
     }
-    fs::write(folder.join("command-line.md"), command_line())?;
-    fs::write(folder.join("commands.md"), commands())
+    for shell in [Shell::Bash, Shell::Zsh, Shell::Fish, Shell::PowerShell] {
+        let mut bytes = Vec::new();
+        clap_complete::generate(shell, &mut definition(), "pliant", &mut bytes);
+        files.push((format!("{COMPLETIONS}/{}", shell.file_name("pliant")), bytes));
+    }
+    files.push(("command-line.md".to_owned(), command_line().into_bytes()));
+    files.push(("commands.md".to_owned(), self::commands().into_bytes()));
+    Ok(files)
 }
 
 /// The command line as a page in Markdown: the help of the program and of each of its commands.
@@ -73,11 +96,25 @@ fn commands() -> String {
 #[expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 mod tests {
     use super::*;
+    use pliant_engine::files::Staging;
+    use pliant_engine::watch::Watch;
 
     #[test]
     fn every_command_is_in_all_that_is_written() {
         let folder = tempfile::tempdir().unwrap();
-        write(folder.path()).unwrap();
+        let arguments = GenerateArguments {
+            folder: folder.path().to_owned(),
+        };
+        let generate = |err: &mut Vec<u8>| {
+            let mut console = Console {
+                out: &mut Vec::new(),
+                err,
+                watch: Watch::default(),
+                staging: Staging::default(),
+            };
+            run(&arguments, &mut console)
+        };
+        generate(&mut Vec::new()).unwrap();
         let read = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
         let (page, commands) = (read("command-line.md"), read("commands.md"));
         for listed in Command::all_listed() {

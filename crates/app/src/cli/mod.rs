@@ -66,7 +66,7 @@ pub fn run(arguments: Vec<OsString>, console: &mut Console<'_>) -> u8 {
             Some(Command::Compare(arguments)) => compare::run(&arguments, console),
             Some(Command::Diff(arguments)) => diff::run(&arguments, console),
             Some(Command::Transfer(arguments)) => transfer::run(&arguments, console),
-            Some(Command::Generate(arguments)) => generate::run(&arguments),
+            Some(Command::Generate(arguments)) => generate::run(&arguments, console),
             None => window::run(Source::of(arguments.file, arguments.edit)),
         },
         Err(help) if !help.use_stderr() => print(console.out, &help.render().to_string()),
@@ -95,6 +95,15 @@ fn plain(line: &str) -> String {
 fn print(out: &mut dyn Write, text: &str) -> Result<(), EngineError> {
     let lines = text.lines().map(|line| plain(line) + "\n");
     write_out(out, &lines.collect::<String>())
+}
+
+/// Prints warnings to standard error, a line each.
+fn warn<'a>(err: &mut dyn Write, warnings: impl IntoIterator<Item = &'a String>) {
+    for warning in warnings {
+        let line = plain(&warning.replace(['\n', '\r'], " "));
+        // What was to be done is done, whether or not anybody hears of it.
+        let _ = writeln!(err, "pliant: warning: {line}");
+    }
 }
 
 /// Prints JSON. Control characters are escaped, which does not change its meaning.

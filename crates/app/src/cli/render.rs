@@ -114,7 +114,7 @@ pub(super) fn weld_options(
     watch: &Watch,
 ) -> Result<WeldOptions, EngineError> {
     match (arguments.weld, edit) {
-        (None, Some(edit)) => Ok(read_edit(edit, watch)?.0.weld_options()),
+        (None, Some(edit)) => Ok(read_edit(edit, watch)?.weld_options()),
         _ => Ok(arguments.options()),
     }
 }
@@ -123,9 +123,6 @@ pub(super) fn weld_options(
 fn pictures(arguments: &RenderArguments, paths: &[PathBuf], watch: &Watch) -> Result<Pictures, EngineError> {
     let weld = weld_options(arguments.weld, arguments.edit.as_deref(), watch)?;
     let loaded = pliant_engine::load(&arguments.file, &weld, watch)?;
-    for path in paths {
-        files::refuse_shared(("--output", path), loaded.sources())?;
-    }
     let model = &loaded.model;
     let Some(bounds) = model.bounds() else {
         return Err(EngineError::Empty(arguments.file.clone()));
@@ -140,6 +137,8 @@ fn pictures(arguments: &RenderArguments, paths: &[PathBuf], watch: &Watch) -> Re
         }
         None => None,
     };
+    let outputs: Vec<(&str, &Path)> = paths.iter().map(|path| ("--output", &**path)).collect();
+    watch.refuse_outputs(&outputs, None)?;
     let posed = if edit.is_some() { Posed::Bent } else { Posed::AtRest };
     let shape = Shape::of(&arguments.file, &loaded, edit, posed, watch)?;
     let progress = watch.begin("drawing");
@@ -284,7 +283,7 @@ const ROOM_FOR_THE_EDIT: f64 = 1.2;
 
 /// Reads an edit that fits the model, with the same refusals as `apply`: the editor itself would accept any edit.
 pub(super) fn resolved(path: &Path, loaded: &Loaded, watch: &Watch) -> Result<(Beginning, Setup), EngineError> {
-    let (mut edit, _) = read_edit(path, watch)?;
+    let mut edit = read_edit(path, watch)?;
     examples::bring(&mut edit, path, loaded, watch)?;
     let setup = edit.resolve(&loaded.model).map_err(|source| EngineError::Edit {
         edit: path.to_owned(),

@@ -3,7 +3,7 @@
 use pliant_io::Format;
 
 use super::arguments::TransferArguments;
-use super::{Console, on_threads, print};
+use super::{Console, on_threads, warn};
 use pliant_engine::{EngineError, Transfer, transfer};
 
 pub(super) fn run(arguments: &TransferArguments, console: &mut Console<'_>) -> Result<(), EngineError> {
@@ -21,6 +21,6 @@ pub(super) fn run(arguments: &TransferArguments, console: &mut Console<'_>) -> R
     };
     let (watch, staging) = (&console.watch, &console.staging);
     let warnings = on_threads(arguments.compute, || transfer(&job, watch, staging))??;
-    let lines = warnings.iter().map(|warning| format!("{warning}\n"));
-    print(console.out, &lines.collect::<String>())
+    warn(console.err, &warnings);
+    Ok(())
 }

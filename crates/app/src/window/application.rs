@@ -20,8 +20,10 @@ use super::dialogs::question::{Question, Then};
 use super::files::app_directories::AppDirectories;
 use super::files::recovery::Recovery;
 use super::files::recovery::left::{left_in, remove};
-use super::files::session::{KeepOriginal, Session, Source};
+use super::files::save_wish::SaveWish;
+use super::files::session::{Session, Source};
 use super::files::settings::SettingsFile;
+use super::files::writing::SaveRequest;
 use super::input::Input;
 use super::input::event_queue::EventQueue;
 use super::input::own_keys;
@@ -69,6 +71,10 @@ pub struct Application {
     pub(super) question: Option<Question>,
     /// What to do once the save that was asked for first has ended.
     pub(super) after_saving: Option<Then>,
+    /// The saves that wait until the shape has settled.
+    pub(super) wishes: Vec<SaveWish>,
+    /// What was not written because another program has changed the file, until the person decides.
+    pub(super) unwritten: Option<Box<SaveRequest>>,
     pub(super) notes: Notes,
     pub(super) toast: Toast,
     pub(super) last_change: Instant,
@@ -157,6 +163,8 @@ impl Application {
             recovery,
             question: (!left.is_empty()).then_some(Question::Recover(left)),
             after_saving: None,
+            wishes: Vec::new(),
+            unwritten: None,
             notes,
             toast: Toast::default(),
             last_change: Instant::now(),
@@ -254,7 +262,7 @@ impl Application {
         let compared = compared && comparison.is_none_or(|comparison| self.method_views.are_settled(comparison));
         let original = self.original.as_ref().is_none_or(|original| original.is_settled(&view));
         let drawn = self.redrawing.is_none() && self.shows_what_is_turned();
-        let is_idle = self.session.doing().is_none() && !self.is_loading_textures();
+        let is_idle = self.session.doing().is_none() && !self.is_saving() && !self.is_loading_textures();
         view.settled && shown && compared && original && drawn && is_idle
     }
 
@@ -319,19 +327,19 @@ impl Application {
             .load(Source::File(path), &self.viewport.gpu(), &self.workers);
     }
 
-    /// Saves under `path`, without asking whether a source may be written over.
-    pub fn save_to(&mut self, path: PathBuf, keep_original: KeepOriginal) {
-        let shape = (self.editor.view().displacements, self.editor.document().inside_out());
-        self.session.save(path, shape, keep_original, &self.workers);
-    }
-
     /// Has unsaved work written where the next session finds it.
     pub(super) fn keep_for_recovery(&mut self) {
         let (Some(recovery), Some(open)) = (&mut self.recovery, &self.session.open) else {
             return;
         };
         let (key, unsaved) = (self.editor.snapshot_key(), self.editor.view().unsaved);
-        let Some(work) = recovery.note(key, unsaved, || self.editor.snapshot(), &open.loaded, &open.source) else {
+        let Some(work) = recovery.note(
+            key,
+            unsaved,
+            || self.editor.snapshot(),
+            &open.mesh,
+            open.path.as_deref(),
+        ) else {
             // What was recovered is kept by this session now, or saved.
             if recovery.has(key) || !unsaved {
                 self.recovered_from.take().iter().for_each(|left| remove(left));

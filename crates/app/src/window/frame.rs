@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 use eframe::egui::{self, CentralPanel, Panel};
 
 use super::application::Application;
+use super::bars::status::{FileWork, FileWorkAnswer};
 use super::bars::{status, tool_column, top_bar, view_bar};
 use super::dialogs::palette::{Found, Outcome};
 use super::dialogs::{keys_window, log, memory_window, question};
@@ -50,6 +51,7 @@ impl eframe::App for Application {
         if let Some(command) = file_command {
             self.file_command(&context, command);
         }
+        self.save_what_has_settled();
         self.dialogs(&context);
         self.fill_screen(&context);
         self.remember_size(&context);
@@ -78,12 +80,18 @@ impl Application {
             top_bar::show(ui, &self.editor, &title, &self.settings.get().recent, commands)
         });
         let device = self.viewport.software_device().map(str::to_owned);
-        let (busy, is_loading_textures) = (self.session.doing(), self.is_loading_textures());
+        let file_work = FileWork {
+            doing: self.session.doing(),
+            waiting: self.waiting_save(),
+            is_loading_textures: self.is_loading_textures(),
+        };
         let status = Panel::bottom("status").show(ui, |ui| {
-            status::show(ui, &self.editor, busy, is_loading_textures, device.as_deref(), commands)
+            status::show(ui, &self.editor, &file_work, device.as_deref(), commands)
         });
-        if status.inner {
-            self.session.stop();
+        match status.inner {
+            Some(FileWorkAnswer::Stop) => self.stop_file_work(),
+            Some(FileWorkAnswer::SaveAsItIs) => self.save_as_it_is(),
+            None => {}
         }
         let panel = match self.is_panel_hidden {
             true => egui::Rect::NOTHING,

@@ -23,21 +23,51 @@ pub fn done(ui: &egui::Ui) -> Color32 {
     }
 }
 
-/// Shows the line. True if the person asks to stop opening or saving a file.
+/// What is done with files.
+pub struct FileWork {
+    /// What is being read or written, with its progress (0 to 1).
+    pub doing: Option<(&'static str, f32)>,
+    /// Which saves wait, and for what, in a sentence.
+    pub waiting: Option<String>,
+    /// Whether the file's images are being decoded.
+    pub is_loading_textures: bool,
+}
+
+/// What a person wants of that.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum FileWorkAnswer {
+    /// To stop it.
+    Stop,
+    /// To save the shape of this moment.
+    SaveAsItIs,
+}
+
+/// Shows the line.
 pub fn show(
     ui: &mut egui::Ui,
     editor: &Editor,
-    file_work: Option<(&'static str, f32)>,
-    is_loading_textures: bool,
+    file_work: &FileWork,
     software_device: Option<&str>,
     commands: &mut Outbox,
-) -> bool {
+) -> Option<FileWorkAnswer> {
     let view = editor.view();
-    let mut stop_file_work = false;
+    let mut answer = None;
     ui.horizontal(|ui| {
-        if let Some((doing, share)) = file_work {
+        if let Some(waiting) = &file_work.waiting {
+            ui.add(Spinner::new().size(14.0));
+            ui.label(waiting);
+            if ui.small_button("Save as it is now").clicked() {
+                answer = Some(FileWorkAnswer::SaveAsItIs);
+            }
+            if ui.small_button("Don't save").clicked() {
+                answer = Some(FileWorkAnswer::Stop);
+            }
+        }
+        if let Some((doing, share)) = file_work.doing {
             progress(ui, doing, share);
-            stop_file_work = ui.small_button("Stop").clicked();
+            if ui.small_button("Stop").clicked() {
+                answer = Some(FileWorkAnswer::Stop);
+            }
         }
         for (kind, share) in &view.jobs {
             // What takes no time to notice is not worth a bar.
@@ -45,7 +75,7 @@ pub fn show(
                 progress(ui, kind.doing(), *share);
             }
         }
-        if is_loading_textures {
+        if file_work.is_loading_textures {
             ui.add(Spinner::new().size(14.0));
             ui.label(RichText::new("loading textures…").weak());
         }
@@ -62,7 +92,7 @@ pub fn show(
             }
         });
     });
-    stop_file_work
+    answer
 }
 
 fn progress(ui: &mut egui::Ui, doing: &str, share: f32) {

@@ -8,7 +8,8 @@ use pliant_io::quoted;
 
 use super::file_dialog;
 use super::folder_browser::{FolderBrowser, view};
-use crate::window::files::names::{file_name, original_name};
+use crate::window::files::names::file_name;
+use crate::window::files::original::Kept;
 use crate::window::files::recovery::left::Left;
 use crate::window::threads::message::Purpose;
 use crate::window::widgets::default_button::default_button;
@@ -16,14 +17,17 @@ use crate::window::widgets::default_button::default_button;
 /// A question that waits for an answer; the window behind it does nothing meanwhile.
 #[derive(Clone, PartialEq, Debug)]
 pub enum Question {
-    /// Whether the file that was opened may be written over.
-    WriteOver(PathBuf),
+    /// Whether the file that was opened may be written over; with it where its original is kept, or will be, once that
+    /// was found out.
+    WriteOver(PathBuf, Option<Result<Kept, String>>),
+    /// What to do with a file that another program has changed and that is to be written.
+    Changed(PathBuf, ChangedOffer),
     /// For a file, where the system has no dialog.
     File(Purpose, Box<FolderBrowser>),
     /// Whether a file that stands where the chosen path leads may be replaced.
     Replace(Purpose, PathBuf),
-    /// Whether unsaved work may be lost.
-    Discard(Then),
+    /// Whether the work may be lost that the file of this name does not have.
+    Discard(Then, String),
     /// Whether what earlier sessions have left is to be opened.
     Recover(Vec<Left>),
 }
@@ -32,13 +36,23 @@ impl Question {
     /// What it is about, for the window's title: who doesn't see the window learns that it waits.
     pub fn title(&self) -> &'static str {
         match self {
-            Self::WriteOver(_) => "Save over the source?",
+            Self::WriteOver(..) => "Save over the source?",
+            Self::Changed(..) => "The file has changed",
             Self::File(purpose, _) => file_dialog::title(*purpose),
             Self::Recover(_) => "Recover unsaved work?",
             Self::Replace(..) => "Replace the file?",
-            Self::Discard(_) => "There is unsaved work",
+            Self::Discard(..) => "There is unsaved work",
         }
     }
+}
+
+/// What can be done with a file that another program has changed, beside saving elsewhere and overwriting it.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum ChangedOffer {
+    /// It can be read again, and the edit put onto it.
+    Reload,
+    /// Nothing.
+    Others,
 }
 
 /// What was asked for when unsaved work stood in the way.
@@ -63,6 +77,12 @@ pub enum Answer {
     Path(Purpose, PathBuf),
     /// This path, whatever stands there.
     Replace(Purpose, PathBuf),
+    /// Read the file again that another program has changed, and put the edit onto it.
+    Reload,
+    /// Replace the file that another program has changed.
+    Overwrite,
+    /// Save under another name than that of the file which another program has changed.
+    Beside,
     /// Another path than this one.
     Rename(Purpose, PathBuf),
     /// Go on and lose the unsaved work.
@@ -83,10 +103,11 @@ pub fn ask(context: &egui::Context, question: &mut Question) -> Option<Answer> {
             ui.set_max_width(420.0);
         }
         match question {
-            Question::WriteOver(path) => write_over(ui, path, &mut answer),
+            Question::WriteOver(path, kept) => write_over(ui, path, kept.as_ref(), &mut answer),
+            Question::Changed(path, offer) => changed(ui, path, *offer, &mut answer),
             Question::File(purpose, browser) => file(ui, *purpose, browser, &mut answer),
             Question::Replace(purpose, path) => replace(ui, *purpose, path, &mut answer),
-            Question::Discard(then) => discard(ui, then, &mut answer),
+            Question::Discard(then, name) => discard(ui, then, name, &mut answer),
             Question::Recover(left) => recover(ui, left, &mut answer),
         }
     });
@@ -96,15 +117,15 @@ pub fn ask(context: &egui::Context, question: &mut Question) -> Option<Answer> {
     answer
 }
 
-fn write_over(ui: &mut egui::Ui, path: &Path, answer: &mut Option<Answer>) {
+fn write_over(ui: &mut egui::Ui, path: &Path, kept: Option<&Result<Kept, String>>, answer: &mut Option<Answer>) {
     ui.heading(format!("Save over {}?", file_name(path)));
-    let kept = original_name(path);
-    let sentence = if kept.exists() {
-        format!("The original is kept already, as {}.", file_name(&kept))
-    } else {
-        format!("The file as it is now is kept beside it as {}.", file_name(&kept))
-    };
-    ui.label(sentence);
+    ui.label(match kept {
+        None => "The file as it is now is kept beside it.".to_owned(),
+        Some(Ok(Kept::Already(kept))) => format!("The original is kept already, as {}.", file_name(kept)),
+        Some(Ok(Kept::Under(kept))) => format!("The file as it is now is kept beside it as {}.", file_name(kept)),
+        Some(Ok(Kept::Nothing)) => "The file is gone from the disk; it is written anew.".to_owned(),
+        Some(Err(sentence)) => format!("The file as it is now can't be kept: {sentence}"),
+    });
     ui.add_space(8.0);
     ui.horizontal(|ui| {
         if main_button(ui, "Save") {
@@ -112,6 +133,30 @@ fn write_over(ui: &mut egui::Ui, path: &Path, answer: &mut Option<Answer>) {
         }
         if ui.button("Save as…").clicked() {
             *answer = Some(Answer::SaveAs);
+        }
+        if ui.button("Cancel").clicked() {
+            *answer = Some(Answer::Cancel);
+        }
+    });
+}
+
+fn changed(ui: &mut egui::Ui, path: &Path, offer: ChangedOffer, answer: &mut Option<Answer>) {
+    let name = file_name(path);
+    ui.heading(format!("{name} has changed"));
+    ui.label("Another program or window has written this file since it was read or saved here.");
+    if offer == ChangedOffer::Reload {
+        ui.label("Reloading opens it as it is now and puts your edit onto it; the steps so far can't be undone then.");
+    }
+    ui.add_space(8.0);
+    ui.horizontal(|ui| {
+        if offer == ChangedOffer::Reload && ui.button("Reload with the edit").clicked() {
+            *answer = Some(Answer::Reload);
+        }
+        if main_button(ui, "Save beside…") {
+            *answer = Some(Answer::Beside);
+        }
+        if ui.button("Overwrite").clicked() {
+            *answer = Some(Answer::Overwrite);
         }
         if ui.button("Cancel").clicked() {
             *answer = Some(Answer::Cancel);
@@ -197,12 +242,13 @@ fn ago(written: SystemTime) -> String {
     format!("kept {count} {unit} ago")
 }
 
-fn discard(ui: &mut egui::Ui, then: &Then, answer: &mut Option<Answer>) {
+fn discard(ui: &mut egui::Ui, then: &Then, name: &str, answer: &mut Option<Answer>) {
     ui.heading("There is unsaved work");
-    ui.label(match then {
+    let end = match then {
         Then::Open(_) => "Opening another file closes this one.",
         Then::Close => "Closing the window ends it.",
-    });
+    };
+    ui.label(format!("{} does not have your last changes. {end}", quoted(name)));
     ui.add_space(8.0);
     ui.horizontal(|ui| {
         if main_button(ui, "Save first") {

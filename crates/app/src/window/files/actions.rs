@@ -7,10 +7,12 @@ use std::sync::Arc;
 use eframe::egui;
 use glam::DVec3;
 use pliant_deform::{Attachment, ControlMesh, ExampleShape};
-use pliant_editor::{Command, Event, Revision};
+use pliant_editor::Command;
 
 use super::recovery::left;
+use super::saves::project_path;
 use super::session::{KeepOriginal, OpenFile, Source};
+use super::writing::Content;
 use crate::window::application::Application;
 use crate::window::dialogs::file_dialog;
 use crate::window::dialogs::folder_browser::listing;
@@ -18,11 +20,9 @@ use crate::window::dialogs::palette::Palette;
 use crate::window::dialogs::question::{Answer, Question, Then};
 use crate::window::files::file_command::FileCommand;
 use crate::window::input::event_queue::EventQueue;
-use crate::window::panels::notes::Note;
-use crate::window::threads::message::{Message, Purpose, Written, WrittenKind};
+use crate::window::threads::message::{Message, Purpose};
 use crate::window::widgets::theme;
 use pliant_engine::control_mesh::control_mesh;
-use pliant_engine::files::{is_same, shown};
 use pliant_engine::watch::Watch;
 use pliant_engine::{EngineError, Loaded, examples, is_project};
 
@@ -57,36 +57,33 @@ impl Application {
         match (purpose, path) {
             (Purpose::Open, Some(path)) => self.open(path),
             (Purpose::SaveAs, Some(path)) if is_project(&path) => self.save_project_to(path),
-            (Purpose::SaveAs, Some(path)) => {
-                let over_source = self.path() == Some(path.as_path()) && !self.may_write_over();
-                self.save_to(
-                    path,
-                    if over_source {
-                        KeepOriginal::Yes
-                    } else {
-                        KeepOriginal::No
-                    },
-                );
-            }
+            (Purpose::SaveAs, Some(path)) => self.save_as(path),
             (Purpose::SaveMorph, Some(path)) => self.save_morph_to(path),
             (Purpose::SaveProject, Some(path)) => self.save_project_to(path),
             (Purpose::ExportEdit, Some(path)) => match self.editor.edit_file() {
-                Ok(edit) => self.session.export(path, edit, &self.workers),
+                Ok(edit) => self.save_copy(&path, Content::Edit(Box::new(edit))),
                 Err(error) => self.fail(error.to_string()),
             },
             (Purpose::LoadCage, Some(path)) => self.load_cage(path),
             (Purpose::AddExample, Some(path)) => self.load_example(path),
             (Purpose::SavePicture(kind), Some(path)) => match self.viewport.picture(&self.editor, kind) {
-                Ok(Some(image)) => self.session.save_picture(path, image, &self.workers),
+                Ok(Some(image)) => self.save_copy(&path, Content::Picture(Arc::new(image))),
                 Ok(None) => self.fail("the view is busy or empty: try again".to_owned()),
                 Err(error) => self.fail(error.to_string()),
             },
-            (_, None) => {}
+            // What was to follow the save is given up with it.
+            (_, None) => self.after_saving = None,
         }
     }
 
+    /// Writes what the document is not saved with.
+    fn save_copy(&mut self, path: &Path, content: Content) {
+        let mark = self.editor.save_mark();
+        self.session.save(path, content, mark, &self.workers);
+    }
+
     /// Asks for a file by the system's dialog.
-    fn choose(&self, purpose: Purpose) {
+    pub(in crate::window) fn choose(&self, purpose: Purpose) {
         file_dialog::choose(purpose, &self.suggested_path(purpose), &self.workers);
     }
 
@@ -150,22 +147,19 @@ impl Application {
             Purpose::SaveProject => project_path(path.to_owned()),
             _ => path.to_owned(),
         };
-        let project = self.session.open.as_ref().and_then(|open| open.project.as_deref());
-        let is_own = |own: Option<&Path>| own.is_some_and(|own| is_same(own, &path));
-        !matches!(purpose, Purpose::Open | Purpose::LoadCage | Purpose::AddExample)
-            && path.is_file()
-            && !is_own(self.path())
-            && !is_own(project)
+        let open = self.session.open.as_ref();
+        let is_own = open.is_some_and(|open| open.is_at(&path) || open.is_project_at(&path));
+        !matches!(purpose, Purpose::Open | Purpose::LoadCage | Purpose::AddExample) && path.is_file() && !is_own
     }
 
-    fn may_write_over(&self) -> bool {
+    pub(in crate::window) fn may_write_over(&self) -> bool {
         self.session.open.as_ref().is_some_and(|open| open.may_write_over)
     }
 
     pub(in crate::window) fn file_command(&mut self, context: &egui::Context, command: FileCommand) {
         match command {
-            FileCommand::Open => self.unless_unsaved(context, Then::Open(None)),
-            FileCommand::OpenPath(path) => self.unless_unsaved(context, Then::Open(Some(path))),
+            FileCommand::Open => self.unless_unsaved(Then::Open(None)),
+            FileCommand::OpenPath(path) => self.ask_to_open(path),
             FileCommand::Save => self.save(),
             FileCommand::SaveAs => self.choose(Purpose::SaveAs),
             FileCommand::SaveMorph => self.choose(Purpose::SaveMorph),
@@ -202,8 +196,9 @@ impl Application {
             FileCommand::Compare => self.toggle_compare(context),
             FileCommand::Hints => self.settings.change(|settings| settings.hints_seen = false),
             FileCommand::SavePicture(kind) => self.choose(Purpose::SavePicture(kind)),
-            FileCommand::Quit => self.unless_unsaved(context, Then::Close),
+            FileCommand::Quit => self.unless_unsaved(Then::Close),
         }
+        context.request_repaint();
     }
 
     /// Reads a cage, off the window's thread.
@@ -280,37 +275,23 @@ impl Application {
         }
     }
 
-    fn save(&mut self) {
-        match self.path().map(Path::to_owned) {
-            Some(path) if self.may_write_over() => self.save_to(path, KeepOriginal::No),
-            Some(path) => self.question = Some(Question::WriteOver(path)),
-            None => self.choose(Purpose::SaveAs),
-        }
-    }
-
-    /// Saves a copy whose mesh rests, with the present shape as a morph target of weight 1, under `path`.
-    pub fn save_morph_to(&mut self, path: PathBuf) {
-        let shape = (self.editor.view().displacements, self.editor.document().inside_out());
-        self.session.save_morph(path, shape, &self.workers);
-    }
-
-    /// Saves the project under `path`, which gets its extension if it has none.
-    pub fn save_project_to(&mut self, path: PathBuf) {
-        if let Some(snapshot) = self.editor.snapshot() {
-            self.session.save_project(project_path(path), snapshot, &self.workers);
-        }
-    }
-
-    fn unless_unsaved(&mut self, context: &egui::Context, then: Then) {
-        if self.editor.view().unsaved {
-            self.question = Some(Question::Discard(then));
+    /// Goes on at once, after the saves that are under way, or when the person has agreed to lose what is unsaved.
+    fn unless_unsaved(&mut self, then: Then) {
+        if self.is_saving() {
+            self.after_saving = Some(then);
+        } else if self.editor.view().unsaved {
+            self.question = Some(self.about_unsaved(then));
         } else {
             self.go_on(then);
         }
-        context.request_repaint();
     }
 
-    fn go_on(&mut self, then: Then) {
+    /// Opens a file, after a question where unsaved work would be lost.
+    pub fn ask_to_open(&mut self, path: PathBuf) {
+        self.unless_unsaved(Then::Open(Some(path)));
+    }
+
+    pub(in crate::window) fn go_on(&mut self, then: Then) {
         match then {
             Then::Open(Some(path)) => self.open(path),
             Then::Open(None) => self.choose(Purpose::Open),
@@ -324,11 +305,14 @@ impl Application {
             Answer::WriteOver(path) => self.save_to(path, KeepOriginal::Yes),
             Answer::SaveAs => self.choose(Purpose::SaveAs),
             Answer::Save => {
-                if let Some(Question::Discard(then)) = question {
+                if let Some(Question::Discard(then, _)) = question {
                     self.after_saving = Some(then);
                 }
-                self.save();
+                self.save_what_is_open();
             }
+            Answer::Reload => self.reload_changed(),
+            Answer::Overwrite => self.overwrite(),
+            Answer::Beside => self.save_beside(),
             Answer::Path(purpose, path) if self.would_be_lost(purpose, &path) => {
                 self.question = Some(Question::Replace(purpose, path));
             }
@@ -342,61 +326,25 @@ impl Application {
                     .load(Source::Recovered(project), &self.viewport.gpu(), &self.workers);
             }
             Answer::Forget(projects) => projects.iter().for_each(|project| left::remove(project)),
-            Answer::Cancel => self.after_saving = None,
-        }
-    }
-
-    pub(in crate::window) fn written(&mut self, stamp: Revision, result: Result<Written, String>) {
-        self.session.written(stamp, &result, &self.workers);
-        match result {
-            Ok(written) => {
-                if matches!(written.what, WrittenKind::Model(_) | WrittenKind::Project) {
-                    self.editor.handle(Event::Saved);
-                    self.settings.change(|settings| settings.remember(&written.path));
-                }
-                let is_bent = self.editor.document().is_displaced() || self.editor.document().is_applied();
-                if is_bent && matches!(written.what, WrittenKind::Model(_) | WrittenKind::Project) {
-                    // The last of the first steps.
-                    self.settings.change(|settings| settings.hints_seen = true);
-                }
-                let mut sentence = format!("Saved {}.", shown(&written.path));
-                for warning in &written.warnings {
-                    sentence.push(' ');
-                    sentence.push_str(warning);
-                }
-                self.notes.headline = Some(Note::Done(sentence));
-                if let Some(then) = self.after_saving.take() {
-                    self.go_on(then);
-                }
-            }
-            Err(sentence) => {
+            Answer::Cancel => {
                 self.after_saving = None;
-                self.fail(sentence);
+                self.unwritten = None;
             }
         }
     }
 
     /// Lets the window close unless there is unsaved work that nobody agreed to lose.
     pub(in crate::window) fn close_or_stay(&mut self, context: &egui::Context) {
+        let has_more_to_do = || self.editor.view().unsaved || self.is_saving();
         if self.closing {
             context.send_viewport_cmd(egui::ViewportCommand::Close);
-        } else if context.input(|input| input.viewport().close_requested()) && self.editor.view().unsaved {
+        } else if context.input(|input| input.viewport().close_requested()) && has_more_to_do() {
             context.send_viewport_cmd(egui::ViewportCommand::CancelClose);
-            self.question = Some(Question::Discard(Then::Close));
             // It is asked in the next frame, without waiting for the pointer to move.
+            self.unless_unsaved(Then::Close);
             context.request_repaint();
         }
     }
-}
-
-/// A project's path, with its extension.
-fn project_path(path: PathBuf) -> PathBuf {
-    if is_project(&path) {
-        return path;
-    }
-    let mut name = path.into_os_string();
-    name.push(".pliant");
-    PathBuf::from(name)
 }
 
 /// Takes presses of a key without any modifier: for egui a shortcut without Shift is pressed with Shift, too.

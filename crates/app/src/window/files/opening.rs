@@ -5,14 +5,16 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use pliant_assets::CREATURE;
-use pliant_editor::Beginning;
+use pliant_editor::{Beginning, SavedAs, Snapshot};
 use pliant_mesh::WeldOptions;
 
 use super::names::{SAMPLE_NAME, saved_name};
-use super::project_file::{self, MeshSource};
+use super::project_file;
+use super::rest_mesh::MeshSource;
 use crate::drawing::Drawing;
 use crate::window::threads::message::ModelToShow;
 use crate::window::viewport::gpu::Gpu;
+use pliant_engine::files::Stamp;
 use pliant_engine::watch::Watch;
 use pliant_engine::{EngineError, examples, files};
 
@@ -32,6 +34,21 @@ pub enum Source {
     },
     /// A project that was left by a session that ended without saving.
     Recovered(PathBuf),
+    /// The open mesh once more, after another program has changed its file.
+    Reloaded(Box<Reload>),
+}
+
+/// A mesh that is read again, and what is put onto it.
+#[derive(Clone, Debug)]
+pub struct Reload {
+    /// The mesh.
+    pub file: PathBuf,
+    /// The document.
+    pub snapshot: Snapshot,
+    /// What the file was moved by when it was saved last, per surface vertex, if it was.
+    pub saved: Option<Arc<Vec<DVec3>>>,
+    /// The project that is open.
+    pub project: Option<PathBuf>,
 }
 
 impl Source {
@@ -43,12 +60,34 @@ impl Source {
             (Some(file), Some(edit)) => Self::Edited { file, edit },
         }
     }
+
+    /// The same by absolute paths: what a session knows of files outlasts a change of folder, and is one way to a file.
+    pub(super) fn absolute(self) -> Self {
+        match self {
+            Self::Sample => Self::Sample,
+            Self::File(file) => Self::File(absolute(&file)),
+            Self::Edited { file, edit } => Self::Edited {
+                file: absolute(&file),
+                edit: absolute(&edit),
+            },
+            Self::Recovered(project) => Self::Recovered(absolute(&project)),
+            Self::Reloaded(reload) => Self::Reloaded(reload),
+        }
+    }
+}
+
+/// The path from the root; itself where the system can't tell the present folder.
+pub(super) fn absolute(path: &Path) -> PathBuf {
+    std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
 }
 
 /// Reads, welds and uploads.
 pub(super) fn open(source: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<ModelToShow>, EngineError> {
     let weld = WeldOptions::default();
     let mut beginning = None;
+    let mut stamps = Vec::new();
+    let mut notes = Vec::new();
+    let mut unsaved = None;
     let (mut project, mut recovered) = (None, None);
     let (loaded, path, source) = match source {
         Source::Sample => (
@@ -62,33 +101,59 @@ pub(super) fn open(source: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<Mode
             MeshSource::File(path.clone()),
         ),
         Source::Edited { file, edit } => {
-            let (mut read, _) = pliant_engine::read_edit(edit, watch)?;
+            // Before it is read: what is written in between shows as a change.
+            stamps.push((edit.clone(), Stamp::of(edit)?));
+            let mut read = pliant_engine::read_edit(edit, watch)?;
             let loaded = pliant_engine::load(file, &read.weld_options(), watch)?;
             examples::bring(&mut read, edit, &loaded, watch)?;
             beginning = Some(read);
             (loaded, Some(file.clone()), MeshSource::File(file.clone()))
         }
+        Source::Reloaded(reload) => {
+            let loaded = pliant_engine::load(&reload.file, &weld, watch)?;
+            let saved = reload.saved.as_ref().map(|saved| &***saved);
+            let (carried, unmatched) = reload.snapshot.on_changed_mesh(&loaded.model, saved);
+            if unmatched > 0 {
+                notes.push(format!(
+                    "{unmatched} vertices of the changed file stand where none stood before: they are held still."
+                ));
+            }
+            beginning = Some(carried);
+            project.clone_from(&reload.project);
+            unsaved = Some(match &project {
+                Some(_) => SavedAs::Project,
+                None => SavedAs::Model,
+            });
+            let file = reload.file.clone();
+            (loaded, Some(file.clone()), MeshSource::File(file))
+        }
         Source::File(path) | Source::Recovered(path) => {
             let opened = project_file::read(path, watch)?;
+            stamps.push((path.clone(), opened.stamp));
             match source {
-                Source::Recovered(_) => recovered = Some(path.clone()),
+                Source::Recovered(_) => {
+                    recovered = Some(path.clone());
+                    unsaved = Some(SavedAs::Model);
+                }
                 _ => project = Some(path.clone()),
             }
             beginning = Some(Beginning::from(opened.project));
-            let mesh = match &opened.source {
-                MeshSource::File(mesh) => Some(saved_name(mesh).unwrap_or_else(|| mesh.clone())),
-                MeshSource::Sample | MeshSource::Gone => None,
-            };
             // A recovered session's own mesh file is removed with the recovery, so it counts as gone.
-            let source = match opened.source {
-                MeshSource::File(_) if recovered.is_some() && is_in_folder_of(&opened.source, path) => MeshSource::Gone,
-                source => source,
-            };
-            (opened.loaded, mesh, source)
+            match opened.source {
+                MeshSource::File(mesh) if recovered.is_some() && files::folder_of(&mesh) == files::folder_of(path) => {
+                    let model = Some(opened.named).filter(|named| files::folder_of(named) != files::folder_of(path));
+                    (opened.loaded, model, MeshSource::Gone)
+                }
+                MeshSource::File(mesh) => {
+                    let saved = saved_name(&mesh).unwrap_or_else(|| mesh.clone());
+                    (opened.loaded, Some(saved), MeshSource::File(mesh))
+                }
+                source => (opened.loaded, None, source),
+            }
         }
     };
     let progress = watch.begin("getting the picture ready");
-    let notes: Vec<String> = loaded.scene.notes().to_vec();
+    notes.extend_from_slice(loaded.scene.notes());
     let drawing = Drawing::new(&loaded.model, loaded.scene.appearance(), Arc::default());
     progress.set(0.7);
     let displacements = Arc::new(vec![DVec3::ZERO; loaded.model.surface.positions.len()]);
@@ -107,11 +172,8 @@ pub(super) fn open(source: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<Mode
         project,
         source,
         recovered,
+        unsaved,
+        stamps,
         notes,
     }))
-}
-
-/// Whether a mesh stands in the same folder as the project.
-fn is_in_folder_of(mesh: &MeshSource, project: &Path) -> bool {
-    matches!(mesh, MeshSource::File(mesh) if files::folder_of(mesh) == files::folder_of(project))
 }

@@ -6,64 +6,140 @@ use pliant_assets::CREATURE;
 use pliant_editor::{Beginning, MeshReference, Project, Snapshot, geometry_hash};
 use pliant_mesh::{Cancel, Progress};
 
-use super::names::{SAMPLE_NAME, file_name, original_name, saved_name};
-use pliant_engine::files::{self, Staging};
+use super::names::{SAMPLE_NAME, file_name, original_names, saved_name, source_names, sources_of};
+use super::original::{Kept, free_or_same};
+use super::rest_mesh::{Check, MeshSource, RestMesh};
+use pliant_engine::files::{self, Staged, Staging, Stamp};
 use pliant_engine::saving::{self, SaveAs};
 use pliant_engine::watch::Watch;
 use pliant_engine::{EngineError, Loaded};
 
-/// Where a mesh as it was read stands now.
-#[derive(Clone, PartialEq, Eq, Debug)]
-pub enum MeshSource {
-    /// It is built in.
-    Sample,
-    /// In this file.
-    File(PathBuf),
-    /// Nowhere any more: it was saved over, and has to be written again if it is needed.
-    Gone,
-}
-
-/// Writes a snapshot as a project. A mesh without a file is written beside it, as `NAME.source.EXT`.
+/// Writes a snapshot as a project. A mesh that stands in no file, or whose file is another one now, is written beside it,
+/// as [`source_names`] says, so that a project which is there can be opened.
 ///
 /// # Errors
 /// Where a file can't be written, or `cancel` is raised; an existing project is as it was then.
-pub fn write(
+pub fn stage(
     snapshot: &Snapshot,
-    loaded: &Loaded,
-    source: &MeshSource,
+    mesh: &RestMesh,
     path: &Path,
     staging: &Staging,
     progress: &Progress,
     cancel: &Cancel,
-) -> Result<(), EngineError> {
-    let geometry = geometry_hash(snapshot.model());
-    let folder = files::folder_of(path);
-    let mut beside = None;
-    let mesh_path = match source {
-        MeshSource::Sample => None,
-        MeshSource::File(mesh) => Some(relative(mesh, folder)),
-        MeshSource::Gone => {
-            let kept = source_name(path, &loaded.path);
-            if !kept.exists() {
-                let at_rest = &loaded.model.rest_positions();
-                beside = Some(saving::stage(loaded, &SaveAs::shape(at_rest, &kept), staging, progress, cancel)?.staged);
-            }
-            Some(file_name(&kept))
+) -> Result<StagedProject, EngineError> {
+    let (mesh_path, beside) = match &mesh.source {
+        MeshSource::Sample => (None, None),
+        MeshSource::File(file) if mesh.is_in(file, Stamp::is_current) => {
+            (Some(relative(file, files::folder_of(path))), None)
+        }
+        MeshSource::File(_) | MeshSource::Gone => {
+            let (kept, staged) = stage_mesh(mesh, path, Stamp::is_current, staging, progress, cancel)?;
+            (
+                Some(files::name_as_text(kept.file_name().unwrap_or_default())),
+                Some((kept, staged)),
+            )
         }
     };
-    let is_copy = *source == MeshSource::Gone;
     let project = snapshot.project(MeshReference {
         path: mesh_path,
-        name: is_copy.then(|| file_name(&loaded.path)),
-        geometry,
+        name: beside.is_some().then(|| file_name(&mesh.loaded.path)),
+        geometry: geometry_hash(snapshot.model()),
     });
     let staged = staging.stage([(path.to_owned(), project.to_json().as_bytes())])?;
-    // The mesh first: the project must not be there without it.
-    match beside {
+    let (kept, staged_mesh) = beside.unzip();
+    Ok(StagedProject {
+        // The mesh first: the project must not be there without it.
+        staged: match staged_mesh.flatten() {
+            Some(mesh) => mesh.and(staged),
+            None => staged,
+        },
+        kept,
+    })
+}
+
+/// Writes a snapshot as a project that only its owner may read, with the mesh beside it in any case. `model` is the file
+/// that is worked on; the project names that where it can, for who opens it.
+///
+/// # Errors
+/// Where a file can't be written; an existing project is as it was then.
+pub fn write_with_mesh(
+    snapshot: &Snapshot,
+    mesh: &RestMesh,
+    model: Option<&Path>,
+    path: &Path,
+) -> Result<(), EngineError> {
+    let (staging, progress, cancel) = (Staging::private(), Progress::new(), Cancel::new());
+    let is_sample = mesh.source == MeshSource::Sample;
+    let beside = match is_sample {
+        true => None,
+        false => Some(stage_mesh(
+            mesh,
+            path,
+            Stamp::looks_current,
+            &staging,
+            &progress,
+            &cancel,
+        )?),
+    };
+    let (kept, staged_mesh) = beside.unzip();
+    let named = match (&mesh.source, model) {
+        (MeshSource::Sample, _) => None,
+        (_, Some(model)) => Some(relative(model, files::folder_of(path))),
+        (_, None) => kept.as_ref().map(|kept| relative(kept, files::folder_of(path))),
+    };
+    let project = snapshot.project(MeshReference {
+        path: named,
+        // Where the model stands somewhere, its path tells.
+        name: (!is_sample && model.is_none()).then(|| file_name(&mesh.loaded.path)),
+        geometry: geometry_hash(snapshot.model()),
+    });
+    let staged = staging.stage([(path.to_owned(), project.to_json().as_bytes())])?;
+    match staged_mesh.flatten() {
         Some(mesh) => mesh.and(staged).commit()?,
         None => staged.commit()?,
     }
+    if let Some(kept) = kept {
+        mesh.note_copy(&kept, Stamp::of(&kept)?);
+    }
     Ok(())
+}
+
+/// A project that is ready to be committed.
+pub struct StagedProject {
+    /// Its files.
+    pub staged: Staged,
+    /// The file beside it that holds its mesh, if it needs one.
+    pub kept: Option<PathBuf>,
+}
+
+/// Stages the mesh at rest beside a project, unless it is there already. With it where it stands then.
+pub fn stage_mesh(
+    mesh: &RestMesh,
+    project: &Path,
+    check: Check,
+    staging: &Staging,
+    progress: &Progress,
+    cancel: &Cancel,
+) -> Result<(PathBuf, Option<Staged>), EngineError> {
+    let names = || source_names(project, &mesh.loaded.path);
+    if let Some(known) = names()
+        .take_while(|name| name.exists())
+        .find(|name| mesh.is_in(name, check))
+    {
+        return Ok((known, None));
+    }
+    let first = names().next().unwrap_or_default();
+    let bytes = saving::bytes_at_rest(&mesh.loaded, &first, progress, cancel)?;
+    match free_or_same(names(), &bytes)? {
+        Kept::Under(kept) => {
+            let at_rest = &mesh.loaded.model.rest_positions();
+            let save = SaveAs::shape(at_rest, &kept);
+            let staged = saving::stage(&mesh.loaded, &save, staging, progress, cancel)?.staged;
+            Ok((kept, Some(staged)))
+        }
+        Kept::Already(kept) => Ok((kept, None)),
+        Kept::Nothing => Ok((first, None)),
+    }
 }
 
 /// The name that people know a project's mesh by; `None` if the project can't be read.
@@ -76,32 +152,19 @@ pub fn mesh_name(project: &Path) -> Option<String> {
     let text = files::read_text(project).ok()?;
     let Named { mesh } = serde_json::from_str(&text).ok()?;
     let of_path = |path: String| {
-        let path = files::folder_of(project).join(path);
+        let path = files::path_of_text(files::folder_of(project), &path);
         file_name(&saved_name(&path).unwrap_or(path))
     };
     let name = mesh.name.or_else(|| mesh.path.map(of_path));
     Some(name.unwrap_or_else(|| SAMPLE_NAME.to_owned()))
 }
 
-/// Where a project keeps a mesh without a file; a `.gltf` is kept as a GLB.
-fn source_name(project: &Path, mesh: &Path) -> PathBuf {
-    let mut name = project.file_stem().unwrap_or_default().to_owned();
-    name.push(".source.");
-    let extension = mesh.extension().unwrap_or_default();
-    name.push(if extension.eq_ignore_ascii_case("gltf") {
-        "glb".as_ref()
-    } else {
-        extension
-    });
-    project.with_file_name(name)
-}
-
-/// The path as seen from `folder` where it stands below that, else whole.
+/// The path as seen from `folder` where it stands below that, else whole; with `/` between folders, and names that are
+/// not UTF-8 as [`files::name_as_text`] has them.
 fn relative(path: &Path, folder: &Path) -> String {
     let whole = |path: &Path| std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
     let (path, folder) = (whole(path), whole(folder));
-    let shown = path.strip_prefix(&folder).unwrap_or(&path);
-    shown.to_string_lossy().replace('\\', "/")
+    files::path_as_text(path.strip_prefix(&folder).unwrap_or(&path))
 }
 
 /// A project, its mesh, and where that was found.
@@ -112,6 +175,10 @@ pub struct OpenedProject {
     pub loaded: Loaded,
     /// Where that stands.
     pub source: MeshSource,
+    /// Where the project says that it stands; empty for the sample.
+    pub named: PathBuf,
+    /// The project's file as it was read.
+    pub stamp: Stamp,
 }
 
 /// Reads a project and the mesh it belongs to: at its path, beside the project, or the kept original of either.
@@ -119,7 +186,7 @@ pub struct OpenedProject {
 /// # Errors
 /// A project that can't be read, or whose mesh is not to be found.
 pub fn read(path: &Path, watch: &Watch) -> Result<OpenedProject, EngineError> {
-    let text = files::read_text(path)?;
+    let (text, stamp) = files::read_text_stamped(path)?;
     let refuse = |source| EngineError::Edit {
         edit: path.to_owned(),
         source,
@@ -140,6 +207,8 @@ pub fn read(path: &Path, watch: &Watch) -> Result<OpenedProject, EngineError> {
                 project,
                 loaded,
                 source: MeshSource::Sample,
+                named: PathBuf::new(),
+                stamp,
             })
         } else {
             Err(EngineError::ProjectMesh {
@@ -150,19 +219,29 @@ pub fn read(path: &Path, watch: &Watch) -> Result<OpenedProject, EngineError> {
         };
     };
     let folder = files::folder_of(path);
-    let at = folder.join(&named);
-    let beside = folder.join(Path::new(&named).file_name().unwrap_or_default());
+    let at = files::path_of_text(folder, &named);
+    let beside = folder.join(at.file_name().unwrap_or_default());
     let mut what = "missing";
-    for mesh in [&at, &beside, &original_name(&at), &original_name(&beside)] {
-        if !mesh.is_file() {
-            continue;
-        }
-        let loaded = pliant_engine::load(mesh, &weld, watch)?;
+    let places = [&at, &beside].into_iter().cloned();
+    let originals = original_names(&at).chain(original_names(&beside));
+    let places = places.chain(originals).chain(sources_of(path));
+    for mesh in places.filter(|place| place.is_file()) {
+        let loaded = match pliant_engine::load(&mesh, &weld, watch) {
+            Ok(loaded) => loaded,
+            Err(EngineError::Interrupted) => return Err(EngineError::Interrupted),
+            // Something else stands there, which may be no mesh at all.
+            Err(_) => {
+                what = "another one now";
+                continue;
+            }
+        };
         if geometry_hash(&loaded.model) == project.mesh().geometry {
             return Ok(OpenedProject {
                 project,
                 loaded,
-                source: MeshSource::File(mesh.clone()),
+                source: MeshSource::File(mesh),
+                named: at.clone(),
+                stamp,
             });
         }
         what = "another one now";

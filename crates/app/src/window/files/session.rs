@@ -1,25 +1,27 @@
 //! The open file, and the jobs that load and save it.
 
-use std::collections::BTreeSet;
-use std::path::PathBuf;
+use std::collections::VecDeque;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use glam::DVec3;
-use pliant_editor::{EditFile, JobQueue, Revision, Snapshot};
-use pliant_render::Image;
+use pliant_editor::{JobQueue, Revision, SaveMark};
 
 use super::names::file_name;
 pub use super::opening::Source;
-use super::opening::open;
-use super::project_file::MeshSource;
+use super::opening::{absolute, open};
+use super::original::Original;
+use super::rest_mesh::RestMesh;
 pub use super::writing::KeepOriginal;
-use super::writing::{Content, Model, SaveRequest, write};
+use super::writing::{Changed, Content, SaveRequest, Unwritten, Written, WrittenKind, write};
 use crate::drawing::Drawing;
-use crate::window::threads::message::{Message, ModelToShow, Written, WrittenKind};
+use crate::window::threads::message::{Message, ModelToShow};
 use crate::window::threads::workers::Workers;
 use crate::window::viewport::gpu::Gpu;
 use pliant_engine::Loaded;
+use pliant_engine::files::{KnownFiles, is_same};
 use pliant_engine::watch::Watch;
+use pliant_mesh::Cancel;
 
 /// The open file and the jobs that read and write it.
 #[derive(Default)]
@@ -31,10 +33,13 @@ pub struct Session {
     /// What the load that runs is doing.
     watch: Watch,
     saving: JobQueue<SaveRequest>,
+    /// Saves that wait for the one that runs, in their order: none takes another's place.
+    to_save: VecDeque<SaveRequest>,
+    /// The files that were read and written, as they were then.
+    known: KnownFiles,
+    /// How many files were opened so far.
+    opened: u64,
 }
-
-/// Displacements of the surface from the file's shape, and the connected parts that are turned inside out.
-pub type Shape<'a> = (&'a Arc<Vec<DVec3>>, &'a Arc<BTreeSet<u32>>);
 
 /// What is open.
 pub struct OpenFile {
@@ -46,10 +51,12 @@ pub struct OpenFile {
     pub morph_targets: Vec<String>,
     /// What the renderer takes of it.
     pub drawing: Arc<Drawing>,
-    /// Where the mesh as it was read stands now.
-    pub source: MeshSource,
+    /// The mesh as it was read, and where it stands now.
+    pub mesh: RestMesh,
     /// The project that it was opened from or saved to.
     pub project: Option<PathBuf>,
+    /// What the file at `path` was moved by when it was saved there, per surface vertex; `None` where it was not.
+    pub saved: Option<Arc<Vec<DVec3>>>,
     /// Whether a person agreed to write over `path`, or it was saved here under a new name.
     pub may_write_over: bool,
 }
@@ -59,6 +66,16 @@ impl OpenFile {
     pub fn name(&self) -> String {
         file_name(self.path.as_deref().unwrap_or(&self.loaded.path))
     }
+
+    /// Whether a path leads to the file that was read or saved to.
+    pub fn is_at(&self, path: &Path) -> bool {
+        self.path.as_deref().is_some_and(|own| is_same(own, path))
+    }
+
+    /// Whether a path leads to the project.
+    pub fn is_project_at(&self, path: &Path) -> bool {
+        self.project.as_deref().is_some_and(|own| is_same(own, path))
+    }
 }
 
 impl Session {
@@ -66,7 +83,7 @@ impl Session {
     pub fn load(&mut self, source: Source, gpu: &Gpu, workers: &Workers) {
         self.loading.cancel();
         let stamp = self.stamp();
-        self.loading.request(stamp, (source, gpu.clone()));
+        self.loading.request(stamp, (source.absolute(), gpu.clone()));
         self.start_loading(workers);
     }
 
@@ -74,6 +91,12 @@ impl Session {
     pub fn stop(&mut self) {
         self.loading.cancel();
         self.saving.cancel();
+        self.to_save.clear();
+    }
+
+    /// Whether a save is under way.
+    pub fn is_saving(&self) -> bool {
+        self.saving.is_busy() || !self.to_save.is_empty()
     }
 
     /// Takes a load's result. `None` if it is no longer wanted.
@@ -91,79 +114,78 @@ impl Session {
 
     /// Makes an opened file the open one.
     pub fn adopt(&mut self, opened: &ModelToShow) {
+        self.opened += 1;
+        for (path, stamp) in opened.loaded.stamps() {
+            self.known.note(path, stamp.clone());
+        }
+        for (path, stamp) in &opened.stamps {
+            self.known.note(path, stamp.clone());
+        }
         self.open = Some(OpenFile {
             path: opened.path.clone(),
             loaded: Arc::clone(&opened.loaded),
             morph_targets: opened.loaded.scene.morph_targets(),
             drawing: Arc::clone(&opened.drawing),
-            source: opened.source.clone(),
+            mesh: RestMesh::new(Arc::clone(&opened.loaded), opened.source.clone()),
             project: opened.project.clone(),
+            saved: None,
             may_write_over: false,
         });
     }
 
-    /// Writes the model, off the window's thread. With `keep_original` the file that is replaced is kept beside it
-    /// first, as [`original_name`](super::names::original_name) says.
-    pub fn save(
-        &mut self,
-        path: PathBuf,
-        (displacements, inside_out): Shape<'_>,
-        keep_original: KeepOriginal,
-        workers: &Workers,
-    ) {
-        let Some(open) = &self.open else { return };
-        let content = Content::Model(Model {
-            loaded: Arc::clone(&open.loaded),
-            displacements: Arc::clone(displacements),
-            inside_out: Arc::clone(inside_out),
-            keep_original,
-            source: open.source.clone(),
-        });
-        self.write(path, content, workers);
-    }
-
-    /// Writes the model at rest with the present shape as a morph target, off the window's thread.
-    pub fn save_morph(&mut self, path: PathBuf, (displacements, inside_out): Shape<'_>, workers: &Workers) {
-        let Some(open) = &self.open else { return };
-        let content = Content::Morph {
-            loaded: Arc::clone(&open.loaded),
-            displacements: Arc::clone(displacements),
-            inside_out: Arc::clone(inside_out),
+    /// Writes a file, off the window's thread: the state of the document that `mark` stands for.
+    pub fn save(&mut self, path: &Path, content: Content, mark: SaveMark, workers: &Workers) {
+        let of_open = |open: &OpenFile| {
+            let sources = open.loaded.sources().skip(usize::from(open.path.is_none()));
+            sources.map(|(_, path)| path.to_owned()).collect()
         };
-        self.write(path, content, workers);
-    }
-
-    /// Writes a project, off the window's thread.
-    pub fn save_project(&mut self, path: PathBuf, snapshot: Snapshot, workers: &Workers) {
-        let Some(open) = &self.open else { return };
-        let content = Content::Project {
-            snapshot: Box::new(snapshot),
-            loaded: Arc::clone(&open.loaded),
-            source: open.source.clone(),
+        let request = SaveRequest {
+            path: absolute(path),
+            content,
+            sources: self.open.as_ref().map(of_open).unwrap_or_default(),
+            known: self.known.clone(),
+            changed: Changed::Ask,
+            mark,
+            opened: self.opened,
         };
-        self.write(path, content, workers);
+        self.save_again(request, workers);
     }
 
-    /// Writes an edit file, off the window's thread.
-    pub fn export(&mut self, path: PathBuf, edit: EditFile, workers: &Workers) {
-        self.write(path, Content::Edit(Box::new(edit)), workers);
+    /// Writes what was to be written before, off the window's thread.
+    pub fn save_again(&mut self, request: SaveRequest, workers: &Workers) {
+        self.to_save.push_back(request);
+        self.start_saving(workers);
     }
 
-    /// Writes a picture as PNG, off the window's thread.
-    pub fn save_picture(&mut self, path: PathBuf, image: Image, workers: &Workers) {
-        self.write(path, Content::Picture(image), workers);
+    /// Finds out where the original of the file at `path` is kept, or will be, off the window's thread.
+    pub fn look_for_original(&self, path: &Path, workers: &Workers) {
+        let Some(open) = &self.open else { return };
+        let (loaded, path) = (Arc::clone(&open.loaded), path.to_owned());
+        let unread = path.clone();
+        workers.spawn(
+            "original",
+            move || {
+                let cancel = Cancel::new();
+                let kept = Original::of(&path, &loaded, &cancel).and_then(|original| original.place(&loaded, &cancel));
+                Message::OriginalFound(path, kept.map_err(|error| error.to_string()))
+            },
+            move |sentence| Message::OriginalFound(unread.clone(), Err(sentence)),
+        );
     }
 
     /// Takes a save's end.
-    pub fn written(&mut self, stamp: Revision, result: &Result<Written, String>, workers: &Workers) {
+    pub fn written(&mut self, stamp: Revision, result: &Result<Written, Unwritten>, workers: &Workers) {
         self.saving.finish(stamp);
-        if let (Some(open), Ok(written)) = (&mut self.open, result) {
+        if let (Some(open), Ok(written)) = (&mut self.open, result)
+            && written.opened == self.opened
+        {
             match &written.what {
-                WrittenKind::Model(source) => {
+                WrittenKind::Model { source, saved } => {
                     open.path = Some(written.path.clone());
+                    open.saved = Some(Arc::clone(saved));
                     open.may_write_over = true;
                     if let Some(source) = source {
-                        open.source = source.clone();
+                        open.mesh.source = source.clone();
                     }
                 }
                 WrittenKind::Project => open.project = Some(written.path.clone()),
@@ -171,6 +193,11 @@ impl Session {
             }
         }
         self.start_saving(workers);
+    }
+
+    /// Whether what a save has written belongs to the file that is open.
+    pub fn is_of_open(&self, written: &Written) -> bool {
+        written.opened == self.opened
     }
 
     /// What runs, with its progress (0 to 1).
@@ -185,17 +212,6 @@ impl Session {
     fn stamp(&mut self) -> Revision {
         self.next += 1;
         Revision(self.next)
-    }
-
-    fn write(&mut self, path: PathBuf, content: Content, workers: &Workers) {
-        let stamp = self.stamp();
-        let of_open = |open: &OpenFile| {
-            let sources = open.loaded.sources().skip(usize::from(open.path.is_none()));
-            sources.map(|(_, path)| path.to_owned()).collect()
-        };
-        let sources = self.open.as_ref().map(of_open).unwrap_or_default();
-        self.saving.request(stamp, SaveRequest { path, content, sources });
-        self.start_saving(workers);
     }
 
     fn start_loading(&mut self, workers: &Workers) {
@@ -213,6 +229,12 @@ impl Session {
     }
 
     fn start_saving(&mut self, workers: &Workers) {
+        if !self.saving.is_busy()
+            && let Some(request) = self.to_save.pop_front()
+        {
+            let stamp = self.stamp();
+            self.saving.request(stamp, request);
+        }
         let Some((running, request)) = self.saving.start_next() else {
             return;
         };
@@ -221,7 +243,7 @@ impl Session {
         workers.spawn(
             "saving",
             move || Message::Written(stamp, write(request, &progress, &cancel)),
-            move |sentence| Message::Written(stamp, Err(sentence)),
+            move |sentence| Message::Written(stamp, Err(Unwritten::Refused(sentence))),
         );
     }
 }

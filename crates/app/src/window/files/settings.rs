@@ -1,6 +1,7 @@
 //! The settings: what is remembered from one session to the next, in a JSON file that a person may edit.
 //!
-//! A file that can't be read is left alone and reported; missing members have their defaults.
+//! A file that holds no settings is reported once and put aside under another name, so that settings can be kept again;
+//! missing members have their defaults.
 
 use std::path::{Path, PathBuf};
 
@@ -50,11 +51,26 @@ pub struct SettingsFile {
 impl SettingsFile {
     /// The settings in this file; without a file the defaults, which are not saved.
     pub fn open(path: Option<PathBuf>) -> Self {
-        let (settings, problem) = path.as_deref().map_or_else(Default::default, Settings::read);
+        let Some(path) = path else { return Self::default() };
+        let (settings, problem) = Settings::read(&path);
+        let (path, problem) = match problem {
+            None => (Some(path), None),
+            Some(Problem::Unreadable(sentence)) => (None, Some(sentence)),
+            Some(Problem::Corrupted(reason)) => match put_aside(&path) {
+                Ok(aside) => {
+                    let sentence = format!(
+                        "the settings in {} can't be read ({reason}), so the defaults hold: what was there is kept as {}",
+                        shown(&path),
+                        shown(&aside)
+                    );
+                    (Some(path), Some(sentence))
+                }
+                Err(sentence) => (None, Some(sentence)),
+            },
+        };
         Self {
             settings,
-            // A file that can't be read is the person's to mend.
-            path: path.filter(|_| problem.is_none()),
+            path,
             problem,
         }
     }
@@ -74,6 +90,35 @@ impl SettingsFile {
             self.problem = Some(sentence);
         }
     }
+}
+
+/// Why settings could not be read.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub enum Problem {
+    /// The file can't be read, in a sentence; it is the person's to mend.
+    Unreadable(String),
+    /// It holds no settings, for this reason.
+    Corrupted(String),
+}
+
+/// Renames a file to a name beside it that is free; with it the new name.
+fn put_aside(path: &Path) -> Result<PathBuf, String> {
+    let named = |number: usize| match number {
+        1 => path.with_extension("broken.json"),
+        _ => path.with_extension(format!("broken-{number}.json")),
+    };
+    let free = (1..1000)
+        .map(named)
+        .find(|name| std::fs::symlink_metadata(name).is_err());
+    let aside = free.unwrap_or_else(|| named(1));
+    std::fs::rename(path, &aside).map_err(|error| {
+        format!(
+            "the settings in {} can't be read, and the file can't be renamed ({error}): mend or delete it; the defaults \
+             hold for now",
+            shown(path)
+        )
+    })?;
+    Ok(aside)
 }
 
 /// Light or dark.
@@ -137,14 +182,14 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// Reads the settings; the defaults where there is no such file, with a sentence where it can't be read.
-    pub fn read(path: &Path) -> (Self, Option<String>) {
+    /// Reads the settings; the defaults where there is no such file, and with the reason where it can't be read.
+    pub fn read(path: &Path) -> (Self, Option<Problem>) {
         if !path.exists() {
             return (Self::default(), None);
         }
         let text = match files::read_text(path) {
             Ok(text) => text,
-            Err(error) => return (Self::default(), Some(error.to_string())),
+            Err(error) => return (Self::default(), Some(Problem::Unreadable(error.to_string()))),
         };
         match serde_json::from_str::<Self>(&text) {
             Ok(mut settings) => {
@@ -156,13 +201,7 @@ impl Settings {
                     .filter(|size| size.iter().all(|side| (320.0..=16_384.0).contains(side)));
                 (settings, None)
             }
-            Err(error) => (
-                Self::default(),
-                Some(format!(
-                    "the settings in {} can't be read ({error}): mend or delete that file; the defaults hold for now",
-                    shown(path)
-                )),
-            ),
+            Err(error) => (Self::default(), Some(Problem::Corrupted(error.to_string()))),
         }
     }
 
@@ -200,7 +239,7 @@ impl Settings {
 #[cfg(test)]
 #[expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 mod tests {
-    use super::{MostMemory, Settings};
+    use super::{MostMemory, Problem, Settings, SettingsFile};
 
     #[test]
     fn memory_is_kept_as_the_command_line_takes_it() {
@@ -218,7 +257,24 @@ mod tests {
         std::fs::write(&path, r#"{ "memory": "a lot" }"#).unwrap();
         let (settings, problem) = Settings::read(&path);
         assert_eq!(settings, Settings::default());
-        assert!(problem.unwrap().contains("such as 8GB"));
+        assert!(matches!(problem.unwrap(), Problem::Corrupted(reason) if reason.contains("such as 8GB")));
+    }
+
+    #[test]
+    fn a_corrupted_file_is_said_once_put_aside_and_settings_are_kept_again() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("settings.json");
+        for (number, broken) in ["{ \"theme\": \"li", "nonsense"].into_iter().enumerate() {
+            std::fs::write(&path, broken).unwrap();
+            let mut file = SettingsFile::open(Some(path.clone()));
+            let said = file.problem.clone().unwrap();
+            let aside = ["settings.broken.json", "settings.broken-2.json"][number];
+            assert!(said.contains(aside), "{said}");
+            assert_eq!(std::fs::read_to_string(folder.path().join(aside)).unwrap(), broken);
+            file.change(|settings| settings.ui_scale = 1.5);
+            let file = SettingsFile::open(Some(path.clone()));
+            assert_eq!((file.problem.clone(), file.get().ui_scale), (None, 1.5));
+        }
     }
 
     #[test]

@@ -5,116 +5,262 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use glam::DVec3;
-use pliant_editor::{EditFile, Snapshot};
+use pliant_editor::{EditFile, SaveMark, Snapshot};
 use pliant_io::MorphTarget;
 use pliant_mesh::{Cancel, Progress};
 use pliant_render::Image;
 
-use super::names::{file_name, is_gltf, original_name};
-use super::project_file::{self, MeshSource};
+use super::names::file_name;
+use super::original::{Kept, Original};
+use super::project_file;
+use super::rest_mesh::{MeshSource, RestMesh};
 use crate::picture_file;
-use crate::window::threads::message::{Written, WrittenKind};
-use pliant_engine::files::{self, Destination, NewFile, Staged, Staging};
+use pliant_engine::EngineError;
+use pliant_engine::files::{self, KnownFiles, Staged, Staging, Stamp};
 use pliant_engine::saving::{self, SaveAs};
-use pliant_engine::{EngineError, Loaded};
 
 /// What is to be written.
-pub(super) struct SaveRequest {
+#[derive(Clone)]
+pub struct SaveRequest {
+    /// Where.
     pub path: PathBuf,
+    /// What.
     pub content: Content,
     /// The files of the open model, which nothing else may be saved over.
     pub sources: Vec<PathBuf>,
+    /// The files that the window has read or written, as they were then.
+    pub known: KnownFiles,
+    /// What to do where one of them that is to be replaced has another content now.
+    pub changed: Changed,
+    /// The state of the document that is written.
+    pub mark: SaveMark,
+    /// Which of the files that were opened one after the other it belongs to.
+    pub opened: u64,
 }
 
-/// What it holds.
-pub(super) enum Content {
+/// What to do with a file that another program has changed since the window read or wrote it.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Changed {
+    /// Leave it, and ask the person.
+    Ask,
+    /// Replace it.
+    Replace,
+}
+
+/// What a file holds.
+#[derive(Clone)]
+pub enum Content {
+    /// The bent mesh.
     Model(Model),
-    Project {
-        snapshot: Box<Snapshot>,
-        loaded: Arc<Loaded>,
-        source: MeshSource,
-    },
+    /// The document.
+    Project(Box<Snapshot>, RestMesh),
     /// The mesh at rest with its bent shape as a morph target.
-    Morph {
-        loaded: Arc<Loaded>,
-        displacements: Arc<Vec<DVec3>>,
-        inside_out: Arc<BTreeSet<u32>>,
-    },
+    Morph(Shape, RestMesh),
+    /// An edit for the command line.
     Edit(Box<EditFile>),
-    Picture(Image),
+    /// A picture of the view.
+    Picture(Arc<Image>),
 }
 
 /// The bent mesh.
-pub(super) struct Model {
-    pub loaded: Arc<Loaded>,
+#[derive(Clone)]
+pub struct Model {
+    /// The mesh as it was read.
+    pub mesh: RestMesh,
+    /// What it is bent to.
+    pub shape: Shape,
+    /// Whether the file that is replaced is kept.
+    pub keep_original: KeepOriginal,
+}
+
+/// A shape of the open mesh.
+#[derive(Clone)]
+pub struct Shape {
+    /// Displacements of the surface from the file's shape.
     pub displacements: Arc<Vec<DVec3>>,
     /// The connected parts that are turned inside out, by their numbers.
     pub inside_out: Arc<BTreeSet<u32>>,
-    pub keep_original: KeepOriginal,
-    pub source: MeshSource,
 }
 
 /// Whether the file that a save replaces is kept.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum KeepOriginal {
-    /// Under [`original_name`], unless such a file exists already: that one is older and stays.
+    /// As `NAME.original.EXT`, or with a number behind it, unless one of these has its content already.
     Yes,
-    /// It is one of ours.
+    /// Only if it is the mesh as it was read.
     No,
 }
 
-/// Writes the content. A save that was stopped in time has changed nothing.
-pub(super) fn write(request: SaveRequest, progress: &Progress, cancel: &Cancel) -> Result<Written, String> {
-    let name = file_name(&request.path);
-    write_unless_stopped(request, progress, cancel).map_err(|error| match error {
-        EngineError::Interrupted => {
-            format!("Saving {name} was stopped: nothing was written. Save again when you like.")
-        }
-        error => error.to_string(),
-    })
+/// A file that was written.
+pub struct Written {
+    /// Where.
+    pub path: PathBuf,
+    /// What it is.
+    pub what: WrittenKind,
+    /// What a person should know, a sentence each.
+    pub notes: Vec<String>,
+    /// The state of the document that it has.
+    pub mark: SaveMark,
+    /// As [`SaveRequest::opened`].
+    pub opened: u64,
 }
 
-fn write_unless_stopped(request: SaveRequest, progress: &Progress, cancel: &Cancel) -> Result<Written, EngineError> {
-    let SaveRequest { path, content, sources } = request;
+/// What was written.
+#[derive(Clone, PartialEq, Debug)]
+pub enum WrittenKind {
+    /// The model.
+    Model {
+        /// Where the mesh as it was read stands now, if that has changed.
+        source: Option<MeshSource>,
+        /// What the file is moved by, per surface vertex.
+        saved: Arc<Vec<DVec3>>,
+    },
+    /// The project.
+    Project,
+    /// A picture.
+    Picture,
+    /// An edit for the command line: the work is not saved with it.
+    Edit,
+    /// The model at rest with the edit as a morph target, which is a copy beside the open file.
+    Morph,
+}
+
+/// Why a file was not written; all files are as they were then.
+pub enum Unwritten {
+    /// Another program has changed this file since the window read or wrote it: the person decides.
+    Changed(PathBuf, Box<SaveRequest>),
+    /// For this reason.
+    Refused(String),
+}
+
+/// Writes the content. A save that was stopped in time has changed nothing.
+pub(super) fn write(request: SaveRequest, progress: &Progress, cancel: &Cancel) -> Result<Written, Unwritten> {
+    let name = file_name(&request.path);
+    let stopped = || {
+        let sentence = format!("Saving {name} was stopped: nothing was written. Save again when you like.");
+        Unwritten::Refused(sentence)
+    };
+    match write_unless_changed(&request, progress, cancel) {
+        Ok(Ok(written)) => Ok(written),
+        Ok(Err(changed)) => Err(Unwritten::Changed(changed, Box::new(request))),
+        Err(EngineError::Interrupted) => Err(stopped()),
+        Err(error) => Err(Unwritten::Refused(error.to_string())),
+    }
+}
+
+/// What is ready to be committed.
+struct Ready {
+    staged: Staged,
+    what: WrittenKind,
+    notes: Vec<String>,
+    /// A file that holds the mesh as it was read once this is committed.
+    copy: Option<PathBuf>,
+}
+
+impl Ready {
+    fn new(staged: Staged, what: WrittenKind) -> Self {
+        Self {
+            staged,
+            what,
+            notes: Vec::new(),
+            copy: None,
+        }
+    }
+}
+
+/// Writes the content, or returns the file that another program has changed.
+fn write_unless_changed(
+    request: &SaveRequest,
+    progress: &Progress,
+    cancel: &Cancel,
+) -> Result<Result<Written, PathBuf>, EngineError> {
+    let SaveRequest {
+        path, content, known, ..
+    } = request;
+    let is_changed = |path: &Path| request.changed == Changed::Ask && known.is_changed(path);
     let go_on = || cancel.check().map_err(|_| EngineError::Interrupted);
     // What has begun shows that it has.
     progress.set(0.02);
     go_on()?;
+    // Before the work, so that the person is asked at once; and once more after it.
+    if is_changed(path) {
+        return Ok(Err(path.clone()));
+    }
     let progress = progress.part(0.02, 1.0);
     let staging = Staging::default();
-    if !matches!(content, Content::Model { .. }) {
-        let sources = sources
-            .iter()
-            .map(|source| ("the open file or one that it needs", &**source));
-        files::refuse_shared(("the file to be saved,", &path), sources)?;
+    let (sources, role) = match content {
+        Content::Model(model) => {
+            let neighbours = model.mesh.loaded.neighbours.iter();
+            let neighbours = neighbours.map(|(path, _)| path.clone()).collect();
+            (neighbours, "a file that the open one needs")
+        }
+        _ => (request.sources.clone(), "the open file or one that it needs"),
+    };
+    let sources = sources.iter().map(|source| (role, &**source));
+    files::refuse_shared(("the file to be saved,", path), sources)?;
+    let Ready {
+        staged,
+        what,
+        notes,
+        copy,
+    } = ready(request, &staging, &progress, cancel)?;
+    go_on()?;
+    if let Some(changed) = staged.targets().find(|target| is_changed(target)) {
+        return Ok(Err(changed.to_owned()));
     }
-    let written = |path, what, warnings| Written { path, what, warnings };
-    match content {
+    let stamps = staged.stamps()?;
+    staged.commit()?;
+    for (target, stamp) in stamps {
+        known.note(&target, stamp);
+    }
+    if let (Some(mesh), Some(copy)) = (content.mesh(), copy)
+        && let Ok(stamp) = Stamp::of(&copy)
+    {
+        mesh.note_copy(&copy, stamp);
+    }
+    Ok(Ok(Written {
+        path: path.clone(),
+        what,
+        notes,
+        mark: request.mark,
+        opened: request.opened,
+    }))
+}
+
+impl Content {
+    fn mesh(&self) -> Option<&RestMesh> {
+        match self {
+            Self::Model(Model { mesh, .. }) | Self::Project(_, mesh) | Self::Morph(_, mesh) => Some(mesh),
+            Self::Edit(_) | Self::Picture(_) => None,
+        }
+    }
+}
+
+fn ready(request: &SaveRequest, staging: &Staging, progress: &Progress, cancel: &Cancel) -> Result<Ready, EngineError> {
+    let path = &request.path;
+    match &request.content {
         Content::Picture(image) => {
-            let png = picture_file::png(image)?;
-            staging.stage([(path.clone(), &*png)])?.commit()?;
-            Ok(written(path, WrittenKind::Picture, Vec::new()))
+            let png = picture_file::png(Image::clone(image))?;
+            Ok(Ready::new(
+                staging.stage([(path.clone(), &*png)])?,
+                WrittenKind::Picture,
+            ))
         }
         Content::Edit(edit) => {
             let text = edit.to_json();
-            staging.stage([(path.clone(), text.as_bytes())])?.commit()?;
-            Ok(written(path, WrittenKind::Edit, Vec::new()))
+            let staged = staging.stage([(path.clone(), text.as_bytes())])?;
+            Ok(Ready::new(staged, WrittenKind::Edit))
         }
-        Content::Project {
-            snapshot,
-            loaded,
-            source,
-        } => {
-            project_file::write(&snapshot, &loaded, &source, &path, &staging, &progress, cancel)?;
-            Ok(written(path, WrittenKind::Project, Vec::new()))
+        Content::Project(snapshot, mesh) => {
+            let project = project_file::stage(snapshot, mesh, path, staging, progress, cancel)?;
+            Ok(Ready {
+                copy: project.kept,
+                ..Ready::new(project.staged, WrittenKind::Project)
+            })
         }
-        Content::Morph {
-            loaded,
-            displacements,
-            inside_out,
-        } => {
+        Content::Morph(shape, mesh) => {
             let mut positions = Vec::new();
-            loaded.model.drawn_positions(&displacements, &mut positions);
+            mesh.loaded.model.drawn_positions(&shape.displacements, &mut positions);
             let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
             let morph = MorphTarget {
                 name: &stem,
@@ -122,80 +268,73 @@ fn write_unless_stopped(request: SaveRequest, progress: &Progress, cancel: &Canc
             };
             let save = SaveAs {
                 morph: Some(&morph),
-                inside_out: &inside_out,
-                ..SaveAs::shape(&positions, &path)
+                inside_out: &shape.inside_out,
+                ..SaveAs::shape(&positions, path)
             };
-            let saved = saving::stage(&loaded, &save, &staging, &progress, cancel)?;
-            go_on()?;
-            saved.staged.commit()?;
-            Ok(written(path, WrittenKind::Morph, saved.warnings))
+            let saved = saving::stage(&mesh.loaded, &save, staging, progress, cancel)?;
+            Ok(Ready {
+                notes: saved.warnings,
+                ..Ready::new(saved.staged, WrittenKind::Morph)
+            })
         }
-        Content::Model(model) => {
-            let (moved, warnings) = write_model(&model, &path, &staging, &progress, cancel)?;
-            Ok(written(path, WrittenKind::Model(moved), warnings))
-        }
+        Content::Model(model) => ready_model(model, path, staging, progress, cancel),
     }
 }
 
-/// Writes the model. Returns where the mesh as it was read is now, if that changed, and warnings.
-fn write_model(
+/// The model, and with it the original of the file that it replaces.
+fn ready_model(
     model: &Model,
     path: &Path,
     staging: &Staging,
     progress: &Progress,
     cancel: &Cancel,
-) -> Result<(Option<MeshSource>, Vec<String>), EngineError> {
-    let loaded = &*model.loaded;
-    let go_on = || cancel.check().map_err(|_| EngineError::Interrupted);
+) -> Result<Ready, EngineError> {
+    let Model { mesh, shape, .. } = model;
+    let loaded = &*mesh.loaded;
     let mut positions = Vec::new();
-    loaded.model.drawn_positions(&model.displacements, &mut positions);
-    go_on()?;
-    let original = original_name(path);
-    let keeps = model.keep_original == KeepOriginal::Yes && !original.exists();
+    loaded.model.drawn_positions(&shape.displacements, &mut positions);
+    cancel.check().map_err(|_| EngineError::Interrupted)?;
+    let is_source = matches!(&mesh.source, MeshSource::File(file) if files::is_same(file, path));
+    let keeps = model.keep_original == KeepOriginal::Yes || is_source;
     let split = if keeps { 0.5 } else { 1.0 };
     let (of_save, of_original) = (progress.part(0.0, split), progress.part(split, 1.0));
-    let neighbours = loaded
-        .neighbours
-        .iter()
-        .map(|path| ("a file that the open one needs", &**path));
-    files::refuse_shared(("the file to be saved,", path), neighbours)?;
     let save = SaveAs {
-        inside_out: &model.inside_out,
+        inside_out: &shape.inside_out,
         ..SaveAs::shape(&positions, path)
     };
     let saved = saving::stage(loaded, &save, staging, &of_save, cancel)?;
-    let (mut staged, warnings) = (saved.staged, saved.warnings);
-    let is_source = matches!(&model.source, MeshSource::File(mesh) if files::is_same(mesh, path));
-    let mut moved = is_source.then_some(MeshSource::Gone);
-    if keeps {
+    let written = |source| WrittenKind::Model {
+        source,
+        saved: Arc::clone(&shape.displacements),
+    };
+    let mut ready = Ready {
+        notes: saved.warnings,
+        ..Ready::new(saved.staged, written(is_source.then_some(MeshSource::Gone)))
+    };
+    if !keeps {
+        return Ok(ready);
+    }
+    let original = Original::of(path, loaded, cancel)?;
+    let (kept, staged) = original.keep(loaded, staging, &of_original, cancel)?;
+    if let Some(original) = staged {
         // The original first: the file that replaces it must not be there without it.
-        staged = stage_original(loaded, path, &original, staging, &of_original, cancel)?.and(staged);
-        moved = moved.map(|_| MeshSource::File(original));
+        ready.staged = original.and(ready.staged);
     }
-    go_on()?;
-    staged.commit()?;
-    Ok((moved, warnings))
-}
-
-/// Stages the file at `path` under the name `original`.
-fn stage_original(
-    loaded: &Loaded,
-    path: &Path,
-    original: &Path,
-    staging: &Staging,
-    progress: &Progress,
-    cancel: &Cancel,
-) -> Result<Staged, EngineError> {
-    if is_gltf(path) {
-        let at_rest = &loaded.model.rest_positions();
-        let staged = saving::stage(loaded, &SaveAs::shape(at_rest, original), staging, progress, cancel)?.staged;
-        Ok(staged)
-    } else {
-        let bytes = files::read(path)?;
-        let file = NewFile {
-            to: Destination::of(original)?,
-            bytes: &bytes,
-        };
-        staging.stage_watched(&[file], None, progress, cancel)
+    let (place, sentence) = match kept {
+        Kept::Nothing => return Ok(ready),
+        Kept::Already(place) => {
+            let sentence = format!("The original is kept already, as {}.", file_name(&place));
+            (place, sentence)
+        }
+        Kept::Under(place) => {
+            let sentence = format!("The file as it was is kept as {}.", file_name(&place));
+            (place, sentence)
+        }
+    };
+    ready.notes.insert(0, sentence);
+    if is_source && mesh.is_in(path, Stamp::is_current) {
+        ready.what = written(Some(MeshSource::File(place.clone())));
+        ready.copy = Some(place);
     }
+    Ok(ready)
 }

@@ -57,6 +57,13 @@ impl Application {
                     None => {}
                 },
                 Message::Written(stamp, result) => self.written(stamp, result),
+                Message::OriginalFound(path, kept) => {
+                    if let Some(Question::WriteOver(asked, found)) = &mut self.question
+                        && *asked == path
+                    {
+                        *found = Some(kept);
+                    }
+                }
                 Message::Autosaved(key, result) => {
                     let failed = self
                         .recovery
@@ -95,6 +102,7 @@ impl Application {
             beginning,
             notes,
             recovered,
+            unsaved,
             project,
             path,
             ..
@@ -122,10 +130,12 @@ impl Application {
             name,
             beginning,
         });
-        if let Some(left) = recovered {
-            self.editor.handle(Event::Recovered);
+        if let Some(needed) = unsaved {
+            self.editor.handle(Event::Recovered(needed));
             self.keep_for_recovery();
-            self.recovered_from = Some(left);
+        }
+        if recovered.is_some() {
+            self.recovered_from = recovered;
         }
     }
 

@@ -5,14 +5,17 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use pliant_deform::ExampleShape;
-use pliant_editor::{Beginning, JobDone, Revision, SnapshotKey};
+use pliant_editor::{Beginning, JobDone, Revision, SavedAs, SnapshotKey};
 use pliant_mesh::Cancel;
 use pliant_render::{Materials, Surface};
 
 use crate::drawing::{Drawing, Field, Pose, Scale};
 use crate::window::dialogs::folder_browser::listing::Entry;
-use crate::window::files::project_file::MeshSource;
+use crate::window::files::original::Kept;
+use crate::window::files::rest_mesh::MeshSource;
+use crate::window::files::writing::{Unwritten, Written};
 use pliant_engine::Loaded;
+use pliant_engine::files::Stamp;
 
 /// A result of another thread; the window takes all waiting ones at the start of each frame.
 pub enum Message {
@@ -29,7 +32,9 @@ pub enum Message {
     /// A file was opened, or why it was not.
     Opened(Revision, Result<Box<ModelToShow>, String>),
     /// A file was written, or why it was not.
-    Written(Revision, Result<Written, String>),
+    Written(Revision, Result<Written, Unwritten>),
+    /// Where the original of the file at this path is kept or will be, or why that can't be told.
+    OriginalFound(PathBuf, Result<Kept, String>),
     /// The state of the document with this key was kept for a recovery, or why it was not.
     Autosaved(SnapshotKey, Result<(), String>),
     /// A cage was read, its vertices and triangles, or why it was not.
@@ -115,33 +120,12 @@ pub struct ModelToShow {
     pub source: MeshSource,
     /// The recovery file that it was opened from, left by a session that ended without saving.
     pub recovered: Option<PathBuf>,
+    /// Which file is needed for the work that no file has; `None` where there is none.
+    pub unsaved: Option<SavedAs>,
+    /// The files beside the mesh's that were read, as they were then.
+    pub stamps: Vec<(PathBuf, Stamp)>,
     /// What a person should know about the file, a sentence each.
     pub notes: Vec<String>,
-}
-
-/// A file that was written.
-pub struct Written {
-    /// Where.
-    pub path: PathBuf,
-    /// What it is.
-    pub what: WrittenKind,
-    /// What the file could not hold, a sentence each.
-    pub warnings: Vec<String>,
-}
-
-/// What was written.
-#[derive(Clone, PartialEq, Eq, Debug)]
-pub enum WrittenKind {
-    /// The model; where the mesh as it was read stands now, if that has changed.
-    Model(Option<MeshSource>),
-    /// The project.
-    Project,
-    /// A picture.
-    Picture,
-    /// An edit for the command line: the work is not saved with it.
-    Edit,
-    /// The model at rest with the edit as a morph target, which is a copy beside the open file.
-    Morph,
 }
 
 /// What a path is chosen for.

@@ -4,6 +4,7 @@ use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
+use crate::window::files::names::sources_of;
 use crate::window::files::project_file;
 
 /// A session that ended without saving.
@@ -42,13 +43,8 @@ pub fn left_in(folder: &Path) -> Vec<Left> {
 pub fn remove(project: &Path) {
     // What is not there need not go.
     let _ = fs::remove_file(project);
-    let Some(stem) = project.file_stem() else { return };
-    let prefix = format!("{}.source.", stem.to_string_lossy());
-    let folder = project.parent().and_then(|folder| fs::read_dir(folder).ok());
-    for entry in folder.into_iter().flatten().flatten() {
-        if entry.file_name().to_string_lossy().starts_with(&prefix) {
-            let _ = fs::remove_file(entry.path());
-        }
+    for mesh in sources_of(project) {
+        let _ = fs::remove_file(mesh);
     }
     if is_gone(&project.with_extension("lock")) {
         let _ = fs::remove_file(project.with_extension("lock"));

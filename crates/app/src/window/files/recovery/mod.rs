@@ -8,16 +8,15 @@ pub mod left;
 
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use pliant_editor::{Snapshot, SnapshotKey};
-use pliant_mesh::{Cancel, Progress};
 
 use self::left::remove;
-use super::project_file::{self, MeshSource};
-use pliant_engine::Loaded;
-use pliant_engine::files::{Staging, shown};
+use super::project_file;
+use super::rest_mesh::RestMesh;
+use pliant_engine::files::shown;
 
 /// How often unsaved work is kept. A write takes less than a second even on a large mesh, so no more than twice this
 /// can be lost.
@@ -42,8 +41,9 @@ pub struct Recovery {
 #[derive(Clone)]
 pub struct Work {
     snapshot: Snapshot,
-    loaded: Arc<Loaded>,
-    source: MeshSource,
+    mesh: RestMesh,
+    /// Where the model stands that is worked on, for who recovers it.
+    model: Option<PathBuf>,
     project: PathBuf,
 }
 
@@ -85,8 +85,8 @@ impl Recovery {
         key: SnapshotKey,
         unsaved: bool,
         snapshot: impl FnOnce() -> Option<Snapshot>,
-        loaded: &Arc<Loaded>,
-        source: &MeshSource,
+        mesh: &RestMesh,
+        model: Option<&Path>,
     ) -> Option<Work> {
         if !unsaved {
             self.forget(key);
@@ -97,8 +97,8 @@ impl Recovery {
         }
         let work = Work {
             snapshot: snapshot()?,
-            loaded: Arc::clone(loaded),
-            source: source.clone(),
+            mesh: mesh.clone(),
+            model: model.map(Path::to_owned),
             project: self.project.clone(),
         };
         *LATEST.lock().unwrap_or_else(PoisonError::into_inner) = Some(work.clone());
@@ -163,21 +163,13 @@ impl Drop for Recovery {
 }
 
 impl Work {
-    /// Writes it.
+    /// Writes it, with a copy of its mesh: the file may be changed, moved or deleted before anybody recovers it.
     ///
     /// # Errors
     /// What stands in the way, in a sentence.
     pub fn write(&self) -> Result<(), String> {
-        project_file::write(
-            &self.snapshot,
-            &self.loaded,
-            &self.source,
-            &self.project,
-            &Staging::private(),
-            &Progress::new(),
-            &Cancel::new(),
-        )
-        .map_err(|error| error.to_string())
+        project_file::write_with_mesh(&self.snapshot, &self.mesh, self.model.as_deref(), &self.project)
+            .map_err(|error| error.to_string())
     }
 }
 

@@ -1,11 +1,14 @@
 use std::io::{BufRead, BufReader};
 use std::process::{Command, Stdio};
+use std::sync::Arc;
 
 use pliant_editor::{Beginning, Editor, Event, HandleTransform, InlineExecutor, JobKind, ToolMode};
 use pliant_mesh::{WeldOptions, shapes};
 
 use super::left::left_in;
 use super::*;
+use crate::window::files::rest_mesh::MeshSource;
+use pliant_engine::Loaded;
 use pliant_engine::watch::Watch;
 
 const FOLDER: &str = "PLIANT_TEST_RECOVERY";
@@ -35,8 +38,9 @@ fn child() {
     let Some(folder) = std::env::var_os(FOLDER).map(PathBuf::from) else {
         return;
     };
-    let loaded = loaded(&folder.join("ball.off"));
-    let source = MeshSource::File(folder.join("ball.off"));
+    let file = folder.join("ball.off");
+    let loaded = loaded(&file);
+    let mesh = RestMesh::new(Arc::clone(&loaded), MeshSource::File(file.clone()));
     let mut recovery = Recovery::begin(&folder.join("recovery")).unwrap();
     recovery.every = Duration::ZERO;
     let jobs = InlineExecutor::new();
@@ -59,7 +63,7 @@ fn child() {
         }
         act(&mut editor, round);
         let key = editor.snapshot_key();
-        let work = recovery.note(key, true, || editor.snapshot(), &loaded, &source);
+        let work = recovery.note(key, true, || editor.snapshot(), &mesh, Some(&file));
         if let Some(work) = work {
             println!("writing {}", editor.document_hash().unwrap());
             let result = work.write();
@@ -172,14 +176,56 @@ fn what_is_kept_can_be_read_by_its_owner_alone() {
     });
     let work = Work {
         snapshot: editor.snapshot().unwrap(),
-        loaded,
-        // Gone: the mesh is kept beside the project.
-        source: MeshSource::Gone,
+        mesh: RestMesh::new(loaded, MeshSource::File(file.clone())),
+        model: Some(file),
         project: recovery.project.clone(),
     };
     work.write().unwrap();
     let source = recovery.project.with_extension("source.off");
     assert_eq!((mode(&recovery.project), mode(&source)), (0o600, 0o600));
+}
+
+#[test]
+fn work_is_recovered_though_its_scan_is_gone_replaced_or_oddly_called() {
+    let folder = tempfile::tempdir().unwrap();
+    let made = mesh(folder.path());
+    let mut names = vec![std::ffi::OsString::from("scan.off")];
+    #[cfg(unix)]
+    {
+        use std::os::unix::ffi::OsStringExt;
+        names.push("back\\slash %41.off".into());
+        names.push(std::ffi::OsString::from_vec(b"caf\xe9.off".to_vec()));
+    }
+    for name in names {
+        for is_replaced in [false, true] {
+            let file = folder.path().join(&name);
+            fs::copy(&made, &file).unwrap();
+            let loaded = loaded(&file);
+            let mut recovery = Recovery::begin(&folder.path().join("recovery")).unwrap();
+            recovery.every = Duration::ZERO;
+            let mut editor = Editor::new(Box::new(InlineExecutor::new()));
+            editor.handle(Event::Opened {
+                model: Arc::clone(&loaded.model),
+                name: "ball".to_owned(),
+                beginning: None,
+            });
+            let mesh = RestMesh::new(Arc::clone(&loaded), MeshSource::File(file.clone()));
+            let key = editor.snapshot_key();
+            let work = recovery.note(key, true, || editor.snapshot(), &mesh, Some(&file));
+            work.unwrap().write().unwrap();
+            // The file as it is on the disk goes first, wherever the project names it.
+            let opened = project_file::read(&recovery.project, &Watch::default()).unwrap();
+            assert_eq!(opened.source, MeshSource::File(file.clone()), "{}", file.display());
+            if is_replaced {
+                fs::write(&file, "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n").unwrap();
+            } else {
+                fs::remove_file(&file).unwrap();
+            }
+            let opened = project_file::read(&recovery.project, &Watch::default()).unwrap();
+            assert_eq!(opened.loaded.model.rest_positions(), loaded.model.rest_positions());
+            assert_eq!(opened.named, file);
+        }
+    }
 }
 
 #[test]

@@ -1,0 +1,166 @@
+//! The original of a file that is saved over: it is kept beside it, unless it is kept already, which its content tells.
+
+use std::path::{Path, PathBuf};
+
+use pliant_mesh::{Cancel, Progress, WeldOptions};
+
+use super::names::{is_gltf, original_names};
+use pliant_engine::files::{self, Destination, NewFile, Staged, Staging};
+use pliant_engine::saving::{self, SaveAs};
+use pliant_engine::watch::Watch;
+use pliant_engine::{EngineError, Loaded};
+
+/// Where the original of a file is.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub enum Kept {
+    /// A file beside it has the same content already.
+    Already(PathBuf),
+    /// This name is free for it.
+    Under(PathBuf),
+    /// The file is gone, so there is nothing to keep.
+    Nothing,
+}
+
+/// The original of one file.
+pub struct Original {
+    path: PathBuf,
+    content: Content,
+}
+
+/// What is kept of it.
+enum Content {
+    /// Its bytes.
+    Bytes(Vec<u8>),
+    /// A glTF with its neighbours, packed into a GLB: they are saved over along with it.
+    Packed(Box<Loaded>),
+    /// The same of the open file.
+    Open,
+    /// There is no such file.
+    Nothing,
+}
+
+impl Original {
+    /// Of the file at `path` as it is now; `loaded` is the open one, which may be the same.
+    ///
+    /// # Errors
+    /// Where it can't be read.
+    pub fn of(path: &Path, loaded: &Loaded, cancel: &Cancel) -> Result<Self, EngineError> {
+        let is_alone = |loaded: &Loaded| !is_gltf(path) && loaded.neighbours.is_empty();
+        let content = if !path.exists() {
+            Content::Nothing
+        } else if !is_kind_of_gltf(path) {
+            Content::Bytes(files::read(path)?)
+        } else if is_as_read(path, loaded) {
+            match is_alone(loaded) {
+                true => Content::Bytes(files::read(path)?),
+                false => Content::Open,
+            }
+        } else {
+            let watch = Watch::cancelled_by(cancel);
+            match pliant_engine::load(path, &WeldOptions::default(), &watch) {
+                Ok(other) if !is_alone(&other) => Content::Packed(Box::new(other)),
+                Err(error) if is_gltf(path) => return Err(error),
+                _ => Content::Bytes(files::read(path)?),
+            }
+        };
+        Ok(Self {
+            path: path.to_owned(),
+            content,
+        })
+    }
+
+    /// Whether it is kept already, or under which name it will be.
+    ///
+    /// # Errors
+    /// Where it can't be encoded, or a thousand names are taken.
+    pub fn place(&self, loaded: &Loaded, cancel: &Cancel) -> Result<Kept, EngineError> {
+        let packed;
+        let bytes = match (&self.content, self.packed(loaded)) {
+            (Content::Nothing, _) => return Ok(Kept::Nothing),
+            (Content::Bytes(bytes), _) => bytes,
+            (_, of) => {
+                let name = original_names(&self.path).next().unwrap_or_default();
+                packed = saving::bytes_at_rest(of, &name, &Progress::new(), cancel)?;
+                &packed
+            }
+        };
+        free_or_same(original_names(&self.path), bytes)
+    }
+
+    /// Stages it where [`place`](Self::place) says. With it where it is kept then, and what is to be committed if it was
+    /// not kept before.
+    ///
+    /// # Errors
+    /// As [`place`](Self::place); where it can't be written.
+    pub fn keep(
+        &self,
+        loaded: &Loaded,
+        staging: &Staging,
+        progress: &Progress,
+        cancel: &Cancel,
+    ) -> Result<(Kept, Option<Staged>), EngineError> {
+        let kept = self.place(loaded, cancel)?;
+        let Kept::Under(place) = &kept else {
+            return Ok((kept, None));
+        };
+        let staged = match &self.content {
+            Content::Bytes(bytes) => {
+                let file = NewFile {
+                    to: Destination::of(place)?,
+                    bytes,
+                };
+                staging.stage_watched(&[file], None, progress, cancel)?
+            }
+            _ => {
+                let of = self.packed(loaded);
+                let at_rest = of.model.rest_positions();
+                saving::stage(of, &SaveAs::shape(&at_rest, place), staging, progress, cancel)?.staged
+            }
+        };
+        Ok((kept, Some(staged)))
+    }
+
+    /// What is packed, where that is done.
+    fn packed<'a>(&'a self, open: &'a Loaded) -> &'a Loaded {
+        match &self.content {
+            Content::Packed(loaded) => loaded,
+            _ => open,
+        }
+    }
+}
+
+/// The first of these names that is free, or whose file holds these bytes.
+///
+/// # Errors
+/// All of them are taken.
+pub fn free_or_same(names: impl Iterator<Item = PathBuf>, bytes: &[u8]) -> Result<Kept, EngineError> {
+    let mut last = PathBuf::new();
+    for name in names {
+        // A link that leads nowhere is no free name: its file may come back.
+        if std::fs::symlink_metadata(&name).is_err() {
+            return Ok(Kept::Under(name));
+        }
+        if files::holds(&name, bytes) {
+            return Ok(Kept::Already(name));
+        }
+        last = name;
+    }
+    Err(EngineError::System(format!(
+        "{} and all names before it are taken: move the files that are kept there to another folder",
+        files::shown(&last)
+    )))
+}
+
+/// Whether the file at `path` and its neighbours are those that were opened, and as they were then.
+pub fn is_as_read(path: &Path, loaded: &Loaded) -> bool {
+    loaded.stamp.is_some()
+        && files::is_same(&loaded.path, path)
+        && loaded.stamps().all(|(path, stamp)| stamp.is_current(path))
+}
+
+fn is_kind_of_gltf(path: &Path) -> bool {
+    is_gltf(path)
+        || path
+            .extension()
+            .is_some_and(|extension| extension.eq_ignore_ascii_case("glb"))
+}

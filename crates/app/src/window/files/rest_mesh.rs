@@ -1,0 +1,56 @@
+//! The open mesh as it was read, which projects belong to, and where it stands now.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use pliant_engine::Loaded;
+use pliant_engine::files::{KnownFiles, Stamp, is_same};
+
+/// Where a mesh as it was read stands now.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub enum MeshSource {
+    /// It is built in.
+    Sample,
+    /// In this file.
+    File(PathBuf),
+    /// Nowhere: it was saved over, and has to be written again if it is needed.
+    Gone,
+}
+
+/// How a file is compared with its stamp: [`Stamp::is_current`] or [`Stamp::looks_current`].
+pub type Check = fn(&Stamp, &Path) -> bool;
+
+/// The open mesh as it was read. Cloning shares it.
+#[derive(Clone, Debug)]
+pub struct RestMesh {
+    /// The file as stored and its vertex sets.
+    pub loaded: Arc<Loaded>,
+    /// Where it stands.
+    pub source: MeshSource,
+    /// The files that hold it, as they were when they did.
+    copies: KnownFiles,
+}
+
+impl RestMesh {
+    /// A mesh that was just read from where it stands.
+    pub fn new(loaded: Arc<Loaded>, source: MeshSource) -> Self {
+        let copies = KnownFiles::default();
+        if let Some(stamp) = &loaded.stamp {
+            copies.note(&loaded.path, stamp.clone());
+        }
+        Self { loaded, source, copies }
+    }
+
+    /// Notes that a file holds it.
+    pub fn note_copy(&self, path: &Path, stamp: Stamp) {
+        self.copies.note(path, stamp);
+    }
+
+    /// Whether the file at `path` holds it still, as far as `check` finds out.
+    pub fn is_in(&self, path: &Path, check: Check) -> bool {
+        let is_read_file = is_same(path, &self.loaded.path);
+        let mut neighbours = self.loaded.neighbours.iter().filter(|_| is_read_file);
+        let copy = self.copies.stamp(path);
+        copy.is_some_and(|stamp| check(&stamp, path)) && neighbours.all(|(path, stamp)| check(stamp, path))
+    }
+}

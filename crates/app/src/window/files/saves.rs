@@ -1,0 +1,273 @@
+//! Saves as a person asks for them: they wait until the shape has settled, ask where another program has changed the
+//! file, and are followed by what was to happen after them.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use pliant_editor::{Event, Revision, SavedAs};
+
+use super::opening::Reload;
+use super::save_wish::SaveWish;
+use super::session::{KeepOriginal, Source};
+use super::writing::{Changed, Content, Model, Shape, Unwritten, Written, WrittenKind};
+use crate::window::application::Application;
+use crate::window::dialogs::question::{ChangedOffer, Question, Then};
+use crate::window::files::names::file_name;
+use crate::window::panels::notes::Note;
+use crate::window::threads::message::{Ground, PictureKind, Purpose};
+use pliant_engine::files::{is_same, shown};
+use pliant_engine::is_project;
+
+impl Application {
+    /// Saves under `path` once the shape has settled, without asking whether a source may be written over.
+    pub fn save_to(&mut self, path: PathBuf, keep_original: KeepOriginal) {
+        self.wish(SaveWish::Model(path, keep_original));
+    }
+
+    /// Saves a copy whose mesh rests, with the present shape as a morph target of weight 1, under `path`.
+    pub fn save_morph_to(&mut self, path: PathBuf) {
+        self.wish(SaveWish::Morph(path));
+    }
+
+    /// Saves the project under `path`, which gets its extension if it has none.
+    pub fn save_project_to(&mut self, path: PathBuf) {
+        self.wish(SaveWish::Project(project_path(path)));
+    }
+
+    fn wish(&mut self, wish: SaveWish) {
+        self.wishes.retain(|other| other.path() != wish.path());
+        self.wishes.push(wish);
+        self.save_what_has_settled();
+    }
+
+    /// Begins the saves that wait, once no other shape can follow.
+    pub(in crate::window) fn save_what_has_settled(&mut self) {
+        if self.editor.is_settled() {
+            self.save_as_it_is();
+        }
+    }
+
+    /// Begins the saves that wait, with the shape of this moment.
+    pub fn save_as_it_is(&mut self) {
+        let wishes = std::mem::take(&mut self.wishes);
+        let Some(open) = &self.session.open else { return };
+        let mesh = open.mesh.clone();
+        let mark = self.editor.save_mark();
+        for wish in wishes {
+            let (path, content) = match wish {
+                SaveWish::Model(path, keep_original) => {
+                    let (mesh, shape) = (mesh.clone(), self.shape());
+                    let model = Model {
+                        mesh,
+                        shape,
+                        keep_original,
+                    };
+                    (path, Content::Model(model))
+                }
+                SaveWish::Morph(path) => (path, Content::Morph(self.shape(), mesh.clone())),
+                SaveWish::Project(path) => match self.editor.snapshot() {
+                    Some(snapshot) => (path, Content::Project(Box::new(snapshot), mesh.clone())),
+                    None => continue,
+                },
+            };
+            self.session.save(&path, content, mark, &self.workers);
+        }
+    }
+
+    fn shape(&self) -> Shape {
+        Shape {
+            displacements: Arc::clone(self.editor.view().displacements),
+            inside_out: Arc::clone(self.editor.document().inside_out()),
+        }
+    }
+
+    /// Which saves wait, and for what, in a sentence; `None` if none does.
+    pub fn waiting_save(&self) -> Option<String> {
+        let names: Vec<String> = self.wishes.iter().map(|wish| file_name(wish.path())).collect();
+        let verb = if names.len() > 1 { "are" } else { "is" };
+        let end = match self.editor.is_acting() {
+            true => "what you are doing has ended and the shape has settled",
+            false => "the shape has settled",
+        };
+        (!names.is_empty()).then(|| format!("{} {verb} saved once {end}", names.join(" and ")))
+    }
+
+    /// Gives up the saves that wait, and stops what is under way with files.
+    pub(in crate::window) fn stop_file_work(&mut self) {
+        self.wishes.clear();
+        self.after_saving = None;
+        self.session.stop();
+    }
+
+    /// Whether a save is under way or waits.
+    pub(in crate::window) fn is_saving(&self) -> bool {
+        self.session.is_saving() || !self.wishes.is_empty()
+    }
+
+    /// Saves what is open: the project, or else the model.
+    pub(in crate::window) fn save_what_is_open(&mut self) {
+        match self.project() {
+            Some(project) => self.save_project_to(project),
+            None => self.save(),
+        }
+    }
+
+    /// Saves the model in its place, asking first whether the file that was opened may be written over.
+    pub(in crate::window) fn save(&mut self) {
+        match self.path().map(Path::to_owned) {
+            Some(path) if self.may_write_over() => self.save_to(path, KeepOriginal::No),
+            Some(path) => {
+                self.session.look_for_original(&path, &self.workers);
+                self.question = Some(Question::WriteOver(path, None));
+            }
+            None => self.choose(Purpose::SaveAs),
+        }
+    }
+
+    /// Saves the model under a path that was chosen in a dialog.
+    pub(in crate::window) fn save_as(&mut self, path: PathBuf) {
+        let is_source = self.session.open.as_ref().is_some_and(|open| open.is_at(&path));
+        let keep_original = match is_source && !self.may_write_over() {
+            true => KeepOriginal::Yes,
+            false => KeepOriginal::No,
+        };
+        self.save_to(path, keep_original);
+    }
+
+    /// Takes a save's end.
+    pub(in crate::window) fn written(&mut self, stamp: Revision, result: Result<Written, Unwritten>) {
+        self.session.written(stamp, &result, &self.workers);
+        match result {
+            Ok(written) => self.was_written(&written),
+            Err(Unwritten::Changed(path, request)) => {
+                let offers = match self.reload(&request.content) {
+                    Some(_) => ChangedOffer::Reload,
+                    None => ChangedOffer::Others,
+                };
+                self.question = Some(Question::Changed(path, offers));
+                self.unwritten = Some(request);
+            }
+            Err(Unwritten::Refused(sentence)) => {
+                self.after_saving = None;
+                self.fail(sentence);
+            }
+        }
+    }
+
+    fn was_written(&mut self, written: &Written) {
+        let saved = match written.what {
+            WrittenKind::Model { .. } => Some(SavedAs::Model),
+            WrittenKind::Project => Some(SavedAs::Project),
+            WrittenKind::Picture | WrittenKind::Edit | WrittenKind::Morph => None,
+        };
+        if let Some(saved) = saved {
+            self.settings.change(|settings| settings.remember(&written.path));
+            if self.session.is_of_open(written) {
+                self.editor.handle(Event::Saved(saved, written.mark));
+            }
+            if self.editor.document().is_displaced() || self.editor.document().is_applied() {
+                // The last of the first steps.
+                self.settings.change(|settings| settings.hints_seen = true);
+            }
+        }
+        let mut sentence = format!("Saved {}.", shown(&written.path));
+        for note in &written.notes {
+            sentence.push(' ');
+            sentence.push_str(note);
+        }
+        self.notes.headline = Some(Note::Done(sentence));
+        self.go_on_after_saving();
+    }
+
+    /// Does what was to follow the saves, once all of them have ended and nothing is unsaved.
+    fn go_on_after_saving(&mut self) {
+        if self.is_saving() || self.question.is_some() {
+            return;
+        }
+        match self.after_saving.take() {
+            Some(then) if self.editor.view().unsaved => self.question = Some(self.about_unsaved(then)),
+            Some(then) => self.go_on(then),
+            None => {}
+        }
+    }
+
+    /// Asks about unsaved work, naming the file that does not have it.
+    pub(in crate::window) fn about_unsaved(&self, then: Then) -> Question {
+        let open = self.session.open.as_ref();
+        let name = self.project().as_deref().map(file_name);
+        let name = name.or_else(|| open.map(|open| open.name()));
+        Question::Discard(then, name.unwrap_or_default())
+    }
+
+    /// Replaces the file that another program has changed.
+    pub(in crate::window) fn overwrite(&mut self) {
+        let Some(mut request) = self.unwritten.take() else {
+            return;
+        };
+        request.changed = Changed::Replace;
+        if let Content::Model(model) = &mut request.content {
+            // The other program's work stays beside it.
+            model.keep_original = KeepOriginal::Yes;
+        }
+        self.session.save_again(*request, &self.workers);
+    }
+
+    /// Opens the changed file with what was set up on the former one.
+    pub(in crate::window) fn reload_changed(&mut self) {
+        let reload = self.unwritten.take().and_then(|request| self.reload(&request.content));
+        if let Some(reload) = reload {
+            self.after_saving = None;
+            let source = Source::Reloaded(Box::new(reload));
+            self.session.load(source, &self.viewport.gpu(), &self.workers);
+        }
+    }
+
+    /// How the changed file is opened again with what was set up on the former one, where it is known what of that the
+    /// file has.
+    fn reload(&self, content: &Content) -> Option<Reload> {
+        let open = self.session.open.as_ref()?;
+        let file = open.path.clone()?;
+        let is_known = open.saved.is_some() || is_same(&file, &open.loaded.path);
+        let is_model = matches!(content, Content::Model(_));
+        Some(Reload {
+            snapshot: self.editor.snapshot().filter(|_| is_known && is_model)?,
+            saved: open.saved.clone(),
+            project: open.project.clone(),
+            file,
+        })
+    }
+
+    /// Asks for another name in place of that of the file which another program has changed.
+    pub(in crate::window) fn save_beside(&mut self) {
+        let Some(request) = self.unwritten.take() else { return };
+        self.choose(purpose(&request.content));
+    }
+
+    fn project(&self) -> Option<PathBuf> {
+        self.session.open.as_ref()?.project.clone()
+    }
+}
+
+/// For what a path is chosen that such a file is saved under.
+fn purpose(content: &Content) -> Purpose {
+    match content {
+        Content::Model(_) => Purpose::SaveAs,
+        Content::Morph(..) => Purpose::SaveMorph,
+        Content::Project(..) => Purpose::SaveProject,
+        Content::Edit(_) => Purpose::ExportEdit,
+        Content::Picture(_) => Purpose::SavePicture(PictureKind {
+            scale: 1,
+            ground: Ground::AsShown,
+        }),
+    }
+}
+
+/// A project's path, with its extension.
+pub(in crate::window) fn project_path(path: PathBuf) -> PathBuf {
+    if is_project(&path) {
+        return path;
+    }
+    let mut name = path.into_os_string();
+    name.push(".pliant");
+    PathBuf::from(name)
+}
