@@ -306,3 +306,58 @@ fn save_first_saves_the_project_that_is_open_and_then_goes_on() {
     assert_eq!(again.shape(), shape);
     assert_eq!(again.harness.state().editor().document().poses().len(), 1);
 }
+
+#[test]
+fn a_file_that_was_changed_is_reloaded_with_the_edit_on_top() {
+    for is_saved_before in [false, true] {
+        let folder = Folder::new();
+        let file = ball(&folder, "scan.off", 3);
+        let Some(mut session) = open(&file) else { return };
+        edit(&mut session);
+        if is_saved_before {
+            session.harness.state_mut().save_to(file.clone(), KeepOriginal::Yes);
+            session.settle();
+        }
+        // Another program moves all of it.
+        let theirs = pliant_tests::open(&file).model.rest().positions.clone();
+        let lifted: Vec<_> = theirs.iter().map(|p| *p + glam::DVec3::X).collect();
+        let mut drawn = pliant_mesh::shapes::icosphere(3);
+        drawn.positions = lifted.clone();
+        folder.write_mesh("scan.off", &drawn);
+        let whole = |session: &Session| {
+            let view = session.harness.state().editor().view();
+            // Welding has an order of its own in every shape.
+            let mut positions = Vec::new();
+            view.model.unwrap().drawn_positions(view.displacements, &mut positions);
+            positions
+        };
+        let before = whole(&session);
+        move_up(&mut session, ".1");
+        session.settle();
+        let moved = whole(&session);
+        save(&mut session);
+        if !is_saved_before {
+            click(&mut session, "Save");
+        }
+        await_words(&mut session, "scan.off has changed");
+        click(&mut session, "Reload with the edit");
+        session.settle();
+        let again = whole(&session);
+        assert_eq!(session.harness.state().editor().document().handles().len(), 1);
+        let apart = again
+            .iter()
+            .zip(&moved)
+            .map(|(again, moved)| again.distance(*moved + glam::DVec3::X));
+        let apart = apart.fold(0.0, f64::max);
+        assert!(apart < 1e-3, "{is_saved_before}: {apart}");
+        assert!(before.iter().zip(&moved).any(|(a, b)| a.distance(*b) > 0.05));
+        assert!(session.harness.state().editor().view().unsaved);
+        // And it can be saved over that file, which stays beside it.
+        save(&mut session);
+        click(&mut session, "Save");
+        session.settle();
+        assert!(!session.harness.state().editor().view().unsaved);
+        let saved = pliant_tests::open(&file).model.rest().positions.clone();
+        assert_eq!(saved.len(), again.len());
+    }
+}

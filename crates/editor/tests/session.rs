@@ -310,13 +310,14 @@ fn a_save_has_the_state_at_which_it_began_and_no_later_one() {
     rig.undo();
     assert!(!rig.editor.view().unsaved);
     // The same for a shape that arrives after its step.
-    let mut rig = Rig::open_with_jobs_waiting(shapes::icosphere(3));
-    rig.drain();
-    rig.choose("arap");
+    let mut rig = Rig::open(shapes::icosphere(5));
+    rig.choose("shells");
     rig.paint_handle();
     rig.drain();
-    rig.move_by('x', ".3");
-    assert!(rig.run(JobKind::Solve) && !rig.editor.document().is_settled());
+    rig.type_keys("rx150");
+    rig.key(Key::Enter);
+    assert!(rig.run(JobKind::Solve));
+    assert!(!rig.editor.document().is_settled());
     for waits in [false, true] {
         let mark = rig.editor.save_mark();
         if waits {
@@ -330,6 +331,22 @@ fn a_save_has_the_state_at_which_it_began_and_no_later_one() {
     let mark = rig.editor.save_mark();
     rig.editor.handle(Event::Saved(SavedAs::Model, mark));
     assert!(!rig.editor.view().unsaved);
+}
+
+#[test]
+fn a_drag_that_another_method_ends_says_so() {
+    let mut rig = Rig::open(shapes::icosphere(3));
+    rig.paint_handle();
+    rig.drain();
+    rig.type_keys("gx.1");
+    rig.choose("bilaplacian");
+    assert!(rig.editor.view().problem.unwrap().contains("taken back"));
+    assert_eq!(rig.largest_displacement(), 0.0);
+    rig.move_by('x', ".1");
+    rig.drain();
+    assert_eq!(rig.editor.view().problem, None);
+    rig.choose("arap");
+    assert_eq!(rig.editor.view().problem, None, "nothing was under way");
 }
 
 #[test]

@@ -11,6 +11,9 @@ use crate::EngineError;
 use crate::loading::open;
 use crate::watch::Watch;
 
+/// What a file is that an edit names.
+pub(crate) const OF_EDIT: &str = "a file that --edit needs";
+
 /// Reads the meshes that an edit names, by names relative to its own folder, and puts them in their place.
 ///
 /// # Errors
@@ -19,6 +22,7 @@ pub fn bring(edit: &mut Beginning, edit_path: &Path, watch: &Watch) -> Result<()
     for (name, file) in edit.attachment_files() {
         let path = edit_path.parent().unwrap_or(Path::new("")).join(file);
         let mesh = control_mesh(&path, watch)?;
+        watch.note_read(OF_EDIT, &path);
         edit.bring(name, mesh).map_err(|source| EngineError::Edit {
             edit: edit_path.to_owned(),
             source,

@@ -13,7 +13,7 @@ use crate::{EngineError, control_mesh, files, is_project};
 /// # Errors
 /// A file that can't be read, or what its format does not have, naming the file.
 pub fn read_edit(path: &Path, watch: &Watch) -> Result<Beginning, EngineError> {
-    watch.note_read(path);
+    watch.note_read("--edit", path);
     let text = files::read_text(path)?;
     let read = if is_project(path) {
         Project::parse(&text).map(Beginning::from)

@@ -9,6 +9,7 @@ use pliant_io::{Scene, SceneAndDrawn};
 use pliant_mesh::{Drawn, Model};
 
 use crate::EngineError;
+use crate::control_mesh::OF_EDIT;
 use crate::files::shown;
 use crate::loading::{Loaded, open};
 use crate::watch::Watch;
@@ -21,7 +22,12 @@ pub fn bring(edit: &mut Beginning, edit_path: &Path, loaded: &Loaded, watch: &Wa
     let folder = edit_path.parent().unwrap_or(Path::new(""));
     for example in edit.examples_mut() {
         let displacements = match &example.source {
-            ExampleSource::File(file) => from_file(&folder.join(file), loaded, watch)?,
+            ExampleSource::File(file) => {
+                let path = folder.join(file);
+                let displacements = from_file(&path, loaded, watch)?;
+                watch.note_read(OF_EDIT, &path);
+                displacements
+            }
             ExampleSource::MorphTarget(target) => from_morph_target(target, loaded, watch)?,
             ExampleSource::PerVertex(_) => continue,
         };

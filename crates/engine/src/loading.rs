@@ -97,10 +97,12 @@ pub fn load_bytes(bytes: Vec<u8>, path: &Path, weld: &WeldOptions, watch: &Watch
     let neighbours = Neighbours::of(path);
     let opened = open_bytes(bytes, path, &neighbours, watch)?;
     let loaded = welded(opened, path, weld, watch)?;
-    Ok(Loaded {
+    let loaded = Loaded {
         neighbours: neighbours.were_read(),
         ..loaded
-    })
+    };
+    loaded.sources().for_each(|(what, path)| watch.note_read(what, path));
+    Ok(loaded)
 }
 
 fn open_bytes(
@@ -113,8 +115,10 @@ fn open_bytes(
     let format = Format::of_name(&name)?;
     let progress = watch.begin("reading");
     let opened = pliant_io::read(bytes, format, &name, neighbours, &progress, &watch.cancel);
-    watch.note_read(path);
-    neighbours.places().iter().for_each(|place| watch.note_read(place));
+    watch.note_read("a file that is read", path);
+    for place in neighbours.places() {
+        watch.note_read("a file that is read", &place);
+    }
     opened.map_err(EngineError::Read)
 }
 

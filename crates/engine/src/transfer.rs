@@ -98,7 +98,7 @@ fn partners(
 ) -> Result<(Vec<Option<usize>>, Vec<String>), EngineError> {
     let target = loaded.model.rest();
     if let Some(path) = job.correspondences {
-        watch.note_read(path);
+        watch.note_read("--correspondences", path);
     }
     let of_drawn = match job.correspondences {
         Some(path) => read_correspondences(path, source.triangles.len(), target.triangles.len())?,

@@ -1,6 +1,6 @@
 //! The stage and progress of long work, its cancel flag, and which files it has read.
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -15,8 +15,8 @@ pub struct Watch {
     /// Raised when the result is no longer wanted.
     pub cancel: Cancel,
     stage: Arc<Mutex<Option<(&'static str, Progress)>>>,
-    /// Every file that was read.
-    read: Arc<Mutex<BTreeSet<PathBuf>>>,
+    /// Every file that was read, with what it is.
+    read: Arc<Mutex<BTreeMap<PathBuf, &'static str>>>,
 }
 
 impl Watch {
@@ -41,10 +41,10 @@ impl Watch {
         stage.as_ref().map(|(doing, progress)| (*doing, progress.get()))
     }
 
-    /// Notes that a file is read.
-    pub(crate) fn note_read(&self, path: &Path) {
+    /// Notes that a file is read, and what it is for a person: the last word counts.
+    pub(crate) fn note_read(&self, what: &'static str, path: &Path) {
         let mut read = self.read.lock().unwrap_or_else(PoisonError::into_inner);
-        read.insert(path.to_owned());
+        read.insert(path.to_owned(), what);
     }
 
     /// Refuses outputs, each with its argument's name, of which one is another, or any file that was read: meshes, what
@@ -57,8 +57,8 @@ impl Watch {
         for (number, output) in outputs.iter().enumerate() {
             refuse_shared(*output, outputs[..number].iter().copied())?;
             let is_free = |path: &PathBuf| number == 0 && edited == Some(path);
-            let others = read.iter().filter(|path| !is_free(path));
-            refuse_shared(*output, others.map(|path| ("a file that is read", &**path)))?;
+            let others = read.iter().filter(|(path, _)| !is_free(path));
+            refuse_shared(*output, others.map(|(path, what)| (*what, &**path)))?;
         }
         Ok(())
     }

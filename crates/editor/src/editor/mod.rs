@@ -257,12 +257,17 @@ impl Editor {
             return;
         }
         let scope = command.scope();
-        let had_gesture = self.gesture.is_some();
+        let activity = self.gesture.as_ref().map(|gesture| gesture.activity());
+        let had_gesture = activity.is_some();
         if scope != Scope::View {
             self.abort_gesture();
         }
         if !matches!(scope, Scope::View | Scope::Tool) {
             self.workspace.refusal = None;
+        }
+        if activity == Some(Activity::Dragging) && scope == Scope::Document {
+            self.workspace
+                .refuse("The drag that was under way has been taken back: drag once more.");
         }
         // Undo during a drag takes back the drag, and nothing before it.
         if !(had_gesture && scope == Scope::History) {

@@ -164,3 +164,76 @@ fn is_kind_of_gltf(path: &Path) -> bool {
             .extension()
             .is_some_and(|extension| extension.eq_ignore_ascii_case("glb"))
 }
+
+#[cfg(test)]
+#[expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+mod tests {
+    use std::fs;
+
+    use pliant_mesh::shapes;
+
+    use super::*;
+
+    fn read(path: &Path) -> Loaded {
+        pliant_engine::load(path, &WeldOptions::default(), &Watch::default()).unwrap()
+    }
+
+    /// Writes a ball as a file of the kind that its name says.
+    fn ball(path: &Path, level: u32) {
+        let drawn = shapes::icosphere(level);
+        let mut text = format!("OFF\n{} {} 0\n", drawn.positions.len(), drawn.triangles.len());
+        drawn
+            .positions
+            .iter()
+            .for_each(|p| text.push_str(&format!("{} {} {}\n", p.x, p.y, p.z)));
+        drawn
+            .triangles
+            .iter()
+            .for_each(|[a, b, c]| text.push_str(&format!("3 {} {} {}\n", a.0, b.0, c.0)));
+        let off = path.with_extension("off");
+        fs::write(&off, text).unwrap();
+        save(&read(&off), path);
+    }
+
+    fn save(loaded: &Loaded, path: &Path) {
+        let at_rest = loaded.model.rest_positions();
+        let (staging, progress, cancel) = (Staging::default(), Progress::new(), Cancel::new());
+        let saved = saving::stage(loaded, &SaveAs::shape(&at_rest, path), &staging, &progress, &cancel).unwrap();
+        saved.staged.commit().unwrap();
+    }
+
+    fn keep(path: &Path, loaded: &Loaded) -> Kept {
+        let (staging, progress, cancel) = (Staging::default(), Progress::new(), Cancel::new());
+        let original = Original::of(path, loaded, &cancel).unwrap();
+        let (kept, staged) = original.keep(loaded, &staging, &progress, &cancel).unwrap();
+        if let Some(staged) = staged {
+            staged.commit().unwrap();
+        }
+        kept
+    }
+
+    #[test]
+    fn two_files_whose_originals_have_one_name_are_both_kept_and_each_once() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        let (glb, gltf) = (at("scan.glb"), at("scan.gltf"));
+        ball(&glb, 1);
+        ball(&gltf, 2);
+        let names = [at("scan.original.glb"), at("scan.original-2.glb")];
+        for (path, name) in [&glb, &gltf].into_iter().zip(&names) {
+            let loaded = read(path);
+            assert_eq!(keep(path, &loaded), Kept::Under(name.clone()));
+            assert_eq!(keep(path, &loaded), Kept::Already(name.clone()));
+            assert_eq!(read(name).model.rest_positions(), loaded.model.rest_positions());
+        }
+        assert_eq!(fs::read(&names[0]).unwrap(), fs::read(&glb).unwrap(), "to the byte");
+        // Another program's glTF in its place is what is kept then, and not the one that was read.
+        let loaded = read(&gltf);
+        ball(&gltf, 3);
+        assert_eq!(keep(&gltf, &loaded), Kept::Under(at("scan.original-3.glb")));
+        let (kept, theirs) = (read(&at("scan.original-3.glb")), read(&gltf));
+        assert_eq!(kept.model.rest_positions(), theirs.model.rest_positions());
+        fs::remove_file(&gltf).unwrap();
+        assert_eq!(keep(&gltf, &loaded), Kept::Nothing);
+    }
+}
