@@ -29,7 +29,7 @@ fn write_scan(folder: &Path) {
  "bufferViews": [{ "buffer": 0, "byteLength": 48 }, { "buffer": 0, "byteOffset": 48, "byteLength": 12 }],
  "buffers": [{ "byteLength": 60, "uri": "a%20scan.bin" }] }"#;
     fs::write(folder.join("a scan.bin"), bin).unwrap();
-    fs::write(folder.join("scan.gltf"), text).unwrap();
+    fs::write(folder.join("a scan.gltf"), text).unwrap();
 }
 
 fn load(path: &Path) -> Loaded {
@@ -77,7 +77,7 @@ fn cut_off_at_any_step_the_old_file_or_the_new_one_stands_there_whole() {
     for cut in 0..100 {
         let folder = tempfile::tempdir().unwrap();
         write_scan(folder.path());
-        let scan = folder.path().join("scan.gltf");
+        let scan = folder.path().join("a scan.gltf");
         let before = load(&scan).model.rest_positions();
         let child = Command::new(std::env::current_exe().unwrap())
             .args(["the_one_that_is_cut_off", "--exact", "--ignored"])
@@ -101,7 +101,7 @@ fn cut_off_at_any_step_the_old_file_or_the_new_one_stands_there_whole() {
                 .map(|entry| entry.unwrap().file_name())
                 .collect();
             names.sort();
-            assert_eq!(names, ["a scan.bin", "scan.gltf"], "nothing is left behind");
+            assert_eq!(names, ["a scan.bin", "a scan.gltf"], "nothing is left behind");
             break;
         }
     }
@@ -114,8 +114,8 @@ fn what_waits_for_its_place_has_no_more_rights_than_what_it_replaces() {
     use std::os::unix::fs::PermissionsExt;
     let folder = tempfile::tempdir().unwrap();
     write_scan(folder.path());
-    let scan = folder.path().join("scan.gltf");
-    for name in ["scan.gltf", "a scan.bin"] {
+    let scan = folder.path().join("a scan.gltf");
+    for name in ["a scan.gltf", "a scan.bin"] {
         fs::set_permissions(folder.path().join(name), fs::Permissions::from_mode(0o600)).unwrap();
     }
     let loaded = load(&scan);
@@ -141,7 +141,7 @@ fn stopped_at_any_look_every_file_is_as_it_was() {
         files
     };
     let before = contents();
-    let scan = folder.path().join("scan.gltf");
+    let scan = folder.path().join("a scan.gltf");
     let loaded = load(&scan);
     let positions = lifted(&loaded.model.rest_positions());
     let mut looks = 0;
@@ -215,7 +215,7 @@ fn where_the_bytes_find_no_room_the_old_file_stays() {
 fn a_folder_that_can_not_be_written_is_named() {
     let folder = tempfile::tempdir().unwrap();
     write_scan(folder.path());
-    let loaded = load(&folder.path().join("scan.gltf"));
+    let loaded = load(&folder.path().join("a scan.gltf"));
     // No one makes a file there, whatever the rights.
     let out = Path::new("/proc/out.glb");
     let refused = stage(&loaded, &lifted(&loaded.model.rest_positions()), out);
