@@ -148,3 +148,56 @@ fn a_glb_without_a_chunk_for_buffers_is_read_and_edited() {
     let again = try_open(&saved.files[0].bytes, Format::Glb, &Folder::default()).unwrap();
     assert_near(&again.drawn.positions, &positions, 4.0);
 }
+
+#[test]
+fn what_is_read_all_the_same_is_told() {
+    type Change = fn(&mut Maker);
+    let changes: [(&str, Change); 8] = [
+        ("the extension ACME_wind", |maker| {
+            maker.root["extensionsRequired"] = json!(["ACME_wind"])
+        }),
+        ("The rotation of node 0 (arm)", |maker| {
+            maker.root["nodes"][0] = json!({ "mesh": 0, "name": "arm", "rotation": [0, 0, 1] });
+        }),
+        ("The matrix of node 0", |maker| {
+            maker.root["nodes"][0]["matrix"] = json!([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, "one"]);
+        }),
+        ("Material 0 is broken", |maker| {
+            maker.root["materials"] = json!([{ "pbrMetallicRoughness": { "metallicFactor": "shiny" } }]);
+            maker.root["meshes"][0]["primitives"][0]["material"] = 0.into();
+        }),
+        ("Gaussian splats (KHR_gaussian_splatting)", |maker| {
+            let primitive = &mut maker.root["meshes"][0]["primitives"][0];
+            primitive["extensions"] = json!({ "KHR_gaussian_splatting": { "kernel": "ellipse" } });
+            primitive["attributes"]["KHR_gaussian_splatting:ROTATION"] = 2.into();
+        }),
+        ("The attribute _WIND_DIRECTION of mesh 0", |maker| {
+            maker.root["meshes"][0]["primitives"][0]["attributes"]["_WIND_DIRECTION"] = 1.into();
+        }),
+        ("hidden by KHR_node_visibility", |maker| {
+            maker.root["nodes"][0]["extensions"] = json!({ "KHR_node_visibility": { "visible": false } });
+        }),
+        ("not drawn", |maker| {
+            maker.loose_node(json!({ "mesh": 0 }));
+        }),
+    ];
+    for (what, change) in changes {
+        let mut maker = Maker::of(&grid(3));
+        assert!(open(&maker.glb()).scene.notes().is_empty());
+        change(&mut maker);
+        let opened = open(&maker.glb());
+        let [note] = opened.scene.notes() else {
+            panic!("{what}: {:?}", opened.scene.notes());
+        };
+        assert!(note.contains(what), "{what}: {note}");
+        assert_eq!(opened.drawn.triangles.len(), 18);
+    }
+    let text = Maker::of(&grid(3)).root.to_string();
+    let twice = text.replacen("\"mesh\":0", "\"mesh\":0,\"name\":\"a\",\"name\":\"b\"", 1);
+    let opened = open(&gltf_maker::glb(twice.as_bytes(), &Maker::of(&grid(3)).bin));
+    assert!(
+        opened.scene.notes()[0].contains("'name' more than once"),
+        "{:?}",
+        opened.scene.notes()
+    );
+}

@@ -5,6 +5,7 @@ mod compare;
 mod document;
 mod geometry;
 mod neighbours;
+mod remarks;
 mod save;
 pub(crate) mod write;
 
@@ -48,6 +49,7 @@ fn open(source: &Source<'_>, format: Format) -> Result<(Stored, Drawn), Fault> {
     meshopt::decode(&mut document, source.cancel)?;
     let meshes = primitive::primitives(&document, source.cancel)?;
     draco::decode(&mut document, &meshes, source.cancel)?;
+    remarks::add(&document, &meshes, &mut notes);
     let placed = tree::placed_meshes(&document, &mut notes, source.cancel)?;
     let (drawn, pieces) = geometry::drawn(&document, &meshes, &placed, &mut notes, source.progress, source.cancel)?;
     Ok((

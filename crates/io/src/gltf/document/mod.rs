@@ -96,7 +96,13 @@ impl Document {
         let materials_at = section("materials")?;
         let accessors = typed(&json, &accessors_at, "accessor")?;
         let views = typed(&json, &views_at, "buffer view")?;
-        let materials = typed(&json, &materials_at, "material")?;
+        let mut notes = Notes::default();
+        let materials = (materials_at.iter().enumerate())
+            .map(|(number, &at)| {
+                json.typed(at)
+                    .unwrap_or_else(|error| dropped(number, &error, &mut notes))
+            })
+            .collect();
         let textures = typed(&json, &section("textures")?, "texture")?;
         let samplers = typed(&json, &section("samplers")?, "sampler")?;
         let mut document = Self {
@@ -117,7 +123,7 @@ impl Document {
             buffers_at,
             images_at,
             materials_at,
-            notes: Notes::default(),
+            notes,
             undecoded_views: BTreeMap::new(),
             undecoded_primitives: BTreeMap::new(),
             loaded_bytes: 0,
@@ -192,6 +198,14 @@ fn objects(json: &Json, section: &str) -> Result<Vec<At>, String> {
     } else {
         Err(format!("its {section} are not a list of objects"))
     }
+}
+
+/// What stands for a material that can't be read; the file keeps it.
+fn dropped(number: usize, error: &str, notes: &mut Notes) -> Material {
+    let error = quoted(error);
+    let note = format!("Material {number} is broken ({error}), so what has it is drawn plain.");
+    notes.add("materials", Some(note));
+    Material::default()
 }
 
 /// A section's objects as types of the `gltf` crate.
