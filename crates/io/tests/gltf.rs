@@ -365,7 +365,7 @@ fn materials_images_and_colours_come_with_the_looks() {
     assert_eq!(uvs[1][0], 2.0 * cube().uvs[1][0] + 0.5);
     assert_eq!(uvs[24], [0.5, 0.25]);
     let colours = looks.colours.unwrap();
-    assert_eq!((colours[0], colours[24]), ([0, 128, 255, 255], [255; 4]));
+    assert_eq!((colours[0], colours[24]), ([0, 32768, 65535, 65535], [65535; 4]));
     assert!(split(&maker.glb()).0.contains("KHR_texture_transform"));
 }
 

@@ -252,7 +252,10 @@ fn unit_vectors_of_four_and_colours_are_read_through_their_filters() {
         );
         maker.root["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = colour.into();
         let found = open(&maker.glb()).scene.appearance().colours.unwrap();
-        let found: Vec<[f32; 4]> = found.iter().map(|c| c.map(|byte| f32::from(byte) / 255.0)).collect();
+        let found: Vec<[f32; 4]> = found
+            .iter()
+            .map(|c| c.map(|light| f32::from(light) / 65535.0))
+            .collect();
         assert_all_near(&found, &vectors, 0.6 / 255.0);
     }
 }

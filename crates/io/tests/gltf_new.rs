@@ -26,7 +26,7 @@ fn save(opened: &SceneAndDrawn, positions: &[DVec3], name: &str) -> Saved {
     try_save(opened, positions, name, Placement::SameFolder).unwrap()
 }
 
-fn colours_as_floats(opened: &SceneAndDrawn) -> Vec<[u8; 4]> {
+fn colours(opened: &SceneAndDrawn) -> Vec<[u16; 4]> {
     opened.scene.appearance().colours.unwrap()
 }
 
@@ -40,7 +40,7 @@ fn an_obj_becomes_a_glb_with_its_looks() {
     assert_eq!(again.drawn.triangles.len(), 3);
     let (old, new) = (opened.scene.appearance(), again.scene.appearance());
     assert_eq!(old.uvs, new.uvs);
-    assert_eq!(colours_as_floats(&opened), colours_as_floats(&again));
+    assert_eq!(colours(&opened), colours(&again));
     assert_eq!(new.images.len(), 1);
     assert_eq!(new.images[0].encoded, old.images[0].encoded);
     let names: Vec<&str> = new.materials.iter().map(|material| material.name.as_str()).collect();

@@ -165,7 +165,11 @@ fn survive(format: Format, seeds: &[&[u8]], runs: usize) {
                 .unwrap_or_else(|error| panic!("{error}: {:?}", String::from_utf8_lossy(&saved.files[0].bytes)));
             assert_eq!(again.drawn.triangles.len(), drawn.triangles.len());
             if target == format && target == Format::Obj {
-                assert!(same_bits(&again.drawn.positions, &positions));
+                // Corners that come to have other normals are drawn apart.
+                assert!(same_bits(
+                    &of_file(&again.drawn, &again.drawn.positions),
+                    &of_file(drawn, &positions)
+                ));
             }
         }
     }
@@ -173,6 +177,14 @@ fn survive(format: Format, seeds: &[&[u8]], runs: usize) {
         read_count > runs / 20,
         "the mutations are so rough that only {read_count} of {runs} files were read"
     );
+}
+
+/// The position of each file vertex.
+fn of_file(drawn: &pliant_mesh::Drawn, positions: &[DVec3]) -> Vec<DVec3> {
+    let mut out = vec![DVec3::ZERO; drawn.file_vertex_count];
+    let each = drawn.file_vertex.iter().zip(positions);
+    each.for_each(|(vertex, position)| out[vertex.index()] = *position);
+    out
 }
 
 const OBJ: &[u8] = b"# made\nmtllib red.mtl\no one\nv 0 0 0 1 0 0\r\nv 1 0 0\nv 1 1 \\\n0.5\nv 0 1 0\nvt 0 0\nvt 1 0\nvn 0 0 1\nvn 1 0 0\n\

@@ -387,7 +387,8 @@ fn materials_and_textures_come_through_the_resolver() {
         (AlphaMode::Blend, 0.5)
     );
     assert_eq!(look.materials[2].name, "none");
-    assert!(opened.scene.notes().is_empty(), "{:?}", opened.scene.notes());
+    let notes = opened.scene.notes();
+    assert!(notes.len() == 1 && notes[0].contains("'none'"), "{notes:?}");
     let plain = try_open(text, Format::Obj).unwrap();
     assert!(plain.scene.notes()[0].contains("my stuff.mtl"));
 }
@@ -478,6 +479,6 @@ fn colours_behind_positions_are_drawn_whether_they_count_to_1_or_255() {
         Format::Obj,
     );
     let expected = vec![[255, 0, 0, 255], [0, 255, 0, 255], [255, 255, 255, 255]];
-    assert_eq!(small.scene.appearance().colours.unwrap(), expected);
-    assert_eq!(large.scene.appearance().colours.unwrap(), expected);
+    assert_eq!(small.scene.appearance().srgb_colours().unwrap(), expected);
+    assert_eq!(large.scene.appearance().srgb_colours().unwrap(), expected);
 }

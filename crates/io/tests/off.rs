@@ -28,11 +28,11 @@ fn the_variants_hold_normals_colours_and_texture_coordinates() {
         "STCNOFF 3 1 0\n0 0 0 0 0 1 255 0 0 255 0 0\n1 0 0 0 0 1 0 255 0 0 1 0\n0 1 0 0 0 1 0 0 255 255 0 1\n3 0 1 2\n";
     let opened = open(text.as_bytes(), Format::Off);
     let look = opened.scene.appearance();
-    assert_eq!(look.normals.unwrap(), [[0.0, 0.0, 1.0]; 3]);
     assert_eq!(
-        look.colours.unwrap(),
+        look.srgb_colours().unwrap(),
         [[255, 0, 0, 255], [0, 255, 0, 0], [0, 0, 255, 255]]
     );
+    assert_eq!(look.normals.unwrap(), [[0.0, 0.0, 1.0]; 3]);
     assert_eq!(look.uvs.unwrap(), [[0.0, 1.0], [1.0, 1.0], [0.0, 0.0]]);
     let turn = DQuat::from_rotation_x(0.5);
     let bytes = save(&opened, &moved(&opened, |_| true, |p| turn * p + DVec3::ONE));
@@ -44,7 +44,7 @@ fn the_variants_hold_normals_colours_and_texture_coordinates() {
         b"COFF\n3 1\n0 0 0 1 0 0\n1 0 0 0 1 0\n0 1 0 0 0 1\n3 0 1 2",
         Format::Off,
     );
-    assert_eq!(few.scene.appearance().colours.unwrap()[1], [0, 255, 0, 255]);
+    assert_eq!(few.scene.appearance().srgb_colours().unwrap()[1], [0, 255, 0, 255]);
 }
 
 #[test]

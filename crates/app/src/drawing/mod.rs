@@ -61,6 +61,7 @@ impl Drawing {
     pub fn new(model: &Model, mut appearance: Appearance, inside_out: Arc<BTreeSet<u32>>) -> Self {
         materials::dim_bare(&mut appearance, model.drawn.triangle_count() as u32);
         let relative = Relative::of(model);
+        let colours = appearance.srgb_colours();
         let materials = EncodedMaterials::new(&mut appearance);
         let groups: Vec<MaterialGroup> = appearance
             .groups
@@ -90,7 +91,7 @@ impl Drawing {
             kept: Kept::default(),
             uvs: appearance.uvs,
             second_uvs: appearance.second_uvs,
-            colours: appearance.colours,
+            colours,
             groups,
             triangles,
         }
@@ -131,7 +132,7 @@ impl Drawing {
                 uvs: self.uvs.as_deref(),
                 second_uvs: self.second_uvs.as_deref(),
                 colours: self.colours.as_deref(),
-                colour_space: ColourSpace::Linear,
+                colour_space: ColourSpace::Srgb,
                 regions: None,
                 groups: &self.groups,
                 materials: &self.materials.without_images(),

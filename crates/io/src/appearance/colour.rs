@@ -1,6 +1,6 @@
 //! Colours between the sRGB that scan formats store and the linear light that is drawn.
 
-/// The linear light of an sRGB channel, both from 0 to 1. f32: colours are only ever drawn and saved in 8 bits.
+/// The linear light of an sRGB channel, both from 0 to 1. f32: colours are only ever drawn and saved in 16 bits or less.
 pub(crate) fn linear_of_srgb(channel: f32) -> f32 {
     let channel = channel.clamp(0.0, 1.0);
     if channel <= 0.040_45 {
@@ -25,9 +25,34 @@ pub(crate) fn byte(channel: f32) -> u8 {
     (channel * 255.0).round() as u8
 }
 
-/// sRGB bytes of linear bytes, as a table.
-pub(crate) fn srgb_bytes_of_linear() -> [u8; 256] {
-    std::array::from_fn(|value| byte(srgb_of_linear(value as f32 / 255.0)))
+/// A channel from 0 to 1 in 16 bits; what isn't a number is 0.
+pub(crate) fn short(channel: f32) -> u16 {
+    (channel * 65535.0).round() as u16
+}
+
+/// A colour in linear light, of sRGB channels and an alpha that are from 0 to 1.
+pub(crate) fn linear_colour([r, g, b, alpha]: [f32; 4]) -> [u16; 4] {
+    let [r, g, b] = [r, g, b].map(|channel| short(linear_of_srgb(channel)));
+    [r, g, b, short(alpha)]
+}
+
+/// sRGB bytes of linear colours, as a table.
+pub(crate) struct SrgbBytes(Vec<u8>);
+
+impl SrgbBytes {
+    pub fn new() -> Self {
+        Self(
+            (0..=u16::MAX)
+                .map(|light| byte(srgb_of_linear(f32::from(light) / 65535.0)))
+                .collect(),
+        )
+    }
+
+    /// A linear colour as sRGB, with its alpha in 8 bits.
+    pub fn of_linear(&self, [r, g, b, alpha]: [u16; 4]) -> [u8; 4] {
+        let [r, g, b] = [r, g, b].map(|light| self.0[usize::from(light)]);
+        [r, g, b, byte(f32::from(alpha) / 65535.0)]
+    }
 }
 
 #[cfg(test)]
@@ -40,9 +65,16 @@ mod tests {
             let channel = value as f32 / 255.0;
             assert!((srgb_of_linear(linear_of_srgb(channel)) - channel).abs() < 1e-5);
         }
-        let srgb = srgb_bytes_of_linear();
-        assert_eq!((srgb[0], srgb[255]), (0, 255));
-        assert!(srgb.windows(2).all(|pair| pair[0] <= pair[1]));
+        let srgb = SrgbBytes::new();
+        for value in 0..=255 {
+            let colour = [value; 4];
+            let linear = linear_colour(colour.map(|value| f32::from(value) / 255.0));
+            assert_eq!(
+                srgb.of_linear(linear),
+                colour,
+                "every sRGB byte survives 16 bits of light"
+            );
+        }
         assert_eq!(byte(f32::NAN), 0);
     }
 }

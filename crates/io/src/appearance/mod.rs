@@ -17,8 +17,8 @@ pub struct Appearance {
     pub uvs: Option<Vec<[f32; 2]>>,
     /// Texture coordinates, as stored, of the second set that a material uses, if any does.
     pub second_uvs: Option<Vec<[f32; 2]>>,
-    /// Linear-light vertex colours, 0 to 255; white where a vertex has none.
-    pub colours: Option<Vec<[u8; 4]>>,
+    /// Linear-light vertex colours, 0 to 65535; white where a vertex has none. 16 bits tell all 256 sRGB greys apart.
+    pub colours: Option<Vec<[u16; 4]>>,
     /// Runs of `Drawn::triangles` that share node and material, in order, covering all of them.
     pub groups: Vec<Group>,
     /// Materials; every group's index is in range.
@@ -28,6 +28,13 @@ pub struct Appearance {
 }
 
 impl Appearance {
+    /// The vertex colours as sRGB with a linear alpha, 0 to 255.
+    pub fn srgb_colours(&self) -> Option<Vec<[u8; 4]>> {
+        let srgb = colour::SrgbBytes::new();
+        let colours = self.colours.as_ref()?.iter();
+        Some(colours.map(|&colour| srgb.of_linear(colour)).collect())
+    }
+
     /// One plain material for all triangles: what a file without materials looks like.
     pub(crate) fn plain(triangle_count: u32) -> Self {
         Self {

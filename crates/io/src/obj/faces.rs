@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::statements::resolve;
-use crate::text::Cursor;
+use crate::text::{Cursor, mark_len};
 
 /// A corner of a face: what it names, and where.
 #[derive(Clone, Debug)]
@@ -32,7 +32,7 @@ pub(super) fn for_each<'a>(
     mut visit_face: impl FnMut(&Face<'_>),
     mut visit_normal: impl FnMut(usize, Cursor<'a>),
 ) {
-    let mut cursor = Cursor::new(bytes, 0);
+    let mut cursor = Cursor::new(bytes, mark_len(bytes));
     let (mut vertex_count, mut normal_count) = (0, 0);
     let mut corners = Vec::new();
     while !cursor.is_done() {

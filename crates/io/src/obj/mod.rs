@@ -19,7 +19,7 @@ use std::sync::Arc;
 
 use pliant_mesh::{Drawn, DrawnVertex, Object};
 
-use crate::appearance::colour::{byte, linear_of_srgb};
+use crate::appearance::colour::linear_colour;
 use crate::appearance::{Group, Material};
 use crate::convert::Polygons;
 use crate::save::OutputFile;
@@ -133,6 +133,16 @@ fn left_out(source: &Source<'_>, statements: &Statements) -> Vec<String> {
             line(at)
         ));
     }
+    let smoothing = &statements.smoothing;
+    if statements.normals.is_empty() && (smoothing.has_flat || smoothing.has_several) {
+        let asked = match smoothing.has_flat {
+            true => "flat faces ('s off')",
+            false => "hard edges between smoothing groups ('s')",
+        };
+        notes.push(format!(
+            "The file asks for {asked} and has no normals; it is drawn, and converted, as if it were smooth all over."
+        ));
+    }
     if let (count @ 1.., at) = statements.dangling {
         notes.push(format!(
             "{} drawn without a texture coordinate or normal that the file names but doesn't hold (the first in line {}).",
@@ -198,7 +208,7 @@ impl Stored {
     }
 
     /// Colours behind the positions: sRGB from 0 to 1, or to 255 where one is larger than 1.
-    fn colours(&self) -> Option<Vec<[u8; 4]>> {
+    fn colours(&self) -> Option<Vec<[u16; 4]>> {
         let colours = &self.statements.colours;
         if colours.is_empty() {
             return None;
@@ -209,8 +219,8 @@ impl Stored {
             .fold(1.0f32, |most, &channel| most.max(channel));
         let scale = if most > 1.0 { 1.0 / 255.0 } else { 1.0 };
         let drawn = |&position: &u32| {
-            let [r, g, b] = colours[position as usize].map(|channel| byte(linear_of_srgb(channel * scale)));
-            [r, g, b, 255]
+            let [r, g, b] = colours[position as usize].map(|channel| channel * scale);
+            linear_colour([r, g, b, 1.0])
         };
         Some(self.position.iter().map(drawn).collect())
     }

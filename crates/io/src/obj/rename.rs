@@ -1,7 +1,7 @@
 //! Other names for the files that an OBJ and its libraries name, in their texts.
 
 use super::materials::{as_uri, behind_options, folder_of, join};
-use crate::text::Splice;
+use crate::text::{Splice, mark_len};
 
 /// An OBJ with `new` in place of the material library `old`; `None` where it does not name that one plainly.
 pub(crate) fn library_renamed(obj: &[u8], old: &str, new: &str) -> Option<Vec<u8>> {
@@ -9,9 +9,11 @@ pub(crate) fn library_renamed(obj: &[u8], old: &str, new: &str) -> Option<Vec<u8
         if keyword != "mtllib" {
             return Vec::new();
         }
-        // As it is read: the whole line as one name, or else each word.
+        // As it is read: the whole line as one name, or else a part of it between blanks.
         let names = if as_uri(rest) == old {
             vec![rest.trim()]
+        } else if old.contains(' ') {
+            rest.match_indices(old).map(|(_, name)| name).collect()
         } else {
             rest.split_whitespace().filter(|word| as_uri(word) == old).collect()
         };
@@ -51,8 +53,8 @@ pub(crate) fn texture_renamed(text: &[u8], library: &str, old: &str, new: &str) 
 fn renamed(text: &[u8], of_line: impl Fn(&str, &str) -> Vec<(std::ops::Range<usize>, String)>) -> Option<Vec<u8>> {
     let mut splice = Splice::new(text);
     let mut has_changed = false;
-    let mut start = 0;
-    for line in text.split_inclusive(|byte| matches!(byte, b'\n' | b'\r')) {
+    let mut start = mark_len(text);
+    for line in text[start..].split_inclusive(|byte| matches!(byte, b'\n' | b'\r')) {
         let at = start;
         start += line.len();
         // A name that is not UTF-8 is read with substitutes, and has no place that could be told.

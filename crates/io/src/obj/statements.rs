@@ -1,14 +1,14 @@
 //! An OBJ file's statements, with the place of every coordinate in the file.
 //!
-//! Only what draws or moves is kept (`v`, `vt`, `vn`, `f`, `usemtl`, `mtllib`, `o`, `g`); everything else is passed
-//! over and stays in the bytes. Indices are resolved to numbers from 0; a corner may name a `v` line that comes later.
+//! Only what draws or moves is kept (`v`, `vt`, `vn`, `f`, `usemtl`, `mtllib`, `o`, `g`, and ZBrush's colours); everything
+//! else is passed over and stays in the bytes. Indices are resolved to numbers from 0; a corner may name a `v` line that comes later.
 
 use std::collections::HashMap;
 use std::ops::Range;
 
 use crate::scene::objects::short_name;
 use crate::source::{Looks, Source};
-use crate::text::{Cursor, excerpt, malformed_at};
+use crate::text::{Cursor, excerpt, malformed_at, mark_len};
 use crate::{Format, ReadError};
 use glam::DVec3;
 
@@ -62,6 +62,18 @@ pub(super) struct Statements {
     pub(super) left_out: (usize, usize),
     /// Corners whose `vt` or `vn` doesn't exist: how many, and the byte of the first.
     pub(super) dangling: (usize, usize),
+    pub(super) smoothing: Smoothing,
+}
+
+/// What `s` lines ask for.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Smoothing {
+    /// Whether some faces are to be flat.
+    pub(super) has_flat: bool,
+    /// The first group.
+    group: Option<String>,
+    /// Whether there are several groups, between which edges are hard.
+    pub(super) has_several: bool,
 }
 
 /// The highest number that a corner has named so far, and where.
@@ -105,13 +117,15 @@ struct Reader<'a> {
     material: Option<usize>,
     material_numbers: HashMap<String, usize>,
     run_is_open: bool,
+    /// The colours of `#MRGB` lines, in the vertices' order.
+    polypaint: Vec<[f32; 3]>,
 }
 
 impl<'a> Reader<'a> {
     fn new(source: &'a Source<'a>) -> Self {
         Self {
             source,
-            cursor: Cursor::new(source.bytes, 0),
+            cursor: Cursor::new(source.bytes, mark_len(source.bytes)),
             looks: Looks::default(),
             found: Statements::default(),
             highest_position: Highest::default(),
@@ -120,6 +134,7 @@ impl<'a> Reader<'a> {
             material: None,
             material_numbers: HashMap::new(),
             run_is_open: false,
+            polypaint: Vec::new(),
         }
     }
 
@@ -150,6 +165,21 @@ impl<'a> Reader<'a> {
             b"g" => {
                 self.group = self.name();
                 self.run_is_open = false;
+                Ok(())
+            }
+            b"s" => {
+                let group = self.rest();
+                match group.as_str() {
+                    "off" | "0" => self.found.smoothing.has_flat = true,
+                    _ => {
+                        let first = self.found.smoothing.group.get_or_insert(group.clone());
+                        self.found.smoothing.has_several |= *first != group;
+                    }
+                }
+                Ok(())
+            }
+            b"#MRGB" => {
+                self.polypaint();
                 Ok(())
             }
             b"mtllib" => {
@@ -199,6 +229,18 @@ impl<'a> Reader<'a> {
             found.colours.push([r as f32, g as f32, b as f32]);
         }
         Ok(())
+    }
+
+    /// `#MRGB` and blocks of eight hexadecimal digits, one for each vertex: ZBrush's mask, red, green and blue.
+    fn polypaint(&mut self) {
+        let text = self.rest();
+        let blocks = text.as_bytes().chunks_exact(8);
+        let channel = |block: &[u8], place: usize| {
+            let digits = std::str::from_utf8(&block[place..place + 2]).ok()?;
+            u8::from_str_radix(digits, 16).ok().map(|byte| f32::from(byte) / 255.0)
+        };
+        let colour = |block: &[u8]| Some([channel(block, 2)?, channel(block, 4)?, channel(block, 6)?]);
+        self.polypaint.extend(blocks.map_while(colour));
     }
 
     /// `vt u [v [w]]`; what isn't a number counts as 0, since it moves nothing.
@@ -331,6 +373,9 @@ impl<'a> Reader<'a> {
                     found.dangling.0 += 1;
                 }
             }
+        }
+        if found.colours.is_empty() {
+            found.colours = self.polypaint;
         }
         if !found.colours.is_empty() {
             found.colours.resize(found.positions.len(), [1.0; 3]);

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use pliant_mesh::Cancelled;
 
-use crate::appearance::colour::{srgb_bytes_of_linear, srgb_of_linear};
+use crate::appearance::colour::{SrgbBytes, srgb_of_linear};
 use crate::appearance::{AlphaMode, Material, Origin};
 use crate::convert::NewMesh;
 use crate::convert::faces::{for_each_face, lost, lost_where};
@@ -101,7 +101,7 @@ fn push_numbers<T: Copy>(out: &mut Vec<u8>, keyword: &str, numbers: &[T], push: 
 }
 
 fn push_vertices(out: &mut Vec<u8>, mesh: &NewMesh<'_>, course: &Course<'_>) -> Result<(), Cancelled> {
-    let srgb = srgb_bytes_of_linear();
+    let srgb = SrgbBytes::new();
     let count = mesh.positions.len();
     let look = &mesh.appearance;
     let share_before = |is_more: bool| if is_more { 0.5 } else { 1.0 };
@@ -114,7 +114,7 @@ fn push_vertices(out: &mut Vec<u8>, mesh: &NewMesh<'_>, course: &Course<'_>) -> 
         of_positions.pass(v, count)?;
         push_numbers(out, "v", &position.to_array(), push_f64);
         if let Some(colours) = &mesh.appearance.colours {
-            let [r, g, b, _] = colours[v].map(|light| f32::from(srgb[usize::from(light)]) / 255.0);
+            let [r, g, b, _] = srgb.of_linear(colours[v]).map(|channel| f32::from(channel) / 255.0);
             push_numbers(
                 out,
                 "",

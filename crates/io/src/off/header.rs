@@ -1,7 +1,7 @@
 //! An OFF file's first words: what each vertex holds, and how many vertices and faces there are.
 
 use crate::source::Source;
-use crate::text::{Cursor, excerpt, malformed_at};
+use crate::text::{Cursor, excerpt, malformed_at, mark_len};
 use crate::{Format, ReadError};
 
 /// What the keyword and the counts say.
@@ -27,7 +27,7 @@ pub(super) fn parse<'a>(source: &Source<'a>) -> Result<(Header, Cursor<'a>), Rea
     let bytes: &'a [u8] = source.bytes;
     let fail = |at, reason: &str| malformed_at(source, Format::Off, at, reason);
     let mut header = Header::default();
-    let mut cursor = Cursor::new(bytes, 0);
+    let mut cursor = Cursor::new(bytes, mark_len(bytes));
     cursor.skip_space_and_comments();
     let at = cursor.at();
     let word = cursor.clone().word();

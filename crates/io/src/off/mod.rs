@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 use pliant_mesh::Drawn;
 
-use crate::appearance::colour::{byte, linear_of_srgb};
+use crate::appearance::colour::linear_colour;
 use crate::convert::Polygons;
 use crate::polygon::{cut_faces, left_out_note};
 use crate::save::course::Course;
@@ -45,7 +45,10 @@ pub(crate) fn read(source: &Source<'_>) -> Result<(Stored, Drawn), ReadError> {
     let corners = std::mem::take(&mut records.corners);
     let face_ends = std::mem::take(&mut records.face_ends);
     let (triangles, polygons) = cut_faces(&positions, corners, &face_ends, source.cancel)?;
-    let notes = left_out_note(records.left_out).into_iter().collect();
+    let of_colours = records
+        .has_face_colours
+        .then(|| "The colours of its faces are kept but not shown.".to_owned());
+    let notes = left_out_note(records.left_out).into_iter().chain(of_colours).collect();
     let drawn = Drawn::once(positions, triangles);
     let triangle_count = drawn.triangles.len() as u32;
     Ok((
@@ -80,8 +83,8 @@ impl Stored {
             .fold(1.0f32, |most, &channel| most.max(channel));
         let scale = if most > 1.0 { 1.0 / 255.0 } else { 1.0 };
         let colour = |&[r, g, b, alpha]: &[f32; 4]| {
-            let [r, g, b] = [r, g, b].map(|channel| byte(linear_of_srgb(channel * scale)));
-            [r, g, b, if alpha.is_nan() { 255 } else { byte(alpha * scale) }]
+            let alpha = if alpha.is_nan() { 1.0 } else { alpha * scale };
+            linear_colour([r * scale, g * scale, b * scale, alpha])
         };
         let unit = |normal: &glam::DVec3| normal.normalize_or_zero().as_vec3().to_array();
         Appearance {
@@ -90,6 +93,15 @@ impl Stored {
             colours: (!records.colours.is_empty()).then(|| records.colours.iter().map(colour).collect()),
             ..Appearance::plain(self.triangle_count)
         }
+    }
+
+    /// What of the file is carried to no other format.
+    pub(crate) fn unread(&self) -> Vec<String> {
+        let has_colours = self.records.has_face_colours;
+        has_colours
+            .then(|| "the colours of faces".to_owned())
+            .into_iter()
+            .collect()
     }
 
     pub(crate) fn polygons(&self) -> Option<Polygons> {

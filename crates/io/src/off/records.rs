@@ -25,6 +25,8 @@ pub(super) struct Records {
     pub(super) face_ends: Vec<u32>,
     /// How many faces have fewer than three corners.
     pub(super) left_out: usize,
+    /// Whether something follows the corners of a face: its colour.
+    pub(super) has_face_colours: bool,
 }
 
 /// Reads the records that `header` promises.
@@ -52,6 +54,8 @@ pub(super) fn read(source: &Source<'_>, header: &Header, mut cursor: Cursor<'_>)
     }
     for face in 0..header.faces {
         read_face(source, face, &mut cursor, &mut looks, &mut records)?;
+        cursor.skip_blanks();
+        records.has_face_colours |= !cursor.is_at_line_end();
         cursor.next_line();
     }
     Ok(records)

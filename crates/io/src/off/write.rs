@@ -1,7 +1,7 @@
 //! A new OFF file (COFF where there are colours) from any other kind.
 
 use crate::SaveError;
-use crate::appearance::colour::srgb_bytes_of_linear;
+use crate::appearance::colour::SrgbBytes;
 use crate::convert::NewMesh;
 use crate::convert::faces::{face_count, for_each_face, has_materials, lost, lost_where, merged};
 use crate::save::Saved;
@@ -12,7 +12,7 @@ use crate::text::push_f64;
 /// colours are read by few.
 pub(crate) fn write_new(mesh: &NewMesh<'_>, course: &Course<'_>) -> Result<Saved, SaveError> {
     let look = &mesh.appearance;
-    let srgb = srgb_bytes_of_linear();
+    let srgb = SrgbBytes::new();
     let (vertices, number) = merged(mesh);
     let keyword = if look.colours.is_some() { "COFF" } else { "OFF" };
     let mut out = format!("{keyword}\n{} {} 0\n", vertices.len(), face_count(mesh)).into_bytes();
@@ -26,8 +26,7 @@ pub(crate) fn write_new(mesh: &NewMesh<'_>, course: &Course<'_>) -> Result<Saved
             push_f64(&mut out, coordinate);
         }
         if let Some(colours) = &look.colours {
-            let [r, g, b, alpha] = colours[vertex.index()];
-            for channel in [srgb[usize::from(r)], srgb[usize::from(g)], srgb[usize::from(b)], alpha] {
+            for channel in srgb.of_linear(colours[vertex.index()]) {
                 out.push(b' ');
                 push_f64(&mut out, f64::from(channel));
             }

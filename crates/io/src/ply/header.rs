@@ -1,8 +1,10 @@
 //! A PLY file's header: which elements follow, how many, and their properties.
 
+use std::ops::Range;
+
 use super::scalar::{Encoding, Scalar};
 use crate::source::{Looks, Source};
-use crate::text::{Cursor, excerpt, malformed_at};
+use crate::text::{Cursor, excerpt, malformed_at, mark_len};
 use crate::{Format, ReadError};
 
 /// What a property's value is in a record.
@@ -55,9 +57,14 @@ impl Element {
 pub(super) struct Header {
     pub(super) encoding: Encoding,
     pub(super) elements: Vec<Element>,
+    /// Where the names behind `comment TextureFile` are written.
+    pub(super) textures: Vec<Range<usize>>,
     /// Where the first record begins.
     pub(super) data_at: usize,
 }
+
+/// The most textures that are read: more than any real file has.
+const MOST_TEXTURES: usize = 256;
 
 /// Reads the header, whose lines may end in any way.
 ///
@@ -66,13 +73,14 @@ pub(super) struct Header {
 pub(super) fn parse(source: &Source<'_>) -> Result<Header, ReadError> {
     let bytes: &[u8] = source.bytes;
     let fail = |at, reason: &str| malformed_at(source, Format::Ply, at, reason);
-    let mut cursor = Cursor::new(bytes, 0);
+    let mut cursor = Cursor::new(bytes, mark_len(bytes));
     if cursor.rest_of_line().trim_ascii() != b"ply" {
         return Err(fail(0, "the file doesn't begin with 'ply': export it anew as PLY"));
     }
     let ends_in_return_alone = bytes.get(cursor.at()) == Some(&b'\r') && bytes.get(cursor.at() + 1) != Some(&b'\n');
     let mut encoding = None;
     let mut elements: Vec<Element> = Vec::new();
+    let mut textures = Vec::new();
     let mut looks = Looks::default();
     loop {
         cursor.next_line();
@@ -121,6 +129,13 @@ pub(super) fn parse(source: &Source<'_>) -> Result<Header, ReadError> {
                 };
                 element.properties.push(property);
             }
+            // Names may have blanks.
+            [b"comment", b"TextureFile", ..] if textures.len() < MOST_TEXTURES => {
+                let keyword = line.windows(11).position(|word| word == b"TextureFile").unwrap_or(0) + 11;
+                let name = &line[keyword..];
+                let start = at + keyword + (name.len() - name.trim_ascii_start().len());
+                textures.push(start..start + name.trim_ascii().len());
+            }
             [b"end_header", ..] => break,
             _ => {}
         }
@@ -136,6 +151,7 @@ pub(super) fn parse(source: &Source<'_>) -> Result<Header, ReadError> {
     Ok(Header {
         encoding,
         elements,
+        textures,
         data_at: cursor.at(),
     })
 }

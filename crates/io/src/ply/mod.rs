@@ -10,24 +10,33 @@ mod patch;
 mod records;
 mod rewriting;
 mod scalar;
+mod textures;
 mod turned;
+mod unread;
+mod wedges;
 mod write;
 
 use std::sync::Arc;
 
 use pliant_mesh::Drawn;
 
-use crate::appearance::colour::{byte, linear_of_srgb};
+use crate::appearance::colour::linear_colour;
+use crate::appearance::{Group, Material};
 use crate::convert::Polygons;
 use crate::polygon::{cut_faces, left_out_note};
+use crate::save::OutputFile;
 use crate::save::course::Course;
 use crate::save::moved::Moved;
 use crate::scene::summary::Summary;
 use crate::source::Source;
+use crate::source::notes::Notes;
 use crate::{Appearance, Format, ReadError, SaveError};
 use header::Header;
 use records::{Columns, Places, Records};
+use textures::Textures;
+use wedges::Wedges;
 
+pub(crate) use textures::renamed as texture_renamed;
 pub(crate) use write::write_new;
 
 /// A PLY file as stored.
@@ -41,6 +50,11 @@ pub(crate) struct Stored {
     normals: Vec<[f32; 3]>,
     colours: Vec<[f32; 4]>,
     uvs: Vec<[f32; 2]>,
+    /// The vertex of the file behind each drawn vertex that comes behind all of those.
+    further: Vec<u32>,
+    textures: Textures,
+    materials: Vec<Material>,
+    groups: Vec<Group>,
     /// The faces, where one has more than three corners.
     polygons: Option<Polygons>,
     triangle_count: u32,
@@ -58,13 +72,31 @@ pub(crate) fn read(source: &Source<'_>) -> Result<(Stored, Drawn), ReadError> {
         normals,
         colours,
         uvs,
-        corners,
+        mut corners,
         face_ends,
+        corner_uvs,
+        textures: texture_numbers,
         left_out,
     } = records::read(source, &header)?;
-    let (triangles, polygons) = cut_faces(&positions, corners, &face_ends, source.cancel)?;
-    let notes = left_out_note(left_out).into_iter().collect();
-    let drawn = Drawn::once(positions, triangles);
+    let mut notes = Notes::default();
+    notes.add("faces", left_out_note(left_out));
+    for note in unread::notes(&header.elements, vertex_element) {
+        notes.add("properties", Some(note));
+    }
+    let wedges = match corner_uvs.is_empty() {
+        true => Wedges {
+            uvs,
+            further: Vec::new(),
+        },
+        false => Wedges::number(&mut corners, &corner_uvs, positions.len(), &uvs),
+    };
+    let mut drawn = wedges.place(positions);
+    let (triangles, polygons) = cut_faces(&drawn.positions, corners, &face_ends, source.cancel)?;
+    drawn.triangles = triangles;
+    let textures = Textures::read(source, &header.textures, &mut notes);
+    let starts = std::iter::once(0).chain(face_ends.iter().copied());
+    let counts = starts.zip(&face_ends).map(|(start, &end)| end - start - 2);
+    let (materials, groups) = textures.dress(&texture_numbers, counts, drawn.triangles.len() as u32);
     let stored = Stored {
         bytes: source.bytes.clone(),
         header,
@@ -73,10 +105,14 @@ pub(crate) fn read(source: &Source<'_>) -> Result<(Stored, Drawn), ReadError> {
         places,
         normals,
         colours,
-        uvs,
+        uvs: wedges.uvs,
+        further: wedges.further,
+        textures,
+        materials,
+        groups,
         polygons,
         triangle_count: drawn.triangles.len() as u32,
-        notes,
+        notes: notes.sentences(),
     };
     Ok((stored, drawn))
 }
@@ -87,22 +123,40 @@ impl Stored {
     }
 
     pub(crate) fn summary(&self) -> Summary {
-        Summary::of_one_mesh(self.triangle_count as usize)
+        Summary {
+            images: self.textures.images.len(),
+            ..Summary::of_one_mesh(self.triangle_count as usize)
+        }
     }
 
     pub(crate) fn appearance(&self) -> Appearance {
-        let colour = |&[r, g, b, alpha]: &[f32; 4]| {
-            let [r, g, b] = [r, g, b].map(|channel| byte(linear_of_srgb(channel)));
-            [r, g, b, byte(alpha)]
-        };
-        let unit = |&normal: &[f32; 3]| glam::Vec3::from(normal).normalize_or_zero().to_array();
+        let unit = |normal: [f32; 3]| glam::Vec3::from(normal).normalize_or_zero().to_array();
         let are_any_set = self.normals.iter().any(|normal| *normal != [0.0; 3]);
         Appearance {
-            normals: are_any_set.then(|| self.normals.iter().map(unit).collect()),
+            normals: are_any_set.then(|| self.of_drawn(&self.normals).map(unit).collect()),
             uvs: (!self.uvs.is_empty()).then(|| self.uvs.iter().map(|&[u, v]| [u, 1.0 - v]).collect()),
-            colours: (!self.colours.is_empty()).then(|| self.colours.iter().map(colour).collect()),
-            ..Appearance::plain(self.triangle_count)
+            second_uvs: None,
+            colours: (!self.colours.is_empty()).then(|| self.of_drawn(&self.colours).map(linear_colour).collect()),
+            groups: self.groups.clone(),
+            materials: self.materials.clone(),
+            images: self.textures.images.clone(),
         }
+    }
+
+    /// Of each drawn vertex what the file has of its vertex.
+    fn of_drawn<'a, T: Copy>(&'a self, of_file: &'a [T]) -> impl Iterator<Item = T> + 'a {
+        let further = self.further.iter().map(|&vertex| of_file[vertex as usize]);
+        of_file.iter().copied().chain(further)
+    }
+
+    /// What of the file is carried to no other format.
+    pub(crate) fn unread(&self) -> Vec<String> {
+        unread::parts(&self.header.elements, self.vertex_element, &self.columns)
+    }
+
+    /// The textures that a copy in another folder needs beside it, and warnings.
+    pub(crate) fn neighbours(&self) -> (Vec<OutputFile>, Vec<String>) {
+        self.textures.neighbours()
     }
 
     pub(crate) fn polygons(&self) -> Option<Polygons> {

@@ -72,10 +72,8 @@ struct Edits(Vec<Edit>);
 
 impl Edits {
     fn of(stored: &Stored, element: &Element, moved: &Moved<'_>, course: &Course<'_>) -> Result<Self, SaveError> {
-        let rest: Vec<DVec3> = stored
-            .normals
-            .iter()
-            .map(|&normal| Vec3::from(normal).as_dvec3())
+        let rest: Vec<DVec3> = (stored.of_drawn(&stored.normals))
+            .map(|normal| Vec3::from(normal).as_dvec3())
             .collect();
         let (of_frames, course) = course.split(if rest.is_empty() { 0.0 } else { 0.7 });
         let frames = (!rest.is_empty())

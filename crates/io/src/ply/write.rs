@@ -3,7 +3,7 @@
 use pliant_mesh::DrawnVertex;
 
 use crate::SaveError;
-use crate::appearance::colour::srgb_bytes_of_linear;
+use crate::appearance::colour::SrgbBytes;
 use crate::convert::NewMesh;
 use crate::convert::faces::{coarse_in_f32, face_count, for_each_face, has_materials, lost, lost_where, merged};
 use crate::save::Saved;
@@ -84,7 +84,7 @@ fn push_vertices(
     course: &Course<'_>,
 ) -> Result<(), SaveError> {
     let look = &mesh.appearance;
-    let srgb = srgb_bytes_of_linear();
+    let srgb = SrgbBytes::new();
     for (place, vertex) in vertices.iter().enumerate() {
         course.pass(place, vertices.len())?;
         let v = vertex.index();
@@ -105,8 +105,7 @@ fn push_vertices(
             out.extend_from_slice(&(1.0 - t).to_le_bytes());
         }
         if let Some(colours) = &look.colours {
-            let [r, g, b, alpha] = colours[v];
-            out.extend_from_slice(&[srgb[usize::from(r)], srgb[usize::from(g)], srgb[usize::from(b)], alpha]);
+            out.extend_from_slice(&srgb.of_linear(colours[v]));
         }
     }
     Ok(())

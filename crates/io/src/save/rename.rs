@@ -1,7 +1,7 @@
 //! Renames a neighbour before a save writes it.
 
 use crate::save::{Role, Saved};
-use crate::{Format, SaveError, gltf, obj, quoted};
+use crate::{Format, SaveError, gltf, obj, ply, quoted};
 
 impl Saved {
     /// Renames the neighbour at index `place` of the files to `name`, and replaces its name in the files that refer to
@@ -26,6 +26,10 @@ impl Saved {
                     }
                 }
                 is_named
+            }
+            Role::Image if format == Format::Ply => {
+                let new = ply::texture_renamed(&self.files[0].bytes, &old, name);
+                new.map(|bytes| self.files[0].bytes = bytes).is_some()
             }
             Role::Out | Role::Buffer | Role::Image => {
                 let new = gltf::with_neighbours_renamed(&self.files[0].bytes, &[(&old, name.to_owned())]);

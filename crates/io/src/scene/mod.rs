@@ -21,7 +21,7 @@ use crate::convert::{NewMesh, Parting, Polygons};
 use crate::save::bits::bit_equal;
 use crate::save::course::Course;
 use crate::save::moved::Moved;
-use crate::save::{MorphTarget, Placement, Save, Saved};
+use crate::save::{MorphTarget, OutputFile, Placement, Save, Saved};
 use crate::scene::difference::Difference;
 use crate::scene::summary::Summary;
 use crate::source::{Resolver, Source};
@@ -110,6 +110,13 @@ impl Resolver for Saved {
             |file| Ok(file.bytes.clone().into()),
         )
     }
+}
+
+/// A save with what its file needs beside it.
+fn with_neighbours(mut saved: Saved, (files, warnings): (Vec<OutputFile>, Vec<String>)) -> Saved {
+    saved.files.extend(files);
+    saved.warnings.extend(warnings);
+    saved
 }
 
 impl Scene {
@@ -206,11 +213,13 @@ impl Scene {
             (Stored::Gltf(stored), Format::Glb | Format::Gltf) => stored.save(save, &moved, course),
             (Stored::Obj(stored), Format::Obj) if save.placement == Placement::OtherFolder => {
                 let unchanged = moved.is_nothing().then(|| (self.bytes.to_vec(), Vec::new()));
-                let mut saved = own(unchanged.map_or_else(|| stored.write(&moved, course), Ok)?);
-                let (files, warnings) = stored.neighbours();
-                saved.files.extend(files);
-                saved.warnings.extend(warnings);
-                Ok(saved)
+                let saved = own(unchanged.map_or_else(|| stored.write(&moved, course), Ok)?);
+                Ok(with_neighbours(saved, stored.neighbours()))
+            }
+            (Stored::Ply(stored), Format::Ply) if save.placement == Placement::OtherFolder => {
+                let unchanged = moved.is_nothing().then(|| (self.bytes.to_vec(), Vec::new()));
+                let saved = own(unchanged.map_or_else(|| stored.write(&moved, course), Ok)?);
+                Ok(with_neighbours(saved, stored.neighbours()))
             }
             (_, format) if format == self.format && moved.is_nothing() => Ok(own((self.bytes.to_vec(), Vec::new()))),
             (Stored::Obj(stored), Format::Obj) => stored.write(&moved, course).map(own),
@@ -231,6 +240,7 @@ impl Scene {
                     Format::Off => off::write_new(&mesh, &course),
                 }?;
                 saved.warnings.extend(self.motion_lost(format));
+                saved.warnings.extend(self.unread_lost(format));
                 if let Stored::Obj(stored) = &self.stored {
                     saved.warnings.extend(stored.materials_lost(&format.to_string()));
                 }
@@ -330,6 +340,23 @@ impl Scene {
         saved.warnings.splice(0..0, rest.warnings);
         saved.triangles = rest.triangles;
         Ok(saved)
+    }
+
+    /// A warning about what the file holds and no other format is given.
+    fn unread_lost(&self, format: Format) -> Option<String> {
+        let unread = match &self.stored {
+            Stored::Ply(stored) => stored.unread(),
+            Stored::Stl(stored) => stored.unread(),
+            Stored::Off(stored) => stored.unread(),
+            Stored::Gltf(_) | Stored::Obj(_) => Vec::new(),
+        };
+        let own = self.format.extension();
+        (!unread.is_empty()).then(|| {
+            format!(
+                "{format} output leaves out {}: keep the .{own} for it.",
+                unread.join(", ")
+            )
+        })
     }
 
     /// A warning about skins, animations and morph targets, which only glTF holds.

@@ -11,19 +11,34 @@ use crate::save::course::{Course, STEP};
 use crate::save::moved::Moved;
 use crate::save::turned::push_negated;
 use crate::source::{Looks, Source};
-use crate::text::{Cursor, Splice, excerpt, malformed_at, push_f32, push_f64, shortest_f32};
+use crate::text::{Cursor, Splice, excerpt, malformed_at, mark_len, push_f32, push_f64, shortest_f32};
 use crate::{Format, ReadError};
 
-/// The corners in order, and the byte position of each facet's keyword.
+/// What an ascii file holds.
+pub(super) struct Facets {
+    /// The corners in order.
+    pub(super) corners: Vec<DVec3>,
+    /// The byte position of each facet's keyword.
+    pub(super) places: Vec<usize>,
+    /// How many solids begin.
+    pub(super) solids: usize,
+}
+
+/// Reads the facets.
 ///
 /// Keywords may be in any case and on any line. A file that ends within its last solid is accepted.
-pub(super) fn read(source: &Source<'_>) -> Result<(Vec<DVec3>, Vec<usize>), ReadError> {
-    let mut cursor = Cursor::new(source.bytes, 0);
+pub(super) fn read(source: &Source<'_>) -> Result<Facets, ReadError> {
+    let mut cursor = Cursor::new(source.bytes, mark_len(source.bytes));
     let (mut corners, mut facets, mut looks) = (Vec::new(), Vec::new(), Looks::default());
+    let mut solids = 0;
     loop {
         cursor.skip_space();
         if cursor.is_done() {
-            return Ok((corners, facets));
+            return Ok(Facets {
+                corners,
+                places: facets,
+                solids,
+            });
         }
         let at = cursor.at();
         source.pass(&mut looks, at)?;
@@ -38,6 +53,7 @@ pub(super) fn read(source: &Source<'_>) -> Result<(Vec<DVec3>, Vec<usize>), Read
                 });
             }
         } else if word.eq_ignore_ascii_case(b"solid") || word.eq_ignore_ascii_case(b"endsolid") {
+            solids += usize::from(word.eq_ignore_ascii_case(b"solid"));
             // A name, which can be any text.
             cursor.next_line();
         } else {
@@ -142,7 +158,7 @@ pub(super) fn patched(
 /// The bytes with facets wound the other way and their normals turned.
 pub(super) fn turned(bytes: &[u8], is_turned: impl Fn(usize) -> bool) -> Vec<u8> {
     let mut splice = Splice::new(bytes);
-    let mut cursor = Cursor::new(bytes, 0);
+    let mut cursor = Cursor::new(bytes, mark_len(bytes));
     let mut facet = 0;
     loop {
         cursor.skip_space();

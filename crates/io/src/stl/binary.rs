@@ -62,6 +62,16 @@ pub(super) fn read(source: &Source<'_>, notes: &mut Vec<String>) -> Result<Vec<D
     Ok(corners)
 }
 
+/// Whether a facet has attribute bytes, which some programs take for a colour.
+pub(super) fn has_attributes(bytes: &[u8], facet_count: usize) -> bool {
+    let facets = bytes
+        .get(HEADER..)
+        .unwrap_or_default()
+        .chunks_exact(FACET)
+        .take(facet_count);
+    facets.into_iter().any(|facet| facet[48..] != [0, 0])
+}
+
 fn vector(bytes: &[u8]) -> Vec3 {
     Vec3::from_array(std::array::from_fn(|axis| {
         f32::from_le_bytes(std::array::from_fn(|byte| bytes[4 * axis + byte]))

@@ -16,7 +16,7 @@ use crate::save::course::Course;
 use crate::save::moved::Moved;
 use crate::scene::summary::Summary;
 use crate::source::Source;
-use crate::text::shortest_f32;
+use crate::text::{mark_len, shortest_f32};
 use crate::{Appearance, ReadError, SaveError};
 
 pub(crate) use write::write_new;
@@ -28,6 +28,7 @@ pub(crate) struct Stored {
     layout: Layout,
     facet_count: usize,
     notes: Vec<String>,
+    unread: Vec<String>,
 }
 
 #[derive(Debug)]
@@ -44,18 +45,28 @@ enum Layout {
 /// the facets.
 pub(crate) fn read(source: &Source<'_>) -> Result<(Stored, Drawn), ReadError> {
     let bytes: &[u8] = source.bytes;
-    let mut notes = Vec::new();
-    let begins_as_ascii = bytes
+    let (mut notes, mut unread) = (Vec::new(), Vec::new());
+    let begins_as_ascii = bytes[mark_len(bytes)..]
         .trim_ascii_start()
         .get(..5)
         .is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
     let (positions, layout) = if begins_as_ascii && !binary::has_exact_length(bytes) {
-        let (positions, facets) = ascii::read(source)?;
-        (positions, Layout::Ascii(facets))
+        let found = ascii::read(source)?;
+        if found.solids > 1 {
+            unread.push(format!("the division into {} solids", found.solids));
+        }
+        (found.corners, Layout::Ascii(found.places))
     } else {
         (binary::read(source, &mut notes)?, Layout::Binary)
     };
     let count = positions.len() as u32;
+    if matches!(layout, Layout::Binary) && binary::has_attributes(bytes, count as usize / 3) {
+        notes.push(
+            "The facets have attribute bytes, which some programs take for colours; they are kept but not shown."
+                .to_owned(),
+        );
+        unread.push("the facets' attribute bytes, which some programs take for colours".to_owned());
+    }
     let corners = |facet| [0, 1, 2].map(|k| DrawnVertex(3 * facet + k));
     let drawn = Drawn::once(positions, (0..count / 3).map(corners).collect());
     Ok((
@@ -64,6 +75,7 @@ pub(crate) fn read(source: &Source<'_>) -> Result<(Stored, Drawn), ReadError> {
             layout,
             facet_count: drawn.triangles.len(),
             notes,
+            unread,
         },
         drawn,
     ))
@@ -72,6 +84,11 @@ pub(crate) fn read(source: &Source<'_>) -> Result<(Stored, Drawn), ReadError> {
 impl Stored {
     pub(crate) fn notes(&self) -> &[String] {
         &self.notes
+    }
+
+    /// What of the file is carried to no other format.
+    pub(crate) fn unread(&self) -> Vec<String> {
+        self.unread.clone()
     }
 
     pub(crate) fn summary(&self) -> Summary {

@@ -242,6 +242,11 @@ const POWERS_OF_TEN: [f64; 23] = [
     1e21, 1e22,
 ];
 
+/// How many bytes of a text are a byte-order mark, which some editors put before UTF-8.
+pub(crate) fn mark_len(bytes: &[u8]) -> usize {
+    if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 }
+}
+
 /// A [`ReadError::Malformed`] that begins with the line of byte `at`.
 pub(crate) fn malformed_at(source: &Source<'_>, format: Format, at: usize, reason: &str) -> ReadError {
     source.malformed(format, format!("line {}: {reason}", line_of(source.bytes, at)))

@@ -11,6 +11,7 @@ use glam::{DVec3, Vec3};
 use pliant_mesh::{Cancel, Object};
 use rayon::prelude::*;
 
+use crate::appearance::colour::short;
 use crate::appearance::{AlphaMode, Appearance, Group, Image, Material, Origin, Wrap};
 use crate::gltf::document::json::At;
 use crate::gltf::document::uri;
@@ -39,12 +40,11 @@ pub(crate) fn appearance(document: &Document, meshes: &[Vec<Primitive>], pieces:
         second_uvs: gather(pieces, [0.0; 2], |instance| {
             attribute::<2>(document, instance, primitive(meshes, instance).second_uv)
         }),
-        colours: gather(pieces, [255; 4], |instance| {
+        colours: gather(pieces, [u16::MAX; 4], |instance| {
             let accessor = primitive(meshes, instance).colour?;
             let has_alpha = document.layout(accessor).ok()?.lanes == 4;
             let colours = attribute::<4>(document, instance, Some(accessor))?;
-            let byte = |x: f32| (x * 255.0).round().clamp(0.0, 255.0) as u8;
-            let whole = |[r, g, b, a]: [f32; 4]| [r, g, b, if has_alpha { a } else { 1.0 }].map(byte);
+            let whole = |[r, g, b, a]: [f32; 4]| [r, g, b, if has_alpha { a } else { 1.0 }].map(short);
             Some(colours.into_iter().map(whole).collect())
         }),
         groups: Vec::new(),

@@ -10,7 +10,6 @@ use crate::save::course::Course;
 
 const ARRAY_BUFFER: u32 = 34962;
 const ELEMENT_ARRAY_BUFFER: u32 = 34963;
-const UNSIGNED_BYTE: u32 = 5121;
 const UNSIGNED_SHORT: u32 = 5123;
 const UNSIGNED_INT: u32 = 5125;
 const FLOAT: u32 = 5126;
@@ -65,10 +64,11 @@ pub(super) fn attributes(
     }
     course.reach(3, 4)?;
     if let Some(colours) = &looks.colours {
-        let view = out.view(each().flat_map(|v| colours[v]), u8::to_le_bytes, ARRAY_BUFFER);
+        // 8 bits of light lose a quarter of the greys that 8 bits of sRGB have.
+        let view = out.view(each().flat_map(|v| colours[v]), u16::to_le_bytes, ARRAY_BUFFER);
         attributes["COLOR_0"] = out
             .accessor(json!({
-                "bufferView": view, "componentType": UNSIGNED_BYTE, "normalized": true,
+                "bufferView": view, "componentType": UNSIGNED_SHORT, "normalized": true,
                 "count": count, "type": "VEC4",
             }))
             .into();

@@ -109,6 +109,10 @@ fn build(mesh: &NewMesh<'_>, format: Format, course: &Course<'_>) -> Result<Buil
         "accessors": out.accessors,
     });
     looks.add_to(&mut root);
+    if mesh.polygons.is_some() {
+        let warning = format!("{format} holds triangles only, so polygons were cut: save as .obj to keep them.");
+        out.warnings.push(warning);
+    }
     out.root = root;
     Ok(out)
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use crate::appearance::colour::linear_of_srgb;
 use crate::appearance::{AlphaMode, Material};
-use crate::text::excerpt;
+use crate::text::{excerpt, mark_len};
 
 /// Unread statements that are named at most.
 const MOST_UNREAD: usize = 12;
@@ -14,7 +14,7 @@ const MOST_UNREAD: usize = 12;
 /// `tobj` gives up (or panics, at a `Kd` with fewer than three numbers) on a line that it doesn't expect, so it gets
 /// only the lines that matter here and that it can read.
 pub(super) fn parse(text: &[u8], unread: &mut BTreeSet<String>) -> Vec<tobj::Material> {
-    let text = String::from_utf8_lossy(text);
+    let text = String::from_utf8_lossy(&text[mark_len(text)..]);
     let mut kept = String::new();
     let mut is_named = false;
     for line in text.split(['\n', '\r']) {

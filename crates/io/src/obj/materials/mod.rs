@@ -75,9 +75,25 @@ pub(super) fn look_up(source: &Source<'_>, libraries: &[&[u8]], names: &[String]
     }
     let mut image_of: HashMap<String, Option<usize>> = HashMap::new();
     let mut image_at: HashMap<(usize, Range<usize>), usize> = HashMap::new();
+    let mut without: Vec<&str> = Vec::new();
     for name in names {
         let mut material = Material::plain(name);
-        if let Some((stored, folder)) = known.get(name) {
+        let in_another_case = || {
+            known
+                .iter()
+                .filter(|(own, _)| own.eq_ignore_ascii_case(name))
+                .min_by_key(|(own, _)| *own)
+        };
+        let found = known.get_key_value(name).or_else(in_another_case);
+        if let Some((own, _)) = found.filter(|(own, _)| *own != name) {
+            let (own, name) = (excerpt(own.as_bytes()), excerpt(name.as_bytes()));
+            let note = format!("The material '{name}' is called '{own}' in the library and was taken for that one.");
+            out.notes.add("materials", Some(note));
+        }
+        if found.is_none() && !known.is_empty() {
+            without.push(name);
+        }
+        if let Some((_, (stored, folder))) = found {
             set_base_colour(&mut material, stored);
             if let Some(texture) = &stored.diffuse_texture {
                 let (file, wrap) = texture_file(texture);
@@ -91,26 +107,54 @@ pub(super) fn look_up(source: &Source<'_>, libraries: &[&[u8]], names: &[String]
         }
         out.materials.push(material);
     }
+    for name in without {
+        let name = excerpt(name.as_bytes());
+        let note = format!("No material library has the material '{name}', so it is drawn plain.");
+        out.notes.add("materials", Some(note));
+    }
+    if names.is_empty() && !known.is_empty() {
+        let note = "Its material library is not shown: no 'usemtl' says which faces have its materials.";
+        out.notes.add("material libraries", Some(note.to_owned()));
+    }
     out
 }
 
 /// The most libraries that are read: more than any real file has.
 const MOST_LIBRARIES: usize = 256;
 
-/// The bytes of a library, with its path: the whole rest of the line as one name, or else each word as one.
+/// The bytes of libraries, with their paths, of the rest of a `mtllib` line: all of it as one name, or else as several,
+/// each ending at `.mtl` or at a blank.
 fn read_library(source: &Source<'_>, library: &[u8]) -> Result<Vec<(String, Bytes)>, String> {
     let whole = as_uri(&String::from_utf8_lossy(library));
     let read = |uri: &str| source.resolver.read(uri).map(|text| (uri.to_owned(), text));
-    match read(&whole) {
-        Ok(file) => Ok(vec![file]),
-        Err(reason) => {
-            let words: Vec<&str> = whole.split_whitespace().take(MOST_LIBRARIES).collect();
-            if words.len() < 2 {
-                return Err(reason);
-            }
-            words.into_iter().map(read).collect()
+    let mut found = read(&whole).map(|file| vec![file]);
+    for names in [
+        names_by_extension(&whole),
+        whole.split_whitespace().map(str::to_owned).collect(),
+    ] {
+        if found.is_err() && names.len() > 1 {
+            let all: Result<Vec<_>, _> = names.iter().take(MOST_LIBRARIES).map(|name| read(name)).collect();
+            found = all.or(found);
         }
     }
+    found
+}
+
+/// The names in a line, each up to its `.mtl`.
+fn names_by_extension(line: &str) -> Vec<String> {
+    let mut names = Vec::new();
+    let mut name = String::new();
+    for word in line.split_whitespace() {
+        if !name.is_empty() {
+            name.push(' ');
+        }
+        name.push_str(word);
+        if word.to_ascii_lowercase().ends_with(".mtl") {
+            names.push(std::mem::take(&mut name));
+        }
+    }
+    names.extend((!name.is_empty()).then_some(name));
+    names
 }
 
 /// Reads an image at its path, or by its bare name beside the file (for paths of another computer).

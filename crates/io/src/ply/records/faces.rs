@@ -32,23 +32,81 @@ pub(super) fn read_faces(
     records
         .corners
         .reserve_exact((3 * element.count).min(walk.left()) as usize);
+    let beside = Beside::of(element);
+    let mut uvs: Vec<f32> = Vec::new();
     CornerLists::read_all(source, element, walk, |lists, walk| {
         let first = records.corners.len();
         let corners = &mut records.corners;
-        lists.read(walk, |value| {
-            let corner = corner(value);
-            corners.push(corner.unwrap_or(u32::MAX));
-            corner.is_some()
-        })?;
-        if records.corners.len() - first < 3 {
+        let mut texture = 0;
+        uvs.clear();
+        lists.read_beside(
+            walk,
+            |value| {
+                let corner = corner(value);
+                corners.push(corner.unwrap_or(u32::MAX));
+                corner.is_some()
+            },
+            |property, value| {
+                if beside.uvs == Some(property) {
+                    uvs.push(value as f32);
+                }
+            },
+            |property, value| {
+                if beside.texture == Some(property) {
+                    texture = corner(value).unwrap_or(0);
+                }
+            },
+        )?;
+        let count = records.corners.len() - first;
+        if count < 3 {
             records.corners.truncate(first);
             records.left_out += 1;
-        } else {
-            records.face_ends.push(u32::try_from(records.corners.len()).ok()?);
+            return Some(());
+        }
+        records.face_ends.push(u32::try_from(records.corners.len()).ok()?);
+        if beside.uvs.is_some() {
+            // Elements of faces before this one had none.
+            records.corner_uvs.resize(first, NO_UV);
+            let each = uvs.chunks_exact(2).map(|uv| [uv[0], uv[1]]);
+            match uvs.len() == 2 * count {
+                true => records.corner_uvs.extend(each),
+                false => records.corner_uvs.resize(first + count, NO_UV),
+            }
+        }
+        if beside.texture.is_some() {
+            records.textures.resize(records.face_ends.len() - 1, 0);
+            records.textures.push(texture);
         }
         Some(())
     })
 }
+
+/// The texture coordinates of a corner that has none.
+const NO_UV: [f32; 2] = [f32::NAN; 2];
+
+/// The properties of a face that say how it looks.
+struct Beside {
+    /// The list of a corner's u and v after the other.
+    uvs: Option<usize>,
+    /// The number of the texture.
+    texture: Option<usize>,
+}
+
+impl Beside {
+    fn of(element: &Element) -> Self {
+        let is_list = |index: &usize| matches!(element.properties[*index].kind, Kind::List { .. });
+        Self {
+            uvs: element.property(&[UV_LIST]).filter(is_list),
+            texture: element.property(&[TEXTURE_NUMBER]).filter(|index| !is_list(index)),
+        }
+    }
+}
+
+/// What a face's texture coordinates are called.
+pub(crate) const UV_LIST: &str = "texcoord";
+
+/// What the number of a face's texture is called.
+pub(crate) const TEXTURE_NUMBER: &str = "texnumber";
 
 /// Strips: each corner makes a triangle with the two before it, every other one turned; a negative number ends one.
 pub(super) fn read_strips(
@@ -112,15 +170,28 @@ impl<'a> CornerLists<'a> {
     }
 
     /// Reads one record. `take` gets each number of its list and returns whether that can be one.
-    fn read(&mut self, walk: &mut Walk<'_>, mut take: impl FnMut(f64) -> bool) -> Option<()> {
+    fn read(&mut self, walk: &mut Walk<'_>, take: impl FnMut(f64) -> bool) -> Option<()> {
+        self.read_beside(walk, take, |_, _| (), |_, _| ())
+    }
+
+    /// As [`Self::read`]; `item` and `scalar` get the numbers of the other properties.
+    fn read_beside(
+        &mut self,
+        walk: &mut Walk<'_>,
+        mut take: impl FnMut(f64) -> bool,
+        mut item: impl FnMut(usize, f64),
+        scalar: impl FnMut(usize, f64),
+    ) -> Option<()> {
         let Self { list, strange, .. } = self;
         let take = |property, value| {
-            if Some(property) == *list && !take(value) {
+            if Some(property) != *list {
+                item(property, value);
+            } else if !take(value) {
                 strange.get_or_insert(value);
             }
         };
         let is_wanted = || !self.source.cancel.is_cancelled();
-        read_record(self.element, walk, is_wanted, |_, _| (), take)
+        read_record(self.element, walk, is_wanted, scalar, take)
     }
 }
 

@@ -10,7 +10,7 @@ use super::header::{Element, Header};
 use super::scalar::Walk;
 use crate::source::Source;
 use crate::{Format, ReadError, quoted};
-pub(super) use faces::corner_list;
+pub(super) use faces::{TEXTURE_NUMBER, UV_LIST, corner_list};
 use faces::{read_faces, read_strips};
 use record::pass_over;
 pub(super) use vertices::Columns;
@@ -51,6 +51,10 @@ pub(super) struct Records {
     pub(super) corners: Vec<u32>,
     /// Where each face's corners end.
     pub(super) face_ends: Vec<u32>,
+    /// The texture coordinates of each of `corners`; empty where no face has some, not a number where one has none.
+    pub(super) corner_uvs: Vec<[f32; 2]>,
+    /// The texture of each face; empty where no face says one.
+    pub(super) textures: Vec<u32>,
     /// How many faces have fewer than three corners.
     pub(super) left_out: usize,
 }
@@ -70,6 +74,8 @@ pub(super) fn read(source: &Source<'_>, header: &Header) -> Result<Records, Read
         uvs: Vec::new(),
         corners: Vec::new(),
         face_ends: Vec::new(),
+        corner_uvs: Vec::new(),
+        textures: Vec::new(),
         left_out: 0,
     };
     let is_drawn = |element: &Element| matches!(element.name.as_str(), "vertex" | "face" | "tristrips");

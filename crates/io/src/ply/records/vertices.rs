@@ -55,7 +55,31 @@ pub(super) fn read_vertices(
         None => read_each(source, element, walk, &mut vertices)?,
     };
     records.places = places;
+    if let Some(Kind::Scalar(scalar)) = columns[6].map(|red| element.properties[red].kind) {
+        scale_colours(&mut records.colours, scalar);
+    }
     Ok(())
+}
+
+/// Takes stored colours to the range from 0 to 1. Bytes count to 255 and 16 bits without a sign to 65535. The other types
+/// hold more than any program counts to, so the largest channel tells: floating point counts to 1, whole numbers to 255
+/// and to 65535, whichever is enough. An alpha that is missing is infinite, and becomes 1.
+fn scale_colours(colours: &mut [[f32; 4]], scalar: Scalar) {
+    let largest = colours
+        .iter()
+        .flat_map(|[r, g, b, _]| [r, g, b])
+        .fold(0.0, |most: f32, &channel| most.max(channel));
+    let ranges: &[f32] = match scalar {
+        Scalar::I8 | Scalar::U8 => &[255.0],
+        Scalar::U16 => &[65_535.0],
+        Scalar::F32 | Scalar::F64 => &[1.0, 255.0, 65_535.0],
+        _ => &[255.0, 65_535.0],
+    };
+    let enough = ranges.iter().copied().find(|most| largest <= *most);
+    let most = enough.unwrap_or(largest);
+    for colour in colours {
+        *colour = colour.map(|channel| (channel / most).min(1.0));
+    }
 }
 
 /// The values of a vertex's columns; the value of a column that the file doesn't have is not read.
@@ -68,8 +92,6 @@ struct Vertices<'a> {
     has_colours: bool,
     has_alpha: bool,
     has_uvs: bool,
-    /// Takes a stored colour to the range from 0 to 1.
-    colour_scale: f64,
 }
 
 impl<'a> Vertices<'a> {
@@ -78,11 +100,6 @@ impl<'a> Vertices<'a> {
         let columns = records.columns;
         let has = |span: std::ops::Range<usize>| columns[span].iter().all(Option::is_some);
         let (has_normals, has_colours, has_uvs) = (has(3..6), has(6..9), has(10..12));
-        // Colours are counted by their type: bytes to 255, 16 bits to 65535, floating point to 1.
-        let colour_scale = columns[6].map_or(1.0, |red| match element.properties[red].kind {
-            Kind::Scalar(scalar) => scalar.integer_range().map_or(1.0, |[_, most]| most.recip()),
-            Kind::List { .. } => 1.0,
-        });
         // The count was checked against the bytes that are left.
         let count = element.count as usize;
         records.positions.reserve_exact(count);
@@ -95,7 +112,6 @@ impl<'a> Vertices<'a> {
             has_colours,
             has_alpha: columns[9].is_some(),
             has_uvs,
-            colour_scale,
         }
     }
 
@@ -107,12 +123,12 @@ impl<'a> Vertices<'a> {
         }
         if self.has_colours {
             let alpha = if self.has_alpha {
-                values[9] * self.colour_scale
+                values[9] as f32
             } else {
-                1.0
+                f32::INFINITY
             };
-            let [r, g, b] = [6, 7, 8].map(|slot: usize| (values[slot] * self.colour_scale) as f32);
-            records.colours.push([r, g, b, alpha as f32]);
+            let [r, g, b] = [6, 7, 8].map(|slot: usize| values[slot] as f32);
+            records.colours.push([r, g, b, alpha]);
         }
         if self.has_uvs {
             records.uvs.push([values[10] as f32, values[11] as f32]);
