@@ -16,7 +16,8 @@ pub struct Distortion {
     /// The largest of them; infinite where an edge shrank to a point.
     pub edge_stretch_max: f64,
     /// Triangles that turned over: their normal opposes the mean normal, weighted by area, of the other triangles at
-    /// their vertices, and did not at rest. A part that turned over as a whole counts at its rim only.
+    /// their vertices, and did not at rest. A part that turned over as a whole counts at its rim only, and a triangle
+    /// without an area has no normal.
     pub flipped_faces: usize,
     /// Deformed over rest volume, each hole closed by a cap from its rim's centre. 1 where the rest shape encloses
     /// next to nothing (below 1e-9 of its box's diagonal cubed), as a flat sheet.
@@ -93,7 +94,22 @@ fn edge_stretch(surface: &Surface, topology: &Topology, deformed: &[DVec3]) -> (
 fn flipped_faces(surface: &Surface, topology: &Topology, deformed: &[DVec3]) -> usize {
     let at_rest = opposing_faces(surface, topology, &surface.positions);
     let now = opposing_faces(surface, topology, deformed);
-    at_rest.iter().zip(&now).filter(|&(&rest, &now)| now && !rest).count()
+    let has_area = |triangle: &[SurfaceVertex; 3]| has_area(corners(*triangle, &surface.positions));
+    let each = at_rest.iter().zip(&now).zip(&surface.triangles);
+    let flipped = each.filter(|&((&rest, &now), triangle)| now && !rest && has_area(triangle));
+    flipped.count()
+}
+
+/// Below this share of its longest side squared, a triangle's area is made of roundings alone.
+const LEAST_AREA: f64 = 1e-6;
+
+/// Whether a triangle has an area that tells its normal.
+fn has_area([a, b, c]: [DVec3; 3]) -> bool {
+    let longest = a
+        .distance_squared(b)
+        .max(b.distance_squared(c))
+        .max(c.distance_squared(a));
+    (b - a).cross(c - a).length() > LEAST_AREA * longest
 }
 
 /// Whether each triangle's normal opposes the mean normal of the triangles around it.
@@ -216,5 +232,19 @@ mod tests {
         assert!(distortion.flipped_faces > 0);
         assert!(distortion.edge_stretch_max > 1.5);
         assert_eq!(distortion.volume_ratio, 1.0, "a flat sheet has no volume to compare");
+    }
+
+    #[test]
+    fn a_triangle_without_area_is_never_flipped() {
+        let mut drawn = shapes::grid(6, 6);
+        // Three vertices of one row.
+        drawn.triangles.push([0, 1, 2].map(crate::DrawnVertex));
+        let model = shapes::model(drawn);
+        for by in [-0.02, 0.02] {
+            let mut deformed = model.surface.positions.clone();
+            deformed[1].y += by;
+            let distortion = Distortion::of(&model.surface, &model.topology, &deformed);
+            assert_eq!(distortion.flipped_faces, 0, "moved by {by}");
+        }
     }
 }
