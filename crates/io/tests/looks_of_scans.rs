@@ -338,11 +338,48 @@ fn libraries_whose_names_have_blanks_are_found_and_what_is_missing_is_told() {
 }
 
 #[test]
-fn flat_faces_that_are_drawn_smooth_are_told() {
-    let obj = |s: &str| format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 1\n{s}f 1 2 3\nf 2 4 3\n");
-    let notes = |s: &str| open(obj(s).as_bytes(), Format::Obj).scene.notes().to_vec();
-    assert!(notes("s off\n")[0].contains("smooth"));
-    assert!(notes("s 1\n").is_empty() && notes("").is_empty());
-    let two = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 1\ns 1\nf 1 2 3\ns 2\nf 2 4 3\n";
-    assert!(open(two.as_bytes(), Format::Obj).scene.notes()[0].contains("smoothing groups"));
+fn flat_faces_are_flat_and_hard_edges_that_are_drawn_smooth_are_told() {
+    let obj = |first: &str, second: &str| {
+        format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 1\nv 5 5 5\n{first}f 1 2 3\n{second}f 2 4 3\n")
+    };
+    let open_obj = |first: &str, second: &str| open(obj(first, second).as_bytes(), Format::Obj);
+    let flat = open_obj("s off\n", "");
+    assert!(flat.scene.notes().is_empty(), "{:?}", flat.scene.notes());
+    // The fifth vertex is of no face.
+    assert_eq!(flat.scene.appearance().flat, [0..4]);
+    let normals_in_glb = |opened: &SceneAndDrawn| {
+        let glb = save_as(opened, &opened.drawn.positions, Format::Glb);
+        let has_some = glb.files[0].bytes.windows(8).any(|bytes| bytes == b"\"NORMAL\"");
+        assert_eq!(
+            open(&glb.files[0].bytes, Format::Glb)
+                .scene
+                .appearance()
+                .flat
+                .is_empty(),
+            has_some
+        );
+        has_some
+    };
+    assert!(!normals_in_glb(&flat));
+    for smooth in [open_obj("", ""), open_obj("s 1\n", "")] {
+        assert!(smooth.scene.notes().is_empty() && smooth.scene.appearance().flat.is_empty());
+        assert!(normals_in_glb(&smooth));
+    }
+    for (first, second) in [("s 1\n", "s 2\n"), ("s 1\n", "s off\n"), ("s 0\n", "s 1\n")] {
+        let mixed = open_obj(first, second);
+        assert!(
+            mixed.scene.notes()[0].contains("smoothing groups"),
+            "{:?}",
+            mixed.scene.notes()
+        );
+        assert!(normals_in_glb(&mixed));
+    }
+    let with_normals = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\ns off\nf 1//1 2//1 3//1\n";
+    assert!(
+        open(with_normals.as_bytes(), Format::Obj)
+            .scene
+            .appearance()
+            .flat
+            .is_empty()
+    );
 }

@@ -85,7 +85,8 @@ impl Drawing {
             materials,
             welded: welded(model),
             chunks: Arc::new(chunks),
-            normals: NormalGroups::of(model, &relative, &triangles, appearance.normals, turned),
+            normals: NormalGroups::of(model, &relative, &triangles, appearance.normals, turned)
+                .with_flat(appearance.flat),
             inside_out,
             relative,
             kept: Kept::default(),

@@ -8,6 +8,7 @@
 //! Nearly all surface vertices have a single group, whose geometric normal is the surface's own.
 
 use std::collections::HashMap;
+use std::ops::Range;
 use std::sync::OnceLock;
 
 use glam::{DVec3, Mat3, Quat, Vec3, Vec3A};
@@ -29,6 +30,8 @@ pub struct NormalGroups {
     /// Whether each drawn vertex is of a part that is turned inside out, so that its normal points the other way; empty
     /// where none is. Groups are as in the file.
     turned: Vec<bool>,
+    /// Drawn vertices without a normal, so that their triangles are drawn flat.
+    flat: Vec<Range<u32>>,
     /// Geometric normals at rest and stored normals of each group; `None` if the file stores no normals.
     rest: Option<RestNormals>,
     /// The normals of the groups that are shown at rest, once they were asked for.
@@ -65,6 +68,7 @@ impl NormalGroups {
             parts: Parts::of(model, triangles, &turned, &group_of_drawn, stored_of_group.len()),
             group_of_drawn,
             turned,
+            flat: Vec::new(),
             rest: None,
             shown_at_rest: OnceLock::new(),
         };
@@ -75,6 +79,11 @@ impl NormalGroups {
             });
         }
         groups
+    }
+
+    /// The same, with normals of no length for these ranges of drawn vertices, whose triangles are drawn flat then.
+    pub fn with_flat(self, flat: Vec<Range<u32>>) -> Self {
+        Self { flat, ..self }
     }
 
     /// One unit normal per drawn vertex into `out`, for a shape with these [`Relative::positions`]. `normals` is
@@ -106,8 +115,13 @@ impl NormalGroups {
         self.turn(out);
     }
 
-    /// Turns the normals of parts that are turned inside out.
+    /// Turns the normals of parts that are turned inside out, and leaves flat triangles without.
     fn turn(&self, normals: &mut [[f32; 3]]) {
+        for range in &self.flat {
+            if let Some(normals) = normals.get_mut(range.start as usize..range.end as usize) {
+                normals.fill([0.0; 3]);
+            }
+        }
         for (normal, _) in normals
             .iter_mut()
             .zip(&self.turned)

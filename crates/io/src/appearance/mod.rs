@@ -19,6 +19,8 @@ pub struct Appearance {
     pub second_uvs: Option<Vec<[f32; 2]>>,
     /// Linear-light vertex colours, 0 to 65535; white where a vertex has none. 16 bits tell all 256 sRGB greys apart.
     pub colours: Option<Vec<[u16; 4]>>,
+    /// Ranges of drawn vertices, in order, whose triangles are shown flat: they have no normals, and the file says so.
+    pub flat: Vec<Range<u32>>,
     /// Runs of `Drawn::triangles` that share node and material, in order, covering all of them.
     pub groups: Vec<Group>,
     /// Materials; every group's index is in range.
@@ -47,6 +49,18 @@ impl Appearance {
             ..Self::default()
         }
     }
+}
+
+/// The ranges of numbers for which `is_in` is true.
+pub(crate) fn ranges(is_in: impl Iterator<Item = bool>) -> Vec<Range<u32>> {
+    let mut ranges: Vec<Range<u32>> = Vec::new();
+    for (number, _) in (0..).zip(is_in).filter(|(_, is_in)| *is_in) {
+        match ranges.last_mut() {
+            Some(last) if last.end == number => last.end += 1,
+            _ => ranges.push(number..number + 1),
+        }
+    }
+    ranges
 }
 
 /// A run of triangles that share node and material.

@@ -15,12 +15,13 @@ mod statements;
 mod turned;
 mod write;
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use pliant_mesh::{Drawn, DrawnVertex, Object};
 
 use crate::appearance::colour::linear_colour;
-use crate::appearance::{Group, Material};
+use crate::appearance::{Group, Material, ranges};
 use crate::convert::Polygons;
 use crate::save::OutputFile;
 use crate::save::course::Course;
@@ -51,6 +52,8 @@ pub(crate) struct Stored {
     /// The `v` line of each drawn vertex.
     position: Vec<u32>,
     groups: Vec<Group>,
+    /// The drawn vertices all of whose faces are to be flat.
+    flat: Vec<Range<u32>>,
     materials: Materials,
     notes: Vec<String>,
 }
@@ -67,6 +70,7 @@ pub(crate) fn read(source: &Source<'_>) -> Result<(Stored, Drawn), ReadError> {
     let mut materials = materials::look_up(source, &libraries, &statements.material_names);
     let groups = groups(&statements, &corners, &mut materials);
     let mut notes = std::mem::take(&mut materials.notes).sentences();
+    let flat = flat(&statements, &corners);
     notes.extend(left_out(source, &statements));
     let has_polygons = corners.drawn.triangles.len() != statements.face_ends.len();
     statements.positions = Vec::new();
@@ -84,6 +88,7 @@ pub(crate) fn read(source: &Source<'_>) -> Result<(Stored, Drawn), ReadError> {
         polygons,
         position: corners.drawn.file_vertex.iter().map(|vertex| vertex.0).collect(),
         groups,
+        flat,
         materials,
         notes,
     };
@@ -115,6 +120,25 @@ fn groups(statements: &Statements, corners: &corners::Corners, materials: &mut M
         .collect()
 }
 
+/// The drawn vertices that no face uses which is not to be flat, in a file without normals.
+fn flat(statements: &Statements, corners: &corners::Corners) -> Vec<Range<u32>> {
+    let is_flat = &statements.smoothing.flat_faces;
+    if is_flat.is_empty() || !statements.normals.is_empty() {
+        return Vec::new();
+    }
+    let mut wanted = vec![None; corners.drawn.positions.len()];
+    let mut start = 0;
+    for (face, &end) in statements.face_ends.iter().enumerate() {
+        let is_flat = is_flat.get(face).copied().unwrap_or(false);
+        for &vertex in &corners.drawn_of_corner[start..end] {
+            let known = wanted[vertex as usize].get_or_insert(is_flat);
+            *known &= is_flat;
+        }
+        start = end;
+    }
+    ranges(wanted.into_iter().map(|is_flat| is_flat == Some(true)))
+}
+
 /// Sentences about what is in the file but can't be drawn.
 fn left_out(source: &Source<'_>, statements: &Statements) -> Vec<String> {
     let mut notes = Vec::new();
@@ -134,14 +158,15 @@ fn left_out(source: &Source<'_>, statements: &Statements) -> Vec<String> {
         ));
     }
     let smoothing = &statements.smoothing;
-    if statements.normals.is_empty() && (smoothing.has_flat || smoothing.has_several) {
-        let asked = match smoothing.has_flat {
-            true => "flat faces ('s off')",
-            false => "hard edges between smoothing groups ('s')",
-        };
-        notes.push(format!(
-            "The file asks for {asked} and has no normals; it is drawn, and converted, as if it were smooth all over."
-        ));
+    let is_all_flat =
+        smoothing.flat_faces.len() == statements.face_ends.len() && smoothing.flat_faces.iter().all(|is_flat| *is_flat);
+    let is_divided = smoothing.has_several || (smoothing.has_flat && !is_all_flat);
+    if statements.normals.is_empty() && is_divided {
+        notes.push(
+            "The file asks for hard edges between smoothing groups ('s') and has no normals; edges between groups are \
+             drawn, and converted, as if they were smooth."
+                .to_owned(),
+        );
     }
     if let (count @ 1.., at) = statements.dangling {
         notes.push(format!(
@@ -201,6 +226,7 @@ impl Stored {
             uvs,
             second_uvs: None,
             colours: self.colours(),
+            flat: self.flat.clone(),
             groups: self.groups.clone(),
             materials: self.materials.materials.clone(),
             images: self.materials.images.clone(),

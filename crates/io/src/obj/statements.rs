@@ -74,6 +74,8 @@ pub(super) struct Smoothing {
     group: Option<String>,
     /// Whether there are several groups, between which edges are hard.
     pub(super) has_several: bool,
+    /// Whether each face is to be flat, up to the last that is.
+    pub(super) flat_faces: Vec<bool>,
 }
 
 /// The highest number that a corner has named so far, and where.
@@ -117,6 +119,8 @@ struct Reader<'a> {
     material: Option<usize>,
     material_numbers: HashMap<String, usize>,
     run_is_open: bool,
+    /// Whether `s off` stands before the faces that follow.
+    is_flat: bool,
     /// The colours of `#MRGB` lines, in the vertices' order.
     polypaint: Vec<[f32; 3]>,
 }
@@ -134,6 +138,7 @@ impl<'a> Reader<'a> {
             material: None,
             material_numbers: HashMap::new(),
             run_is_open: false,
+            is_flat: false,
             polypaint: Vec::new(),
         }
     }
@@ -169,6 +174,7 @@ impl<'a> Reader<'a> {
             }
             b"s" => {
                 let group = self.rest();
+                self.is_flat = matches!(group.as_str(), "off" | "0");
                 match group.as_str() {
                     "off" | "0" => self.found.smoothing.has_flat = true,
                     _ => {
@@ -304,6 +310,11 @@ impl<'a> Reader<'a> {
             self.run_is_open = true;
         }
         self.found.face_ends.push(self.found.corners.len());
+        let smooth = &mut self.found.smoothing;
+        if self.is_flat {
+            smooth.flat_faces.resize(self.found.face_ends.len() - 1, false);
+            smooth.flat_faces.push(true);
+        }
         Ok(())
     }
 

@@ -137,6 +137,7 @@ impl Stored {
             uvs: (!self.uvs.is_empty()).then(|| self.uvs.iter().map(|&[u, v]| [u, 1.0 - v]).collect()),
             second_uvs: None,
             colours: (!self.colours.is_empty()).then(|| self.of_drawn(&self.colours).map(linear_colour).collect()),
+            flat: Vec::new(),
             groups: self.groups.clone(),
             materials: self.materials.clone(),
             images: self.textures.images.clone(),

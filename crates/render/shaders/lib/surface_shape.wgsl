@@ -32,12 +32,14 @@ fn under_region(colour: vec3f, region: vec4f) -> vec3f {
 // hemisphere, which is continuous at the silhouette, unlike a change of sign.
 fn seen_normal(normal_view: vec3f, position_view: vec3f, to_eye: vec3f, is_front: bool) -> vec3f {
     let length_squared = dot(normal_view, normal_view);
-    var n = select(to_eye, normal_view * inverseSqrt(length_squared), length_squared > 1e-20);
+    let has_normal = length_squared > 1e-20;
+    var n = select(to_eye, normal_view * inverseSqrt(length_squared), has_normal);
     n = select(-n, n, is_front);
-    if frame.flatness > 0.5 {
-        let face = cross(dpdx(position_view), dpdy(position_view));
-        let face_squared = dot(face, face);
-        n = select(n, face * inverseSqrt(face_squared), face_squared > 1e-30);
+    // Derivatives are taken where all fragments come by.
+    let face = cross(dpdx(position_view), dpdy(position_view));
+    let face_squared = dot(face, face);
+    if face_squared > 1e-30 && (frame.flatness > 0.5 || !has_normal) {
+        n = face * inverseSqrt(face_squared);
         n = select(-n, n, dot(n, to_eye) >= 0.0);
     }
     let facing = dot(n, to_eye);

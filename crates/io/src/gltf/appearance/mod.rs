@@ -4,6 +4,7 @@ pub(crate) mod maps;
 pub(crate) mod uv_sets;
 
 use std::collections::HashMap;
+use std::ops::Range;
 
 use ::gltf::json;
 use ::gltf::json::validation::Checked;
@@ -47,6 +48,7 @@ pub(crate) fn appearance(document: &Document, meshes: &[Vec<Primitive>], pieces:
             let whole = |[r, g, b, a]: [f32; 4]| [r, g, b, if has_alpha { a } else { 1.0 }].map(short);
             Some(colours.into_iter().map(whole).collect())
         }),
+        flat: flat(document, meshes, pieces),
         groups: Vec::new(),
         materials: document
             .materials
@@ -82,6 +84,17 @@ pub(crate) fn appearance(document: &Document, meshes: &[Vec<Primitive>], pieces:
         })
         .collect();
     out
+}
+
+/// The vertices of triangles without normals, which glTF has shown flat.
+fn flat(document: &Document, meshes: &[Vec<Primitive>], pieces: &Pieces) -> Vec<Range<u32>> {
+    let mut flat: Vec<Range<u32>> = (of_triangles(meshes, pieces).map(|piece| &pieces.instances[piece.instance]))
+        .filter(|instance| normals(document, instance, primitive(meshes, instance)).is_none())
+        .map(|instance| instance.vertices.clone())
+        .collect();
+    flat.sort_unstable_by_key(|range| range.start);
+    flat.dedup();
+    flat
 }
 
 /// The pieces that are made of triangles; lines and points have no groups and are no objects.

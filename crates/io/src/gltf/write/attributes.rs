@@ -48,14 +48,14 @@ pub(super) fn attributes(
     position["max"] = json!(high.as_dvec3().to_array());
     let position = out.accessor(position);
     course.reach(1, 4)?;
-    let view = out.view(
-        each().flat_map(|v| normals[v].to_array()),
-        f32::to_le_bytes,
-        ARRAY_BUFFER,
-    );
-    let normal = out.accessor(floats("VEC3", view));
+    let mut attributes = json!({ "POSITION": position });
+    // What has no normals is shown flat.
+    if !is_flat(mesh, vertices) {
+        let numbers = each().flat_map(|v| normals[v].to_array());
+        let view = out.view(numbers, f32::to_le_bytes, ARRAY_BUFFER);
+        attributes["NORMAL"] = out.accessor(floats("VEC3", view)).into();
+    }
     course.reach(2, 4)?;
-    let mut attributes = json!({ "POSITION": position, "NORMAL": normal });
     if let Some(uvs) = &looks.uvs {
         let finite = |number: f32| if number.is_finite() { number } else { 0.0 };
         let numbers = each().flat_map(|v| uvs[v].map(finite));
@@ -74,6 +74,24 @@ pub(super) fn attributes(
             .into();
     }
     Ok(attributes)
+}
+
+/// Whether all of these vertices, which are in order, are of flat triangles or of none.
+fn is_flat(mesh: &NewMesh<'_>, vertices: &[u32]) -> bool {
+    let flat = &mesh.appearance.flat;
+    let is_in = |v: u32| {
+        let next = flat.partition_point(|range| range.end <= v);
+        flat.get(next).is_some_and(|range| range.contains(&v))
+    };
+    let mut is_used = vec![false; if flat.is_empty() { 0 } else { mesh.positions.len() }];
+    if flat.is_empty() {
+        return false;
+    }
+    mesh.triangles
+        .iter()
+        .flatten()
+        .for_each(|corner| is_used[corner.index()] = true);
+    vertices.iter().all(|&v| is_in(v) || !is_used[v as usize])
 }
 
 /// Normals of unit length, as glTF requires: the file's own, or, if it has none, the area-weighted mean of the faces
