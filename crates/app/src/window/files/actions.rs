@@ -10,9 +10,9 @@ use pliant_deform::{Attachment, ControlMesh, ExampleShape};
 use pliant_editor::Command;
 
 use super::recovery::left;
+use super::save_request::Content;
 use super::saves::project_path;
-use super::session::{KeepOriginal, OpenFile, Source};
-use super::writing::Content;
+use super::session::{OpenFile, Source};
 use crate::window::application::Application;
 use crate::window::dialogs::file_dialog;
 use crate::window::dialogs::folder_browser::listing;
@@ -302,7 +302,7 @@ impl Application {
     pub(in crate::window) fn answer(&mut self, answer: Answer) {
         let question = self.question.take();
         match answer {
-            Answer::WriteOver(path) => self.save_to(path, KeepOriginal::Yes),
+            Answer::WriteOver(path) => self.write_over(path),
             Answer::SaveAs => self.choose(Purpose::SaveAs),
             Answer::Save => {
                 if let Some(Question::Discard(then, _)) = question {

@@ -40,16 +40,28 @@ pub fn stage(
             )
         }
     };
+    let name = beside.is_some().then(|| file_name(&mesh.loaded.path));
+    assembled(snapshot, (mesh_path, name), beside, path, staging)
+}
+
+/// A project that names its mesh by a path and, where that doesn't tell, by what people call it.
+fn assembled(
+    snapshot: &Snapshot,
+    (mesh_path, name): (Option<String>, Option<String>),
+    beside: Option<(PathBuf, Option<Staged>)>,
+    path: &Path,
+    staging: &Staging,
+) -> Result<StagedProject, EngineError> {
     let project = snapshot.project(MeshReference {
         path: mesh_path,
-        name: beside.is_some().then(|| file_name(&mesh.loaded.path)),
+        name,
         geometry: geometry_hash(snapshot.model()),
     });
     let staged = staging.stage([(path.to_owned(), project.to_json().as_bytes())])?;
-    let (kept, staged_mesh) = beside.unzip();
+    let (kept, mesh) = beside.unzip();
     Ok(StagedProject {
         // The mesh first: the project must not be there without it.
-        staged: match staged_mesh.flatten() {
+        staged: match mesh.flatten() {
             Some(mesh) => mesh.and(staged),
             None => staged,
         },
@@ -69,35 +81,21 @@ pub fn write_with_mesh(
     path: &Path,
 ) -> Result<(), EngineError> {
     let (staging, progress, cancel) = (Staging::private(), Progress::new(), Cancel::new());
-    let is_sample = mesh.source == MeshSource::Sample;
-    let beside = match is_sample {
-        true => None,
-        false => Some(stage_mesh(
-            mesh,
-            path,
-            Stamp::looks_current,
-            &staging,
-            &progress,
-            &cancel,
-        )?),
+    let beside = match mesh.source {
+        MeshSource::Sample => None,
+        MeshSource::File(_) | MeshSource::Gone => {
+            let check = Stamp::looks_current;
+            Some(stage_mesh(mesh, path, check, &staging, &progress, &cancel)?)
+        }
     };
-    let (kept, staged_mesh) = beside.unzip();
-    let named = match (&mesh.source, model) {
-        (MeshSource::Sample, _) => None,
-        (_, Some(model)) => Some(relative(model, files::folder_of(path))),
-        (_, None) => kept.as_ref().map(|kept| relative(kept, files::folder_of(path))),
+    let stands_at = match &beside {
+        None => None,
+        Some((kept, _)) => Some(relative(model.unwrap_or(kept), files::folder_of(path))),
     };
-    let project = snapshot.project(MeshReference {
-        path: named,
-        // Where the model stands somewhere, its path tells.
-        name: (!is_sample && model.is_none()).then(|| file_name(&mesh.loaded.path)),
-        geometry: geometry_hash(snapshot.model()),
-    });
-    let staged = staging.stage([(path.to_owned(), project.to_json().as_bytes())])?;
-    match staged_mesh.flatten() {
-        Some(mesh) => mesh.and(staged).commit()?,
-        None => staged.commit()?,
-    }
+    // Where the model stands somewhere, its path tells.
+    let name = (beside.is_some() && model.is_none()).then(|| file_name(&mesh.loaded.path));
+    let StagedProject { staged, kept } = assembled(snapshot, (stands_at, name), beside, path, &staging)?;
+    staged.commit()?;
     if let Some(kept) = kept {
         mesh.note_copy(&kept, Stamp::of(&kept)?);
     }

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::writing::KeepOriginal;
+use super::save_request::KeepOriginal;
 
 /// What is to be saved, and where.
 #[derive(Clone, PartialEq, Eq, Debug)]
@@ -16,6 +16,18 @@ pub enum SaveWish {
 }
 
 impl SaveWish {
+    /// The same in place of others with its path: what one of them was to keep is kept.
+    #[must_use]
+    pub fn in_place_of(self, others: Vec<Self>) -> Self {
+        let keeps = others
+            .iter()
+            .any(|other| matches!(other, Self::Model(_, KeepOriginal::Yes)));
+        match self {
+            Self::Model(path, _) if keeps => Self::Model(path, KeepOriginal::Yes),
+            wish => wish,
+        }
+    }
+
     /// Where.
     pub fn path(&self) -> &Path {
         match self {

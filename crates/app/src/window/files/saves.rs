@@ -7,9 +7,9 @@ use std::sync::Arc;
 use pliant_editor::{Event, Revision, SavedAs};
 
 use super::opening::Reload;
+use super::save_request::{Changed, Content, Model, Shape, Unwritten, Written, WrittenKind};
 use super::save_wish::SaveWish;
 use super::session::{KeepOriginal, Source};
-use super::writing::{Changed, Content, Model, Shape, Unwritten, Written, WrittenKind};
 use crate::window::application::Application;
 use crate::window::dialogs::question::{ChangedOffer, Question, Then};
 use crate::window::files::names::file_name;
@@ -35,14 +35,28 @@ impl Application {
     }
 
     fn wish(&mut self, wish: SaveWish) {
-        self.wishes.retain(|other| other.path() != wish.path());
-        self.wishes.push(wish);
+        let (same, others) = std::mem::take(&mut self.wishes)
+            .into_iter()
+            .partition(|other| other.path() == wish.path());
+        self.wishes = others;
+        self.wishes.push(wish.in_place_of(same));
         self.save_what_has_settled();
+        if let Some(waiting) = self.waiting_save() {
+            self.notes.headline = Some(Note::Done(format!("{waiting}.")));
+        }
+    }
+
+    /// Saves over the file that was opened, as the person has agreed to: they are not asked again while that waits.
+    pub(in crate::window) fn write_over(&mut self, path: PathBuf) {
+        if let Some(open) = &mut self.session.open {
+            open.may_write_over = true;
+        }
+        self.save_to(path, KeepOriginal::Yes);
     }
 
     /// Begins the saves that wait, once no other shape can follow.
     pub(in crate::window) fn save_what_has_settled(&mut self) {
-        if self.editor.is_settled() {
+        if !self.wishes.is_empty() && self.editor.is_settled() {
             self.save_as_it_is();
         }
     }
@@ -97,6 +111,7 @@ impl Application {
         self.wishes.clear();
         self.after_saving = None;
         self.session.stop();
+        self.session.ask_again();
     }
 
     /// Whether a save is under way or waits.
@@ -140,6 +155,7 @@ impl Application {
         match result {
             Ok(written) => self.was_written(&written),
             Err(Unwritten::Changed(path, request)) => {
+                self.session.ask_again();
                 let offers = match self.reload(&request.content) {
                     Some(_) => ChangedOffer::Reload,
                     None => ChangedOffer::Others,
@@ -148,6 +164,7 @@ impl Application {
                 self.unwritten = Some(request);
             }
             Err(Unwritten::Refused(sentence)) => {
+                self.session.ask_again();
                 self.after_saving = None;
                 self.fail(sentence);
             }

@@ -12,8 +12,9 @@ pub use super::opening::Source;
 use super::opening::{absolute, open};
 use super::original::Original;
 use super::rest_mesh::RestMesh;
-pub use super::writing::KeepOriginal;
-use super::writing::{Changed, Content, SaveRequest, Unwritten, Written, WrittenKind, write};
+pub use super::save_request::KeepOriginal;
+use super::save_request::{Changed, Content, SaveRequest, Unwritten, Written, WrittenKind};
+use super::writing::write;
 use crate::drawing::Drawing;
 use crate::window::threads::message::{Message, ModelToShow};
 use crate::window::threads::workers::Workers;
@@ -92,6 +93,13 @@ impl Session {
         self.loading.cancel();
         self.saving.cancel();
         self.to_save.clear();
+    }
+
+    /// Has the person asked once more before the opened file is written over, unless it was.
+    pub fn ask_again(&mut self) {
+        if let Some(open) = &mut self.open {
+            open.may_write_over = open.saved.is_some();
+        }
     }
 
     /// Whether a save is under way.

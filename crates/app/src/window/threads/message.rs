@@ -13,7 +13,7 @@ use crate::drawing::{Drawing, Field, Pose, Scale};
 use crate::window::dialogs::folder_browser::listing::Entry;
 use crate::window::files::original::Kept;
 use crate::window::files::rest_mesh::MeshSource;
-use crate::window::files::writing::{Unwritten, Written};
+use crate::window::files::save_request::{Unwritten, Written};
 use pliant_engine::Loaded;
 use pliant_engine::files::Stamp;
 
