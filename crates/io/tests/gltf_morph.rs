@@ -4,8 +4,8 @@
 
 mod gltf_maker;
 
-use glam::DVec3;
-use gltf_maker::{Folder, Maker, assert_near, bent, grid, moved, open, saved_glb, shapes, split, try_open};
+use glam::{DQuat, DVec3};
+use gltf_maker::{Folder, Maker, assert_near, bent, grid, moved, open, saved_glb, shapes, split, try_open, try_save};
 use pliant_io::{Format, MorphTarget, Placement, Save, SaveError, Saved, SceneAndDrawn};
 use pliant_mesh::{Cancel, Progress};
 use serde_json::{Value, json};
@@ -220,5 +220,47 @@ fn a_file_of_another_kind_becomes_a_gltf_with_a_target() {
         let again = try_open(&saved.files[0].bytes, Format::of_name(name).unwrap(), &folder).unwrap();
         assert_near(&again.drawn.positions, &positions, 4.0);
         assert_eq!(again.scene.summary().morph_targets, 1);
+    }
+}
+
+#[test]
+fn deltas_turn_with_a_surface_that_turns_far_whatever_is_applied_by_default() {
+    let shape = grid(4);
+    let lift: Vec<[f32; 3]> = shape.positions.iter().map(|p| [0.1 * p[0], 0.0, 0.3]).collect();
+    let turn = DQuat::from_rotation_x(1.2) * DQuat::from_rotation_z(0.4);
+    for has_normals in [true, false] {
+        for weight in [0.0, 0.75] {
+            let mut maker = Maker::default();
+            let mut primitive = maker.primitive(&shape);
+            if !has_normals {
+                primitive["attributes"] = json!({ "POSITION": primitive["attributes"]["POSITION"] });
+            }
+            primitive["targets"] = json!([{ "POSITION": maker.floats(&lift) }]);
+            let mesh = maker.mesh_of(vec![primitive]);
+            maker.root["meshes"][mesh]["weights"] = json!([weight]);
+            maker.node(json!({ "mesh": mesh, "scale": [2, 2, 2], "rotation": [0, 0.6, 0, 0.8] }));
+            let opened = open(&maker.glb());
+            let whole = |opened: &SceneAndDrawn| {
+                let count = opened.drawn.positions.len();
+                let ways = opened
+                    .scene
+                    .morph_target("a", "target 0", count, &Cancel::new())
+                    .unwrap()
+                    .unwrap();
+                let each = opened.drawn.positions.iter().zip(ways);
+                each.map(|(position, way)| *position + way).collect::<Vec<DVec3>>()
+            };
+            let positions = moved(&opened, |_| true, |p| turn * p + DVec3::Y);
+            let saved = try_save(&opened, &positions, "out.glb", Placement::SameFolder).unwrap();
+            assert!(
+                saved.warnings[0].contains("turned with the edit"),
+                "{:?}",
+                saved.warnings
+            );
+            let again = open(&saved.files[0].bytes);
+            assert_near(&again.drawn.positions, &positions, 8.0);
+            let wanted: Vec<DVec3> = whole(&opened).iter().map(|p| turn * *p + DVec3::Y).collect();
+            assert_near(&whole(&again), &wanted, 8.0);
+        }
     }
 }

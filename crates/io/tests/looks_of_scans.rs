@@ -346,7 +346,7 @@ fn flat_faces_are_flat_and_hard_edges_that_are_drawn_smooth_are_told() {
     let flat = open_obj("s off\n", "");
     assert!(flat.scene.notes().is_empty(), "{:?}", flat.scene.notes());
     // The fifth vertex is of no face.
-    assert_eq!(flat.scene.appearance().flat, [0..4]);
+    assert_eq!(flat.scene.appearance().flat, std::slice::from_ref(&(0..4)));
     let normals_in_glb = |opened: &SceneAndDrawn| {
         let glb = save_as(opened, &opened.drawn.positions, Format::Glb);
         let has_some = glb.files[0].bytes.windows(8).any(|bytes| bytes == b"\"NORMAL\"");

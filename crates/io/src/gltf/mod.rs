@@ -146,8 +146,9 @@ impl Stored {
             let largest = |most: DVec3, p: DVec3| most.max(p.abs());
             let finite = positions.iter().copied().filter(|p| p.is_finite());
             let in_world = finite.fold(DVec3::ZERO, largest);
+            let mesh_from_world = instance.pose.inverse();
             let in_mesh = positions.iter().enumerate();
-            let in_mesh = in_mesh.map(|(element, p)| instance.pose.at(element).inverse().transform_point3(*p));
+            let in_mesh = in_mesh.map(|(element, p)| mesh_from_world(element).transform_point3(*p));
             let in_mesh = in_mesh.filter(|p| p.is_finite()).fold(DVec3::ZERO, largest);
             let within = |element: usize, linear: Option<Linear>| {
                 // What a skin flattens is left as it is, wherever it was moved.

@@ -146,7 +146,7 @@ fn push_faces(
     let mut groups = mesh.appearance.groups.iter().peekable();
     let (mut object, mut material) = (String::new(), None);
     let count = mesh.positions.len() as u32;
-    if mesh.appearance.flat == [0..count] {
+    if matches!(&mesh.appearance.flat[..], [whole] if *whole == (0..count)) {
         push_line(out, &["s off"]);
     }
     let (has_uvs, has_normals) = (mesh.appearance.uvs.is_some(), mesh.appearance.normals.is_some());

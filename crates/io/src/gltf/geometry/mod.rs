@@ -30,6 +30,7 @@ use crate::gltf::document::Document;
 use crate::gltf::document::fault::Fault;
 use crate::gltf::document::json::At;
 use crate::gltf::document::layout::Layout;
+use crate::gltf::geometry::pose::SkinPose;
 pub(crate) use crate::gltf::geometry::pose::{Linear, Pose};
 use crate::gltf::geometry::primitive::{Mode, Primitive};
 use crate::gltf::geometry::rounding::Coding;
@@ -226,7 +227,7 @@ impl Gathering<'_> {
         let called = self.document.called(place.node);
         match skins::transforms(self.document, primitive, skin, count) {
             Ok(Some(transforms)) => {
-                let pose = Pose::Skin(transforms);
+                let pose = Pose::Skin(SkinPose::of(transforms));
                 let flattened = pose.flattened_count();
                 let note = (flattened > 0).then(|| {
                     let vertices = if flattened == 1 { "vertex" } else { "vertices" };

@@ -7,8 +7,30 @@ use glam::{DAffine3, DMat3};
 pub(crate) enum Pose {
     /// All of them by their node.
     Node(DAffine3),
-    /// Each by the weighted mean of its joints' transforms; glTF ignores the node's own.
-    Skin(Vec<DAffine3>),
+    /// Each by its own; glTF ignores the node's.
+    Skin(SkinPose),
+}
+
+/// The transforms of skinned vertices: weighted means of those of their joints.
+#[derive(Clone, PartialEq, Debug)]
+pub(crate) struct SkinPose {
+    transforms: Vec<DAffine3>,
+    is_mirrored: bool,
+}
+
+impl SkinPose {
+    /// The pose of these vertices.
+    pub fn of(transforms: Vec<DAffine3>) -> Self {
+        let signs = |sign: f64| {
+            let determinants = transforms.iter().map(|transform| transform.matrix3.determinant());
+            determinants.filter(|determinant| determinant * sign > 0.0).count()
+        };
+        let is_mirrored = signs(-1.0) > signs(1.0);
+        Self {
+            transforms,
+            is_mirrored,
+        }
+    }
 }
 
 /// The linear part of a vertex's transform, and its inverse.
@@ -19,11 +41,19 @@ pub(crate) struct Linear {
 }
 
 impl Pose {
+    /// The different transforms: a node's one, or each element's.
+    pub fn transforms(&self) -> &[DAffine3] {
+        match self {
+            Self::Node(world_from_node) => std::slice::from_ref(world_from_node),
+            Self::Skin(skin) => &skin.transforms,
+        }
+    }
+
     /// The transform of an element.
     pub fn at(&self, element: usize) -> DAffine3 {
         match self {
             Self::Node(world_from_node) => *world_from_node,
-            Self::Skin(transforms) => transforms[element],
+            Self::Skin(skin) => skin.transforms[element],
         }
     }
 
@@ -42,7 +72,7 @@ impl Pose {
         };
         move |element| match self {
             Self::Node(_) => of_node,
-            Self::Skin(transforms) => of(&transforms[element]),
+            Self::Skin(skin) => of(&skin.transforms[element]),
         }
     }
 
@@ -51,11 +81,19 @@ impl Pose {
     pub fn is_mirrored(&self) -> bool {
         match self {
             Self::Node(world_from_node) => world_from_node.matrix3.determinant() < 0.0,
-            Self::Skin(transforms) => {
-                let determinants = || transforms.iter().map(|transform| transform.matrix3.determinant());
-                let mirrored = determinants().filter(|determinant| *determinant < 0.0).count();
-                mirrored > determinants().filter(|determinant| *determinant > 0.0).count()
-            }
+            Self::Skin(skin) => skin.is_mirrored,
+        }
+    }
+
+    /// The transform that undoes each element's.
+    pub fn inverse(&self) -> impl Fn(usize) -> DAffine3 + '_ {
+        let of_node = match self {
+            Self::Node(world_from_node) => world_from_node.inverse(),
+            Self::Skin(_) => DAffine3::IDENTITY,
+        };
+        move |element| match self {
+            Self::Node(_) => of_node,
+            Self::Skin(skin) => skin.transforms[element].inverse(),
         }
     }
 
@@ -63,7 +101,11 @@ impl Pose {
     pub fn flattened_count(&self) -> usize {
         match self {
             Self::Node(_) => 0,
-            Self::Skin(transforms) => transforms.iter().filter(|transform| !is_invertible(transform)).count(),
+            Self::Skin(skin) => skin
+                .transforms
+                .iter()
+                .filter(|transform| !is_invertible(transform))
+                .count(),
         }
     }
 }

@@ -33,10 +33,7 @@ pub(super) fn distance(layout: &Layout, coding: Coding, positions: &[[f32; 3]], 
         ComponentType::U16 => step_of_integers(layout, f64::from(u16::MAX)),
         ComponentType::U32 => step_of_integers(layout, f64::from(u32::MAX)),
     };
-    let transforms = match pose {
-        Pose::Node(world_from_node) => std::slice::from_ref(world_from_node),
-        Pose::Skin(transforms) => transforms,
-    };
+    let transforms = pose.transforms();
     0.5 * step * transforms.iter().map(corner_distance).fold(0.0, f64::max)
 }
 
@@ -84,6 +81,7 @@ fn draco_step(positions: &[[f32; 3]]) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::pose::SkinPose;
     use super::*;
 
     fn layout(component: ComponentType, normalized: bool) -> Layout {
@@ -118,7 +116,7 @@ mod tests {
         let floats = of(ComponentType::F32, false, &identity);
         assert!((floats - half_diagonal * 4.0 * f64::from(f32::EPSILON)).abs() < 1e-12);
         // Of a skin, the joint counts that enlarges most.
-        let skin = Pose::Skin(vec![DAffine3::IDENTITY, stretched]);
+        let skin = Pose::Skin(SkinPose::of(vec![DAffine3::IDENTITY, stretched]));
         let by_skin = distance(&layout(ComponentType::U8, false), Coding::Plain, &positions, &skin);
         assert!((by_skin - 2.5).abs() < 1e-12);
     }

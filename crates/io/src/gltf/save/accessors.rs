@@ -58,6 +58,7 @@ pub(crate) fn with_changes<'a>(
     }
     patch.unpack(meshes, &copies, &plans, turned, format)?;
     patch.turn(meshes, &copies, turned, &places, format)?;
+    patch.turn_targets(meshes, &copies, changes, format)?;
     patch.clone_meshes(&copies, format)?;
     let mut patched = patch.finished(format)?;
     patched
@@ -239,7 +240,7 @@ fn whole(document: &Document, layout: &Layout, change: &Change) -> Vec<[f32; 4]>
     elements
 }
 
-/// A sentence for each edited mesh whose morph targets did not turn with it.
+/// A sentence for each edited mesh with morph targets.
 fn morph_warnings(
     document: &Document,
     meshes: &[Vec<Primitive>],
@@ -250,6 +251,10 @@ fn morph_warnings(
     let edited = instances.filter(|(_, change)| !change.is_empty());
     let edited: BTreeSet<usize> = edited.map(|(instance, _)| instance.mesh).collect();
     let has_targets = |mesh: &usize| meshes[*mesh].iter().any(|primitive| !primitive.targets.is_empty());
+    let is_turned = |mesh: usize| {
+        let mut instances = pieces.instances.iter().zip(changes);
+        instances.any(|(instance, change)| instance.mesh == mesh && change.target_turns.is_some())
+    };
     let mut notes = Notes::default();
     for mesh in edited.into_iter().filter(has_targets) {
         let name = document.name(document.meshes_at[mesh]);
@@ -258,8 +263,12 @@ fn morph_warnings(
         } else {
             format!(" ({})", quoted(&name))
         };
-        let note =
-            format!("The morph targets of mesh {mesh}{called} keep their deltas: they did not turn with the edit.");
+        let note = match is_turned(mesh) {
+            true => format!("The morph targets of mesh {mesh}{called} turned with the edit."),
+            false => {
+                format!("The morph targets of mesh {mesh}{called} keep their deltas: they did not turn with the edit.")
+            }
+        };
         notes.add("meshes", Some(note));
     }
     notes.sentences()

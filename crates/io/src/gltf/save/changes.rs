@@ -11,6 +11,7 @@ use crate::gltf::appearance;
 use crate::gltf::document::Document;
 use crate::gltf::geometry::primitive::Primitive;
 use crate::gltf::geometry::{Instance, Pieces};
+use crate::gltf::save::turned_targets;
 use crate::save::course::Course;
 use crate::save::frames::{Frames, carried_normal, carried_tangent};
 use crate::save::moved::Moved;
@@ -62,6 +63,8 @@ pub(crate) struct InstanceChange {
     pub position: Change,
     pub normal: Change,
     pub tangent: Change,
+    /// The turn of each element's deltas in morph targets; `None` where these stay.
+    pub target_turns: Option<Vec<DMat3>>,
 }
 
 impl InstanceChange {
@@ -78,6 +81,15 @@ impl InstanceChange {
     }
 }
 
+/// What becomes of the deltas of morph targets.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum MorphTargets {
+    /// They turn where they would else be far off.
+    Turn,
+    /// They stay, because the shape does.
+    Keep,
+}
+
 /// Vertices that a thread handles at a time.
 const CHUNK: usize = 1 << 13;
 
@@ -90,30 +102,37 @@ pub(crate) fn changes(
     meshes: &[Vec<Primitive>],
     pieces: &Pieces,
     moved: &Moved<'_>,
+    targets: MorphTargets,
     course: &Course<'_>,
 ) -> Result<Vec<InstanceChange>, SaveError> {
     let has_normals = pieces.instances.iter().any(|instance| {
         let primitive = &meshes[instance.mesh][instance.primitive];
-        primitive.normal.is_some() || primitive.tangent.is_some()
+        let has_targets = targets == MorphTargets::Turn && !primitive.targets.is_empty();
+        primitive.normal.is_some() || primitive.tangent.is_some() || has_targets
     });
     course.reach(0, 1)?;
     let (of_frames, course) = course.split(if has_normals { 0.7 } else { 0.0 });
     let frames = has_normals
         .then(|| moved.frames(&appearance::world_normals(document, meshes, pieces), &of_frames))
         .transpose()?;
+    let mut turns = match (&frames, targets) {
+        (Some(frames), MorphTargets::Turn) => turned_targets::turns(document, meshes, pieces, moved, frames),
+        _ => Vec::new(),
+    };
+    turns.resize(pieces.instances.len(), None);
     let all = moved.positions.len().max(1) as f32;
-    let of_instance = |instance: &Instance| {
+    let of_instance = |(instance, turns): (&Instance, Option<Vec<DMat3>>)| {
         let [from, to] = [instance.vertices.start, instance.vertices.end].map(|vertex| vertex as f32 / all);
         instance_change(
             document,
             meshes,
             instance,
             moved,
-            frames.as_ref(),
+            (frames.as_ref(), turns),
             &course.part(from, to),
         )
     };
-    pieces.instances.iter().map(of_instance).collect()
+    pieces.instances.iter().zip(turns).map(of_instance).collect()
 }
 
 fn instance_change(
@@ -121,7 +140,7 @@ fn instance_change(
     meshes: &[Vec<Primitive>],
     instance: &Instance,
     moved: &Moved<'_>,
-    frames: Option<&Frames>,
+    (frames, target_turns): (Option<&Frames>, Option<Vec<DMat3>>),
     course: &Course<'_>,
 ) -> Result<InstanceChange, SaveError> {
     let vertex = |element: u32| DrawnVertex(instance.vertices.start + element);
@@ -138,6 +157,8 @@ fn instance_change(
     let elements: Vec<u32> = elements.into_iter().filter(|&e| linear(e as usize).is_some()).collect();
     let stored = |accessor: Option<usize>| appearance::attribute::<4>(document, instance, accessor);
     let positions = stored(primitive.position).unwrap_or_default();
+    let turns = target_turns.as_deref();
+    let shifts = turns.map(|turns| turned_targets::shifts(document, primitive, instance, turns));
     let normals = stored(primitive.normal);
     let tangents = stored(primitive.tangent);
 
@@ -149,6 +170,7 @@ fn instance_change(
         let v = vertex(element).index();
         let way = moved.positions[v] - moved.drawn.positions[v];
         let by = linear(element as usize).map_or(DVec3::ZERO, |linear| linear.mesh_from_world * way);
+        let by = by - shifts.as_ref().map_or(DVec3::ZERO, |shifts| shifts[element as usize]);
         if by == DVec3::ZERO {
             return Vec4::from_array(stored);
         }
@@ -198,6 +220,7 @@ fn instance_change(
         position,
         normal,
         tangent,
+        target_turns,
     })
 }
 

@@ -10,6 +10,7 @@ mod overlap;
 mod pack;
 mod patch;
 mod turned;
+mod turned_targets;
 mod turned_triangles;
 mod unpack;
 mod unpack_copies;
@@ -19,6 +20,7 @@ use crate::save::course::Course;
 use crate::save::moved::Moved;
 use crate::save::{MorphTarget, Save, Saved};
 use crate::{Format, SaveError};
+use changes::MorphTargets;
 use patch::Patched;
 
 impl Stored {
@@ -33,7 +35,14 @@ impl Stored {
         let patched = if moved.is_nothing() {
             Patched::unchanged(document)
         } else {
-            let changes = changes::changes(document, meshes, pieces, moved, &course.part(0.0, 0.8))?;
+            let changes = changes::changes(
+                document,
+                meshes,
+                pieces,
+                moved,
+                MorphTargets::Turn,
+                &course.part(0.0, 0.8),
+            )?;
             let turned = turned_triangles::turned(pieces, moved);
             let course = course.part(0.8, 0.9);
             accessors::with_changes(document, meshes, pieces, (&changes, &turned), save.format, &course)?
@@ -62,7 +71,14 @@ impl Stored {
                 .warnings
                 .push("Nothing moved, so no morph target was added.".to_owned());
         } else {
-            let changes = changes::changes(document, meshes, pieces, moved, &course.part(0.0, 0.8))?;
+            let changes = changes::changes(
+                document,
+                meshes,
+                pieces,
+                moved,
+                MorphTargets::Keep,
+                &course.part(0.0, 0.8),
+            )?;
             let course = course.part(0.8, 0.9);
             patched = morph::with_target(document, meshes, pieces, &changes, target, save.format, &course)?;
         }

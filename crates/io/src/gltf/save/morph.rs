@@ -150,7 +150,7 @@ impl TargetMaker<'_, '_> {
                             return Err(SaveError::NotFinite { file_vertex: element });
                         }
                     }
-                    let accessor = self.new_accessor(&way, semantic)?;
+                    let accessor = self.patch.push_ways(&way, semantic, self.format)?;
                     self.deltas.insert((instance, place), accessor);
                     accessor
                 }
@@ -161,26 +161,6 @@ impl TargetMaker<'_, '_> {
             return Err(self.refuse("a primitive without positions".to_owned()));
         }
         Ok(format!("{{{}}}", members.join(",")))
-    }
-
-    fn new_accessor(&mut self, way: &[[f32; 4]], semantic: Semantic) -> Result<usize, SaveError> {
-        let numbers = way.iter().flat_map(|element| &element[..3]);
-        let bytes = numbers.flat_map(|number| number.to_le_bytes());
-        let view = self.patch.new_view(None, bytes, ",\"target\":34962");
-        let view = view.ok_or_else(|| cannot_hold("a file without a buffer".to_owned(), self.format))?;
-        let mut text = format!(
-            "{{\"bufferView\":{view},\"componentType\":5126,\"count\":{},\"type\":\"VEC3\"",
-            way.len()
-        );
-        if semantic == Semantic::Position {
-            let bounds = Bounds::of(way);
-            for (key, bound) in [("max", bounds.max), ("min", bounds.min)] {
-                let numbers: Vec<String> = bound[..3].iter().map(|&bound| number(bound)).collect();
-                text += &format!(",\"{key}\":[{}]", numbers.join(","));
-            }
-        }
-        text.push('}');
-        Ok(self.patch.push_accessor(text))
     }
 
     /// An accessor without bytes is all zeros.
@@ -279,6 +259,34 @@ enum Missing {
     Write,
     /// It is left out: the mesh's own holds.
     Leave,
+}
+
+impl Patch<'_> {
+    /// Adds an accessor of a target's deltas, and gives its number.
+    pub(super) fn push_ways(
+        &mut self,
+        way: &[[f32; 4]],
+        semantic: Semantic,
+        format: Format,
+    ) -> Result<usize, SaveError> {
+        let numbers = way.iter().flat_map(|element| &element[..3]);
+        let bytes = numbers.flat_map(|number| number.to_le_bytes());
+        let view = self.new_view(None, bytes, ",\"target\":34962");
+        let view = view.ok_or_else(|| cannot_hold("a file without a buffer".to_owned(), format))?;
+        let mut text = format!(
+            "{{\"bufferView\":{view},\"componentType\":5126,\"count\":{},\"type\":\"VEC3\"",
+            way.len()
+        );
+        if semantic == Semantic::Position {
+            let bounds = Bounds::of(way);
+            for (key, bound) in [("max", bounds.max), ("min", bounds.min)] {
+                let numbers: Vec<String> = bound[..3].iter().map(|&bound| number(bound)).collect();
+                text += &format!(",\"{key}\":[{}]", numbers.join(","));
+            }
+        }
+        text.push('}');
+        Ok(self.push_accessor(text))
+    }
 }
 
 fn append_weight(document: &Document, edits: &mut Edits, object: At, known: usize, weight: f64, missing: Missing) {
