@@ -196,6 +196,13 @@ fn parts_a_million_times_finer_than_their_scene_stay_as_they_are() {
     let vertices = shapes::icosphere(1).positions.len() + fine.positions.len();
     assert_eq!(model.surface.positions.len(), vertices);
     assert_eq!(model.topology.components().len(), 2);
+    // A strip whose triangles are twenty thousand times as wide as it is long between two vertices.
+    let strip = shapes::grid(20_000, 1);
+    assert_eq!(weld(strip.clone(), None).surface.positions.len(), strip.positions.len());
+    assert_eq!(
+        weld(shapes::soup(&strip), None).surface.positions.len(),
+        strip.positions.len()
+    );
     // A thin closed plate, cut into single triangles: its sides don't become one.
     let plate = shapes::moved(&shapes::bar(2, 2, 1), DAffine3::from_scale(DVec3::new(1.0, 1.0, 2e-5)));
     let model = weld(shapes::soup(&plate), None);

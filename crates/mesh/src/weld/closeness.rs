@@ -16,6 +16,9 @@ use crate::model::drawn_triangles::Corners;
 /// anew, with the errors of single precision.
 const BORDERS: f64 = 1e-4;
 
+/// But no further than this share of their shortest edge: strips may be far narrower than long.
+const OF_EDGE: f64 = 0.25;
+
 /// Other vertices are joined within this share of their size. A larger one would flatten thin plates.
 const ANY: f64 = 1e-7;
 
@@ -95,15 +98,15 @@ impl<'a> Closeness<'a> {
         }
     }
 
-    /// The rule for groups that have neighbours, given `groups` of all drawn vertices.
-    pub(super) fn rule(&self, near: &[u32], corners: &Corners, groups: &[u32]) -> Rule<'_> {
+    /// The rule for groups that have neighbours, given positions and groups of all drawn vertices.
+    pub(super) fn rule(&self, near: &[u32], positions: &[DVec3], corners: &Corners, groups: &[u32]) -> Rule<'_> {
         if self.given.is_some() {
             return Rule {
                 closeness: self,
                 of_group: HashMap::new(),
             };
         }
-        let mut of_group: HashMap<u32, Surroundings> = near.iter().map(|&g| (g, Surroundings::default())).collect();
+        let mut of_group: HashMap<u32, Surroundings> = near.iter().map(|&g| (g, Surroundings::unknown())).collect();
         for (vertex, group) in (0..).zip(groups) {
             if let Some(known) = of_group.get_mut(group) {
                 let (run, rounding) = self.run_of(vertex);
@@ -113,8 +116,29 @@ impl<'a> Closeness<'a> {
                 known.rounding = known.rounding.max(rounding);
             }
         }
-        for group in groups_on_borders(corners, groups, |group| of_group.contains_key(&group)) {
-            if let Some(known) = of_group.get_mut(&group) {
+        let mut edges: Vec<[u32; 2]> = Vec::new();
+        for triangle in corners.iter() {
+            let own = triangle.map(|v| groups[v.index()]);
+            if !is_proper(own) {
+                continue;
+            }
+            for [one, other] in [[0, 1], [1, 2], [2, 0]] {
+                let length = || positions[triangle[one].index()].distance(positions[triangle[other].index()]);
+                let ends = [own[one], own[other]];
+                for end in ends {
+                    if let Some(known) = of_group.get_mut(&end) {
+                        known.shortest = known.shortest.min(length());
+                    }
+                }
+                if ends.iter().any(|end| of_group.contains_key(end)) {
+                    edges.push([ends[0].min(ends[1]), ends[0].max(ends[1])]);
+                }
+            }
+        }
+        edges.sort_unstable();
+        let of_one_triangle = edges.chunk_by(|a, b| a == b).filter(|same| same.len() == 1);
+        for group in of_one_triangle.flatten().flatten() {
+            if let Some(known) = of_group.get_mut(group) {
                 known.is_on_border = true;
             }
         }
@@ -134,34 +158,31 @@ impl<'a> Closeness<'a> {
     }
 }
 
-/// The groups at edges that one triangle uses, among those that are `wanted`; some several times.
-fn groups_on_borders(corners: &Corners, groups: &[u32], wanted: impl Fn(u32) -> bool) -> Vec<u32> {
-    let mut edges: Vec<[u32; 2]> = Vec::new();
-    for triangle in corners.iter() {
-        let [a, b, c] = triangle.map(|v| groups[v.index()]);
-        if is_proper([a, b, c]) && [a, b, c].into_iter().any(&wanted) {
-            let of_triangle = [[a, b], [b, c], [c, a]].map(|[a, b]| [a.min(b), a.max(b)]);
-            edges.extend(of_triangle.into_iter().filter(|edge| edge.iter().any(|&v| wanted(v))));
-        }
-    }
-    edges.sort_unstable();
-    let once = edges.chunk_by(|a, b| a == b).filter(|same| same.len() == 1);
-    once.flatten().flatten().copied().collect()
-}
-
 /// Whether a triangle's corners are in three groups.
 fn is_proper([a, b, c]: [u32; 3]) -> bool {
     ![a, b, c].contains(&NONE) && a != b && b != c && c != a
 }
 
 /// What is known of a group that has neighbours.
-#[derive(Default)]
 struct Surroundings {
     is_on_border: bool,
+    /// Its shortest edge.
+    shortest: f64,
     /// The runs that its members were rounded with.
     runs: Vec<u32>,
     /// The largest of their roundings.
     rounding: f64,
+}
+
+impl Surroundings {
+    fn unknown() -> Self {
+        Self {
+            is_on_border: false,
+            shortest: f64::INFINITY,
+            runs: Vec::new(),
+            rounding: 0.0,
+        }
+    }
 }
 
 /// Which groups may be joined.
@@ -186,7 +207,10 @@ impl MayJoin for Rule<'_> {
         }
         let were_rounded_apart = a.runs.iter().all(|run| !b.runs.contains(run));
         let rounding = ALLOWANCE * (a.rounding + b.rounding);
-        distance <= BORDERS * size || (were_rounded_apart && distance <= rounding.min(LARGEST * size))
+        let borders = (BORDERS * size)
+            .min(OF_EDGE * a.shortest.min(b.shortest))
+            .max(ANY * size);
+        distance <= borders || (were_rounded_apart && distance <= rounding.min(LARGEST * size))
     }
 
     fn has_joined(&mut self, place: u32, other: u32) {

@@ -157,7 +157,7 @@ fn joined_to_near_ones(
     mut groups: Vec<u32>,
     closeness: &Closeness<'_>,
 ) -> Vec<u32> {
-    let rule = |near: &[u32]| closeness.rule(near, corners, &groups);
+    let rule = |near: &[u32]| closeness.rule(near, positions, corners, &groups);
     if join_nearest(positions, joined, bounds, |group| closeness.reach(group), rule) {
         groups.par_iter_mut().for_each(|group| {
             *group = joined.representative.get(*group as usize).copied().unwrap_or(NONE);
