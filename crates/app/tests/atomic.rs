@@ -14,7 +14,7 @@ use pliant_engine::watch::Watch;
 use pliant_engine::{EngineError, Loaded};
 use pliant_mesh::{Cancel, Progress, WeldOptions};
 
-/// A square of four vertices as `scan.gltf` with its buffer and an image beside it.
+/// A square of four vertices as `a scan.gltf` with its buffer and an image beside it.
 fn write_scan(folder: &Path) {
     let mut bin: Vec<u8> = Vec::new();
     for position in [[0.0_f32, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]] {
