@@ -13,8 +13,8 @@ use crate::{BindError, ReusableFactor, SolveError, Warning};
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "laplacian",
     title: "Laplacian editing",
-    when_to_use: "Turns details with the surface, for moves and for turns up to about 90°, at once; beyond that it bulges \
-                  and shrinks unless `steps` divides the way.",
+    when_to_use: "Turns details with the surface, at once, for moves and for turns of wide parts up to about 90°; limbs \
+                  give way from about 70° on, and beyond 90° it bulges and shrinks unless `steps` divides the way.",
     keywords: "laplacian differential coordinates detail similarity implicit",
     options: LaplacianEditing::OPTIONS,
     attachments: &[],

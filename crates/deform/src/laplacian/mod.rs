@@ -96,7 +96,7 @@ impl LaplacianSolver {
             .map(|local| DVec3::from_array(laplacian.row(local, &coordinates)))
             .collect();
         let estimates = match options.transforms {
-            Transforms::Implicit => options.scale == LocalScale::Normalised || options.steps > 1,
+            Transforms::Implicit => options.steps > 1,
             Transforms::InitialGuess => true,
             Transforms::None => false,
         };

@@ -38,7 +38,9 @@ impl LaplacianSolver {
                 // With the transformations of the step before: at the first one, none.
                 self.system.solve(&room.load, &mut room.field)?;
             }
-            if let Some(rings) = &self.rings {
+            if first.is_some() && self.options.scale == LocalScale::Normalised {
+                self.rescale(room);
+            } else if let Some(rings) = &self.rings {
                 let estimate = Estimate {
                     laplacian: self.laplacian(),
                     rings,
@@ -86,6 +88,27 @@ impl LaplacianSolver {
     pub(super) fn fitted(&self, implicit: &Implicit, local: usize, field: &[[f64; 3]]) -> Fitted {
         let nearest = self.laplacian().neighbours(local);
         implicit.similarities[local].fit(&Moments::of(local, nearest, &self.rest, field))
+    }
+
+    /// Fills `changes` with what makes each L p as long as at rest, in the direction that it has in the first shape p':
+    /// |L p| (L p') / |L p'| − L p [SCL+04, section 3.3].
+    fn rescale(&self, room: &mut Room) {
+        let laplacian = self.laplacian();
+        let Room { field, changes, .. } = room;
+        changes
+            .par_iter_mut()
+            .with_min_len(CHUNK)
+            .zip(&self.curvature)
+            .enumerate()
+            .for_each(|(local, (own, &curvature))| {
+                let bend = DVec3::from_array(laplacian.row(local, field));
+                *own = match (curvature + bend).try_normalize() {
+                    Some(direction) if laplacian.is_full(local) && bend != DVec3::ZERO => {
+                        direction * curvature.length() - curvature
+                    }
+                    _ => DVec3::ZERO,
+                };
+            });
     }
 
     /// Fills `changes` with (T − I) L p, by what gives T − I at a local vertex.
