@@ -71,7 +71,7 @@ enum Way {
 pub struct Step {
     /// Whether further steps to the same targets would change nothing. Linear methods: always.
     pub converged: bool,
-    /// Whether further steps to the same targets do nothing: it converged, or met the method's limit.
+    /// Whether further steps to the same targets do nothing: it converged, found no way on, or met the method's limit.
     pub finished: bool,
     /// The deformation energy, 0 at rest, without unit and independent of the model's scale. For the bi-Laplacian it is
     /// ½ dᵀ A d (see [`crate::Bilaplacian`]) and the energy of the soft handles' springs; for ARAP its own energy and
@@ -373,6 +373,7 @@ impl Bound {
         step.energy = stepped.energy;
         step.converged = stepped.converged;
         step.finished = step.converged
+            || stepped.stalled
             || match self.solve {
                 Solve::Direct => true,
                 Solve::Iterative { max_iterations } => self.iteration >= max_iterations,

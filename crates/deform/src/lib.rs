@@ -85,6 +85,7 @@ mod rbf;
 mod region;
 mod rigid;
 mod shells;
+mod size;
 mod space;
 mod space_primo;
 mod sparse;

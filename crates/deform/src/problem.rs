@@ -3,6 +3,7 @@
 use pliant_mesh::{Bounds, Cancel, Progress, Surface, Topology, bounding_box};
 
 use crate::budget::{ORDERING_ROW, bytes_of};
+use crate::size;
 use crate::sparse::refactorisation::Refactorisation;
 use crate::{Attachment, BindError, Bound, Budget, Constraints, Examples, Method, Ordering, ReusableFactor};
 
@@ -62,6 +63,9 @@ pub struct Problem<'a> {
     pub revision: u64,
 }
 
+/// Sizes whose logarithms differ by less make no difference that is to be told.
+const ABOUT_ALIKE: f64 = 0.25;
+
 impl Problem<'_> {
     /// What was brought of what the method declares.
     pub(crate) fn attachment(&self) -> Option<(&'static str, &Attachment)> {
@@ -97,9 +101,24 @@ impl Problem<'_> {
         bounding_box(self.topology.main_positions(&self.surface.positions))
     }
 
-    /// Its diagonal, in world units.
-    pub(crate) fn diagonal(&self) -> f64 {
-        self.bounds().map_or(0.0, |bounds| bounds.diagonal())
+    /// The size of what bends, in world units.
+    pub(crate) fn size(&self) -> f64 {
+        size::size(self)
+    }
+
+    /// What to say of an edit that was made while an option still counted in diagonals of the scene's box, where that makes
+    /// a difference.
+    pub fn counted_otherwise(&self) -> Option<String> {
+        let (option, power) = self.method.counts_in_sizes()?;
+        let (now, former) = (self.size(), self.bounds()?.diagonal());
+        let factor = former / now;
+        ((factor.ln().abs() > ABOUT_ALIKE) && factor.is_finite()).then(|| {
+            format!(
+                "`{option}` counts in the size of what bends ({now:.4}), no longer in the diagonal of the scene's box \
+                 ({former:.4}): an edit from before that bends as it did with {:.3} times the value",
+                factor.powi(power)
+            )
+        })
     }
 
     /// The power of the ordering to make for [`Problem::bind_within`] this budget: see

@@ -72,6 +72,7 @@ impl BoundMethod for ArapSolver {
         let (converged, energy) = ArapSolver::step(self, motions, displacements);
         Ok(Stepped {
             converged,
+            stalled: false,
             energy,
             finite: Finite::Unknown,
         })

@@ -35,6 +35,10 @@ impl DeformMethod for Bilaplacian {
         &DECLARATION
     }
 
+    fn counts_in_sizes(&self) -> Option<(&'static str, i32)> {
+        (self.stretching > 0.0).then_some(("stretching", -2))
+    }
+
     fn needs(&self) -> Needs {
         Needs::Surface {
             reach: self.operator_power(),

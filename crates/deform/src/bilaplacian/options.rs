@@ -11,7 +11,7 @@ pub(crate) const STRETCHING: Number = Number {
     default: 0.0,
     range: [0.0, LARGEST],
     unit: "k_b/d²",
-    help: "resistance k_s to stretching, d being the model's diagonal",
+    help: "resistance k_s to stretching, d being the size of what bends (a rod's length, a ball's diagonal)",
 };
 
 options! {
@@ -20,7 +20,7 @@ options! {
     /// A = k_s (−L) + k_b (−L)(−M⁻¹ L)ⁿ⁻¹,
     ///
     /// which at order n = 2 is (−k_s L + k_b L M⁻¹ L) d = 0 [BS08, equation 8]. A is symmetric and positive definite on
-    /// what is solved for. Lengths are measured in diagonals of the surface's bounding box, so neither coefficient
+    /// what is solved for. Lengths are measured in sizes of what bends, so neither coefficient
     /// depends on the model's unit. The shape depends only on their ratio; the energy ½ dᵀ A d has no unit.
     ///
     /// Painted stiffness s scales the energy's density, ½ ∫ k_s s |∇d|² + k_b s |Δd|² at order 2 and s |∇Δd|² at order
@@ -38,7 +38,7 @@ options! {
             unit: "",
             help: "resistance k_b to what the order names",
         },
-        /// k_s, the resistance to stretching, in units of k_b per squared diagonal at order 2 and per the fitting power
+        /// k_s, the resistance to stretching, in units of k_b per squared size at order 2 and per the fitting power
         /// of it at the others.
         stretching: f64 = STRETCHING,
         /// How the Laplacian is discretised.

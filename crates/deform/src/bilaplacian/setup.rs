@@ -22,12 +22,12 @@ pub(crate) fn operator(
 ) -> (BilaplacianOperator, Vec<Prescribed>) {
     let triangulation = &partition.triangulation;
     let rows = bent_rows(triangulation, &partition.solved, handles);
-    let diagonal = problem.diagonal();
+    let size = problem.size();
     let on = |stiffness: &[f64]| Laplacian::on(triangulation, stiffness, &rows, options.discretisation, &|_, _| 1.0);
     let is_painted = problem.stiffness.iter().any(|stiffness| *stiffness != 1.0);
     let mut operator;
     if is_painted && options.operator_power() > 1 {
-        operator = BilaplacianOperator::new(on(&vec![1.0; problem.stiffness.len()]), options, diagonal);
+        operator = BilaplacianOperator::new(on(&vec![1.0; problem.stiffness.len()]), options, size);
         match operator.power {
             2 => {
                 let vertices = operator.laplacian.vertices().iter();
@@ -37,10 +37,10 @@ pub(crate) fn operator(
         }
         operator.stretched = (operator.stretching > 0.0).then(|| on(problem.stiffness));
     } else {
-        operator = BilaplacianOperator::new(on(problem.stiffness), options, diagonal);
+        operator = BilaplacianOperator::new(on(problem.stiffness), options, size);
     }
     operator.hub_degree = hub_degree(triangulation.vertex_count());
-    join(&mut operator, triangulation, problem, options, &rows, diagonal);
+    join(&mut operator, triangulation, problem, options, &rows, size);
     let prescribed = prescribe(&mut operator, problem, partition, handles);
     (operator, prescribed)
 }

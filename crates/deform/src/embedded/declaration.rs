@@ -124,6 +124,7 @@ impl BoundMethod for BoundEmbedded {
         let finite = self.blend.frame(&self.affine, motions, displacements);
         Ok(Stepped {
             converged,
+            stalled: self.solver.has_stalled(),
             energy,
             finite: if energy.is_finite() { finite } else { Finite::Unknown },
         })

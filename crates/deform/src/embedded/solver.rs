@@ -33,6 +33,8 @@ pub(super) struct Solver {
     /// E at `maps`.
     value: f64,
     has_converged: bool,
+    /// Whether no step was found that lowers the energy, though the maps have not converged.
+    has_stalled: bool,
     tolerance: f64,
 }
 
@@ -59,6 +61,7 @@ impl Solver {
             motions: vec![Motion::default(); handles.len()],
             value: 0.0,
             has_converged: true,
+            has_stalled: false,
             energy,
             system,
             tolerance,
@@ -70,19 +73,25 @@ impl Solver {
         self.system.stored()
     }
 
+    /// Whether no step was found that lowers the energy, though the maps have not converged.
+    pub fn has_stalled(&self) -> bool {
+        self.has_stalled
+    }
+
     /// Back to rest.
     pub fn rest(&mut self) {
         self.maps.fill(REST);
         self.motions.fill(Motion::default());
         self.value = 0.0;
         self.has_converged = true;
+        self.has_stalled = false;
     }
 
     /// One step towards `motions`. Whether it converged, and the energy a node.
     pub fn step(&mut self, motions: &[Motion]) -> (bool, f64) {
         if self.motions != motions {
             self.start(motions);
-        } else if !self.has_converged {
+        } else if !self.has_converged && !self.has_stalled {
             self.descend();
         }
         let value = self.value;
@@ -124,6 +133,7 @@ impl Solver {
         }
         (self.maps, self.value) = best;
         self.has_converged = false;
+        self.has_stalled = false;
         if self.value.is_finite() {
             self.descend();
         }
@@ -151,8 +161,12 @@ impl Solver {
         let mut gradient = vec![[0.0; DOF]; self.maps.len()];
         let before = self.energy.evaluate(&self.maps, &self.motions, Some(&mut gradient));
         let nothing = NOTHING * self.maps.len() as f64;
-        if before <= nothing || self.system.factor(&self.energy, &self.maps).is_err() {
+        if before <= nothing {
             self.has_converged = true;
+            return;
+        }
+        if self.system.factor(&self.energy, &self.maps).is_err() {
+            self.has_stalled = true;
             return;
         }
         let uphill = self.system.solve(&gradient);
@@ -188,7 +202,8 @@ impl Solver {
             }
             length = trial.next_length();
         }
-        self.has_converged = true;
+        self.has_converged = -0.5 * slope <= self.tolerance * before + nothing;
+        self.has_stalled = !self.has_converged;
     }
 }
 

@@ -56,6 +56,7 @@ impl BoundMethod for FramesSolver {
         let converged = self.advance(motions, displacements)?;
         Ok(Stepped {
             converged,
+            stalled: false,
             energy: self.shape.energy,
             finite: Finite::Unknown,
         })

@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::{Handle, Motion};
 use crate::{Problem, alternatives};
 
-/// Handles that are missed by less than this share of the model's diagonal look as if they were met.
+/// Handles that are missed by less than this share of the size of what bends look as if they were met.
 const UNSEEN: f64 = 1e-3;
 
 /// The hard handles' vertices and their coordinates; empty where handles are held exactly.
@@ -13,7 +13,7 @@ const UNSEEN: f64 = 1e-3;
 pub(crate) struct HandleResidual {
     handles: Vec<Vec<(u32, [f64; 4])>>,
     method: &'static str,
-    diagonal: f64,
+    size: f64,
 }
 
 impl HandleResidual {
@@ -29,7 +29,7 @@ impl HandleResidual {
         Self {
             handles: handles.iter().zip(soft).map(own).collect(),
             method: problem.method.name(),
-            diagonal: problem.diagonal(),
+            size: problem.size(),
         }
     }
 
@@ -44,10 +44,10 @@ impl HandleResidual {
 
     /// A sentence on a distance that can be seen.
     pub fn warning(&self, distance: f64) -> Option<String> {
-        let share = distance / self.diagonal;
+        let share = distance / self.size;
         (share > UNSEEN).then(|| {
             format!(
-                "{} only fits the handles and misses them by up to {:.1}% of the model's diagonal: refine it by its options, \
+                "{} only fits the handles and misses them by up to {:.1}% of the size of what bends: refine it by its options, \
                  or take {}, which meets them",
                 self.method,
                 100.0 * share,

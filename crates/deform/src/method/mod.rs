@@ -70,6 +70,11 @@ impl Method {
         self.declaration().name
     }
 
+    /// As [`DeformMethod::counts_in_sizes`].
+    pub(crate) fn counts_in_sizes(&self) -> Option<(&'static str, i32)> {
+        self.0.counts_in_sizes()
+    }
+
     /// What it works on, with its present options.
     pub fn needs(&self) -> Needs {
         self.0.needs()

@@ -74,6 +74,11 @@ pub(crate) trait DeformMethod: Options {
         HandleFit::Exact
     }
 
+    /// The option that counts in sizes of what bends ([`crate::Problem`]) as it is set, and the power of the size in it.
+    fn counts_in_sizes(&self) -> Option<(&'static str, i32)> {
+        None
+    }
+
     /// Whether it can be bound with an ordering of power 1 in place of its own, by the Laplacian's factor, which takes
     /// less memory and more time.
     fn takes_first_power(&self) -> bool {
@@ -256,8 +261,10 @@ pub enum HandleFit {
 /// What a step did.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Stepped {
-    /// Whether further steps to the same motions would change nothing.
+    /// Whether further steps to the same motions would change nothing, and the shape is a minimum.
     pub converged: bool,
+    /// Whether further steps would change nothing although the shape is none: no step was found that lowers the energy.
+    pub stalled: bool,
     /// As in [`crate::Step::energy`].
     pub energy: f64,
     /// Whether all displacements are finite, if that was checked while they were computed.
@@ -269,6 +276,7 @@ impl Stepped {
     pub(crate) fn at_once(energy: f64, finite: Finite) -> Self {
         Self {
             converged: true,
+            stalled: false,
             energy,
             finite,
         }

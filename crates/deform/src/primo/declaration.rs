@@ -26,6 +26,10 @@ impl DeformMethod for Primo {
         &DECLARATION
     }
 
+    fn counts_in_sizes(&self) -> Option<(&'static str, i32)> {
+        Some(("thickness", 1))
+    }
+
     fn needs(&self) -> Needs {
         Needs::Surface {
             // A prism may have free vertices and vertices of a handle, and is coupled with all its neighbours.
@@ -70,6 +74,7 @@ impl BoundMethod for PrimoSolver {
         let (converged, energy) = PrimoSolver::step(self, motions, displacements);
         Ok(Stepped {
             converged,
+            stalled: false,
             energy,
             finite: Finite::Unknown,
         })

@@ -93,13 +93,13 @@ impl PrimoSolver {
         let world_origin = handles.first().map_or(DVec3::ZERO, |handle| handle.world_centre);
         let mut world_grounds = vec![world_origin];
         world_grounds.extend(handles.iter().map(|handle| handle.world_centre));
-        let diagonal = problem.diagonal();
+        let size = problem.size();
         let mut joints = Joints::of(
             &prisms,
             &Material {
                 edges: &edges,
                 stiffness: problem.stiffness,
-                thickness: options.thickness * diagonal,
+                thickness: options.thickness * size,
                 world_origin,
                 world_grounds: &world_grounds,
             },

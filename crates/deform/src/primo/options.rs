@@ -6,13 +6,13 @@ use crate::method::option::{Number, options};
 options! {
     /// Options of the coupled prisms.
     pub struct Primo {
-        /// The prisms' height, in diagonals of the surface's bounding box. A thick surface resists bending most, a thin
+        /// The prisms' height, in sizes of what bends. A thick surface resists bending most, a thin
         /// one stretching. The same value means the same material whatever the mesh's density.
         thickness: f64 = Number {
-            default: 0.05,
+            default: 0.1,
             range: [0.001, 1.0],
-            unit: "diagonals",
-            help: "the prisms' height, in diagonals of the model: how much bending is resisted against stretching",
+            unit: "sizes of what bends",
+            help: "the prisms' height, in sizes of what bends (a rod's length, a ball's diagonal): how much bending is resisted against stretching",
         },
         /// Iteration ends when a step lowers the energy by less than this share of it; above 0.
         tolerance: f64 = iteration::TOLERANCE; advanced,

@@ -17,8 +17,8 @@ pub(crate) struct Patch {
     pub rows: Vec<u32>,
     /// Where the local vertices rest.
     pub rest: Vec<DVec3>,
-    /// The surface's diagonal.
-    pub diagonal: f64,
+    /// The size of what bends.
+    pub size: f64,
 }
 
 impl Patch {
@@ -42,7 +42,7 @@ impl Patch {
             rows: rows.collect(),
             rest: vertices.iter().map(|&vertex| rest(vertex as usize)).collect(),
             vertices,
-            diagonal: problem.diagonal(),
+            size: problem.size(),
         }
     }
 

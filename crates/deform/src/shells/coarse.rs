@@ -78,6 +78,11 @@ impl Coarse {
             handles,
             |coarse, mut partition, handles| {
                 partition.budget = budget;
+                // The clusters' own size is another than the surface's.
+                let sizes = problem.size() / coarse.size();
+                if sizes.is_finite() {
+                    own.bending *= sizes * sizes;
+                }
                 ShellsSolver::bind(coarse, &own, &partition, handles, &Progress::new(), cancel).ok()
             },
         )?;

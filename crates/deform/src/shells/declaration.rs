@@ -40,6 +40,10 @@ impl DeformMethod for Shells {
         &DECLARATION
     }
 
+    fn counts_in_sizes(&self) -> Option<(&'static str, i32)> {
+        Some(("bending", 2))
+    }
+
     fn needs(&self) -> Needs {
         Needs::Surface {
             // A hinge joins the two vertices across its edge, which may both be constrained.
@@ -93,6 +97,7 @@ impl BoundMethod for ShellsSolver {
         let (converged, energy) = outcome;
         Ok(Stepped {
             converged,
+            stalled: self.has_stalled,
             energy,
             finite: Finite::Unknown,
         })

@@ -67,14 +67,15 @@ impl ShellsSolver {
             }
             // An older factor may be to blame, then the missing curvature.
             if self.is_little(lowered) {
-                break;
+                self.has_converged = true;
+                return;
             } else if !is_new {
                 system.renew();
             } else if !system.damp() {
                 break;
             }
         }
-        self.has_converged = true;
+        self.has_stalled = true;
     }
 
     /// Whether a step was as good as none.

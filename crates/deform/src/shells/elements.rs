@@ -68,12 +68,14 @@ pub(super) struct Hinge {
     pub weight: f64,
 }
 
-/// A triangle: ½ weight (A − area)².
+/// A triangle: ½ weight (A − area)², and below its `least` area a barrier ([`super::face`]).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Face {
     pub corners: [u32; 3],
     pub area: f64,
     pub weight: f64,
+    /// The smallest area that rest and examples give it.
+    pub least: f64,
 }
 
 /// A side of a triangle: the edge's lower vertex, its higher one, and the triangle.
@@ -195,12 +197,12 @@ fn collected(problem: &Problem, options: &Shells, number: &[u32], world_origin: 
         }
     }
     sides.par_sort_unstable();
-    let diagonal = problem.diagonal();
+    let size = problem.size();
     let material = Material {
         surface,
         stiffness: problem.stiffness,
         stretching: options.stretching,
-        bending: options.bending * diagonal * diagonal,
+        bending: options.bending * size * size,
         world_origin,
     };
     let mut found = Collected::default();
@@ -264,7 +266,12 @@ impl Material<'_> {
         if area > 0.0 {
             let [a, b, c] = corners.map(|corner| self.stiffness[corner as usize]);
             let weight = AREA * self.stretching * (a + b + c) / 3.0 * area / (floored * floored);
-            found.faces.push(Face { corners, area, weight });
+            found.faces.push(Face {
+                corners,
+                area,
+                weight,
+                least: area,
+            });
         }
     }
 

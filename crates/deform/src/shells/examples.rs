@@ -173,6 +173,15 @@ impl Examples {
         blended(&self.areas, face, weights)
     }
 
+    /// The least of A − Ā that an example gives a triangle, 0 where all make it larger.
+    pub fn least_area(&self, face: usize) -> f64 {
+        let count = self.count();
+        self.areas[face * count..(face + 1) * count]
+            .iter()
+            .copied()
+            .fold(0.0, f64::min)
+    }
+
     /// V* − V̄ of a closed component.
     pub fn volume(&self, part: usize, weights: &[f64]) -> f64 {
         blended(&self.volumes, part, weights)

@@ -43,7 +43,7 @@ impl Frame {
         let is_loose = |component: usize| {
             !partition.held[component] && partition.driven.binary_search(&(component as u32)).is_err()
         };
-        let diagonal = problem.diagonal();
+        let size = problem.size();
         let loose = vertices
             .into_iter()
             .enumerate()
@@ -52,7 +52,7 @@ impl Frame {
             let share = |&local: &u32| {
                 let moved = displacements.iter().map(|own| own[local as usize].length_squared());
                 let most = moved.fold(0.0, f64::max);
-                masses[local as usize] / ((STILL * diagonal).powi(2) + most)
+                masses[local as usize] / ((STILL * size).powi(2) + most)
             };
             let mut shares: Vec<f64> = vertices.iter().map(share).collect();
             if shares.iter().sum::<f64>().is_nan() || shares.iter().sum::<f64>() <= 0.0 {

@@ -141,7 +141,8 @@ impl ShellsSolver {
         let lowered = self.lower(|_, _, x| preconditioner.apply(x));
         led.gained = lowered.gained;
         if lowered.gained <= 0.0 {
-            self.has_converged = true;
+            self.has_converged = self.is_little(lowered);
+            self.has_stalled = !self.has_converged;
         } else if self.is_little(lowered) {
             // Unless the coarse level has not been asked for long.
             self.has_converged = led.corrected <= self.tolerance * self.current.energy;

@@ -7,10 +7,10 @@
 //! over the edges e, the triangles t and the closed components c: l is an edge's length, θ the angle between the normals
 //! of its two triangles, A_t a triangle's area, V a component's volume, and the bar marks the rest shape. A_e is a third
 //! of the areas of the edge's triangles, as in [GHDS03] and [SHHR20], so that the energy hardly depends on the mesh; A_c is
-//! a component's area, D the model's diagonal, and s_e and s_t are the means of the painted stiffness of the edge's ends
+//! a component's area, D the size of what bends, and s_e and s_t are the means of the painted stiffness of the edge's ends
 //! and the triangle's corners. k_s, k_b and k_v are the options `stretching`, `bending` and `volume`. k_a = 1/4: [FB11]
 //! leaves out the areas of [GHDS03], but edges alone are a truss, in which triangles that are compressed give way within
-//! their plane until they have no area.
+//! their plane until they have no area. Compressed triangles resist without bound, by a barrier (`face`).
 //!
 //! The angle is followed from step to step (`hinge`), so that it does not jump where a fold passes half a turn and a
 //! surface that went through itself finds back. An edge at a border has no angle. Where more than two triangles meet at
@@ -25,7 +25,7 @@
 //! Examples lead the targets l̄, θ̄, Ā and V̄ by weights that are given or found (`examples`, `leaning`). Where they alone
 //! move a part, `frames` says where it stands.
 //!
-//! Parts: `elements` are the edges, hinges and triangles, `hinge` the angle and its gradient, `face` the area's gradient,
+//! Parts: `elements` are the edges, hinges and triangles, `hinge` the angle and its gradient, `face` the area's gradient and barrier,
 //! `enclosed` the volumes, `springs` the soft handles, `shape` where the vertices are and their energy, `system` the
 //! matrix, `unfolded` a quadratic energy that gives the handles' weights, `start` chooses where to begin, `blended` is the
 //! start for examples, and `descent` takes a step. A large surface has a `coarse` level that takes the `lead`; `carry`
@@ -102,6 +102,8 @@ pub(crate) struct ShellsSolver {
     /// Whether these are the gradients at the current shape.
     has_slopes: bool,
     has_converged: bool,
+    /// Whether no step was found that lowers the energy, though the shape has not converged.
+    has_stalled: bool,
     /// Whether other weights of examples were set since the last step.
     has_other_weights: bool,
     tolerance: f64,
@@ -169,7 +171,10 @@ impl ShellsSolver {
         let examples = energy.examples.count();
         let row = examples * Examples::ROW + if is_led { LED_ROW } else { 0 };
         let kept = bytes_of(elements.hinges.len(), size_of::<[DVec3; 4]>())
-            .saturating_add(bytes_of(elements.faces.len(), size_of::<[DVec3; 3]>()))
+            .saturating_add(bytes_of(
+                elements.faces.len(),
+                size_of::<[DVec3; 3]>() + size_of::<f64>(),
+            ))
             .saturating_add(bytes_of(elements.solved_count, row));
         let budget = partition.budget.without(kept);
         let budget = budget.map_err(|limit| BindError::budget(free_count, limit))?;
@@ -221,6 +226,7 @@ impl ShellsSolver {
             prescribed: prescribed(problem, partition, handles, &energy.elements),
             motions: vec![Motion::default(); handles.len()],
             has_converged: true,
+            has_stalled: false,
             has_other_weights: false,
             tolerance: options.tolerance,
             warnings: warnings(options, &energy),
@@ -235,8 +241,9 @@ impl ShellsSolver {
     pub fn advance(&mut self, motions: &[Motion]) -> (bool, f64) {
         let has_other_weights = std::mem::take(&mut self.has_other_weights);
         if self.motions != motions || has_other_weights {
+            self.has_stalled = false;
             self.head_for(motions);
-        } else if !self.has_converged {
+        } else if !self.has_converged && !self.has_stalled {
             self.descend();
         }
         let energy = self.current.energy;
@@ -314,6 +321,7 @@ impl ShellsSolver {
             None => {}
         }
         self.has_converged = true;
+        self.has_stalled = false;
         self.has_other_weights = self.energy.examples.given().any(|weight| weight != 0.0);
     }
 }

@@ -13,12 +13,12 @@ options! {
             unit: "",
             help: "how much the surface resists being stretched and sheared, compared with the other two",
         },
-        /// k_b: how much it resists bending, in units of `stretching` times the squared diagonal. A sheet of the
+        /// k_b: how much it resists bending, in units of `stretching` times the squared size of what bends. A sheet of the
         /// thickness t has about k_b = k_s (t / D)² / 48.
         bending: f64 = Number {
             default: 1e-4,
             range: [1e-8, 0.1],
-            unit: "squared diagonals of stretching",
+            unit: "squared sizes of stretching",
             help: "how much it resists being bent: little for paper, which creases, much for thick rubber",
         },
         /// k_v: how much closed parts resist a change of their volume, without unit; 0 lets them.

@@ -8,7 +8,7 @@ use super::Shells;
 use super::elements::{Edge, Elements, Face, Hinge};
 use super::enclosed::Enclosed;
 use super::examples::Examples;
-use super::face;
+use super::face::{self, Barrier};
 use super::frames::Frame;
 use super::hinge;
 use super::springs::Springs;
@@ -83,6 +83,8 @@ pub(super) struct Slopes {
     pub hinges: Vec<[DVec3; 4]>,
     /// Of each triangle at its corners.
     pub faces: Vec<[DVec3; 3]>,
+    /// The second derivative of each triangle's energy by its area.
+    pub face_weights: Vec<f64>,
     /// Of each solved vertex: that of its component's volume; empty if none counts.
     pub volume: Field,
     /// Of the energy at the solved vertices.
@@ -124,6 +126,9 @@ impl Energy {
     ) -> Self {
         let enclosed = Enclosed::of(problem, options, &mut elements);
         let examples = Examples::of(problem.examples(), &elements, &enclosed);
+        for (number, face) in elements.faces.iter_mut().enumerate() {
+            face.least += examples.least_area(number);
+        }
         let (frames, inertia) = loose(problem, partition, &elements, &examples);
         let count = elements.solved_count;
         let ends = (0..).zip(&elements.edges);
@@ -227,7 +232,7 @@ impl Energy {
         });
         energy += partial_sums(&elements.faces, |place, own| {
             let area = face_area(own.corners.map(at));
-            own.weight * (area - own.area - examples.area(place, weights)).powi(2)
+            own.weight * (area - own.area - examples.area(place, weights)).powi(2) + 2.0 * Barrier::of(own, area).energy
         });
         let bent: Vec<f64> = shape
             .angles_rad
@@ -290,6 +295,12 @@ impl Energy {
             .with_min_len(CHUNK)
             .map(growing)
             .collect_into_vec(&mut slopes.faces);
+        let firmness = |own: &Face| own.weight + Barrier::of(own, face_area(own.corners.map(at))).curvature;
+        faces
+            .par_iter()
+            .with_min_len(CHUNK)
+            .map(firmness)
+            .collect_into_vec(&mut slopes.face_weights);
         slopes.volume.clear();
         let mut pressures = vec![];
         if !self.enclosed.parts.is_empty() {
@@ -322,8 +333,9 @@ impl Energy {
                 for &entry in self.faces_at(vertex) {
                     let (place, corner) = (entry as usize / 4, entry as usize % 4);
                     let own = &faces[place];
-                    let grown = face_area(own.corners.map(at)) - own.area - examples.area(place, weights);
-                    sum += growing[place][corner] * (own.weight * grown);
+                    let area = face_area(own.corners.map(at));
+                    let grown = area - own.area - examples.area(place, weights);
+                    sum += growing[place][corner] * (own.weight * grown + Barrier::of(own, area).slope);
                 }
                 sum.to_array()
             })
@@ -368,7 +380,7 @@ fn loose(
         edge.ends.iter().for_each(|&end| masses[end as usize] += mass);
     }
     let frames = Frame::all(problem, partition, elements, &examples.displacements, &masses);
-    let unit = INERTIA / problem.diagonal().powi(2).max(f64::MIN_POSITIVE);
+    let unit = INERTIA / problem.size().powi(2).max(f64::MIN_POSITIVE);
     let vertices = frames.iter().flat_map(|frame| frame.vertices());
     let inertia = vertices.map(|&local| (local, unit * masses[local as usize])).collect();
     (frames, inertia)

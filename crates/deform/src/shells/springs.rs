@@ -53,14 +53,14 @@ impl Springs {
             let share = area(surface, face) / 3.0;
             corners.iter().for_each(|corner| areas[corner.index()] += share);
         }
-        let diagonal = problem.diagonal();
+        let size = problem.size();
         let local_of = elements.local_of(surface.positions.len());
         let mut springs = Vec::new();
         for (number, (handle, weight)) in handles.iter().zip(&partition.soft).enumerate() {
             let Some(weight) = *weight else { continue };
             let whole: f64 = handle.vertices.iter().map(|&vertex| areas[vertex as usize]).sum();
             let square_wave_number = std::f64::consts::PI.powi(2) / whole;
-            let bending = options.bending * diagonal * diagonal * square_wave_number;
+            let bending = options.bending * size * size * square_wave_number;
             let resistance = square_wave_number * (options.stretching + bending);
             springs.extend(handle.vertices.iter().map(|&vertex| Spring {
                 local: local_of[vertex as usize],

@@ -326,10 +326,10 @@ fn add_blocks(energy: &Energy, slopes: &Slopes, vertex: usize, rows: &[u32], blo
     }
     for &entry in energy.faces_at(vertex) {
         let (place, corner) = (entry as usize / 4, entry as usize % 4);
-        let face = &energy.elements.faces[place];
-        let slopes = &slopes.faces[place];
-        for (&row, &slope) in face.corners.iter().zip(slopes) {
-            add(row, face.weight, slope, slopes[corner]);
+        let corners = &energy.elements.faces[place].corners;
+        let (weight, slopes) = (slopes.face_weights[place], &slopes.faces[place]);
+        for (&row, &slope) in corners.iter().zip(slopes) {
+            add(row, weight, slope, slopes[corner]);
         }
     }
     for &entry in energy.hinges_at(vertex) {

@@ -140,6 +140,7 @@ impl BoundMethod for BoundCells {
         let (converged, energy) = self.bodies.outcome();
         Ok(Stepped {
             converged,
+            stalled: false,
             energy,
             finite: Finite::Unknown,
         })

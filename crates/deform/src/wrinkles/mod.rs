@@ -112,7 +112,7 @@ impl Wrinkled {
         let unlearnt = examples
             .shapes
             .iter()
-            .zip(learnt.are_learnt(patch.diagonal))
+            .zip(learnt.are_learnt(patch.size))
             .filter(|(_, is_learnt)| !is_learnt)
             .map(|(example, _)| example.name.clone())
             .collect();

@@ -74,7 +74,7 @@ impl Strain {
         let edges: Vec<Edge> = joined
             .iter()
             .map(edge)
-            .filter(|edge| edge.length > SHORTEST * patch.diagonal)
+            .filter(|edge| edge.length > SHORTEST * patch.size)
             .collect();
         let middles: Vec<DVec3> = edges.iter().map(|edge| edge.rest[0].midpoint(edge.rest[1])).collect();
         let tree = Neighbours::of(&middles);

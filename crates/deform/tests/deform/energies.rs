@@ -54,7 +54,7 @@ fn product(matrix: &Dense, field: &[f64]) -> Vec<f64> {
 fn energy(scene: &Scene, options: &Bilaplacian, displacements: &[DVec3]) -> f64 {
     let (plain, areas) = operators(scene, &vec![1.0; scene.roles.len()]);
     let (stiff, _) = operators(scene, &scene.stiffness);
-    let diagonal = scene.diagonal();
+    let size = scene.size();
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let order = options.order.number();
     let mut sum = 0.0;
@@ -68,8 +68,8 @@ fn energy(scene: &Scene, options: &Bilaplacian, displacements: &[DVec3]) -> f64 
                 .sum(),
             _ => dot(&bent, &product(&stiff, &bent)),
         };
-        sum += 0.5 * options.stretching / diagonal.powi(2) * dot(&d, &product(&stiff, &d));
-        sum += 0.5 * options.bending * diagonal.powi(2 * (order as i32 - 2)) * bending;
+        sum += 0.5 * options.stretching / size.powi(2) * dot(&d, &product(&stiff, &d));
+        sum += 0.5 * options.bending * size.powi(2 * (order as i32 - 2)) * bending;
     }
     sum
 }

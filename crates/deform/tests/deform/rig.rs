@@ -112,6 +112,27 @@ impl Scene {
         &self.model.surface.positions
     }
 
+    /// The size of what bends: √12 radii of gyration of the components with handles, by the middles of triangles' edges.
+    pub fn size(&self) -> f64 {
+        let topology = &self.model.topology;
+        let mut bends = vec![false; topology.components().len()];
+        for (vertex, role) in (0..).map(SurfaceVertex).zip(&self.roles) {
+            bends[topology.component(vertex) as usize] |= matches!(role, Role::Handle(_));
+        }
+        let own = |corners: &&[SurfaceVertex; 3]| bends[topology.component(corners[0]) as usize];
+        let (mut area, mut first, mut second) = (0.0, DVec3::ZERO, 0.0);
+        for corners in self.model.surface.triangles.iter().filter(own) {
+            let [a, b, c] = corners.map(|v| self.positions()[v.index()]);
+            let third = pliant_mesh::face_area([a, b, c]) / 3.0;
+            for middle in [a + b, b + c, c + a].map(|sum| 0.5 * sum) {
+                area += third;
+                first += middle * third;
+                second += middle.length_squared() * third;
+            }
+        }
+        (12.0 * (second / area - (first / area).length_squared())).sqrt()
+    }
+
     pub fn diagonal(&self) -> f64 {
         self.model.bounds().unwrap().diagonal()
     }

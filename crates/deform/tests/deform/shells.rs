@@ -238,7 +238,7 @@ fn residuals(scene: &Scene, [stretching, bending, stiff_volume]: [f64; 3], displ
                 // Convex where the other triangle's apex lies below the first one's plane.
                 if n.dot(at(apex) - at(a)) < 0.0 { angle } else { -angle }
             };
-            let scale = (bending * stiffness / area).sqrt() * scene.diagonal() * length;
+            let scale = (bending * stiffness / area).sqrt() * scene.size() * length;
             all.push(scale * (angle(&moved) - angle(&rest)));
         }
     }
@@ -252,7 +252,13 @@ fn residuals(scene: &Scene, [stretching, bending, stiff_volume]: [f64; 3], displ
     for face in &faces {
         let [now, before] = [normal(face, &moved), normal(face, &rest)].map(|normal| 0.5 * normal.length());
         let stiffness = face.iter().map(|&v| scene.stiffness[v]).sum::<f64>() / 3.0;
-        all.push((0.25 * stretching * stiffness * before).sqrt() * (now / before - 1.0));
+        // Compressed, x² − 1 − 2 log x over 2 in place of (x − 1)².
+        let x = now / before;
+        let grown = match x < 1.0 {
+            true => -(0.5 * (x * x - 1.0 - 2.0 * x.ln())).max(0.0).sqrt(),
+            false => x - 1.0,
+        };
+        all.push((0.25 * stretching * stiffness * before).sqrt() * grown);
     }
     let area: f64 = faces.iter().map(|face| 0.5 * normal(face, &rest).length()).sum();
     all.push((stiff_volume * area).sqrt() * (enclosed(&moved) / enclosed(&rest) - 1.0));

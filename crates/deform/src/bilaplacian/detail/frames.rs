@@ -192,7 +192,7 @@ fn ring(patch: &Patch, row: usize, triangles: &[[SurfaceVertex; 3]], topology: &
     let (determinant, trace) = (xx * yy - xy * xy, xx + yy);
     // The smaller eigenvalue is about determinant / trace: a squared width.
     let width = determinant / trace;
-    let least = (NARROWEST * patch.diagonal).powi(2).max(SLIMMEST.powi(2) * trace);
+    let least = (NARROWEST * patch.size).powi(2).max(SLIMMEST.powi(2) * trace);
     if width > least {
         flat(true, [(t * yy - b * xy) / determinant, (b * xx - t * xy) / determinant])
     } else {

@@ -85,8 +85,8 @@ impl Transfer {
             order: BilaplacianOrder::Membrane,
             ..Bilaplacian::default()
         };
-        let diagonal = problem.diagonal();
-        let mut operator = BilaplacianOperator::new(laplacian, &membrane, diagonal);
+        let size = problem.size();
+        let mut operator = BilaplacianOperator::new(laplacian, &membrane, size);
         operator.hub_degree = hub_degree(problem.surface.positions.len());
         let elimination = input.ordering()?.elimination(&solved);
         let refuse = |error| refused(error, input);
@@ -249,7 +249,7 @@ fn is_sound(base: &Base, corners: [u32; 3]) -> bool {
     let [a, b, c] = corners.map(|corner| base.patch.rest[corner as usize]);
     let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
     let height = (b - a).cross(c - a).length() / longest;
-    height > (NARROWEST * base.patch.diagonal).max(SLIMMEST * longest)
+    height > (NARROWEST * base.patch.size).max(SLIMMEST * longest)
 }
 
 /// M: two edges and the unit normal; `None` where the triangle has no area.
