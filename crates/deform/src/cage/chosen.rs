@@ -43,9 +43,10 @@ impl ChosenCage {
     }
 }
 
-/// Everything in the region's box, in the cage's unit.
+/// Everything in the region's box but bare points beside triangles, in the cage's unit.
 fn region_points(input: &BindInput<'_>, within: &RegionBox, unit: Unit) -> Vec<DVec3> {
-    let positions = input.problem.surface.positions.iter();
+    let problem = input.problem;
+    let positions = problem.topology.main_positions(&problem.surface.positions).iter();
     let inside = positions.filter(|point| within.contains(**point));
     inside.map(|point| unit.local(*point)).collect()
 }

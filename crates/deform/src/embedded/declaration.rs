@@ -7,12 +7,14 @@ use super::energy::{Energy, constrained};
 use super::graph::Graph;
 use super::solver::Solver;
 use super::system::System;
+use crate::budget::bytes_of;
 use crate::handles::Motion;
 use crate::method::{
     BindInput, BoundMethod, ConstraintKind, DeformMethod, Finite, MethodDeclaration, Needs, Solve, Stepped,
 };
 use crate::region::nodes::spread;
 use crate::space::blend::{Affine, Blend, Share};
+use crate::space::shaping::shaping;
 use crate::sparse::factor_error::FactorError;
 use crate::{BindError, Role, SolveError};
 
@@ -28,6 +30,9 @@ pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     default: || Embedded::default().into(),
     first_choice: || Embedded::default().into(),
 };
+
+/// Bytes of a pair of nodes: what they share, and the dense matrix of the handles' weights with its factor.
+const NODE_PAIR: usize = size_of::<[f64; 2]>() + 2 * size_of::<f64>();
 
 /// How far the nodes' misses are carried off, and how near what is fixed holds them, in mean distances of nodes.
 const REACH: f64 = 1.0;
@@ -75,13 +80,15 @@ impl DeformMethod for Embedded {
 pub(super) fn bound(options: &Embedded, input: &BindInput<'_>) -> Result<BoundEmbedded, BindError> {
     let positions = &input.problem.surface.positions;
     let moving = (0..).zip(input.problem.roles);
-    let moving: Vec<u32> = moving
-        .filter_map(|(vertex, role)| (*role != Role::Fixed).then_some(vertex))
-        .collect();
-    let nodes = spread(input.problem, &moving, options.nodes as usize).vertices;
+    let moving = moving.filter_map(|(vertex, role)| (*role != Role::Fixed).then_some(vertex));
+    let moving = shaping(input.problem, moving);
+    let most = (options.nodes as usize).min(moving.len());
+    let budget = input.partition.budget.without(bytes_of(most * most, NODE_PAIR));
+    let budget = budget.map_err(|limit| BindError::budget(input.partition.solved.len(), limit))?;
+    let nodes = spread(input.problem, &moving, most);
     input.progress.set(0.2);
     // What is fixed holds the nodes that are about as near to it as to each other.
-    let spacing = spacing(&nodes, positions);
+    let spacing = spacing(&nodes.vertices, positions);
     let sets = constrained(input, &moving, REACH * spacing);
     let places: Vec<DVec3> = sets.iter().flat_map(|set| set.places(positions)).collect();
     let graph = Graph::of(input, &nodes, &moving, &places)?;
@@ -93,7 +100,7 @@ pub(super) fn bound(options: &Embedded, input: &BindInput<'_>) -> Result<BoundEm
             free_count: input.partition.solved.len(),
         },
     };
-    let system = System::of(&energy, &graph, input.partition.budget).map_err(refused)?;
+    let system = System::of(&energy, &graph, budget).map_err(refused)?;
     let is_held = energy.constraints.iter().any(|constraint| constraint.handle.is_none());
     let solver = Solver::of(energy, system, &graph, input.handles, is_held, options.tolerance);
     input.progress.set(0.7);

@@ -1,6 +1,7 @@
 //! The terms of the energy, all in the unit of the mean distance of joined nodes.
 
 use glam::{DMat3, DVec3};
+use pliant_mesh::SurfaceVertex;
 
 use super::graph::Graph;
 use crate::Role;
@@ -8,6 +9,7 @@ use crate::handles::Motion;
 use crate::method::BindInput;
 use crate::space::nearest::NearestPoints;
 use crate::space::samples::{EQUAL, farthest, thinned};
+use crate::space::shaping::shaping;
 use rayon::prelude::*;
 
 /// Weights of the terms beside the rigidity's, which is 1 [SSP07, section 5].
@@ -76,26 +78,30 @@ pub(super) struct ConstrainedSet {
     weight: f64,
 }
 
-/// Samples of the handles, and of what is fixed within `reach` of the vertices `moving`.
+/// Samples of the handles, and of what is fixed within `reach` of the vertices `moving` or shares a triangle with one.
 pub(super) fn constrained(input: &BindInput<'_>, moving: &[u32], world_reach: f64) -> Vec<ConstrainedSet> {
     let positions = &input.problem.surface.positions;
     let samples = |vertices: &[u32]| farthest(&thinned(vertices, positions, CANDIDATES), positions, MOST);
     let handles = input.handles.iter().zip(&input.partition.soft).enumerate();
     let mut sets: Vec<ConstrainedSet> = handles
         .map(|(number, (handle, soft))| ConstrainedSet {
-            vertices: samples(&handle.vertices),
+            vertices: samples(&shaping(input.problem, handle.vertices.iter().copied())),
             handle: Some(number),
             weight: soft.map_or(HARD, |weight| (SOFT * weight).min(HARD)),
         })
         .collect();
     let nearest = NearestPoints::of(positions, moving.iter().copied());
-    let fixed: Vec<u32> = (0..positions.len() as u32)
+    let roles = input.problem.roles;
+    let is_beside = |vertex: u32| {
+        let mut around = input.problem.topology.neighbours(SurfaceVertex(vertex)).iter();
+        around.any(|other| roles[other.index()] != Role::Fixed)
+    };
+    let fixed = (0..positions.len() as u32).filter(|&vertex| roles[vertex as usize] == Role::Fixed);
+    let fixed: Vec<u32> = shaping(input.problem, fixed)
         .into_par_iter()
         .filter(|&vertex| {
-            input.problem.roles[vertex as usize] == Role::Fixed
-                && nearest
-                    .nearest(positions[vertex as usize])
-                    .is_some_and(|(_, distance)| distance <= world_reach * (1.0 + EQUAL))
+            let near = nearest.nearest(positions[vertex as usize]);
+            near.is_some_and(|(_, distance)| distance <= world_reach * (1.0 + EQUAL)) || is_beside(vertex)
         })
         .collect();
     sets.push(ConstrainedSet {

@@ -1,14 +1,15 @@
 //! The nodes' influence on points, and which nodes are joined.
 
 use glam::DVec3;
-use pliant_mesh::Cancelled;
+use pliant_mesh::{Cancelled, face_area};
 use rayon::prelude::*;
 
 use crate::BindError;
 use crate::method::BindInput;
 use crate::numerical::sums::CHUNKS_A_TASK;
+use crate::region::nodes::{NO_NODE, Nodes};
 use crate::space::blend::{Share, normalised};
-use crate::space::joining::joins;
+use crate::space::joining::{braces, joins};
 use crate::space::neighbours::Neighbours;
 use crate::sparse::Elimination;
 use crate::sparse::ordering::graph::elimination;
@@ -19,6 +20,9 @@ const NEAREST: usize = 5;
 /// The distance that ends the influence is a little larger than the fifth node's, so that some weight is left where
 /// all five are equally far.
 const BEYOND: f64 = 1.0 + 1e-5;
+
+/// Vertices whose nodes are found at once.
+const AT_ONCE: usize = 1 << 16;
 
 /// The mean over the nodes of the sum of a node's α.
 const JOINED: f64 = 6.0;
@@ -50,34 +54,30 @@ pub(super) struct Edge {
 }
 
 impl Graph {
-    /// Joins nodes at these vertices by the influence that they share on the vertices `moving`; `pairs` are further
-    /// points, in world units, whose nodes will share an equation.
-    pub fn of(input: &BindInput<'_>, nodes: &[u32], moving: &[u32], pairs: &[DVec3]) -> Result<Self, BindError> {
+    /// Joins nodes by the influence that they share on the vertices `moving`, weighed by area, and where triangles join
+    /// the parts of the surface that are nearest to them; `pairs` are further points, in world units, whose nodes will
+    /// share an equation.
+    pub fn of(input: &BindInput<'_>, nodes: &Nodes, moving: &[u32], pairs: &[DVec3]) -> Result<Self, BindError> {
         let positions = &input.problem.surface.positions;
-        let world_nodes: Vec<DVec3> = nodes.iter().map(|&node| positions[node as usize]).collect();
-        let count = nodes.len();
+        let world_nodes: Vec<DVec3> = nodes.vertices.iter().map(|&node| positions[node as usize]).collect();
+        let count = world_nodes.len();
         let tree = Neighbours::of(&world_nodes);
-        let rows: Vec<Vec<Share>> = moving
-            .par_iter()
-            .with_min_len(CHUNKS_A_TASK)
-            .map(|&vertex| influence(&tree, &world_nodes, positions[vertex as usize]))
-            .collect();
-        input.cancel.check()?;
-        // Σ w_j w_k, and the same with the stiffness.
-        let mut shared = vec![[0.0; 2]; count * count];
-        let mut around = vec![[0.0; 2]; count];
-        for (row, &vertex) in rows.iter().zip(moving) {
-            let stiffness = input.problem.stiffness[vertex as usize];
-            for one in row {
-                around[one.source as usize][0] += one.weight;
-                around[one.source as usize][1] += one.weight * stiffness;
-                for other in row.iter().filter(|other| other.source >= one.source) {
-                    let sums = &mut shared[one.source as usize * count + other.source as usize];
-                    sums[0] += one.weight * other.weight;
-                    sums[1] += one.weight * other.weight * stiffness;
-                }
+        let areas = areas(input, moving);
+        let mut sums = Sums::of(count);
+        for moving in moving.chunks(AT_ONCE) {
+            input.cancel.check()?;
+            let rows: Vec<Vec<Share>> = moving
+                .par_iter()
+                .with_min_len(CHUNKS_A_TASK)
+                .map(|&vertex| influence(&tree, &world_nodes, positions[vertex as usize]))
+                .collect();
+            for (row, &vertex) in rows.iter().zip(moving) {
+                let row = row.iter().map(|share| (share.source as usize, share.weight));
+                sums.add(row, areas[vertex as usize], input.problem.stiffness[vertex as usize]);
             }
         }
+        sums.add_triangles(input, nodes);
+        let Sums { shared, around } = sums;
         let rigidity: Vec<f64> = around.iter().map(|[plain, stiff]| stiff / plain).collect();
         let own = |node: usize| shared[node * count + node][0];
         let (mut edges, mut plain) = (Vec::new(), Vec::new());
@@ -104,10 +104,12 @@ impl Graph {
             .map(|(edge, _)| edge.nodes)
             .collect();
         let joins = joins(&world_nodes, &firm);
-        let lengths = firm.iter().chain(&joins);
-        let lengths = lengths.map(|&[one, other]| world_nodes[one as usize].distance(world_nodes[other as usize]));
-        let world_unit = lengths.sum::<f64>() / (firm.len() + joins.len()) as f64;
-        for nodes in joins {
+        // The parts may be far apart: their joints are no measure unless there is nothing else.
+        let measured = if firm.is_empty() { &joins } else { &firm };
+        let length = |&[one, other]: &[u32; 2]| world_nodes[one as usize].distance(world_nodes[other as usize]);
+        let world_unit = measured.iter().map(length).sum::<f64>() / measured.len() as f64;
+        let braces = braces(&world_nodes, &[&firm[..], &joins].concat());
+        for nodes in joins.into_iter().chain(braces) {
             let weight = 0.5 * (rigidity[nodes[0] as usize] + rigidity[nodes[1] as usize]);
             match edges.iter_mut().find(|edge| edge.nodes == nodes) {
                 Some(edge) => edge.weight += weight,
@@ -170,6 +172,68 @@ impl Graph {
         self.edges.sort_unstable_by_key(|edge| edge.nodes);
         self.ends = ends;
         Ok(())
+    }
+}
+
+/// The area around each vertex of the surface, in means of those `moving`; 1 for what has none.
+fn areas(input: &BindInput<'_>, moving: &[u32]) -> Vec<f64> {
+    let surface = input.problem.surface;
+    let mut areas = vec![0.0; surface.positions.len()];
+    for corners in &surface.triangles {
+        let third = face_area(corners.map(|corner| surface.positions[corner.index()])) / 3.0;
+        corners.iter().for_each(|corner| areas[corner.index()] += third);
+    }
+    let mean = moving.iter().map(|&vertex| areas[vertex as usize]).sum::<f64>() / moving.len().max(1) as f64;
+    for area in &mut areas {
+        *area = if *area > 0.0 && mean > 0.0 { *area / mean } else { 1.0 };
+    }
+    areas
+}
+
+/// What nodes share.
+struct Sums {
+    /// Σ A w_j w_k over points of the area A, and the same with the stiffness, j not above k.
+    shared: Vec<[f64; 2]>,
+    /// Σ A w_j, and the same with the stiffness.
+    around: Vec<[f64; 2]>,
+}
+
+impl Sums {
+    /// Of so many nodes.
+    fn of(count: usize) -> Self {
+        Self {
+            shared: vec![[0.0; 2]; count * count],
+            around: vec![[0.0; 2]; count],
+        }
+    }
+
+    /// Adds a point with the nodes that move it.
+    fn add(&mut self, row: impl Iterator<Item = (usize, f64)> + Clone, area: f64, stiffness: f64) {
+        let count = self.around.len();
+        for (one, weight) in row.clone() {
+            let weight = weight * area;
+            let own = &mut self.around[one];
+            *own = [own[0] + weight, own[1] + weight * stiffness];
+            for (other, beside) in row.clone().filter(|(other, _)| *other >= one) {
+                let sums = &mut self.shared[one * count + other];
+                *sums = [sums[0] + weight * beside, sums[1] + weight * beside * stiffness];
+            }
+        }
+    }
+
+    /// Adds the middle of each edge between the parts of two nodes, which both move alike. Nodes that are nearest in
+    /// space may all be of one ring, while the edges lead to the next one.
+    fn add_triangles(&mut self, input: &BindInput<'_>, nodes: &Nodes) {
+        let (surface, stiffness) = (input.problem.surface, input.problem.stiffness);
+        for corners in &surface.triangles {
+            for [one, other] in [[0, 1], [1, 2], [2, 0]].map(|ends| ends.map(|end| corners[end].index())) {
+                let cells = [one, other].map(|vertex| nodes.cells[vertex]);
+                if !cells.contains(&NO_NODE) && cells[0] != cells[1] {
+                    let row = cells.map(|cell| (cell as usize, 0.5));
+                    self.add(row.into_iter(), 0.5, 0.5 * (stiffness[one] + stiffness[other]));
+                }
+            }
+        }
     }
 }
 

@@ -12,6 +12,7 @@ use rayon::prelude::*;
 use super::hand_field::outer;
 use super::moving::Moving;
 use super::neighbours::Neighbours;
+use super::shaping::shaping;
 use crate::handles::Motion;
 use crate::method::{BindInput, Finite};
 use crate::{BindError, Role};
@@ -85,15 +86,16 @@ impl Blend {
             .iter()
             .map(|&vertex| positions[vertex as usize])
             .collect();
-        let place = |&vertex: &u32| positions[vertex as usize];
+        let places = |vertices: Vec<u32>| vertices.iter().map(|&vertex| positions[vertex as usize]).collect();
         let of_handles = input.handles.iter().zip(&input.partition.soft);
         let of_handles = of_handles.map(|(handle, soft)| match soft {
             Some(_) => Hold::of(Vec::new()),
-            None => Hold::of(handle.vertices.iter().map(place).collect()),
+            None => Hold::of(places(shaping(input.problem, handle.vertices.iter().copied()))),
         });
-        let fixed = input.problem.roles.iter().zip(positions);
-        let fixed = fixed.filter(|(role, _)| **role == Role::Fixed).map(|(_, place)| *place);
-        let all: Vec<Hold> = of_handles.chain([Hold::of(fixed.collect())]).collect();
+        let roles = input.problem.roles;
+        let fixed = (0..roles.len() as u32).filter(|&vertex| roles[vertex as usize] == Role::Fixed);
+        let fixed = Hold::of(places(shaping(input.problem, fixed)));
+        let all: Vec<Hold> = of_handles.chain([fixed]).collect();
         Ok(Self {
             shares: Shares::of(&world_places, input, &weigh)?,
             holds: Shares::of(&world_places, input, |place| held_by(place, &all, width))?,

@@ -5,6 +5,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::nearest::NearestPoints;
+use super::shaping::shaping;
 use crate::{Problem, Role};
 
 /// A factor from 0 to 1 for each of some vertices, and its gradient per world unit.
@@ -22,11 +23,11 @@ impl Falloff {
         let fixed = (0..)
             .zip(problem.roles)
             .filter_map(|(vertex, role)| (*role == Role::Fixed).then_some(vertex));
-        let mut fixed = fixed.peekable();
-        if fixed.peek().is_none() {
+        let fixed = shaping(problem, fixed);
+        if fixed.is_empty() {
             return Self::default();
         }
-        let fixed = NearestPoints::of(positions, fixed);
+        let fixed = NearestPoints::of(positions, fixed.into_iter());
         let factor = |&vertex: &u32| {
             let point = positions[vertex as usize];
             let Some((nearest, distance)) = fixed.nearest(point) else {

@@ -5,6 +5,7 @@ use glam::DVec3;
 use super::controls::{Hold, Holder};
 use super::field::moving;
 use super::samples::thinned;
+use super::shaping::shaping;
 use crate::Role;
 use crate::method::{BindInput, HandleFit};
 
@@ -42,6 +43,7 @@ impl RegionBox {
     pub fn of(input: &BindInput<'_>) -> Self {
         let positions = &input.problem.surface.positions;
         let moving = moving(HandleFit::LeastSquares, input).into_iter();
+        let moving = shaping(input.problem, moving).into_iter();
         let (low, high) = bounds(moving.map(|vertex| positions[vertex as usize]));
         let diagonal = low.distance(high);
         let (low, high) = if low.is_finite() {
@@ -60,9 +62,13 @@ impl RegionBox {
             diagonal,
         };
         let near = around(low, high, NEAR);
-        let fixed = positions.iter().zip(input.problem.roles);
-        let fixed = fixed.filter(|(point, role)| **role == Role::Fixed && near.contains(**point));
-        let (low, high) = bounds(fixed.map(|(point, _)| *point).chain([low, high]));
+        let roles = input.problem.roles;
+        let fixed = (0..roles.len() as u32).filter(|&vertex| roles[vertex as usize] == Role::Fixed);
+        let fixed = fixed.filter(|&vertex| near.contains(positions[vertex as usize]));
+        let fixed = shaping(input.problem, fixed)
+            .into_iter()
+            .map(|vertex| positions[vertex as usize]);
+        let (low, high) = bounds(fixed.chain([low, high]));
         around(low, high, MARGIN)
     }
 
@@ -84,7 +90,11 @@ pub(crate) fn samples(input: &BindInput<'_>, within: &RegionBox, soft_unit: f64,
     let positions = &input.problem.surface.positions;
     let mut samples = Vec::new();
     for (number, (handle, soft)) in input.handles.iter().zip(&input.partition.soft).enumerate() {
-        let vertices = thinned(&handle.vertices, positions, most);
+        let vertices = thinned(
+            &shaping(input.problem, handle.vertices.iter().copied()),
+            positions,
+            most,
+        );
         let all = soft.map_or(1.0, |weight| weight * soft_unit);
         let weight = all / vertices.len() as f64;
         samples.extend(vertices.into_iter().map(|vertex| {
@@ -96,12 +106,11 @@ pub(crate) fn samples(input: &BindInput<'_>, within: &RegionBox, soft_unit: f64,
             }
         }));
     }
-    let fixed: Vec<u32> = (0..)
+    let fixed = (0..)
         .zip(input.problem.roles)
         .filter_map(|(vertex, role)| (*role == Role::Fixed).then_some(vertex))
-        .filter(|&vertex: &u32| within.contains(positions[vertex as usize]))
-        .collect();
-    let fixed = thinned(&fixed, positions, most);
+        .filter(|&vertex: &u32| within.contains(positions[vertex as usize]));
+    let fixed = thinned(&shaping(input.problem, fixed), positions, most);
     let weight = 1.0 / fixed.len() as f64;
     samples.extend(fixed.into_iter().map(|vertex| Sample {
         world_point: positions[vertex as usize],

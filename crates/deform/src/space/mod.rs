@@ -20,4 +20,5 @@ pub(crate) mod moving;
 pub(crate) mod nearest;
 pub(crate) mod neighbours;
 pub(crate) mod samples;
+pub(crate) mod shaping;
 pub(crate) mod unit;

@@ -10,6 +10,7 @@ use crate::handles::Handle;
 use crate::method::BindInput;
 use crate::primo::joints::{Joints, Side};
 use crate::space::joining::joins;
+use crate::space::shaping::shaping;
 use crate::sparse::Elimination;
 use crate::sparse::ordering::graph::elimination;
 
@@ -157,25 +158,30 @@ fn patches(octree: &Octree, world_origin: DVec3) -> Vec<([u32; 2], Patch)> {
 fn ties(octree: &Octree, input: &BindInput<'_>, world_origin: DVec3) -> BTreeMap<(usize, usize), (Patch, f64)> {
     let problem = input.problem;
     let mut ties: BTreeMap<(usize, usize), (Patch, f64)> = BTreeMap::new();
-    for (role, &position) in problem.roles.iter().zip(&problem.surface.positions) {
-        let (ground, firmness) = match *role {
-            Role::Free => continue,
-            Role::Fixed => (0, TIED),
-            Role::Handle(handle) => {
-                let soft = input.partition.soft[usize::from(handle)];
-                (
-                    1 + usize::from(handle),
-                    soft.map_or(TIED, |weight| (SOFT * weight).min(TIED)),
-                )
+    let at = |vertices: Vec<u32>| -> Vec<DVec3> {
+        let places = vertices
+            .into_iter()
+            .map(|vertex| problem.surface.positions[vertex as usize]);
+        places.collect()
+    };
+    let mut tie = |places: Vec<DVec3>, ground: usize, firmness: f64| {
+        for position in places {
+            if let Some(cell) = octree.cell_at(position) {
+                let tie = ties
+                    .entry((cell as usize, ground))
+                    .or_insert((Patch::default(), firmness));
+                // A vertex stands for a small ball, so that a single one turns its cell.
+                tie.0.add(1.0, position - world_origin, cube(0.5 * octree.world_side));
             }
-        };
-        if let Some(cell) = octree.cell_at(position) {
-            let tie = ties
-                .entry((cell as usize, ground))
-                .or_insert((Patch::default(), firmness));
-            // A vertex stands for a small ball, so that a single one turns its cell.
-            tie.0.add(1.0, position - world_origin, cube(0.5 * octree.world_side));
         }
+    };
+    let fixed = (0..problem.roles.len() as u32).filter(|&vertex| problem.roles[vertex as usize] == Role::Fixed);
+    tie(at(shaping(problem, fixed)), 0, TIED);
+    tie(octree.world_held().collect(), 0, TIED);
+    for (number, (handle, soft)) in input.handles.iter().zip(&input.partition.soft).enumerate() {
+        let firmness = soft.map_or(TIED, |weight| (SOFT * weight).min(TIED));
+        let vertices = handle.vertices.iter().copied();
+        tie(at(shaping(problem, vertices)), 1 + number, firmness);
     }
     ties
 }
@@ -183,7 +189,12 @@ fn ties(octree: &Octree, input: &BindInput<'_>, world_origin: DVec3) -> BTreeMap
 /// The mean of the painted stiffness in each cell, and of the neighbours where there is no vertex.
 fn stiffness(octree: &Octree, input: &BindInput<'_>, neighbours: &[Vec<u32>]) -> Vec<f64> {
     let mut sums = vec![(0.0, 0.0); neighbours.len()];
-    for (&stiffness, &position) in input.problem.stiffness.iter().zip(&input.problem.surface.positions) {
+    let problem = input.problem;
+    for vertex in shaping(problem, 0..problem.stiffness.len() as u32) {
+        let (stiffness, position) = (
+            problem.stiffness[vertex as usize],
+            problem.surface.positions[vertex as usize],
+        );
         if let Some(cell) = octree.cell_at(position) {
             let sum = &mut sums[cell as usize];
             *sum = (sum.0 + stiffness, sum.1 + 1.0);
@@ -291,7 +302,7 @@ mod tests {
     #[test]
     fn the_energy_is_the_integral_over_common_faces_and_the_gradient_its_slope() {
         with_ball(|options, input| {
-            let mut octree = Octree::of(input, options.cells as usize);
+            let mut octree = Octree::of(input, options.cells as usize).unwrap();
             let origin = input.handles[0].world_centre;
             let joints = joined(&mut octree, input, origin).unwrap();
             let count = joints.count();

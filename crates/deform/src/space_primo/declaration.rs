@@ -74,12 +74,12 @@ impl DeformMethod for SpacePrimo {
 
 /// Cuts space into cells, joins them, factors, and weighs every vertex.
 pub(super) fn bound(options: &SpacePrimo, input: &BindInput<'_>) -> Result<BoundCells, BindError> {
-    let mut octree = Octree::of(input, options.cells as usize);
+    let free_count = input.partition.solved.len();
+    let mut octree = Octree::of(input, options.cells as usize).map_err(|limit| BindError::budget(free_count, limit))?;
     input.cancel.check()?;
     input.progress.set(0.3);
     let world_origin = input.handles.first().map_or(DVec3::ZERO, |handle| handle.world_centre);
     let joints = joined(&mut octree, input, world_origin)?;
-    let free_count = input.partition.solved.len();
     let is_held = (0..joints.count()).any(|cell| {
         let mut sides = joints.sides(cell).iter();
         sides.any(|side| side.other as usize == joints.count())

@@ -7,8 +7,8 @@
 //! the factored Gauss–Newton matrix, and the energy never rises.
 //!
 //! The cells are an octree that is fine where the surface is and coarse inside (`octree`), as fine as the option `cells`
-//! allows. What the moving part does not enclose has no
-//! cells: the inside of an open sheet, and of a part that is cut open where the fixed one begins. Parts whose cells touch no
+//! allows. The whole surface decides what is inside (`inside`), so that a part is full where the fixed one begins, and its
+//! cells are held there. The inside of an open sheet has none. Parts whose cells touch no
 //! others are joined at their nearest cells. The cells of constrained vertices are tied to their handle, or to what is
 //! fixed, by stiff springs (`coupling`), softer ones for soft handles. A vertex takes the mean of the motions of the
 //! cells around it, with the weights (1 − d²/R²)³, R being 1½ sides of a small cell, so that the surface stays smooth (`weights`);
@@ -16,6 +16,7 @@
 
 mod coupling;
 mod declaration;
+mod inside;
 mod octree;
 mod options;
 mod overlap;

@@ -5,9 +5,12 @@ use std::sync::atomic::{AtomicU8, Ordering::Relaxed};
 use glam::{DVec3, IVec3};
 use rayon::prelude::*;
 
+use super::inside::sort_out;
 use super::overlap::overlap;
 use crate::Role;
+use crate::budget::{Limit, bytes_of};
 use crate::method::BindInput;
+use crate::space::shaping::shaping;
 
 /// The most small cubes along an axis.
 const FINEST: i32 = 128;
@@ -15,23 +18,28 @@ const FINEST: i32 = 128;
 /// A cube is a little smaller for triangles, so that one that lies in its side belongs to one cube alone.
 const SHRUNK: f64 = 1.0 - 1e-6;
 
+/// Bytes of a small cube while it is decided what it is.
+const CUBE: usize = 32;
+
 /// No cell.
 const NONE: u32 = u32::MAX;
 
-const EMPTY: u8 = 0;
-const FILLED: u8 = 1;
-const OUTSIDE: u8 = 2;
+pub(super) const EMPTY: u8 = 0;
+pub(super) const FILLED: u8 = 1;
+pub(super) const OUTSIDE: u8 = 2;
 
 /// The cells in a grid of small cubes with an empty layer around.
 #[derive(Clone, Debug)]
 pub(super) struct Octree {
-    world_low: DVec3,
+    pub(super) world_low: DVec3,
     /// The side of a small cube, in world units.
     pub world_side: f64,
-    counts: IVec3,
+    pub(super) counts: IVec3,
     /// The cell of each small cube.
     cell_of: Vec<u32>,
     pub cells: Vec<Cell>,
+    /// The small cubes inside that lie beside what is fixed inside.
+    held: Vec<IVec3>,
 }
 
 /// A cube of `size` small ones along each axis.
@@ -42,35 +50,54 @@ pub(super) struct Cell {
 }
 
 impl Octree {
-    /// The finest one with no more than about so many cells around the vertices that move and their triangles.
-    pub fn of(input: &BindInput<'_>, most: usize) -> Self {
-        let (mut enough, mut finer) = (Self::with(input, 1), 2);
+    /// The finest one with no more than about so many cells around the vertices that move and their triangles, as far as
+    /// the budget allows.
+    ///
+    /// # Errors
+    /// Not even the coarsest one fits the budget.
+    pub fn of(input: &BindInput<'_>, most: usize) -> Result<Self, Limit> {
+        let (mut enough, mut finer) = (Self::with(input, 1)?, 2);
+        let fitting = |along: i32| Self::with(input, along).ok().filter(|tried| tried.cells.len() <= most);
         while finer <= FINEST {
-            let tried = Self::with(input, finer);
-            if tried.cells.len() > most {
+            let Some(tried) = fitting(finer) else {
                 break;
-            }
+            };
             (enough, finer) = (tried, 2 * finer);
         }
         let (mut low, mut high) = (finer / 2, finer.min(FINEST + 1));
         while high - low > 1 {
             let middle = low.midpoint(high);
-            let tried = Self::with(input, middle);
-            if tried.cells.len() > most {
-                high = middle;
-            } else {
-                (enough, low) = (tried, middle);
+            match fitting(middle) {
+                Some(tried) => (enough, low) = (tried, middle),
+                None => high = middle,
             }
         }
-        enough
+        Ok(enough)
     }
 
     /// With so many small cubes along the longest axis.
-    fn with(input: &BindInput<'_>, along: i32) -> Self {
+    fn with(input: &BindInput<'_>, along: i32) -> Result<Self, Limit> {
         let (surface, roles) = (input.problem.surface, input.problem.roles);
-        let moves = |vertex: usize| roles[vertex] != Role::Fixed;
-        let moving = || (0..roles.len()).filter(|&vertex| moves(vertex));
-        let bounds = moving().map(|vertex| surface.positions[vertex]);
+        let moving = (0..roles.len() as u32).filter(|&vertex| roles[vertex as usize] != Role::Fixed);
+        let mut is_moving = vec![false; roles.len()];
+        for vertex in shaping(input.problem, moving) {
+            is_moving[vertex as usize] = true;
+        }
+        let moves = |vertex: usize| is_moving[vertex];
+        // What is fixed holds the triangles that it shares with what moves, however long they are.
+        let mut is_held = is_moving.clone();
+        for corners in surface
+            .triangles
+            .iter()
+            .map(|corners| corners.map(|corner| corner.index()))
+        {
+            if corners.into_iter().any(moves) {
+                corners.into_iter().for_each(|corner| is_held[corner] = true);
+            }
+        }
+        let bounds = (0..roles.len())
+            .filter(|&vertex| is_held[vertex])
+            .map(|vertex| surface.positions[vertex]);
         let (low, high) = bounds.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), point| {
             (low.min(point), high.max(point))
         });
@@ -90,7 +117,9 @@ impl Octree {
             counts,
             cell_of: Vec::new(),
             cells: Vec::new(),
+            held: Vec::new(),
         };
+        input.partition.budget.without(bytes_of(octree.cube_count(), CUBE))?;
         let filled: Vec<AtomicU8> = (0..octree.cube_count()).map(|_| AtomicU8::new(EMPTY)).collect();
         let mark = |cube: IVec3| filled[octree.index(cube)].store(FILLED, Relaxed);
         (0..roles.len())
@@ -105,8 +134,9 @@ impl Octree {
         });
         let mut filled: Vec<u8> = filled.into_iter().map(AtomicU8::into_inner).collect();
         octree.add_fixed(input, &mut filled);
-        octree.fill(&mut filled);
-        octree
+        octree.held = sort_out(&octree, surface, input.problem.topology.is_closed(), &mut filled);
+        octree.fill(&filled);
+        Ok(octree)
     }
 
     /// The small cubes that hold fixed vertices beside one that is filled.
@@ -129,20 +159,8 @@ impl Octree {
         cubes.into_iter().for_each(|cube| filled[cube] = FILLED);
     }
 
-    /// Makes cells: one of each filled cube, and inside the largest ones that fit.
-    fn fill(&mut self, filled: &mut [u8]) {
-        let mut queue = vec![IVec3::ZERO];
-        filled[0] = OUTSIDE;
-        while let Some(cube) = queue.pop() {
-            for step in SIDES {
-                let other = cube + step;
-                if self.has(other) && filled[self.index(other)] == EMPTY {
-                    let index = self.index(other);
-                    filled[index] = OUTSIDE;
-                    queue.push(other);
-                }
-            }
-        }
+    /// Makes cells: one of each filled cube, and of the empty ones the largest that fit.
+    fn fill(&mut self, filled: &[u8]) {
         self.cell_of = vec![NONE; self.cube_count()];
         let largest = (self.counts.max_element() as u32).next_power_of_two() as i32;
         let mut size = largest;
@@ -233,7 +251,7 @@ impl Octree {
     }
 
     /// Visits the small cubes that a triangle meets.
-    fn cubes_of(&self, corners: [DVec3; 3], visit: impl Fn(IVec3)) {
+    pub(super) fn cubes_of(&self, corners: [DVec3; 3], mut visit: impl FnMut(IVec3)) {
         let [a, b, c] = corners;
         let inside = |cube: IVec3| cube.clamp(IVec3::ZERO, self.counts - 1);
         let (low, high) = (inside(self.cube(a.min(b).min(c))), inside(self.cube(a.max(b).max(c))));
@@ -245,24 +263,40 @@ impl Octree {
         }
     }
 
-    fn cube(&self, world_point: DVec3) -> IVec3 {
-        ((world_point - self.world_low) / self.world_side).floor().as_ivec3()
+    /// A point in small cubes from the grid's corner.
+    pub(super) fn in_cubes(&self, world_point: DVec3) -> DVec3 {
+        (world_point - self.world_low) / self.world_side
     }
 
-    fn has(&self, cube: IVec3) -> bool {
+    fn cube(&self, world_point: DVec3) -> IVec3 {
+        self.in_cubes(world_point).floor().as_ivec3()
+    }
+
+    /// All small cubes, along x first and along z last.
+    pub(super) fn cubes(&self) -> impl Iterator<Item = IVec3> + use<> {
+        boxed(IVec3::ZERO, self.counts - 1)
+    }
+
+    /// Where the inside is fixed beside the cells, in world units.
+    pub fn world_held(&self) -> impl Iterator<Item = DVec3> + '_ {
+        let middle = |cube: &IVec3| self.world_low + self.world_side * (cube.as_dvec3() + 0.5);
+        self.held.iter().map(middle)
+    }
+
+    pub(super) fn has(&self, cube: IVec3) -> bool {
         cube.cmpge(IVec3::ZERO).all() && cube.cmplt(self.counts).all()
     }
 
-    fn index(&self, cube: IVec3) -> usize {
+    pub(super) fn index(&self, cube: IVec3) -> usize {
         ((cube.z * self.counts.y + cube.y) * self.counts.x + cube.x) as usize
     }
 
-    fn cube_count(&self) -> usize {
+    pub(super) fn cube_count(&self) -> usize {
         self.counts.as_usizevec3().element_product()
     }
 }
 
-const SIDES: [IVec3; 6] = [IVec3::X, IVec3::NEG_X, IVec3::Y, IVec3::NEG_Y, IVec3::Z, IVec3::NEG_Z];
+pub(super) const SIDES: [IVec3; 6] = [IVec3::X, IVec3::NEG_X, IVec3::Y, IVec3::NEG_Y, IVec3::Z, IVec3::NEG_Z];
 
 /// The cubes from `low` to `high`, both included.
 fn boxed(low: IVec3, high: IVec3) -> impl Iterator<Item = IVec3> {

@@ -51,7 +51,11 @@ fn targets() -> Vec<DAffine3> {
 
 #[test]
 fn bare_points_bend_as_the_vertices_of_tiny_triangles_do() {
-    for method in space::methods() {
+    // The nodes of embedded deformation are joined by areas and edges, which points don't have.
+    for method in space::methods()
+        .into_iter()
+        .filter(|method| method.name() != "embedded")
+    {
         let small = crumbs(&uneven());
         let bare = scene(Drawn::once(small.positions.clone(), Vec::new()), &method);
         let small = scene(small, &method);

@@ -39,4 +39,5 @@ mod soft;
 mod soup;
 mod space;
 mod strip;
+mod uneven;
 mod wrinkles;

@@ -1,0 +1,189 @@
+//! Which empty cubes are inside the shape, and which of these belong to what moves.
+//!
+//! The region may cut a closed shape open, so the whole surface decides: a cube is inside if the surface winds around its
+//! middle. Winding numbers are counted along columns of cubes in three directions, so that a hole in the surface spoils
+//! only the columns that pass through it, and the others outvote them. Inside, what is nearer to what moves than to what
+//! is fixed belongs to it; where the two meet it is held.
+
+use std::collections::VecDeque;
+
+use glam::{DVec2, DVec3, IVec3};
+use pliant_mesh::Surface;
+
+use super::octree::{EMPTY, FILLED, OUTSIDE, Octree, SIDES};
+
+/// A cube of what is fixed alone.
+const WALL: u8 = 3;
+
+/// How far columns are from the middles of their cubes, so that none passes through a vertex of a regular mesh.
+const ASIDE: DVec2 = DVec2::new(1.618e-4, 2.718e-4);
+
+/// Marks as [`OUTSIDE`] every empty cube that is to have no cell. `filled` holds the cubes of what moves. Where the
+/// surface is not closed, what the moving cubes enclose is inside as well. Returns the cubes beside which the inside is
+/// fixed.
+pub(super) fn sort_out(octree: &Octree, surface: &Surface, is_closed: bool, filled: &mut [u8]) -> Vec<IVec3> {
+    let mut is_inside = wound(octree, surface);
+    if !is_closed {
+        for (inside, is_enclosed) in is_inside.iter_mut().zip(enclosed(octree, filled)) {
+            *inside |= is_enclosed;
+        }
+    }
+    let mut walls = Vec::new();
+    for corners in &surface.triangles {
+        octree.cubes_of(corners.map(|corner| surface.positions[corner.index()]), |cube| {
+            let cube = octree.index(cube);
+            if filled[cube] == EMPTY {
+                walls.push(cube);
+            }
+        });
+    }
+    let owners = owners(octree, filled, &walls, &is_inside);
+    for (state, owner) in filled.iter_mut().zip(&owners) {
+        if *state == EMPTY && *owner != FILLED {
+            *state = OUTSIDE;
+        }
+    }
+    let is_beside_fixed = |cube: &IVec3| {
+        let other = |step: IVec3| octree.has(*cube + step) && owners[octree.index(*cube + step)] == WALL;
+        owners[octree.index(*cube)] == FILLED && filled[octree.index(*cube)] == EMPTY && SIDES.into_iter().any(other)
+    };
+    octree.cubes().filter(is_beside_fixed).collect()
+}
+
+/// The empty cubes that can't be reached from a corner of the grid.
+fn enclosed(octree: &Octree, filled: &[u8]) -> Vec<bool> {
+    let mut states = filled.to_vec();
+    let mut queue = vec![IVec3::ZERO];
+    states[octree.index(IVec3::ZERO)] = OUTSIDE;
+    while let Some(cube) = queue.pop() {
+        for step in SIDES {
+            let other = cube + step;
+            if octree.has(other) && states[octree.index(other)] == EMPTY {
+                states[octree.index(other)] = OUTSIDE;
+                queue.push(other);
+            }
+        }
+    }
+    states.into_iter().map(|state| state == EMPTY).collect()
+}
+
+/// Whether each cube inside is nearer to what moves ([`FILLED`]) or to what is fixed ([`WALL`]); neither outside.
+fn owners(octree: &Octree, filled: &[u8], walls: &[usize], is_inside: &[bool]) -> Vec<u8> {
+    let mut owners = vec![EMPTY; filled.len()];
+    walls.iter().for_each(|&cube| owners[cube] = WALL);
+    let mut queue = VecDeque::new();
+    for cube in octree.cubes() {
+        let index = octree.index(cube);
+        if filled[index] == FILLED {
+            owners[index] = FILLED;
+        }
+        if owners[index] != EMPTY {
+            queue.push_back(cube);
+        }
+    }
+    while let Some(cube) = queue.pop_front() {
+        let owner = owners[octree.index(cube)];
+        for step in SIDES {
+            let other = cube + step;
+            if octree.has(other) && is_inside[octree.index(other)] && owners[octree.index(other)] == EMPTY {
+                owners[octree.index(other)] = owner;
+                queue.push_back(other);
+            }
+        }
+    }
+    owners
+}
+
+/// Whether most of the three columns through each cube say that the surface winds around it.
+fn wound(octree: &Octree, surface: &Surface) -> Vec<bool> {
+    let mut votes = vec![0_u8; octree.cube_count()];
+    let mut winding = vec![0_i32; octree.cube_count()];
+    for axis in 0..3 {
+        winding.fill(0);
+        // The axis comes last; where x, y and z are passed on in a ring, left and right stay.
+        let turned = |v: DVec3| DVec3::new(v[(axis + 1) % 3], v[(axis + 2) % 3], v[axis]);
+        let back = |cube: IVec3| {
+            let mut own = IVec3::ZERO;
+            (own[(axis + 1) % 3], own[(axis + 2) % 3], own[axis]) = (cube.x, cube.y, cube.z);
+            own
+        };
+        let counts = turned(octree.counts.as_dvec3()).as_ivec3();
+        for corners in &surface.triangles {
+            let points = corners.map(|corner| turned(octree.in_cubes(surface.positions[corner.index()])));
+            each_crossing(points, counts, |cube, sign| winding[octree.index(back(cube))] += sign);
+        }
+        // What was entered below.
+        for cube in octree.cubes() {
+            if cube[axis] > 0 {
+                winding[octree.index(cube)] += winding[octree.index(cube - IVec3::AXES[axis])];
+            }
+            votes[octree.index(cube)] += u8::from(winding[octree.index(cube)] != 0);
+        }
+    }
+    votes.into_iter().map(|votes| votes > 1).collect()
+}
+
+/// Calls `visit` with the first cube above each place where a column crosses a triangle, 1 where that leads inside and
+/// −1 where it leads out. Coordinates count cubes.
+fn each_crossing(points: [DVec3; 3], counts: IVec3, mut visit: impl FnMut(IVec3, i32)) {
+    let flat = points.map(|point| point.truncate() - 0.5 - ASIDE);
+    let low = flat[0].min(flat[1]).min(flat[2]).ceil().max(DVec2::ZERO);
+    let most = (counts.truncate() - 1).as_dvec2();
+    let high = flat[0].max(flat[1]).max(flat[2]).floor().min(most);
+    if low.cmpgt(high).any() {
+        return;
+    }
+    let doubled = (flat[1] - flat[0]).perp_dot(flat[2] - flat[0]);
+    if doubled == 0.0 {
+        return;
+    }
+    for y in low.y as i32..=high.y as i32 {
+        for x in low.x as i32..=high.x as i32 {
+            let at = DVec2::new(f64::from(x), f64::from(y));
+            let opposite = |a: usize, b: usize| (flat[a] - at).perp_dot(flat[b] - at) / doubled;
+            let shares = [opposite(1, 2), opposite(2, 0), opposite(0, 1)];
+            if shares.iter().any(|share| *share < 0.0) {
+                continue;
+            }
+            let z: f64 = shares.iter().zip(points).map(|(share, point)| share * point.z).sum();
+            let first = (z - 0.5).ceil().max(0.0);
+            if first < f64::from(counts.z) {
+                // A triangle that faces down leads inside.
+                visit(IVec3::new(x, y, first as i32), if doubled < 0.0 { 1 } else { -1 });
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{DVec3, IVec3};
+    use pliant_mesh::shapes;
+
+    use super::each_crossing;
+
+    #[test]
+    fn a_ball_winds_once_around_its_inside_and_not_around_the_outside() {
+        let model = shapes::model(shapes::icosphere(3));
+        let counts = IVec3::splat(24);
+        let mut winding = vec![0; 24 * 24 * 24];
+        let index = |cube: IVec3| ((cube.z * 24 + cube.y) * 24 + cube.x) as usize;
+        for corners in &model.surface.triangles {
+            let points = corners.map(|corner| model.surface.positions[corner.index()] * 10.0 + 12.0);
+            each_crossing(points, counts, |cube, sign| winding[index(cube)] += sign);
+        }
+        for z in 1..24 {
+            for y in 0..24 {
+                for x in 0..24 {
+                    let cube = IVec3::new(x, y, z);
+                    winding[index(cube)] += winding[index(cube - IVec3::Z)];
+                    let radius = (cube.as_dvec3() + 0.5 - 12.0).length();
+                    if (radius - 10.0).abs() > 0.3 {
+                        assert_eq!(winding[index(cube)], i32::from(radius < 10.0), "{cube} {radius}");
+                    }
+                }
+            }
+        }
+        each_crossing([DVec3::ZERO; 3], counts, |_, _| unreachable!("it has no area"));
+    }
+}
