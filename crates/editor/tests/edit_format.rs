@@ -306,3 +306,16 @@ fn a_handle_with_a_long_name_is_refused_in_a_short_sentence() {
         assert!(said.contains(word) && said.chars().count() < 400, "{said}");
     }
 }
+
+#[test]
+fn a_weld_distance_comes_back_and_is_the_meshs_own_where_none_is_given() {
+    let edit = |weld: &str| EditFile::parse(&format!(r#"{{"version": 1, "method": {{"name": "arap"}}{weld}}}"#));
+    assert_eq!(edit("").unwrap().weld, None);
+    let given = edit(r#", "weld": 0.25"#).unwrap();
+    assert_eq!(given.weld, Some(0.25));
+    assert_eq!(EditFile::parse(&given.to_json()).unwrap(), given);
+    for wrong in ["-0.1", "\"wide\"", "1e400"] {
+        let said = edit(&format!(", \"weld\": {wrong}")).unwrap_err().to_string();
+        assert!(said.contains("weld") || said.contains("1e400"), "{said}");
+    }
+}

@@ -10,9 +10,9 @@ use std::time::Instant;
 
 use glam::DVec3;
 use pliant_deform::{BindError, Bound, Budget, ExampleShape, Method, Ordering, SolveError, Step};
-use pliant_editor::{Beginning, Setup};
+use pliant_editor::{Beginning, Intersections, Setup};
 use pliant_io::MorphTarget;
-use pliant_mesh::{Cancel, Model, Progress, SurfaceVertex, WeldOptions, vertex_normals};
+use pliant_mesh::{Bvh, Cancel, Damage, Model, Progress, SurfaceVertex, WeldOptions, vertex_normals};
 
 use crate::EngineError;
 use crate::examples;
@@ -161,7 +161,7 @@ pub fn apply(apply: &Apply<'_>, watch: &Watch, staging: &Staging) -> Result<Repo
         save_ms,
         check_ms: saved.check_ms,
     };
-    let report = report(&loaded, &setup, solution, times, saved.warnings);
+    let report = report(&loaded, &setup, solution, times, saved.warnings, watch)?;
     let mut staged = saved.staged;
     if let Some(to) = report_to {
         let text = report.to_json();
@@ -202,7 +202,7 @@ pub fn solved(
     }
     Ok(Solved {
         surface_positions: solution.surface_positions.clone(),
-        report: report(loaded, setup, solution, FileTimes::default(), Vec::new()),
+        report: report(loaded, setup, solution, FileTimes::default(), Vec::new(), watch)?,
     })
 }
 
@@ -223,13 +223,51 @@ struct FileTimes {
     check_ms: f64,
 }
 
-fn report(loaded: &Loaded, setup: &Setup, solution: Solution, times: FileTimes, saved_warnings: Vec<String>) -> Report {
+/// Crossings of triangles that are looked for: more are told as so many places and more.
+const MOST_CROSSINGS: usize = 20_000;
+
+/// What came out badly, as sentences.
+///
+/// # Errors
+/// [`EngineError::Interrupted`].
+fn faults(model: &Model, solution: &Solution, watch: &Watch) -> Result<Vec<String>, EngineError> {
+    if solution.surface_positions == model.surface.positions {
+        return Ok(Vec::new());
+    }
+    let (surface, topology) = (&model.surface, &model.topology);
+    let damage = Damage::of(surface, topology, &solution.surface_positions);
+    let mut bvh = Bvh::build(&surface.positions, &surface.triangles);
+    bvh.refit(|v| solution.surface_positions[v.index()]);
+    let progress = watch.begin("looking for where the shape passes through itself");
+    let crossings = bvh.new_self_intersections(surface, topology, MOST_CROSSINGS, &progress, &watch.cancel);
+    let crossings = crossings.map_err(|_| EngineError::Interrupted)?;
+    let mut sentences = Intersections::of(&crossings, damage).sentences();
+    if !solution.converged {
+        sentences.push(
+            "the shape had not settled when the steps ended: raise `max_iterations`, lower the strength, or take \
+             another method"
+                .to_owned(),
+        );
+    }
+    Ok(sentences)
+}
+
+fn report(
+    loaded: &Loaded,
+    setup: &Setup,
+    solution: Solution,
+    times: FileTimes,
+    saved_warnings: Vec<String>,
+    watch: &Watch,
+) -> Result<Report, EngineError> {
     let model = &loaded.model;
+    let faults = faults(model, &solution, watch)?;
     let distortion = pliant_mesh::Distortion::of(&model.surface, &model.topology, &solution.surface_positions);
     let mut warnings = loaded.scene.notes().to_vec();
     warnings.extend(solution.warnings);
+    warnings.extend(faults);
     warnings.extend(saved_warnings);
-    Report {
+    Ok(Report {
         method: setup.method.name().to_owned(),
         vertices: model.drawn.file_vertex_count(),
         welded_vertices: model.surface.positions.len(),
@@ -252,7 +290,7 @@ fn report(loaded: &Loaded, setup: &Setup, solution: Solution, times: FileTimes, 
             volume_ratio: finite_or(distortion.volume_ratio, 1.0),
         },
         warnings,
-    }
+    })
 }
 
 /// What came of the frames.
@@ -384,7 +422,11 @@ fn solve(
             r#final: finite_or(bent.last.energy, f64::MAX),
         },
         examples: example_weights(setup, bound.weights()),
-        warnings: setup.worded(bound.warnings()),
+        warnings: {
+            let mut warnings = setup.worded(bound.warnings());
+            warnings.extend(setup.problem(model).counted_otherwise());
+            warnings
+        },
     })
 }
 

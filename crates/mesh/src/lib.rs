@@ -51,8 +51,8 @@ pub use bvh::{Bvh, Hit, SelfIntersection, SelfIntersections};
 pub use findings::{Example, Finding, FindingKind, Findings, Inspection, LocatedFinding, Named};
 pub use geodesics::{DistanceSearch, JOINT_RINGS, Joint, Shape, distances_along_surface, joint_of};
 pub use geometry::{
-    Bounds, Distortion, Vector3, area_of_lengths, bounding_box, cotangents, edge_lengths, face_area, face_areas,
-    face_gradient, face_normal, is_without_area, mean_curvatures, mixed_corner_areas, mixed_voronoi_areas,
+    Bounds, Damage, Damaged, Distortion, Vector3, area_of_lengths, bounding_box, cotangents, edge_lengths, face_area,
+    face_areas, face_gradient, face_normal, is_without_area, mean_curvatures, mixed_corner_areas, mixed_voronoi_areas,
     vertex_normals,
 };
 pub use ids::{DrawnVertex, FileVertex, SurfaceVertex};

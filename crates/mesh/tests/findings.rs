@@ -74,6 +74,19 @@ fn borders_that_are_nearly_joined_are_told_and_a_distance_joins_them() {
     }
 }
 
+#[test]
+fn specks_are_small_and_far_away_and_stand_outside_of_what_is_looked_at() {
+    let ball = shapes::icosphere(4);
+    let bit = |x: f64| placed(&shapes::bar(1, 1, 1), 0.01, DVec3::X * x);
+    let model = shapes::model(shapes::together(&[ball.clone(), bit(1.5), bit(400.0)]));
+    assert_eq!(model.specks(), [false, false, true]);
+    let near = shapes::model(shapes::together(&[ball.clone(), bit(1.5)]));
+    assert_eq!(model.bounds_without_specks(), near.bounds());
+    let twins = shapes::model(shapes::together(&[ball.clone(), placed(&ball, 1.0, DVec3::X * 400.0)]));
+    assert_eq!(twins.specks(), [false, false]);
+    assert!(shapes::model(Drawn::default()).bounds_without_specks().is_none());
+}
+
 /// On every class of mesh, and on one with every fault: what is told is told with where it is.
 #[test]
 fn every_example_stands_where_it_was_found() {

@@ -530,6 +530,8 @@ mod tests {
             ),
             ("pliant apply a.ply --edit e.json --output b.ply --frame 3", "--frame"),
             ("pliant render a.ply --output a.png --view behind", "behind"),
+            ("pliant info a.ply --weld=-0.1", "--weld"),
+            ("pliant apply a.ply --edit e.json --output b.ply --weld wide", "--weld"),
             ("pliant a.ply b.ply", "b.ply"),
         ] {
             let said = one_line(&parse_words(line).unwrap_err());

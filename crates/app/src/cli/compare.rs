@@ -8,7 +8,7 @@ use glam::{DVec2, DVec3};
 use pliant_deform::{METHODS, Method};
 use pliant_editor::{Beginning, Camera, Look};
 use pliant_io::quoted;
-use pliant_mesh::{Model, mean_curvatures, mixed_voronoi_areas};
+use pliant_mesh::{Model, SurfaceVertex, mean_curvatures, mixed_voronoi_areas};
 use pliant_render::{Background, Frame, Headless, Image, Samples};
 use serde::Serialize;
 
@@ -398,14 +398,16 @@ const TOO_FAR: f64 = 3.0;
 /// A camera that sees the rest shape and every shape that is not far larger.
 fn camera(arguments: &CompareArguments, model: &Model, outcomes: &[Outcome], size_px: DVec2) -> Camera {
     let diagonal = |positions: &[DVec3]| pliant_mesh::bounding_box(positions).map_or(0.0, |bounds| bounds.diagonal());
-    let mut seen = model.main_positions().to_vec();
+    let vertices: Vec<usize> = model.vertices_without_specks().map(SurfaceVertex::index).collect();
+    let seen_of = |positions: &[DVec3]| -> Vec<DVec3> { vertices.iter().map(|&v| positions[v]).collect() };
+    let mut seen = seen_of(&model.surface.positions);
     let own = diagonal(&seen);
     for outcome in outcomes {
         if let Outcome::Bent { surface_positions, .. } = outcome
-            && let positions = model.topology.main_positions(surface_positions)
-            && diagonal(positions) < TOO_FAR * own
+            && let positions = seen_of(surface_positions)
+            && diagonal(&positions) < TOO_FAR * own
         {
-            seen.extend_from_slice(positions);
+            seen.extend(positions);
         }
     }
     let mut camera = render::looking(arguments.look.up, arguments.look.view, own);

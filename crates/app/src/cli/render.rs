@@ -10,7 +10,7 @@ use pliant_editor::{
     Before, Beginning, Camera, Editor, Event, InlineExecutor, JobKind, Look, NamedView, Projection, Setup, Shading,
     UpAxis,
 };
-use pliant_mesh::{Cancel, Model, WeldOptions};
+use pliant_mesh::{Cancel, Model, WeldOptions, bounding_box};
 use pliant_render::{Background, Frame, Headless, RenderError, Renderer, Samples, Surface, SurfaceLine};
 
 use super::arguments::{self, ComputeArguments, PictureSize, ProjectionName, RenderArguments, Up, View, WeldArguments};
@@ -159,7 +159,7 @@ fn pictures(arguments: &RenderArguments, paths: &[PathBuf], watch: &Watch) -> Re
 
     let PictureSize { width, height } = arguments.size;
     let size_px = DVec2::new(f64::from(width), f64::from(height));
-    let camera = camera(arguments, model, bounds.diagonal(), size_px);
+    let camera = camera(arguments, model, size_px);
     // Marks are as large as on a screen of the usual size, and smaller in a small picture.
     let pixels_per_point = (height as f32 / 620.0).clamp(0.7, 8.0);
     let mut style = drawing::style(&look, pixels_per_point);
@@ -255,14 +255,19 @@ pub(super) fn refuse(error: RenderError) -> EngineError {
 }
 
 /// Where the eye of the first picture is: it sees all of the rest shape, whatever the edit does, so that before and
-/// after compare. `diagonal` is the model's.
-fn camera(arguments: &RenderArguments, model: &Model, diagonal: f64, size_px: DVec2) -> Camera {
+/// after compare. Specks far away are left out.
+fn camera(arguments: &RenderArguments, model: &Model, size_px: DVec2) -> Camera {
+    let seen = model
+        .vertices_without_specks()
+        .map(|v| model.surface.positions[v.index()]);
+    let seen: Vec<DVec3> = seen.collect();
+    let diagonal = bounding_box(&seen).map_or(0.0, |bounds| bounds.diagonal());
     let mut camera = looking(arguments.look.up, arguments.look.view, diagonal);
     camera.projection = match arguments.projection {
         ProjectionName::Perspective => Projection::Perspective,
         ProjectionName::Orthographic => Projection::Orthographic,
     };
-    camera.frame(model.main_positions(), size_px);
+    camera.frame(&seen, size_px);
     camera.distance *= ROOM_FOR_THE_EDIT;
     camera
 }

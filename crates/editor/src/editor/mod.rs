@@ -354,7 +354,7 @@ impl Editor {
             Some(Ok(document)) => (document, None),
             Some(Err(error)) => (Document::new(count), Some(error.to_string())),
         };
-        let bounds = model.bounds();
+        let bounds = model.bounds_without_specks();
         self.begin_file(bounds.map(|bounds| bounds.diagonal()), |workspace| {
             workspace.open(model, name, document);
             workspace.refusal = refusal;

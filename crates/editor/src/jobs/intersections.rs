@@ -1,15 +1,18 @@
-//! Where the present shape passes through itself and the file's did not, place by place.
+//! What came out badly of a shape: where it passes through itself and the file's did not, place by place, and which
+//! triangles and edges are spoilt.
 
 use glam::DVec3;
-use pliant_mesh::SelfIntersections;
+use pliant_mesh::{Damage, SelfIntersections};
 
-/// Where the present shape passes through itself and the file's did not.
+/// Where the present shape passes through itself and the file's did not, and what else came out badly.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Intersections {
     /// The places, those with the most triangles first.
     pub places: Vec<IntersectionPlace>,
     /// Whether these are all that there are.
     pub are_all: bool,
+    /// Triangles and edges that are spoilt.
+    pub damage: Damage,
 }
 
 /// A place where the surface passes through itself.
@@ -20,8 +23,8 @@ pub struct IntersectionPlace {
 }
 
 impl Intersections {
-    /// The pairs that were found, as places.
-    pub(super) fn of(found: &SelfIntersections) -> Self {
+    /// The pairs that were found, as places, and what else came out badly.
+    pub fn of(found: &SelfIntersections, damage: Damage) -> Self {
         let segment = |pair: usize| found.pairs[pair].segment;
         let place = |pairs: Vec<usize>| IntersectionPlace {
             segments: pairs.into_iter().map(segment).collect(),
@@ -31,24 +34,31 @@ impl Intersections {
         Self {
             places,
             are_all: found.are_all,
+            damage,
         }
     }
 
-    /// Whether there is none.
+    /// Whether the shape passes through itself nowhere.
     pub fn is_empty(&self) -> bool {
         self.places.is_empty()
     }
 
-    /// What is wrong, and what helps, in words; `None` if there is none.
+    /// All that came out badly, in words.
+    pub fn sentences(&self) -> Vec<String> {
+        self.sentence().into_iter().chain(self.damage.sentences()).collect()
+    }
+
+    /// Where the shape passes through itself, and what helps, in words; `None` if it does nowhere.
     pub fn sentence(&self) -> Option<String> {
         let remedy = "lower the strength, or move the handle back";
-        match (self.places.len(), self.are_all) {
-            (0, _) => None,
-            (1, true) => Some(format!("The shape passes through itself: {remedy}.")),
-            (count, true) => Some(format!("The shape passes through itself in {count} places: {remedy}.")),
-            (count, false) => Some(format!(
-                "The shape passes through itself in {count} places and more: {remedy}."
-            )),
-        }
+        let [DVec3 { x, y, z }, _] = *self.places.first()?.segments.first()?;
+        let at = format!("at {x:.4} {y:.4} {z:.4}");
+        Some(match (self.places.len(), self.are_all) {
+            (1, true) => format!("The shape passes through itself {at}: {remedy}."),
+            (count, true) => format!("The shape passes through itself in {count} places, first {at}: {remedy}."),
+            (count, false) => {
+                format!("The shape passes through itself in {count} places and more, first {at}: {remedy}.")
+            }
+        })
     }
 }

@@ -8,6 +8,7 @@
 
 use std::sync::{Arc, Mutex};
 
+use glam::DVec3;
 use pliant_mesh::{Joint, Model, SurfaceVertex};
 
 use super::allowance::Allowance;
@@ -312,14 +313,17 @@ impl Jobs {
         self.queues[JobKind::Intersect as usize].cancel();
     }
 
-    /// Has looked for where the present shape passes through itself, once rays are answered from it.
-    pub(crate) fn intersect(&mut self) {
+    /// Has looked for where the present shape, `displacements` away from the file's, passes through itself, once rays are
+    /// answered from it.
+    pub(crate) fn intersect(&mut self, displacements: &Arc<Vec<DVec3>>) {
         let Some(model) = self.computed.model.clone() else {
             return;
         };
         let is_known = self.intersections().is_some();
         if !is_known && self.is_picking_current() {
-            self.want(JobKind::Intersect, |computed| intersect_work(computed, &model));
+            self.want(JobKind::Intersect, |computed| {
+                intersect_work(computed, &model, displacements)
+            });
         }
     }
 

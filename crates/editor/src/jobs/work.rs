@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
+use glam::DVec3;
 use pliant_deform::{BindError, Ordering, Problem};
-use pliant_mesh::{Bvh, Model, SurfaceVertex};
+use pliant_mesh::{Bvh, Damage, Model, SurfaceVertex};
 
 use super::allowance::Allowance;
 use super::computed::Computed;
@@ -102,13 +103,18 @@ pub(super) fn bind_work(
     }))
 }
 
-/// Looks through the hierarchy that rays are answered from, so among what is shown.
-pub(super) fn intersect_work(computed: &Computed, model: &Arc<Model>) -> Option<Work> {
+/// Looks through the hierarchy that rays are answered from, so among what is shown, and at all triangles and edges.
+pub(super) fn intersect_work(computed: &Computed, model: &Arc<Model>, displacements: &Arc<Vec<DVec3>>) -> Option<Work> {
     let (bvh, model) = (computed.pickable.as_ref()?.bvh.clone(), Arc::clone(model));
+    let displacements = Arc::clone(displacements);
     Some(Box::new(move |progress, cancel| {
-        match bvh.new_self_intersections(&model.surface, &model.topology, MOST_PAIRS, progress, cancel) {
-            Ok(found) => JobOutcome::Intersections(Intersections::of(&found)),
-            Err(_) => JobOutcome::Cancelled,
-        }
+        let (surface, topology) = (&model.surface, &model.topology);
+        let Ok(found) = bvh.new_self_intersections(surface, topology, MOST_PAIRS, progress, cancel) else {
+            return JobOutcome::Cancelled;
+        };
+        let moved = surface.positions.iter().zip(displacements.iter());
+        let deformed: Vec<DVec3> = moved.map(|(rest, displacement)| *rest + *displacement).collect();
+        let damage = Damage::of(surface, topology, &deformed);
+        JobOutcome::Intersections(Intersections::of(&found, damage))
     }))
 }

@@ -26,7 +26,7 @@ impl Workspace {
         let is_bent = self.document.is_displaced() || self.document.is_applied();
         // One that follows another is looked at, and not edited.
         if is_at_rest && is_bent && self.followed.is_none() {
-            self.jobs.intersect();
+            self.jobs.intersect(&self.document.from_file);
         }
         self.jobs.pump(&self.document, activity);
         let versions = self.document.versions();

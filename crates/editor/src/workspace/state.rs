@@ -296,10 +296,13 @@ impl Workspace {
             .collect()
     }
 
-    /// The positions of all vertices that are shown.
+    /// The positions of all vertices that are shown, without specks.
     pub(crate) fn shown_positions(&self) -> Vec<DVec3> {
-        let all = self.model().map_or(0, |model| model.main_positions().len()) as u32;
-        let shown = (0..all).filter(|&vertex| self.vertex_access.is_shown(vertex as usize));
-        shown.map(|vertex| self.position(SurfaceVertex(vertex))).collect()
+        let all = self
+            .model()
+            .into_iter()
+            .flat_map(|model| model.vertices_without_specks());
+        let shown = all.filter(|vertex| self.vertex_access.is_shown(vertex.index()));
+        shown.map(|vertex| self.position(vertex)).collect()
     }
 }

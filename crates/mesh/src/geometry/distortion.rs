@@ -43,7 +43,10 @@ impl Distortion {
         Self {
             edge_stretch_mean,
             edge_stretch_max,
-            flipped_faces: flipped_faces(surface, topology, deformed),
+            flipped_faces: flipped(surface, topology, deformed)
+                .into_iter()
+                .filter(|is| *is)
+                .count(),
             volume_ratio: volume_ratio(surface, topology, deformed),
         }
     }
@@ -91,13 +94,14 @@ fn edge_stretch(surface: &Surface, topology: &Topology, deformed: &[DVec3]) -> (
     (if count == 0 { 1.0 } else { sum / count as f64 }, max)
 }
 
-fn flipped_faces(surface: &Surface, topology: &Topology, deformed: &[DVec3]) -> usize {
+/// Whether each triangle turned over.
+pub(super) fn flipped(surface: &Surface, topology: &Topology, deformed: &[DVec3]) -> Vec<bool> {
     let at_rest = opposing_faces(surface, topology, &surface.positions);
     let now = opposing_faces(surface, topology, deformed);
     let has_area = |triangle: &[SurfaceVertex; 3]| has_area(corners(*triangle, &surface.positions));
     let each = at_rest.iter().zip(&now).zip(&surface.triangles);
-    let flipped = each.filter(|&((&rest, &now), triangle)| now && !rest && has_area(triangle));
-    flipped.count()
+    each.map(|((&rest, &now), triangle)| now && !rest && has_area(triangle))
+        .collect()
 }
 
 /// Below this share of its longest side squared, a triangle's area is made of roundings alone.

@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::findings::topological::Parts;
+use crate::findings::topological::{Parts, of_triangles};
 use crate::weld::weld;
 use crate::{
     Bounds, Cancel, Cancelled, FileVertex, Findings, Progress, Surface, SurfaceVertex, Topology, bounding_box,
@@ -27,6 +27,9 @@ pub struct WeldOptions {
     /// twice as long, half their length. `None` takes the distance from the mesh: see [`Model::weld`].
     pub distance: Option<f64>,
 }
+
+/// A part with less than one vertex for so many of the largest part's is a loose bit.
+const BIT: usize = 100;
 
 /// The drawn set, the welded surface and the tables between them.
 #[derive(Clone, Debug, Default)]
@@ -83,6 +86,43 @@ impl Model {
     /// of an empty surface.
     pub fn bounds(&self) -> Option<Bounds> {
         bounding_box(self.main_positions())
+    }
+
+    /// Whether each connected part is a speck: a loose bit that is further from all parts which are none than these are
+    /// large.
+    pub fn specks(&self) -> Vec<bool> {
+        let components = self.topology.components();
+        let of_triangles = of_triangles(components).len();
+        let most = components.first().map_or(0, |largest| largest.vertex_count);
+        let is_bit = |number: usize| number < of_triangles && components[number].vertex_count * BIT < most;
+        let box_of = |number: usize| {
+            let vertices = self.topology.vertices_of(number as u32);
+            Bounds::around(vertices.map(|v| self.surface.positions[v.index()]))
+        };
+        let parts = (0..of_triangles).filter(|&number| !is_bit(number)).filter_map(box_of);
+        let Some(main) = parts.reduce(|a, b| a.union(&b)) else {
+            return vec![false; components.len()];
+        };
+        let around = main.grown(main.diagonal());
+        let is_far = |number: usize| box_of(number).is_some_and(|own| !own.meets(&around));
+        (0..components.len())
+            .map(|number| is_bit(number) && is_far(number))
+            .collect()
+    }
+
+    /// The box that is looked at: as [`Self::bounds`], without specks.
+    pub fn bounds_without_specks(&self) -> Option<Bounds> {
+        Bounds::around(
+            self.vertices_without_specks()
+                .map(|v| self.surface.positions[v.index()]),
+        )
+    }
+
+    /// The vertices of [`Self::main_positions`] that belong to no speck.
+    pub fn vertices_without_specks(&self) -> impl Iterator<Item = SurfaceVertex> + '_ {
+        let specks = self.specks();
+        let vertices = (0..self.main_positions().len() as u32).map(SurfaceVertex);
+        vertices.filter(move |&v| !specks[self.topology.component(v) as usize])
     }
 
     /// The positions that say where the model is and how large: see [`Topology::main_positions`].

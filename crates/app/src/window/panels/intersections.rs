@@ -1,4 +1,5 @@
-//! A warning where bending has put the surface through itself, with a way to each place.
+//! Warnings of what came out badly: where bending has put the surface through itself, with a way to each place, and
+//! which triangles and edges are spoilt.
 
 use eframe::egui::{self, RichText};
 use pliant_editor::{Command, Editor};
@@ -8,12 +9,16 @@ use crate::window::widgets::outbox::Outbox;
 /// So many places have a button: the largest.
 const SHOWN: usize = 8;
 
-/// Shows the warning, if there is one.
+/// Shows the warnings, if there are any.
 pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     let Some(found) = editor.intersections() else { return };
-    let Some(sentence) = found.sentence() else { return };
     let colour = ui.visuals().warn_fg_color;
-    ui.add(egui::Label::new(RichText::new(sentence).small().color(colour)).wrap());
+    for sentence in found.sentences() {
+        ui.add(egui::Label::new(RichText::new(sentence).small().color(colour)).wrap());
+    }
+    if found.is_empty() {
+        return;
+    }
     ui.horizontal_wrapped(|ui| {
         for place in 0..found.places.len().min(SHOWN) {
             let label = match found.places.len() {
