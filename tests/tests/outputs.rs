@@ -121,6 +121,7 @@ fn a_file_that_changes_while_it_is_bent_is_not_replaced() {
             frames: None,
             budget: memory::budget(),
             morph: None,
+            weld: Default::default(),
         };
         apply(&job, &Watch::default(), &Staging::default())
     };

@@ -118,6 +118,25 @@ fn the_original_is_kept_beside_a_stranger_of_its_name_and_the_question_says_so()
 }
 
 #[test]
+fn saves_that_follow_each_other_at_once_keep_one_original() {
+    let folder = Folder::new();
+    let file = ball(&folder, "scan.off", 3);
+    let scan = fs::read(&file).unwrap();
+    let Some(mut session) = open(&file) else { return };
+    edit(&mut session);
+    let project = folder.at("work.pliant");
+    let application = session.harness.state_mut();
+    application.save_to(file.clone(), KeepOriginal::Yes);
+    application.save_project_to(project.clone());
+    application.save_to(file.clone(), KeepOriginal::No);
+    session.settle();
+    assert_eq!(fs::read(original_name(&file)).unwrap(), scan);
+    assert_eq!(folder.names(), ["scan.off", "scan.original.off", "work.pliant"]);
+    assert!(!session.harness.state().editor().view().unsaved);
+    assert_eq!(open(&project).unwrap().shape(), session.shape());
+}
+
+#[test]
 fn a_file_is_known_by_whatever_path_it_is_opened_and_saved() {
     let folder = Folder::new();
     let file = ball(&folder, "scan.off", 3);

@@ -95,26 +95,41 @@ fn commands() -> String {
 #[cfg(test)]
 #[expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 mod tests {
+    use std::path::Path;
+
     use super::*;
     use pliant_engine::files::Staging;
     use pliant_engine::watch::Watch;
 
+    fn generate(folder: &Path) -> Result<(), EngineError> {
+        let mut console = Console {
+            out: &mut Vec::new(),
+            err: &mut Vec::new(),
+            watch: Watch::default(),
+            staging: Staging::default(),
+        };
+        let folder = folder.to_owned();
+        run(&GenerateArguments { folder }, &mut console)
+    }
+
+    #[test]
+    fn where_one_file_can_t_be_written_none_is() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        fs::create_dir(at("commands.md")).unwrap();
+        fs::write(at("command-line.md"), "older").unwrap();
+        let error = generate(folder.path()).unwrap_err().to_string();
+        assert!(error.contains("commands.md"), "{error}");
+        assert_eq!(fs::read_to_string(at("command-line.md")).unwrap(), "older");
+        for part in [MAN, COMPLETIONS] {
+            assert_eq!(fs::read_dir(at(part)).unwrap().count(), 0, "{part}");
+        }
+    }
+
     #[test]
     fn every_command_is_in_all_that_is_written() {
         let folder = tempfile::tempdir().unwrap();
-        let arguments = GenerateArguments {
-            folder: folder.path().to_owned(),
-        };
-        let generate = |err: &mut Vec<u8>| {
-            let mut console = Console {
-                out: &mut Vec::new(),
-                err,
-                watch: Watch::default(),
-                staging: Staging::default(),
-            };
-            run(&arguments, &mut console)
-        };
-        generate(&mut Vec::new()).unwrap();
+        generate(folder.path()).unwrap();
         let read = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
         let (page, commands) = (read("command-line.md"), read("commands.md"));
         for listed in Command::all_listed() {

@@ -133,4 +133,12 @@ impl Content {
             Self::Edit(_) | Self::Picture(_) => None,
         }
     }
+
+    /// The same, to be changed.
+    pub(super) fn mesh_mut(&mut self) -> Option<&mut RestMesh> {
+        match self {
+            Self::Model(Model { mesh, .. }) | Self::Project(_, mesh) | Self::Morph(_, mesh) => Some(mesh),
+            Self::Edit(_) | Self::Picture(_) => None,
+        }
+    }
 }

@@ -238,8 +238,14 @@ impl Session {
 
     fn start_saving(&mut self, workers: &Workers) {
         if !self.saving.is_busy()
-            && let Some(request) = self.to_save.pop_front()
+            && let Some(mut request) = self.to_save.pop_front()
         {
+            // The save before it may have moved the mesh as it was read to another file.
+            if let (Some(open), Some(mesh)) = (&self.open, request.content.mesh_mut())
+                && request.opened == self.opened
+            {
+                mesh.source = open.mesh.source.clone();
+            }
             let stamp = self.stamp();
             self.saving.request(stamp, request);
         }

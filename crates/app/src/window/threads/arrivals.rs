@@ -93,6 +93,9 @@ impl Application {
 
     fn adopt(&mut self, opened: ModelToShow) {
         self.session.adopt(&opened);
+        // What was asked for of the former file is none of this one's.
+        self.wishes.clear();
+        self.unwritten = None;
         self.redrawing = None;
         let ModelToShow {
             loaded,
