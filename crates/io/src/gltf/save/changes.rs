@@ -11,7 +11,7 @@ use crate::gltf::appearance;
 use crate::gltf::document::Document;
 use crate::gltf::geometry::primitive::Primitive;
 use crate::gltf::geometry::{Instance, Pieces};
-use crate::gltf::save::turned_targets;
+use crate::gltf::save::target_turns;
 use crate::save::course::Course;
 use crate::save::frames::{Frames, carried_normal, carried_tangent};
 use crate::save::moved::Moved;
@@ -116,7 +116,7 @@ pub(crate) fn changes(
         .then(|| moved.frames(&appearance::world_normals(document, meshes, pieces), &of_frames))
         .transpose()?;
     let mut turns = match (&frames, targets) {
-        (Some(frames), MorphTargets::Turn) => turned_targets::turns(document, meshes, pieces, moved, frames),
+        (Some(frames), MorphTargets::Turn) => target_turns::turns(document, meshes, pieces, moved, frames),
         _ => Vec::new(),
     };
     turns.resize(pieces.instances.len(), None);
@@ -158,7 +158,7 @@ fn instance_change(
     let stored = |accessor: Option<usize>| appearance::attribute::<4>(document, instance, accessor);
     let positions = stored(primitive.position).unwrap_or_default();
     let turns = target_turns.as_deref();
-    let shifts = turns.map(|turns| turned_targets::shifts(document, primitive, instance, turns));
+    let shifts = turns.map(|turns| target_turns::shifts(document, primitive, instance, turns));
     let normals = stored(primitive.normal);
     let tangents = stored(primitive.tangent);
 

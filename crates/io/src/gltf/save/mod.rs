@@ -9,6 +9,7 @@ mod morph;
 mod overlap;
 mod pack;
 mod patch;
+mod target_turns;
 mod turned;
 mod turned_targets;
 mod turned_triangles;
