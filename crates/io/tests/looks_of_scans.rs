@@ -84,6 +84,26 @@ fn texture_coordinates_of_faces_are_drawn_and_a_vertex_stays_one() {
 }
 
 #[test]
+fn texture_coordinates_go_with_the_corners_of_a_face_that_is_turned_inside_out() {
+    let opened = open_in(WEDGES.as_bytes(), Format::Ply, &textures(PNG, PNG)).unwrap();
+    let turned = vec![true; opened.drawn.positions.len()];
+    let save = Save {
+        turned: &turned,
+        drawn: &opened.drawn,
+        positions: &opened.drawn.positions,
+        format: Format::Ply,
+        name: "out.ply",
+        placement: Placement::SameFolder,
+    };
+    let saved = opened.scene.save(&save, &Progress::new(), &Cancel::new()).unwrap();
+    let text = String::from_utf8(saved.files[0].bytes.clone()).unwrap();
+    assert!(
+        text.ends_with("\n3 0 2 1 6 0 0 1 1 1 0 1\n3 0 3 2 6 0.25 0 0 1 0.75 1 0\n"),
+        "{text}"
+    );
+}
+
+#[test]
 fn textures_go_along_to_other_formats_and_folders() {
     let files = textures(PNG, PNG);
     let opened = open_in(WEDGES.as_bytes(), Format::Ply, &files).unwrap();

@@ -2,8 +2,8 @@
 
 use super::Stored;
 use super::header::Kind;
-use super::records::corner_list;
-use super::rewriting::{Out, record};
+use super::records::{UV_LIST, corner_list};
+use super::rewriting::{Number, Out, record};
 use super::scalar::Walk;
 use crate::SaveError;
 use crate::save::turned::wound_back;
@@ -47,6 +47,7 @@ pub(super) fn turned(stored: &Stored, bytes: &[u8], turned: &[bool]) -> Result<V
             }
             "face" => {
                 let list = corner_list(element);
+                let uvs = element.property(&[UV_LIST]);
                 for _ in 0..element.count {
                     let Some(numbers) = record(element, &mut walk) else {
                         break;
@@ -55,10 +56,20 @@ pub(super) fn turned(stored: &Stored, bytes: &[u8], turned: &[bool]) -> Result<V
                         continue;
                     };
                     let first = corners.first().and_then(|(corner, _)| turned.get(*corner as usize));
-                    if first.is_some_and(|is_turned| *is_turned) {
-                        for ((_, old), (_, new)) in corners.iter().zip(wound_back(corners)) {
-                            out.copy(old, new);
-                        }
+                    if !first.is_some_and(|is_turned| *is_turned) {
+                        continue;
+                    }
+                    let mut copies: Vec<(&Number, &Number)> = corners.iter().zip(wound_back(corners)).collect();
+                    // Texture coordinates go with their corners.
+                    let uvs: Vec<&[Number]> = uvs.map_or(Vec::new(), |uvs| numbers[uvs].chunks_exact(2).collect());
+                    if uvs.len() == corners.len() {
+                        let pairs = uvs.iter().zip(wound_back(&uvs));
+                        copies.extend(pairs.flat_map(|(old, new)| old.iter().zip(new.iter())));
+                    }
+                    // In the order of the bytes.
+                    copies.sort_by_key(|((_, old), _)| old.start);
+                    for ((_, old), (_, new)) in copies {
+                        out.copy(old, new);
                     }
                 }
             }

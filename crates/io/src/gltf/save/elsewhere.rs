@@ -14,21 +14,26 @@ use crate::gltf::geometry::primitive::Primitive;
 use crate::gltf::save::changes::Semantic;
 
 /// Extensions that name neither accessors nor buffer views with plain bytes, nor meshes that an edit has to leave.
-const HARMLESS: [&str; 14] = [
+const HARMLESS: [&str; 19] = [
+    "EXT_instance_features",
+    "EXT_lights_ies",
+    "EXT_lights_image_based",
+    "EXT_mesh_features",
     "EXT_meshopt_compression",
+    "FB_ngon_encoding",
     "KHR_animation_pointer",
     "KHR_draco_mesh_compression",
     "KHR_lights_punctual",
     "KHR_mesh_quantization",
     "KHR_meshopt_compression",
+    "KHR_node_hoverability",
+    "KHR_node_selectability",
     "KHR_node_visibility",
     "KHR_xmp",
     "KHR_xmp_json_ld",
     "MSFT_lod",
     "MSFT_screencoverage",
     "VRM",
-    "KHR_node_hoverability",
-    "KHR_node_selectability",
 ];
 
 /// Beginnings of the names of further such extensions.
