@@ -1,5 +1,5 @@
-//! What a person should know of a glTF that is read all the same: splats and directions that an edit does not turn,
-//! extensions that nobody here knows, transforms that are none, and members that are told twice.
+//! Notes on a glTF that is read all the same: on splats and directions that an edit does not turn, unknown extensions,
+//! transforms that are no numbers, and members that an object has twice.
 
 use crate::gltf::document::Document;
 use crate::gltf::document::json::{At, Json};

@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::statements::resolve;
 use crate::text::{Cursor, mark_len};
 
-/// A corner of a face: what it names, and where.
+/// A corner of a face: the lines that it names, and its place.
 #[derive(Clone, Debug)]
 pub(super) struct Corner {
     /// The number of its `v` line, from 0.

@@ -1,4 +1,4 @@
-//! Which `vn` lines an edit changes, and which it adds.
+//! The `vn` lines that an edit changes, and those that it adds.
 //!
 //! Exporters share one `vn` line among all corners with the same normal, so a `vn` has no single vertex to follow. As
 //! long as all its users want one direction, it turns with them. Where they bend apart, or some of them rest, the line
@@ -85,7 +85,7 @@ impl Normals {
         Ok(out)
     }
 
-    /// Divides the lines whose users want different directions. `each` is what each drawn vertex wants, of unit length.
+    /// Divides the lines whose users want different directions. `each` has the direction that each drawn vertex wants, of unit length.
     fn divide(
         &mut self,
         stored: &Stored,
@@ -139,7 +139,7 @@ impl Normals {
     }
 }
 
-/// What the users of one `vn` want of it.
+/// The directions that the users of one `vn` want.
 #[derive(Clone, Copy)]
 struct Line {
     sum: DVec3,

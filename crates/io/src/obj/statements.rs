@@ -65,7 +65,7 @@ pub(super) struct Statements {
     pub(super) smoothing: Smoothing,
 }
 
-/// What `s` lines ask for.
+/// The shading that `s` lines ask for.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Smoothing {
     /// Whether some faces are to be flat.

@@ -95,7 +95,7 @@ impl Stored {
         }
     }
 
-    /// What of the file is carried to no other format.
+    /// The parts of the file that no other format is given.
     pub(crate) fn unread(&self) -> Vec<String> {
         let has_colours = self.records.has_face_colours;
         has_colours

@@ -11,7 +11,7 @@ use super::scalar::{Scalar, Walk};
 use crate::save::frames::carried_normal;
 use crate::save::moved::Moved;
 
-/// What becomes of a face's normal.
+/// A change of a face's normal.
 enum Change {
     /// It turns by this gradient.
     Carried(DMat3),

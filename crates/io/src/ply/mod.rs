@@ -150,7 +150,7 @@ impl Stored {
         of_file.iter().copied().chain(further)
     }
 
-    /// What of the file is carried to no other format.
+    /// The parts of the file that no other format is given.
     pub(crate) fn unread(&self) -> Vec<String> {
         unread::parts(&self.header.elements, self.vertex_element, &self.columns)
     }

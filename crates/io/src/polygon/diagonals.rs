@@ -1,4 +1,4 @@
-//! Which of a quad's diagonals is taken where both are as long: one that a mirror keeps.
+//! The choice between a quad's diagonals where both are as long: one that a mirror keeps.
 //!
 //! The order of a face's corners says nothing of the shape, so a cut by it leans the same way on both sides of a figure
 //! that is its own mirror image, and a symmetric edit bends it lopsided. Here a plane across which most vertices have

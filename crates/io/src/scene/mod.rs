@@ -112,7 +112,7 @@ impl Resolver for Saved {
     }
 }
 
-/// A save with what its file needs beside it.
+/// A save with the neighbours that its file needs.
 fn with_neighbours(mut saved: Saved, (files, warnings): (Vec<OutputFile>, Vec<String>)) -> Saved {
     saved.files.extend(files);
     saved.warnings.extend(warnings);
@@ -342,7 +342,7 @@ impl Scene {
         Ok(saved)
     }
 
-    /// A warning about what the file holds and no other format is given.
+    /// A warning about parts of the file that no other format is given.
     fn unread_lost(&self, format: Format) -> Option<String> {
         let unread = match &self.stored {
             Stored::Ply(stored) => stored.unread(),

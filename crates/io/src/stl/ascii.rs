@@ -14,7 +14,7 @@ use crate::source::{Looks, Source};
 use crate::text::{Cursor, Splice, excerpt, malformed_at, mark_len, push_f32, push_f64, shortest_f32};
 use crate::{Format, ReadError};
 
-/// What an ascii file holds.
+/// The facets of an ascii file.
 pub(super) struct Facets {
     /// The corners in order.
     pub(super) corners: Vec<DVec3>,

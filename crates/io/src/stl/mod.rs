@@ -86,7 +86,7 @@ impl Stored {
         &self.notes
     }
 
-    /// What of the file is carried to no other format.
+    /// The parts of the file that no other format is given.
     pub(crate) fn unread(&self) -> Vec<String> {
         self.unread.clone()
     }

@@ -200,7 +200,7 @@ fn objects(json: &Json, section: &str) -> Result<Vec<At>, String> {
     }
 }
 
-/// What stands for a material that can't be read; the file keeps it.
+/// The plain material in place of one that can't be read; the file keeps its own.
 fn dropped(number: usize, error: &str, notes: &mut Notes) -> Material {
     let error = quoted(error);
     let note = format!("Material {number} is broken ({error}), so what has it is drawn plain.");

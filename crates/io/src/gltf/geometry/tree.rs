@@ -22,7 +22,7 @@ pub(crate) struct Placed {
     pub mesh: usize,
     /// Of a copy, the copy's own.
     pub world_from_node: DAffine3,
-    /// What places what is bound to joints in its stead.
+    /// The skin, which places bound vertices in the node's stead.
     pub skin: Option<Skin>,
 }
 

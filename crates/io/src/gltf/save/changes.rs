@@ -81,7 +81,7 @@ impl InstanceChange {
     }
 }
 
-/// What becomes of the deltas of morph targets.
+/// The treatment of morph targets' deltas.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum MorphTargets {
     /// They turn where they would else be far off.

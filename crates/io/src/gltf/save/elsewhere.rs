@@ -1,4 +1,4 @@
-//! What something besides the drawn set reads, so that an edit copies it instead of writing over it.
+//! Accessors and meshes that something besides the drawn set reads: an edit copies them instead of writing over them.
 //!
 //! Whatever an extension may read counts: of extensions that aren't known to name none of these, every whole number may
 //! be an accessor or a buffer view, and every one behind a key that speaks of meshes a mesh.
@@ -45,7 +45,7 @@ const HARMLESS_FAMILIES: [&str; 5] = [
     "VRMC_",
 ];
 
-/// What extensions name.
+/// The numbers that extensions name.
 #[derive(Default)]
 struct Named {
     numbers: BTreeSet<usize>,

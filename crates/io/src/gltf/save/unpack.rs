@@ -18,7 +18,7 @@ use crate::gltf::save::patch::{Patch, cannot_hold};
 use crate::gltf::save::turned_triangles::Turned;
 use crate::{Format, SaveError};
 
-/// What compressed data fills.
+/// The role of an accessor that compressed data fills.
 #[derive(Clone, Copy, PartialEq)]
 enum Filling {
     /// Numbers of a primitive's corners.

@@ -102,10 +102,10 @@ impl Beside {
     }
 }
 
-/// What a face's texture coordinates are called.
+/// The name of a face's texture coordinates.
 pub(crate) const UV_LIST: &str = "texcoord";
 
-/// What the number of a face's texture is called.
+/// The name of the number of a face's texture.
 pub(crate) const TEXTURE_NUMBER: &str = "texnumber";
 
 /// Strips: each corner makes a triangle with the two before it, every other one turned; a negative number ends one.
