@@ -88,10 +88,8 @@ pub fn write_with_mesh(
             Some(stage_mesh(mesh, path, check, &staging, &progress, &cancel)?)
         }
     };
-    let stands_at = match &beside {
-        None => None,
-        Some((kept, _)) => Some(relative(model.unwrap_or(kept), files::folder_of(path))),
-    };
+    let kept = beside.as_ref().map(|(kept, _)| &**kept);
+    let stands_at = kept.map(|kept| relative(model.unwrap_or(kept), files::folder_of(path)));
     // Where the model stands somewhere, its path tells.
     let name = (beside.is_some() && model.is_none()).then(|| file_name(&mesh.loaded.path));
     let StagedProject { staged, kept } = assembled(snapshot, (stands_at, name), beside, path, &staging)?;
