@@ -93,7 +93,7 @@ pub(super) fn joined(
     let mut centres: Vec<DVec3> = order.iter().map(|&cell| centres[cell as usize]).collect();
     let stiffness: Vec<f64> = order.iter().map(|&cell| stiffness[cell as usize]).collect();
     let mut rows = vec![Vec::new(); order.len()];
-    let side = octree.world_side;
+    let side = octree.grid.world_side;
     let loose = loose.into_iter().map(|pair| {
         let middle = pair
             .iter()
@@ -143,7 +143,7 @@ pub(super) fn joined(
 
 /// The common faces, by the cells' present numbers.
 fn patches(octree: &Octree, world_origin: DVec3) -> Vec<([u32; 2], Patch)> {
-    let side = octree.world_side;
+    let side = octree.grid.world_side;
     let mut patches: BTreeMap<[u32; 2], Patch> = BTreeMap::new();
     octree.faces(|pair, world_middle, axis| {
         let mut across = DVec3::splat(side * side / 12.0);
@@ -171,7 +171,8 @@ fn ties(octree: &Octree, input: &BindInput<'_>, world_origin: DVec3) -> BTreeMap
                     .entry((cell as usize, ground))
                     .or_insert((Patch::default(), firmness));
                 // A vertex stands for a small ball, so that a single one turns its cell.
-                tie.0.add(1.0, position - world_origin, cube(0.5 * octree.world_side));
+                tie.0
+                    .add(1.0, position - world_origin, cube(0.5 * octree.grid.world_side));
             }
         }
     };
@@ -329,7 +330,7 @@ mod tests {
             };
             let gap =
                 |one: usize, other: usize, point: DVec3| (taken(one, point) - taken(other, point)).length_squared();
-            let side = octree.world_side;
+            let side = octree.grid.world_side;
             let mut expected = 0.0;
             octree.faces(|[one, other], middle, axis| {
                 let [one, other] = [one as usize, other as usize];

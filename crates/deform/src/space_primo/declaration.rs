@@ -102,7 +102,9 @@ pub(super) fn bound(options: &SpacePrimo, input: &BindInput<'_>) -> Result<Bound
     input.progress.set(0.7);
     let world_centres: Vec<DVec3> = (0..octree.cells.len()).map(|cell| octree.world_centre(cell)).collect();
     let tree = Neighbours::of(&world_centres);
-    let blend = Blend::bind(input, REACH * octree.world_side, |place| weigh(&octree, &tree, place))?;
+    let blend = Blend::bind(input, REACH * octree.grid.world_side, |place| {
+        weigh(&octree, &tree, place)
+    })?;
     input.progress.set(1.0);
     let mut bound = BoundCells {
         bodies,

@@ -10,7 +10,7 @@ use std::collections::VecDeque;
 use glam::{DVec2, DVec3, IVec3};
 use pliant_mesh::Surface;
 
-use super::octree::{EMPTY, FILLED, OUTSIDE, Octree, SIDES};
+use super::grid::{EMPTY, FILLED, Grid, OUTSIDE, SIDES};
 
 /// A cube of what is fixed alone.
 const WALL: u8 = 3;
@@ -21,45 +21,45 @@ const ASIDE: DVec2 = DVec2::new(1.618e-4, 2.718e-4);
 /// Marks as [`OUTSIDE`] every empty cube that is to have no cell. `filled` holds the cubes of what moves. Where the
 /// surface is not closed, what the moving cubes enclose is inside as well. Returns the cubes beside which the inside is
 /// fixed.
-pub(super) fn sort_out(octree: &Octree, surface: &Surface, is_closed: bool, filled: &mut [u8]) -> Vec<IVec3> {
-    let mut is_inside = wound(octree, surface);
+pub(super) fn sort_out(grid: &Grid, surface: &Surface, is_closed: bool, filled: &mut [u8]) -> Vec<IVec3> {
+    let mut is_inside = wound(grid, surface);
     if !is_closed {
-        for (inside, is_enclosed) in is_inside.iter_mut().zip(enclosed(octree, filled)) {
+        for (inside, is_enclosed) in is_inside.iter_mut().zip(enclosed(grid, filled)) {
             *inside |= is_enclosed;
         }
     }
     let mut walls = Vec::new();
     for corners in &surface.triangles {
-        octree.cubes_of(corners.map(|corner| surface.positions[corner.index()]), |cube| {
-            let cube = octree.index(cube);
+        grid.cubes_of(corners.map(|corner| surface.positions[corner.index()]), |cube| {
+            let cube = grid.index(cube);
             if filled[cube] == EMPTY {
                 walls.push(cube);
             }
         });
     }
-    let owners = owners(octree, filled, &walls, &is_inside);
+    let owners = owners(grid, filled, &walls, &is_inside);
     for (state, owner) in filled.iter_mut().zip(&owners) {
         if *state == EMPTY && *owner != FILLED {
             *state = OUTSIDE;
         }
     }
     let is_beside_fixed = |cube: &IVec3| {
-        let other = |step: IVec3| octree.has(*cube + step) && owners[octree.index(*cube + step)] == WALL;
-        owners[octree.index(*cube)] == FILLED && filled[octree.index(*cube)] == EMPTY && SIDES.into_iter().any(other)
+        let other = |step: IVec3| grid.has(*cube + step) && owners[grid.index(*cube + step)] == WALL;
+        owners[grid.index(*cube)] == FILLED && filled[grid.index(*cube)] == EMPTY && SIDES.into_iter().any(other)
     };
-    octree.cubes().filter(is_beside_fixed).collect()
+    grid.cubes().filter(is_beside_fixed).collect()
 }
 
 /// The empty cubes that can't be reached from a corner of the grid.
-fn enclosed(octree: &Octree, filled: &[u8]) -> Vec<bool> {
+fn enclosed(grid: &Grid, filled: &[u8]) -> Vec<bool> {
     let mut states = filled.to_vec();
     let mut queue = vec![IVec3::ZERO];
-    states[octree.index(IVec3::ZERO)] = OUTSIDE;
+    states[grid.index(IVec3::ZERO)] = OUTSIDE;
     while let Some(cube) = queue.pop() {
         for step in SIDES {
             let other = cube + step;
-            if octree.has(other) && states[octree.index(other)] == EMPTY {
-                states[octree.index(other)] = OUTSIDE;
+            if grid.has(other) && states[grid.index(other)] == EMPTY {
+                states[grid.index(other)] = OUTSIDE;
                 queue.push(other);
             }
         }
@@ -68,12 +68,12 @@ fn enclosed(octree: &Octree, filled: &[u8]) -> Vec<bool> {
 }
 
 /// Whether each cube inside is nearer to what moves ([`FILLED`]) or to what is fixed ([`WALL`]); neither outside.
-fn owners(octree: &Octree, filled: &[u8], walls: &[usize], is_inside: &[bool]) -> Vec<u8> {
+fn owners(grid: &Grid, filled: &[u8], walls: &[usize], is_inside: &[bool]) -> Vec<u8> {
     let mut owners = vec![EMPTY; filled.len()];
     walls.iter().for_each(|&cube| owners[cube] = WALL);
     let mut queue = VecDeque::new();
-    for cube in octree.cubes() {
-        let index = octree.index(cube);
+    for cube in grid.cubes() {
+        let index = grid.index(cube);
         if filled[index] == FILLED {
             owners[index] = FILLED;
         }
@@ -82,11 +82,11 @@ fn owners(octree: &Octree, filled: &[u8], walls: &[usize], is_inside: &[bool]) -
         }
     }
     while let Some(cube) = queue.pop_front() {
-        let owner = owners[octree.index(cube)];
+        let owner = owners[grid.index(cube)];
         for step in SIDES {
             let other = cube + step;
-            if octree.has(other) && is_inside[octree.index(other)] && owners[octree.index(other)] == EMPTY {
-                owners[octree.index(other)] = owner;
+            if grid.has(other) && is_inside[grid.index(other)] && owners[grid.index(other)] == EMPTY {
+                owners[grid.index(other)] = owner;
                 queue.push_back(other);
             }
         }
@@ -95,9 +95,9 @@ fn owners(octree: &Octree, filled: &[u8], walls: &[usize], is_inside: &[bool]) -
 }
 
 /// Whether most of the three columns through each cube say that the surface winds around it.
-fn wound(octree: &Octree, surface: &Surface) -> Vec<bool> {
-    let mut votes = vec![0_u8; octree.cube_count()];
-    let mut winding = vec![0_i32; octree.cube_count()];
+fn wound(grid: &Grid, surface: &Surface) -> Vec<bool> {
+    let mut votes = vec![0_u8; grid.cube_count()];
+    let mut winding = vec![0_i32; grid.cube_count()];
     for axis in 0..3 {
         winding.fill(0);
         // The axis comes last; where x, y and z are passed on in a ring, left and right stay.
@@ -107,17 +107,17 @@ fn wound(octree: &Octree, surface: &Surface) -> Vec<bool> {
             (own[(axis + 1) % 3], own[(axis + 2) % 3], own[axis]) = (cube.x, cube.y, cube.z);
             own
         };
-        let counts = turned(octree.counts.as_dvec3()).as_ivec3();
+        let counts = turned(grid.counts.as_dvec3()).as_ivec3();
         for corners in &surface.triangles {
-            let points = corners.map(|corner| turned(octree.in_cubes(surface.positions[corner.index()])));
-            each_crossing(points, counts, |cube, sign| winding[octree.index(back(cube))] += sign);
+            let points = corners.map(|corner| turned(grid.in_cubes(surface.positions[corner.index()])));
+            each_crossing(points, counts, |cube, sign| winding[grid.index(back(cube))] += sign);
         }
         // What was entered below.
-        for cube in octree.cubes() {
+        for cube in grid.cubes() {
             if cube[axis] > 0 {
-                winding[octree.index(cube)] += winding[octree.index(cube - IVec3::AXES[axis])];
+                winding[grid.index(cube)] += winding[grid.index(cube - IVec3::AXES[axis])];
             }
-            votes[octree.index(cube)] += u8::from(winding[octree.index(cube)] != 0);
+            votes[grid.index(cube)] += u8::from(winding[grid.index(cube)] != 0);
         }
     }
     votes.into_iter().map(|votes| votes > 1).collect()

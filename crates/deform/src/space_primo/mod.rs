@@ -6,7 +6,7 @@
 //! their descent solves it (`primo::bodies`): translations are eliminated, rotations descend by a quasi-Newton method on
 //! the factored Gauss–Newton matrix, and the energy never rises.
 //!
-//! The cells are an octree that is fine where the surface is and coarse inside (`octree`), as fine as the option `cells`
+//! The cells are an octree that is fine where the surface is and coarse inside (`octree`, over the small cubes of `grid`), as fine as the option `cells`
 //! allows. The whole surface decides what is inside (`inside`), so that a part is full where the fixed one begins, and its
 //! cells are held there. The inside of an open sheet has none. Parts whose cells touch no
 //! others are joined at their nearest cells. The cells of constrained vertices are tied to their handle, or to what is
@@ -16,6 +16,7 @@
 
 mod coupling;
 mod declaration;
+mod grid;
 mod inside;
 mod octree;
 mod options;

@@ -5,8 +5,8 @@ use std::sync::atomic::{AtomicU8, Ordering::Relaxed};
 use glam::{DVec3, IVec3};
 use rayon::prelude::*;
 
+use super::grid::{EMPTY, FILLED, Grid, SHRUNK, boxed, neighbourhood};
 use super::inside::sort_out;
-use super::overlap::overlap;
 use crate::Role;
 use crate::budget::{Limit, bytes_of};
 use crate::method::BindInput;
@@ -15,26 +15,16 @@ use crate::space::shaping::shaping;
 /// The most small cubes along an axis.
 const FINEST: i32 = 128;
 
-/// A cube is a little smaller for triangles, so that one that lies in its side belongs to one cube alone.
-const SHRUNK: f64 = 1.0 - 1e-6;
-
 /// Bytes of a small cube while it is decided what it is.
 const CUBE: usize = 32;
 
 /// No cell.
 const NONE: u32 = u32::MAX;
 
-pub(super) const EMPTY: u8 = 0;
-pub(super) const FILLED: u8 = 1;
-pub(super) const OUTSIDE: u8 = 2;
-
 /// The cells in a grid of small cubes with an empty layer around.
 #[derive(Clone, Debug)]
 pub(super) struct Octree {
-    pub(super) world_low: DVec3,
-    /// The side of a small cube, in world units.
-    pub world_side: f64,
-    pub(super) counts: IVec3,
+    pub grid: Grid,
     /// The cell of each small cube.
     cell_of: Vec<u32>,
     pub cells: Vec<Cell>,
@@ -111,30 +101,38 @@ impl Octree {
         let world_side = if longest > 0.0 { longest / f64::from(along) } else { 1.0 };
         // Two more on each side: one for what is fixed beside, and an empty one.
         let counts = (extent / world_side * SHRUNK).ceil().as_ivec3().max(IVec3::ONE) + 4;
-        let mut octree = Self {
+        let grid = Grid {
             world_low: middle - 0.5 * world_side * counts.as_dvec3(),
             world_side,
             counts,
+        };
+        let mut octree = Self {
+            grid,
             cell_of: Vec::new(),
             cells: Vec::new(),
             held: Vec::new(),
         };
-        input.partition.budget.without(bytes_of(octree.cube_count(), CUBE))?;
-        let filled: Vec<AtomicU8> = (0..octree.cube_count()).map(|_| AtomicU8::new(EMPTY)).collect();
-        let mark = |cube: IVec3| filled[octree.index(cube)].store(FILLED, Relaxed);
+        input
+            .partition
+            .budget
+            .without(bytes_of(octree.grid.cube_count(), CUBE))?;
+        let filled: Vec<AtomicU8> = (0..octree.grid.cube_count()).map(|_| AtomicU8::new(EMPTY)).collect();
+        let mark = |cube: IVec3| filled[octree.grid.index(cube)].store(FILLED, Relaxed);
         (0..roles.len())
             .into_par_iter()
             .with_min_len(4096)
             .filter(|&vertex| moves(vertex))
-            .for_each(|vertex| mark(octree.cube(surface.positions[vertex])));
+            .for_each(|vertex| mark(octree.grid.cube(surface.positions[vertex])));
         surface.triangles.par_iter().with_min_len(1024).for_each(|corners| {
             if corners.iter().any(|corner| moves(corner.index())) {
-                octree.cubes_of(corners.map(|corner| surface.positions[corner.index()]), mark);
+                octree
+                    .grid
+                    .cubes_of(corners.map(|corner| surface.positions[corner.index()]), mark);
             }
         });
         let mut filled: Vec<u8> = filled.into_iter().map(AtomicU8::into_inner).collect();
         octree.add_fixed(input, &mut filled);
-        octree.held = sort_out(&octree, surface, input.problem.topology.is_closed(), &mut filled);
+        octree.held = sort_out(&octree.grid, surface, input.problem.topology.is_closed(), &mut filled);
         octree.fill(&filled);
         Ok(octree)
     }
@@ -145,38 +143,38 @@ impl Octree {
         let beside = |cube: IVec3| {
             let around = neighbourhood(1).any(|step| {
                 let other = cube + step;
-                self.has(other) && filled[self.index(other)] == FILLED
+                self.grid.has(other) && filled[self.grid.index(other)] == FILLED
             });
-            self.has(cube) && around
+            self.grid.has(cube) && around
         };
         let cubes = input.problem.roles.iter().zip(positions);
         let cubes: Vec<usize> = cubes
             .filter(|(role, _)| **role == Role::Fixed)
-            .map(|(_, &position)| self.cube(position))
+            .map(|(_, &position)| self.grid.cube(position))
             .filter(|&cube| beside(cube))
-            .map(|cube| self.index(cube))
+            .map(|cube| self.grid.index(cube))
             .collect();
         cubes.into_iter().for_each(|cube| filled[cube] = FILLED);
     }
 
     /// Makes cells: one of each filled cube, and of the empty ones the largest that fit.
     fn fill(&mut self, filled: &[u8]) {
-        self.cell_of = vec![NONE; self.cube_count()];
-        let largest = (self.counts.max_element() as u32).next_power_of_two() as i32;
+        self.cell_of = vec![NONE; self.grid.cube_count()];
+        let largest = (self.grid.counts.max_element() as u32).next_power_of_two() as i32;
         let mut size = largest;
         while size >= 1 {
-            for low in boxed(IVec3::ZERO, (self.counts - 1) / size) {
+            for low in boxed(IVec3::ZERO, (self.grid.counts - 1) / size) {
                 let low = low * size;
                 let fits = boxed(low, low + (size - 1)).all(|cube| {
-                    self.has(cube) && {
-                        let index = self.index(cube);
+                    self.grid.has(cube) && {
+                        let index = self.grid.index(cube);
                         self.cell_of[index] == NONE
                             && (filled[index] == EMPTY || (size == 1 && filled[index] == FILLED))
                     }
                 });
                 if fits {
                     for cube in boxed(low, low + (size - 1)) {
-                        let index = self.index(cube);
+                        let index = self.grid.index(cube);
                         self.cell_of[index] = self.cells.len() as u32;
                     }
                     self.cells.push(Cell { low, size });
@@ -189,15 +187,15 @@ impl Octree {
     /// The common faces of the cells: the two cells, the lower first, and the middle of a small cube's side, in world
     /// units, with the axis across it.
     pub fn faces(&self, mut visit: impl FnMut([u32; 2], DVec3, usize)) {
-        for cube in boxed(IVec3::ZERO, self.counts - 2) {
-            let own = self.cell_of[self.index(cube)];
+        for cube in boxed(IVec3::ZERO, self.grid.counts - 2) {
+            let own = self.cell_of[self.grid.index(cube)];
             for axis in 0..3 {
-                let other = self.cell_of[self.index(cube + IVec3::AXES[axis])];
+                let other = self.cell_of[self.grid.index(cube + IVec3::AXES[axis])];
                 if own != NONE && other != NONE && own != other {
                     let middle = cube.as_dvec3() + 0.5 + 0.5 * DVec3::AXES[axis];
                     visit(
                         [own.min(other), own.max(other)],
-                        self.world_low + self.world_side * middle,
+                        self.grid.world_low + self.grid.world_side * middle,
                         axis,
                     );
                 }
@@ -207,11 +205,11 @@ impl Octree {
 
     /// The cells that reach a point: those with a small cube in the small cubes around.
     pub fn around(&self, world_point: DVec3) -> Vec<u32> {
-        let cube = self.cube(world_point);
+        let cube = self.grid.cube(world_point);
         let mut found = Vec::new();
         for step in neighbourhood(1) {
-            if self.has(cube + step) {
-                let cell = self.cell_of[self.index(cube + step)];
+            if self.grid.has(cube + step) {
+                let cell = self.cell_of[self.grid.index(cube + step)];
                 if cell != NONE && !found.contains(&cell) {
                     found.push(cell);
                 }
@@ -222,20 +220,20 @@ impl Octree {
 
     /// The cell that holds a point.
     pub fn cell_at(&self, world_point: DVec3) -> Option<u32> {
-        let cube = self.cube(world_point);
-        let cell = self.has(cube).then(|| self.cell_of[self.index(cube)])?;
+        let cube = self.grid.cube(world_point);
+        let cell = self.grid.has(cube).then(|| self.cell_of[self.grid.index(cube)])?;
         (cell != NONE).then_some(cell)
     }
 
     /// The middle of a cell, in world units.
     pub fn world_centre(&self, cell: usize) -> DVec3 {
         let Cell { low, size } = self.cells[cell];
-        self.world_low + self.world_side * (low.as_dvec3() + 0.5 * f64::from(size))
+        self.grid.world_low + self.grid.world_side * (low.as_dvec3() + 0.5 * f64::from(size))
     }
 
     /// The side of a cell, in world units.
     pub fn world_size(&self, cell: usize) -> f64 {
-        self.world_side * f64::from(self.cells[cell].size)
+        self.grid.world_side * f64::from(self.cells[cell].size)
     }
 
     /// Renumbers the cells: `order` lists the present numbers.
@@ -250,61 +248,9 @@ impl Octree {
         }
     }
 
-    /// Visits the small cubes that a triangle meets.
-    pub(super) fn cubes_of(&self, corners: [DVec3; 3], mut visit: impl FnMut(IVec3)) {
-        let [a, b, c] = corners;
-        let inside = |cube: IVec3| cube.clamp(IVec3::ZERO, self.counts - 1);
-        let (low, high) = (inside(self.cube(a.min(b).min(c))), inside(self.cube(a.max(b).max(c))));
-        for cube in boxed(low, high) {
-            let middle = self.world_low + self.world_side * (cube.as_dvec3() + 0.5);
-            if overlap(corners.map(|corner| corner - middle), 0.5 * SHRUNK * self.world_side) {
-                visit(cube);
-            }
-        }
-    }
-
-    /// A point in small cubes from the grid's corner.
-    pub(super) fn in_cubes(&self, world_point: DVec3) -> DVec3 {
-        (world_point - self.world_low) / self.world_side
-    }
-
-    fn cube(&self, world_point: DVec3) -> IVec3 {
-        self.in_cubes(world_point).floor().as_ivec3()
-    }
-
-    /// All small cubes, along x first and along z last.
-    pub(super) fn cubes(&self) -> impl Iterator<Item = IVec3> + use<> {
-        boxed(IVec3::ZERO, self.counts - 1)
-    }
-
     /// Where the inside is fixed beside the cells, in world units.
     pub fn world_held(&self) -> impl Iterator<Item = DVec3> + '_ {
-        let middle = |cube: &IVec3| self.world_low + self.world_side * (cube.as_dvec3() + 0.5);
+        let middle = |cube: &IVec3| self.grid.world_low + self.grid.world_side * (cube.as_dvec3() + 0.5);
         self.held.iter().map(middle)
     }
-
-    pub(super) fn has(&self, cube: IVec3) -> bool {
-        cube.cmpge(IVec3::ZERO).all() && cube.cmplt(self.counts).all()
-    }
-
-    pub(super) fn index(&self, cube: IVec3) -> usize {
-        ((cube.z * self.counts.y + cube.y) * self.counts.x + cube.x) as usize
-    }
-
-    pub(super) fn cube_count(&self) -> usize {
-        self.counts.as_usizevec3().element_product()
-    }
-}
-
-pub(super) const SIDES: [IVec3; 6] = [IVec3::X, IVec3::NEG_X, IVec3::Y, IVec3::NEG_Y, IVec3::Z, IVec3::NEG_Z];
-
-/// The cubes from `low` to `high`, both included.
-fn boxed(low: IVec3, high: IVec3) -> impl Iterator<Item = IVec3> {
-    (low.z..=high.z)
-        .flat_map(move |z| (low.y..=high.y).flat_map(move |y| (low.x..=high.x).map(move |x| IVec3::new(x, y, z))))
-}
-
-/// All steps by at most so many along each axis.
-fn neighbourhood(reach: i32) -> impl Iterator<Item = IVec3> {
-    boxed(IVec3::splat(-reach), IVec3::splat(reach))
 }

@@ -11,7 +11,7 @@ use crate::space::neighbours::Neighbours;
 pub(super) fn weigh(octree: &Octree, centres: &Neighbours, world_point: DVec3) -> Vec<Share> {
     let raw = |cell: u32| {
         let from = world_point - octree.world_centre(cell as usize);
-        let reach = 0.5 * octree.world_size(cell as usize) + octree.world_side;
+        let reach = 0.5 * octree.world_size(cell as usize) + octree.grid.world_side;
         let square = reach * reach;
         let left = 1.0 - from.length_squared() / square;
         (left > 0.0).then(|| (cell, left.powi(3), from * (-6.0 * left * left / square)))

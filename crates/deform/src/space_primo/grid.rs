@@ -1,0 +1,83 @@
+//! The grid of small cubes that the cells are made of.
+
+use glam::{DVec3, IVec3};
+
+use super::overlap::overlap;
+
+/// A cube is a little smaller for triangles, so that one that lies in its side belongs to one cube alone.
+pub(super) const SHRUNK: f64 = 1.0 - 1e-6;
+
+/// A small cube that nothing fills.
+pub(super) const EMPTY: u8 = 0;
+/// A small cube that a part of the surface fills.
+pub(super) const FILLED: u8 = 1;
+/// An empty small cube that is to have no cell.
+pub(super) const OUTSIDE: u8 = 2;
+
+/// The steps to the cubes that share a side.
+pub(super) const SIDES: [IVec3; 6] = [IVec3::X, IVec3::NEG_X, IVec3::Y, IVec3::NEG_Y, IVec3::Z, IVec3::NEG_Z];
+
+/// Small cubes side by side, from a corner on.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Grid {
+    pub world_low: DVec3,
+    /// The side of a small cube, in world units.
+    pub world_side: f64,
+    pub counts: IVec3,
+}
+
+impl Grid {
+    /// Visits the small cubes that a triangle meets.
+    pub fn cubes_of(&self, corners: [DVec3; 3], mut visit: impl FnMut(IVec3)) {
+        let [a, b, c] = corners;
+        let inside = |cube: IVec3| cube.clamp(IVec3::ZERO, self.counts - 1);
+        let (low, high) = (inside(self.cube(a.min(b).min(c))), inside(self.cube(a.max(b).max(c))));
+        for cube in boxed(low, high) {
+            let middle = self.world_low + self.world_side * (cube.as_dvec3() + 0.5);
+            if overlap(corners.map(|corner| corner - middle), 0.5 * SHRUNK * self.world_side) {
+                visit(cube);
+            }
+        }
+    }
+
+    /// A point in small cubes from the grid's corner.
+    pub fn in_cubes(&self, world_point: DVec3) -> DVec3 {
+        (world_point - self.world_low) / self.world_side
+    }
+
+    /// The small cube that holds a point.
+    pub fn cube(&self, world_point: DVec3) -> IVec3 {
+        self.in_cubes(world_point).floor().as_ivec3()
+    }
+
+    /// All small cubes, along x first and along z last.
+    pub fn cubes(&self) -> impl Iterator<Item = IVec3> + use<> {
+        boxed(IVec3::ZERO, self.counts - 1)
+    }
+
+    /// Whether it has this cube.
+    pub fn has(&self, cube: IVec3) -> bool {
+        cube.cmpge(IVec3::ZERO).all() && cube.cmplt(self.counts).all()
+    }
+
+    /// The place of a cube in a list of all of them.
+    pub fn index(&self, cube: IVec3) -> usize {
+        ((cube.z * self.counts.y + cube.y) * self.counts.x + cube.x) as usize
+    }
+
+    /// How many cubes it has.
+    pub fn cube_count(&self) -> usize {
+        self.counts.as_usizevec3().element_product()
+    }
+}
+
+/// The cubes from `low` to `high`, both included.
+pub(super) fn boxed(low: IVec3, high: IVec3) -> impl Iterator<Item = IVec3> {
+    (low.z..=high.z)
+        .flat_map(move |z| (low.y..=high.y).flat_map(move |y| (low.x..=high.x).map(move |x| IVec3::new(x, y, z))))
+}
+
+/// All steps by at most so many along each axis.
+pub(super) fn neighbourhood(reach: i32) -> impl Iterator<Item = IVec3> {
+    boxed(IVec3::splat(-reach), IVec3::splat(reach))
+}
