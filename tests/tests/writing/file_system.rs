@@ -10,7 +10,7 @@ use std::process::Command;
 use pliant_mesh::shapes;
 use pliant_tests::{Folder, bare_edit};
 
-use crate::{apply, download, lift, names, replace_in, shape, warnings};
+use crate::{apply, download, lift, names, replace_in, saved, shape, warnings};
 
 /// Law: a save goes where links lead, its neighbours with it, and the links stay.
 #[test]
@@ -83,13 +83,13 @@ fn devices_pipes_sockets_and_folders_are_refused_unopened() {
 #[test]
 fn a_neighbour_is_not_written_through_a_link() {
     let folder = Folder::new();
-    let file = download(&folder, "a", 8);
-    fs::rename(folder.at("a/scene.bin"), folder.at("elsewhere.bin")).unwrap();
-    symlink("../elsewhere.bin", folder.at("a/scene.bin")).unwrap();
+    let file = saved(&folder, "a", 8);
+    fs::rename(folder.at("a/a.bin"), folder.at("elsewhere.bin")).unwrap();
+    symlink("../elsewhere.bin", folder.at("a/a.bin")).unwrap();
     let before = fs::read(folder.at("elsewhere.bin")).unwrap();
     folder.apply(&file, &lift(1.0), &file, &[]).done();
     assert_eq!(fs::read(folder.at("elsewhere.bin")).unwrap(), before);
-    assert_eq!(names(&folder.at("a")), ["a.gltf", "scene-2.bin", "scene.bin"]);
+    assert_eq!(names(&folder.at("a")), ["a-2.bin", "a.bin", "a.gltf"]);
     assert!(shape(&file).iter().any(|p| p.z > 0.9));
 }
 
@@ -148,10 +148,10 @@ fn a_name_that_looks_like_an_address_can_be_read_back() {
 #[test]
 fn rights_and_names_of_a_replaced_file_are_kept() {
     let folder = Folder::new();
-    let file = download(&folder, "a", 8);
+    let file = saved(&folder, "a", 8);
     let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode() & 0o7777;
     let set = |path: &Path, mode: u32| fs::set_permissions(path, fs::Permissions::from_mode(mode)).unwrap();
-    let bin = folder.at("a/scene.bin");
+    let bin = folder.at("a/a.bin");
     set(&file, 0o600);
     set(&bin, 0o6640);
     let second = folder.at("a/second.glb");

@@ -26,13 +26,19 @@ fn lift(by: f64) -> Value {
 
 /// A glTF of a torus in a folder of its own, its buffer called `scene.bin`, as downloads of one place are.
 fn download(folder: &Folder, name: &str, sides: usize) -> PathBuf {
+    let gltf = saved(folder, name, sides);
+    fs::rename(gltf.with_extension("bin"), gltf.with_file_name("scene.bin")).unwrap();
+    replace_in(&gltf, &format!("{name}.bin"), "scene.bin");
+    gltf
+}
+
+/// A glTF in a folder of its name, whose buffer has that name, too.
+fn saved(folder: &Folder, name: &str, sides: usize) -> PathBuf {
     let mesh = folder.write_mesh("mesh.off", &shapes::torus(12, sides));
     fs::create_dir(folder.at(name)).unwrap();
     let gltf = folder.at(&format!("{name}/{name}.gltf"));
     folder.apply(&mesh, &bare_edit(), &gltf, &[]).done();
     fs::remove_file(mesh).unwrap();
-    fs::rename(gltf.with_extension("bin"), gltf.with_file_name("scene.bin")).unwrap();
-    replace_in(&gltf, &format!("{name}.bin"), "scene.bin");
     gltf
 }
 
