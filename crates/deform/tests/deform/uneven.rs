@@ -47,6 +47,35 @@ fn methods_of_space_bend_coarse_tubes_and_long_triangles_without_tearing_them() 
     }
 }
 
+#[test]
+fn rigid_cells_fill_a_shape_that_the_region_cuts_open_however_many_they_are() {
+    let length = 10.0;
+    let bar = shapes::moved(&shapes::bar(4, 4, 20), DAffine3::from_scale(DVec3::splat(0.5)));
+    // Cut open where the fixed part begins, and open by itself.
+    let mut open = bar.clone();
+    let is_lid = |t: &[DrawnVertex; 3]| t.iter().all(|v| bar.positions[v.index()].z < 1e-9);
+    open.triangles.retain(|t| !is_lid(t));
+    for drawn in [bar.clone(), open] {
+        for cells in [400, 3000] {
+            let mut options = SpacePrimo::default();
+            options.cells = cells;
+            let mut scene = Scene::new(drawn.clone())
+                .with(Role::Fixed, |p| p.z < 0.3 * length)
+                .with(Role::Handle(0), |p| p.z > length - 1e-6);
+            scene.method = options.into();
+            let (displacements, _) = settle(&mut scene.bind(), &[bent(length, 60.0)]);
+            let moved: Vec<DVec3> = scene
+                .positions()
+                .iter()
+                .zip(&displacements)
+                .map(|(p, d)| *p + *d)
+                .collect();
+            let distortion = Distortion::of(&scene.model.surface, &scene.model.topology, &moved);
+            assert!((distortion.volume_ratio - 1.0).abs() < 0.05, "{cells}: {distortion:?}");
+        }
+    }
+}
+
 /// Methods that count in the size of what bends.
 fn measured() -> [Method; 3] {
     let mut stretching = Bilaplacian::default();
