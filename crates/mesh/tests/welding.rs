@@ -168,7 +168,7 @@ fn specks_and_the_place_of_a_scene_change_nothing_of_how_it_is_welded() {
         let beside = weld(shapes::together(&[soup.clone(), speck.clone()]), None);
         assert!(surface_vertices(&beside) == expected);
     }
-    let all = shapes::together(&[&[soup.clone()], &specks[..]].concat());
+    let all = shapes::together(&[std::slice::from_ref(&soup), &specks[..]].concat());
     assert!(surface_vertices(&weld(all, None)) == expected);
     let turn = glam::DQuat::from_euler(glam::EulerRot::XYZ, 0.3, 1.1, -0.7);
     for scale in [1e-9, 0.37, 1e12] {
