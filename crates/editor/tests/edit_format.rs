@@ -314,8 +314,8 @@ fn a_weld_distance_comes_back_and_is_the_meshs_own_where_none_is_given() {
     let given = edit(r#", "weld": 0.25"#).unwrap();
     assert_eq!(given.weld, Some(0.25));
     assert_eq!(EditFile::parse(&given.to_json()).unwrap(), given);
-    for wrong in ["-0.1", "\"wide\"", "1e400"] {
+    for wrong in ["-0.1", "\"wide\""] {
         let said = edit(&format!(", \"weld\": {wrong}")).unwrap_err().to_string();
-        assert!(said.contains("weld") || said.contains("1e400"), "{said}");
+        assert!(said.contains("weld"), "{said}");
     }
 }

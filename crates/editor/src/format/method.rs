@@ -168,7 +168,7 @@ mod tests {
         for value in [
             value,
             json!({ "name": "arap", "energy": "smooth", "smoothness": 0.5, "tolerance": 1e-6, "max_iterations": 40 }),
-            json!({ "name": "primo", "thickness": 0.1, "tolerance": 1e-6, "max_iterations": 40 }),
+            json!({ "name": "primo", "thickness": 0.2, "tolerance": 1e-6, "max_iterations": 40 }),
         ] {
             let method = parsed(&value).unwrap();
             assert_eq!(written(&method), value);
