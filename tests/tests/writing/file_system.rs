@@ -16,7 +16,7 @@ use crate::{apply, download, lift, names, replace_in, saved, shape, warnings};
 #[test]
 fn links_are_followed_and_stay() {
     let folder = Folder::new();
-    let file = download(&folder, "a", 8);
+    let file = saved(&folder, "a", 8);
     fs::create_dir(folder.at("links")).unwrap();
     fs::create_dir(folder.at("target")).unwrap();
     let link = folder.at("links/out.gltf");
@@ -25,7 +25,7 @@ fn links_are_followed_and_stay() {
         folder.apply(&file, &lift(1.0), &link, &[]).done();
         assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
         assert_eq!(names(&folder.at("links")), ["out.gltf"]);
-        assert_eq!(names(&folder.at("target")), ["real.gltf", "scene.bin"]);
+        assert_eq!(names(&folder.at("target")), ["a.bin", "real.gltf"]);
         assert_eq!(shape(&link), shape(&folder.at("target/real.gltf")));
     }
     // One that leads to the input is a save in place.
@@ -33,10 +33,10 @@ fn links_are_followed_and_stay() {
     let own = folder.at("links/own.gltf");
     symlink("../a/a.gltf", &own).unwrap();
     folder.apply(&file, &lift(1.0), &own, &[]).done();
-    assert_eq!(names(&folder.at("a")), ["a.gltf", "scene.bin"]);
+    assert_eq!(names(&folder.at("a")), ["a.bin", "a.gltf"]);
     assert_ne!(shape(&file), before);
     folder.apply(&own, &lift(1.0), &own, &[]).done();
-    assert_eq!(names(&folder.at("a")), ["a.gltf", "scene.bin"]);
+    assert_eq!(names(&folder.at("a")), ["a.bin", "a.gltf"]);
 }
 
 /// Law: what is no file is neither opened nor replaced.
@@ -206,17 +206,17 @@ fn extended_attributes_are_kept_where_there_are_any() {
 #[test]
 fn leftovers_go_with_the_next_save_unless_somebody_lives_on_them() {
     let folder = Folder::new();
-    let file = download(&folder, "a", 8);
-    let passing = ".pliant-0123456789abcdef-scene.bin";
-    fs::rename(folder.at("a/scene.bin"), folder.at("a").join(passing)).unwrap();
-    replace_in(&file, "scene.bin", passing);
+    let file = saved(&folder, "a", 8);
+    let passing = ".pliant-0123456789abcdef-a.bin";
+    fs::rename(folder.at("a/a.bin"), folder.at("a").join(passing)).unwrap();
+    replace_in(&file, "a.bin", passing);
     let lives = shape(&file);
     let stranger = folder.at("a/stranger.off");
     fs::rename(folder.write_mesh("mesh.off", &shapes::torus(12, 8)), &stranger).unwrap();
     for left in [
         ".pliant-abcdef.tmp",
         ".pliant-abcdef.old",
-        ".pliant-00000000000000ff-scene.bin",
+        ".pliant-00000000000000ff-a.bin",
         ".pliant.lock",
     ] {
         folder.write(&format!("a/{left}"), "left");
@@ -234,7 +234,7 @@ fn leftovers_go_with_the_next_save_unless_somebody_lives_on_them() {
         folder.apply(&file, &edit, &file, &[]).done();
         let left = names(file.parent().unwrap());
         assert!(
-            left.contains(&"scene.bin".into()) && !left.contains(&passing.into()),
+            left.contains(&"a.bin".into()) && !left.contains(&passing.into()),
             "{left:?}"
         );
         assert_eq!(shape(&file) == lives, edit == bare_edit());
