@@ -39,6 +39,11 @@ def test_rest_gives_the_given_positions_to_the_bit(mesh, ends, method):
     assert np.array_equal(bound.step({}), mesh[0])
 
 
+def search_path():
+    """Where a script finds this folder's helpers and the package that is tested."""
+    return os.pathsep.join([os.path.dirname(__file__), os.environ.get("PYTHONPATH", "")])
+
+
 def test_transforms_mean_the_same_in_every_form(mesh, ends):
     bound = pliant.bind(*mesh, **ends, method="bilaplacian")
     matrix = quarter_turn()
@@ -261,7 +266,7 @@ def test_results_do_not_depend_on_the_number_of_threads(tmp_path):
     """
     outputs = set()
     for threads in ("1", "2", "5"):
-        environment = {**os.environ, "RAYON_NUM_THREADS": threads, "PYTHONPATH": os.path.dirname(__file__)}
+        environment = {**os.environ, "RAYON_NUM_THREADS": threads, "PYTHONPATH": search_path()}
         run = subprocess.run([sys.executable, "-c", textwrap.dedent(script)], env=environment, capture_output=True)
         assert run.returncode == 0, run.stderr.decode()
         outputs.add(run.stdout)
@@ -333,7 +338,7 @@ def test_ctrl_c_stops_a_long_call(work):
         except KeyboardInterrupt:
             print("interrupted")
     """
-    environment = {**os.environ, "PYTHONPATH": os.path.dirname(__file__)}
+    environment = {**os.environ, "PYTHONPATH": search_path()}
     run = subprocess.Popen(
         [sys.executable, "-c", textwrap.dedent(script)], env=environment, stdout=subprocess.PIPE, text=True
     )
