@@ -115,7 +115,7 @@ pub(super) fn open(source: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<Mode
             let (carried, unmatched) = reload.snapshot.on_changed_mesh(&loaded.model, saved);
             if unmatched > 0 {
                 notes.push(format!(
-                    "{unmatched} vertices of the changed file stand where none stood before: they are held still."
+                    "{unmatched} vertices of the changed file are new: they stay fixed until you paint them."
                 ));
             }
             beginning = Some(carried);
