@@ -223,7 +223,7 @@ struct FileTimes {
     check_ms: f64,
 }
 
-/// Crossings of triangles that are looked for: more are told as so many places and more.
+/// The most crossings that are searched for: the sentence says "and more" beyond them.
 const MOST_CROSSINGS: usize = 20_000;
 
 /// What came out badly, as sentences.

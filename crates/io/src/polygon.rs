@@ -400,7 +400,7 @@ mod tests {
         let turned = glam::DQuat::from_rotation_y(0.4) * glam::DQuat::from_rotation_x(1.1);
         let straight = glam::DQuat::IDENTITY;
         for (sides, is_square) in [(16, true), (8, true), (12, false), (20, false)] {
-            // Of a figure with several planes that of the world's first axis is kept.
+            // If a figure has several planes, the one across the world's first axis is kept.
             for (lean, turn, by) in [
                 (0.0, straight, DVec3::ZERO),
                 (0.0, straight, DVec3::ONE * 7.0),

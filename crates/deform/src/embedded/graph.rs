@@ -199,7 +199,7 @@ struct Sums {
 }
 
 impl Sums {
-    /// Of so many nodes.
+    /// No links between so many nodes yet.
     fn of(count: usize) -> Self {
         Self {
             shared: vec![[0.0; 2]; count * count],

@@ -29,7 +29,7 @@ pub(super) struct Barrier {
 }
 
 impl Barrier {
-    /// Of a triangle that has this area.
+    /// The value for a triangle that has this area.
     pub fn of(face: &Face, area: f64) -> Self {
         let Face { weight, least, .. } = *face;
         if least <= 0.0 || area >= least {

@@ -25,7 +25,7 @@ pub(crate) fn joins(points: &[DVec3], firm: &[[u32; 2]]) -> Vec<[u32; 2]> {
     for (point, &of) in part.iter().enumerate() {
         members[of].push(point);
     }
-    // Of pairs that differ by rounding alone the first counts.
+    // The first of several pairs that differ by rounding alone is taken.
     let longest = points.iter().fold(f64::MIN_POSITIVE, |longest, point| {
         longest.max(point.distance(points[0]))
     });

@@ -2,7 +2,7 @@
 
 use crate::Problem;
 
-/// Of these vertices those that triangles use, or all where triangles use none of them.
+/// Those of these vertices that triangles use, or all where triangles use none of them.
 pub(crate) fn shaping(problem: &Problem, vertices: impl Iterator<Item = u32> + Clone) -> Vec<u32> {
     let first_bare = problem.topology.bare_points().start;
     let used: Vec<u32> = vertices

@@ -170,7 +170,7 @@ fn ties(octree: &Octree, input: &BindInput<'_>, world_origin: DVec3) -> BTreeMap
                 let tie = ties
                     .entry((cell as usize, ground))
                     .or_insert((Patch::default(), firmness));
-                // A vertex stands for a small ball, so that a single one turns its cell.
+                // A vertex counts as a small ball, so that a single one turns its cell.
                 tie.0
                     .add(1.0, position - world_origin, cube(0.5 * octree.grid.world_side));
             }

@@ -1,4 +1,4 @@
-//! Meshes that are coarse, uneven or not alone: bends stay whole, and what stands beside changes nothing.
+//! Meshes that are coarse, uneven or not alone: bends stay whole, and other parts change nothing.
 
 use glam::{DAffine3, DQuat, DVec3};
 use pliant_deform::{Bilaplacian, Cage, Embedded, Lattice, Method, Primo, Role, Shells, SpacePrimo};

@@ -202,7 +202,7 @@ impl History {
         }
     }
 
-    /// Notes that a file was written with what the mark stands for.
+    /// Notes that a file was written with the state of the mark.
     pub(crate) fn mark_saved(&mut self, what: SavedAs, mark: SaveMark, document: &Document) {
         let now = (self.state(), document.versions().of(Aspect::Shape));
         self.saved.written(what, mark, now);

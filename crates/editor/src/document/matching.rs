@@ -1,4 +1,4 @@
-//! Which vertices of a mesh that was read again stand for those of the mesh that a document was made on.
+//! Which vertices of a mesh that was read again correspond to those of the mesh that a document was made on.
 
 use std::collections::HashMap;
 
@@ -33,7 +33,7 @@ impl Matching {
         Self::by_place(&places, &new.surface.positions)
     }
 
-    /// How many vertices of the new mesh stand for none of the old one.
+    /// How many vertices of the new mesh have no counterpart in the old one.
     pub fn unmatched(&self) -> usize {
         self.of_new.iter().filter(|old| old.is_none()).count()
     }

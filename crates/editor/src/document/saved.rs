@@ -79,7 +79,7 @@ impl Saved {
         file == InFile::Opened(state) || file == InFile::Written(state)
     }
 
-    /// A file was written with what the mark stands for; a project has the model's work, too.
+    /// A file was written with the state of the mark; a project has the model's work, too.
     pub(super) fn written(&mut self, what: SavedAs, mark: SaveMark, now: (u64, Version)) {
         // Without a final shape only the present state can be told to be the file's.
         let is_as_written = mark.is_final || now == (mark.state, mark.shape);

@@ -62,7 +62,7 @@ pub fn path_as_text(path: &Path) -> String {
     names.join("/").replacen("//", "/", usize::from(path.is_absolute()))
 }
 
-/// The path that a text stands for, as seen from `folder`; see [`path_as_text`].
+/// The path that a text names, as seen from `folder`; see [`path_as_text`].
 pub fn path_of_text(folder: &Path, text: &str) -> PathBuf {
     neighbour_path(folder, text)
 }

@@ -43,7 +43,7 @@ impl Marks {
 }
 
 impl Stamp {
-    /// Of these bytes, which were read from the file at `path` after its `metadata`.
+    /// The stamp of these bytes, which were read from the file at `path` after its `metadata`.
     pub(super) fn of_bytes(path: &Path, metadata: &Metadata, bytes: &[u8]) -> Self {
         Self {
             metadata: Marks::of(path, metadata),
@@ -51,7 +51,7 @@ impl Stamp {
         }
     }
 
-    /// Of the file as it is now.
+    /// The stamp of the file as it is now.
     ///
     /// # Errors
     /// What the system says.

@@ -144,7 +144,7 @@ impl Stored {
         }
     }
 
-    /// Of each drawn vertex what the file has of its vertex.
+    /// For each drawn vertex the entry of its file vertex.
     fn of_drawn<'a, T: Copy>(&'a self, of_file: &'a [T]) -> impl Iterator<Item = T> + 'a {
         let further = self.further.iter().map(|&vertex| of_file[vertex as usize]);
         of_file.iter().copied().chain(further)

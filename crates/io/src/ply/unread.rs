@@ -4,7 +4,7 @@ use super::header::Element;
 use super::records::{Columns, TEXTURE_NUMBER, UV_LIST, corner_list};
 use crate::quote::quoted;
 
-/// Names that are told at most of each element.
+/// The most names that a sentence lists for each element.
 const MOST_NAMES: usize = 8;
 
 /// The parts of a file that aren't read, in words: properties by their element, then further elements.

@@ -36,7 +36,7 @@ const NEAR: f64 = 1e-4;
 /// The share of the samples that must have their image.
 const MOST: f64 = 0.5;
 
-/// How the equal diagonals of one shape are told apart.
+/// How one of two equal diagonals of a shape is chosen.
 pub(crate) struct Diagonals<'a> {
     positions: &'a [DVec3],
     frame: OnceCell<Frame>,
@@ -184,7 +184,7 @@ impl Places {
         near.any(|other| other.distance(position) <= self.width)
     }
 
-    /// Of samples of the vertices, the share whose image across a plane is a vertex.
+    /// The share of sampled vertices whose image across a plane is a vertex.
     fn share_with_image(&self, positions: &[DVec3], (normal, through): (DVec3, DVec3)) -> f64 {
         if self.cells.is_empty() {
             return 0.0;

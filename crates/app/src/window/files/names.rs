@@ -8,7 +8,7 @@ use pliant_engine::files::folder_of;
 /// The name of the sample that is shown when no file is named.
 pub(in crate::window) const SAMPLE_NAME: &str = "creature.glb";
 
-/// How many originals of one name are told apart.
+/// The highest number in the name of an original.
 const MOST_ORIGINALS: usize = 1000;
 
 /// `NAME.original.EXT` beside `NAME.EXT`. A `.gltf`'s buffers are saved over along with it, so its original is kept as

@@ -40,7 +40,7 @@ enum Content {
 }
 
 impl Original {
-    /// Of the file at `path` as it is now; `loaded` is the open one, which may be the same.
+    /// The original of the file at `path` as it is now; `loaded` is the open one, which may be the same.
     ///
     /// # Errors
     /// Where it can't be read.

@@ -115,7 +115,7 @@ mod tests {
         assert!((of(ComponentType::U8, false, &stretched) - 2.5).abs() < 1e-12);
         let floats = of(ComponentType::F32, false, &identity);
         assert!((floats - half_diagonal * 4.0 * f64::from(f32::EPSILON)).abs() < 1e-12);
-        // Of a skin, the joint counts that enlarges most.
+        // In a skin the joint that enlarges most decides.
         let skin = Pose::Skin(SkinPose::of(vec![DAffine3::IDENTITY, stretched]));
         let by_skin = distance(&layout(ComponentType::U8, false), Coding::Plain, &positions, &skin);
         assert!((by_skin - 2.5).abs() < 1e-12);

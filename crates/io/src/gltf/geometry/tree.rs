@@ -20,7 +20,7 @@ pub(crate) struct Placed {
     /// Which of the node's copies it is; 0 where there is one.
     pub copy: usize,
     pub mesh: usize,
-    /// Of a copy, the copy's own.
+    /// A copy has its own.
     pub world_from_node: DAffine3,
     /// The skin, which places bound vertices in the node's stead.
     pub skin: Option<Skin>,
