@@ -23,6 +23,14 @@ fn bent(length: f64, degrees: f64) -> DAffine3 {
         * DAffine3::from_translation(-middle)
 }
 
+/// What bending the scene's upper end by 60° does to it.
+fn distorted_by_a_bend(scene: &Scene, length: f64) -> Distortion {
+    let (displacements, _) = settle(&mut scene.bind(), &[bent(length, 60.0)]);
+    let positions = scene.positions().iter().zip(&displacements);
+    let moved: Vec<DVec3> = positions.map(|(p, d)| *p + *d).collect();
+    Distortion::of(&scene.model.surface, &scene.model.topology, &moved)
+}
+
 #[test]
 fn methods_of_space_bend_coarse_tubes_and_long_triangles_without_tearing_them() {
     // Rings closer within than between; long triangles as lathes make them; both at once.
@@ -31,14 +39,7 @@ fn methods_of_space_bend_coarse_tubes_and_long_triangles_without_tearing_them() 
         for method in [Method::from(Embedded::default()), SpacePrimo::default().into()] {
             let name = method.name();
             let scene = held(shapes::tube(around, along, length), length, method);
-            let (displacements, _) = settle(&mut scene.bind(), &[bent(length, 60.0)]);
-            let moved: Vec<DVec3> = scene
-                .positions()
-                .iter()
-                .zip(&displacements)
-                .map(|(p, d)| *p + *d)
-                .collect();
-            let distortion = Distortion::of(&scene.model.surface, &scene.model.topology, &moved);
+            let distortion = distorted_by_a_bend(&scene, length);
             assert!(
                 distortion.edge_stretch_max < 3.0 && distortion.flipped_faces == 0,
                 "{name} on {around} x {along}: {distortion:?}"
@@ -63,14 +64,7 @@ fn rigid_cells_fill_a_shape_that_the_region_cuts_open_however_many_they_are() {
                 .with(Role::Fixed, |p| p.z < 0.3 * length)
                 .with(Role::Handle(0), |p| p.z > length - 1e-6);
             scene.method = options.into();
-            let (displacements, _) = settle(&mut scene.bind(), &[bent(length, 60.0)]);
-            let moved: Vec<DVec3> = scene
-                .positions()
-                .iter()
-                .zip(&displacements)
-                .map(|(p, d)| *p + *d)
-                .collect();
-            let distortion = Distortion::of(&scene.model.surface, &scene.model.topology, &moved);
+            let distortion = distorted_by_a_bend(&scene, length);
             assert!((distortion.volume_ratio - 1.0).abs() < 0.05, "{cells}: {distortion:?}");
         }
     }
