@@ -18,6 +18,9 @@ pub(super) const TEMPORARY: &str = ".tmp";
 /// What is being replaced.
 pub(super) const REPLACED: &str = ".old";
 
+/// How many letters and digits a temporary file has between the two.
+pub(super) const RANDOM: usize = 6;
+
 /// The longest part of a name that a passing name keeps, in bytes: file systems end names at 255.
 const LONGEST: usize = 200;
 
@@ -54,6 +57,15 @@ fn behind_passing(name: &str) -> Option<&str> {
     is_ours.then_some(flat)
 }
 
+/// Whether a name is that of a temporary file of a save. Other files may begin and end as these do.
+fn is_temporary(name: &str) -> bool {
+    let middle = name.strip_prefix(PREFIX).and_then(|rest| {
+        let ends = [TEMPORARY, REPLACED];
+        ends.iter().find_map(|end| rest.strip_suffix(end))
+    });
+    middle.is_some_and(|middle| middle.len() == RANDOM && middle.bytes().all(|byte| byte.is_ascii_alphanumeric()))
+}
+
 /// Removes what killed saves have left in a folder. The caller must hold its lock alone.
 pub(super) fn clear(folder: &Path) {
     let Ok(entries) = fs::read_dir(folder) else { return };
@@ -66,7 +78,7 @@ pub(super) fn clear(folder: &Path) {
         if !entry.file_type().is_ok_and(|kind| kind.is_file()) {
             continue;
         }
-        if name.ends_with(TEMPORARY) || name.ends_with(REPLACED) {
+        if is_temporary(name) {
             // One that can't be removed does no harm.
             let _ = fs::remove_file(entry.path());
         } else if is_passing(name) {

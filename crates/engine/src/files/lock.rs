@@ -71,7 +71,7 @@ impl FolderLock {
                 Err(TryLockError::WouldBlock) => share == Share::Together && file.try_lock_shared().is_ok(),
                 Err(TryLockError::Error(error)) if error.kind() == ErrorKind::Interrupted => false,
                 Err(TryLockError::Error(_)) => {
-                    let _ = fs::remove_file(&path);
+                    remove(&file, &path);
                     return Ok(Self {
                         folder: folder.to_owned(),
                         share,
@@ -106,8 +106,7 @@ impl FolderLock {
         let path = self.folder.join(NAME);
         let is_last = self.share == Share::Alone || file.try_lock().is_ok();
         if is_last && is_at(file, &path) {
-            // One that stays is an empty file, which the next save takes over.
-            let _ = fs::remove_file(path);
+            remove(file, &path);
         }
     }
 }
@@ -158,6 +157,14 @@ fn for_everybody(file: &File) {
     }
     #[cfg(not(unix))]
     let _ = file;
+}
+
+/// Removes a lock's file. A lock is empty, so one with content is somebody's file of this name, which stays.
+fn remove(file: &File, path: &Path) {
+    if file.metadata().is_ok_and(|metadata| metadata.len() == 0) {
+        // One that can't be removed is taken over by the next save.
+        let _ = fs::remove_file(path);
+    }
 }
 
 /// Whether the open file is still the one at the path.
