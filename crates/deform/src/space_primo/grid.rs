@@ -45,9 +45,11 @@ impl Grid {
         (world_point - self.world_low) / self.world_side
     }
 
-    /// The small cube that holds a point.
+    /// The small cube that holds a point; one beyond the grid, and with no neighbour in it, if none does.
     pub fn cube(&self, world_point: DVec3) -> IVec3 {
-        self.in_cubes(world_point).floor().as_ivec3()
+        // Steps from the cube of a point that is very far away would overflow.
+        let (low, high) = (IVec3::splat(-2), self.counts + 1);
+        self.in_cubes(world_point).floor().as_ivec3().clamp(low, high)
     }
 
     /// All small cubes, along x first and along z last.
@@ -80,4 +82,23 @@ pub(super) fn boxed(low: IVec3, high: IVec3) -> impl Iterator<Item = IVec3> {
 /// All steps by at most so many along each axis.
 pub(super) fn neighbourhood(reach: i32) -> impl Iterator<Item = IVec3> {
     boxed(IVec3::splat(-reach), IVec3::splat(reach))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_cube_is_beside_a_point_that_is_far_away() {
+        let grid = Grid {
+            world_low: DVec3::ONE,
+            world_side: 0.5,
+            counts: IVec3::new(3, 4, 5),
+        };
+        assert_eq!(grid.cube(DVec3::new(1.6, 1.1, 3.4)), IVec3::new(1, 0, 4));
+        for far in [1e300, -1e300, 4.0, 0.4] {
+            let cube = grid.cube(DVec3::new(1.6, far, 3.4));
+            assert!(neighbourhood(1).all(|step| !grid.has(cube + step)), "{far}");
+        }
+    }
 }
