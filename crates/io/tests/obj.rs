@@ -320,6 +320,26 @@ fn a_normal_that_is_shared_by_what_bends_apart_becomes_several() {
 }
 
 #[test]
+fn a_name_of_no_normal_does_not_become_that_of_an_added_one() {
+    // A lid whose corners name lines that the file does not have, the first of which is added.
+    let text = ribbons(|number, _| number.to_string()) + "f 1//3 3//4 2//70\n";
+    let opened = open(text.as_bytes(), Format::Obj);
+    let bent = |p: DVec3| DVec3::new(p.x, p.y + 0.1 * p.x * p.x, p.z);
+    let positions: Vec<DVec3> = opened.drawn.positions.iter().map(|p| bent(*p)).collect();
+    let saved = String::from_utf8(save(&opened, &positions)).unwrap();
+    let count = saved.lines().filter(|line| line.starts_with("vn ")).count();
+    assert!(count > 4, "{count} lines");
+    let lid = saved.lines().last().unwrap().split(['/', ' ']);
+    let names: Vec<usize> = lid.skip(3).step_by(3).map(|name| name.parse().unwrap()).collect();
+    assert!(
+        names.len() == 3 && names.iter().all(|&name| name > count),
+        "{names:?} of {count}"
+    );
+    let again = open(saved.as_bytes(), Format::Obj);
+    assert_eq!(again.drawn.positions.len(), opened.drawn.positions.len());
+}
+
+#[test]
 fn one_normal_of_all_turns_where_all_turn() {
     let text = grid(6, |_| 7);
     let opened = open(text.as_bytes(), Format::Obj);

@@ -121,6 +121,8 @@ impl Renamed {
             for (number, corner) in face.corners.iter().enumerate() {
                 let Some((old, span)) = &corner.normal else { continue };
                 let wanted = match drawn.get(number) {
+                    // A name of no line must not become that of a new one.
+                    _ if *old >= old_count => old + added,
                     Some(&vertex) => out.of_vertex[vertex],
                     None => renamed(*old),
                 };
