@@ -11,8 +11,8 @@ use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use glam::DVec3;
 use pliant_deform::{
     Arap, ArapEnergy, Attachment, Bilaplacian, BilaplacianOrder, BindError, Budget, CageCoordinates, Constraints,
-    Detail, ExampleShape, Examples, Frames, Limit, Loose, Method, OptionValue, Primo, Problem, Propagation, Rbf, Role,
-    Shells, Transforms, Wrinkles,
+    Detail, ExampleShape, Examples, Frames, Limit, Loose, METHODS, Method, OptionKind, OptionValue, Primo, Problem,
+    Propagation, Rbf, Role, Shells, Transforms, Wrinkles,
 };
 use pliant_mesh::{Cancel, Drawn, DrawnVertex, Model, Progress, shapes};
 
@@ -207,6 +207,38 @@ fn methods() -> Vec<Method> {
     methods
 }
 
+/// Every method with each of its numbers as large as it may be, one at a time and all together.
+fn largest() -> Vec<(Method, usize)> {
+    let mut methods = Vec::new();
+    for declaration in METHODS {
+        let most = |kind: &OptionKind| match kind {
+            OptionKind::Number { range: [_, high], .. } => Some(OptionValue::Number(*high)),
+            OptionKind::Whole { range: [_, high] } => Some(OptionValue::Whole(*high)),
+            OptionKind::Numbered { choices } => choices.last().map(|&(number, _)| OptionValue::Whole(number)),
+            OptionKind::Named { .. } | OptionKind::Switch => None,
+        };
+        let options = declaration.options.iter();
+        let largest: Vec<_> = options
+            .filter_map(|option| Some((option.name, most(&option.kind)?)))
+            .collect();
+        let one_at_a_time = largest.iter().map(std::slice::from_ref);
+        for options in one_at_a_time.chain([&*largest]) {
+            let method = Method::from_name(declaration.name)
+                .unwrap()
+                .with(options.to_vec())
+                .unwrap();
+            // Examples are what these two blend and learn from.
+            let examples = if ["shells", "wrinkles"].contains(&declaration.name) {
+                2
+            } else {
+                0
+            };
+            methods.push((method, examples));
+        }
+    }
+    methods
+}
+
 const PLENTY: Budget = Budget {
     bytes: 1 << 34,
     operations: u64::MAX,
@@ -275,6 +307,28 @@ fn binding_allocates_as_the_mesh_grows_and_within_its_budget() {
                 assert!(
                     refused.is_err() || held as u64 <= granted,
                     "{method:?}: {held} of {peak} bytes for {vertices} vertices"
+                );
+            }
+        }
+        // However large its options are, on a small mesh, a method takes no more than it is granted, and is refused before
+        // it takes that.
+        for method in largest() {
+            let scene = Scene::new(shapes::icosphere(3), &method);
+            let (bound, peak, _) = scene.bind(PLENTY);
+            assert!(bound.is_ok(), "{method:?}: {:?}", bound.err());
+            for share in [0.9, 0.3] {
+                let granted = (peak as f64 * share) as u64;
+                let (bound, held, _) = scene.bind(Budget {
+                    bytes: granted,
+                    ..PLENTY
+                });
+                // Small tables are estimated by the vertex.
+                let most = granted + 200 * scene.roles.len() as u64;
+                let most = if bound.is_ok() { most } else { most + granted / 10 };
+                assert!(
+                    held as u64 <= most,
+                    "{method:?}: {held} where {granted} were granted of {peak}, {:?}",
+                    bound.err()
                 );
             }
         }

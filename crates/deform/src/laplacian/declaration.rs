@@ -44,9 +44,14 @@ impl DeformMethod for LaplacianEditing {
     }
 
     fn row_bytes(&self) -> usize {
+        // A ring of triangles has 6 vertices more than the one within it.
+        let ring = self.ring as usize;
+        let of_ring = 3 * ring * (ring + 1) * 2 * size_of::<u32>();
         match self.transforms {
+            Transforms::Implicit if self.steps > 1 => 3000 + of_ring,
             Transforms::Implicit => 3000,
-            Transforms::InitialGuess | Transforms::None => 500,
+            Transforms::InitialGuess => 500 + of_ring,
+            Transforms::None => 500,
         }
     }
 

@@ -8,7 +8,7 @@ use super::hierarchy::{DIRECT, Preconditioner};
 use super::joints::Joints;
 use super::pose::Pose;
 use super::springs::Springs;
-use crate::Budget;
+use crate::budget::{Budget, bytes_of};
 use crate::handles::blend::HandleFrame;
 use crate::handles::{Handle, Motion};
 use crate::numerical::lbfgs::Memory;
@@ -66,6 +66,7 @@ impl Bodies {
         cancel: &Cancel,
     ) -> Result<Self, FactorError> {
         let springs = Springs::of(&joints, budget, cancel)?;
+        let budget = budget.without(bytes_of(springs.stored(), size_of::<f64>()))?;
         let weights = springs.weights(&joints, handles.len(), unheld);
         let at_rest = Pose::at_rest(joints.count(), 1 + handles.len());
         let preconditioner = Preconditioner::of(&joints, DIRECT, budget, cancel)?;

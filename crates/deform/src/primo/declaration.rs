@@ -46,7 +46,8 @@ impl DeformMethod for Primo {
     }
 
     fn row_bytes(&self) -> usize {
-        3400
+        // Two prisms, with their joints and their rows of the matrix.
+        6000
     }
 
     fn bind(&self, input: &BindInput<'_>) -> Result<Box<dyn BoundMethod>, BindError> {

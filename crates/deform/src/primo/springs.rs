@@ -24,6 +24,11 @@ impl Springs {
         })
     }
 
+    /// How many numbers the factor stores.
+    pub fn stored(&self) -> usize {
+        self.factor.stored()
+    }
+
     /// x ← L⁻¹ x.
     pub fn apply<const K: usize>(&self, x: &mut [[f64; K]]) {
         let rescale = |x: &mut [[f64; K]]| {

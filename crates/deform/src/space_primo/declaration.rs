@@ -4,8 +4,9 @@ use glam::{DMat3, DVec3, Mat3};
 
 use super::SpacePrimo;
 use super::coupling::joined;
-use super::octree::Octree;
+use super::octree::{CELL, Octree};
 use super::weights::weigh;
+use crate::budget::bytes_of;
 use crate::handles::Motion;
 use crate::method::{
     BindInput, BoundMethod, ConstraintKind, DeformMethod, Finite, MethodDeclaration, Needs, Solve, Stepped,
@@ -75,7 +76,10 @@ impl DeformMethod for SpacePrimo {
 /// Cuts space into cells, joins them, factors, and weighs every vertex.
 pub(super) fn bound(options: &SpacePrimo, input: &BindInput<'_>) -> Result<BoundCells, BindError> {
     let free_count = input.partition.solved.len();
-    let mut octree = Octree::of(input, options.cells as usize).map_err(|limit| BindError::budget(free_count, limit))?;
+    let over = |limit| BindError::budget(free_count, limit);
+    let mut octree = Octree::of(input, options.cells as usize).map_err(over)?;
+    let of_cells = bytes_of(octree.cells.len(), CELL);
+    let budget = input.partition.budget.without(of_cells).map_err(over)?;
     input.cancel.check()?;
     input.progress.set(0.3);
     let world_origin = input.handles.first().map_or(DVec3::ZERO, |handle| handle.world_centre);
@@ -91,11 +95,11 @@ pub(super) fn bound(options: &SpacePrimo, input: &BindInput<'_>) -> Result<Bound
         world_origin,
         |_| !is_held,
         options.tolerance,
-        input.partition.budget,
+        budget,
         input.cancel,
     );
     let bodies = bodies.map_err(|error| match error {
-        FactorError::Budget(limit) => BindError::budget(free_count, limit),
+        FactorError::Budget(limit) => over(limit),
         FactorError::Cancelled => BindError::Cancelled(pliant_mesh::Cancelled),
         FactorError::Memory | FactorError::Pivot(_) => BindError::OutOfMemory { free_count },
     })?;

@@ -18,6 +18,10 @@ const FINEST: i32 = 128;
 /// Bytes of a small cube while it is decided what it is.
 const CUBE: usize = 32;
 
+/// Bytes of a cell with its joints and its rows of the matrix, until that is factored: as allocated, measured by
+/// `tests/memory.rs`.
+pub(super) const CELL: usize = 4500;
+
 /// No cell.
 const NONE: u32 = u32::MAX;
 
@@ -112,7 +116,7 @@ impl Octree {
             cells: Vec::new(),
             held: Vec::new(),
         };
-        input
+        let budget = input
             .partition
             .budget
             .without(bytes_of(octree.grid.cube_count(), CUBE))?;
@@ -134,6 +138,7 @@ impl Octree {
         octree.add_fixed(input, &mut filled);
         octree.held = sort_out(&octree.grid, surface, input.problem.topology.is_closed(), &mut filled);
         octree.fill(&filled);
+        budget.without(bytes_of(octree.cells.len(), CELL))?;
         Ok(octree)
     }
 
