@@ -1,6 +1,6 @@
 //! Puts hostile cases through the program's commands: `cargo run --release -p pliant-tests --example hostile -- SEED
-//! COUNT [KIND]`, the cases of the numbers from SEED on; KIND is one of edit, project, neighbour, link, mesh, file and
-//! render, and without it they take turns.
+//! COUNT [KIND]`, the cases of the numbers from SEED on; KIND is one of edit, project, neighbour, link, mesh, file,
+//! render and session, and without it they take turns.
 //!
 //! A child process does the work under a limit of 2 GB, so that nothing it runs into ends the count; a command that
 //! takes more than 10 s of the processor (20 s where something is bound) breaks a law, and one that goes on is ended.
@@ -40,7 +40,7 @@ fn main() -> ExitCode {
     match (number(0), number(1), kind) {
         (Some(seed), Some(count), None | Some(Some(_))) => driver::drive(seed, count, kind.flatten()),
         _ => {
-            eprintln!("hostile SEED COUNT [edit|project|neighbour|link|mesh|file|render]");
+            eprintln!("hostile SEED COUNT [edit|project|neighbour|link|mesh|file|render|session]");
             ExitCode::from(2)
         }
     }

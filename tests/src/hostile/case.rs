@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use pliant_deform::METHODS;
 
 use super::models::{self, Model};
-use super::{bytes, edits, json_text, links, neighbours, pictures, projects};
+use super::{bytes, edits, json_text, links, neighbours, pictures, projects, strangers};
 use crate::trials::Chance;
 
 /// What is hostile about a case.
@@ -22,10 +22,12 @@ pub enum Kind {
     File,
     /// A broken file that is rendered.
     Render,
+    /// Other programs' files and writes around the saves of a session.
+    Session,
 }
 
 impl Kind {
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Edit,
         Self::Project,
         Self::Neighbour,
@@ -33,6 +35,7 @@ impl Kind {
         Self::Mesh,
         Self::File,
         Self::Render,
+        Self::Session,
     ];
 
     pub fn name(self) -> &'static str {
@@ -44,6 +47,7 @@ impl Kind {
             Self::Mesh => "mesh",
             Self::File => "file",
             Self::Render => "render",
+            Self::Session => "session",
         }
     }
 
@@ -102,13 +106,13 @@ impl Case {
             Kind::File | Kind::Render => models::any(chance),
             Kind::Neighbour => models::with_neighbours(chance),
             Kind::Project => models::alone(chance),
-            Kind::Edit | Kind::Link => models::sound(chance),
+            Kind::Edit | Kind::Link | Kind::Session => models::sound(chance),
         };
         let mut case = Self::of(seed, kind, model, chance);
         case.mutation_count = match kind {
             Kind::Mesh => 0,
             Kind::Edit | Kind::Project | Kind::File | Kind::Render => 1 + chance.below(3) * chance.below(2),
-            Kind::Neighbour | Kind::Link => 1 + chance.below(3),
+            Kind::Neighbour | Kind::Link | Kind::Session => 1 + chance.below(3),
         };
         for mutation in 0..case.mutation_count {
             if !without.contains(&mutation) {
@@ -142,7 +146,7 @@ impl Case {
                 edits::rich(model.vertices, chance).to_string().into_bytes(),
             ),
             Kind::Mesh => ("edit.json", edits::short(chance).to_string().into_bytes()),
-            Kind::Neighbour | Kind::Link | Kind::File | Kind::Render => {
+            Kind::Neighbour | Kind::Link | Kind::File | Kind::Render | Kind::Session => {
                 ("edit.json", edits::plain(chance).to_string().into_bytes())
             }
         };
@@ -180,6 +184,7 @@ impl Case {
             }
             Kind::Neighbour => neighbours::mutate(self, chance),
             Kind::Link => links::mutate(self, chance),
+            Kind::Session => strangers::mutate(self, chance),
             Kind::Mesh => {}
             Kind::File | Kind::Render => {
                 let names: Vec<PathBuf> = self

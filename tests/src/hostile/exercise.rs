@@ -10,9 +10,9 @@ use serde_json::Value;
 
 use super::case::{Case, Entry, Kind};
 use super::laws::{self, Law, Places, Violation, shortened, violation};
-use super::pictures;
 use super::shapes::{self, Shape, is_same, shape};
 use super::tree::{Tree, lay, look, place_of, with_root};
+use super::{pictures, sessions};
 use crate::trials::Chance;
 use crate::{Ended, run};
 
@@ -75,8 +75,19 @@ pub(super) struct Runner<'a> {
 impl Runner<'_> {
     /// Runs a command in the current folder. `None` if it panicked.
     pub(super) fn run(&mut self, words: &[OsString]) -> Option<Ended> {
+        let ended = self.metered(words, || run(words.iter().cloned()))?;
+        match ended.status {
+            0 => self.result.done += 1,
+            _ => self.result.refused += 1,
+        }
+        laws::of_words(&ended, &mut self.result.violations);
+        Some(ended)
+    }
+
+    /// Does what `words` name under the limits of a command. `None` if it panicked.
+    pub(super) fn metered<T>(&mut self, words: &[OsString], work: impl FnOnce() -> T) -> Option<T> {
         self.meter.begin(words);
-        let ended = catch_unwind(AssertUnwindSafe(|| run(words.iter().cloned())));
+        let ended = catch_unwind(AssertUnwindSafe(work));
         let used = self.meter.end();
         let found = &mut self.result.violations;
         self.result.worst.peak = self.result.worst.peak.max(used.peak);
@@ -93,11 +104,6 @@ impl Runner<'_> {
             found.push(violation(Law::NoPanic, shortened(&panic)));
             return None;
         };
-        match ended.status {
-            0 => self.result.done += 1,
-            _ => self.result.refused += 1,
-        }
-        laws::of_words(&ended, found);
         Some(ended)
     }
 
@@ -137,6 +143,9 @@ fn whole(case: &Case, scratch: &Path, runner: &mut Runner<'_>) {
     enter(case, &root);
     if case.kind == Kind::Render {
         return pictures::draw(case, &root, runner);
+    }
+    if case.kind == Kind::Session {
+        return sessions::work(case, &root, runner);
     }
     let input = with_root(&case.input, &root);
     let mut before = look(&root);

@@ -48,6 +48,10 @@ pub enum Law {
     Again,
     /// A result in another format has the same shape.
     SameShape,
+    /// A shape that the file does not have counts as unsaved.
+    Unsaved,
+    /// Whatever another program wrote, and a save replaces, is kept beside it, unless the person gave it up.
+    TheirsIsKept,
 }
 
 /// A law, and what broke it.

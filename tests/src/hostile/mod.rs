@@ -21,7 +21,9 @@ mod names;
 mod neighbours;
 mod pictures;
 mod projects;
+mod sessions;
 mod shapes;
+mod strangers;
 mod tree;
 
 pub use case::{Case, Kind, Size};

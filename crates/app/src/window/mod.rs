@@ -30,6 +30,17 @@ pub use application::Application;
 pub use files::app_directories::AppDirectories;
 pub use files::names::original_name;
 pub use files::session::{KeepOriginal, Source};
+
+/// Saves and projects apart from the window, for who drives them without one.
+pub mod saving {
+    pub use super::files::project_file::{OpenedProject, read as read_project};
+    pub use super::files::rest_mesh::{MeshSource, RestMesh};
+    pub use super::files::save_request::{
+        Changed, Content, KeepOriginal, Model, SaveRequest, Shape, Unwritten, Written, WrittenKind,
+    };
+    pub use super::files::writing::write;
+}
+
 pub use shell::{NumpadDigits, Shared, Shell};
 
 use files::settings::Settings;

@@ -14,4 +14,4 @@ pub(in crate::window) mod save_wish;
 pub(in crate::window) mod saves;
 pub(in crate::window) mod session;
 pub(in crate::window) mod settings;
-mod writing;
+pub(in crate::window) mod writing;

@@ -18,7 +18,11 @@ use pliant_engine::files::{self, Staged, Staging, Stamp};
 use pliant_engine::saving::{self, SaveAs};
 
 /// Writes the content. A save that was stopped in time has changed nothing.
-pub(super) fn write(request: SaveRequest, progress: &Progress, cancel: &Cancel) -> Result<Written, Unwritten> {
+///
+/// # Errors
+/// [`Unwritten::Changed`] if another program has changed a file that would be replaced, and [`Unwritten::Refused`] with
+/// a sentence otherwise; every file is as it was then.
+pub fn write(request: SaveRequest, progress: &Progress, cancel: &Cancel) -> Result<Written, Unwritten> {
     let name = file_name(&request.path);
     let stopped = || {
         let sentence = format!("Saving {name} was stopped: nothing was written. Save again when you like.");
