@@ -63,6 +63,29 @@ fn binary_files_are_told_by_their_length_even_when_they_begin_with_solid() {
 }
 
 #[test]
+fn bytes_behind_the_facets_are_kept_whatever_the_header_begins_with() {
+    for header in [b"solid facet".as_slice(), b"x"] {
+        let mut bytes = binary(header, 3);
+        bytes.extend(b"endsolid facet\n");
+        let opened = open(&bytes, Format::Stl);
+        assert_eq!(opened.drawn.triangles.len(), 3);
+        assert!(
+            opened.scene.notes()[0].contains("15 bytes behind"),
+            "{:?}",
+            opened.scene.notes()
+        );
+        let after = save(&opened, &moved(&opened, |corner| corner == 5, |p| p * 2.0));
+        assert_eq!(after[bytes.len() - 15..], bytes[bytes.len() - 15..]);
+    }
+    // A text is as long as it is.
+    let long = ASCII.to_owned() + &"\n".repeat(100_000);
+    assert_eq!(
+        open(long.as_bytes(), Format::Stl).drawn.triangles.len(),
+        open(ASCII.as_bytes(), Format::Stl).drawn.triangles.len()
+    );
+}
+
+#[test]
 fn a_wrong_count_is_refused_when_too_large_and_noted_when_too_small() {
     let mut bytes = binary(b"x", 3);
     bytes[80] = 4;

@@ -20,9 +20,13 @@ fn stored_count(bytes: &[u8]) -> Option<u64> {
     Some(u64::from(u32::from_le_bytes(count)))
 }
 
-/// Whether the length is exactly that of a binary file with its facet count.
-pub(super) fn has_exact_length(bytes: &[u8]) -> bool {
-    stored_count(bytes).is_some_and(|count| HEADER as u64 + count * FACET as u64 == bytes.len() as u64)
+/// Whether a file is binary whatever its first word is: its length is exactly that of its facet count, or its count has
+/// a byte that no text has, and the file all its facets.
+pub(super) fn is_certain(bytes: &[u8]) -> bool {
+    stored_count(bytes).is_some_and(|count| {
+        let (wanted, length) = (HEADER as u64 + count * FACET as u64, bytes.len() as u64);
+        wanted == length || wanted < length && bytes[80..HEADER].contains(&0)
+    })
 }
 
 /// The corners in order. Bytes after the facets are noted and kept.

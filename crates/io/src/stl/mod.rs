@@ -40,9 +40,8 @@ enum Layout {
 
 /// Reads an STL file of either kind.
 ///
-/// Some binary files begin with "solid", and an ascii file can have any length. So a file is binary if its length
-/// matches its facet count exactly; otherwise ascii if it begins with "solid"; otherwise binary with extra bytes after
-/// the facets.
+/// Some binary files begin with "solid", and an ascii file can have any length. So a file is binary if its facet count
+/// says so; otherwise ascii if it begins with "solid"; otherwise binary, too.
 pub(crate) fn read(source: &Source<'_>) -> Result<(Stored, Drawn), ReadError> {
     let bytes: &[u8] = source.bytes;
     let (mut notes, mut unread) = (Vec::new(), Vec::new());
@@ -50,7 +49,7 @@ pub(crate) fn read(source: &Source<'_>) -> Result<(Stored, Drawn), ReadError> {
         .trim_ascii_start()
         .get(..5)
         .is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
-    let (positions, layout) = if begins_as_ascii && !binary::has_exact_length(bytes) {
+    let (positions, layout) = if begins_as_ascii && !binary::is_certain(bytes) {
         let found = ascii::read(source)?;
         if found.solids > 1 {
             unread.push(format!("the division into {} solids", found.solids));
