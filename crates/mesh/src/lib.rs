@@ -53,7 +53,7 @@ pub use geodesics::{DistanceSearch, JOINT_RINGS, Joint, Shape, distances_along_s
 pub use geometry::{
     Bounds, Damage, Damaged, Distortion, Vector3, area_of_lengths, bounding_box, cotangents, edge_lengths, face_area,
     face_areas, face_gradient, face_normal, is_without_area, mean_curvatures, mixed_corner_areas, mixed_voronoi_areas,
-    vertex_normals,
+    point_in_words, vertex_normals,
 };
 pub use ids::{DrawnVertex, FileVertex, SurfaceVertex};
 pub use model::{Drawn, DrawnSet, Model, Object, Rounding, SurfaceOfFile, WeldOptions};

@@ -2,7 +2,7 @@
 //! triangles and edges are spoilt.
 
 use glam::DVec3;
-use pliant_mesh::{Damage, SelfIntersections};
+use pliant_mesh::{Damage, SelfIntersections, point_in_words};
 
 /// Where the present shape passes through itself and the file's did not, and what else came out badly.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -51,8 +51,8 @@ impl Intersections {
     /// Where the shape passes through itself, and what helps, in words; `None` if it does nowhere.
     pub fn sentence(&self) -> Option<String> {
         let remedy = "lower the strength, or move the handle back";
-        let [DVec3 { x, y, z }, _] = *self.places.first()?.segments.first()?;
-        let at = format!("at {x:.4} {y:.4} {z:.4}");
+        let [first, _] = *self.places.first()?.segments.first()?;
+        let at = format!("at {}", point_in_words(first));
         Some(match (self.places.len(), self.are_all) {
             (1, true) => format!("The shape passes through itself {at}: {remedy}."),
             (count, true) => format!("The shape passes through itself in {count} places, first {at}: {remedy}."),

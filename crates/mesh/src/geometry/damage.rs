@@ -50,11 +50,28 @@ impl Damaged {
         } else {
             (many, "the first at")
         };
-        let DVec3 { x, y, z } = place;
         Some(format!(
-            "{} {noun} ({first} {x:.4} {y:.4} {z:.4}) {predicate}",
-            self.count
+            "{} {noun} ({first} {}) {predicate}",
+            self.count,
+            point_in_words(place)
         ))
+    }
+}
+
+/// A point as sentences have it, to about four digits whatever the size of its mesh.
+///
+/// ```
+/// use glam::dvec3;
+/// use pliant_mesh::point_in_words;
+///
+/// assert_eq!(point_in_words(dvec3(1.0, -0.25, 30.0)), "1.0000 -0.2500 30.0000");
+/// assert_eq!(point_in_words(dvec3(1e-9, 0.0, -2.5e-8)), "1.000e-9 0.000e0 -2.500e-8");
+/// ```
+pub fn point_in_words(point: DVec3) -> String {
+    let DVec3 { x, y, z } = point;
+    match point.abs().max_element() {
+        0.0 | 0.01..1e6 => format!("{x:.4} {y:.4} {z:.4}"),
+        _ => format!("{x:.3e} {y:.3e} {z:.3e}"),
     }
 }
 

@@ -19,7 +19,7 @@ use rayon::prelude::*;
 pub(crate) use areas::signed_volume;
 pub use areas::{face_areas, mixed_corner_areas, mixed_voronoi_areas};
 pub use curvature::mean_curvatures;
-pub use damage::{Damage, Damaged};
+pub use damage::{Damage, Damaged, point_in_words};
 pub use distortion::Distortion;
 pub use gradient::face_gradient;
 pub use normals::vertex_normals;
