@@ -382,9 +382,19 @@ fn foreign_text_neither_steers_the_terminal_nor_fills_it() {
             ended.err.chars().count()
         );
     }
-    let endless = "--".to_owned() + &"x".repeat(1_000_000);
-    let ended = run(["apply", &endless]).refused(2, &["--help"]);
-    assert!(ended.err.chars().count() < 1200);
+    let endless = "x".repeat(1_000_000);
+    let flag = ["apply".to_owned(), format!("--{endless}")];
+    let weld = ["apply".to_owned(), "--weld".to_owned(), endless.clone()];
+    let ended = [run(flag), run(weld)].map(|ended| ended.refused(2, &["--help"]));
+    let option = format!("arap:{endless}=1");
+    let arguments = [
+        "apply", "a.off", "--edit", "e.json", "--output", "b.off", "--method", &option,
+    ];
+    let refused = run(arguments).refused(2, &["takes nothing", "`energy`"]);
+    for ended in ended.into_iter().chain([refused]) {
+        let length = ended.err.chars().count();
+        assert!(length < 750, "{length} characters");
+    }
 }
 
 #[test]

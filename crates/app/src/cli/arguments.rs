@@ -3,10 +3,11 @@
 use std::path::PathBuf;
 
 use clap::builder::{PossibleValuesParser, RangedU64ValueParser, TypedValueParser};
+use clap::error::ContextValue;
 use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 use pliant_deform::{ConstraintKind, METHODS};
 use pliant_editor::Clay;
-use pliant_io::MorphTarget;
+use pliant_io::{MorphTarget, quoted};
 use pliant_mesh::{Vectors, WeldOptions};
 
 use crate::version::VERSION;
@@ -443,23 +444,15 @@ fn methods_help() -> String {
     )
 }
 
-/// The most characters of a refusal: it quotes arguments whole, however long they are.
-const LONGEST_LINE: usize = 1000;
-
-fn shortened(line: &str) -> String {
-    let count = line.chars().count();
-    if count <= LONGEST_LINE {
-        return line.to_owned();
-    }
-    let mut out: String = line.chars().take(LONGEST_LINE - 200).collect();
-    out.push('…');
-    out.extend(line.chars().skip(count - 199));
-    out
-}
-
-/// A refusal of arguments as one line.
+/// A refusal of arguments as one line, in which arguments are as short as names are in other refusals.
 pub(crate) fn one_line(error: &clap::Error) -> String {
-    let text = error.render().to_string();
+    let mut text = error.render().to_string();
+    for (_, value) in error.context() {
+        if let ContextValue::String(argument) = value {
+            // The argument may be contained in another one, which then is as short already.
+            text = text.replace(argument, &quoted(argument));
+        }
+    }
     let mut line = String::new();
     for part in text
         .lines()
@@ -480,7 +473,7 @@ pub(crate) fn one_line(error: &clap::Error) -> String {
             line += part;
         }
     }
-    shortened(&line) + "; see `pliant --help`"
+    line + "; see `pliant --help`"
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Methods on the command line: `arap`, or `arap:energy=smooth` with some of its options set.
 
-use pliant_deform::{METHODS, Method, OptionKind, OptionValue};
+use pliant_deform::{METHODS, Method, OptionKind, OptionRefused, OptionValue};
 use pliant_io::quoted;
 
 use pliant_engine::EngineError;
@@ -35,7 +35,9 @@ pub(super) fn method_argument(option: &str, text: &str) -> Result<Method, Engine
         })?;
         values.push((key, value));
     }
-    method.with(values).map_err(|error| refuse(error.to_string()))
+    let refused =
+        |OptionRefused { option, allowed }| refuse(format!("the option `{}` takes {allowed}", quoted(&option)));
+    method.with(values).map_err(refused)
 }
 
 /// A value of this kind; `None` where the text is none.
