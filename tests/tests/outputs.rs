@@ -181,3 +181,21 @@ fn a_second_morph_target_needs_a_name_of_its_own() {
         .done();
     assert_eq!(pliant_tests::open(&second).scene.morph_targets(), ["Lean", "Lean more"]);
 }
+
+#[test]
+fn a_part_that_is_inside_out_is_turned_under_a_morph_target_too() {
+    let folder = Folder::new();
+    let mut drawn = shapes::icosphere(3);
+    drawn.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
+    let file = folder.write_mesh("ball.off", &drawn);
+    let mut edit = bend(&json!({ "translation": [0.0, 0.3, 0.1] }));
+    edit["inside_out"] = json!("all");
+    let (morphed, bent) = (folder.at("morphed.glb"), folder.at("bent.glb"));
+    folder.apply(&file, &edit, &morphed, &["--as-morph", "Lean"]).done();
+    folder.apply(&file, &edit, &bent, &[]).done();
+    let [morphed, bent] = [morphed, bent].map(|path| pliant_tests::open(&path).model);
+    assert!(morphed.inside_out.is_empty());
+    assert_eq!(morphed.drawn_triangles(), bent.drawn_triangles());
+    let apart = pliant_tests::largest_distance(&morphed.rest_positions(), &bent.rest_positions());
+    assert!(apart < 1e-6, "{apart}");
+}

@@ -156,6 +156,29 @@ fn a_file_is_known_by_whatever_path_it_is_opened_and_saved() {
 }
 
 #[test]
+fn beside_a_changed_file_a_free_name_is_offered() {
+    let folder = Folder::new();
+    let file = ball(&folder, "scan.off", 3);
+    ball(&folder, "scan-2.off", 1);
+    let Some(mut session) = open(&file) else { return };
+    edit(&mut session);
+    let theirs = format!("{}# theirs\n", fs::read_to_string(&file).unwrap());
+    fs::write(&file, &theirs).unwrap();
+    save(&mut session);
+    click(&mut session, "Save");
+    await_words(&mut session, "scan.off has changed");
+    click(&mut session, "Save beside…");
+    // There is no dialog of the system here, so the window shows its own.
+    await_words(&mut session, "Save the model as");
+    await_words(&mut session, "scan-2.off");
+    session.key(Key::Enter, Modifiers::NONE);
+    session.settle();
+    assert_eq!(fs::read_to_string(&file).unwrap(), theirs);
+    let model = pliant_tests::open(&folder.at("scan-3.off")).model;
+    assert!(model.rest_positions().iter().any(|p| p.y > 1.1));
+}
+
+#[test]
 fn what_another_program_has_written_is_not_lost_without_a_question() {
     let folder = Folder::new();
     let file = ball(&folder, "scan.off", 3);

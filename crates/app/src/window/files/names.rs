@@ -58,6 +58,21 @@ fn marked_name(path: &Path, mark: &str, number: usize) -> PathBuf {
     path.with_file_name(name)
 }
 
+/// A name beside `path` that is free: `NAME-2.EXT`, or the next number that is.
+pub fn free_name(path: &Path) -> PathBuf {
+    let numbered = (2..=MOST_ORIGINALS).map(|number| {
+        let mut name = path.file_stem().unwrap_or_default().to_owned();
+        name.push(format!("-{number}"));
+        if let Some(extension) = path.extension() {
+            name.push(".");
+            name.push(extension);
+        }
+        path.with_file_name(name)
+    });
+    let mut free = numbered.filter(|name| std::fs::symlink_metadata(name).is_err());
+    free.next().unwrap_or_else(|| path.to_owned())
+}
+
 /// Whether a path is that of a glTF whose buffers stand beside it.
 pub fn is_gltf(path: &Path) -> bool {
     path.extension()
@@ -91,6 +106,20 @@ pub fn saved_name(original: &Path) -> Option<PathBuf> {
 #[expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_free_name_is_that_of_no_file_and_of_no_link() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        assert_eq!(free_name(&at("a.b.ply")), at("a.b-2.ply"));
+        std::fs::write(at("a.b-2.ply"), "").unwrap();
+        #[cfg(unix)]
+        std::os::unix::fs::symlink("nowhere", at("a.b-3.ply")).unwrap();
+        #[cfg(not(unix))]
+        std::fs::write(at("a.b-3.ply"), "").unwrap();
+        assert_eq!(free_name(&at("a.b.ply")), at("a.b-4.ply"));
+        assert_eq!(free_name(&at("scan")), at("scan-2"));
+    }
 
     #[test]
     fn an_original_tells_the_file_that_it_was_kept_for() {

@@ -11,8 +11,9 @@ use super::save_request::{Changed, Content, Model, Shape, Unwritten, Written, Wr
 use super::save_wish::SaveWish;
 use super::session::{KeepOriginal, Source};
 use crate::window::application::Application;
+use crate::window::dialogs::file_dialog;
 use crate::window::dialogs::question::{ChangedOffer, Question, Then};
-use crate::window::files::names::file_name;
+use crate::window::files::names::{file_name, free_name};
 use crate::window::panels::notes::Note;
 use crate::window::threads::message::{Ground, PictureKind, Purpose};
 use pliant_engine::files::{is_same, shown};
@@ -257,7 +258,7 @@ impl Application {
     /// Asks for another name in place of that of the file which another program has changed.
     pub(in crate::window) fn save_beside(&mut self) {
         let Some(request) = self.unwritten.take() else { return };
-        self.choose(purpose(&request.content));
+        file_dialog::choose(purpose(&request.content), &free_name(&request.path), &self.workers);
     }
 
     fn project(&self) -> Option<PathBuf> {
