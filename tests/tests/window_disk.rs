@@ -171,6 +171,7 @@ fn beside_a_changed_file_a_free_name_is_offered() {
     // There is no dialog of the system here, so the window shows its own.
     await_words(&mut session, "Save the model as");
     await_words(&mut session, "scan-2.off");
+    session.harness.run_steps(4);
     session.key(Key::Enter, Modifiers::NONE);
     session.settle();
     assert_eq!(fs::read_to_string(&file).unwrap(), theirs);

@@ -67,6 +67,7 @@ pub fn choose(purpose: Purpose, suggested: &Path, workers: &Workers) {
         Asked::ToOpen => Box::pin(dialog.pick_file()),
         Asked::ToSave => Box::pin(dialog.set_file_name(file_name(suggested)).save_file()),
     };
+    let [missing, failed] = [suggested.to_owned(), suggested.to_owned()];
     workers.spawn(
         "dialog",
         move || {
@@ -74,10 +75,10 @@ pub fn choose(purpose: Purpose, suggested: &Path, workers: &Workers) {
             match file {
                 Some(file) => Message::Chosen(purpose, Some(file.path().to_owned())),
                 None if system_dialog::is_there() => Message::Chosen(purpose, None),
-                None => Message::NoDialog(purpose),
+                None => Message::NoDialog(purpose, missing),
             }
         },
-        move |_| Message::NoDialog(purpose),
+        move |_| Message::NoDialog(purpose, failed.clone()),
     );
 }
 

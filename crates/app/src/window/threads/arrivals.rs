@@ -81,7 +81,7 @@ impl Application {
                     }
                 }
                 Message::Chosen(purpose, path) => self.chosen(purpose, path),
-                Message::NoDialog(purpose) => self.browse(purpose, &self.suggested_path(purpose)),
+                Message::NoDialog(purpose, suggested) => self.browse(purpose, &suggested),
             }
         }
         is_news

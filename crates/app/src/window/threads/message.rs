@@ -45,8 +45,8 @@ pub enum Message {
     Folder(PathBuf, Result<Vec<Entry>, String>),
     /// A person chose a path in a dialog; `None` if they chose none.
     Chosen(Purpose, Option<PathBuf>),
-    /// The system has no dialog to ask for a path.
-    NoDialog(Purpose),
+    /// The system has no dialog to ask for a path, which was to begin at this one.
+    NoDialog(Purpose, PathBuf),
 }
 
 /// A file in another drawing.
