@@ -19,14 +19,27 @@ pub fn methods(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
 fn described<'py>(py: Python<'py>, declaration: &MethodDeclaration) -> PyResult<Bound<'py, PyDict>> {
     let method = (declaration.default)();
     let options = PyDict::new(py);
+    let first_choice = (declaration.first_choice)();
     for option in declaration.options {
         let own = PyDict::new(py);
-        match method.value(option.name) {
-            Some(OptionValue::Number(number)) => own.set_item("default", number)?,
-            Some(OptionValue::Whole(number)) => own.set_item("default", number)?,
-            Some(OptionValue::Name(name)) => own.set_item("default", name)?,
-            Some(OptionValue::Switch(on)) => own.set_item("default", on)?,
-            None => {}
+        for (name, method) in [("default", &method), ("first_choice", &first_choice)] {
+            match method.value(option.name) {
+                Some(OptionValue::Number(number)) => own.set_item(name, number)?,
+                Some(OptionValue::Whole(number)) => own.set_item(name, number)?,
+                Some(OptionValue::Name(value)) => own.set_item(name, value)?,
+                Some(OptionValue::Switch(on)) => own.set_item(name, on)?,
+                None => {}
+            }
+        }
+        match option.kind {
+            OptionKind::Number { range, .. } => own.set_item("range", range)?,
+            OptionKind::Whole { range } => own.set_item("range", range)?,
+            OptionKind::Numbered { choices } => {
+                let numbers: Vec<u32> = choices.iter().map(|(number, _)| *number).collect();
+                own.set_item("choices", numbers)?;
+            }
+            OptionKind::Named { choices } => own.set_item("choices", choices)?,
+            OptionKind::Switch => {}
         }
         own.set_item("allowed", option.kind.allowed())?;
         let unit = match option.kind {

@@ -54,4 +54,14 @@ def test_methods_tell_their_options():
     for method in pliant.methods().values():
         assert method["title"] and method["when_to_use"]
         for option in method["options"].values():
-            assert set(option) == {"default", "allowed", "unit", "help"}
+            assert set(option) - {"range", "choices"} == {"default", "first_choice", "allowed", "unit", "help"}
+            for value in (option["default"], option["first_choice"]):
+                if "range" in option:
+                    low, high = option["range"]
+                    assert low <= value <= high
+                elif "choices" in option:
+                    assert value in option["choices"]
+                else:
+                    assert isinstance(value, bool)
+    assert arap["options"]["energy"]["choices"] == ["spokes", "spokes-and-rims", "smooth"]
+    assert arap["options"]["energy"]["first_choice"] == "smooth"

@@ -62,8 +62,19 @@ is not named is at rest. The only handle's may stand alone."""
 
 Out = TypeVar("Out", npt.NDArray[np.float64], npt.NDArray[np.float32])
 
-class OptionInfo(TypedDict):
+class OptionValues(TypedDict, total=False):
+    """What an option takes: a number within `range`, or one of `choices`; a switch has neither."""
+
+    range: list[float]
+    choices: Union[list[str], list[int]]
+
+class OptionInfo(OptionValues):
+    """An option of a method."""
+
     default: Union[float, int, str, bool]
+    """Its value where nothing is said."""
+    first_choice: Union[float, int, str, bool]
+    """Its value where a person chooses the method in Pliant's window."""
     allowed: str
     unit: str
     help: str
