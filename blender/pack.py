@@ -6,13 +6,34 @@ import zipfile
 from pathlib import Path
 
 
+# The system and the processor that a wheel's name ends with, and what Blender calls them.
+PLATFORMS = {
+    ("linux", "x86_64"): "linux-x64",
+    ("linux", "aarch64"): "linux-arm64",
+    ("macosx", "arm64"): "macos-arm64",
+    ("macosx", "x86_64"): "macos-x64",
+    ("win", "amd64"): "windows-x64",
+    ("win", "arm64"): "windows-arm64",
+}
+
+
+def platform(wheel):
+    """The platform of a wheel, in Blender's words."""
+    tag = wheel.stem.rsplit("-", 1)[1]
+    for (system, processor), name in PLATFORMS.items():
+        if re.match(rf"(many)?{system}", tag) and tag.endswith(processor):
+            return name
+    raise SystemExit(f"{wheel.name} is for {tag}, which Blender does not run on: build the wheel for another platform")
+
+
 def pack(wheel, folder):
     """The path of the archive. Equal files give equal bytes."""
     source = Path(__file__).parent / "addon"
     manifest = (source / "blender_manifest.toml").read_text()
     version = re.search(r'^version = "(.*)"', manifest, re.MULTILINE)[1]
     manifest = re.sub(r"^wheels = \[.*\]", f'wheels = ["./wheels/{wheel.name}"]', manifest, flags=re.MULTILINE)
-    files = {f"{path.name}": path.read_bytes() for path in source.glob("*.py")}
+    manifest = re.sub(r"^platforms = \[.*\]", f'platforms = ["{platform(wheel)}"]', manifest, flags=re.MULTILINE)
+    files = {path.name: path.read_bytes() for path in [*source.glob("*.py"), source / "LICENSE"]}
     files["blender_manifest.toml"] = manifest.encode()
     files[f"wheels/{wheel.name}"] = wheel.read_bytes()
     archive = folder / f"pliant-blender-{version}.zip"

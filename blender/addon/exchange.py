@@ -12,7 +12,7 @@ import bpy
 import numpy as np
 import pliant
 
-from . import live
+from . import live, shape_keys
 from .preferences import program
 from .settings import Refused, method_of, parts_of
 
@@ -23,10 +23,10 @@ opened = {}
 
 
 def write(obj, path):
-    """The mesh as a PLY file: its vertices in their order, and its polygons."""
-    mesh = obj.data
-    vertices = np.empty((len(mesh.vertices), 3), np.float32)
-    mesh.vertices.foreach_get("co", vertices.ravel())
+    """The mesh as a PLY file: its vertices in their order, where they rest if it is bent live and else where they are
+    seen, and its polygons."""
+    mesh, session = obj.data, live.session_of(obj)
+    vertices = session.others if session else shape_keys.seen(obj)
     header = (
         "ply\nformat binary_little_endian 1.0\ncomment written by Pliant's add-on for Blender\n"
         f"element vertex {len(vertices)}\nproperty float x\nproperty float y\nproperty float z\n"
@@ -77,23 +77,25 @@ def open_window(obj, depsgraph):
     return file
 
 
-def take_back(obj):
+def import_shape(obj):
     """Puts the saved shape into a shape key, and returns its name."""
     if obj.session_uid not in opened:
         raise Refused(f"{obj.name} is not open in Pliant's window: open it first")
+    if live.session_of(obj) is not None:
+        raise Refused(f"{obj.name} is bent live: bake or discard that first")
     file, written, _ = opened[obj.session_uid]
     if not file.is_file() or file.stat().st_mtime_ns == written:
-        raise Refused("Nothing was saved in Pliant's window yet: save there with Ctrl-S, then take the shape back")
+        raise Refused("Nothing was saved in Pliant's window yet: save there with Ctrl-S, then import the shape")
     shape = pliant.load(file).vertices.astype(np.float32)
     if len(shape) != len(obj.data.vertices):
         raise Refused(
             f"{obj.name} has {len(obj.data.vertices)} vertices and the saved file {len(shape)}: "
             "undo what changed the mesh since it was opened"
         )
-    if obj.data.shape_keys is None:
-        obj.shape_key_add(name="Basis", from_mix=False)
-    key = obj.data.shape_keys.key_blocks.get(KEY) or obj.shape_key_add(name=KEY, from_mix=False)
-    key.data.foreach_set("co", shape.ravel())
-    key.value = 1.0
+    others = shape_keys.seen(obj, without=KEY)
+    keys = obj.data.shape_keys
+    key = (keys and keys.key_blocks.get(KEY)) or shape_keys.add(obj, KEY)
+    key.value, key.mute = 1.0, False
+    shape_keys.write(obj, key.name, shape, others)
     obj.data.update()
     return key.name

@@ -1,13 +1,16 @@
-"""Live bending: one session an object, which lasts until it is baked or given up."""
+"""Live bending: one session an object, which lasts until it is baked or discarded. What a session needs beside the mesh
+is kept with the object, so that one goes on when its file is opened again."""
 
+import json
 import time
 
 import bpy
 import numpy as np
 import pliant
 from bpy.app.handlers import persistent
+from mathutils import Matrix
 
-from . import targets
+from . import shape_keys, targets
 from .settings import Refused, method_of, region_of
 
 KEY = "Pliant"
@@ -21,34 +24,55 @@ FRAME = 0.03
 # By the objects' session numbers: names change, and pointers move.
 sessions = {}
 
+# What the panel tells of an object, by the same numbers: why a session has ended, or why it waits.
+notices = {}
+
 
 class Session:
     """A bound mesh, and the shape key that it writes to."""
 
     def __init__(self, obj):
-        if obj.type != "MESH" or obj.mode != "OBJECT":
-            raise Refused(f"{obj.name} is no mesh in object mode: select one, and press Tab to leave edit mode")
+        """Begins to bend an object from where it is seen."""
+        check(obj)
+        others = shape_keys.seen(obj)
+        for handle in obj.pliant.handles:
+            handle.rest_place = [number for row in targets.rest(handle) for number in row]
+        self.bind(obj, others)
+        self.key_name = shape_keys.add(obj, KEY).name
+        # What moved the mesh so far would move it twice.
+        hidden = {own.name: (own.show_viewport, own.show_render) for own in obj.modifiers if own.type in MOVERS}
+        obj.pliant.live_key, obj.pliant.hidden = self.key_name, json.dumps(hidden)
+        show(obj, {name: (False, False) for name in hidden})
+        self.write()
+
+    @classmethod
+    def resumed(cls, obj):
+        """Goes on with what an object was bent by when its file was saved."""
+        check(obj)
+        session = cls.__new__(cls)
+        keys = obj.data.shape_keys
+        if keys is None or obj.pliant.live_key not in keys.key_blocks:
+            raise Refused(f"{obj.name} has no shape key \"{obj.pliant.live_key}\", by which it was bent live")
+        session.bind(obj, shape_keys.seen(obj, without=obj.pliant.live_key))
+        session.key_name = obj.pliant.live_key
+        return session
+
+    def bind(self, obj, others):
+        """Binds the mesh as the other shape keys have it."""
         mesh = obj.data
-        self.number, self.name = obj.session_uid, obj.name
-        self.rest = np.empty((len(mesh.vertices), 3), np.float32)
-        mesh.vertices.foreach_get("co", self.rest.ravel())
+        self.number, self.name, self.others = obj.session_uid, obj.name, others
         mesh.calc_loop_triangles()
         corners = np.empty((len(mesh.loop_triangles), 3), np.int32)
         mesh.loop_triangles.foreach_get("vertices", corners.ravel())
-        self.places = {handle.group: targets.rest(handle) for handle in obj.pliant.handles}
-        self.bound = pliant.bind(self.rest, corners, method=method_of(obj.pliant), **region_of(obj))
-        self.shape = self.rest.copy()
+        self.places = {handle.group: place_of(handle) for handle in obj.pliant.handles}
+        self.bound = pliant.bind(others, corners, method=method_of(obj.pliant), **region_of(obj))
+        self.shape = others.copy()
+        self.counts = counts(mesh)
         self.seen = None
         self.is_settled = True
+        # Whether the shape depends on the frames that were played before.
+        self.is_played = False
         self.milliseconds = 0.0
-        if mesh.shape_keys is None:
-            obj.shape_key_add(name="Basis", from_mix=False)
-        key = obj.shape_key_add(name=KEY, from_mix=False)
-        key.value = 1.0
-        self.key_name = key.name
-        # What moved the mesh so far would move it twice.
-        self.muted = {own.name: (own.show_viewport, own.show_render) for own in obj.modifiers if own.type in MOVERS}
-        self.show(obj, {name: (False, False) for name in self.muted})
 
     @property
     def object(self):
@@ -61,12 +85,12 @@ class Session:
             self.name = obj.name
         return obj
 
-    @staticmethod
-    def show(obj, modifiers):
-        """Sets where modifiers are shown, by their names."""
-        for name, (in_viewport, in_render) in modifiers.items():
-            if name in obj.modifiers:
-                obj.modifiers[name].show_viewport, obj.modifiers[name].show_render = in_viewport, in_render
+    def check(self):
+        """Refuses to go on with a mesh that is edited, or was."""
+        obj = self.object
+        if obj.mode == "EDIT" or counts(obj.data) != self.counts:
+            raise Refused(f"{obj.name} was edited while it was bent live, which has ended with the shape as it was then: "
+                          "press Bend Live to go on from there")
 
     def transforms(self, depsgraph):
         """How each handle moves, in the object's own coordinates."""
@@ -80,6 +104,7 @@ class Session:
 
     def follow(self, depsgraph):
         """Takes the shape a frame further towards where the targets are. Whether it has changed."""
+        self.check()
         moved = self.transforms(depsgraph)
         is_new = self.seen is None or any(not np.array_equal(moved[name], self.seen.get(name)) for name in moved)
         if self.is_settled and not is_new:
@@ -96,30 +121,51 @@ class Session:
         return True
 
     def settle(self, depsgraph):
-        """Takes the shape all the way to where the targets are."""
+        """Takes the shape all the way to where the targets are, from where it is."""
+        self.check()
         self.seen = self.transforms(depsgraph)
         self.bound.step(self.seen, out=self.shape)
         self.is_settled = True
         self.write()
 
+    def settle_from_rest(self, depsgraph):
+        """The same from rest, so that a frame's shape does not depend on the frames before it."""
+        self.check()
+        # Handles that are not named are at rest.
+        self.bound.step({}, iterations=1)
+        self.settle(depsgraph)
+        self.is_played = False
+
     def write(self):
         """Puts the shape into the shape key."""
-        mesh = self.object.data
-        mesh.shape_keys.key_blocks[self.key_name].data.foreach_set("co", self.shape.ravel())
-        mesh.update_tag()
+        shape_keys.write(self.object, self.key_name, self.shape, self.others)
 
-    def end(self, keep):
-        """Leaves the object without the session: with its shape, or as it was."""
-        obj = self.object
-        key = obj.data.shape_keys and obj.data.shape_keys.key_blocks.get(self.key_name)
-        if not keep:
-            if key is not None:
-                obj.shape_key_remove(key)
-            blocks = obj.data.shape_keys and obj.data.shape_keys.key_blocks
-            if blocks and len(blocks) == 1:
-                obj.shape_key_clear()
-            self.show(obj, self.muted)
-        obj.data.update()
+
+def check(obj):
+    """Refuses what can't be bent."""
+    if obj.type != "MESH" or obj.mode != "OBJECT":
+        raise Refused(f"{obj.name} is no mesh in object mode: select one, and press Tab to leave edit mode")
+    if obj.data.users > 1:
+        raise Refused(f"{obj.name} shares its mesh with other objects: choose Object, Relations, Make Single User, "
+                      "Object & Data first")
+
+
+def counts(mesh):
+    """What an edit of a mesh changes."""
+    return len(mesh.vertices), len(mesh.edges), len(mesh.loops), len(mesh.polygons)
+
+
+def place_of(handle):
+    """The world matrix of a handle's target when the mesh began to be bent."""
+    numbers = list(handle.rest_place)
+    return Matrix([numbers[4 * row : 4 * row + 4] for row in range(4)])
+
+
+def show(obj, modifiers):
+    """Sets where modifiers are shown, by their names."""
+    for name, (in_viewport, in_render) in modifiers.items():
+        if name in obj.modifiers:
+            obj.modifiers[name].show_viewport, obj.modifiers[name].show_render = in_viewport, in_render
 
 
 def session_of(obj):
@@ -130,53 +176,133 @@ def session_of(obj):
 def begin(obj):
     """Binds an object and follows its targets from now on."""
     if session_of(obj) is not None:
-        raise Refused(f"{obj.name} is bent live already: bake it or give it up first")
-    sessions[obj.session_uid] = Session(obj)
+        raise Refused(f"{obj.name} is bent live already: bake or discard that first")
+    return take(obj, Session(obj))
+
+
+def take(obj, session):
+    """Makes a session the object's."""
+    sessions[obj.session_uid] = session
+    notices.pop(obj.session_uid, None)
     if not bpy.app.timers.is_registered(settle_further):
         bpy.app.timers.register(settle_further, first_interval=FRAME)
-    return sessions[obj.session_uid]
+    return session
 
 
 def end(obj, keep):
-    """Ends the session of an object."""
-    sessions.pop(obj.session_uid).end(keep)
+    """Ends the session of an object: it keeps its shape, or is as it was before."""
+    sessions.pop(obj.session_uid, None)
+    notices.pop(obj.session_uid, None)
+    settings = obj.pliant
+    if not keep:
+        shape_keys.remove(obj, settings.live_key)
+        show(obj, json.loads(settings.hidden or "{}"))
+    settings.live_key = settings.hidden = ""
+    obj.data.update()
     if not sessions:
         stop_settling()
 
 
-def follow_all(depsgraph):
-    """Has every session follow its targets; one whose object or handle is gone ends. Whether a shape has changed."""
+def each(act):
+    """Has every session act; one that can't go on ends. Whether a shape has changed."""
     has_changed = False
     for number, session in list(sessions.items()):
         try:
-            has_changed |= session.follow(depsgraph)
-        except (ReferenceError, KeyError, AttributeError, Refused):
-            del sessions[number]
+            if session.object.pliant.live_key != session.key_name:
+                # Its beginning was undone.
+                del sessions[number]
+                continue
+            has_changed |= bool(act(session))
+            notices.pop(number, None)
+        except Refused as refusal:
+            stop(number, session, str(refusal))
+        except (ReferenceError, KeyError, AttributeError):
+            stop(number, session, f"{session.name} has lost its shape key or a handle, so it is bent no longer")
         except ValueError as error:
             # A target that is scaled to nothing, for example: the shape waits for a better one.
-            print(f"Pliant: {error}")
+            notices[number] = str(error)
     return has_changed
+
+
+def stop(number, session, why):
+    """Ends a session that can't go on, and says why."""
+    sessions.pop(number, None)
+    try:
+        end(session.object, keep=True)
+    except (Refused, ReferenceError):
+        pass
+    notices[number] = why
+
+
+def resume():
+    """Goes on with the objects that were bent live when their file was saved; one where that can't be is as it was
+    before."""
+    for obj in bpy.data.objects:
+        if obj.library is not None or not obj.pliant.live_key or session_of(obj) is not None:
+            continue
+        try:
+            take(obj, Session.resumed(obj))
+        except (Refused, ValueError) as refusal:
+            end(obj, keep=False)
+            notices[obj.session_uid] = f"Bending can't go on as when the file was saved, and was discarded: {refusal}"
+
+
+def is_playing():
+    """Whether frames follow each other on the screen, where a late one does more harm than an unsettled one."""
+    screen = getattr(bpy.context, "screen", None)
+    return screen is not None and screen.is_animation_playing and not bpy.app.is_job_running("RENDER")
 
 
 @persistent
 def targets_may_have_moved(_scene, depsgraph=None):
     if sessions:
-        follow_all(depsgraph or bpy.context.evaluated_depsgraph_get())
+        depsgraph = depsgraph or bpy.context.evaluated_depsgraph_get()
+        each(lambda session: session.follow(depsgraph))
+
+
+@persistent
+def frame_has_changed(_scene, depsgraph=None):
+    if not sessions:
+        return
+    depsgraph = depsgraph or bpy.context.evaluated_depsgraph_get()
+
+    def play(session):
+        session.is_played = True
+        return session.follow(depsgraph)
+
+    each(play if is_playing() else lambda session: session.settle_from_rest(depsgraph))
+
+
+@persistent
+def file_is_to_be_saved(_file):
+    if any(not session.is_settled for session in sessions.values()):
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        each(lambda session: session.settle(depsgraph))
+
+
+@persistent
+def another_file_is_to_be_loaded(_file):
+    sessions.clear()
+    notices.clear()
+    # Blender drops its timers with the old file, and crashes at its end if one of them was Python's.
+    stop_settling()
 
 
 @persistent
 def another_file_is_loaded(_file):
-    sessions.clear()
-    # Blender drops its timers with the old file, and crashes at its end if one of them was Python's.
-    stop_settling()
+    resume()
 
 
 def settle_further():
     """Goes on with shapes that have not converged, while nothing moves."""
     if not sessions:
         return None
-    if any(not session.is_settled for session in sessions.values()):
-        follow_all(bpy.context.evaluated_depsgraph_get())
+    if not is_playing():
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        if any(session.is_played for session in sessions.values()):
+            each(lambda session: session.is_played and session.settle_from_rest(depsgraph))
+        elif any(not session.is_settled for session in sessions.values()):
+            each(lambda session: session.follow(depsgraph))
     return FRAME
 
 
@@ -188,8 +314,10 @@ def stop_settling():
 
 LISTENERS = [
     (bpy.app.handlers.depsgraph_update_post, targets_may_have_moved),
-    (bpy.app.handlers.frame_change_post, targets_may_have_moved),
-    (bpy.app.handlers.load_pre, another_file_is_loaded),
+    (bpy.app.handlers.frame_change_post, frame_has_changed),
+    (bpy.app.handlers.save_pre, file_is_to_be_saved),
+    (bpy.app.handlers.load_pre, another_file_is_to_be_loaded),
+    (bpy.app.handlers.load_post, another_file_is_loaded),
 ]
 
 
@@ -201,10 +329,11 @@ def listen():
 def stop_listening():
     for session in list(sessions.values()):
         try:
-            session.end(keep=True)
+            end(session.object, keep=True)
         except Refused:
             pass
     sessions.clear()
+    notices.clear()
     for handlers, listener in LISTENERS:
         if listener in handlers:
             handlers.remove(listener)

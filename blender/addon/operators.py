@@ -1,10 +1,14 @@
 """What a person can do: each is one operator, whose refusals are shown where Blender shows them."""
 
 import bpy
-from bpy.props import EnumProperty
+from bpy.props import EnumProperty, IntProperty, StringProperty
 
-from . import exchange, live
+from . import exchange, frames, live
 from .settings import Refused
+
+
+# Since 4.5 Blender asks which paths may begin at its own file.
+BESIDE_THE_FILE = {"PATH_SUPPORTS_BLEND_RELATIVE"} if bpy.app.version >= (4, 5) else set()
 
 
 class PliantOperator:
@@ -113,11 +117,50 @@ class PLIANT_OT_bake(PliantOperator, bpy.types.Operator):
         live.end(obj, keep=True)
 
 
-class PLIANT_OT_cancel(PliantOperator, bpy.types.Operator):
+class PLIANT_OT_bake_frames(PliantOperator, bpy.types.Operator):
+    """Keeps the settled shape of each frame of a range, and ends bending"""
+
+    bl_idname = "pliant.bake_frames"
+    bl_label = "Bake Frames"
+
+    first: IntProperty(name="Start", description="The first frame", default=1)
+    last: IntProperty(name="End", description="The last frame", default=250)
+    into: EnumProperty(
+        name="To",
+        items=[
+            ("KEYS", "Shape Keys", "One shape key for each frame, with its value animated"),
+            ("CACHE", "Point Cache", "A PC2 file, which a Mesh Cache modifier plays"),
+        ],
+    )
+    filepath: StringProperty(
+        name="File", description="The PC2 file", subtype="FILE_PATH", default="//pliant.pc2", options=BESIDE_THE_FILE
+    )
+
+    @classmethod
+    def poll(cls, context):
+        return live.session_of(context.object) is not None
+
+    def invoke(self, context, _event):
+        self.first, self.last = context.scene.frame_start, context.scene.frame_end
+        self.filepath = f"//{bpy.path.clean_name(context.object.name)}.pc2"
+        return context.window_manager.invoke_props_dialog(self)
+
+    def act(self, _context, obj):
+        if self.last < self.first:
+            raise Refused(f"Frame {self.last} comes before frame {self.first}: choose a later end")
+        if self.into == "KEYS":
+            frames.to_keys(obj, self.first, self.last)
+            return
+        if self.filepath.startswith("//") and not bpy.data.filepath:
+            raise Refused("The file is to stand beside a .blend file that is not saved yet: save that first")
+        frames.to_cache(obj, self.first, self.last, self.filepath)
+
+
+class PLIANT_OT_discard(PliantOperator, bpy.types.Operator):
     """Ends bending and leaves the mesh as it was"""
 
-    bl_idname = "pliant.cancel"
-    bl_label = "Give Up"
+    bl_idname = "pliant.discard"
+    bl_label = "Discard"
 
     @classmethod
     def poll(cls, context):
@@ -128,7 +171,7 @@ class PLIANT_OT_cancel(PliantOperator, bpy.types.Operator):
 
 
 class PLIANT_OT_open_window(PliantOperator, bpy.types.Operator):
-    """Opens the mesh with its handles in Pliant's window. Save it there, then take the shape back"""
+    """Opens the mesh with its handles in Pliant's window. Save it there, then import the shape"""
 
     bl_idname = "pliant.open_window"
     bl_label = "Open in Pliant"
@@ -136,17 +179,17 @@ class PLIANT_OT_open_window(PliantOperator, bpy.types.Operator):
 
     def act(self, context, obj):
         file = exchange.open_window(obj, context.evaluated_depsgraph_get())
-        self.report({"INFO"}, f"Opened {file.name}: save it in Pliant, then take the shape back")
+        self.report({"INFO"}, f"Opened {file.name}: save it in Pliant, then import the shape")
 
 
-class PLIANT_OT_take_back(PliantOperator, bpy.types.Operator):
-    """Takes what was saved in Pliant's window as a shape key, vertex by vertex"""
+class PLIANT_OT_import_shape(PliantOperator, bpy.types.Operator):
+    """Imports what was saved in Pliant's window as a shape key, vertex by vertex"""
 
-    bl_idname = "pliant.take_back"
-    bl_label = "Take Shape Back"
+    bl_idname = "pliant.import_shape"
+    bl_label = "Import Shape"
 
     def act(self, _context, obj):
-        exchange.take_back(obj)
+        exchange.import_shape(obj)
 
 
 CLASSES = [
@@ -155,7 +198,8 @@ CLASSES = [
     PLIANT_OT_find_handles,
     PLIANT_OT_begin,
     PLIANT_OT_bake,
-    PLIANT_OT_cancel,
+    PLIANT_OT_bake_frames,
+    PLIANT_OT_discard,
     PLIANT_OT_open_window,
-    PLIANT_OT_take_back,
+    PLIANT_OT_import_shape,
 ]

@@ -1,8 +1,11 @@
 """The panel in the sidebar of the 3D view."""
 
+import textwrap
+
 import bpy
 
 from . import live
+from .settings import DECLARED, member
 
 
 class PLIANT_UL_handles(bpy.types.UIList):
@@ -27,10 +30,21 @@ class PLIANT_PT_bend(bpy.types.Panel):
         obj, layout = context.object, self.layout
         settings = obj.pliant
         session = live.session_of(obj)
+        notice = live.notices.get(obj.session_uid)
+        if notice:
+            box = layout.column()
+            box.alert = True
+            for line in textwrap.wrap(notice, 40):
+                box.label(text=line)
+        layout.use_property_split = True
         what = layout.column()
         what.enabled = session is None
         what.prop(settings, "method")
-        what.prop(settings, "options")
+        options = getattr(settings, member(settings.method), None)
+        if options is not None:
+            column = what.column(align=True)
+            for option in DECLARED[settings.method]["options"]:
+                column.prop(options, option)
         row = what.row()
         row.template_list("PLIANT_UL_handles", "", settings, "handles", settings, "active_handle", rows=3)
         buttons = row.column(align=True)
@@ -42,9 +56,10 @@ class PLIANT_PT_bend(bpy.types.Panel):
             what.prop(handle, "target")
             if handle.target and handle.target.type == "ARMATURE":
                 what.prop_search(handle, "bone", handle.target.data, "bones")
-            row = what.row()
-            row.prop(handle, "is_soft")
-            row.prop(handle, "weight")
+            what.prop(handle, "is_soft")
+            weight = what.column()
+            weight.enabled = handle.is_soft
+            weight.prop(handle, "weight")
         row = what.row(align=True)
         row.operator("pliant.find_handles", text="From Hooks").source = "HOOK"
         row.operator("pliant.find_handles", text="From Bones").source = "ARMATURE"
@@ -59,10 +74,11 @@ class PLIANT_PT_bend(bpy.types.Panel):
             layout.label(text=f"{session.milliseconds:.0f} ms a frame, {state}")
             row = layout.row(align=True)
             row.operator("pliant.bake", icon="CHECKMARK")
-            row.operator("pliant.cancel", icon="X")
+            row.operator("pliant.discard", icon="X")
+            layout.operator("pliant.bake_frames", icon="RENDER_ANIMATION")
         row = layout.row(align=True)
         row.operator("pliant.open_window", icon="WINDOW")
-        row.operator("pliant.take_back", icon="LOOP_BACK")
+        row.operator("pliant.import_shape", icon="IMPORT")
 
 
 CLASSES = [PLIANT_UL_handles, PLIANT_PT_bend]

@@ -1,7 +1,5 @@
 """What is kept with each object: the method, the handles and what else an edit has."""
 
-import json
-
 import bpy
 import numpy as np
 import pliant
@@ -10,13 +8,54 @@ from bpy.props import (
     CollectionProperty,
     EnumProperty,
     FloatProperty,
+    FloatVectorProperty,
     IntProperty,
     PointerProperty,
     StringProperty,
 )
 
+DECLARED = pliant.methods()
+
 # Blender needs the strings of an enumeration to live as long as it.
-METHODS = [(name, own["title"], own["when_to_use"]) for name, own in pliant.methods().items()]
+METHODS = [(name, own["title"], own["when_to_use"]) for name, own in DECLARED.items()]
+
+
+def property_of(name, option):
+    """A field of Blender for an option, as the engine declares it. It begins as in Pliant's window."""
+    words = {"name": name.replace("_", " ").title(), "description": sentence(option)}
+    first = option["first_choice"]
+    if "choices" in option:
+        items = [(str(own), str(own).replace("-", " ").title(), "") for own in option["choices"]]
+        return EnumProperty(items=items, default=str(first), **words)
+    if isinstance(first, bool):
+        return BoolProperty(default=first, **words)
+    low, high = option["range"]
+    if isinstance(first, int):
+        return IntProperty(default=first, min=int(low), max=int(high), **words)
+    return FloatProperty(default=first, min=low, max=high, precision=4, **words)
+
+
+def sentence(option):
+    """What an option does and takes, as Blender's tooltips are written: a capital first, no full stop."""
+    help = option["help"][:1].upper() + option["help"][1:]
+    return f"{help}. It is {option['allowed']} {option['unit']}".rstrip()
+
+
+def member(method):
+    """The name of the settings' member with the options of a method."""
+    return "options_" + method.replace("-", "_")
+
+
+# The options of each method that has some, as a group of properties.
+OPTIONS = {
+    method: type(
+        "PliantOptions_" + method.replace("-", "_"),
+        (bpy.types.PropertyGroup,),
+        {"__annotations__": {name: property_of(name, option) for name, option in own["options"].items()}},
+    )
+    for method, own in DECLARED.items()
+    if own["options"]
+}
 
 
 class PliantHandle(bpy.types.PropertyGroup):
@@ -31,27 +70,35 @@ class PliantHandle(bpy.types.PropertyGroup):
     weight: FloatProperty(
         name="Weight", description="How firmly a soft handle pulls", default=1.0, min=1e-6, max=1e6, soft_max=100.0
     )
+    # Where the target was when the mesh began to be bent live, row by row.
+    rest_place: FloatVectorProperty(size=16, options={"HIDDEN"})
 
 
 class PliantSettings(bpy.types.PropertyGroup):
     """How an object is bent."""
 
     method: EnumProperty(name="Method", description="How the surface follows its handles", items=METHODS, default="arap")
-    options: StringProperty(
-        name="Options",
-        description='The method\'s options as in the edit format, e.g. "energy": "smooth", "smoothness": 0.1',
-        default="",
-    )
     handles: CollectionProperty(type=PliantHandle)
     active_handle: IntProperty()
     fixed: StringProperty(name="Fixed", description="The vertex group that is held still")
     stiffness: StringProperty(name="Stiffness", description="The vertex group whose weights stiffen the surface")
     stiffest: FloatProperty(
-        name="Stiffest", description="The stiffness at the weight 1; it is 1 at the weight 0", default=10.0, min=0.001, max=1000.0
+        name="Maximum",
+        description="The stiffness at the weight 1; it is 1 at the weight 0",
+        default=10.0,
+        min=0.001,
+        max=1000.0,
     )
+    # The shape key that the mesh is bent by live, and the modifiers that are hidden meanwhile, as JSON: kept with the
+    # file, which may be saved in between.
+    live_key: StringProperty(options={"HIDDEN"})
+    hidden: StringProperty(options={"HIDDEN"})
 
 
-CLASSES = [PliantHandle, PliantSettings]
+for method, options in OPTIONS.items():
+    PliantSettings.__annotations__[member(method)] = PointerProperty(type=options)
+
+CLASSES = [*OPTIONS.values(), PliantHandle, PliantSettings]
 
 
 class Refused(Exception):
@@ -60,28 +107,38 @@ class Refused(Exception):
 
 def method_of(settings):
     """The method and its options, as `pliant.bind` takes them."""
-    try:
-        options = json.loads("{" + settings.options + "}")
-    except ValueError as error:
-        raise Refused(f"The options can't be read ({error}): write them as \"energy\": \"smooth\"") from error
-    return {"name": settings.method, **options}
+    method = {"name": settings.method}
+    for name, option in DECLARED[settings.method]["options"].items():
+        value, default = getattr(getattr(settings, member(settings.method)), name), option["default"]
+        if "choices" in option:
+            value = type(default)(value)
+        # Blender's numbers are single, so a default would not come back to the last digit.
+        if value != (np.float32(default) if isinstance(default, float) else default):
+            method[name] = value
+    return method
 
 
-def group_of(obj, name, what):
-    """The weight of each vertex in a vertex group."""
+def index_of(obj, name, what):
+    """The index of a vertex group."""
     group = obj.vertex_groups.get(name)
     if group is None:
         raise Refused(f"{obj.name} has no vertex group \"{name}\", which is its {what}: choose another one")
-    return weights(obj.data, group.index)
+    return group.index
 
 
-def weights(mesh, index):
-    """The weight of each vertex in the vertex group of this index, 0 outside of it."""
-    found = np.zeros(len(mesh.vertices))
-    for vertex in mesh.vertices:
-        for own in vertex.groups:
-            if own.group == index:
-                found[vertex.index] = own.weight
+def group_of(obj, name, what):
+    """The weight of each vertex in a vertex group, 0 outside of it."""
+    index = index_of(obj, name, what)
+    return weights(obj.data, {index})[index]
+
+
+def weights(mesh, wanted):
+    """The weights of all vertices in each vertex group whose index is wanted, 0 outside of it, read in one pass."""
+    found = {index: np.zeros(len(mesh.vertices)) for index in wanted}
+    for vertex, of_vertex in enumerate(mesh.vertices):
+        for own in of_vertex.groups:
+            if own.group in found:
+                found[own.group][vertex] = own.weight
     return found
 
 
@@ -95,9 +152,14 @@ def region_of(obj):
 def parts_of(obj):
     """The same, of an object that may have no handle yet."""
     settings = obj.pliant
+    named = [(handle.group, "handle") for handle in settings.handles]
+    named += [(name, what) for name, what in ((settings.fixed, "fixed part"), (settings.stiffness, "stiffness")) if name]
+    indices = {name: index_of(obj, name, what) for name, what in named}
+    found = weights(obj.data, set(indices.values()))
+    of_group = {name: found[index] for name, index in indices.items()}
     handles = {}
     for handle in settings.handles:
-        select = group_of(obj, handle.group, "handle") >= 0.5
+        select = of_group[handle.group] >= 0.5
         if not select.any():
             raise Refused(f"No vertex weighs 0.5 or more in the vertex group \"{handle.group}\": assign some")
         if handle.group in handles:
@@ -105,8 +167,7 @@ def parts_of(obj):
         handles[handle.group] = {"select": select, **({"soft": handle.weight} if handle.is_soft else {})}
     arguments = {"handles": handles}
     if settings.fixed:
-        arguments["fixed"] = group_of(obj, settings.fixed, "fixed part") >= 0.5
+        arguments["fixed"] = of_group[settings.fixed] >= 0.5
     if settings.stiffness:
-        weight = group_of(obj, settings.stiffness, "stiffness")
-        arguments["stiffness"] = settings.stiffest ** weight
+        arguments["stiffness"] = settings.stiffest ** of_group[settings.stiffness]
     return arguments

@@ -46,14 +46,16 @@ def main():
         )
 
     print(f"{len(rest)} vertices, {os.cpu_count()} processors, Blender {bpy.app.version_string}")
-    for method, options in (("bilaplacian", ""), ("arap", ""), ("arap", '"energy": "smooth"')):
+    for method, options in (("bilaplacian", {}), ("arap", {"energy": "spokes-and-rims"}), ("arap", {"energy": "smooth"})):
         put(0)
         bpy.context.view_layer.update()
-        obj.pliant.method, obj.pliant.options = method, options
+        obj.pliant.method = method
+        for name, value in options.items():
+            setattr(obj.pliant.options_arap, name, value)
         start = time.perf_counter()
         bpy.ops.pliant.begin()
         bind_ms = (time.perf_counter() - start) * 1e3
-        tell(f"Pliant, {method} {options}", bind_ms, drag())
+        tell(f"Pliant, {method} {' '.join(options.values())}", bind_ms, drag())
         bpy.ops.pliant.bake()
         if len(sys.argv) > 1:
             pliant.save(sys.argv[1], scan, shown(obj))

@@ -19,8 +19,9 @@ const PYTHON: Tool = Tool {
 
 const MANIFEST: &str = "crates/python/Cargo.toml";
 
-/// What the add-on's tests run on; there is a build of it for one version of Python alone.
-const BLENDER: &str = "bpy==4.2.0";
+/// What the add-on's tests run on: the oldest version, the one with long support and the newest. Each is built for one
+/// version of Python alone.
+const BLENDERS: [&str; 3] = ["bpy==4.2.0", "bpy==4.5.15", "bpy==5.0.1"];
 const BLENDER_PYTHON: Tool = Tool {
     program: "python3.11",
     install: "apt install python3.11-venv, or pyenv install 3.11",
@@ -55,14 +56,17 @@ pub fn python() -> Result<(), String> {
         );
         return Ok(());
     };
-    let blender = environment(&python, &folder.join("blender"))?;
-    install(&blender, &["pytest", BLENDER])?;
-    // It is as new as the other, whatever its version says.
-    install(
-        &blender,
-        &["--force-reinstall", "--no-deps", &wheel.display().to_string()],
-    )?;
-    tests(&blender, "blender/tests", &extension, &program)
+    for version in BLENDERS {
+        let blender = environment(&python, &folder.join(version.replace("==", "-")))?;
+        install(&blender, &["pytest", version])?;
+        // It is as new as the other, whatever its version says.
+        install(
+            &blender,
+            &["--force-reinstall", "--no-deps", &wheel.display().to_string()],
+        )?;
+        tests(&blender, "blender/tests", &extension, &program)?;
+    }
+    Ok(())
 }
 
 /// The wheel, built by maturin: from the commit and the tools alone, as packages are, and with the same licences.
