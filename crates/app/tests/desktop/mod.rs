@@ -140,6 +140,29 @@ impl Desktop {
         serde_json::from_str(&text).unwrap_or_default()
     }
 
+    /// Asks the window manager to close the window; `false`, said by name, where there is none that could.
+    pub fn close(&self) -> bool {
+        let asked = Command::new("wmctrl")
+            .args(["-i", "-c", &self.window])
+            .env("DISPLAY", &self.display)
+            .status();
+        let is_asked = asked.is_ok_and(|status| status.success());
+        if !is_asked {
+            eprintln!("skipped: the real window (no wmctrl)");
+        }
+        is_asked
+    }
+
+    /// Waits until the program has ended by itself.
+    pub fn wait_for_end(&mut self) {
+        let start = Instant::now();
+        let program = self.program.as_mut().unwrap();
+        while program.0.try_wait().unwrap().is_none() {
+            assert!(start.elapsed() < PATIENCE, "the program goes on");
+            sleep(PAUSE);
+        }
+    }
+
     /// Ends the program as `kill -9` does.
     pub fn kill(&mut self) {
         self.program = None;
@@ -299,10 +322,20 @@ impl Desktop {
         }
     }
 
-    fn wait_for_file(&self, path: &Path) {
+    pub fn wait_for_file(&self, path: &Path) {
+        self.wait_until(path, Path::exists);
+    }
+
+    /// Waits until a file is as `holds` wants it.
+    pub fn wait_until(&self, path: &Path, holds: impl Fn(&Path) -> bool) {
         let start = Instant::now();
-        while !path.exists() {
-            assert!(start.elapsed() < PATIENCE, "{} was not written", path.display());
+        while !holds(path) {
+            assert!(
+                start.elapsed() < PATIENCE,
+                "{} was not written: {}",
+                path.display(),
+                self.titles()
+            );
             sleep(PAUSE);
         }
     }

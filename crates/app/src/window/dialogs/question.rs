@@ -166,7 +166,7 @@ fn changed(ui: &mut egui::Ui, path: &Path, offer: ChangedOffer, answer: &mut Opt
 
 fn replace(ui: &mut egui::Ui, purpose: Purpose, path: &Path, answer: &mut Option<Answer>) {
     ui.heading(format!("Replace {}?", file_name(path)));
-    ui.label("There is such a file already, which is lost then.");
+    ui.label("A file of this name exists. Saving here replaces it.");
     ui.add_space(8.0);
     ui.horizontal(|ui| {
         if main_button(ui, "Another name…") {
