@@ -338,7 +338,7 @@ impl Application {
             unsaved,
             || self.editor.snapshot(),
             &open.mesh,
-            open.path.as_deref(),
+            [open.path.as_deref(), open.project.as_deref()],
         ) else {
             // What was recovered is kept by this session now, or saved.
             if recovery.has(key) || !unsaved {

@@ -10,6 +10,7 @@ use pliant_mesh::WeldOptions;
 
 use super::names::{SAMPLE_NAME, saved_name};
 use super::project_file;
+use super::recovery::left::opened_project;
 use super::rest_mesh::MeshSource;
 use crate::drawing::Drawing;
 use crate::window::threads::message::ModelToShow;
@@ -81,6 +82,14 @@ pub(super) fn absolute(path: &Path) -> PathBuf {
     std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
 }
 
+/// As what the work is saved where this project is open.
+fn saved_as(project: Option<&Path>) -> SavedAs {
+    match project {
+        Some(_) => SavedAs::Project,
+        None => SavedAs::Model,
+    }
+}
+
 /// Reads, welds and uploads.
 pub(super) fn open(source: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<ModelToShow>, EngineError> {
     let weld = WeldOptions::default();
@@ -120,10 +129,7 @@ pub(super) fn open(source: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<Mode
             }
             beginning = Some(carried);
             project.clone_from(&reload.project);
-            unsaved = Some(match &project {
-                Some(_) => SavedAs::Project,
-                None => SavedAs::Model,
-            });
+            unsaved = Some(saved_as(project.as_deref()));
             let file = reload.file.clone();
             (loaded, Some(file.clone()), MeshSource::File(file))
         }
@@ -133,7 +139,11 @@ pub(super) fn open(source: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<Mode
             match source {
                 Source::Recovered(_) => {
                     recovered = Some(path.clone());
-                    unsaved = Some(SavedAs::Model);
+                    project = opened_project(path);
+                    if let Some(project) = &project {
+                        stamps.push((project.clone(), Stamp::of(project)?));
+                    }
+                    unsaved = Some(saved_as(project.as_deref()));
                 }
                 _ => project = Some(path.clone()),
             }

@@ -6,6 +6,11 @@ use std::time::SystemTime;
 
 use crate::window::files::names::sources_of;
 use crate::window::files::project_file;
+use pliant_engine::EngineError;
+use pliant_engine::files::{self, Staging};
+
+/// What the note of the project that was open is called.
+const OPENED: &str = "opened";
 
 /// A session that ended without saving.
 #[derive(Clone, PartialEq, Debug)]
@@ -39,10 +44,36 @@ pub fn left_in(folder: &Path) -> Vec<Left> {
     left
 }
 
+/// Notes beside a session's work which project was open, if one was.
+///
+/// # Errors
+/// Where that can't be written.
+pub fn note_opened(project: &Path, opened: Option<&Path>) -> Result<(), EngineError> {
+    let note = project.with_extension(OPENED);
+    let Some(opened) = opened else {
+        // What is not there need not go.
+        let _ = fs::remove_file(note);
+        return Ok(());
+    };
+    let text = files::path_as_text(opened);
+    Staging::private().stage([(note, text.as_bytes())])?.commit()?;
+    Ok(())
+}
+
+/// The project that was open in a session which has left this work; `None` if none was, or if it is gone or was written
+/// since.
+pub fn opened_project(project: &Path) -> Option<PathBuf> {
+    let text = files::read_text(&project.with_extension(OPENED)).ok()?;
+    let opened = files::path_of_text(Path::new("/"), &text);
+    let written = |path: &Path| fs::metadata(path).and_then(|metadata| metadata.modified()).ok();
+    (written(&opened)? <= written(project)?).then_some(opened)
+}
+
 /// Deletes what a session has left.
 pub fn remove(project: &Path) {
     // What is not there need not go.
     let _ = fs::remove_file(project);
+    let _ = fs::remove_file(project.with_extension(OPENED));
     for mesh in sources_of(project) {
         let _ = fs::remove_file(mesh);
     }

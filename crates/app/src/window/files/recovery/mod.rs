@@ -44,6 +44,8 @@ pub struct Work {
     mesh: RestMesh,
     /// Where the model stands that is worked on, for who recovers it.
     model: Option<PathBuf>,
+    /// The project that is open, likewise.
+    opened: Option<PathBuf>,
     project: PathBuf,
 }
 
@@ -79,14 +81,15 @@ impl Recovery {
         Err(refuse(std::io::Error::other("a thousand sessions are there")))
     }
 
-    /// Takes note of the present state: what is to be written now, if anything is, for [`Work::write`] elsewhere.
+    /// Takes note of the present state: what is to be written now, if anything is, for [`Work::write`] elsewhere. The last
+    /// argument is the model that is worked on, and the project that is open.
     pub fn note(
         &mut self,
         key: SnapshotKey,
         unsaved: bool,
         snapshot: impl FnOnce() -> Option<Snapshot>,
         mesh: &RestMesh,
-        model: Option<&Path>,
+        [model, opened]: [Option<&Path>; 2],
     ) -> Option<Work> {
         if !unsaved {
             self.forget(key);
@@ -99,6 +102,7 @@ impl Recovery {
             snapshot: snapshot()?,
             mesh: mesh.clone(),
             model: model.map(Path::to_owned),
+            opened: opened.map(Path::to_owned),
             project: self.project.clone(),
         };
         *LATEST.lock().unwrap_or_else(PoisonError::into_inner) = Some(work.clone());
@@ -168,8 +172,11 @@ impl Work {
     /// # Errors
     /// What stands in the way, in a sentence.
     pub fn write(&self) -> Result<(), String> {
-        project_file::write_with_mesh(&self.snapshot, &self.mesh, self.model.as_deref(), &self.project)
-            .map_err(|error| error.to_string())
+        let write = || {
+            left::note_opened(&self.project, self.opened.as_deref())?;
+            project_file::write_with_mesh(&self.snapshot, &self.mesh, self.model.as_deref(), &self.project)
+        };
+        write().map_err(|error| error.to_string())
     }
 }
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use pliant_editor::{Beginning, Editor, Event, HandleTransform, InlineExecutor, JobKind, ToolMode};
 use pliant_mesh::{WeldOptions, shapes};
 
-use super::left::left_in;
+use super::left::{left_in, opened_project, remove};
 use super::*;
 use crate::window::files::rest_mesh::MeshSource;
 use pliant_engine::Loaded;
@@ -63,7 +63,7 @@ fn child() {
         }
         act(&mut editor, round);
         let key = editor.snapshot_key();
-        let work = recovery.note(key, true, || editor.snapshot(), &mesh, Some(&file));
+        let work = recovery.note(key, true, || editor.snapshot(), &mesh, [Some(&file), None]);
         if let Some(work) = work {
             println!("writing {}", editor.document_hash().unwrap());
             let result = work.write();
@@ -178,6 +178,7 @@ fn what_is_kept_can_be_read_by_its_owner_alone() {
         snapshot: editor.snapshot().unwrap(),
         mesh: RestMesh::new(loaded, MeshSource::File(file.clone())),
         model: Some(file),
+        opened: None,
         project: recovery.project.clone(),
     };
     work.write().unwrap();
@@ -211,7 +212,7 @@ fn work_is_recovered_though_its_scan_is_gone_replaced_or_oddly_called() {
             });
             let mesh = RestMesh::new(Arc::clone(&loaded), MeshSource::File(file.clone()));
             let key = editor.snapshot_key();
-            let work = recovery.note(key, true, || editor.snapshot(), &mesh, Some(&file));
+            let work = recovery.note(key, true, || editor.snapshot(), &mesh, [Some(&file), None]);
             work.unwrap().write().unwrap();
             // The file as it is on the disk goes first, wherever the project names it.
             let opened = project_file::read(&recovery.project, &Watch::default()).unwrap();
@@ -226,6 +227,44 @@ fn work_is_recovered_though_its_scan_is_gone_replaced_or_oddly_called() {
             assert_eq!(opened.named, file);
         }
     }
+}
+
+#[test]
+fn a_recovered_session_knows_its_project_unless_that_was_written_since() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = mesh(folder.path());
+    let opened = folder.path().join("back\\slash %41.pliant");
+    let recovery = Recovery::begin(&folder.path().join("recovery")).unwrap();
+    let mut editor = Editor::new(Box::new(InlineExecutor::new()));
+    let loaded = loaded(&file);
+    editor.handle(Event::Opened {
+        model: Arc::clone(&loaded.model),
+        name: "ball".to_owned(),
+        beginning: None,
+    });
+    let work = |opened: Option<&Path>| Work {
+        snapshot: editor.snapshot().unwrap(),
+        mesh: RestMesh::new(Arc::clone(&loaded), MeshSource::File(file.clone())),
+        model: Some(file.clone()),
+        opened: opened.map(Path::to_owned),
+        project: recovery.project.clone(),
+    };
+    fs::write(&opened, "{}").unwrap();
+    work(Some(&opened)).write().unwrap();
+    assert_eq!(opened_project(&recovery.project), Some(opened.clone()));
+    let later = std::time::SystemTime::now() + Duration::from_secs(60);
+    let theirs = File::options().write(true).open(&opened).unwrap();
+    theirs.set_modified(later).unwrap();
+    assert_eq!(opened_project(&recovery.project), None, "another program wrote it");
+    fs::remove_file(&opened).unwrap();
+    assert_eq!(opened_project(&recovery.project), None, "it is gone");
+    work(None).write().unwrap();
+    assert!(!recovery.project.with_extension("opened").exists());
+    work(Some(&opened)).write().unwrap();
+    remove(&recovery.project);
+    drop(recovery);
+    let left = fs::read_dir(folder.path().join("recovery")).unwrap();
+    assert_eq!(left.count(), 0);
 }
 
 #[test]
