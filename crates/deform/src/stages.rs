@@ -7,7 +7,7 @@ pub use crate::cage::parts as cage;
 use crate::bilaplacian::assembly::assemble_bilaplacian;
 use crate::bilaplacian::hubs::Hubs;
 use crate::bilaplacian::operator::BilaplacianOperator;
-use crate::bilaplacian::setup::operator;
+use crate::bilaplacian::setup::{Boundaries, operator};
 use crate::handles::Handle;
 use crate::region::partition::Partition;
 use crate::sparse::Elimination;
@@ -38,7 +38,7 @@ impl Operator {
         let handle = |vertices: &Vec<u32>| Handle::new(vertices.clone(), positions);
         let handles: Vec<Handle> = partition.handles.iter().map(handle).collect();
         Some(Self {
-            operator: operator(problem, options, &partition, &handles).0,
+            operator: operator(problem, options, &partition, &handles, Boundaries::Natural).0,
             elimination: ordering.elimination(&partition.solved),
         })
     }

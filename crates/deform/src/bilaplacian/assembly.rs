@@ -183,6 +183,7 @@ impl Expansion {
             self.add(stretched, vertex, operator.stretching, &solved);
         }
         self.spread(laplacian, hubs, |cell| operator.cell_stiffness(cell), &solved);
+        self.add_natural(operator, vertex, &solved);
         for (far, value) in hubs.stand_in_column(vertex) {
             if solved(far) {
                 self.put(far, value);
@@ -227,6 +228,35 @@ impl Expansion {
                 value * stiffness(middle as usize) * laplacian.inverse_areas()[middle as usize],
                 &keep,
             );
+        }
+    }
+
+    /// entries += the natural term's column of `vertex`.
+    fn add_natural(&mut self, operator: &BilaplacianOperator, vertex: u32, keep: impl Fn(u32) -> bool) {
+        let (Some(natural), laplacian) = (&operator.natural, &operator.laplacian) else {
+            return;
+        };
+        let (hessian, own) = (&natural.hessian, vertex as usize);
+        let beside = laplacian
+            .neighbours(own)
+            .iter()
+            .copied()
+            .zip(hessian.back(own).iter().copied());
+        for (middle, [a, b]) in std::iter::once((vertex, hessian.diagonal(own))).chain(beside) {
+            let (middle, density) = (middle as usize, natural.density(laplacian, middle as usize));
+            if density == 0.0 {
+                continue;
+            }
+            let ring = laplacian
+                .neighbours(middle)
+                .iter()
+                .copied()
+                .zip(hessian.own(middle).iter().copied());
+            for (far, [p, q]) in std::iter::once((middle as u32, hessian.diagonal(middle))).chain(ring) {
+                if keep(far) {
+                    self.put(far, density * (a * p + b * q));
+                }
+            }
         }
     }
 

@@ -6,10 +6,25 @@ use pliant_mesh::{Cancel, Progress};
 use rayon::prelude::*;
 
 use crate::bilaplacian::factored::BilaplacianSystem;
+use crate::bilaplacian::parts::StiffParts;
 use crate::bilaplacian::setup::Prescribed;
 use crate::bilaplacian::system_error::SystemError;
 use crate::budget::filled;
 use crate::handles::bases::Stored;
+
+/// What columns are solved for: the handles, then the stiff parts.
+#[derive(Clone, Copy)]
+struct Driven<'a> {
+    prescribed: &'a [Prescribed],
+    parts: &'a StiffParts,
+}
+
+impl Driven<'_> {
+    /// Which part this number is.
+    fn part(&self, number: usize) -> Option<usize> {
+        number.checked_sub(self.prescribed.len() - self.parts.len())
+    }
+}
 
 /// One handle's four columns.
 pub(crate) struct Columns<T> {
@@ -27,6 +42,7 @@ pub(crate) struct Columns<T> {
 pub(crate) fn solve_columns<T: Stored>(
     system: &mut BilaplacianSystem,
     prescribed: &[Prescribed],
+    parts: &StiffParts,
     solved: &[u32],
     progress: &Progress,
     cancel: &Cancel,
@@ -44,36 +60,52 @@ pub(crate) fn solve_columns<T: Stored>(
     }
     let error = system.check(&mut d, cancel)?;
     let mut columns = Vec::with_capacity(prescribed.len());
-    columns.push(Columns::of(system, &d, first, prescribed, &solved_locals, error));
+    let driven = Driven { prescribed, parts };
+    columns.push(Columns::of(system, &d, 0, driven, &solved_locals, error));
     progress.set(0.85);
     let learning = system.solution().is_learning();
     let shared = &*system;
     let is_wanted = || cancel.check().map_err(|_| SystemError::Cancelled);
-    let solve = |own: &Prescribed| {
+    let solve = |(number, own): (usize, &Prescribed)| {
+        let number = number + 1;
         is_wanted()?;
         let mut d = vec![[0.0; 4]; field_len];
         for &(place, coordinates) in own {
             d[place as usize] = coordinates;
         }
-        let error = shared.solve(&mut d, cancel).error;
+        let outcome = match driven.part(number) {
+            Some(part) => shared.solve_loaded(&parts.load(part, &shared.operator, shared.columns()), &mut d, cancel),
+            None => shared.solve(&mut d, cancel),
+        };
         is_wanted()?;
-        Ok(Columns::of(shared, &d, own, prescribed, &solved_locals, error))
+        Ok(Columns::of(shared, &d, number, driven, &solved_locals, outcome.error))
     };
     let others: Result<Vec<_>, SystemError> = match learning {
-        true => others.iter().map(solve).collect(),
-        false => others.par_iter().map(solve).collect(),
+        true => others.iter().enumerate().map(solve).collect(),
+        false => others.par_iter().enumerate().map(solve).collect(),
     };
     columns.extend(others?);
     system.settle();
     Ok(columns)
 }
 
-/// The blocks G_hk of the energy ½ Σ_hk tr(X_hᵀ G_hk X_k) of motions X, row-major over pairs of handles.
-pub(crate) fn energy_blocks<T>(columns: &[Columns<T>]) -> Result<Vec<[[f64; 4]; 4]>, TryReserveError> {
+/// The blocks G_hk of the energy ½ Σ_hk tr(X_hᵀ G_hk X_k) of motions X, row-major over pairs of handles and, behind
+/// `handle_count` of these, stiff parts.
+pub(crate) fn energy_blocks<T>(
+    columns: &[Columns<T>],
+    handle_count: usize,
+) -> Result<Vec<[[f64; 4]; 4]>, TryReserveError> {
     let mut blocks = filled([[0.0; 4]; 4], columns.len() * columns.len())?;
     for (k, column) in columns.iter().enumerate() {
         for (h, block) in column.energies.iter().enumerate() {
             blocks[h * columns.len() + k] = *block;
+        }
+    }
+    // The load of a part is not among the forces at handles: what a handle does to the part says the same.
+    for h in 0..handle_count.min(columns.len()) {
+        for k in handle_count..columns.len() {
+            let other = blocks[k * columns.len() + h];
+            blocks[h * columns.len() + k] = std::array::from_fn(|i| std::array::from_fn(|j| other[j][i]));
         }
     }
     Ok(blocks)
@@ -84,16 +116,19 @@ impl<T: Stored> Columns<T> {
     fn of<const K: usize>(
         system: &BilaplacianSystem,
         d: &[[f64; K]],
-        own: &Prescribed,
-        prescribed: &[Prescribed],
+        own: usize,
+        driven: Driven,
         solved_locals: &[u32],
         error: f64,
     ) -> Self {
         let operator = &system.operator;
         let first_spring = operator.laplacian.vertices().len();
         let potential = operator.potential(d);
-        let energy = |handle: &Prescribed| {
-            let mut block = [[0.0; 4]; 4];
+        let energy = |(number, handle): (usize, &Prescribed)| {
+            let mut block = match driven.part(number) {
+                Some(part) => driven.parts.energy(part, number == own, operator, d),
+                None => [[0.0; 4]; 4],
+            };
             for &(place, coordinates) in handle {
                 let force = match (place as usize).checked_sub(first_spring) {
                     Some(spring) => operator.pull(spring, d),
@@ -108,12 +143,12 @@ impl<T: Stored> Columns<T> {
             block
         };
         let row = |&local: &u32| std::array::from_fn(|k| T::of(d[local as usize][k]));
-        let vertex = own.first().map_or(0, |&(place, _)| {
+        let vertex = driven.prescribed[own].first().map_or(0, |&(place, _)| {
             operator.laplacian.vertices()[operator.local_of(place as usize) as usize]
         });
         Self {
             rows: solved_locals.iter().map(row).collect(),
-            energies: prescribed.iter().map(energy).collect(),
+            energies: driven.prescribed.iter().enumerate().map(energy).collect(),
             error,
             vertex,
         }

@@ -116,7 +116,7 @@ impl BoundMethod for BilaplacianSolver {
     }
 
     fn handle_bases(&self) -> Option<&HandleBases> {
-        Some(self.bases())
+        self.is_driven_by_handles_alone().then(|| self.bases())
     }
 
     fn reusable_factor(&self) -> Option<ReusableFactor> {

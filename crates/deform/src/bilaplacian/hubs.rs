@@ -222,7 +222,7 @@ mod tests {
     use pliant_mesh::{Cancel, Progress, Surface, SurfaceVertex, Topology};
 
     use crate::bilaplacian::factored::BilaplacianSystem;
-    use crate::bilaplacian::setup::operator;
+    use crate::bilaplacian::setup::{Boundaries, operator};
     use crate::handles::Handle;
     use crate::region::partition::Partition;
     use crate::sparse::refactorisation::Refactorisation;
@@ -314,7 +314,7 @@ mod tests {
         let handles = [Handle::new(partition.handles[0].clone(), &surface.positions)];
         let (progress, cancel) = (Progress::new(), Cancel::new());
         let ordering = Ordering::of(&topology, options.operator_power(), &progress, &cancel).unwrap();
-        let (mut operator, prescribed) = operator(&problem, options, &partition, &handles);
+        let (mut operator, prescribed) = operator(&problem, options, &partition, &handles, Boundaries::Natural);
         operator.hub_degree = hub_degree;
         let elimination = ordering.elimination(&partition.solved);
         let mut system = BilaplacianSystem::new(

@@ -13,7 +13,7 @@ use crate::bilaplacian::elimination_plan::EliminationPlan;
 use crate::bilaplacian::factored::BilaplacianSystem;
 use crate::bilaplacian::operator::BilaplacianOperator;
 use crate::bilaplacian::refine::Outcome;
-use crate::bilaplacian::setup::{Prescribed, operator};
+use crate::bilaplacian::setup::{Boundaries, Prescribed, operator};
 use crate::bilaplacian::system_error::SystemError;
 use crate::handles::{FRAME_CHUNK, Motion, clear};
 use crate::method::BindInput;
@@ -58,7 +58,7 @@ impl LoadedSystem {
             Some(order),
         )?;
         let plan = EliminationPlan::of(input)?;
-        let (operator, prescribed) = operator(&problem, options, partition, input.handles);
+        let (operator, prescribed) = operator(&problem, options, partition, input.handles, Boundaries::OfLaplacian);
         cancel.check()?;
         let refuse = |error| refused(error, input);
         let mut system =

@@ -2,6 +2,7 @@
 //! linear: A d = 0, so a frame is a product with the handle bases [BK04, BS08].
 
 pub(crate) mod assembly;
+mod boundaries;
 mod capacitance;
 mod columns;
 mod continuity;
@@ -12,8 +13,11 @@ pub(crate) mod factored;
 mod held;
 pub(crate) mod hubs;
 pub(crate) mod loaded;
+mod natural;
 pub(crate) mod operator;
 mod options;
+mod parts;
+mod plate;
 pub(crate) mod refine;
 pub(crate) mod setup;
 mod solution;

@@ -4,7 +4,8 @@
 //! to the last bit at every order.
 //!
 //! Painted stiffness s scales the density of the energy, ½ ∫ k_s s |∇d|² + k_b s |Δd|²: the faces' cotangents in
-//! stretching and in the middle L of order 3, the cells of M⁻¹ at order 2. A stiff part keeps its curvature, turns with
+//! stretching and in the middle L of order 3, the cells of M⁻¹ at order 2, where it varies with the natural term
+//! beside them ([`crate::bilaplacian::natural`]). A stiff part keeps its curvature, turns with
 //! its surroundings, and joins soft parts without a crease. (If the cotangents of both outer L were scaled,
 //! which is ∫ |div(s ∇d)|², stiff parts would keep their slope in space: they would not turn, and crease at their rim.)
 
@@ -12,6 +13,7 @@ use std::borrow::Cow;
 
 use rayon::prelude::*;
 
+use crate::bilaplacian::natural::NaturalTerm;
 use crate::bilaplacian::springs::Springs;
 use crate::operators::CHUNK;
 use crate::sparse::ordering::hubs::hub_degree;
@@ -22,6 +24,8 @@ use crate::{Bilaplacian, BilaplacianOrder, Laplacian};
 pub(crate) struct Potential<'a, const K: usize> {
     phi: Cow<'a, [[f64; K]]>,
     d: &'a [[f64; K]],
+    /// Of the natural term, empty without one.
+    stress: Vec<[[f64; K]; 2]>,
 }
 
 /// A over the local vertices of its Laplacian, which has full rows around everything that moves.
@@ -36,6 +40,8 @@ pub(crate) struct BilaplacianOperator {
     pub stretched: Option<Laplacian>,
     /// s of each local vertex' cell at order 2; empty where it is 1 everywhere.
     pub cell_stiffness: Vec<f64>,
+    /// What natural boundaries add at order 2.
+    pub natural: Option<NaturalTerm>,
     /// The soft handles' springs, W in (A + W) d = W c.
     pub springs: Springs,
     /// A vertex with more solved neighbours than this is a hub: see [`crate::bilaplacian::hubs`].
@@ -46,6 +52,17 @@ pub(crate) struct BilaplacianOperator {
     pub stretching: f64,
     /// k_b times the diagonal to the power 2 (n − 2).
     pub bending: f64,
+}
+
+impl<'a, const K: usize> Potential<'a, K> {
+    /// Of order 1.
+    fn of(d: &'a [[f64; K]]) -> Self {
+        Self {
+            phi: d.into(),
+            d,
+            stress: Vec::new(),
+        }
+    }
 }
 
 impl BilaplacianOperator {
@@ -64,6 +81,7 @@ impl BilaplacianOperator {
             middle: None,
             stretched: None,
             cell_stiffness: Vec::new(),
+            natural: None,
             springs: Springs::default(),
             power,
             stretching: options.stretching / square,
@@ -101,8 +119,13 @@ impl BilaplacianOperator {
         let resistance =
             self.stretching * square_wave_number + self.bending * square_wave_number.powi(self.power as i32);
         let strengths: Vec<f64> = locals.iter().map(|&local| weight * resistance * area(local)).collect();
+        self.hang(locals, &strengths)
+    }
+
+    /// Attaches springs of these strengths to local vertices; returns their places in a field.
+    pub fn hang(&mut self, locals: &[u32], strengths: &[f64]) -> Vec<u32> {
         let first = self.field_len() as u32;
-        self.springs.add(self.laplacian.vertices().len(), locals, &strengths);
+        self.springs.add(self.laplacian.vertices().len(), locals, strengths);
         (first..self.field_len() as u32).collect()
     }
 
@@ -122,7 +145,7 @@ impl BilaplacianOperator {
     /// φ of K functions on the local vertices, correct wherever the neighbours' rows are full.
     pub fn potential<'a, const K: usize>(&self, d: &'a [[f64; K]]) -> Potential<'a, K> {
         if self.power == 1 {
-            return Potential { phi: d.into(), d };
+            return Potential::of(d);
         }
         let mut phi = self.laplacian.per_area(d);
         if self.power == 3 {
@@ -133,13 +156,21 @@ impl BilaplacianOperator {
             .zip(d)
             .enumerate()
             .for_each(|(local, (phi, d))| *phi = self.weighted(local, *phi, d));
-        Potential { phi: phi.into(), d }
+        let stress = |natural: &NaturalTerm| {
+            let locals = (0..self.laplacian.vertices().len()).into_par_iter().with_min_len(CHUNK);
+            locals.map(|local| natural.stress(&self.laplacian, local, d)).collect()
+        };
+        Potential {
+            phi: phi.into(),
+            d,
+            stress: self.natural.as_ref().map(stress).unwrap_or_default(),
+        }
     }
 
     /// φ at order 1 or 2 of functions for which it is zero but at these local vertices.
     pub fn potential_at<'a, const K: usize>(&self, locals: &[u32], d: &'a [[f64; K]]) -> Potential<'a, K> {
         if self.power == 1 {
-            return Potential { phi: d.into(), d };
+            return Potential::of(d);
         }
         let mut phi = vec![[0.0; K]; self.laplacian.vertices().len()];
         for &local in locals {
@@ -148,7 +179,18 @@ impl BilaplacianOperator {
             let per_area = self.laplacian.row(local, d).map(|value| value * inverse_area);
             phi[local] = self.weighted(local, per_area, &d[local]);
         }
-        Potential { phi: phi.into(), d }
+        let mut stress = Vec::new();
+        if let Some(natural) = &self.natural {
+            stress.resize(self.laplacian.vertices().len(), [[0.0; K]; 2]);
+            for &local in locals {
+                stress[local as usize] = natural.stress(&self.laplacian, local as usize, d);
+            }
+        }
+        Potential {
+            phi: phi.into(),
+            d,
+            stress,
+        }
     }
 
     /// φ of a local vertex from d and the last Laplacian before the outermost one.
@@ -182,6 +224,12 @@ impl BilaplacianOperator {
                 force[k] -= self.stretching * row[k];
             }
         }
+        if let Some(natural) = &self.natural {
+            let bent = natural.force(&self.laplacian, local, &potential.stress);
+            for k in 0..K {
+                force[k] += bent[k];
+            }
+        }
         force
     }
 
@@ -212,7 +260,14 @@ impl BilaplacianOperator {
         } else {
             0.0
         };
-        0.5 * (stretched + self.bending * bend + hung)
+        let natural = self.natural.as_ref().map_or(0.0, |natural| {
+            sum_of_rows(self.laplacian.vertices().len(), |local| {
+                let density = natural.density(&self.laplacian, local);
+                let rows = natural.hessian.row(&self.laplacian, local, d);
+                density * rows.as_flattened().iter().map(|value| value * value).sum::<f64>()
+            })
+        });
+        0.5 * (stretched + self.bending * bend + natural + hung)
     }
 
     /// The L between two others at order 3.

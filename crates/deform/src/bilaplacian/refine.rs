@@ -168,6 +168,11 @@ impl BilaplacianSystem {
         solve_fully(self, d, self.contraction, cancel)
     }
 
+    /// As [`BilaplacianSystem::solve`], of A d = b with a load b for each column of the factor.
+    pub fn solve_loaded<const K: usize>(&self, load: &[[f64; K]], d: &mut [[f64; K]], cancel: &Cancel) -> Outcome {
+        solve(self, Some(load), d, (self.contraction, FULL), cancel)
+    }
+
     /// As [`BilaplacianSystem::solve`], of A d = b with a load b for each column of the factor, as exactly as a frame
     /// needs.
     pub fn solve_frame<const K: usize>(&self, load: &[[f64; K]], d: &mut [[f64; K]]) -> Outcome {

@@ -2,6 +2,7 @@
 
 use pliant_mesh::SurfaceVertex;
 
+use crate::bilaplacian::boundaries::make_natural;
 use crate::bilaplacian::continuity::join;
 use crate::bilaplacian::operator::BilaplacianOperator;
 use crate::handles::Handle;
@@ -13,12 +14,22 @@ use crate::{Bilaplacian, Laplacian, Problem};
 /// A handle's places in a field, at its vertices or, where it is soft, at their springs, and their coordinates.
 pub(crate) type Prescribed = Vec<(u32, [f64; 4])>;
 
+/// How the plate ends where stiffness jumps and at free borders.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum Boundaries {
+    /// As L M⁻¹ L does.
+    OfLaplacian,
+    /// As the squared Hessian does: see [`crate::bilaplacian::natural`].
+    Natural,
+}
+
 /// The problem's operator, and each handle's places in a field and their coordinates.
 pub(crate) fn operator(
     problem: &Problem,
     options: &Bilaplacian,
     partition: &Partition,
     handles: &[Handle],
+    boundaries: Boundaries,
 ) -> (BilaplacianOperator, Vec<Prescribed>) {
     let triangulation = &partition.triangulation;
     let rows = bent_rows(triangulation, &partition.solved, handles);
@@ -40,6 +51,9 @@ pub(crate) fn operator(
         operator = BilaplacianOperator::new(on(problem.stiffness), options, size);
     }
     operator.hub_degree = hub_degree(triangulation.vertex_count());
+    if operator.power == 2 && boundaries == Boundaries::Natural {
+        make_natural(&mut operator, triangulation, problem, partition);
+    }
     join(&mut operator, triangulation, problem, options, &rows, size);
     let prescribed = prescribe(&mut operator, problem, partition, handles);
     (operator, prescribed)

@@ -1,5 +1,6 @@
 //! The bound bi-Laplacian: its binding, and its frames, from the bases or by back substitution.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -8,7 +9,9 @@ use pliant_mesh::{Cancel, SurfaceVertex};
 use crate::bilaplacian::columns::{energy_blocks, solve_columns};
 use crate::bilaplacian::elimination_plan::EliminationPlan;
 use crate::bilaplacian::factored::BilaplacianSystem;
-use crate::bilaplacian::setup::operator;
+use crate::bilaplacian::parts::StiffParts;
+use crate::bilaplacian::plate::{PLAIN, Plate};
+use crate::bilaplacian::setup::Prescribed;
 use crate::bilaplacian::system_error::SystemError;
 use crate::handles::bases::{Stored, frame};
 use crate::handles::{Motion, clear};
@@ -25,7 +28,11 @@ pub(crate) struct BilaplacianSolver<T = f32> {
     system: BilaplacianSystem,
     bases: HandleBases<T>,
     /// Each handle's places in a field, at its vertices or, where it is soft, at their springs, and their coordinates.
-    prescribed: Vec<Vec<(u32, [f64; 4])>>,
+    /// Behind them, the stiff parts'.
+    prescribed: Vec<Prescribed>,
+    parts: StiffParts,
+    /// Whether natural boundaries were left out.
+    is_plain: bool,
     /// E = ½ Σ_hk tr(X_hᵀ G_hk X_k) over the motions' 4×3 matrices X; row-major, one 4×4 block a pair of handles.
     energy_blocks: Vec<[[f64; 4]; 4]>,
 }
@@ -40,7 +47,6 @@ impl<T: Stored> BilaplacianSolver<T> {
             problem,
             partition,
             handles,
-            refactorisation,
             progress,
             cancel,
             ..
@@ -58,13 +64,15 @@ impl<T: Stored> BilaplacianSolver<T> {
         let plan = EliminationPlan::of(input)?;
         cancel.check()?;
         progress.set(0.1);
-        let (operator, prescribed) = operator(problem, options, partition, handles);
+        let Plate {
+            mut system,
+            prescribed,
+            mut parts,
+            is_plain,
+        } = Plate::of(options, &plan, input).map_err(refuse)?;
         cancel.check()?;
-        progress.set(0.2);
-        let mut system =
-            BilaplacianSystem::planned(operator, &plan, refactorisation, partition.budget, cancel).map_err(refuse)?;
         progress.set(0.7);
-        let columns = solve_columns(&mut system, &prescribed, solved, progress, cancel).map_err(refuse)?;
+        let columns = solve_columns(&mut system, &prescribed, &parts, solved, progress, cancel).map_err(refuse)?;
         for column in &columns {
             let (vertex, error) = (column.vertex, column.error);
             if error.is_nan() || error > TOLERANCE {
@@ -78,7 +86,9 @@ impl<T: Stored> BilaplacianSolver<T> {
             }
         }
         let free_count = solved.len();
-        let energy_blocks = energy_blocks(&columns).map_err(|_| BindError::OutOfMemory { free_count })?;
+        let energy_blocks =
+            energy_blocks(&columns, handles.len()).map_err(|_| BindError::OutOfMemory { free_count })?;
+        parts.settle(&energy_blocks);
         let reference = reference_handles(problem, partition);
         let blocks: Vec<Vec<[T; 4]>> = columns.into_iter().map(|column| column.rows).collect();
         let bases = HandleBases::new(solved.clone(), &blocks, |vertex| {
@@ -90,8 +100,18 @@ impl<T: Stored> BilaplacianSolver<T> {
             system,
             bases,
             prescribed,
+            parts,
+            is_plain,
             energy_blocks,
         })
+    }
+
+    /// The motions of handles and stiff parts.
+    fn all<'m>(&self, motions: &'m [Motion]) -> Cow<'m, [Motion]> {
+        match self.parts.len() {
+            0 => motions.into(),
+            _ => self.parts.motions(motions).into(),
+        }
     }
 
     /// What binding nearly the same problem can take over.
@@ -99,7 +119,12 @@ impl<T: Stored> BilaplacianSolver<T> {
         self.system.factored()
     }
 
-    /// The handles' bases.
+    /// Whether there is no stiff part that moves between the handles.
+    pub fn is_driven_by_handles_alone(&self) -> bool {
+        self.parts.len() == 0
+    }
+
+    /// The handles' bases, behind them those of stiff parts.
     pub fn bases(&self) -> &HandleBases<T> {
         &self.bases
     }
@@ -107,7 +132,9 @@ impl<T: Stored> BilaplacianSolver<T> {
     /// Fills all of `displacements` from the bases.
     pub fn frame(&self, motions: &[Motion], displacements: &mut [DVec3]) -> Finite {
         let vertex = |place| self.vertex(place) as usize;
-        frame(&self.bases, &self.prescribed, vertex, motions, displacements)
+        let all = self.all(motions);
+        let of_handles = &self.prescribed[..motions.len().min(self.prescribed.len())];
+        frame(&self.bases, of_handles, vertex, &all, displacements)
     }
 
     /// Sentences about what had to be repaired.
@@ -116,6 +143,7 @@ impl<T: Stored> BilaplacianSolver<T> {
             .into_iter()
             .collect();
         sentences.extend(self.system.solution().warnings());
+        sentences.extend(self.is_plain.then(|| PLAIN.to_owned()));
         sentences
     }
 
@@ -134,6 +162,7 @@ impl<T: Stored> BilaplacianSolver<T> {
                 motion.shift,
             ]
         };
+        let motions = &*self.all(motions);
         let mut sum = 0.0;
         for (h, left) in motions.iter().map(columns).enumerate() {
             for (k, right) in motions.iter().map(columns).enumerate() {
@@ -153,13 +182,15 @@ impl<T: Stored> BilaplacianSolver<T> {
     /// without a handle are left out.
     pub fn energy_of(&self, motions: &[Motion], displacements: &[DVec3]) -> f64 {
         let mut d = self.field(displacements);
+        let all = self.all(motions);
         let first_spring = self.system.operator.laplacian.vertices().len();
-        for (own, motion) in self.prescribed.iter().zip(motions) {
+        for (own, motion) in self.prescribed.iter().zip(&*all) {
             for &(place, coordinates) in own.iter().filter(|(place, _)| *place as usize >= first_spring) {
                 d[place as usize] = motion.displace(coordinates).to_array();
             }
         }
-        self.system.operator.energy(&d)
+        let of_parts = &all[motions.len()..];
+        self.system.operator.energy(&d) - self.parts.relief(&self.system.operator, &d, of_parts)
     }
 
     /// Displacements, one per surface vertex, as a field.
@@ -186,18 +217,41 @@ impl<T: Stored> BilaplacianSolver<T> {
                 displacements[vertex as usize] = motion.displace(coordinates);
             }
         }
-        self.back_substitute(displacements)
+        let of_parts = self.all(motions)[motions.len()..].to_vec();
+        self.substitute(&of_parts, displacements)
     }
 
     /// Solves for the solved vertices' displacements, given all others. The displacements of soft handles' vertices are
-    /// taken as the handles' targets.
+    /// taken as the handles' targets, and stiff parts take the rigid motions that fit theirs best.
     ///
     /// # Errors
     /// If the solution stays too inaccurate.
     pub fn back_substitute(&self, displacements: &mut [DVec3]) -> Result<(), SolveError> {
-        let vertices = self.system.operator.laplacian.vertices();
+        let of_parts = self.parts.fitted(displacements);
+        self.substitute(&of_parts, displacements)
+    }
+
+    fn substitute(&self, of_parts: &[Motion], displacements: &mut [DVec3]) -> Result<(), SolveError> {
+        let (system, first) = (&self.system, self.prescribed.len() - self.parts.len());
+        let vertices = system.operator.laplacian.vertices();
         let mut d = self.field(displacements);
-        let error = self.system.solve(&mut d, &Cancel::new()).error;
+        let mut load = vec![[0.0; 3]; if of_parts.is_empty() { 0 } else { system.columns().len() }];
+        for (part, motion) in of_parts.iter().enumerate() {
+            for &(place, coordinates) in &self.prescribed[first + part] {
+                d[place as usize] = motion.displace(coordinates).to_array();
+            }
+            for (load, own) in load
+                .iter_mut()
+                .zip(self.parts.load(part, &system.operator, system.columns()))
+            {
+                let own = motion.displace(own).to_array();
+                (0..3).for_each(|k| load[k] += own[k]);
+            }
+        }
+        let error = match of_parts.is_empty() {
+            true => system.solve(&mut d, &Cancel::new()).error,
+            false => system.solve_loaded(&load, &mut d, &Cancel::new()).error,
+        };
         for &local in self.system.columns() {
             displacements[vertices[local as usize] as usize] = DVec3::from_array(d[local as usize]);
         }

@@ -4,13 +4,13 @@
 //! come after the vertices in every field, so that W (c − d) is a difference like those along edges: zero on constants
 //! to the last bit.
 
-/// The springs of all soft handles, handle by handle.
+/// The springs of all soft handles, handle by handle, and of stiff parts.
 #[derive(Debug, Default)]
 pub(crate) struct Springs {
     locals: Vec<u32>,
     /// W_i, by spring.
     strengths: Vec<f64>,
-    /// W_i by local vertex, 0 where it has none; empty where there are no springs.
+    /// The sum of W by local vertex, 0 where it has none; empty where there are no springs.
     diagonal: Vec<f64>,
 }
 
@@ -26,7 +26,7 @@ impl Springs {
         for (&local, &strength) in locals.iter().zip(strengths) {
             self.locals.push(local);
             self.strengths.push(strength);
-            self.diagonal[local as usize] = strength;
+            self.diagonal[local as usize] += strength;
         }
     }
 
@@ -45,7 +45,7 @@ impl Springs {
         self.strengths[spring]
     }
 
-    /// W_i of a local vertex.
+    /// The sum of W at a local vertex.
     pub fn diagonal(&self, local: u32) -> f64 {
         self.diagonal.get(local as usize).copied().unwrap_or(0.0)
     }

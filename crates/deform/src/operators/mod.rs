@@ -15,6 +15,7 @@
 
 pub(crate) mod face_terms;
 pub(crate) mod gradients;
+pub(crate) mod hessian;
 mod mollification;
 pub(crate) mod triangulation;
 

@@ -38,6 +38,7 @@ mod shells;
 mod soft;
 mod soup;
 mod space;
+mod stiff_bands;
 mod strip;
 mod uneven;
 mod wrinkles;

@@ -233,6 +233,45 @@ fn a_band_bends_as_a_beam_of_its_stiffness() {
     }
 }
 
+/// A bump of height 1 on the unit square, zero with its slope outside a disc, and its second derivatives xx, xy, yy.
+fn bump(p: DVec3) -> (f64, [f64; 3]) {
+    let (x, y) = ((p.x - 0.45) / 0.4, (p.y - 0.5) / 0.4);
+    let t = 1.0 - x * x - y * y;
+    if t <= 0.0 {
+        return (0.0, [0.0; 3]);
+    }
+    let second = |a: f64, b: f64, same: f64| (48.0 * a * b * t * t - 8.0 * same * t.powi(3)) / 0.16;
+    (t.powi(4), [second(x, x, 1.0), second(x, y, 0.0), second(y, y, 1.0)])
+}
+
+#[test]
+fn where_stiffness_varies_the_energy_is_that_of_the_hessian() {
+    let stiffness = |p: DVec3| if p.x > 0.42 { 5.0 } else { 0.5 };
+    let energy = |cells: usize| {
+        let mut scene = Scene::new(shapes::grid(cells, cells))
+            .with(Role::Fixed, |p| p.x < 0.02)
+            .with(Role::Handle(0), |p| p.x > 0.98);
+        for (own, p) in scene.stiffness.iter_mut().zip(&scene.model.surface.positions) {
+            *own = stiffness(*p);
+        }
+        let heights: Vec<DVec3> = scene.positions().iter().map(|p| DVec3::Z * bump(*p).0).collect();
+        // The handle rests, and the stiff part with it.
+        scene.bind().energy_of(&heights).unwrap()
+    };
+    // Of a bump that reaches into both halves: ½ ∫ s₀ (Δf)² + (s − s₀) |∇²f|².
+    let fine = 800;
+    let exact: f64 = (0..fine * fine)
+        .map(|i| {
+            let p = DVec3::new((i % fine) as f64 + 0.5, (i / fine) as f64 + 0.5, 0.0) / fine as f64;
+            let [xx, xy, yy] = bump(p).1;
+            let hessian = xx * xx + 2.0 * xy * xy + yy * yy;
+            0.5 * (0.5 * (xx + yy).powi(2) + (stiffness(p) - 0.5) * hessian) / (fine * fine) as f64
+        })
+        .sum();
+    let errors = [20, 40, 80].map(|cells| (energy(cells) / exact - 1.0).abs());
+    assert!(errors[2] < 0.02 && errors[2] < 0.5 * errors[0], "{errors:?}");
+}
+
 #[test]
 fn stiffness_everywhere_changes_nothing() {
     let mut scene = Scene::new(shapes::torus(20, 12)).with_ends(true);

@@ -68,7 +68,7 @@ struct SolveMemory<const K: usize> {
 impl Capacitance {
     /// Whether this operator's inverse is of the form above.
     pub fn applies_to(operator: &BilaplacianOperator) -> bool {
-        operator.power == 2 && operator.stretching == 0.0 && operator.bending > 0.0
+        operator.power == 2 && operator.stretching == 0.0 && operator.bending > 0.0 && operator.natural.is_none()
     }
 
     /// With the factor of P, whose columns are the local vertices `columns`.

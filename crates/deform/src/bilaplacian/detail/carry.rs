@@ -91,7 +91,7 @@ impl Carried {
             .collect();
         let bases = solver.bases();
         let extended = |row: usize| {
-            let own = &bases.rows()[row * handles.len()..][..handles.len()];
+            let own = &bases.rows()[row * bases.handle_count()..][..handles.len()];
             let parts = own.iter().zip(handles);
             parts
                 .map(|([x, y, z, w], handle)| {

@@ -80,7 +80,10 @@ impl Transfer {
         let triangulation = Triangulation::of_surface(problem.surface, problem.topology);
         let rows = bent_rows(&triangulation, &solved, &[]);
         let metric = Discretisation::CotangentArea;
-        let laplacian = Laplacian::on(&triangulation, problem.stiffness, &rows, metric, &|_, _| 1.0);
+        // A soft part's triangles keep to their base like all others: given less weight they would make up for all
+        // that the stiff ones' gradients lack, and swell.
+        let firmness: Vec<f64> = problem.stiffness.iter().map(|stiffness| stiffness.max(1.0)).collect();
+        let laplacian = Laplacian::on(&triangulation, &firmness, &rows, metric, &|_, _| 1.0);
         let membrane = Bilaplacian {
             order: BilaplacianOrder::Membrane,
             ..Bilaplacian::default()
@@ -97,7 +100,7 @@ impl Transfer {
         let gradients = Gradients::of(
             problem.surface,
             problem.topology,
-            problem.stiffness,
+            &firmness,
             &system.operator.laplacian,
             system.columns(),
         );

@@ -1,0 +1,80 @@
+//! The thin plate's system with all that paint and free borders bring, or plain where that does not fit.
+
+use crate::bilaplacian::elimination_plan::EliminationPlan;
+use crate::bilaplacian::factored::BilaplacianSystem;
+use crate::bilaplacian::parts::StiffParts;
+use crate::bilaplacian::setup::{Boundaries, Prescribed, operator};
+use crate::bilaplacian::system_error::SystemError;
+use crate::method::BindInput;
+use crate::{Bilaplacian, Detail};
+
+/// The factored system, what its handles and stiff parts prescribe, and the parts.
+pub(crate) struct Plate {
+    pub system: BilaplacianSystem,
+    /// Of the handles, then of the parts.
+    pub prescribed: Vec<Prescribed>,
+    pub parts: StiffParts,
+    /// Whether natural boundaries were left out, because their factor does not fit.
+    pub is_plain: bool,
+}
+
+impl Plate {
+    /// Assembles and factors it.
+    ///
+    /// # Errors
+    /// As the bi-Laplacian's.
+    pub fn of(options: &Bilaplacian, plan: &EliminationPlan, input: &BindInput<'_>) -> Result<Self, SystemError> {
+        let &BindInput {
+            problem,
+            partition,
+            handles,
+            refactorisation,
+            cancel,
+            ..
+        } = input;
+        let budget = partition.budget;
+        let with = |boundaries| operator(problem, options, partition, handles, boundaries);
+        let (mut natural, mut prescribed) = with(Boundaries::Natural);
+        let is_natural = natural.natural.is_some();
+        cancel.check().map_err(|_| SystemError::Cancelled)?;
+        if !is_natural {
+            let system = BilaplacianSystem::planned(natural, plan, refactorisation, budget, cancel)?;
+            return Ok(Self::plain(system, prescribed, false));
+        }
+        if let Some(elimination) = plan.direct(natural.power, budget) {
+            // Details put a rigid motion of everything back by the handles' bases alone.
+            let may_turn = |component: u32| options.detail == Detail::None || partition.held[component as usize];
+            let (parts, of_parts) =
+                StiffParts::attach(&mut natural, &partition.triangulation, problem, handles, may_turn);
+            prescribed.extend(of_parts);
+            match BilaplacianSystem::new(natural, elimination, refactorisation, budget, cancel) {
+                Ok(system) => {
+                    return Ok(Self {
+                        system,
+                        prescribed,
+                        parts,
+                        is_plain: false,
+                    });
+                }
+                Err(refused) if !refused.is_for_memory() => return Err(refused),
+                Err(_) => {}
+            }
+        }
+        let (operator, prescribed) = with(Boundaries::OfLaplacian);
+        let system = BilaplacianSystem::planned(operator, plan, refactorisation, budget, cancel)?;
+        Ok(Self::plain(system, prescribed, true))
+    }
+
+    fn plain(system: BilaplacianSystem, prescribed: Vec<Prescribed>, is_plain: bool) -> Self {
+        Self {
+            system,
+            prescribed,
+            parts: StiffParts::default(),
+            is_plain,
+        }
+    }
+}
+
+/// What is said where natural boundaries were left out.
+pub(crate) const PLAIN: &str = "the plate's own factor does not fit the memory that is left, so stiff parts may shear, \
+                                soft ones swell, and free borders curl: raise the memory limit, or take arap";

@@ -1,0 +1,156 @@
+//! Bands of painted stiffness: stiff ones hold their shape as they turn, soft ones do not swell.
+
+use std::f64::consts::PI;
+
+use glam::{DAffine3, DQuat, DVec3};
+use pliant_deform::{Bilaplacian, Detail, Method, RigidMotion, Role};
+use pliant_mesh::{Drawn, shapes};
+
+use crate::rig::{Scene, turned};
+
+/// Closed limbs of length about 6 along z, with flat sides, round, and round with necks.
+fn limbs() -> Vec<(&'static str, Drawn)> {
+    let bar = shapes::bar(4, 4, 24);
+    let limb = |radius: fn(f64) -> f64| {
+        shapes::turned(60, 24, move |t| {
+            let end = (1.0 - (2.0 * t - 1.0).powi(10)).max(0.0).sqrt();
+            glam::DVec2::new(radius(t) * end, 6.0 * t)
+        })
+    };
+    vec![
+        ("bar", bar),
+        ("limb", limb(|_| 0.6)),
+        ("limb with necks", limb(|t| 0.6 + 0.12 * (6.0 * PI * t).cos())),
+    ]
+}
+
+/// A limb, held at one end and turned at the other about its middle, with a band of it of this stiffness.
+struct Bent {
+    scene: Scene,
+    band: Vec<usize>,
+    shape: Vec<DVec3>,
+}
+
+impl Bent {
+    fn of(drawn: &Drawn, method: &Method, axis: DVec3, stiffness: f64) -> Self {
+        let mut scene = Scene::new(drawn.clone());
+        let (low, high) = (scene.positions().iter()).fold((f64::MAX, f64::MIN), |(a, b), p| (a.min(p.z), b.max(p.z)));
+        let share = |p: &DVec3| (p.z - low) / (high - low);
+        let middle = DVec3::new(
+            0.5 * scene.positions().iter().map(|p| p.x).fold(f64::MIN, f64::max)
+                + 0.5 * scene.positions().iter().map(|p| p.x).fold(f64::MAX, f64::min),
+            0.5 * scene.positions().iter().map(|p| p.y).fold(f64::MIN, f64::max)
+                + 0.5 * scene.positions().iter().map(|p| p.y).fold(f64::MAX, f64::min),
+            0.5 * (low + high),
+        );
+        let band: Vec<usize> = (0..scene.positions().len())
+            .filter(|&v| (0.38..0.62).contains(&share(&scene.positions()[v])))
+            .collect();
+        scene = scene
+            .with(Role::Fixed, |p| share(&p) < 0.12)
+            .with(Role::Handle(0), |p| share(&p) > 0.88);
+        band.iter().for_each(|&v| scene.stiffness[v] = stiffness);
+        scene.method = method.clone();
+        let turn = DAffine3::from_quat(DQuat::from_axis_angle(axis, PI / 3.0));
+        let target = DAffine3::from_translation(middle) * turn * DAffine3::from_translation(-middle);
+        let shape = scene.moved(&[target]);
+        Self { scene, band, shape }
+    }
+
+    /// How far the band is from rigid, root mean square, in diagonals.
+    fn departure(&self) -> f64 {
+        let rest: Vec<DVec3> = self.band.iter().map(|&v| self.scene.positions()[v]).collect();
+        let moved: Vec<DVec3> = self.band.iter().map(|&v| self.shape[v]).collect();
+        let fit = RigidMotion::fit(&rest, &moved).unwrap();
+        let apart = rest
+            .iter()
+            .zip(&moved)
+            .map(|(p, d)| (fit.displace(*p) - *d).length_squared());
+        (apart.sum::<f64>() / rest.len() as f64).sqrt() / self.scene.diagonal()
+    }
+
+    fn volume(&self) -> f64 {
+        let positions = self.scene.positions();
+        let moved: Vec<DVec3> = positions.iter().zip(&self.shape).map(|(p, d)| *p + *d).collect();
+        let volume = |positions: &[DVec3]| -> f64 {
+            let corners = self.scene.model.surface.triangles.iter();
+            let corners = corners.map(|triangle| triangle.map(|v| positions[v.index()]));
+            corners.map(|[a, b, c]| a.dot(b.cross(c))).sum()
+        };
+        volume(&moved) / volume(positions)
+    }
+}
+
+/// The methods, and by how much a soft band may swell what they bend: deformation transfer, whose base shrinks at necks,
+/// by a little more.
+fn methods() -> Vec<(&'static str, Method, f64)> {
+    let with = |detail| {
+        let mut options = Bilaplacian::default();
+        options.detail = detail;
+        Method::from(options)
+    };
+    vec![
+        ("thin plate", with(Detail::None), 0.03),
+        ("deformation transfer", with(Detail::DeformationTransfer), 0.08),
+    ]
+}
+
+#[test]
+fn a_stiff_band_holds_its_shape_the_better_the_stiffer_it_is() {
+    for (name, drawn) in limbs() {
+        for axis in [DVec3::X, DVec3::Z] {
+            let method = Method::default();
+            let departures = [1.0, 10.0, 100.0, 1000.0].map(|s| Bent::of(&drawn, &method, axis, s).departure());
+            assert!(
+                departures.windows(2).all(|pair| pair[1] < pair[0]),
+                "{name} {axis}: {departures:?}"
+            );
+            assert!(departures[2] < 0.1 * departures[0], "{name} {axis}: {departures:?}");
+        }
+    }
+}
+
+#[test]
+fn a_soft_band_hardly_swells() {
+    for (method_name, method, most) in methods() {
+        for (name, drawn) in limbs() {
+            for axis in [DVec3::X, DVec3::Z] {
+                let volumes = [1.0, 0.1, 0.01].map(|s| Bent::of(&drawn, &method, axis, s).volume());
+                assert!(
+                    // A turn costs volume, and where a band takes more of it the rest loses less.
+                    volumes.iter().all(|volume| *volume < volumes[0].max(1.0) + most),
+                    "{method_name} {name} {axis}: {volumes:?}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn a_part_that_a_handle_holds_goes_with_it_as_one_body_in_the_limit() {
+    for (name, drawn) in limbs() {
+        let scene = Scene::new(drawn.clone());
+        let low = scene.positions().iter().map(|p| p.z).fold(f64::MAX, f64::min);
+        let high = scene.positions().iter().map(|p| p.z).fold(f64::MIN, f64::max);
+        let share = |p: &DVec3| (p.z - low) / (high - low);
+        let head: Vec<usize> = (0..scene.positions().len())
+            .filter(|&v| share(&scene.positions()[v]) > 0.6)
+            .collect();
+        let target = turned(DVec3::Z * high, 1.0, DVec3::X * 0.3);
+        let departure = |stiffness: f64| {
+            let mut scene = Scene::new(drawn.clone())
+                .with(Role::Fixed, |p| share(&p) < 0.12)
+                .with(Role::Handle(0), |p| share(&p) > 0.9);
+            head.iter().for_each(|&v| scene.stiffness[v] = stiffness);
+            let shape = scene.moved(&[target]);
+            let apart =
+                |&v: &usize| (target.transform_point3(scene.positions()[v]) - scene.positions()[v]).distance(shape[v]);
+            head.iter().map(apart).fold(0.0, f64::max) / scene.diagonal()
+        };
+        let departures = [1.0, 10.0, 100.0, 1000.0].map(departure);
+        assert!(
+            departures.windows(2).all(|pair| pair[1] < 0.5 * pair[0]),
+            "{name}: {departures:?}"
+        );
+    }
+}
