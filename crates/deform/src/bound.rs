@@ -8,6 +8,7 @@ use rayon::prelude::*;
 
 use crate::budget::bytes_of;
 use crate::handles::residual::HandleResidual;
+use crate::handles::turns::TurnLimit;
 use crate::handles::{FRAME_CHUNK, Handle, Motion, clear};
 use crate::method::attachment::{check_weights, finite};
 use crate::method::{BindInput, BoundMethod, Finite, HandleFit, Solve};
@@ -35,6 +36,7 @@ pub struct Bound {
     followers: Followers,
     /// What is rigid, if something is.
     rigid: Option<Box<RigidParts>>,
+    turn_limit: Option<TurnLimit>,
     /// Of hard handles that the method only fits.
     residual: HandleResidual,
     /// First those of the binding, then what the present targets ask for and the method can't follow.
@@ -171,6 +173,12 @@ impl Bound {
             HandleFit::Exact => HandleResidual::default(),
             HandleFit::LeastSquares => HandleResidual::new(problem, &handles, &partition.soft),
         };
+        let turn_limit = problem.method.implementation().follows_turns_to();
+        let turn_limit = turn_limit.map(|most_degrees| TurnLimit {
+            method: declaration.name,
+            most_degrees,
+            is_held: partition.held.contains(&true),
+        });
         let mut warnings = partition.warnings;
         warnings.extend(method.warnings().into_iter().map(Warning::from));
         Ok(Self {
@@ -192,6 +200,7 @@ impl Bound {
                 cancel,
             )?,
             rigid: None,
+            turn_limit,
             residual,
             binding_warnings: warnings.len(),
             target_warnings: warnings.len(),
@@ -228,6 +237,9 @@ impl Bound {
         self.put_motions(motions);
         self.warnings.truncate(self.binding_warnings);
         self.warnings.extend(self.method.blind_to(&self.motions));
+        let limit = self.turn_limit.as_ref();
+        self.warnings
+            .extend(limit.and_then(|limit| limit.warning(&self.handles, &self.motions)));
         self.target_warnings = self.warnings.len();
         Ok(())
     }

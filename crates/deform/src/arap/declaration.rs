@@ -72,7 +72,7 @@ impl BoundMethod for ArapSolver {
         let (converged, energy) = ArapSolver::step(self, motions, displacements);
         Ok(Stepped {
             converged,
-            stalled: false,
+            stalled: self.has_stalled(),
             energy,
             finite: Finite::Unknown,
         })

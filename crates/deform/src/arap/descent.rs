@@ -15,6 +15,9 @@ const TRIALS: u32 = 10;
 /// Energies below this share of the rest shape's scale are rounding of rotations and gradients in single precision.
 const NOTHING: f64 = 3.6e-15;
 
+/// A decrease by less than this share of the energy may be rounding of rotations and gradients in single precision.
+const ROUNDED: f64 = 1e-6;
+
 /// What is known where the last step ended.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) enum End {
@@ -32,7 +35,7 @@ impl ArapSolver {
     ///
     /// A shape has converged if the quadratic model promises a decrease below the tolerance's share of the energy and
     /// the last step gained less than that too. In exact arithmetic a plain local/global step always descends: if even
-    /// that fails, only rounding is left.
+    /// that fails and promises little, only rounding is left; if it promises more, the descent has stalled.
     pub(super) fn descend(&mut self) {
         self.finish_step();
         self.map_gradient();
@@ -54,7 +57,9 @@ impl ArapSolver {
                 return;
             }
             if self.history.is_empty() {
-                self.state = State::Converged;
+                let little = self.options.tolerance.max(ROUNDED) * before + NOTHING * self.cells.scale;
+                let is_little = -0.5 * slope <= little;
+                self.state = if is_little { State::Converged } else { State::Stalled };
                 return;
             }
             self.history.clear();
@@ -124,4 +129,61 @@ fn moved(from: &Shape, direction: &Field, length: f64, trial: &mut Shape) {
                 }
             }
         });
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "tests")]
+mod tests {
+    use glam::{DAffine3, DVec3};
+    use pliant_mesh::{Cancel, Progress, shapes};
+
+    use super::super::ArapSolver;
+    use crate::handles::Handle;
+    use crate::region::partition::Partition;
+    use crate::{Arap, ArapEnergy, Constraints, Loose, Method, Problem, Role};
+
+    #[test]
+    fn a_shape_from_which_no_step_leads_down_has_stalled_and_not_converged() {
+        let model = shapes::model(shapes::tube(12, 16, 5.0));
+        let role = |p: &DVec3| match p.z {
+            z if z < 0.5 => Role::Fixed,
+            z if z > 4.5 => Role::Handle(0),
+            _ => Role::Free,
+        };
+        let roles: Vec<Role> = model.surface.positions.iter().map(role).collect();
+        for energy in [ArapEnergy::Spokes, ArapEnergy::SpokesAndRims, ArapEnergy::Smooth] {
+            let options = Arap {
+                energy,
+                ..Arap::default()
+            };
+            let method = Method::from(options.clone());
+            let problem = Problem {
+                surface: &model.surface,
+                topology: &model.topology,
+                roles: &roles,
+                handle_count: 1,
+                stiffness: &vec![1.0; roles.len()],
+                constraints: Constraints::default(),
+                loose: Loose::Rest,
+                method: &method,
+                attachments: &[],
+                revision: 0,
+            };
+            let (progress, cancel) = (Progress::new(), Cancel::new());
+            let ordering = method.ordering(&model.topology, &progress, &cancel).unwrap().unwrap();
+            let partition = Partition::of(&problem).unwrap();
+            let handles = [Handle::new(partition.handles[0].clone(), &model.surface.positions)];
+            let mut solver =
+                ArapSolver::bind(&problem, &options, &partition, &handles, &ordering, &progress, &cancel).unwrap();
+            let target = DAffine3::from_translation(DVec3::X) * DAffine3::from_rotation_x(1.0);
+            let motions = [handles[0].motion(&target)];
+            let mut displacements = vec![DVec3::ZERO; roles.len()];
+            assert!(!solver.step(&motions, &mut displacements).0);
+            // No trial comes below this.
+            solver.current.energy *= 1e-3;
+            solver.history.clear();
+            let (converged, _) = solver.step(&motions, &mut displacements);
+            assert!(!converged && solver.has_stalled(), "{energy:?}");
+        }
+    }
 }

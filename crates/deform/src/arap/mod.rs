@@ -105,6 +105,8 @@ enum State {
     Descending,
     /// At a minimum, to the tolerance.
     Converged,
+    /// No step was found that lowers the energy, though the quadratic model promises one.
+    Stalled,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -236,6 +238,11 @@ impl ArapSolver {
         if let Some(coarse) = &mut self.coarse {
             coarse.rest();
         }
+    }
+
+    /// Whether no step lowers the energy although the shape has not converged.
+    pub fn has_stalled(&self) -> bool {
+        self.state == State::Stalled
     }
 
     /// One step towards `motions`: writes the solved vertices' displacements. Returns whether it converged, and the

@@ -39,6 +39,11 @@ impl DeformMethod for Bilaplacian {
         (self.stretching > 0.0).then_some(("stretching", -2))
     }
 
+    /// Between two turns it is their mean, which is narrower by the cosine of half the angle.
+    fn follows_turns_to(&self) -> Option<f64> {
+        Some(90.0)
+    }
+
     fn needs(&self) -> Needs {
         Needs::Surface {
             reach: self.operator_power(),

@@ -52,6 +52,11 @@ impl DeformMethod for Embedded {
         &DECLARATION
     }
 
+    /// Nodes may stretch, and near half a turn that costs less than turning.
+    fn follows_turns_to(&self) -> Option<f64> {
+        Some(160.0)
+    }
+
     fn needs(&self) -> Needs {
         Needs::Points
     }

@@ -7,6 +7,7 @@ pub(crate) mod bases;
 pub(crate) mod blend;
 pub(crate) mod polar;
 pub(crate) mod residual;
+pub(crate) mod turns;
 
 use glam::{DAffine3, DMat3, DVec3};
 use rayon::prelude::*;

@@ -79,6 +79,12 @@ pub(crate) trait DeformMethod: Options {
         None
     }
 
+    /// The largest turn between handles, or between a handle and what is fixed, that it bends a limb by without narrowing
+    /// it, in degrees; `None` where there is no such limit, or the method has a sentence of its own.
+    fn follows_turns_to(&self) -> Option<f64> {
+        None
+    }
+
     /// Whether it can be bound with an ordering of power 1 in place of its own, by the Laplacian's factor, which takes
     /// less memory and more time.
     fn takes_first_power(&self) -> bool {

@@ -27,6 +27,11 @@ impl DeformMethod for Mls {
         &DECLARATION
     }
 
+    /// Where several handles count alike, no rotation fits all of them.
+    fn follows_turns_to(&self) -> Option<f64> {
+        Some(90.0)
+    }
+
     fn needs(&self) -> Needs {
         Needs::Points
     }

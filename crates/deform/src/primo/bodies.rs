@@ -48,6 +48,8 @@ pub(super) enum State {
     Descending,
     /// At a minimum, to the tolerance.
     Converged,
+    /// No step was found that lowers the energy, though the quadratic model promises one.
+    Stalled,
 }
 
 impl Bodies {
@@ -124,8 +126,13 @@ impl Bodies {
         match self.state {
             State::Folded(left) => self.unfold(left),
             State::Descending => self.descend(),
-            State::Converged => {}
+            State::Converged | State::Stalled => {}
         }
+    }
+
+    /// Whether no step lowers the energy although the pose has not converged.
+    pub fn has_stalled(&self) -> bool {
+        self.state == State::Stalled
     }
 
     /// Whether the last step converged, and its energy. If it is not finite the next targets begin afresh.

@@ -75,7 +75,7 @@ impl BoundMethod for PrimoSolver {
         let (converged, energy) = PrimoSolver::step(self, motions, displacements);
         Ok(Stepped {
             converged,
-            stalled: false,
+            stalled: self.bodies.has_stalled(),
             energy,
             finite: Finite::Unknown,
         })

@@ -20,11 +20,15 @@ const RENEWAL: u32 = 20;
 /// Energies below this share of the surface's area are rounding.
 const NOTHING: f64 = 1e-26;
 
+/// A decrease by less than this share of the energy may be rounding.
+const ROUNDED: f64 = 1e-10;
+
 impl Bodies {
     /// Takes one step that lowers the energy, or finds that there is none to take.
     ///
     /// A pose has converged if the quadratic model promises a decrease below the tolerance's share of the energy and
-    /// the last step gained less than that too.
+    /// the last step gained less than that too. Where no length of the step lowers the energy it has converged only if
+    /// the model promises little.
     pub(super) fn descend(&mut self) {
         if self.age == RENEWAL {
             self.age = 0;
@@ -52,7 +56,9 @@ impl Bodies {
                 return;
             }
             if self.memory.is_empty() {
-                self.state = State::Converged;
+                let little = self.tolerance.max(ROUNDED) * before + NOTHING * self.joints.area;
+                let is_little = -0.5 * slope <= little;
+                self.state = if is_little { State::Converged } else { State::Stalled };
                 return;
             }
             self.memory.clear();

@@ -238,6 +238,19 @@ mod tests {
     }
 
     #[test]
+    fn a_pose_from_which_no_step_leads_down_has_stalled_and_not_converged() {
+        let (mut solver, motions, count) = solver(shapes::torus(24, 12));
+        let mut displacements = vec![DVec3::ZERO; count];
+        let (converged, energy) = solver.step(&motions, &mut displacements);
+        assert!(!converged && energy > 0.0);
+        // No trial comes below this.
+        solver.bodies.current.energy *= 1e-6;
+        solver.bodies.memory.clear();
+        let (converged, _) = solver.step(&motions, &mut displacements);
+        assert!(!converged && solver.bodies.has_stalled());
+    }
+
+    #[test]
     fn prisms_scattered_at_random_come_back() {
         for drawn in [shapes::tube(16, 24, 6.0), shapes::torus(24, 12), shapes::icosphere(3)] {
             let (mut solver, motions, count) = solver(drawn);

@@ -146,7 +146,7 @@ impl BoundMethod for BoundCells {
         let (converged, energy) = self.bodies.outcome();
         Ok(Stepped {
             converged,
-            stalled: false,
+            stalled: self.bodies.has_stalled(),
             energy,
             finite: Finite::Unknown,
         })

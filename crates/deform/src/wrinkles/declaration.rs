@@ -40,6 +40,11 @@ impl DeformMethod for Wrinkles {
         &DECLARATION
     }
 
+    /// Between two turns it is their mean, which is narrower by the cosine of half the angle.
+    fn follows_turns_to(&self) -> Option<f64> {
+        Some(90.0)
+    }
+
     fn needs(&self) -> Needs {
         self.bending().needs()
     }
