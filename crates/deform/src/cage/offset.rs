@@ -51,8 +51,9 @@ fn bounds(points: &[DVec3]) -> (DVec3, DVec3) {
 
 /// Points on a triangle that are no farther apart than about `step`.
 fn spread([a, b, c]: [DVec3; 3], step: f64) -> impl Iterator<Item = DVec3> {
-    let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
-    let count = (longest / step).ceil().max(1.0) as usize;
+    // In steps, because the square of a length in world units may overflow.
+    let steps = [b - a, c - b, a - c].map(|side| (side / step).length());
+    let count = steps.into_iter().fold(1.0, f64::max).ceil() as usize;
     let at = move |share: usize| share as f64 / count as f64;
     (0..=count).flat_map(move |i| (0..=count - i).map(move |j| a + (b - a) * at(i) + (c - a) * at(j)))
 }
@@ -105,4 +106,23 @@ fn smoothed(mut mesh: CageMesh, most: f64) -> CageMesh {
         }
     }
     mesh
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_triangle_is_spread_as_densely_whatever_its_size() {
+        for size in [1e-300, 1.0, 1e300] {
+            let points: Vec<DVec3> = spread([DVec3::ZERO, DVec3::X * size, DVec3::Y * size], 0.1 * size).collect();
+            // Its longest side takes 14.2 steps.
+            assert_eq!(points.len(), 16 * 17 / 2, "{size}");
+            let cage = offset_cage(&[DVec3::ZERO, DVec3::X * size, DVec3::Y * size], std::iter::empty(), 4);
+            assert!(
+                !cage.vertices.is_empty() && cage.vertices.iter().all(|v| v.is_finite()),
+                "{size}"
+            );
+        }
+    }
 }
