@@ -119,6 +119,8 @@ pub(super) fn open(source: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<Mode
             (loaded, Some(file.clone()), MeshSource::File(file.clone()))
         }
         Source::Reloaded(reload) => {
+            // Welded as before, which the edit or a person may have asked for.
+            let weld = reload.snapshot.model().weld;
             let loaded = pliant_engine::load(&reload.file, &weld, watch)?;
             let saved = reload.saved.as_ref().map(|saved| &***saved);
             let (carried, unmatched) = reload.snapshot.on_changed_mesh(&loaded.model, saved);
