@@ -8,13 +8,14 @@ use pliant_deform::{Bound as Solver, Solve, SolveError, Step};
 use pliant_editor::{EditFile, Setup};
 use pliant_engine::watch::Watch;
 use pliant_engine::{EngineError, check_bends, check_not_empty, memory, prepare, settle};
-use pliant_mesh::{Cancel, Drawn, Model, Progress, SurfaceVertex, WeldOptions};
+use pliant_mesh::{Cancel, Drawn, Model, Progress, SurfaceVertex};
 use pyo3::prelude::*;
 use rayon::ThreadPool;
 
 use crate::arrays;
 use crate::edit::Arguments;
 use crate::interruptible::{detached, interruptible};
+use crate::mesh::weld_options;
 use crate::refusal::{of_engine, refused};
 use crate::transforms::transforms;
 
@@ -42,7 +43,7 @@ struct Solving {
 ///
 /// The arguments after `faces` are the members of the edit format. See the type stubs for shapes and defaults.
 #[pyfunction]
-#[pyo3(signature = (vertices, faces, *, handles=None, fixed=None, region=None, stiffness=None, continuity=None, loose=None, method=None))]
+#[pyo3(signature = (vertices, faces, *, handles=None, fixed=None, region=None, stiffness=None, continuity=None, loose=None, method=None, weld=None))]
 #[expect(clippy::too_many_arguments, reason = "they are the edit format's members, by name")]
 pub fn bind<'py>(
     py: Python<'py>,
@@ -55,6 +56,7 @@ pub fn bind<'py>(
     continuity: Option<Bound<'py, PyAny>>,
     loose: Option<Bound<'py, PyAny>>,
     method: Option<Bound<'py, PyAny>>,
+    weld: Option<f64>,
 ) -> PyResult<BoundMesh> {
     let positions = arrays::points(vertices, "vertices")?;
     let triangles = arrays::triangles(faces, "faces", positions.len())?;
@@ -68,9 +70,10 @@ pub fn bind<'py>(
         loose,
     };
     let edit = arguments.edit(positions.len())?;
+    let weld = weld_options(weld)?;
     let bind = |cancel: &Cancel| {
         let drawn = Drawn::once(positions, triangles);
-        let model = Model::weld(drawn, &WeldOptions::default(), &Progress::new(), cancel);
+        let model = Model::weld(drawn, &weld, &Progress::new(), cancel);
         let model = model.map_err(|_| of_engine(&EngineError::Interrupted))?;
         bind_model(Path::new(ARRAYS), Arc::new(model), &edit, cancel)
     };

@@ -104,10 +104,7 @@ impl Mesh {
 #[pyfunction]
 #[pyo3(signature = (path, *, weld=None))]
 pub fn load(py: Python<'_>, path: PathBuf, weld: Option<f64>) -> PyResult<Mesh> {
-    if weld.is_some_and(|distance| !(distance.is_finite() && distance >= 0.0)) {
-        return Err(refused("weld is not a distance: give a number from 0"));
-    }
-    let options = WeldOptions { distance: weld };
+    let options = weld_options(weld)?;
     let loaded = interruptible(py, |pool, cancel| {
         pool.install(|| load_file(&path, &options, &Watch::cancelled_by(cancel)))
     })?;
@@ -115,6 +112,17 @@ pub fn load(py: Python<'_>, path: PathBuf, weld: Option<f64>) -> PyResult<Mesh> 
     Ok(Mesh {
         loaded: Arc::new(loaded),
     })
+}
+
+/// How vertices are joined, if a distance is given.
+///
+/// # Errors
+/// `ValueError` if it is none.
+pub fn weld_options(weld: Option<f64>) -> PyResult<WeldOptions> {
+    if weld.is_some_and(|distance| !(distance.is_finite() && distance >= 0.0)) {
+        return Err(refused("weld is not a distance: give a number from 0"));
+    }
+    Ok(WeldOptions { distance: weld })
 }
 
 /// Saves a mesh with new positions of its vertices, in the format that the path's extension names.

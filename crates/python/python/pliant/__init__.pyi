@@ -99,6 +99,7 @@ def bind(
     continuity: Field | None = None,
     loose: Loose | None = None,
     method: Method | None = None,
+    weld: float | None = None,
 ) -> Bound:
     """Binds a mesh: factors and solves everything that does not depend on where the handles go.
 
@@ -111,6 +112,8 @@ def bind(
     :param continuity: how the surface joins what is held, 0 to 2; by default 2.
     :param loose: what parts do that nothing holds: "follow" (the default), "bend" or "rest".
     :param method: by default "bilaplacian" with its defaults.
+    :param weld: the distance within which vertices are joined, 0 for equal ones alone. Without it, the distance follows
+        from the mesh's edges.
     :raises ValueError: one sentence that names the culprit and the remedy.
     """
 
