@@ -15,9 +15,9 @@ use rayon::ThreadPool;
 use crate::arrays;
 use crate::edit::Arguments;
 use crate::interruptible::{detached, interruptible};
-use crate::mesh::weld_options;
 use crate::refusal::{of_engine, refused};
 use crate::transforms::transforms;
+use crate::values::weld_options;
 
 /// What stands for a file's name in refusals of arrays.
 const ARRAYS: &str = "the mesh";

@@ -9,7 +9,7 @@ use pliant_engine::files::{self, Staging};
 use pliant_engine::saving::{self, SaveAs};
 use pliant_engine::watch::Watch;
 use pliant_engine::{EngineError, Loaded, load as load_file};
-use pliant_mesh::{Progress, WeldOptions};
+use pliant_mesh::Progress;
 use pyo3::prelude::*;
 
 use crate::arrays;
@@ -17,6 +17,7 @@ use crate::bound::{BoundMesh, bind_model};
 use crate::edit::Arguments;
 use crate::interruptible::interruptible;
 use crate::refusal::{of_engine, refused};
+use crate::values::weld_options;
 
 /// A file that was read: its shape as arrays, and all else that is in it, kept for `save`.
 #[pyclass(frozen, module = "pliant")]
@@ -112,17 +113,6 @@ pub fn load(py: Python<'_>, path: PathBuf, weld: Option<f64>) -> PyResult<Mesh> 
     Ok(Mesh {
         loaded: Arc::new(loaded),
     })
-}
-
-/// How vertices are joined, if a distance is given.
-///
-/// # Errors
-/// `ValueError` if it is none.
-pub fn weld_options(weld: Option<f64>) -> PyResult<WeldOptions> {
-    if weld.is_some_and(|distance| !(distance.is_finite() && distance >= 0.0)) {
-        return Err(refused("weld is not a distance: give a number from 0"));
-    }
-    Ok(WeldOptions { distance: weld })
 }
 
 /// Saves a mesh with new positions of its vertices, in the format that the path's extension names.

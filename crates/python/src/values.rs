@@ -1,5 +1,6 @@
 //! Python's values as the edit format's: numbers, names, lists and objects.
 
+use pliant_mesh::WeldOptions;
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
 use serde_json::{Map, Number, Value};
@@ -68,4 +69,15 @@ fn at_depth(any: &Bound<'_, PyAny>, place: &str, depth: usize) -> PyResult<Value
     Err(refused(format!(
         "{place} is of type {kind}: give a number, a name, a list or a dict"
     )))
+}
+
+/// How vertices are joined, if a distance is given.
+///
+/// # Errors
+/// `ValueError` if it is none.
+pub fn weld_options(weld: Option<f64>) -> PyResult<WeldOptions> {
+    if weld.is_some_and(|distance| !(distance.is_finite() && distance >= 0.0)) {
+        return Err(refused("weld is not a distance: give a number from 0"));
+    }
+    Ok(WeldOptions { distance: weld })
 }

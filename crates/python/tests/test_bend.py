@@ -372,16 +372,16 @@ def test_a_forked_process_has_threads_of_its_own(mesh, ends):
 def test_vertices_within_the_weld_distance_are_one():
     # Two halves of a bar, a hundredth apart.
     first, faces = bar()
-    length = first[:, 0].max() + 0.01
-    vertices = np.concatenate([first, first + [length, 0, 0]])
+    length = first[:, 1].max() + 0.01
+    vertices = np.concatenate([first, first + [0, length, 0]])
     both = np.concatenate([faces, faces + len(first)])
-    handles = {"end": vertices[:, 0] > vertices[:, 0].max() - 1e-9}
-    fixed = vertices[:, 0] < 1e-9
-    seam = np.abs(vertices[:, 0] - length) < 0.02
+    handles = {"end": vertices[:, 1] > vertices[:, 1].max() - 1e-9}
+    fixed = vertices[:, 1] < 1e-9
+    seam = np.abs(vertices[:, 1] - length) < 0.015
 
     def gap(**change):
         bent = pliant.bind(vertices, both, handles=handles, fixed=fixed, **change).step({"end": quarter_turn()})
-        left, right = (bent[seam & side] for side in (vertices[:, 0] < length - 1e-3, vertices[:, 0] > length - 1e-3))
+        left, right = (bent[seam & side] for side in (vertices[:, 1] < length - 0.005, vertices[:, 1] > length - 0.005))
         return max(np.linalg.norm(right - point, axis=1).min() for point in left)
 
     assert gap() > 0.1, "they are apart by themselves"
