@@ -24,7 +24,7 @@ use crate::{Bilaplacian, BilaplacianOrder, Laplacian};
 pub(crate) struct Potential<'a, const K: usize> {
     phi: Cow<'a, [[f64; K]]>,
     d: &'a [[f64; K]],
-    /// Of the natural term, empty without one.
+    /// The natural term's part; empty without one.
     stress: Vec<[[f64; K]; 2]>,
 }
 
@@ -55,7 +55,7 @@ pub(crate) struct BilaplacianOperator {
 }
 
 impl<'a, const K: usize> Potential<'a, K> {
-    /// Of order 1.
+    /// The potential of order 1.
     fn of(d: &'a [[f64; K]]) -> Self {
         Self {
             phi: d.into(),

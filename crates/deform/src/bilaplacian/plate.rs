@@ -11,7 +11,7 @@ use crate::{Bilaplacian, Detail};
 /// The factored system, what its handles and stiff parts prescribe, and the parts.
 pub(crate) struct Plate {
     pub system: BilaplacianSystem,
-    /// Of the handles, then of the parts.
+    /// The handles' places, and behind them the parts'.
     pub prescribed: Vec<Prescribed>,
     pub parts: StiffParts,
     /// Whether natural boundaries were left out, because their factor does not fit.

@@ -34,7 +34,7 @@ pub(crate) enum RingKind {
 #[derive(Debug)]
 pub(crate) struct RingHessian {
     kinds: Vec<RingKind>,
-    /// Where a local vertex' entries begin; they stand beside the Laplacian's neighbours.
+    /// The first entry of each local vertex; entries are in the order of the Laplacian's neighbours.
     offsets: Vec<usize>,
     /// The coefficients of each neighbour in the vertex' own rows; its own is minus their sum.
     own: Vec<[f64; 2]>,

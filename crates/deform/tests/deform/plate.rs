@@ -258,7 +258,7 @@ fn where_stiffness_varies_the_energy_is_that_of_the_hessian() {
         // The handle rests, and the stiff part with it.
         scene.bind().energy_of(&heights).unwrap()
     };
-    // Of a bump that reaches into both halves: ½ ∫ s₀ (Δf)² + (s − s₀) |∇²f|².
+    // The energy of a bump that reaches into both halves is ½ ∫ s₀ (Δf)² + (s − s₀) |∇²f|².
     let fine = 800;
     let exact: f64 = (0..fine * fine)
         .map(|i| {

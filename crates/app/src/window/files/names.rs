@@ -45,32 +45,31 @@ pub(in crate::window) fn sources_of(project: &Path) -> Vec<PathBuf> {
 
 /// `NAME.MARK.EXT`, from the second on `NAME.MARK-NUMBER.EXT`.
 fn marked_name(path: &Path, mark: &str, number: usize) -> PathBuf {
-    let mut name = path.file_stem().unwrap_or_default().to_owned();
-    name.push(".");
-    name.push(mark);
-    if number > 1 {
-        name.push(format!("-{number}"));
-    }
-    if let Some(extension) = path.extension() {
-        name.push(".");
-        name.push(if is_gltf(path) { OsStr::new("glb") } else { extension });
-    }
-    path.with_file_name(name)
+    let tail = match number {
+        1 => format!(".{mark}"),
+        _ => format!(".{mark}-{number}"),
+    };
+    let extension = path.extension();
+    let packed = extension.map(|extension| if is_gltf(path) { OsStr::new("glb") } else { extension });
+    name_with(path, &tail, packed)
 }
 
 /// A name beside `path` that is free: `NAME-2.EXT`, or the next number that is.
 pub fn free_name(path: &Path) -> PathBuf {
-    let numbered = (2..=MOST_ORIGINALS).map(|number| {
-        let mut name = path.file_stem().unwrap_or_default().to_owned();
-        name.push(format!("-{number}"));
-        if let Some(extension) = path.extension() {
-            name.push(".");
-            name.push(extension);
-        }
-        path.with_file_name(name)
-    });
-    let mut free = numbered.filter(|name| std::fs::symlink_metadata(name).is_err());
-    free.next().unwrap_or_else(|| path.to_owned())
+    let mut names = (2..=MOST_ORIGINALS).map(|number| name_with(path, &format!("-{number}"), path.extension()));
+    let free = names.find(|name| std::fs::symlink_metadata(name).is_err());
+    free.unwrap_or_else(|| path.to_owned())
+}
+
+/// A path's name with `tail` behind its stem, and this extension.
+fn name_with(path: &Path, tail: &str, extension: Option<&OsStr>) -> PathBuf {
+    let mut name = path.file_stem().unwrap_or_default().to_owned();
+    name.push(tail);
+    if let Some(extension) = extension {
+        name.push(".");
+        name.push(extension);
+    }
+    path.with_file_name(name)
 }
 
 /// Whether a path is that of a glTF whose buffers stand beside it.
