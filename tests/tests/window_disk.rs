@@ -17,7 +17,7 @@ use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
 use pliant_app::window::{AppDirectories, KeepOriginal, Source, original_name};
 use pliant_editor::Command;
-use pliant_tests::Folder;
+use pliant_tests::{Folder, run};
 use window_rig::Session;
 
 fn open(path: &Path) -> Option<Session> {
@@ -403,4 +403,77 @@ fn a_file_that_was_changed_is_reloaded_with_the_edit_on_top() {
         let saved = pliant_tests::open(&file).model.rest().positions.clone();
         assert_eq!(saved.len(), again.len());
     }
+}
+
+/// A ball in two halves whose borders don't quite meet.
+fn halved_ball() -> pliant_mesh::Drawn {
+    let mut ball = pliant_mesh::shapes::icosphere(3);
+    let vertices = ball.positions.len();
+    let height = |triangle: &[pliant_mesh::DrawnVertex; 3]| {
+        let of = |corner: &pliant_mesh::DrawnVertex| ball.positions[corner.index()].y;
+        triangle.iter().map(of).sum::<f64>()
+    };
+    let upper: Vec<bool> = ball.triangles.iter().map(|triangle| height(triangle) > 0.0).collect();
+    let raised: Vec<_> = ball.positions.iter().map(|p| *p + 0.005 * glam::DVec3::Y).collect();
+    for (triangle, is_upper) in ball.triangles.iter_mut().zip(upper) {
+        if is_upper {
+            *triangle = triangle.map(|corner| pliant_mesh::DrawnVertex(corner.0 + vertices as u32));
+        }
+    }
+    ball.positions.extend(raised);
+    ball.file_vertex_count = ball.positions.len();
+    ball.file_vertex = (0..ball.positions.len() as u32).map(pliant_mesh::FileVertex).collect();
+    ball
+}
+
+#[test]
+fn vertices_are_joined_as_the_panel_says_and_the_work_stays() {
+    let folder = Folder::new();
+    let file = folder.write_mesh("halves.off", &halved_ball());
+    let Some(mut session) = open(&file) else { return };
+    let parts = |session: &Session| {
+        let model = session.harness.state().editor().view().model.unwrap();
+        let used = model.topology.components().iter().filter(|part| part.vertex_count > 1);
+        used.count()
+    };
+    assert_eq!(parts(&session), 2);
+    edit(&mut session);
+    let (handle, highest) = (session.translation(), highest(&session));
+    for (choice, count) in [("within", 1), ("by mesh", 2), ("equal", 2), ("within", 1)] {
+        session.harness.get_by_label(choice).click_accesskit();
+        session.settle();
+        assert_eq!(parts(&session), count, "{choice}");
+        assert!(session.translation().distance(handle) < 1e-12, "{choice}");
+        // What the lower half does differs, the handle's place does not.
+        assert!((self::highest(&session) - highest).abs() < 1e-9, "{choice}");
+        assert!(session.harness.state().editor().view().unsaved, "{choice}");
+    }
+    // The shape is what the command line makes of the edit.
+    let edit = session.harness.state().editor().edit_file().unwrap().to_json();
+    let edit = folder.write("halves.edit.json", &edit);
+    session.harness.state_mut().save_to(file.clone(), KeepOriginal::Yes);
+    session.settle();
+    let (original, output) = (original_name(&file), folder.at("applied.off"));
+    let [apply, of, to] = ["apply", "--edit", "--output"].map(std::ffi::OsStr::new);
+    run([
+        apply,
+        original.as_os_str(),
+        of,
+        edit.as_os_str(),
+        to,
+        output.as_os_str(),
+    ])
+    .done();
+    let [seen, applied] = [&file, &output].map(|path| pliant_tests::open(path).model.rest_positions());
+    for (seen, applied) in seen.iter().zip(&applied) {
+        assert!(seen.distance(*applied) < 1e-6, "{seen} beside {applied}");
+    }
+}
+
+/// How high the shape reaches.
+fn highest(session: &Session) -> f64 {
+    let view = session.harness.state().editor().view();
+    let rest = &view.model.unwrap().surface.positions;
+    let seen = rest.iter().zip(view.displacements.iter()).map(|(p, d)| p.y + d.y);
+    seen.fold(f64::NEG_INFINITY, f64::max)
 }

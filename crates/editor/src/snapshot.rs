@@ -26,9 +26,9 @@ impl Snapshot {
         Project::of(&self.work.document, &self.work.model, Some(&self.camera), mesh)
     }
 
-    /// The document on its mesh as it was read again, after another program has changed the file, and how many vertices
-    /// of that stand for none of the former mesh. `saved` is what the file was moved by when it was saved last (an entry
-    /// per surface vertex), if it was.
+    /// The document on its mesh as it was read again, after another program has changed the file or with its vertices
+    /// joined otherwise, and how many vertices of that stand for none of the former mesh. `saved` is what the file was
+    /// moved by when it was saved last (an entry per surface vertex), if it was.
     pub fn on_changed_mesh(&self, model: &Model, saved: Option<&[DVec3]>) -> (Beginning, usize) {
         let matching = Matching::of(&self.work.model, model, saved);
         let document = self.work.document.onto(&matching, saved);

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use glam::DVec3;
-use pliant_mesh::Model;
+use pliant_mesh::{Model, SurfaceVertex};
 
 /// Vertices in the same place are no further apart than this share of the mesh's size and place, which is what storing
 /// positions as f32 takes.
@@ -14,8 +14,10 @@ const SAME_PLACE: f64 = 1e-6;
 pub struct Matching {
     /// For each surface vertex of the new mesh that of the old one.
     pub(super) of_new: Vec<Option<u32>>,
-    /// Whether both have the same vertices and triangles.
-    pub(super) is_same_mesh: bool,
+    /// For each connected part of the new mesh that of the old one which its first matched vertex belongs to.
+    pub(super) of_new_part: Vec<Option<u32>>,
+    /// Whether both files draw the same triangles, however their vertices are joined.
+    pub(super) draws_the_same: bool,
 }
 
 impl Matching {
@@ -23,54 +25,66 @@ impl Matching {
     /// has the old one's shape, moved by `moved` (an entry per surface vertex) where that is given.
     pub fn of(old: &Model, new: &Model, moved: Option<&[DVec3]>) -> Self {
         let counts = |model: &Model| (model.drawn.vertex_count(), model.drawn.triangle_count());
-        if counts(old) == counts(new) && old.drawn_triangles() == new.drawn_triangles() {
-            return Self::by_number(old, new);
-        }
-        let places: Vec<DVec3> = match moved {
-            Some(moved) => old.surface.positions.iter().zip(moved).map(|(p, d)| *p + *d).collect(),
-            None => old.surface.positions.clone(),
+        let draws_the_same = counts(old) == counts(new) && old.drawn_triangles() == new.drawn_triangles();
+        let of_new = match (draws_the_same, moved) {
+            (true, _) => by_number(old, new),
+            (false, Some(moved)) => {
+                let places = old.surface.positions.iter().zip(moved).map(|(p, d)| *p + *d);
+                by_place(&places.collect::<Vec<_>>(), &new.surface.positions)
+            }
+            (false, None) => by_place(&old.surface.positions, &new.surface.positions),
         };
-        Self::by_place(&places, &new.surface.positions)
+        let mut of_new_part = vec![None; new.topology.components().len()];
+        for (vertex, old_vertex) in (0..).zip(&of_new) {
+            if let Some(old_vertex) = old_vertex {
+                let part = new.topology.component(SurfaceVertex(vertex));
+                of_new_part[part as usize].get_or_insert(old.topology.component(SurfaceVertex(*old_vertex)));
+            }
+        }
+        Self {
+            of_new,
+            of_new_part,
+            draws_the_same,
+        }
     }
 
     /// How many vertices of the new mesh have no counterpart in the old one.
     pub fn unmatched(&self) -> usize {
         self.of_new.iter().filter(|old| old.is_none()).count()
     }
+}
 
-    fn by_number(old: &Model, new: &Model) -> Self {
-        let mut of_new = vec![None; new.surface.positions.len()];
-        for (old, new) in old.drawn.surface_vertices().zip(new.drawn.surface_vertices()) {
-            if let (Some(old), Some(new)) = (old, new) {
-                of_new[new.index()].get_or_insert(old.0);
+/// Where a new vertex stands for several old ones, it has the first that triangles use.
+fn by_number(old: &Model, new: &Model) -> Vec<Option<u32>> {
+    let mut of_new: Vec<Option<u32>> = vec![None; new.surface.positions.len()];
+    let first_bare = old.topology.bare_points().start as u32;
+    for (old, new) in old.drawn.surface_vertices().zip(new.drawn.surface_vertices()) {
+        if let (Some(old), Some(new)) = (old, new) {
+            let place = &mut of_new[new.index()];
+            if place.is_none_or(|taken| taken >= first_bare && old.0 < first_bare) {
+                *place = Some(old.0);
             }
         }
-        Self {
-            of_new,
-            is_same_mesh: true,
-        }
     }
+    of_new
+}
 
-    fn by_place(old: &[DVec3], new: &[DVec3]) -> Self {
-        let farthest = old.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
-        let reach = (SAME_PLACE * farthest).max(f64::MIN_POSITIVE);
-        let cell = |p: DVec3| (p / reach).floor().as_i64vec3();
-        let mut by_cell: HashMap<[i64; 3], Vec<u32>> = HashMap::new();
-        for (vertex, place) in old.iter().enumerate() {
-            by_cell.entry(cell(*place).to_array()).or_default().push(vertex as u32);
-        }
-        let nearest = |place: &DVec3| {
-            let [x, y, z] = cell(*place).to_array();
-            let sides = || [-1, 0, 1].into_iter();
-            let cells = sides().flat_map(|i| sides().flat_map(move |j| sides().map(move |k| [x + i, y + j, z + k])));
-            let near = cells.filter_map(|cell| by_cell.get(&cell)).flatten();
-            let near = near.map(|vertex| (old[*vertex as usize].distance(*place), *vertex));
-            let near = near.filter(|(way, _)| *way <= reach);
-            near.min_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, vertex)| vertex)
-        };
-        Self {
-            of_new: new.iter().map(nearest).collect(),
-            is_same_mesh: false,
-        }
+fn by_place(old: &[DVec3], new: &[DVec3]) -> Vec<Option<u32>> {
+    let farthest = old.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
+    let reach = (SAME_PLACE * farthest).max(f64::MIN_POSITIVE);
+    let cell = |p: DVec3| (p / reach).floor().as_i64vec3();
+    let mut by_cell: HashMap<[i64; 3], Vec<u32>> = HashMap::new();
+    for (vertex, place) in old.iter().enumerate() {
+        by_cell.entry(cell(*place).to_array()).or_default().push(vertex as u32);
     }
+    let nearest = |place: &DVec3| {
+        let [x, y, z] = cell(*place).to_array();
+        let sides = || [-1, 0, 1].into_iter();
+        let cells = sides().flat_map(|i| sides().flat_map(move |j| sides().map(move |k| [x + i, y + j, z + k])));
+        let near = cells.filter_map(|cell| by_cell.get(&cell)).flatten();
+        let near = near.map(|vertex| (old[*vertex as usize].distance(*place), *vertex));
+        let near = near.filter(|(way, _)| *way <= reach);
+        near.min_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, vertex)| vertex)
+    };
+    new.iter().map(nearest).collect()
 }

@@ -177,6 +177,7 @@ impl Application {
                     (None, _) => self.choose(Purpose::AddExample),
                 }
             }
+            FileCommand::Weld(weld) => self.weld_anew(weld),
             FileCommand::Palette => self.palette = Some(Palette::default()),
             FileCommand::Panel => self.is_panel_hidden = !self.is_panel_hidden,
             FileCommand::Log => self.log.open = true,

@@ -5,11 +5,12 @@ use std::path::PathBuf;
 use eframe::egui::{Key, KeyboardShortcut, Modifiers};
 use pliant_deform::AttachmentKind;
 use pliant_editor::{Editor, WITHOUT_EXAMPLES};
+use pliant_mesh::WeldOptions;
 
 use crate::window::threads::message::{Ground, PictureKind};
 
 /// What is done with files; the window's own, since the editor knows no paths.
-#[derive(Clone, PartialEq, Eq, Debug)]
+#[derive(Clone, PartialEq, Debug)]
 pub enum FileCommand {
     /// Open a file, by dialog.
     Open,
@@ -27,6 +28,8 @@ pub enum FileCommand {
     SaveProjectAs,
     /// Write the regions, handles and transforms as an edit for the command line.
     ExportEdit,
+    /// Join the open mesh's vertices otherwise.
+    Weld(WeldOptions),
     /// Take a cage from a file.
     LoadCage,
     /// Take an example from a file of the same vertices.
@@ -102,6 +105,7 @@ impl FileCommand {
             Self::Scale(_) => command(Key::Num0),
             Self::SaveProjectAs
             | Self::SaveMorph
+            | Self::Weld(_)
             | Self::LoadCage
             | Self::AddExample
             | Self::AddMorphTarget(_)
@@ -151,6 +155,7 @@ impl FileCommand {
             Self::SaveMorph => "Save as morph target…",
             Self::SaveProject => "Save project",
             Self::SaveProjectAs => "Save project as…",
+            Self::Weld(_) => "Join vertices",
             Self::LoadCage => "Load cage…",
             Self::AddExample => "Add example from file…",
             Self::AddMorphTarget(_) => "Add a morph target",
@@ -176,6 +181,7 @@ impl FileCommand {
             Self::Save | Self::SaveAs => "write file",
             Self::SaveMorph => "blend shape key gltf glb write file",
             Self::SaveProject | Self::SaveProjectAs => "pliant file document",
+            Self::Weld(_) => "weld merge distance doubles seams",
             Self::LoadCage => "open import control mesh",
             Self::AddExample | Self::AddMorphTarget(_) => "open import pose shape blend morph in-between",
             Self::Palette => "palette search",

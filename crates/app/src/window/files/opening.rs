@@ -4,14 +4,13 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use glam::DVec3;
-use pliant_assets::CREATURE;
 use pliant_editor::{Beginning, SavedAs, Snapshot};
 use pliant_mesh::WeldOptions;
 
-use super::names::{SAMPLE_NAME, saved_name};
+use super::names::saved_name;
 use super::project_file;
 use super::recovery::left::opened_project;
-use super::rest_mesh::MeshSource;
+use super::rest_mesh::{MeshSource, load_sample};
 use crate::drawing::Drawing;
 use crate::window::threads::message::ModelToShow;
 use crate::window::viewport::gpu::Gpu;
@@ -35,19 +34,25 @@ pub enum Source {
     },
     /// A project that was left by a session that ended without saving.
     Recovered(PathBuf),
-    /// The open mesh once more, after another program has changed its file.
+    /// The open mesh once more: another program has changed its file, or its vertices are joined otherwise.
     Reloaded(Box<Reload>),
 }
 
 /// A mesh that is read again, and what is put onto it.
 #[derive(Clone, Debug)]
 pub struct Reload {
-    /// The mesh.
-    pub file: PathBuf,
+    /// Where the mesh stands; `None` is the built-in sample.
+    pub file: Option<PathBuf>,
+    /// Where it is saved; `None` where nobody has said.
+    pub path: Option<PathBuf>,
+    /// How its vertices are joined.
+    pub weld: WeldOptions,
     /// The document.
     pub snapshot: Snapshot,
-    /// What the file was moved by when it was saved last, per surface vertex, if it was.
+    /// What the mesh in `file` was moved by when it was saved there, per surface vertex, if it was.
     pub saved: Option<Arc<Vec<DVec3>>>,
+    /// Whether the work counts as unsaved.
+    pub unsaved: bool,
     /// The project that is open.
     pub project: Option<PathBuf>,
 }
@@ -99,11 +104,7 @@ pub(super) fn open(source: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<Mode
     let mut unsaved = None;
     let (mut project, mut recovered) = (None, None);
     let (loaded, path, source) = match source {
-        Source::Sample => (
-            pliant_engine::load_bytes(CREATURE.to_vec(), Path::new(SAMPLE_NAME), &weld, watch)?,
-            None,
-            MeshSource::Sample,
-        ),
+        Source::Sample => (load_sample(&weld, watch)?, None, MeshSource::Sample),
         Source::File(path) if !pliant_engine::is_project(path) => (
             pliant_engine::load(path, &weld, watch)?,
             Some(path.clone()),
@@ -119,9 +120,13 @@ pub(super) fn open(source: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<Mode
             (loaded, Some(file.clone()), MeshSource::File(file.clone()))
         }
         Source::Reloaded(reload) => {
-            // Welded as before, which the edit or a person may have asked for.
-            let weld = reload.snapshot.model().weld;
-            let loaded = pliant_engine::load(&reload.file, &weld, watch)?;
+            let (loaded, source) = match &reload.file {
+                Some(file) => (
+                    pliant_engine::load(file, &reload.weld, watch)?,
+                    MeshSource::File(file.clone()),
+                ),
+                None => (load_sample(&reload.weld, watch)?, MeshSource::Sample),
+            };
             let saved = reload.saved.as_ref().map(|saved| &***saved);
             let (carried, unmatched) = reload.snapshot.on_changed_mesh(&loaded.model, saved);
             if unmatched > 0 {
@@ -131,9 +136,8 @@ pub(super) fn open(source: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<Mode
             }
             beginning = Some(carried);
             project.clone_from(&reload.project);
-            unsaved = Some(saved_as(project.as_deref()));
-            let file = reload.file.clone();
-            (loaded, Some(file.clone()), MeshSource::File(file))
+            unsaved = reload.unsaved.then(|| saved_as(project.as_deref()));
+            (loaded, reload.path.clone(), source)
         }
         Source::File(path) | Source::Recovered(path) => {
             let opened = project_file::read(path, watch)?;

@@ -2,13 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use pliant_assets::CREATURE;
 use pliant_editor::{Beginning, MeshReference, Project, Snapshot, geometry_hash};
 use pliant_mesh::{Cancel, Progress};
 
 use super::names::{SAMPLE_NAME, file_name, original_names, saved_name, source_names, sources_of};
 use super::original::{Kept, free_or_same};
-use super::rest_mesh::{Check, MeshSource, RestMesh};
+use super::rest_mesh::{Check, MeshSource, RestMesh, load_sample};
 use pliant_engine::files::{self, Staged, Staging, Stamp};
 use pliant_engine::saving::{self, SaveAs};
 use pliant_engine::watch::Watch;
@@ -197,7 +196,7 @@ pub fn read(path: &Path, watch: &Watch) -> Result<OpenedProject, EngineError> {
     };
     let weld = project.weld_options();
     let Some(named) = project.mesh().path.clone() else {
-        let loaded = pliant_engine::load_bytes(CREATURE.to_vec(), Path::new(SAMPLE_NAME), &weld, watch)?;
+        let loaded = load_sample(&weld, watch)?;
         return if geometry_hash(&loaded.model) == project.mesh().geometry {
             Ok(OpenedProject {
                 project,

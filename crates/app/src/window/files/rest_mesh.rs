@@ -3,8 +3,13 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use pliant_engine::Loaded;
+use pliant_assets::CREATURE;
 use pliant_engine::files::{KnownFiles, Stamp, is_same};
+use pliant_engine::watch::Watch;
+use pliant_engine::{EngineError, Loaded};
+use pliant_mesh::WeldOptions;
+
+use super::names::SAMPLE_NAME;
 
 /// Where a mesh as it was read stands now.
 #[derive(Clone, PartialEq, Eq, Debug)]
@@ -15,6 +20,11 @@ pub enum MeshSource {
     File(PathBuf),
     /// Nowhere: it was saved over, and has to be written again if it is needed.
     Gone,
+}
+
+/// Reads and welds the built-in sample.
+pub(super) fn load_sample(weld: &WeldOptions, watch: &Watch) -> Result<Loaded, EngineError> {
+    pliant_engine::load_bytes(CREATURE.to_vec(), Path::new(SAMPLE_NAME), weld, watch)
 }
 
 /// How a file is compared with its stamp: [`Stamp::is_current`] or [`Stamp::looks_current`].

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use pliant_editor::{Event, Revision, SavedAs};
 
 use super::opening::Reload;
+use super::rest_mesh::MeshSource;
 use super::save_request::{Changed, Content, Model, Shape, Unwritten, Written, WrittenKind};
 use super::save_wish::SaveWish;
 use super::session::{KeepOriginal, Source};
@@ -18,6 +19,7 @@ use crate::window::panels::notes::Note;
 use crate::window::threads::message::{Ground, PictureKind, Purpose};
 use pliant_engine::files::{is_same, shown};
 use pliant_engine::is_project;
+use pliant_mesh::WeldOptions;
 
 impl Application {
     /// Saves under `path` once the shape has settled, without asking whether a source may be written over.
@@ -247,12 +249,50 @@ impl Application {
         let file = open.path.clone()?;
         let is_known = open.saved.is_some() || is_same(&file, &open.loaded.path);
         let is_model = matches!(content, Content::Model(_));
+        let snapshot = self.editor.snapshot().filter(|_| is_known && is_model)?;
         Some(Reload {
-            snapshot: self.editor.snapshot().filter(|_| is_known && is_model)?,
+            // As before: the edit or a person may have asked for it.
+            weld: snapshot.model().weld,
+            snapshot,
             saved: open.saved.clone(),
             project: open.project.clone(),
-            file,
+            path: Some(file.clone()),
+            file: Some(file),
+            unsaved: true,
         })
+    }
+
+    /// Opens the mesh once more with its vertices joined otherwise, and puts the work onto it. It is read from where it
+    /// stands as it was opened, or else from where it was saved.
+    pub(in crate::window) fn weld_anew(&mut self, weld: WeldOptions) {
+        let (Some(open), Some(snapshot)) = (&self.session.open, self.editor.snapshot()) else {
+            return;
+        };
+        if snapshot.model().weld == weld {
+            return;
+        }
+        let (file, saved) = match &open.mesh.source {
+            MeshSource::Sample => (None, None),
+            MeshSource::File(file) => (Some(file.clone()), None),
+            MeshSource::Gone if open.saved.is_some() => (open.path.clone(), open.saved.clone()),
+            MeshSource::Gone => {
+                let gone =
+                    "the mesh is nowhere as it was opened: save the project and open that, then join its vertices";
+                return self.fail(gone.to_owned());
+            }
+        };
+        let reload = Reload {
+            file,
+            path: open.path.clone(),
+            weld,
+            snapshot,
+            saved,
+            project: open.project.clone(),
+            // A project keeps the distance, too.
+            unsaved: self.editor.view().unsaved || open.project.is_some(),
+        };
+        let source = Source::Reloaded(Box::new(reload));
+        self.session.load(source, &self.viewport.gpu(), &self.workers);
     }
 
     /// Asks for another name in place of that of the file which another program has changed.

@@ -5,6 +5,7 @@ use pliant_editor::{Command, Editor, thousands};
 use pliant_mesh::{FindingKind, Model, Named};
 
 use super::notes::Notes;
+use super::weld;
 use crate::window::widgets::command_button::command_button;
 use crate::window::widgets::outbox::Outbox;
 
@@ -19,6 +20,7 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, notes: &Notes, commands: &mut Ou
         thousands(model.drawn.file_vertex_count()),
         thousands(model.surface.triangles.len())
     ));
+    weld::show(ui, editor, model, commands);
     for kind in FindingKind::ALL {
         if let Some(sentence) = model.findings.sentence(kind) {
             finding(ui, model, kind, &sentence, commands);

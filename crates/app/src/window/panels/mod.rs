@@ -16,6 +16,7 @@ pub(in crate::window) mod objects;
 mod part_name;
 mod poses;
 mod strength;
+mod weld;
 
 use std::collections::BTreeSet;
 

@@ -1,4 +1,5 @@
-//! A document on its mesh as it was read again, after another program has changed the file.
+//! A document on its mesh as it was read again: after another program has changed the file, or with its vertices joined
+//! otherwise.
 
 use std::sync::Arc;
 
@@ -6,6 +7,7 @@ use glam::DVec3;
 use pliant_deform::Attachment;
 
 use super::Document;
+use crate::document::access::Access;
 use crate::document::content::{Content, Paint};
 use crate::document::kept_shape::KeptShape;
 use crate::document::matching::Matching;
@@ -64,10 +66,22 @@ impl Document {
             }
         }
         content.attachments = Arc::new(attachments);
-        if matching.is_same_mesh {
-            content.loose_parts = Arc::clone(&self.loose_parts);
-            content.inside_out = Arc::clone(&self.inside_out);
-            content.access = Arc::clone(&self.access);
+        let parts = || {
+            (0..)
+                .zip(&matching.of_new_part)
+                .filter_map(|(new, old)| Some((new, (*old)?)))
+        };
+        let loose = parts().filter_map(|(new, old)| Some((new, *self.loose_parts.get(&old)?)));
+        content.loose_parts = Arc::new(loose.collect());
+        let turned = parts().filter(|(_, old)| self.inside_out.contains(old));
+        content.inside_out = Arc::new(turned.map(|(new, _)| new).collect());
+        if matching.draws_the_same {
+            let isolated = self.access.isolated;
+            let isolated = isolated.and_then(|alone| parts().find(|(_, old)| *old == alone).map(|(new, _)| new));
+            content.access = Arc::new(Access {
+                isolated,
+                ..Access::clone(&self.access)
+            });
         }
         let is_there = |paint: &Paint| content.paint.contains(paint);
         let left: Vec<_> = content
