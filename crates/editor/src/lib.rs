@@ -62,7 +62,7 @@ mod workspace;
 pub use command::{Command, KeyMap, Listed, Shortcut, WITHOUT_EXAMPLES};
 pub use document::{
     Access, Carries, Content, Document, HANDLE_COLOURS, HISTORY_BYTES, Handle, HandleId, HandleTransform, History,
-    KeptShape, ObjectAction, Paint, PivotPlace, Pose, Reach, SaveMark, SavedAs, Tips, Twin, object_name,
+    KeptShape, ObjectAction, Paint, PivotPlace, Pose, Reach, SaveMark, SavedAs, SmallParts, Tips, Twin, object_name,
 };
 pub use editor::Editor;
 pub use event::Event;

@@ -8,9 +8,10 @@ use std::sync::Arc;
 use glam::DVec3;
 use pliant_deform::Role;
 use pliant_editor::{
-    Beginning, Command, Event, MeshReference, ObjectAction, Paint, RegionAction, StrokeShape, ToolMode, geometry_hash,
+    Beginning, Command, Event, MeshReference, ObjectAction, Paint, RegionAction, SmallParts, StrokeShape, ToolMode,
+    geometry_hash,
 };
-use pliant_mesh::{Drawn, Object, shapes};
+use pliant_mesh::{Drawn, Object, SurfaceVertex, shapes};
 use rig::{CENTRE_PX, Rig};
 
 /// A ball within a larger one, two objects of one file; the outer is in two materials.
@@ -206,4 +207,110 @@ fn a_part_is_isolated_under_the_pointer_and_a_project_keeps_what_is_hidden_and_l
     let broken = text.replace("\"object\": 0", "\"object\": 9");
     let refused = Beginning::parse(&broken).unwrap().resolve(&rig.model).unwrap_err();
     assert!(refused.to_string().contains("number 9"), "{refused}");
+}
+
+/// A ball with debris around it: two parts of 42 vertices, one of them on the ball's way, and twenty of 12.
+fn with_debris() -> Drawn {
+    let ball = shapes::icosphere(4);
+    let mut parts = vec![ball];
+    for (number, at) in [DVec3::new(0.0, 1.2, 0.0), DVec3::new(0.0, -1.2, 0.0)]
+        .into_iter()
+        .enumerate()
+    {
+        let mut bit = shapes::icosphere(1);
+        bit.positions
+            .iter_mut()
+            .for_each(|p| *p = 0.05 * (1.0 + number as f64) * *p + at);
+        parts.push(bit);
+    }
+    for number in 0..20 {
+        let angle = f64::from(number);
+        let mut bit = shapes::icosphere(0);
+        let at = 1.4 * DVec3::new(angle.cos(), 0.0, angle.sin());
+        bit.positions.iter_mut().for_each(|p| *p = 0.01 * *p + at);
+        parts.push(bit);
+    }
+    shapes::together(&parts)
+}
+
+#[test]
+fn small_parts_are_hidden_and_held_still_by_their_size() {
+    let mut rig = Rig::open_with_objects(with_debris(), Vec::new());
+    let shown = |rig: &Rig| {
+        let shown = rig.editor.shown_triangles();
+        shown.map_or(rig.model.drawn.triangle_count(), |shown| {
+            shown.iter().filter(|&&shown| shown).count()
+        })
+    };
+    let (ball, middle, tiny) = (20 * 256, 2 * 80, 20 * 20);
+    assert_eq!(shown(&rig), ball + middle + tiny);
+    rig.command(Command::ToggleSmallShown);
+    rig.drain();
+    assert_eq!(
+        shown(&rig),
+        ball + middle,
+        "12 of 2562 vertices are less than a hundredth, 42 are not"
+    );
+    let set = |rig: &mut Rig, change: &dyn Fn(&mut SmallParts)| {
+        let mut small = rig.editor.document().access().small;
+        change(&mut small);
+        rig.command(Command::SetSmallParts(small));
+        rig.drain();
+    };
+    set(&mut rig, &|small| small.share = 0.05);
+    assert_eq!(shown(&rig), ball);
+    assert_eq!(rig.editor.view().undo, Some("Size of small parts"));
+    let roles = |rig: &Rig| {
+        let edit = rig.editor.edit_file().unwrap();
+        Beginning::from(edit).resolve(&rig.model).unwrap().roles
+    };
+    // All but a spot of the ball is free, and what is small is held all the same once it is locked.
+    rig.command(Command::ShowEverything);
+    rig.drain();
+    rig.command(Command::SetStrokeShape(StrokeShape::Brush));
+    rig.paint(ToolMode::PaintFixed, &[CENTRE_PX]);
+    assert_eq!(rig.editor.view().problem, None);
+    rig.command(Command::Region(RegionAction::EverythingBut));
+    assert_eq!(rig.editor.view().problem, None);
+    rig.paint(ToolMode::PaintHandle, &[CENTRE_PX]);
+    rig.drain();
+    assert_eq!(shown(&rig), ball + middle + tiny);
+    let is_small = rig.model.small_parts(0.05);
+    let fixed_of_small = |rig: &Rig| {
+        let small: Vec<bool> = (0..)
+            .zip(roles(rig))
+            .filter(|(vertex, _)| is_small[rig.model.topology.component(SurfaceVertex(*vertex)) as usize])
+            .map(|(_, role)| role == Role::Fixed)
+            .collect();
+        assert_eq!(small.len(), 2 * 42 + 20 * 12);
+        small.iter().filter(|is_fixed| **is_fixed).count()
+    };
+    assert_eq!(fixed_of_small(&rig), 0);
+    set(&mut rig, &|small| (small.hidden, small.locked) = (true, true));
+    assert_eq!(fixed_of_small(&rig), 2 * 42 + 20 * 12);
+    rig.command(Command::ShowEverything);
+    rig.drain();
+    assert_eq!(
+        fixed_of_small(&rig),
+        2 * 42 + 20 * 12,
+        "what is seen again is still held"
+    );
+    // A project keeps it; a share that is none is refused.
+    let reference = MeshReference {
+        name: None,
+        path: None,
+        geometry: geometry_hash(&rig.model),
+    };
+    let text = rig.editor.snapshot().unwrap().project(reference).to_json();
+    let again = Beginning::parse(&text).unwrap().resolve(&rig.model).unwrap();
+    assert_eq!(again.roles, roles(&rig));
+    let broken = text.replace("\"share\": 0.05", "\"share\": 5");
+    let refused = Beginning::parse(&broken).unwrap().resolve(&rig.model).unwrap_err();
+    assert!(refused.to_string().contains("small_parts"), "{refused}");
+    for _ in 0..9 {
+        rig.command(Command::Undo);
+    }
+    rig.drain();
+    assert_eq!(shown(&rig), ball + middle + tiny);
+    assert!(!rig.editor.document().access().small.locked);
 }

@@ -56,7 +56,7 @@ pub use geometry::{
     point_in_words, vertex_normals,
 };
 pub use ids::{DrawnVertex, FileVertex, SurfaceVertex};
-pub use model::{Drawn, DrawnSet, Model, Object, Rounding, SurfaceOfFile, WeldOptions};
+pub use model::{Drawn, DrawnSet, LOOSE_BIT, Model, Object, Rounding, SurfaceOfFile, WeldOptions};
 pub use progress::{Cancel, Cancelled, Progress};
 pub use surface::Surface;
 pub use symmetry::{Counterparts, MirrorPlane, image_of, symmetry_plane};

@@ -1,8 +1,10 @@
 //! What of the file is shown and may be painted.
 
 use super::entry::{Action, Entry, Scope, alt, character, item, shift, unless, when_open};
-use crate::document::ObjectAction;
-use crate::workspace::{act_on_object_here, act_on_objects, isolate, show_everything, turn_inside_out};
+use crate::document::{ObjectAction, SmallParts};
+use crate::workspace::{
+    act_on_object_here, act_on_objects, isolate, set_small_parts, show_everything, turn_inside_out,
+};
 
 /// The same with the object under the pointer.
 pub(super) const OBJECT_HERE: Entry<ObjectAction> = Entry {
@@ -43,6 +45,50 @@ pub(super) const OBJECTS: Entry<(ObjectAction, Vec<u32>)> = Entry {
     scope: Scope::Document,
     unavailable: when_open,
     action: Action::Do(|context, (action, objects)| act_on_objects(context.workspace, action, &objects)),
+};
+
+/// Says which connected parts are small, and whether they are shown and held still.
+pub(super) const SET_SMALL_PARTS: Entry<SmallParts> = Entry {
+    listed: &[],
+    scope: Scope::Document,
+    unavailable: when_open,
+    action: Action::Do(|context, small| set_small_parts(context.workspace, small)),
+};
+
+/// Hides or shows small parts.
+pub(super) const TOGGLE_SMALL_SHOWN: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Hide small parts",
+        "Hides connected parts with few vertices, or shows them again: the panel says how few, under Objects.",
+        "debris floaters isolated pieces islands components clean noise delete",
+        &[],
+    )],
+    scope: Scope::Document,
+    unavailable: when_open,
+    action: Action::Do(|context, ()| {
+        let small = context.workspace.document.access().small;
+        let hidden = !small.hidden;
+        set_small_parts(context.workspace, SmallParts { hidden, ..small });
+    }),
+};
+
+/// Holds small parts still, or lets them bend.
+pub(super) const TOGGLE_SMALL_LOCKED: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Lock small parts",
+        "Holds connected parts with few vertices still, whatever is painted on them, or lets them bend again.",
+        "debris floaters isolated pieces islands components freeze",
+        &[],
+    )],
+    scope: Scope::Document,
+    unavailable: when_open,
+    action: Action::Do(|context, ()| {
+        let small = context.workspace.document.access().small;
+        let locked = !small.locked;
+        set_small_parts(context.workspace, SmallParts { locked, ..small });
+    }),
 };
 
 /// Shows nothing but the connected part under the pointer; once more shows the others again.

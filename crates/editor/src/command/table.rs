@@ -9,7 +9,7 @@ use pliant_deform::{Attachment, ExampleShape, Loose, Method};
 use super::entry::{Action, Entry, Reason, Scope, State};
 use super::shortcut::Shortcut;
 use super::{controls, document, examples, handle, look, object, paint, pose, region, transform, view};
-use crate::document::{HandleId, HandleTransform, ObjectAction, PivotPlace, Reach, Tips};
+use crate::document::{HandleId, HandleTransform, ObjectAction, PivotPlace, Reach, SmallParts, Tips};
 use crate::jobs::Symmetry;
 use crate::tool::{BrushMetric, Context, CorrectionBrush, Depth, Gesture, StiffnessBrush, StrokeShape, ToolMode};
 use crate::view::{Before, Clay, GizmoMode, GizmoOrientation, NamedView, Orbit, Shading, UpAxis};
@@ -233,6 +233,12 @@ commands! {
     ObjectHere(action: ObjectAction) = object::OBJECT_HERE;
     /// Hides, shows or locks objects, by their numbers in [`pliant_mesh::Model::all_objects`].
     Objects(action: ObjectAction, objects: Vec<u32>) = object::OBJECTS;
+    /// Says which connected parts are small, and whether they are shown and held still.
+    SetSmallParts(small: SmallParts) = object::SET_SMALL_PARTS;
+    /// Hides small parts, or shows them.
+    ToggleSmallShown = object::TOGGLE_SMALL_SHOWN;
+    /// Holds small parts still, or lets them bend.
+    ToggleSmallLocked = object::TOGGLE_SMALL_LOCKED;
     /// Shows nothing but the connected part under the pointer; once more shows the others again.
     Isolate = object::ISOLATE;
     /// Swaps outside and inside of the parts that face inwards, or of all that is shown.

@@ -22,7 +22,7 @@ mod twins;
 mod version;
 mod vertex_access;
 
-pub use access::{Access, ObjectAction, object_name};
+pub use access::{Access, ObjectAction, SmallParts, object_name};
 pub(crate) use content::sum_of_shapes;
 pub use content::{Content, Paint, Tips};
 pub use handle::{Handle, HandleId, PivotPlace, Reach, Twin};

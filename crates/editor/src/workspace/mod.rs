@@ -39,7 +39,9 @@ pub(crate) use handles::{
 };
 pub(crate) use mirror::{mirror, take_mirrored};
 pub(crate) use mirror_request::Purpose;
-pub(crate) use objects::{act_on_object_here, act_on_objects, isolate, show_everything, turn_inside_out};
+pub(crate) use objects::{
+    act_on_object_here, act_on_objects, isolate, set_small_parts, show_everything, turn_inside_out,
+};
 pub(crate) use options::{
     apply_shape, clear_regions, reset_shape, set_loose, set_loose_part, set_method, set_strength, set_tips,
 };

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use pliant_mesh::Model;
 
 use super::state::Workspace;
-use crate::document::{Access, ObjectAction, object_name};
+use crate::document::{Access, ObjectAction, SmallParts, object_name};
 use crate::view::Pick;
 
 /// Does something with objects, by their numbers in [`pliant_mesh::Model::all_objects`].
@@ -33,12 +33,30 @@ pub(crate) fn act_on_objects(workspace: &mut Workspace, action: ObjectAction, ob
 
 /// Shows everything there is.
 pub(crate) fn show_everything(workspace: &mut Workspace) {
-    let locked = workspace.document.access.locked.clone();
+    let present = workspace.document.access();
     let access = Access {
-        locked,
-        ..Access::default()
+        hidden: BTreeSet::new(),
+        isolated: None,
+        small: SmallParts {
+            hidden: false,
+            ..present.small
+        },
+        locked: present.locked.clone(),
     };
     set_access(workspace, "Show everything".to_owned(), access);
+}
+
+/// Says which parts are small, and whether they are shown and held still.
+pub(crate) fn set_small_parts(workspace: &mut Workspace, small: SmallParts) {
+    let access = workspace.document.access().clone();
+    let name = match (small.hidden, small.locked) {
+        (true, _) if !access.small.hidden => "Hide small parts",
+        (false, _) if access.small.hidden => "Show small parts",
+        (_, true) if !access.small.locked => "Lock small parts",
+        (_, false) if access.small.locked => "Unlock small parts",
+        _ => "Size of small parts",
+    };
+    set_access(workspace, name.to_owned(), Access { small, ..access });
 }
 
 /// Shows nothing but the connected part that is pointed at, or everything else again.
@@ -81,9 +99,10 @@ pub(crate) fn turn_inside_out(workspace: &mut Workspace) {
     });
 }
 
-/// The connected parts with a triangle of an object that is not hidden.
+/// The connected parts with a triangle that is shown.
 fn shown_parts(model: &Model, access: &Access) -> BTreeSet<u32> {
-    let shown = model.triangles_of_objects(|object| !access.hidden.contains(&(object as u32)));
+    let shown = access.shown_triangles(model);
+    let shown = shown.unwrap_or_else(|| vec![true; model.drawn.triangle_count()]);
     let surface = model.surface.triangles.iter().zip(model.drawn.triangle_of_surface());
     let shown = surface.filter(|(_, drawn)| shown.get(**drawn as usize).is_some_and(|is_shown| *is_shown));
     shown.map(|([first, ..], _)| model.topology.component(*first)).collect()
@@ -103,7 +122,7 @@ fn set_access(workspace: &mut Workspace, name: String, access: Access) {
         return;
     }
     // What is held still is part of the problem, and no change of that moves anything.
-    let relocked = access.locked != workspace.document.access.locked;
+    let relocked = access.locks() != workspace.document.access.locks();
     if relocked {
         workspace.jobs.drop_solves();
     }

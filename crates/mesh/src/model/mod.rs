@@ -13,7 +13,8 @@ use rayon::prelude::*;
 use crate::findings::topological::{Parts, of_triangles};
 use crate::weld::weld;
 use crate::{
-    Bounds, Cancel, Cancelled, FileVertex, Findings, Progress, Surface, SurfaceVertex, Topology, bounding_box,
+    Bounds, Cancel, Cancelled, Component, FileVertex, Findings, Progress, Surface, SurfaceVertex, Topology,
+    bounding_box,
 };
 
 pub use drawn::{Drawn, Rounding};
@@ -28,8 +29,8 @@ pub struct WeldOptions {
     pub distance: Option<f64>,
 }
 
-/// A part with less than one vertex for so many of the largest part's is a loose bit.
-const BIT: usize = 100;
+/// A part with less than this share of the largest part's vertices is a loose bit.
+pub const LOOSE_BIT: f64 = 0.01;
 
 /// The drawn set, the welded surface and the tables between them.
 #[derive(Clone, Debug, Default)]
@@ -88,25 +89,47 @@ impl Model {
         bounding_box(self.main_positions())
     }
 
+    /// Whether each connected part has fewer vertices than this share (0 to 1) of the largest part's. Bare points are no
+    /// part.
+    ///
+    /// ```
+    /// use pliant_mesh::{Cancel, LOOSE_BIT, Model, Progress, WeldOptions, shapes};
+    ///
+    /// let drawn = shapes::together(&[shapes::icosphere(3), shapes::icosphere(0)]);
+    /// let (progress, cancel) = (Progress::new(), Cancel::new());
+    /// let model = Model::weld(drawn, &WeldOptions::default(), &progress, &cancel).unwrap();
+    /// // 12 of 642 vertices.
+    /// assert_eq!(model.small_parts(0.02), [false, true]);
+    /// assert_eq!(model.small_parts(LOOSE_BIT), [false, false]);
+    /// ```
+    pub fn small_parts(&self, share: f64) -> Vec<bool> {
+        let components = self.topology.components();
+        let of_triangles = of_triangles(components).len();
+        let most = components.first().map_or(0, |largest| largest.vertex_count);
+        let least = share * most as f64;
+        let is_small =
+            |(number, part): (usize, &Component)| number < of_triangles && (part.vertex_count as f64) < least;
+        components.iter().enumerate().map(is_small).collect()
+    }
+
     /// Whether each connected part is a speck: a loose bit that is further from all parts which are none than these are
     /// large.
     pub fn specks(&self) -> Vec<bool> {
         let components = self.topology.components();
         let of_triangles = of_triangles(components).len();
-        let most = components.first().map_or(0, |largest| largest.vertex_count);
-        let is_bit = |number: usize| number < of_triangles && components[number].vertex_count * BIT < most;
+        let is_bit = self.small_parts(LOOSE_BIT);
         let box_of = |number: usize| {
             let vertices = self.topology.vertices_of(number as u32);
             Bounds::around(vertices.map(|v| self.surface.positions[v.index()]))
         };
-        let parts = (0..of_triangles).filter(|&number| !is_bit(number)).filter_map(box_of);
+        let parts = (0..of_triangles).filter(|&number| !is_bit[number]).filter_map(box_of);
         let Some(main) = parts.reduce(|a, b| a.union(&b)) else {
             return vec![false; components.len()];
         };
         let around = main.grown(main.diagonal());
         let is_far = |number: usize| box_of(number).is_some_and(|own| !own.meets(&around));
         (0..components.len())
-            .map(|number| is_bit(number) && is_far(number))
+            .map(|number| is_bit[number] && is_far(number))
             .collect()
     }
 

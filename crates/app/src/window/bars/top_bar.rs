@@ -223,7 +223,12 @@ fn file_commands(ui: &mut egui::Ui, groups: &Groups<'_>, chosen: &mut Option<Fil
 }
 
 fn view_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
-    for command in [Command::FrameAll, Command::FrameSelected, Command::ShowEverything] {
+    for command in [
+        Command::FrameAll,
+        Command::FrameSelected,
+        Command::ToggleSmallShown,
+        Command::ShowEverything,
+    ] {
         if command_button(ui, editor, &command) {
             commands.push(command);
             ui.close();

@@ -27,6 +27,9 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, notes: &Notes, commands: &mut Ou
             if kind == FindingKind::InsideOutComponents {
                 turn(ui, editor, model, commands);
             }
+            if kind == FindingKind::LooseBits && command_button(ui, editor, &Command::ToggleSmallShown) {
+                commands.push(Command::ToggleSmallShown);
+            }
         }
     }
     for note in &notes.about_file {

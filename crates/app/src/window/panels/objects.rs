@@ -3,12 +3,13 @@
 use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
 
-use eframe::egui::{self, Align, Layout, RichText, ScrollArea};
-use pliant_editor::{Access, Command, Editor, ObjectAction, object_name, thousands};
+use eframe::egui::{self, Align, DragValue, Layout, RichText, ScrollArea};
+use pliant_editor::{Access, Command, Editor, ObjectAction, SmallParts, object_name, thousands};
 use pliant_mesh::{Model, Object};
 
 use crate::window::widgets::command_button::command_button;
 use crate::window::widgets::icon::{Icon, toggle};
+use crate::window::widgets::number_field::number_field;
 use crate::window::widgets::outbox::Outbox;
 
 /// How many rows are seen at a time.
@@ -28,6 +29,8 @@ struct Rows {
     materials: Vec<Row>,
     /// How many objects there are.
     count: usize,
+    /// Whether some connected part is smaller than another.
+    has_parts: bool,
 }
 
 impl Rows {
@@ -40,6 +43,7 @@ impl Rows {
             // One alone says nothing that the nodes don't.
             materials: if materials.len() > 1 { materials } else { Vec::new() },
             count: objects.len(),
+            has_parts: model.small_parts(1.0).contains(&true),
         }
     }
 }
@@ -92,6 +96,9 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
         ui.label(RichText::new("Materials").weak().small());
         list(ui, "materials", &rows.materials, rows.count, access, commands);
     }
+    if rows.has_parts {
+        small_parts(ui, model, access, commands);
+    }
     if let Some(part) = access.isolated {
         let count = model.topology.components()[part as usize].vertex_count;
         let text = format!("Part {} alone ({} vertices)", part + 1, thousands(count));
@@ -103,6 +110,46 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
                 commands.push(command);
             }
         }
+    });
+}
+
+/// Which parts are small, and whether they are shown and held still.
+fn small_parts(ui: &mut egui::Ui, model: &Model, access: &Access, commands: &mut Outbox) {
+    let small = access.small;
+    ui.horizontal(|ui| {
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            ui.spacing_mut().item_spacing.x = 2.0;
+            let hover = "Locked: they are held still, whatever is painted on them.";
+            if toggle(ui, Icon::Lock, small.locked, "Lock small parts", hover) {
+                commands.push(Command::ToggleSmallLocked);
+            }
+            let hover = "Hidden: neither drawn nor picked nor painted, but moving along.";
+            if toggle(ui, Icon::Eye, !small.hidden, "Show small parts", hover) {
+                commands.push(Command::ToggleSmallShown);
+            }
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                let label = ui.add(egui::Label::new("Small parts").truncate());
+                let mut percent = 100.0 * small.share;
+                let field = number_field(ui, &mut percent, |ui, percent| {
+                    let field = DragValue::new(percent)
+                        .range(0.0..=100.0)
+                        .speed(0.05)
+                        .suffix(" %")
+                        .update_while_editing(false);
+                    ui.add(field).labelled_by(label.id)
+                });
+                let field = field.on_hover_ui(|ui| {
+                    let count = model.small_parts(small.share).iter().filter(|small| **small).count();
+                    let noun = if count == 1 { "part has" } else { "parts have" };
+                    ui.label(format!(
+                        "{} {noun} less than this share of the largest part's vertices.",
+                        thousands(count)
+                    ));
+                });
+                let share = percent / 100.0;
+                commands.adjust(&field, || Command::SetSmallParts(SmallParts { share, ..small }));
+            });
+        });
     });
 }
 

@@ -148,7 +148,7 @@ impl Document {
     }
 
     pub(in crate::document) fn swap_access(&mut self, access: &mut Arc<Access>) {
-        if self.content.access.locked != access.locked {
+        if self.content.access.locks() != access.locks() {
             self.marks.mark(&[Aspect::Locks]);
         }
         std::mem::swap(access, &mut self.content.access);

@@ -28,7 +28,7 @@ use self::examples::{are_weighed, read_examples, stored_examples};
 use self::field::{Field, Ranges, for_each_drawn, ranges_where};
 use self::handle::StoredHandle;
 pub use self::kept::StoredKept;
-use self::objects::{StoredObject, access, stored_objects};
+use self::objects::{StoredObject, StoredSmallParts, access, stored_objects};
 use self::poses::StoredPose;
 use super::attachment::{read_stored_attachments, stored_attachments};
 use super::edit_error::EditError;
@@ -83,6 +83,9 @@ pub struct Project {
     /// The connected part that is shown alone, by its number.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     isolated: Option<u32>,
+    /// Which parts are small, and what is done with them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    small_parts: Option<StoredSmallParts>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     stiffness: Option<Field>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -240,6 +243,7 @@ impl Project {
             next_handle: document.next_handle,
             objects: stored_objects(&document.access, model),
             isolated: document.access.isolated,
+            small_parts: StoredSmallParts::of(document.access.small),
             stiffness: numbers(&document.stiffness, 1.0),
             continuity: numbers(&document.continuity, *CONTINUITY_RANGE.end()),
             rest: document.applied.then(|| displacements(&document.rest)).flatten(),
@@ -362,7 +366,7 @@ impl Project {
         );
         self.read_paint_and_handles(model, &mut document)?;
         document.next_handle = self.next_handle;
-        document.access = Arc::new(access(&self.objects, self.isolated, model)?);
+        document.access = Arc::new(access(&self.objects, self.isolated, self.small_parts, model)?);
         let is_rigid = |value: f64| value == f64::INFINITY;
         let stiffness = self.stiffness.as_ref();
         document.stiffness = stiffness

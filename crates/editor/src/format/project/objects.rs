@@ -3,7 +3,7 @@
 use pliant_mesh::Model;
 use serde::{Deserialize, Serialize};
 
-use crate::{Access, EditError};
+use crate::{Access, EditError, SmallParts};
 
 /// An object that is hidden or locked.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
@@ -17,6 +17,25 @@ pub(super) struct StoredObject {
     hidden: bool,
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     locked: bool,
+}
+
+/// Which parts are small, and what is done with them.
+#[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct StoredSmallParts {
+    /// Less than this share (0 to 1) of the largest part's vertices.
+    share: f64,
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    hidden: bool,
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    locked: bool,
+}
+
+impl StoredSmallParts {
+    pub(super) fn of(small: SmallParts) -> Option<Self> {
+        let SmallParts { share, hidden, locked } = small;
+        (small != SmallParts::default()).then_some(Self { share, hidden, locked })
+    }
 }
 
 pub(super) fn stored_objects(access: &Access, model: &Model) -> Vec<StoredObject> {
@@ -35,8 +54,13 @@ pub(super) fn stored_objects(access: &Access, model: &Model) -> Vec<StoredObject
         .collect()
 }
 
-/// What a project says of objects and of the part that is isolated, on its mesh.
-pub(super) fn access(objects: &[StoredObject], isolated: Option<u32>, model: &Model) -> Result<Access, EditError> {
+/// What a project says of objects, of the part that is isolated and of small parts, on its mesh.
+pub(super) fn access(
+    objects: &[StoredObject],
+    isolated: Option<u32>,
+    small: Option<StoredSmallParts>,
+    model: &Model,
+) -> Result<Access, EditError> {
     let refused = |what: &str, number: u32, count: usize| {
         EditError::Project(format!(
             "`{what}` names number {number}, and the mesh has {count}: save it again"
@@ -60,5 +84,13 @@ pub(super) fn access(objects: &[StoredObject], isolated: Option<u32>, model: &Mo
         return Err(refused("isolated", part, parts));
     }
     access.isolated = isolated;
+    if let Some(StoredSmallParts { share, hidden, locked }) = small {
+        if !(0.0..=1.0).contains(&share) {
+            return Err(EditError::Project(format!(
+                "`small_parts` has the share {share}, which is not from 0 to 1: save it again"
+            )));
+        }
+        access.small = SmallParts { share, hidden, locked };
+    }
     Ok(access)
 }
