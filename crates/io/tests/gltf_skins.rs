@@ -174,8 +174,8 @@ fn world_of_nodes(root: &Value) -> Vec<DMat4> {
     world
 }
 
-/// Where glTF's formula puts the vertices of mesh 0 and where their normals point.
-fn posed(glb: &[u8]) -> (Vec<DVec3>, Vec<DVec3>) {
+/// Where glTF's formula puts the vertices of mesh 0 and where their normals point, with morph targets at these weights.
+fn posed_with(glb: &[u8], weights: &[f64]) -> (Vec<DVec3>, Vec<DVec3>) {
     let (text, bin) = split(glb);
     let root: Value = serde_json::from_str(&text).unwrap();
     let attributes = &root["meshes"][0]["primitives"][0]["attributes"];
@@ -185,7 +185,13 @@ fn posed(glb: &[u8]) -> (Vec<DVec3>, Vec<DVec3>) {
     let joints = skin["joints"].as_array().unwrap();
     let of_joint =
         |joint: usize| world[joints[joint].as_u64().unwrap() as usize] * DMat4::from_cols_slice(&inverse[joint]);
-    let points = numbers(&root, &bin, &attributes["POSITION"]);
+    let mut points = numbers(&root, &bin, &attributes["POSITION"]);
+    for (number, weight) in weights.iter().enumerate() {
+        let target = &root["meshes"][0]["primitives"][0]["targets"][number]["POSITION"];
+        for (point, way) in points.iter_mut().zip(numbers(&root, &bin, target)) {
+            point.iter_mut().zip(way).for_each(|(number, way)| *number += weight * way);
+        }
+    }
     let normals = numbers(&root, &bin, &attributes["NORMAL"]);
     let mut matrices = vec![DMat4::ZERO; points.len()];
     for set in 0..2 {
@@ -212,6 +218,10 @@ fn posed(glb: &[u8]) -> (Vec<DVec3>, Vec<DVec3>) {
         matrices.iter().zip(&points).map(place).collect(),
         matrices.iter().zip(&normals).map(turn).collect(),
     )
+}
+
+fn posed(glb: &[u8]) -> (Vec<DVec3>, Vec<DVec3>) {
+    posed_with(glb, &[])
 }
 
 fn figures() -> Vec<Figure> {
@@ -294,6 +304,50 @@ fn an_edited_figure_looks_posed_as_it_was_shown() {
                 assert_within(&open(&after).drawn.positions, &positions, 1e-5 * size, &kind);
             }
             assert!(saved_glb(&opened, &opened.drawn.positions) == before);
+        }
+    }
+}
+
+/// A figure with two morph targets; the second is applied by default by this weight.
+fn morphed_figure(shape: &Shape, kind: Figure, weight: f64) -> Maker {
+    let mut maker = figure(shape, kind);
+    // In the unit of the stored numbers.
+    let size = if kind.stored == Stored::Quantised { 0.03 } else { 0.1 };
+    let ways = |of: &dyn Fn(Vec3) -> Vec3| -> Vec<[f32; 3]> {
+        let ways = shape.positions.iter().map(|&p| of(Vec3::from(p)) * size);
+        ways.map(|way| way.to_array()).collect()
+    };
+    let smile = ways(&|p| Vec3::new(1.0, p.x, 0.5 * p.y));
+    let frown = ways(&|p| Vec3::new(p.z, -1.0, p.x));
+    let targets = json!([{ "POSITION": maker.floats(&smile) }, { "POSITION": maker.floats(&frown) }]);
+    maker.root["meshes"][0]["primitives"][0]["targets"] = targets;
+    maker.root["meshes"][0]["weights"] = json!([0.0, weight]);
+    maker
+}
+
+#[test]
+fn a_skinned_figure_with_morph_targets_looks_as_it_was_shown_and_its_targets_turn_along() {
+    for kind in figures() {
+        for weight in [0.0, 0.75] {
+            let before = morphed_figure(&grid(5), kind, weight).glb();
+            let opened = open(&before);
+            let shown = posed_with(&before, &[0.0, weight]).0;
+            let size = size_of(&shown);
+            assert_within(&opened.drawn.positions, &shown, 1e-6 * size, &kind);
+            // Little turns, so the deltas stay: the shape is the edited one at the default weights.
+            let positions = moved(&opened, |v| v % 3 != 0, |p| p + 0.1 * bent(p, size));
+            let after = saved_glb(&opened, &positions);
+            assert_within(&posed_with(&after, &[0.0, weight]).0, &positions, 1e-5 * size, &kind);
+            // All turns far, so they turn along: each target shows the turned figure that it showed before.
+            let turn = DQuat::from_rotation_y(1.1) * DQuat::from_rotation_x(0.4);
+            let motion = |p: DVec3| turn * p + DVec3::ONE * size;
+            let positions = moved(&opened, |_| true, motion);
+            let after = saved_glb(&opened, &positions);
+            for weights in [[0.0, weight], [1.0, weight], [1.0, 1.0], [0.0, 0.0]] {
+                let wanted: Vec<DVec3> = posed_with(&before, &weights).0.into_iter().map(motion).collect();
+                let found = posed_with(&after, &weights).0;
+                assert_within(&found, &wanted, 1e-5 * size, &(kind, weights));
+            }
         }
     }
 }

@@ -55,7 +55,8 @@ fn turns_of_instance(instance: &Instance, moved: &Moved<'_>, frames: &Frames) ->
         let vertex = DrawnVertex(vertex);
         let gradient = frames.gradient(vertex).filter(|_| moved.moves(vertex))?;
         let linear = linear((vertex.0 - instance.vertices.start) as usize)?;
-        rotation(linear.mesh_from_world * gradient * linear.world_from_mesh)
+        // Turned as it is seen: in the mesh's own space, which a skin or a node may shear, that is no rotation.
+        Some(linear.mesh_from_world * rotation(gradient)? * linear.world_from_mesh)
     };
     let turns = instance.vertices.clone().into_par_iter();
     turns
