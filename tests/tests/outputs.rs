@@ -120,6 +120,7 @@ fn a_file_that_changes_while_it_is_bent_is_not_replaced() {
             report: None,
             frames: None,
             budget: memory::budget(),
+            deltas: pliant_io::MorphDeltas::WhereFarOff,
             morph: None,
             weld: Default::default(),
         };

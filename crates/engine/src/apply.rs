@@ -11,7 +11,7 @@ use std::time::Instant;
 use glam::DVec3;
 use pliant_deform::{BindError, Bound, Budget, ExampleShape, Method, Ordering, SolveError, Step};
 use pliant_editor::{Beginning, Intersections, Setup};
-use pliant_io::MorphTarget;
+use pliant_io::{MorphDeltas, MorphTarget};
 use pliant_mesh::{Bvh, Cancel, Damage, Model, Progress, SurfaceVertex, WeldOptions, vertex_normals};
 
 use crate::EngineError;
@@ -103,6 +103,8 @@ pub struct Apply<'a> {
     pub weld: Option<f64>,
     /// The memory that binding may take.
     pub budget: Budget,
+    /// Whether the deltas of the file's own morph targets turn with the surface.
+    pub deltas: MorphDeltas,
     /// Saves the edit as a morph target beside the shape as it was.
     pub morph: Option<MorphTarget<'a>>,
 }
@@ -149,6 +151,7 @@ pub fn apply(apply: &Apply<'_>, watch: &Watch, staging: &Staging) -> Result<Repo
     let save = SaveAs {
         positions: &solution.positions,
         inside_out: &setup.inside_out,
+        deltas: apply.deltas,
         morph: apply.morph.as_ref(),
         output: apply.output,
         beside: report_to.as_ref().map(|report| ("--report", report)),

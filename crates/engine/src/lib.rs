@@ -34,6 +34,7 @@
 //!     frames: None,
 //!     weld: None,
 //!     budget: memory::budget(),
+//!     deltas: pliant_io::MorphDeltas::WhereFarOff,
 //!     morph: None,
 //! };
 //! let report = apply(&job, &Watch::default(), &Staging::default())?;

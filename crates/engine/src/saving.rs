@@ -5,7 +5,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use glam::DVec3;
-use pliant_io::{Format, MorphTarget, Role, Save, SaveError, Saved, quoted, with_neighbours_renamed};
+use pliant_io::{Format, MorphDeltas, MorphTarget, Role, Save, SaveError, Saved, quoted, with_neighbours_renamed};
 use pliant_mesh::{Cancel, Progress};
 
 use crate::EngineError;
@@ -22,6 +22,8 @@ pub struct SaveAs<'a> {
     pub positions: &'a [DVec3],
     /// The connected parts that are turned inside out, by their numbers.
     pub inside_out: &'a BTreeSet<u32>,
+    /// Whether the deltas of the file's morph targets turn with the surface.
+    pub deltas: MorphDeltas,
     /// Saves the edit as a morph target beside the shape as it was.
     pub morph: Option<&'a MorphTarget<'a>>,
     /// The file to be written.
@@ -36,6 +38,7 @@ impl<'a> SaveAs<'a> {
         Self {
             positions,
             inside_out: const { &BTreeSet::new() },
+            deltas: MorphDeltas::default(),
             morph: None,
             output,
             beside: None,
@@ -84,6 +87,7 @@ pub fn stage(
     let drawn = loaded.model.rest();
     let turned = loaded.model.drawn_vertices_of(what.inside_out);
     let save = Save {
+        deltas: what.deltas,
         turned: &turned,
         drawn: &drawn,
         positions: what.positions,
@@ -151,6 +155,7 @@ pub fn bytes_at_rest(
     let format = Format::of_name(&output.to_string_lossy())?;
     let drawn = loaded.model.rest();
     let save = Save {
+        deltas: MorphDeltas::WhereFarOff,
         turned: &[],
         drawn: &drawn,
         positions: &drawn.positions,

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use pliant_deform::{DeformationTransfer, Ordering, PosedShape, SolveError};
-use pliant_io::MorphTarget;
+use pliant_io::{MorphDeltas, MorphTarget};
 use pliant_mesh::{Drawn, SurfaceVertex, WeldOptions};
 use serde_json::Value;
 
@@ -30,6 +30,8 @@ pub struct Transfer<'a> {
     pub output: &'a Path,
     /// How TARGET's vertices are joined.
     pub weld: WeldOptions,
+    /// Whether the deltas of the target file's own morph targets turn with the surface.
+    pub deltas: MorphDeltas,
     /// Saves the pose as a morph target beside the shape as it was.
     pub morph: Option<MorphTarget<'a>>,
 }
@@ -77,6 +79,7 @@ pub fn transfer(job: &Transfer<'_>, watch: &Watch, staging: &Staging) -> Result<
     let progress = watch.begin("saving");
     let save = SaveAs {
         morph: job.morph.as_ref(),
+        deltas: job.deltas,
         ..SaveAs::shape(&positions, job.output)
     };
     let saved = saving::stage(&loaded, &save, staging, &progress, &watch.cancel)?;

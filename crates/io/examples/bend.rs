@@ -100,6 +100,7 @@ fn bend(input: &Path, output: &Path, how: &str) -> Result<(), Box<dyn std::error
     let start = Instant::now();
     let saved = scene.save(
         &Save {
+            deltas: pliant_io::MorphDeltas::WhereFarOff,
             turned: &[],
             drawn: &drawn,
             positions: &new,

@@ -72,6 +72,7 @@ fn costs(file: &Hostile) -> Vec<(&'static str, f64, usize)> {
     for format in [file.format, Format::Glb, Format::Gltf, Format::Obj] {
         let name = format!("out.{}", format.extension());
         let save = Save {
+            deltas: pliant_io::MorphDeltas::WhereFarOff,
             turned: &[],
             drawn: &opened.drawn,
             positions: &positions,
@@ -85,6 +86,7 @@ fn costs(file: &Hostile) -> Vec<(&'static str, f64, usize)> {
         measured(format.extension(), start);
     }
     let save = Save {
+        deltas: pliant_io::MorphDeltas::WhereFarOff,
         turned: &[],
         drawn: &opened.drawn,
         positions: &positions,

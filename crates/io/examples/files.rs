@@ -60,6 +60,7 @@ fn convert(from: &Path, to: &Path) {
     let opened = open(bytes, format(from), &name(from));
     let saved = opened.scene.save(
         &Save {
+            deltas: pliant_io::MorphDeltas::WhereFarOff,
             turned: &[],
             drawn: &opened.drawn,
             positions: &opened.drawn.positions,
@@ -96,6 +97,7 @@ fn measure(path: &Path) {
     let save_s = median(|| {
         let start = Instant::now();
         let save = Save {
+            deltas: pliant_io::MorphDeltas::WhereFarOff,
             turned: &[],
             drawn: &opened.drawn,
             positions: &positions,

@@ -8,7 +8,7 @@
 //! One vertex of an OFF file is moved; all else in it stays as it was:
 //!
 //! ```
-//! use pliant_io::{Bytes, Format, Placement, Resolver, Save, SceneAndDrawn, read};
+//! use pliant_io::{Bytes, Format, MorphDeltas, Placement, Resolver, Save, SceneAndDrawn, read};
 //! use pliant_mesh::{Cancel, Progress};
 //!
 //! /// A file that needs no other.
@@ -29,6 +29,7 @@
 //! let save = Save {
 //!     drawn: &drawn,
 //!     positions: &positions,
+//!     deltas: MorphDeltas::WhereFarOff,
 //!     turned: &[],
 //!     format: Format::Off,
 //!     name: "triangle.off",
@@ -67,7 +68,7 @@ pub use gltf::{bytes_of_name, is_same_document, name_of_bytes, neighbours_named,
 pub use images::pixels::Rgba8;
 pub use images::{DecodedImage, IMAGE_BYTES, decode_images};
 pub use quote::{quoted, steers};
-pub use save::{MorphTarget, OutputFile, Placement, Role, Save, Saved, numbered};
+pub use save::{MorphDeltas, MorphTarget, OutputFile, Placement, Role, Save, Saved, numbered};
 pub use scene::difference::{Difference, What};
 pub use scene::pose::positions_in_pose;
 pub use scene::summary::Summary;

@@ -49,6 +49,7 @@ fn cost(file: &Hostile) -> [usize; 2] {
             (Format::Obj, Placement::OtherFolder),
         ] {
             let save = Save {
+                deltas: pliant_io::MorphDeltas::WhereFarOff,
                 turned: &[],
                 drawn: &opened.drawn,
                 positions: &positions,
@@ -59,6 +60,7 @@ fn cost(file: &Hostile) -> [usize; 2] {
             let _ = opened.scene.save(&save, &Progress::new(), &cancel);
         }
         let save = Save {
+            deltas: pliant_io::MorphDeltas::WhereFarOff,
             turned: &[],
             drawn: &opened.drawn,
             positions: &positions,

@@ -6,13 +6,14 @@ mod gltf_maker;
 
 use glam::{DQuat, DVec3};
 use gltf_maker::{Folder, Maker, assert_near, bent, grid, moved, open, saved_glb, shapes, split, try_open, try_save};
-use pliant_io::{Format, MorphTarget, Placement, Save, SaveError, Saved, SceneAndDrawn};
+use pliant_io::{Format, MorphDeltas, MorphTarget, Placement, Save, SaveError, Saved, SceneAndDrawn};
 use pliant_mesh::{Cancel, Progress};
 use serde_json::{Value, json};
 
 fn try_morph(opened: &SceneAndDrawn, positions: &[DVec3], name: &str, weight: f64) -> Result<Saved, SaveError> {
     opened.scene.save_as_morph(
         &Save {
+            deltas: MorphDeltas::WhereFarOff,
             turned: &[],
             drawn: &opened.drawn,
             positions,
@@ -261,6 +262,52 @@ fn deltas_turn_with_a_surface_that_turns_far_whatever_is_applied_by_default() {
             assert_near(&again.drawn.positions, &positions, 8.0);
             let wanted: Vec<DVec3> = whole(&opened).iter().map(|p| turn * *p + DVec3::Y).collect();
             assert_near(&whole(&again), &wanted, 8.0);
+        }
+    }
+}
+
+#[test]
+fn deltas_turn_or_stay_as_a_save_asks() {
+    let shape = grid(4);
+    let lift: Vec<[f32; 3]> = shape.positions.iter().map(|_| [0.0, 0.0, 0.3]).collect();
+    let stored = |file: &[u8]| {
+        let (root, bin) = (json_of(file), split(file).1);
+        let accessor = &root["meshes"][0]["primitives"][0]["targets"][0]["POSITION"];
+        let accessor = &root["accessors"][accessor.as_u64().unwrap() as usize];
+        let view = &root["bufferViews"][accessor["bufferView"].as_u64().unwrap() as usize];
+        let at = (view["byteOffset"].as_u64().unwrap_or(0) + accessor["byteOffset"].as_u64().unwrap_or(0)) as usize;
+        let lane = |lane: usize| f32::from_le_bytes(bin[at + 4 * lane..][..4].try_into().unwrap());
+        DVec3::from([0, 1, 2].map(|number| f64::from(lane(number))))
+    };
+    let mut maker = Maker::default();
+    let mut primitive = maker.primitive(&shape);
+    primitive["targets"] = json!([{ "POSITION": maker.floats(&lift) }]);
+    let mesh = maker.mesh_of(vec![primitive]);
+    maker.node(json!({ "mesh": mesh }));
+    let file = maker.glb();
+    let opened = open(&file);
+    let way = DVec3::Z * f64::from(0.3_f32);
+    // By a few degrees, and far.
+    for angle in [0.2, 1.2] {
+        let turn = DQuat::from_rotation_x(angle);
+        let positions = moved(&opened, |_| true, |p| turn * p);
+        for deltas in [MorphDeltas::WhereFarOff, MorphDeltas::Turn, MorphDeltas::Stay] {
+            let save = Save {
+                drawn: &opened.drawn,
+                positions: &positions,
+                turned: &[],
+                deltas,
+                format: Format::Glb,
+                name: "out.glb",
+                placement: Placement::SameFolder,
+            };
+            let saved = opened.scene.save(&save, &Progress::new(), &Cancel::new()).unwrap();
+            let turns = deltas == MorphDeltas::Turn || deltas == MorphDeltas::WhereFarOff && angle > 1.0;
+            let wanted = if turns { turn * way } else { way };
+            let found = stored(&saved.files[0].bytes);
+            assert!(found.distance(wanted) < 1e-6, "{deltas:?} at {angle}: {found}");
+            let says = if turns { "turned with the edit" } else { "did not turn" };
+            assert!(saved.warnings[0].contains(says), "{:?}", saved.warnings);
         }
     }
 }

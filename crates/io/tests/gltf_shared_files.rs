@@ -84,6 +84,7 @@ fn save(opened: &SceneAndDrawn, positions: &[DVec3], path: &Path) -> Saved {
         .scene
         .save(
             &Save {
+                deltas: pliant_io::MorphDeltas::WhereFarOff,
                 turned: &[],
                 drawn: &opened.drawn,
                 positions,

@@ -189,7 +189,10 @@ fn posed_with(glb: &[u8], weights: &[f64]) -> (Vec<DVec3>, Vec<DVec3>) {
     for (number, weight) in weights.iter().enumerate() {
         let target = &root["meshes"][0]["primitives"][0]["targets"][number]["POSITION"];
         for (point, way) in points.iter_mut().zip(numbers(&root, &bin, target)) {
-            point.iter_mut().zip(way).for_each(|(number, way)| *number += weight * way);
+            point
+                .iter_mut()
+                .zip(way)
+                .for_each(|(number, way)| *number += weight * way);
         }
     }
     let normals = numbers(&root, &bin, &attributes["NORMAL"]);

@@ -60,6 +60,7 @@ fn a_part_turned_inside_out_is_not_turned_in_another_scene() {
     let opened = open(&maker.glb());
     let turned = vec![true; opened.drawn.positions.len()];
     let save = Save {
+        deltas: pliant_io::MorphDeltas::WhereFarOff,
         turned: &turned,
         drawn: &opened.drawn,
         positions: &opened.drawn.positions,

@@ -29,6 +29,7 @@ const WEDGES: &str = "ply\nformat ascii 1.0\ncomment TextureFile skin one.png\nc
 fn saved(opened: &SceneAndDrawn, positions: &[DVec3], format: Format, placement: Placement) -> Saved {
     let name = format!("out.{}", format.extension());
     let save = Save {
+        deltas: pliant_io::MorphDeltas::WhereFarOff,
         turned: &[],
         drawn: &opened.drawn,
         positions,
@@ -88,6 +89,7 @@ fn texture_coordinates_go_with_the_corners_of_a_face_that_is_turned_inside_out()
     let opened = open_in(WEDGES.as_bytes(), Format::Ply, &textures(PNG, PNG)).unwrap();
     let turned = vec![true; opened.drawn.positions.len()];
     let save = Save {
+        deltas: pliant_io::MorphDeltas::WhereFarOff,
         turned: &turned,
         drawn: &opened.drawn,
         positions: &opened.drawn.positions,
@@ -288,6 +290,7 @@ fn a_byte_order_mark_is_passed_over_and_kept() {
         let turned = vec![true; 3];
         let inside_out = |opened: &SceneAndDrawn| {
             let save = Save {
+                deltas: pliant_io::MorphDeltas::WhereFarOff,
                 turned: &turned,
                 drawn: &opened.drawn,
                 positions: &opened.drawn.positions,

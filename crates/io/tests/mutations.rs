@@ -151,6 +151,7 @@ fn survive(format: Format, seeds: &[&[u8]], runs: usize) {
         {
             let name = format!("out.{}", target.extension());
             let request = Save {
+                deltas: pliant_io::MorphDeltas::WhereFarOff,
                 turned: &[],
                 drawn,
                 positions: &positions,

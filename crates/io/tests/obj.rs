@@ -367,6 +367,7 @@ fn a_part_that_is_turned_inside_out_after_its_normals_were_divided_has_them_turn
     let turned: Vec<bool> = opened.drawn.positions.iter().map(|p| p.y > 0.5).collect();
     let save = |turned: &[bool]| {
         let save = Save {
+            deltas: pliant_io::MorphDeltas::WhereFarOff,
             turned,
             drawn: &opened.drawn,
             positions: &positions,
@@ -421,6 +422,7 @@ fn a_copy_in_another_folder_brings_its_materials_along() {
     let opened = open_in(text, Format::Obj, &files).unwrap();
     let save = |placement| {
         let save = Save {
+            deltas: pliant_io::MorphDeltas::WhereFarOff,
             turned: &[],
             drawn: &opened.drawn,
             positions: &opened.drawn.positions,

@@ -201,6 +201,7 @@ fn whole_number_positions_are_rounded_or_refused() {
     assert!(saved.warnings[0].contains("whole numbers"));
     let positions = moved(&opened, |file| file == 1, |p| p + DVec3::splat(300.0));
     let save = pliant_io::Save {
+        deltas: pliant_io::MorphDeltas::WhereFarOff,
         turned: &[],
         drawn: &opened.drawn,
         positions: &positions,
@@ -322,6 +323,7 @@ fn normals_of_faces_turn_with_them() {
         }
         let turned = vec![true; 5];
         let inside_out = pliant_io::Save {
+            deltas: pliant_io::MorphDeltas::WhereFarOff,
             turned: &turned,
             drawn: &opened.drawn,
             positions: &opened.drawn.positions,

@@ -73,6 +73,7 @@ fn what_was_saved_passes_and_anything_else_is_found_out() {
         for first in Format::ALL {
             let save = |of: &SceneAndDrawn, positions: &[DVec3], format: Format| {
                 let save = Save {
+                    deltas: pliant_io::MorphDeltas::WhereFarOff,
                     turned: &[],
                     drawn: &of.drawn,
                     positions,
@@ -91,6 +92,7 @@ fn what_was_saved_passes_and_anything_else_is_found_out() {
                 let found = back(&saved, second);
                 let check = |positions: &[DVec3], found: &SceneAndDrawn| {
                     let save = Save {
+                        deltas: pliant_io::MorphDeltas::WhereFarOff,
                         turned: &[],
                         drawn: &opened.drawn,
                         positions,
@@ -143,6 +145,7 @@ fn a_morph_target_shows_as_far_as_its_weight() {
     for weight in [0.0, 0.25, 1.0] {
         let morph = MorphTarget { name: "bent", weight };
         let save = Save {
+            deltas: pliant_io::MorphDeltas::WhereFarOff,
             turned: &[],
             drawn: &off.drawn,
             positions: &new,
@@ -194,6 +197,7 @@ fn text_that_names_single_precision_passes_as_it_was_written() {
             *p += DVec3::new(1.0, 0.1, 0.001) * (k as f64).sin();
         }
         let mut save = Save {
+            deltas: pliant_io::MorphDeltas::WhereFarOff,
             turned: &[],
             drawn: &opened.drawn,
             positions: &positions,
@@ -289,6 +293,7 @@ fn text_of_any_number_of_digits_is_saved_and_read_back() {
             for (named, way) in ways {
                 let positions: Vec<DVec3> = opened.drawn.positions.iter().map(|p| way(*p)).collect();
                 let mut save = Save {
+                    deltas: pliant_io::MorphDeltas::WhereFarOff,
                     turned: &[],
                     drawn: &opened.drawn,
                     positions: &positions,
@@ -343,6 +348,7 @@ fn a_bent_file_is_a_pose_of_the_file_whatever_its_polygons_are_cut_by() {
     for format in [Format::Obj, Format::Ply, Format::Off] {
         let save = |of: &SceneAndDrawn, positions: &[DVec3]| {
             let save = Save {
+                deltas: pliant_io::MorphDeltas::WhereFarOff,
                 turned: &[],
                 drawn: &of.drawn,
                 positions,

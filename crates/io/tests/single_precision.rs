@@ -28,6 +28,7 @@ fn sources() -> Vec<SceneAndDrawn> {
 
 fn saved(opened: &SceneAndDrawn, positions: &[DVec3], format: Format) -> Result<Vec<u8>, SaveError> {
     let save = Save {
+        deltas: pliant_io::MorphDeltas::WhereFarOff,
         turned: &[],
         drawn: &opened.drawn,
         positions,
@@ -93,6 +94,7 @@ fn a_morph_target_whose_way_is_beyond_it_is_refused() {
     let far = positions.iter().position(|p| p.y < -1e38).unwrap();
     positions[far].y = 3e38;
     let save = Save {
+        deltas: pliant_io::MorphDeltas::WhereFarOff,
         turned: &[],
         drawn: &glb.drawn,
         positions: &positions,

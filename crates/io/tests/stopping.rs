@@ -92,6 +92,7 @@ fn a_save_as_any_kind_stops_wherever_it_is_told_to_and_tells_its_way() {
         for to in KINDS.into_iter().filter(|to| *to == from || from == Format::Ply) {
             let name = format!("out.{}", to.extension());
             let request = Save {
+                deltas: pliant_io::MorphDeltas::WhereFarOff,
                 turned: &[],
                 drawn: &opened.drawn,
                 positions: &positions,
@@ -111,6 +112,7 @@ fn a_morph_target_stops_wherever_it_is_told_to() {
     let opened = sheet(Normals::None);
     let positions = bent(&opened.drawn.positions);
     let request = Save {
+        deltas: pliant_io::MorphDeltas::WhereFarOff,
         turned: &[],
         drawn: &opened.drawn,
         positions: &positions,

@@ -14,6 +14,7 @@ fn request<'a>(of: &'a SceneAndDrawn, positions: &'a [DVec3], turned: &'a [bool]
     Save {
         drawn: &of.drawn,
         positions,
+        deltas: pliant_io::MorphDeltas::WhereFarOff,
         turned,
         format,
         name: "out",

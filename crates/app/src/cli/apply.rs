@@ -35,7 +35,7 @@ pub(super) fn run(arguments: &ApplyArguments, console: &mut Console<'_>) -> Resu
     }
     let stem = edit_path.file_stem().unwrap_or_default().to_string_lossy();
     let own_name = stem.strip_suffix(".edit").unwrap_or(&stem);
-    let morph = morph.target(own_name);
+    let (deltas, morph) = (morph.deltas(), morph.target(own_name));
     let job = pliant_engine::Apply {
         file,
         edit: &edit,
@@ -45,6 +45,7 @@ pub(super) fn run(arguments: &ApplyArguments, console: &mut Console<'_>) -> Resu
         frames: *frames,
         weld: weld.weld,
         budget: memory::budget_within(*most_memory),
+        deltas,
         morph,
     };
     let (watch, staging) = (&console.watch, &console.staging);

@@ -7,7 +7,7 @@ use clap::error::ContextValue;
 use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 use pliant_deform::{ConstraintKind, METHODS};
 use pliant_editor::Clay;
-use pliant_io::{MorphTarget, quoted};
+use pliant_io::{MorphDeltas, MorphTarget, quoted};
 use pliant_mesh::{Vectors, WeldOptions};
 
 use crate::version::VERSION;
@@ -139,9 +139,31 @@ pub(crate) struct MorphArguments {
     /// How far the morph target shows by default, from 0 to 1
     #[arg(long, value_name = "W", default_value = "1", requires = "as_morph", value_parser = unit_number)]
     pub morph_weight: f64,
+    /// Whether the deltas of the file's own morph targets turn with the surface: `turn` or `stay`. Without it they turn
+    /// where they would else be off by more than 30 degrees
+    #[arg(long, value_name = "HOW", conflicts_with = "as_morph")]
+    pub morph_deltas: Option<Deltas>,
+}
+
+/// Whether deltas of morph targets turn with the surface.
+#[derive(ValueEnum, Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum Deltas {
+    /// They do.
+    Turn,
+    /// They stay as they are stored.
+    Stay,
 }
 
 impl MorphArguments {
+    /// Whether the deltas of the file's own morph targets turn with the surface.
+    pub fn deltas(&self) -> MorphDeltas {
+        match self.morph_deltas {
+            None => MorphDeltas::WhereFarOff,
+            Some(Deltas::Turn) => MorphDeltas::Turn,
+            Some(Deltas::Stay) => MorphDeltas::Stay,
+        }
+    }
+
     /// The morph target that was asked for, called `own_name` where it was given no name.
     pub fn target<'a>(&'a self, own_name: &'a str) -> Option<MorphTarget<'a>> {
         let name = self.as_morph.as_deref()?;

@@ -17,6 +17,7 @@ pub(super) fn run(arguments: &TransferArguments, console: &mut Console<'_>) -> R
         correspondences: arguments.correspondences.as_deref(),
         output: &arguments.output,
         weld: arguments.weld.options(),
+        deltas: arguments.morph.deltas(),
         morph: arguments.morph.target(&own_name),
     };
     let (watch, staging) = (&console.watch, &console.staging);

@@ -23,12 +23,26 @@ pub struct Save<'a> {
     /// Of each drawn vertex, whether its connected part is turned inside out: its faces are wound the other way, and its
     /// normals point the other way. Empty: none is. All drawn vertices of one triangle are turned, or none of them.
     pub turned: &'a [bool],
+    /// Whether the deltas of the file's morph targets turn with the surface.
+    pub deltas: MorphDeltas,
     /// The format of OUT.
     pub format: Format,
     /// OUT's file name, without a folder.
     pub name: &'a str,
     /// Where OUT goes, which decides how its neighbours are named and whether they are copied.
     pub placement: Placement,
+}
+
+/// Whether the deltas of a file's morph targets turn with the surface, each mesh's all or none.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub enum MorphDeltas {
+    /// Where one of them would else be off by more than 30 degrees.
+    #[default]
+    WhereFarOff,
+    /// Wherever the surface turns.
+    Turn,
+    /// Nowhere: they stay as they are stored.
+    Stay,
 }
 
 /// An edit to be saved as a morph target.

@@ -21,7 +21,7 @@ use crate::convert::{NewMesh, Parting, Polygons};
 use crate::save::bits::bit_equal;
 use crate::save::course::Course;
 use crate::save::moved::Moved;
-use crate::save::{MorphTarget, OutputFile, Placement, Save, Saved};
+use crate::save::{MorphDeltas, MorphTarget, OutputFile, Placement, Save, Saved};
 use crate::scene::difference::Difference;
 use crate::scene::summary::Summary;
 use crate::source::{Resolver, Source};
@@ -394,6 +394,7 @@ impl Scene {
             let save = Save {
                 drawn,
                 positions: &other_drawn.positions,
+                deltas: MorphDeltas::WhereFarOff,
                 turned: &[],
                 format: self.format,
                 name: "same",

@@ -425,6 +425,7 @@ pub fn exercise(bytes: &[u8], kind: Kind, other: Format, beside: &Beside, after_
         let placement = Placement::OtherFolder;
         scene.save(
             &Save {
+                deltas: pliant_io::MorphDeltas::WhereFarOff,
                 turned: &[],
                 drawn,
                 positions,
@@ -467,6 +468,7 @@ pub fn exercise(bytes: &[u8], kind: Kind, other: Format, beside: &Beside, after_
     if matches!(format, Format::Glb | Format::Gltf) {
         let _ = scene.save_as_morph(
             &Save {
+                deltas: pliant_io::MorphDeltas::WhereFarOff,
                 turned: &[],
                 drawn,
                 positions: &positions,

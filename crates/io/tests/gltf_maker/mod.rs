@@ -335,6 +335,7 @@ pub fn try_save(
     let format = Format::of_name(name).unwrap();
     opened.scene.save(
         &Save {
+            deltas: pliant_io::MorphDeltas::WhereFarOff,
             turned: &[],
             drawn: &opened.drawn,
             positions,

@@ -61,6 +61,7 @@ pub fn refusal(bytes: &[u8], format: Format) -> String {
 pub fn save_as(opened: &SceneAndDrawn, positions: &[DVec3], format: Format) -> Saved {
     let name = format!("out.{}", format.extension());
     let save = Save {
+        deltas: pliant_io::MorphDeltas::WhereFarOff,
         turned: &[],
         drawn: &opened.drawn,
         positions,

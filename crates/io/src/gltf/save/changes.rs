@@ -12,6 +12,7 @@ use crate::gltf::document::Document;
 use crate::gltf::geometry::primitive::Primitive;
 use crate::gltf::geometry::{Instance, Pieces};
 use crate::gltf::save::target_turns;
+use crate::save::MorphDeltas;
 use crate::save::course::Course;
 use crate::save::frames::{Frames, carried_normal, carried_tangent};
 use crate::save::moved::Moved;
@@ -81,15 +82,6 @@ impl InstanceChange {
     }
 }
 
-/// The treatment of morph targets' deltas.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(crate) enum MorphTargets {
-    /// They turn where they would else be far off.
-    Turn,
-    /// They stay, because the shape does.
-    Keep,
-}
-
 /// Vertices that a thread handles at a time.
 const CHUNK: usize = 1 << 13;
 
@@ -102,12 +94,12 @@ pub(crate) fn changes(
     meshes: &[Vec<Primitive>],
     pieces: &Pieces,
     moved: &Moved<'_>,
-    targets: MorphTargets,
+    deltas: MorphDeltas,
     course: &Course<'_>,
 ) -> Result<Vec<InstanceChange>, SaveError> {
     let has_normals = pieces.instances.iter().any(|instance| {
         let primitive = &meshes[instance.mesh][instance.primitive];
-        let has_targets = targets == MorphTargets::Turn && !primitive.targets.is_empty();
+        let has_targets = deltas != MorphDeltas::Stay && !primitive.targets.is_empty();
         primitive.normal.is_some() || primitive.tangent.is_some() || has_targets
     });
     course.reach(0, 1)?;
@@ -115,9 +107,9 @@ pub(crate) fn changes(
     let frames = has_normals
         .then(|| moved.frames(&appearance::world_normals(document, meshes, pieces), &of_frames))
         .transpose()?;
-    let mut turns = match (&frames, targets) {
-        (Some(frames), MorphTargets::Turn) => target_turns::turns(document, meshes, pieces, moved, frames),
-        _ => Vec::new(),
+    let mut turns = match &frames {
+        Some(frames) => target_turns::turns(document, meshes, pieces, moved, frames, deltas),
+        None => Vec::new(),
     };
     turns.resize(pieces.instances.len(), None);
     let all = moved.positions.len().max(1) as f32;

@@ -19,9 +19,8 @@ mod unpack_copies;
 use super::Stored;
 use crate::save::course::Course;
 use crate::save::moved::Moved;
-use crate::save::{MorphTarget, Save, Saved};
+use crate::save::{MorphDeltas, MorphTarget, Save, Saved};
 use crate::{Format, SaveError};
-use changes::MorphTargets;
 use patch::Patched;
 
 impl Stored {
@@ -36,14 +35,7 @@ impl Stored {
         let patched = if moved.is_nothing() {
             Patched::unchanged(document)
         } else {
-            let changes = changes::changes(
-                document,
-                meshes,
-                pieces,
-                moved,
-                MorphTargets::Turn,
-                &course.part(0.0, 0.8),
-            )?;
+            let changes = changes::changes(document, meshes, pieces, moved, save.deltas, &course.part(0.0, 0.8))?;
             let turned = turned_triangles::turned(pieces, moved);
             let course = course.part(0.8, 0.9);
             accessors::with_changes(document, meshes, pieces, (&changes, &turned), save.format, &course)?
@@ -77,7 +69,8 @@ impl Stored {
                 meshes,
                 pieces,
                 moved,
-                MorphTargets::Keep,
+                // The shape stays, and so do they.
+                MorphDeltas::Stay,
                 &course.part(0.0, 0.8),
             )?;
             let course = course.part(0.8, 0.9);

@@ -1,7 +1,8 @@
 //! Morph targets that turn with the surface.
 //!
 //! A target's deltas are ways from the surface as it was: where that turns far, a smile points through the cheek. So the
-//! deltas of a mesh turn with it if any of them would else be off by more than [`MOST_OFF`] degrees. What is applied by
+//! deltas of a mesh turn with it if any of them would else be off by more than [`MOST_OFF`] degrees, unless the save asks
+//! otherwise. What is applied by
 //! default stays where it was put: the base takes up the difference.
 
 use std::collections::BTreeSet;
@@ -13,6 +14,7 @@ use rayon::prelude::*;
 use crate::gltf::document::Document;
 use crate::gltf::geometry::primitive::Primitive;
 use crate::gltf::geometry::{Instance, Pieces};
+use crate::save::MorphDeltas;
 use crate::save::frames::Frames;
 use crate::save::moved::Moved;
 
@@ -26,7 +28,11 @@ pub(crate) fn turns(
     pieces: &Pieces,
     moved: &Moved<'_>,
     frames: &Frames,
+    deltas: MorphDeltas,
 ) -> Vec<Option<Vec<DMat3>>> {
+    if deltas == MorphDeltas::Stay {
+        return Vec::new();
+    }
     let of_instance = |instance: &Instance| {
         let primitive = &meshes[instance.mesh][instance.primitive];
         let mut vertices = instance.vertices.clone().map(DrawnVertex);
@@ -39,7 +45,9 @@ pub(crate) fn turns(
     let pairs = || pieces.instances.iter().zip(&turns);
     let turning: BTreeSet<(usize, usize)> = pairs()
         .filter_map(|(instance, turns)| Some((instance, turns.as_ref()?)))
-        .filter(|(instance, turns)| are_off(document, &meshes[instance.mesh][instance.primitive], turns))
+        .filter(|(instance, turns)| {
+            deltas == MorphDeltas::Turn || are_off(document, &meshes[instance.mesh][instance.primitive], turns)
+        })
         .map(|(instance, _)| place(instance))
         .collect();
     let instances = pieces.instances.iter();
