@@ -8,3 +8,4 @@ mod owners;
 pub(crate) mod partition;
 pub(crate) mod patch;
 pub(crate) mod slender;
+mod strays;

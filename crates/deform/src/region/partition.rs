@@ -8,6 +8,7 @@
 use glam::DVec3;
 use pliant_mesh::SurfaceVertex;
 
+use super::strays::strays;
 use crate::budget::bytes_of;
 use crate::operators::triangulation::{Graph, Triangulation};
 use crate::{BindError, Budget, CONTINUITY_RANGE, ConstraintKind, Loose, Needs, Problem, Role, Warning, alternatives};
@@ -19,6 +20,8 @@ pub(crate) struct Partition<'a> {
     pub triangulation: Triangulation<'a>,
     /// Free vertices that some handle influences, and those of soft handles.
     pub solved: Vec<u32>,
+    /// Vertices that are not fixed, ascending; of a method of space, without the parts that follow.
+    pub moving: Vec<u32>,
     /// The vertices of each handle.
     pub handles: Vec<Vec<u32>>,
     /// Each handle's weight, `None` where it is hard.
@@ -77,8 +80,12 @@ impl<'a> Partition<'a> {
         };
         let loose_of = problem.loose_by_component();
         let (loose, mut warnings): (_, Vec<Warning>) = match method.needs() {
-            // Where nothing needs to be connected, nothing is loose.
-            Needs::Points => (Vec::new(), Vec::new()),
+            // Where nothing needs to be connected, only what lies far away is loose.
+            Needs::Points => {
+                let loose = strays(problem, &driven, &held);
+                let warnings = warnings(problem, &loose, &loose_of, &[]);
+                (loose, warnings.into_iter().map(Warning::from).collect())
+            }
             Needs::Surface { .. } => {
                 let loose = indices(&|c| !held[c] && !driven[c]);
                 let has_faces = |component: u32| problem.topology.components()[component as usize].face_count > 0;
@@ -95,6 +102,13 @@ impl<'a> Partition<'a> {
             Loose::Rest => None,
             how => (!handles.is_empty()).then_some((component, how)),
         };
+        let is_stray = |vertex: usize| {
+            let component = problem.topology.component(SurfaceVertex(vertex as u32));
+            method.needs() == Needs::Points && loose.binary_search(&component).is_ok()
+        };
+        let moving =
+            (0..problem.roles.len()).filter(|&vertex| problem.roles[vertex] != Role::Fixed && !is_stray(vertex));
+        let moving: Vec<u32> = moving.map(|vertex| vertex as u32).collect();
         warnings.extend(unheeded(problem));
         warnings.extend(triangulation.warning().map(Warning::from));
         Ok(Self {
@@ -104,7 +118,9 @@ impl<'a> Partition<'a> {
                 &handles,
                 &soft,
                 &led_by_examples(problem, &held, &driven),
+                &moving,
             ),
+            moving,
             triangulation,
             following: loose.into_iter().filter_map(follows).collect(),
             handles,
@@ -249,6 +265,7 @@ fn solved(
     handles: &[Vec<u32>],
     soft: &[Option<f64>],
     led: &[bool],
+    moving: &[u32],
 ) -> Vec<u32> {
     let is_free = |vertex: usize| match problem.roles[vertex] {
         Role::Free => true,
@@ -262,7 +279,10 @@ fn solved(
             .collect()
     };
     let reach = match problem.method.needs() {
-        Needs::Points => return chosen(&is_free),
+        Needs::Points => {
+            let moving = moving.iter().copied();
+            return moving.filter(|&vertex| is_free(vertex as usize)).collect();
+        }
         Needs::Surface { reach, .. } => reach,
     };
     // How many more edges a walk may take from here before it must meet a free vertex; at a reached one, `reach`.

@@ -10,7 +10,7 @@ use crate::budget::filled;
 use crate::handles::bases::frame;
 use crate::handles::{FRAME_CHUNK, Motion, clear};
 use crate::method::{BindInput, Finite, HandleFit};
-use crate::{BindError, HandleBases, Role};
+use crate::{BindError, HandleBases};
 
 /// A handle's coefficients at a point, as [`HandleBases`] has them, and their gradients per world unit.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
@@ -147,9 +147,6 @@ impl LinearField {
 pub(crate) fn moving(fit: HandleFit, input: &BindInput<'_>) -> Vec<u32> {
     match fit {
         HandleFit::Exact => input.partition.solved.clone(),
-        HandleFit::LeastSquares => (0..)
-            .zip(input.problem.roles)
-            .filter_map(|(vertex, role)| (*role != Role::Fixed).then_some(vertex))
-            .collect(),
+        HandleFit::LeastSquares => input.partition.moving.clone(),
     }
 }

@@ -72,7 +72,7 @@ impl Octree {
     /// With so many small cubes along the longest axis.
     fn with(input: &BindInput<'_>, along: i32) -> Result<Self, Limit> {
         let (surface, roles) = (input.problem.surface, input.problem.roles);
-        let moving = (0..roles.len() as u32).filter(|&vertex| roles[vertex as usize] != Role::Fixed);
+        let moving = input.partition.moving.iter().copied();
         let mut is_moving = vec![false; roles.len()];
         for vertex in shaping(input.problem, moving) {
             is_moving[vertex as usize] = true;

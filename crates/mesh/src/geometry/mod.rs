@@ -61,12 +61,12 @@ impl Bounds {
     }
 
     /// The smallest box around positions; `None` for none.
-    pub(crate) fn around(positions: impl Iterator<Item = DVec3>) -> Option<Self> {
+    pub fn around(positions: impl Iterator<Item = DVec3>) -> Option<Self> {
         positions.map(|p| Self { min: p, max: p }).reduce(|a, b| a.union(&b))
     }
 
     /// The same, larger by `distance` on each side.
-    pub(crate) fn grown(&self, distance: f64) -> Self {
+    pub fn grown(&self, distance: f64) -> Self {
         Self {
             min: self.min - distance,
             max: self.max + distance,
@@ -74,7 +74,7 @@ impl Bounds {
     }
 
     /// Whether the two have a point in common.
-    pub(crate) fn meets(&self, other: &Self) -> bool {
+    pub fn meets(&self, other: &Self) -> bool {
         self.min.cmple(other.max).all() && self.max.cmpge(other.min).all()
     }
 
