@@ -4,7 +4,7 @@ use glam::{DVec3, Mat3};
 
 use super::Embedded;
 use super::energy::{Energy, constrained};
-use super::graph::Graph;
+use super::graph::{Graph, NEAREST};
 use super::solver::Solver;
 use super::system::System;
 use crate::budget::bytes_of;
@@ -16,7 +16,7 @@ use crate::region::nodes::spread;
 use crate::space::blend::{Affine, Blend, Share};
 use crate::space::shaping::shaping;
 use crate::sparse::factor_error::FactorError;
-use crate::{BindError, Role, SolveError};
+use crate::{BindError, SolveError};
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "embedded",
@@ -68,8 +68,8 @@ impl DeformMethod for Embedded {
     }
 
     fn row_bytes(&self) -> usize {
-        // Up to five shares of nodes, twice while the graph is made, and those of the handles nearby.
-        300 + 24 * size_of::<Share>()
+        // Up to as many shares of nodes, twice while the graph is made, and those of the handles nearby.
+        300 + (14 + 2 * NEAREST) * size_of::<Share>()
     }
 
     fn handle_row_bytes(&self) -> usize {
@@ -84,9 +84,7 @@ impl DeformMethod for Embedded {
 /// Spreads and joins the nodes, analyses the matrix and weighs every vertex.
 pub(super) fn bound(options: &Embedded, input: &BindInput<'_>) -> Result<BoundEmbedded, BindError> {
     let positions = &input.problem.surface.positions;
-    let moving = (0..).zip(input.problem.roles);
-    let moving = moving.filter_map(|(vertex, role)| (*role != Role::Fixed).then_some(vertex));
-    let moving = shaping(input.problem, moving);
+    let moving = shaping(input.problem, input.partition.moving.iter().copied());
     let most = (options.nodes as usize).min(moving.len());
     let budget = input.partition.budget.without(bytes_of(most * most, NODE_PAIR));
     let budget = budget.map_err(|limit| BindError::budget(input.partition.solved.len(), limit))?;

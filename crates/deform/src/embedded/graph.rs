@@ -14,11 +14,12 @@ use crate::space::neighbours::Neighbours;
 use crate::sparse::Elimination;
 use crate::sparse::ordering::graph::elimination;
 
-/// Nodes that move a point, and one more, whose distance ends their influence.
-const NEAREST: usize = 5;
+/// Nodes that move a point, and one more, whose distance ends their influence. With the four of [SSP07] the maps follow
+/// each other within a narrow seam, and edges across one are stretched.
+pub(super) const NEAREST: usize = 8;
 
-/// The distance that ends the influence is a little larger than the fifth node's, so that some weight is left where
-/// all five are equally far.
+/// The distance that ends the influence is a little larger than the last node's, so that some weight is left where
+/// all are equally far.
 const BEYOND: f64 = 1.0 + 1e-5;
 
 /// Vertices whose nodes are found at once.
@@ -237,7 +238,7 @@ impl Sums {
     }
 }
 
-/// (1 − d²/d₅²)² over their sum, with gradients.
+/// (1 − d²/d₈²)² over their sum, with gradients.
 fn influence(tree: &Neighbours, world_nodes: &[DVec3], world_point: DVec3) -> Vec<Share> {
     let nearest = tree.nearest(world_point, NEAREST);
     let Some(&(last, most)) = nearest.last() else {

@@ -2,15 +2,17 @@
 //! vertex.
 //!
 //! A node at g with the linear map A = I + X and the shift t takes a point p to A (p − g) + g + t; a vertex takes the
-//! mean of its four nearest nodes' with the weights (1 − d²/d₅²)², d₅ being the distance of the fifth. The nodes'
+//! mean of its seven nearest nodes' with the weights (1 − d²/d₈²)², d₈ being the distance of the eighth. The nodes'
 //! maps minimise, in the unit of the mean distance of joined nodes,
 //!
-//! E = Σ_j ρ_j ‖A_jᵀ A_j − I‖² + 10 Σ_jk α_jk |X_j (g_k − g_j) + t_j − t_k|² + Σ_l w_l |d(v_l) − u(v_l)|²:
+//! E = 30 Σ_j ρ_j ‖A_jᵀ A_j − I‖² + 10 Σ_jk α_jk |X_j (g_k − g_j) + t_j − t_k|² + Σ_l w_l |d(v_l) − u(v_l)|²:
 //!
 //! each node's rigidity, the regularity of neighbours, and the constraints v_l, which are samples of the handles and of
 //! what is fixed near the part that moves. The differences from the paper:
 //!
-//! - The weights have d² in place of d, so that they have no peak at a node and normals are smooth.
+//! - Seven nodes move a vertex, not four, and the weights have d² in place of d, so that they have no peak at a node and
+//!   normals are smooth.
+//! - The rigidity weighs 30, not 1, so that nodes turn rather than flatten.
 //! - The rigidity counts the angles between A's columns twice, so that it does not depend on the axes of space.
 //! - α_jk is Σ_v s_v w_j w_k over the vertices, s the painted stiffness, over the root of the two nodes' own sums
 //!   without s, and ρ_j the mean of s around the node: neighbours that share more are joined more firmly, and nodes in

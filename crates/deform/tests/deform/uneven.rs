@@ -1,7 +1,9 @@
 //! Meshes that are coarse, uneven or not alone: bends stay whole, and other parts change nothing.
 
 use glam::{DAffine3, DQuat, DVec3};
-use pliant_deform::{Bilaplacian, Cage, Embedded, Lattice, Method, Primo, Role, Shells, SpacePrimo};
+use pliant_deform::{
+    Bilaplacian, Cage, Embedded, Lattice, METHODS, Method, Needs, Primo, RigidMotion, Role, Shells, SpacePrimo,
+};
 use pliant_mesh::{Distortion, Drawn, DrawnVertex, shapes};
 
 use crate::rig::{Scene, settle};
@@ -122,6 +124,67 @@ fn neither_a_speck_nor_a_turn_of_the_scan_changes_a_bend() {
             let other = of_tube(drawn, count, motion, &method);
             let apart = crate::rig::apart(&alone, &other);
             assert!(apart < 1e-3, "{}: {apart}", method.name());
+        }
+    }
+}
+
+/// Methods of space whose box, grid or nodes lie over what bends, and those that bend all of it.
+fn of_space() -> Vec<Method> {
+    METHODS
+        .iter()
+        .map(|declaration| (declaration.default)())
+        .filter(|method| method.needs() == Needs::Points && method.name() != "identity")
+        .collect()
+}
+
+#[test]
+fn specks_far_away_change_no_bend_of_space_and_go_along_as_they_are() {
+    let tube = shapes::tube(10, 12, 6.0);
+    let count = tube.positions.len();
+    let half = DAffine3::from_scale(DVec3::splat(0.5));
+    let at = |shape: Drawn, place: DVec3| shapes::moved(&shape, DAffine3::from_translation(place) * half);
+    let speck = at(shapes::bar(1, 1, 1), DVec3::new(300.0, 400.0, -200.0));
+    let other = at(shapes::icosphere(1), DVec3::new(-60.0, 0.0, 3.0));
+    for method in of_space() {
+        let name = method.name();
+        let alone = of_tube(tube.clone(), count, DAffine3::IDENTITY, &method);
+        let scene = shapes::together(&[tube.clone(), speck.clone(), other.clone()]);
+        let beside = of_tube(scene.clone(), scene.positions.len(), DAffine3::IDENTITY, &method);
+        let apart = crate::rig::apart(&alone, &beside[..count]);
+        assert!(apart < 1e-6, "{name}: {apart}");
+        for part in [count..count + 8, count + 8..scene.positions.len()] {
+            let fit = RigidMotion::fit(&scene.positions[part.clone()], &beside[part.clone()]).unwrap();
+            let off = part.map(|v| fit.displace(scene.positions[v]).distance(beside[v]));
+            assert!(off.fold(0.0, f64::max) < 1e-6, "{name}");
+        }
+    }
+}
+
+#[test]
+fn nodes_turn_inside_an_elbow_rather_than_fall_in() {
+    for (around, along, length) in [(20, 44, 6.0), (8, 30, 7.0), (32, 90, 8.0)] {
+        for nodes in [100, 300] {
+            let mut options = Embedded::default();
+            options.nodes = nodes;
+            let mut scene = Scene::new(shapes::moved(
+                &shapes::tube(around, along, length),
+                DAffine3::from_scale(DVec3::new(0.5, 0.5, 1.0)),
+            ))
+            .with(Role::Fixed, |p| p.z < 0.25 * length)
+            .with(Role::Handle(0), |p| p.z > 0.75 * length);
+            scene.method = options.into();
+            let (displacements, _) = settle(&mut scene.bind(), &[bent(length, 120.0)]);
+            let moved: Vec<DVec3> = scene
+                .positions()
+                .iter()
+                .zip(&displacements)
+                .map(|(p, d)| *p + *d)
+                .collect();
+            let distortion = Distortion::of(&scene.model.surface, &scene.model.topology, &moved);
+            assert!(
+                distortion.edge_stretch_max < 4.0 && distortion.flipped_faces == 0,
+                "{nodes} nodes on {around} x {along}: {distortion:?}"
+            );
         }
     }
 }
