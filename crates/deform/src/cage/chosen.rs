@@ -10,6 +10,7 @@ use super::mesh::CageMesh;
 use super::offset::{offset_cage, voxel_size};
 use crate::method::{Attachment, BindInput, ControlMesh};
 use crate::space::fit_samples::RegionBox;
+use crate::space::shaping::shaping;
 
 /// A cage.
 #[derive(Debug)]
@@ -43,12 +44,12 @@ impl ChosenCage {
     }
 }
 
-/// Everything in the region's box but bare points beside triangles, in the cage's unit.
+/// Everything in the region's box in the cage's unit, without bare points if triangles use any of it.
 fn region_points(input: &BindInput<'_>, within: &RegionBox, unit: Unit) -> Vec<DVec3> {
-    let problem = input.problem;
-    let positions = problem.topology.main_positions(&problem.surface.positions).iter();
-    let inside = positions.filter(|point| within.contains(**point));
-    inside.map(|point| unit.local(*point)).collect()
+    let positions = &input.problem.surface.positions;
+    let inside = (0..positions.len() as u32).filter(|&vertex| within.contains(positions[vertex as usize]));
+    let points = shaping(input.problem, inside).into_iter();
+    points.map(|vertex| unit.local(positions[vertex as usize])).collect()
 }
 
 /// A cage around these points, at rest.

@@ -183,3 +183,17 @@ fn points_rest_where_loose_parts_rest() {
         );
     }
 }
+
+#[test]
+fn points_bend_where_no_triangle_moves() {
+    for method in space::methods() {
+        let far = shapes::moved(&shapes::icosphere(1), DAffine3::from_translation(DVec3::Y * 50.0));
+        let cloud = Drawn::once(uneven().positions, Vec::new());
+        let mut scene = scene(shapes::together(&[far, cloud]), &method).with(Role::Fixed, |p| p.y > 40.0);
+        scene.handle_count = 2;
+        let (displacements, _) = settle(&mut scene.bind(), &targets());
+        let moved = |d: &DVec3| d.is_finite() && d.length() > 0.3;
+        assert!(displacements.iter().any(moved), "{method:?}");
+        assert!(displacements.iter().all(|d| d.is_finite()), "{method:?}");
+    }
+}
