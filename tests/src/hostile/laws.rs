@@ -181,7 +181,10 @@ pub fn of_save(root: &Path, before: &Tree, after: &Tree, places: &Places, found:
     for place in changed(before, after) {
         let name = place.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let (was, is) = (before.get(&place), after.get(&place));
-        if name.starts_with(".pliant") {
+        let is_other_name = was.is_some_and(|node| own_files.contains(&node.identity)) && is.is_some();
+        if is_other_name && !own(&place) {
+            // Another name of one of the save's own files.
+        } else if name.starts_with(".pliant") {
             found.push(violation(Law::NothingLeft, format!("{}", place.display())));
         } else if own(&place) {
             let (Some(was), Some(is)) = (was, is) else { continue };
@@ -204,8 +207,6 @@ pub fn of_save(root: &Path, before: &Tree, after: &Tree, places: &Places, found:
             if !holds_own {
                 found.push(violation(Law::NothingLeft, format!("the folder {place:?}")));
             }
-        } else if was.is_some_and(|node| own_files.contains(&node.identity)) && is.is_some() {
-            // Another name of one of the save's own files.
         } else {
             found.push(violation(Law::OnlyItsOwn, described(&place, was, is)));
         }

@@ -307,7 +307,10 @@ impl Desk {
                 found.push(violation(Law::TheirsIsKept, format!("{place:?} by a {:?}", save.kind)));
             }
         }
-        for place in laws::changed(before, &after) {
+        // What it wrote, and what stood there already as it would have written it.
+        let written = output.iter().cloned().chain(neighbours_of(&save.path));
+        let written = written.filter_map(|place| Some(place.strip_prefix(root).ok()?.to_owned()));
+        for place in written.chain(laws::changed(before, &after)) {
             if let Some(node) = after.get(&place) {
                 self.own.insert(place, node.what.clone());
             }

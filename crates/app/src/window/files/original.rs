@@ -17,7 +17,7 @@ pub enum Kept {
     Already(PathBuf),
     /// This name is free for it.
     Under(PathBuf),
-    /// The file is gone, so there is nothing to keep.
+    /// The file is gone and was another one, so there is nothing to keep.
     Nothing,
 }
 
@@ -33,7 +33,7 @@ enum Content {
     Bytes(Vec<u8>),
     /// A glTF with its neighbours, packed into a GLB: they are saved over along with it.
     Packed(Box<Loaded>),
-    /// The same of the open file.
+    /// The open file as it was read, a glTF with its neighbours packed into a GLB.
     Open,
     /// There is no such file.
     Nothing,
@@ -47,7 +47,11 @@ impl Original {
     pub fn of(path: &Path, loaded: &Loaded, cancel: &Cancel) -> Result<Self, EngineError> {
         let is_alone = |loaded: &Loaded| !is_gltf(path) && loaded.neighbours.is_empty();
         let content = if !path.exists() {
-            Content::Nothing
+            // Another program has moved or removed it: what was read is the last of it.
+            match files::is_same(&loaded.path, path) {
+                true => Content::Open,
+                false => Content::Nothing,
+            }
         } else if !is_kind_of_gltf(path) {
             Content::Bytes(files::read(path)?)
         } else if is_as_read(path, loaded) {
@@ -69,11 +73,27 @@ impl Original {
         })
     }
 
+    /// The open file as it was read from `path`, where another one stands there now but its neighbours still do: saves
+    /// go over them.
+    pub fn as_read(path: &Path, loaded: &Loaded) -> Option<Self> {
+        let is_other = path.exists() && files::is_same(&loaded.path, path) && !is_as_read(path, loaded);
+        let mut neighbours = loaded.neighbours.iter();
+        let has_neighbours = is_gltf(path) && neighbours.any(|(path, stamp)| stamp.is_current(path));
+        (is_other && has_neighbours).then(|| Self {
+            path: path.to_owned(),
+            content: Content::Open,
+        })
+    }
+
     /// Whether it is kept already, or under which name it will be.
     ///
     /// # Errors
     /// Where it can't be encoded, or a thousand names are taken.
     pub fn place(&self, loaded: &Loaded, cancel: &Cancel) -> Result<Kept, EngineError> {
+        self.place_beside(&[], loaded, cancel)
+    }
+
+    fn place_beside(&self, taken: &[PathBuf], loaded: &Loaded, cancel: &Cancel) -> Result<Kept, EngineError> {
         let packed;
         let bytes = match (&self.content, self.packed(loaded)) {
             (Content::Nothing, _) => return Ok(Kept::Nothing),
@@ -84,22 +104,28 @@ impl Original {
                 &packed
             }
         };
-        free_or_same(original_names(&self.path), bytes)
+        free_or_same(original_names(&self.path).filter(|name| !taken.contains(name)), bytes)
     }
 
-    /// Stages it where [`place`](Self::place) says. With it where it is kept then, and what is to be committed if it was
-    /// not kept before.
+    /// Whether it is the open file as it was read, and that is no longer what stands at its path.
+    pub fn is_former(&self, loaded: &Loaded) -> bool {
+        matches!(self.content, Content::Open) && !is_as_read(&self.path, loaded)
+    }
+
+    /// Stages it where [`place`](Self::place) says, but under none of the names `taken`. Gives where it is kept then, and
+    /// what is to be committed if it was not kept before.
     ///
     /// # Errors
     /// As [`place`](Self::place); where it can't be written.
     pub fn keep(
         &self,
+        taken: &[PathBuf],
         loaded: &Loaded,
         staging: &Staging,
         progress: &Progress,
         cancel: &Cancel,
     ) -> Result<(Kept, Option<Staged>), EngineError> {
-        let kept = self.place(loaded, cancel)?;
+        let kept = self.place_beside(taken, loaded, cancel)?;
         let Kept::Under(place) = &kept else {
             return Ok((kept, None));
         };
@@ -205,7 +231,7 @@ mod tests {
     fn keep(path: &Path, loaded: &Loaded) -> Kept {
         let (staging, progress, cancel) = (Staging::default(), Progress::new(), Cancel::new());
         let original = Original::of(path, loaded, &cancel).unwrap();
-        let (kept, staged) = original.keep(loaded, &staging, &progress, &cancel).unwrap();
+        let (kept, staged) = original.keep(&[], loaded, &staging, &progress, &cancel).unwrap();
         if let Some(staged) = staged {
             staged.commit().unwrap();
         }
@@ -233,7 +259,13 @@ mod tests {
         assert_eq!(keep(&gltf, &loaded), Kept::Under(at("scan.original-3.glb")));
         let (kept, theirs) = (read(&at("scan.original-3.glb")), read(&gltf));
         assert_eq!(kept.model.rest_positions(), theirs.model.rest_positions());
+        // What was read here is kept, too, whether another file stands here or none.
+        let former = Original::as_read(&gltf, &loaded).unwrap();
+        let place = former.place(&loaded, &Cancel::new()).unwrap();
+        assert_eq!(place, Kept::Already(at("scan.original-2.glb")));
+        assert!(Original::as_read(&glb, &loaded).is_none());
         fs::remove_file(&gltf).unwrap();
-        assert_eq!(keep(&gltf, &loaded), Kept::Nothing);
+        assert_eq!(keep(&gltf, &loaded), Kept::Already(at("scan.original-2.glb")));
+        assert_eq!(keep(&gltf, &read(&glb)), Kept::Nothing);
     }
 }

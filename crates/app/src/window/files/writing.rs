@@ -193,27 +193,36 @@ fn ready_model(
     if !keeps {
         return Ok(ready);
     }
-    let original = Original::of(path, loaded, cancel)?;
-    let (kept, staged) = original.keep(loaded, staging, &of_original, cancel)?;
-    if let Some(original) = staged {
-        // The original first: the file that replaces it must not be there without it.
-        ready.staged = original.and(ready.staged);
-    }
-    let (place, sentence) = match kept {
-        Kept::Nothing => return Ok(ready),
-        Kept::Already(place) => {
-            let sentence = format!("The original is kept already, as {}.", file_name(&place));
-            (place, sentence)
+    let originals = [
+        Some(Original::of(path, loaded, cancel)?),
+        Original::as_read(path, loaded),
+    ];
+    let mut taken = Vec::new();
+    for original in originals.into_iter().flatten() {
+        let (kept, staged) = original.keep(&taken, loaded, staging, &of_original, cancel)?;
+        if let Some(original) = staged {
+            // The original first: the file that replaces it must not be there without it.
+            ready.staged = original.and(ready.staged);
         }
-        Kept::Under(place) => {
-            let sentence = format!("The file as it was is kept as {}.", file_name(&place));
-            (place, sentence)
+        let is_former = original.is_former(loaded);
+        let (place, sentence) = match kept {
+            Kept::Nothing => continue,
+            Kept::Already(place) => {
+                let sentence = format!("The original is kept already, as {}.", file_name(&place));
+                (place, sentence)
+            }
+            Kept::Under(place) => {
+                let which = if is_former { "as it was opened" } else { "as it was" };
+                let sentence = format!("The file {which} is kept as {}.", file_name(&place));
+                (place, sentence)
+            }
+        };
+        ready.notes.insert(taken.len(), sentence);
+        taken.push(place.clone());
+        if is_source && (is_former || mesh.is_in(path, Stamp::is_current)) {
+            ready.what = written(Some(MeshSource::File(place.clone())));
+            ready.copy = Some(place);
         }
-    };
-    ready.notes.insert(0, sentence);
-    if is_source && mesh.is_in(path, Stamp::is_current) {
-        ready.what = written(Some(MeshSource::File(place.clone())));
-        ready.copy = Some(place);
     }
     Ok(ready)
 }
