@@ -121,6 +121,20 @@ fn a_neighbour_outside_of_the_folder_is_read_and_never_written() {
 }
 
 #[test]
+fn a_buffer_that_another_file_misses_is_left_to_it() {
+    let (folder, gltf) = gltf_in_a_folder();
+    let missed = buffer_uri(&gltf);
+    // Another copy that has lost its buffer, in the folder that the result goes to.
+    fs::create_dir(folder.at("other")).unwrap();
+    let (lost, output) = (folder.at("other/lost.gltf"), folder.at("other/out.gltf"));
+    fs::copy(&gltf, &lost).unwrap();
+    folder.apply(&gltf, &shift(), &output, &[]).done();
+    assert!(!folder.at("other").join(&missed).exists());
+    assert_ne!(buffer_uri(&output), missed);
+    assert_was_bent(&gltf, &output);
+}
+
+#[test]
 fn a_missing_neighbour_is_named() {
     let (folder, scan) = gltf_in_a_folder();
     let uri = buffer_uri(&scan);

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that fails may panic")]
 
 use glam::{DAffine3, DVec3};
-use pliant_mesh::{Bvh, Hit, Model, shapes};
+use pliant_mesh::{Bvh, Hit, Model, SurfaceVertex, shapes};
 
 fn hit_point(model: &Model, hit: &Hit) -> DVec3 {
     let corners = model.surface.corners(hit.triangle as usize);
@@ -161,5 +161,23 @@ fn planes_find_every_vertex_before_them_and_none_far_behind() {
                 bvh.vertices_within(&nothing, |_, _| panic!("{class}: nothing lies that far away"));
             }
         }
+    }
+}
+
+/// This took minutes where every pair of triangles had a union of the same area.
+#[test]
+fn triangles_in_one_place_or_on_one_line_have_a_hierarchy_like_any_other() {
+    let count = 60_000;
+    let corners: Vec<[SurfaceVertex; 3]> = (0..count)
+        .map(|t| [3 * t, 3 * t + 1, 3 * t + 2].map(SurfaceVertex))
+        .collect();
+    for step in [0.0, 1.0] {
+        let mut positions: Vec<DVec3> = (0..3 * count).map(|v| DVec3::X * (step * f64::from(v / 3))).collect();
+        // Something that gives the whole a size.
+        positions[0].y = 1000.0;
+        let bvh = Bvh::build(&positions, &corners);
+        let place = DVec3::X * (step * 777.0) + DVec3::Z;
+        let (vertex, distance) = bvh.nearest_vertex(place).unwrap();
+        assert!((distance - 1.0).abs() < 1e-9, "{vertex:?} at {distance}");
     }
 }

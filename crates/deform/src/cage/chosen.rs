@@ -44,11 +44,16 @@ impl ChosenCage {
     }
 }
 
-/// Everything in the region's box in the cage's unit, without bare points if triangles use any of it.
+/// Everything in the region's box in the cage's unit, without bare points if triangles use any of it; all there is where
+/// nothing moves.
 fn region_points(input: &BindInput<'_>, within: &RegionBox, unit: Unit) -> Vec<DVec3> {
     let positions = &input.problem.surface.positions;
-    let inside = (0..positions.len() as u32).filter(|&vertex| within.contains(positions[vertex as usize]));
-    let points = shaping(input.problem, inside).into_iter();
+    let all = 0..positions.len() as u32;
+    let inside = all
+        .clone()
+        .filter(|&vertex| within.contains(positions[vertex as usize]));
+    let inside = shaping(input.problem, inside);
+    let points = if inside.is_empty() { all.collect() } else { inside }.into_iter();
     points.map(|vertex| unit.local(positions[vertex as usize])).collect()
 }
 

@@ -242,3 +242,17 @@ fn harmonic_coordinates_keep_limbs_apart_that_mean_values_join() {
     let [mean_value, harmonic] = [CageCoordinates::MeanValue, CageCoordinates::Harmonic].map(follows);
     assert!(harmonic < 0.5 * mean_value, "{harmonic} {mean_value}");
 }
+
+#[test]
+fn where_all_is_held_a_cage_is_made_around_all_and_nothing_moves() {
+    for coordinates in [
+        CageCoordinates::MeanValue,
+        CageCoordinates::Harmonic,
+        CageCoordinates::Green,
+    ] {
+        let mut scene = Scene::new(shapes::icosphere(2)).with(Role::Fixed, |_| true);
+        scene.method = cage(coordinates);
+        let (displacements, _) = settle(&mut scene.bind(), &[]);
+        assert!(displacements.iter().all(|d| *d == DVec3::ZERO), "{coordinates:?}");
+    }
+}

@@ -1,6 +1,7 @@
 //! Names for the neighbours that a save writes, under which no file is overwritten that another file may need.
 //!
-//! **The rule.** A neighbour gets the name that the file gives it, unless something stands there already. What stands
+//! **The rule.** A neighbour gets the name that the file gives it, unless something stands there already, or another glTF
+//! in the folder names a buffer so that is missing. What stands
 //! there is shared if it holds the very same bytes (a buffer only if no other file names it, since buffers are edited).
 //! It is replaced only if it is this document's own: OUT is there and is a save of this very document (the same to the
 //! letter in all that no save changes), OUT names the neighbour, and no other glTF in the folder does. In every other
@@ -217,8 +218,10 @@ impl<'a> Folder<'a> {
         match fs::metadata(&target) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => {
                 let is_link = fs::symlink_metadata(&path).is_ok_and(|metadata| metadata.is_symlink());
-                // A link that leads nowhere is kept: its file may come back.
-                return if is_inside && !is_link {
+                // A link that leads nowhere is kept: its file may come back. So may the buffer that another file lacks,
+                // which would have this shape else.
+                let is_missed = role == Role::Buffer && self.is_named_by_others(name);
+                return if is_inside && !is_link && !is_missed {
                     There::Nothing(target)
                 } else {
                     There::Taken

@@ -62,8 +62,13 @@ impl SelfIntersection {
     }
 }
 
-/// Leaves whose pairs are looked for before it is asked whether to go on.
-const LEAVES: usize = 512;
+/// Leaves whose pairs are looked for before it is asked whether to go on: a few at first, because where everything
+/// overlaps each has as many pairs as there are triangles.
+const FIRST_LEAVES: usize = 8;
+const MOST_LEAVES: usize = 512;
+
+/// To find out whether a crossing is new costs as much as so many pairs.
+const PAIRS_A_CROSSING: usize = 50;
 
 /// So many pairs of triangles are tried for each triangle before the search ends: a surface has some twenty with boxes
 /// that overlap, and one where everything overlaps has as many as there are triangles.
@@ -105,15 +110,19 @@ impl Bvh {
         let (mut pairs, mut tried) = (Vec::new(), 0);
         let most_tried = TRIED_A_TRIANGLE * self.leaves.triangles.len();
         let mut are_all = true;
-        for (number, some) in leaves.chunks(LEAVES).enumerate() {
+        let (mut rest, mut count) = (&leaves[..], FIRST_LEAVES);
+        while !rest.is_empty() {
             cancel.check()?;
-            progress.set((number * LEAVES) as f32 / leaves.len() as f32);
+            progress.set(1.0 - rest.len() as f32 / leaves.len() as f32);
+            let (some, others) = rest.split_at(count.min(rest.len()));
+            (rest, count) = (others, (2 * count).min(MOST_LEAVES));
             if pairs.len() > most || tried > most_tried {
                 are_all = false;
                 break;
             }
             let of_leaf = |&leaf: &u32| {
                 let (mut found, tried) = self.pairs_of(leaf, &is_moved);
+                let tried = tried + PAIRS_A_CROSSING * found.len();
                 found.retain(is_new);
                 (found, tried)
             };

@@ -14,6 +14,10 @@ use crate::Bounds;
 /// Positions that share a box, and boxes that share a parent.
 const RUN: usize = 8;
 
+/// A group asks the rule about no more neighbours that it refuses. Few have ten; where triangles are spikes across the
+/// scene, all of their corners reach each other.
+const MOST_REFUSED: usize = 256;
+
 /// Runs of one Morton code that are longer than this are sorted along a finer curve.
 const CROWD: usize = 32;
 
@@ -37,7 +41,7 @@ pub(super) fn join_nearest<J: MayJoin>(
         .filter(|&place| joined.representative[place as usize] == place)
         .collect();
     spread_crowds(&position, &mut standing, bounds);
-    let tree = Tree::over(&position, &standing);
+    let tree = Tree::over(&position, &standing, &reach);
     // By their numbers in `standing`.
     let mut with_neighbours = tree.with_neighbours(&reach);
     if with_neighbours.is_empty() {
@@ -50,11 +54,15 @@ pub(super) fn join_nearest<J: MayJoin>(
     let mut have_joined = false;
     for (number, place) in with_neighbours.into_iter().zip(near) {
         let here = position(place);
-        let mut nearest: Option<(f64, u32)> = None;
+        let (mut nearest, mut refused): (Option<(f64, u32)>, usize) = (None, 0);
         tree.visit(&representatives, here, reach(place), |other, distance| {
             let closer = |(best, of): (f64, u32)| (distance, order[other as usize]) < (best, order[of as usize]);
-            if distance <= reach(other) && nearest.is_none_or(closer) && rule.may_join(place, other, distance) {
-                nearest = Some((distance, other));
+            if refused > MOST_REFUSED || distance > reach(other) || !nearest.is_none_or(closer) {
+                return;
+            }
+            match rule.may_join(place, other, distance) {
+                true => nearest = Some((distance, other)),
+                false => refused += 1,
             }
         });
         match nearest {
@@ -78,7 +86,7 @@ pub(crate) fn with_neighbours(positions: &[DVec3], reach: impl Fn(u32) -> f64 + 
     let mut places: Vec<u32> = (0..positions.len() as u32).collect();
     let position = |place: u32| positions[place as usize];
     sort_along_curve(&position, &mut places);
-    let near = Tree::over(&position, &places).with_neighbours(&reach);
+    let near = Tree::over(&position, &places, &reach).with_neighbours(&reach);
     near.into_iter().map(|number| places[number as usize]).collect()
 }
 
@@ -135,10 +143,13 @@ struct Tree<'a, P> {
     places: &'a [u32],
     /// The boxes of runs of places, then those of runs of these, up to a single one.
     levels: Vec<Vec<Bounds>>,
+    /// The furthest reach of the places in each box: what is further away is no neighbour of any, however far it reaches
+    /// itself.
+    reaches: Vec<Vec<f64>>,
 }
 
 impl<'a, P: Fn(u32) -> DVec3 + Sync> Tree<'a, P> {
-    fn over(position: &'a P, places: &'a [u32]) -> Self {
+    fn over(position: &'a P, places: &'a [u32], reach: &(impl Fn(u32) -> f64 + Sync)) -> Self {
         let of_run = |run: &[u32]| Bounds::around(run.iter().map(|&place| position(place)));
         let mut levels: Vec<Vec<Bounds>> = vec![places.par_chunks(RUN).filter_map(of_run).collect()];
         while let Some(below) = levels.last().filter(|below| below.len() > 1) {
@@ -148,10 +159,18 @@ impl<'a, P: Fn(u32) -> DVec3 + Sync> Tree<'a, P> {
             let parents: Vec<Bounds> = parents.collect();
             levels.push(parents);
         }
+        let furthest = |reaches: &[f64]| reaches.iter().copied().fold(0.0, f64::max);
+        let of_run = |run: &[u32]| run.iter().map(|&place| reach(place)).fold(0.0, f64::max);
+        let mut reaches: Vec<Vec<f64>> = vec![places.par_chunks(RUN).map(of_run).collect()];
+        while reaches.len() < levels.len() {
+            let below = &reaches[reaches.len() - 1];
+            reaches.push(below.chunks(RUN).map(furthest).collect());
+        }
         Self {
             position,
             places,
             levels,
+            reaches,
         }
     }
 
@@ -180,8 +199,12 @@ impl<'a, P: Fn(u32) -> DVec3 + Sync> Tree<'a, P> {
             return;
         }
         let mut has_neighbour = [false; RUN];
-        let around = self.levels[0][number].grown(furthest);
-        self.runs_within(&around, &|_, _| true, |other| {
+        let own = &self.levels[0][number];
+        let reaches_back = |level: usize, other: usize| {
+            let other_box = &self.levels[level][other];
+            other_box.grown(self.reaches[level][other]).meets(own)
+        };
+        self.runs_within(&own.grown(furthest), &reaches_back, |other| {
             let box_of_other = &self.levels[0][other];
             for (k, &place) in run.iter().enumerate() {
                 let here = (self.position)(place);
@@ -198,14 +221,18 @@ impl<'a, P: Fn(u32) -> DVec3 + Sync> Tree<'a, P> {
         found.extend(with_neighbours.map(|(place, _)| place));
     }
 
-    /// Calls `found` with every occupied place within `radius` of a point and its distance.
+    /// Calls `found` with the occupied places within `radius` of a point and their distances, all of those whose own reach
+    /// is that far among them.
     fn visit(&self, occupied: &Occupied, centre: DVec3, radius: f64, mut found: impl FnMut(u32, f64)) {
         let point = Bounds {
             min: centre,
             max: centre,
         };
-        let is_occupied = |level: usize, number: usize| occupied.counts[level][number] > 0;
-        self.runs_within(&point.grown(radius), &is_occupied, |run| {
+        let is_wanted = |level: usize, number: usize| {
+            let far = self.levels[level][number].distance(centre);
+            occupied.counts[level][number] > 0 && far <= self.reaches[level][number]
+        };
+        self.runs_within(&point.grown(radius), &is_wanted, |run| {
             for (number, &place) in (run * RUN..).zip(self.run(run)) {
                 let distance = (self.position)(place).distance(centre);
                 if distance <= radius && occupied.is_occupied[number] {
