@@ -59,7 +59,7 @@ pub use ids::{DrawnVertex, FileVertex, SurfaceVertex};
 pub use model::{Drawn, DrawnSet, LOOSE_BIT, Model, Object, Rounding, SurfaceOfFile, WeldOptions};
 pub use progress::{Cancel, Cancelled, Progress};
 pub use surface::Surface;
-pub use symmetry::{Counterparts, MirrorPlane, image_of, symmetry_plane};
+pub use symmetry::{Counterparts, MirrorPlane, image_of, mirror_planes, symmetry_plane};
 pub use topology::{
     Component, Contact, ContourLine, Crossing, Faces, FanKind, Topology, component_areas, contacts, contours,
 };

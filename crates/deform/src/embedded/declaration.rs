@@ -12,7 +12,7 @@ use crate::handles::Motion;
 use crate::method::{
     BindInput, BoundMethod, ConstraintKind, DeformMethod, Finite, MethodDeclaration, Needs, Solve, Stepped,
 };
-use crate::region::nodes::spread;
+use crate::region::nodes::spread_alike;
 use crate::space::blend::{Affine, Blend, Share};
 use crate::space::shaping::shaping;
 use crate::sparse::factor_error::FactorError;
@@ -88,7 +88,7 @@ pub(super) fn bound(options: &Embedded, input: &BindInput<'_>) -> Result<BoundEm
     let most = (options.nodes as usize).min(moving.len());
     let budget = input.partition.budget.without(bytes_of(most * most, NODE_PAIR));
     let budget = budget.map_err(|limit| BindError::budget(input.partition.solved.len(), limit))?;
-    let nodes = spread(input.problem, &moving, most);
+    let nodes = spread_alike(input.problem, &moving, most);
     input.progress.set(0.2);
     // What is fixed holds the nodes that are about as near to it as to each other.
     let spacing = spacing(&nodes.vertices, positions);

@@ -13,6 +13,7 @@
 //! - Seven nodes move a vertex, not four, and the weights have d² in place of d, so that they have no peak at a node and
 //!   normals are smooth.
 //! - The rigidity weighs 30, not 1, so that nodes turn rather than flatten.
+//! - Where what moves is its own mirror image, so are the nodes, and a symmetric edit bends both sides alike.
 //! - The rigidity counts the angles between A's columns twice, so that it does not depend on the axes of space.
 //! - α_jk is Σ_v s_v w_j w_k over the vertices, s the painted stiffness, over the root of the two nodes' own sums
 //!   without s, and ρ_j the mean of s around the node: neighbours that share more are joined more firmly, and nodes in

@@ -3,6 +3,7 @@
 pub(crate) mod clustered;
 pub(crate) mod constraints;
 pub(crate) mod follow;
+mod images;
 pub(crate) mod nodes;
 mod owners;
 pub(crate) mod partition;

@@ -6,6 +6,7 @@ use std::collections::{BTreeSet, BinaryHeap};
 use glam::DVec3;
 use pliant_mesh::{SurfaceVertex, Topology};
 
+use super::images::Images;
 use crate::Problem;
 use crate::space::samples::{EQUAL, farthest, thinned};
 
@@ -23,11 +24,27 @@ pub(crate) const NO_NODE: u32 = u32::MAX;
 /// If more than this share of the nodes were needed for one in each component, they are spread in space.
 const PIECES: f64 = 0.25;
 
+/// Images that are closer together than so many ways to the nearest node crowd each other.
+const APART: f64 = 1.2;
+
+/// Fewer nodes are not paired: that they lie evenly counts for more then.
+const FEWEST_PAIRED: usize = 200;
+
 /// Sets with more vertices than so many a node are thinned before nodes are spread in space.
 const CANDIDATES: usize = 100;
 
+/// As [`spread`]; where the part is its own mirror image and there are enough of them, so are the nodes.
+pub(crate) fn spread_alike(problem: &Problem, part: &[u32], most: usize) -> Nodes {
+    let images = (most >= FEWEST_PAIRED).then(|| Images::of(&problem.surface.positions, part));
+    spread_with(problem, part, most, images.as_ref())
+}
+
 /// At most so many nodes among the vertices `part`, which are ascending.
 pub(crate) fn spread(problem: &Problem, part: &[u32], most: usize) -> Nodes {
+    spread_with(problem, part, most, None)
+}
+
+fn spread_with(problem: &Problem, part: &[u32], most: usize, images: Option<&Images<'_>>) -> Nodes {
     let (positions, topology) = (&problem.surface.positions, problem.topology);
     let mut search = Search::new(positions, topology, part);
     let pieces: BTreeSet<u32> = part.iter().map(|&v| topology.component(SurfaceVertex(v))).collect();
@@ -55,7 +72,14 @@ pub(crate) fn spread(problem: &Problem, part: &[u32], most: usize) -> Nodes {
         if !is_first && search.distances[next as usize] == 0.0 {
             break;
         }
-        search.add(next);
+        let apart = if is_first { 0.0 } else { APART * far(next) };
+        let is_free = |vertex: u32| search.distances[vertex as usize] > 0.0;
+        let next = images.map_or_else(|| vec![next], |images| images.pair(next, apart, is_free));
+        if search.nodes.vertices.len() + next.len() > most && !is_first {
+            // One of them alone would lean to its side.
+            break;
+        }
+        next.into_iter().for_each(|vertex| search.add(vertex));
     }
     search.nodes
 }

@@ -139,3 +139,34 @@ fn the_surface_does_not_tear_at_handles_and_at_what_is_fixed() {
         }
     }
 }
+
+#[test]
+fn nodes_of_a_shape_that_is_its_own_mirror_image_bend_it_alike_on_both_sides() {
+    let stretched = DAffine3::from_scale(DVec3::new(1.0, 0.8, 4.0));
+    let place = DAffine3::from_rotation_translation(
+        glam::DQuat::from_rotation_y(0.6) * glam::DQuat::from_rotation_z(1.1),
+        DVec3::new(40.0, -7.0, 3.0),
+    );
+    for motion in [DAffine3::IDENTITY, place] {
+        let back = motion.inverse();
+        let height = |p: DVec3| back.transform_point3(p).z;
+        let mut scene = Scene::new(shapes::moved(&shapes::icosphere(4), motion * stretched))
+            .with(Role::Fixed, |p| height(p) < -2.5)
+            .with(Role::Handle(0), |p| height(p) > 2.5);
+        scene.method = Method::from_name("embedded").unwrap();
+        // Across the plane whose normal is the x axis, before the shape was placed.
+        let bend = DAffine3::from_translation(DVec3::Y) * DAffine3::from_rotation_x(0.9);
+        let target = motion * bend * back;
+        let (displacements, _) = settle(&mut scene.bind(), &[target]);
+        let local: Vec<DVec3> = scene.positions().iter().map(|p| back.transform_point3(*p)).collect();
+        let mirror = DVec3::new(-1.0, 1.0, 1.0);
+        for (place, displacement) in local.iter().zip(&displacements) {
+            let image = local.iter().position(|p| p.distance(*place * mirror) < 1e-9).unwrap();
+            let [own, other] = [*displacement, displacements[image]].map(|d| back.transform_vector3(d));
+            assert!(
+                own.distance(other * mirror) < 1e-4 * 8.0,
+                "at {place}: {own} and {other}"
+            );
+        }
+    }
+}

@@ -10,9 +10,9 @@
 //! with several planes keep them all.
 
 use std::cell::OnceCell;
-use std::collections::HashMap;
 
 use glam::DVec3;
+use pliant_mesh::mirror_planes;
 
 /// Diagonals that differ by less than this share of their squares are equal.
 const EQUAL: f64 = 1e-3;
@@ -23,18 +23,8 @@ const ALIKE: f64 = 1e-4;
 /// How many roundings to f32 of a coordinate may be between a vertex and its image.
 const ROUNDINGS: f64 = 16.0;
 
-/// Vertices by which a plane is judged.
-const SAMPLES: usize = 64;
-
-/// Vertices that are furthest from the centre, pairs of which suggest planes, and how many pairs are tried.
-const FURTHEST: usize = 48;
-const PAIRS: usize = 200;
-
-/// A vertex has its image if a vertex is this near to it, as a share of the shape's size.
-const NEAR: f64 = 1e-4;
-
-/// The share of the samples that must have their image.
-const MOST: f64 = 0.5;
+/// Normals whose cosine is below this are square to each other.
+const SQUARE: f64 = 1e-4;
 
 /// How one of two equal diagonals of a shape is chosen.
 pub(crate) struct Diagonals<'a> {
@@ -85,23 +75,17 @@ impl Frame {
     fn of(positions: &[DVec3]) -> Self {
         let finite: Vec<DVec3> = positions.iter().copied().filter(|p| p.is_finite()).collect();
         let centre = finite.iter().sum::<DVec3>() / finite.len().max(1) as f64;
-        let size = finite.iter().map(|p| p.distance(centre)).fold(0.0, f64::max);
-        let places = Places::of(&finite, NEAR * size);
-        let judged: Vec<(f64, (DVec3, DVec3))> = planes(&finite, centre, size)
-            .into_iter()
-            .map(|plane| (places.share_with_image(&finite, plane), plane))
-            .filter(|(share, _)| *share > MOST)
-            .collect();
+        let judged = mirror_planes(&finite);
         let most = judged.iter().map(|(share, _)| *share).fold(0.0, f64::max);
         let best = judged.iter().find(|(share, _)| *share >= most);
-        let (normal, through) = best.map_or((DVec3::X, centre), |(_, plane)| *plane);
+        let (normal, height) = best.map_or((DVec3::X, 0.0), |(_, plane)| (plane.normal(), plane.height(centre)));
         // A second plane, square to the first, is kept as long as the sides of both tell diagonals apart.
-        let square = judged.iter().map(|(_, (other, _))| *other);
-        let second = square.into_iter().find(|other| other.dot(normal).abs() < NEAR);
+        let mut square = judged.iter().map(|(_, other)| other.normal());
+        let second = square.find(|other| other.dot(normal).abs() < SQUARE);
         let second = second.unwrap_or_else(|| normal.any_orthonormal_vector());
         Self {
             axes: [normal, second, normal.cross(second)],
-            centre: centre + normal * (through - centre).dot(normal),
+            centre: centre - normal * height,
         }
     }
 
@@ -119,80 +103,5 @@ impl Frame {
     fn value_of_one_side(seen: DVec3) -> f64 {
         let side = seen.x.abs();
         side * seen.y + 0.754_877_666 * seen.y * seen.z + 0.569_840_291 * seen.z * side
-    }
-}
-
-/// Planes that the shape may be its own image across, each by its unit normal and a point: the most likely first.
-fn planes(positions: &[DVec3], centre: DVec3, size: f64) -> Vec<(DVec3, DVec3)> {
-    let mut planes = Vec::new();
-    for axis in [DVec3::X, DVec3::Z, DVec3::Y] {
-        planes.push((axis, DVec3::ZERO));
-        planes.push((axis, centre));
-    }
-    let mut far: Vec<(f64, DVec3)> = positions.iter().map(|&p| (p.distance(centre), p)).collect();
-    let count = far.len().min(FURTHEST);
-    if count > 0 {
-        far.select_nth_unstable_by(count - 1, |a, b| b.0.total_cmp(&a.0));
-    }
-    let by_place = |a: &(f64, DVec3), b: &(f64, DVec3)| {
-        let [a, b] = [a, b].map(|(distance, p)| [-*distance, p.x, p.y, p.z]);
-        let mut lanes = a.iter().zip(&b).map(|(a, b)| a.total_cmp(b));
-        lanes.find(|order| order.is_ne()).unwrap_or(std::cmp::Ordering::Equal)
-    };
-    far[..count].sort_by(by_place);
-    // A vertex and its image are as far from the centre.
-    let pairs = (0..count).flat_map(|a| (a + 1..count).map(move |b| (a, b)));
-    let alike = pairs.map(|(a, b)| (far[a], far[b]));
-    let alike = alike.filter(|((a, _), (b, _))| (a - b).abs() <= NEAR * size);
-    let normals = alike.filter_map(|((_, a), (_, b))| (a - b).try_normalize());
-    planes.extend(normals.take(PAIRS).map(|normal| (normal, centre)));
-    planes
-}
-
-/// Which cells of a grid hold vertices.
-struct Places {
-    width: f64,
-    cells: HashMap<[i64; 3], Vec<DVec3>>,
-}
-
-impl Places {
-    fn of(positions: &[DVec3], width: f64) -> Self {
-        let mut places = Self {
-            width,
-            cells: HashMap::new(),
-        };
-        if width > 0.0 {
-            for &position in positions {
-                let cell = places.cells.entry(places.cell(position)).or_default();
-                // One tells as much as a million.
-                if cell.len() < 4 {
-                    cell.push(position);
-                }
-            }
-        }
-        places
-    }
-
-    fn cell(&self, position: DVec3) -> [i64; 3] {
-        position.to_array().map(|number| (number / self.width).floor() as i64)
-    }
-
-    fn has_near(&self, position: DVec3) -> bool {
-        let [x, y, z] = self.cell(position);
-        let around = (0..27).map(|k| [x + k % 3 - 1, y + k / 3 % 3 - 1, z + k / 9 - 1]);
-        let mut near = around.filter_map(|cell| self.cells.get(&cell)).flatten();
-        near.any(|other| other.distance(position) <= self.width)
-    }
-
-    /// The share of sampled vertices whose image across a plane is a vertex.
-    fn share_with_image(&self, positions: &[DVec3], (normal, through): (DVec3, DVec3)) -> f64 {
-        if self.cells.is_empty() {
-            return 0.0;
-        }
-        let step = positions.len().div_ceil(SAMPLES).max(1);
-        let samples = positions.iter().step_by(step);
-        let count = samples.len().max(1) as f64;
-        let has_image = |p: &&DVec3| self.has_near(**p - normal * (2.0 * (**p - through).dot(normal)));
-        samples.filter(has_image).count() as f64 / count
     }
 }

@@ -1,9 +1,11 @@
 //! Mirror symmetry: a plane, the plane that a shape has, and which vertices are each other's images across it.
 
 mod counterparts;
+mod of_points;
 mod plane;
 mod search;
 
 pub use counterparts::{Counterparts, image_of};
+pub use of_points::mirror_planes;
 pub use plane::MirrorPlane;
 pub use search::symmetry_plane;
