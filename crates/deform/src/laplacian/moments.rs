@@ -7,6 +7,8 @@ use glam::{DMat3, DQuat, DVec3};
 pub(super) struct Moments {
     /// Σ D eᵀ.
     pub change: DMat3,
+    /// Σ D.
+    pub shift: DVec3,
     /// Σ e eᵀ: xx, xy, xz, yy, yz, zz.
     pub rest: [f64; 6],
 }
@@ -15,6 +17,7 @@ impl Moments {
     /// Of no edges.
     pub const ZERO: Self = Self {
         change: DMat3::ZERO,
+        shift: DVec3::ZERO,
         rest: [0.0; 6],
     };
 
@@ -26,6 +29,7 @@ impl Moments {
         for &other in others {
             let edge = rest[other as usize] - own;
             let change = DVec3::from_array(d[other as usize]) - own_shift;
+            moments.shift += change;
             moments.change += DMat3::from_cols(change * edge.x, change * edge.y, change * edge.z);
             let [xx, xy, xz, yy, yz, zz] = &mut moments.rest;
             *xx += edge.x * edge.x;

@@ -1,10 +1,12 @@
-//! Similarities that are linear in the displacements of a vertex' neighbours [SCL+04; BS08, equation 27].
+//! Similarities that are linear in the displacements of a vertex' neighbours [SCL+04, equation 5; BS08, equation 27].
 //!
-//! T = (1 + s) I + [h]× fits the edges e_j of vertex i to e_j + D_j, D_j = d_j − d_i, best in the least squares for
+//! T = (1 + s) I + [h]× and a translation fit vertex i and its n neighbours best in the least squares. With
+//! the edges e_j, D_j = d_j − d_i and c_j = e_j − Σ e / (n + 1), the edges from the ring's middle, i being one of it,
 //!
-//! s = Σ e_j · D_j / Σ |e_j|²,  h = J⁻¹ Σ e_j × D_j,  J = Σ |e_j|² I − e_j e_jᵀ,
+//! s = Σ c_j · D_j / Σ |c|²,  h = J⁻¹ Σ c_j × D_j,  J = Σ |c|² I − c cᵀ,
 //!
-//! since s e and h × e are orthogonal. Where the edges lie on one line, the turn about it is 0.
+//! since s c and h × c are orthogonal; Σ |c|² and J are over all of the ring. Where it lies on one line, the turn about
+//! it is 0.
 
 use glam::{DMat3, DQuat, DVec3};
 
@@ -16,7 +18,9 @@ const OPEN: f64 = 1e-9;
 /// The fit at one vertex.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Similarity {
-    /// 1 / Σ |e|², or 0.
+    /// Σ e / (n + 1).
+    middle: DVec3,
+    /// 1 / Σ |c|², or 0.
     inverse_square: f64,
     /// J⁻¹.
     inverse_inertia: DMat3,
@@ -33,16 +37,23 @@ impl Similarity {
     /// For the rest edges of a vertex.
     pub fn of(edges: impl Iterator<Item = DVec3>) -> Self {
         let (mut square, mut outer) = (0.0, DMat3::ZERO);
+        let (mut sum, mut count) = (DVec3::ZERO, 1.0);
         for edge in edges {
             square += edge.length_squared();
-            outer += DMat3::from_cols(edge * edge.x, edge * edge.y, edge * edge.z);
+            outer += squared(edge);
+            sum += edge;
+            count += 1.0;
         }
+        let middle = sum / count;
+        square -= middle.dot(sum);
+        outer -= squared(middle) * count;
         // Also where it is not a number, or so small that its inverse is not.
         if square.is_nan() || square < 1e-300 {
             return Self::default();
         }
         let inertia = DMat3::from_diagonal(DVec3::splat(square * (1.0 + OPEN))) - outer;
         Self {
+            middle,
             inverse_square: square.recip(),
             inverse_inertia: inertia.inverse(),
         }
@@ -65,18 +76,24 @@ impl Similarity {
     #[inline(always)]
     pub fn fit(&self, moments: &Moments) -> Fitted {
         Fitted {
-            scale: moments.along() * self.inverse_square,
-            turn: self.inverse_inertia * moments.across(),
+            scale: (moments.along() - self.middle.dot(moments.shift)) * self.inverse_square,
+            turn: self.inverse_inertia * (moments.across() - self.middle.cross(moments.shift)),
         }
     }
 
     /// The matrix that takes D at the edge e to its part of (T − I) v.
     pub fn effect_on(&self, v: DVec3, edge: DVec3) -> DMat3 {
         let cross = |a: DVec3| DMat3::from_cols(a.cross(DVec3::X), a.cross(DVec3::Y), a.cross(DVec3::Z));
+        let edge = edge - self.middle;
         let along = edge * self.inverse_square;
         let scaled = DMat3::from_cols(v * along.x, v * along.y, v * along.z);
         scaled - cross(v) * self.inverse_inertia * cross(edge)
     }
+}
+
+/// v vᵀ.
+fn squared(v: DVec3) -> DMat3 {
+    DMat3::from_cols(v * v.x, v * v.y, v * v.z)
 }
 
 impl Fitted {

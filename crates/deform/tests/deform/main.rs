@@ -19,6 +19,7 @@ mod examples;
 mod frames;
 mod hubs;
 mod laplacian;
+mod laplacian_editing;
 mod large_turns;
 mod lattice;
 mod laws;
