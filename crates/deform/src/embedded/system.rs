@@ -9,13 +9,18 @@ use pliant_mesh::Cancel;
 use super::energy::{DOF, Energy, NodeMap};
 use super::graph::Graph;
 use crate::Budget;
-use crate::budget::filled;
+use crate::budget::{bytes_of, filled};
 use crate::sparse::cholesky::Factor;
 use crate::sparse::factor_error::FactorError;
 use crate::sparse::matrix::ScaledMatrix;
 
 /// What is added to the unit diagonal, one after the other, until there is a factor.
 const SHIFTS: [f64; 3] = [1e-12, 1e-9, 1e-6];
+
+/// Bytes of a pair of nodes in the table that the matrix is made from, and of an entry of the matrix with its constant
+/// part.
+const BLOCK: usize = 160;
+const ENTRY: usize = size_of::<u32>() + 2 * size_of::<f64>();
 
 /// JᵀJ and its factor.
 #[derive(Debug)]
@@ -53,6 +58,10 @@ impl System {
         let below = blocks.len() - energy.count();
         let entries = energy.count() * DOF * (DOF + 1) / 2 + below * DOF * DOF;
         u32::try_from(entries).map_err(|_| FactorError::Memory)?;
+        let budget = budget
+            .without(bytes_of(blocks.len(), BLOCK))
+            .map_err(FactorError::Budget)?;
+        let budget = budget.without(bytes_of(entries, ENTRY)).map_err(FactorError::Budget)?;
         let mut matrix = ScaledMatrix {
             scale: filled(1.0, size)?,
             lower_offsets: vec![0],

@@ -20,7 +20,7 @@ pub(crate) struct Partition<'a> {
     pub triangulation: Triangulation<'a>,
     /// Free vertices that some handle influences, and those of soft handles.
     pub solved: Vec<u32>,
-    /// Vertices that are not fixed, ascending; of a method of space, without the parts that follow.
+    /// Of a method of space the vertices that are neither fixed nor of a part that follows, ascending.
     pub moving: Vec<u32>,
     /// The vertices of each handle.
     pub handles: Vec<Vec<u32>>,
@@ -102,13 +102,10 @@ impl<'a> Partition<'a> {
             Loose::Rest => None,
             how => (!handles.is_empty()).then_some((component, how)),
         };
-        let is_stray = |vertex: usize| {
-            let component = problem.topology.component(SurfaceVertex(vertex as u32));
-            method.needs() == Needs::Points && loose.binary_search(&component).is_ok()
+        let moving = match method.needs() {
+            Needs::Points => moving(problem, &loose),
+            Needs::Surface { .. } => Vec::new(),
         };
-        let moving =
-            (0..problem.roles.len()).filter(|&vertex| problem.roles[vertex] != Role::Fixed && !is_stray(vertex));
-        let moving: Vec<u32> = moving.map(|vertex| vertex as u32).collect();
         warnings.extend(unheeded(problem));
         warnings.extend(triangulation.warning().map(Warning::from));
         Ok(Self {
@@ -228,6 +225,19 @@ fn soft_weights(problem: &Problem) -> Vec<Option<f64>> {
     let weight = |handle: usize| problem.constraints.weight(handle as u16);
     (0..problem.handle_count)
         .map(|handle| weight(handle).filter(|_| heeds_soft && pulls[handle]))
+        .collect()
+}
+
+/// The vertices that are neither fixed nor of these components, ascending.
+fn moving(problem: &Problem, strays: &[u32]) -> Vec<u32> {
+    let is_stray = |vertex: u32| {
+        let component = problem.topology.component(SurfaceVertex(vertex));
+        strays.binary_search(&component).is_ok()
+    };
+    (0..)
+        .zip(problem.roles)
+        .filter(|(vertex, role)| **role != Role::Fixed && !is_stray(*vertex))
+        .map(|(vertex, _)| vertex)
         .collect()
 }
 

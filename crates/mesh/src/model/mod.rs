@@ -95,7 +95,9 @@ impl Model {
     /// ```
     /// use pliant_mesh::{Cancel, LOOSE_BIT, Model, Progress, WeldOptions, shapes};
     ///
-    /// let drawn = shapes::together(&[shapes::icosphere(3), shapes::icosphere(0)]);
+    /// let beside = glam::DAffine3::from_translation(glam::DVec3::X * 3.0);
+    /// let small = shapes::moved(&shapes::icosphere(0), beside);
+    /// let drawn = shapes::together(&[shapes::icosphere(3), small]);
     /// let (progress, cancel) = (Progress::new(), Cancel::new());
     /// let model = Model::weld(drawn, &WeldOptions::default(), &progress, &cancel).unwrap();
     /// // 12 of 642 vertices.
