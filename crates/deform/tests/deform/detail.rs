@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use crate::rig::{Scene, apart, back_substitute, step};
 use glam::{DAffine3, DVec3};
 use pliant_deform::{Bound, Method, OptionValue, Role};
-use pliant_mesh::{Drawn, SurfaceVertex, shapes};
+use pliant_mesh::{Bvh, Cancel, Drawn, Model, Progress, SurfaceVertex, shapes};
 
 /// Every way to put details back.
 const DETAILS: [&str; 3] = ["normal-displacements", "displacement-volumes", "deformation-transfer"];
@@ -300,4 +300,59 @@ fn transferred_gradients_keep_a_tube_whole_whose_base_shrinks_to_a_line() {
         least > 0.3 && most < 3.0,
         "edges are {least} to {most} as long as before"
     );
+}
+
+/// A closed sheet of 4 × 1 and so thick, of so many cells, its lower vertices shifted by `skew` of a cell, fixed at the
+/// left, its right end the handle.
+fn sheet(cells: [usize; 2], thickness: f64, skew: f64, detail: &'static str) -> Scene {
+    let [along, across] = cells;
+    let mut drawn = shapes::bar(along, across, 1);
+    let scale = DVec3::new(4.0 / along as f64, 1.0 / across as f64, thickness);
+    for p in &mut drawn.positions {
+        let is_inner = p.x > 1.0 && p.x < along as f64 - 1.0 && p.y > 0.0 && p.y < across as f64;
+        if p.z == 0.0 && is_inner {
+            p.x += skew;
+        }
+        *p *= scale;
+    }
+    let mut scene = Scene::new(drawn)
+        .with(Role::Fixed, |p| p.x < 0.4)
+        .with(Role::Handle(0), |p| p.x > 3.6);
+    scene.method = method(detail);
+    scene
+}
+
+#[test]
+fn the_sides_of_a_thin_sheet_stay_apart() {
+    // A quarter turn whose end is drawn in, as hands do it.
+    let bend = DAffine3::from_translation(DVec3::new(2.8, 0.0, 1.2))
+        * DAffine3::from_rotation_y(-FRAC_PI_2)
+        * DAffine3::from_translation(-DVec3::X * 4.0);
+    for (cells, thickness, skew) in [
+        ([36, 9], 0.05, 0.0),
+        ([36, 9], 0.005, 0.0),
+        ([36, 9], 0.02, 0.4),
+        ([60, 15], 0.08, 0.3),
+    ] {
+        for detail in DETAILS {
+            let scene = sheet(cells, thickness, skew, detail);
+            let displacements = scene.moved(&[bend]);
+            let shape: Vec<DVec3> = (scene.positions().iter().zip(&displacements))
+                .map(|(p, d)| *p + *d)
+                .collect();
+            let Model { surface, topology, .. } = &scene.model;
+            let crossings = Bvh::build(&shape, &surface.triangles)
+                .new_self_intersections(surface, topology, 1, &Progress::new(), &Cancel::new())
+                .unwrap();
+            assert!(crossings.pairs.is_empty(), "{detail} {thickness}: {crossings:?}");
+            let apart = |[a, b]: [usize; 2]| shape[a].distance(shape[b]) / thickness;
+            let rest = scene.positions();
+            let across = (0..rest.len()).filter(|&v| rest[v].z == 0.0).filter_map(|v| {
+                let is_across = |&w: &usize| rest[w].distance(rest[v] + DVec3::Z * thickness) < 1e-9;
+                Some([v, (0..rest.len()).find(is_across)?])
+            });
+            let most = across.map(apart).fold(0.0, f64::max);
+            assert!(most < 2.0, "{detail} {thickness}: {most}");
+        }
+    }
 }

@@ -14,6 +14,11 @@ impl Bvh {
     /// The first triangle that the ray from `origin` along `direction` (any length) meets, from either side; of
     /// several at one distance the lowest.
     pub fn ray(&self, origin: DVec3, direction: DVec3) -> Option<Hit> {
+        self.ray_within(origin, direction, f64::INFINITY)
+    }
+
+    /// As [`Bvh::ray`], up to the ray's parameter `limit`. It costs the less the shorter that is.
+    pub fn ray_within(&self, origin: DVec3, direction: DVec3, limit: f64) -> Option<Hit> {
         let ray = BoxRay {
             origin: self.space.of_point(origin),
             inverse: (direction * self.space.scale).recip(),
@@ -23,11 +28,12 @@ impl Bvh {
             |span| ray.entry(span),
             |place| {
                 if let Some(hit) = self.meet(place, origin, direction)
+                    && hit.distance <= limit
                     && best.is_none_or(|b| (hit.distance, hit.triangle) < (b.distance, b.triangle))
                 {
                     best = Some(hit);
                 }
-                best.map_or(f64::INFINITY, |hit| hit.distance)
+                best.map_or(limit, |hit| hit.distance)
             },
         );
         best

@@ -2,7 +2,7 @@
 //! the base, and the details are put back on the bent base.
 //!
 //! Parts: `base` fairs and poses the base, `carry` keeps rigid motions rigid, `frames` turns displacements, `volumes`
-//! corrects their heights, `transfer` transfers gradients.
+//! corrects their heights, `transfer` transfers gradients, `sheets` keeps the sides of thin sheets apart.
 //!
 //! The base is a mesh of the surface's connectivity. A region that is long or has protrusions makes parts of it shrink
 //! exponentially, so its bases are kept in f64, and where too little is left for a direction the nearest sound place
@@ -12,6 +12,7 @@ mod base;
 mod carry;
 mod donors;
 pub(crate) mod frames;
+mod sheets;
 mod transfer;
 mod volumes;
 
@@ -19,6 +20,7 @@ use glam::DVec3;
 
 use self::base::{Base, Faired};
 use self::frames::Frames;
+use self::sheets::Sheets;
 use self::transfer::{Transfer, left_by};
 use self::volumes::Volumes;
 use crate::bilaplacian::solver::BilaplacianSolver;
@@ -32,6 +34,7 @@ pub(crate) struct Multiresolution {
     bending: BilaplacianSolver<f64>,
     base: Base,
     reconstruction: Reconstruction,
+    sheets: Option<Sheets>,
     /// The base's points as the last step has bent them, one for each local vertex.
     posed: Vec<DVec3>,
 }
@@ -55,10 +58,10 @@ impl Multiresolution {
         let &BindInput { problem, progress, .. } = input;
         let faired = Faired::of(options, input)?;
         progress.set(0.4);
-        let bending = BilaplacianSolver::bind(options, input)?;
+        let (sheets, bending) = rayon::join(|| Sheets::of(input), || BilaplacianSolver::bind(options, input));
+        let bending = bending?;
         let base = Base::of(&faired, &bending, input);
         input.cancel.check()?;
-        let (triangles, topology) = (&problem.surface.triangles, problem.topology);
         let reconstruction = match options.detail {
             Detail::DeformationTransfer => {
                 let budget = left_by(bending.factor_len(), input)?;
@@ -68,11 +71,11 @@ impl Multiresolution {
                 })
             }
             Detail::DisplacementVolumes => {
-                let iterations = options.volume_iterations;
-                Reconstruction::Volumes(Box::new(Volumes::of(&base, iterations, triangles, topology)))
+                let volumes = Volumes::of(&base, sheets.as_ref(), options.volume_iterations, problem);
+                Reconstruction::Volumes(Box::new(volumes))
             }
             Detail::None | Detail::NormalDisplacements => {
-                Reconstruction::Normals(Frames::of(&base, triangles, topology))
+                Reconstruction::Normals(Frames::of(&base, &problem.surface.triangles, problem.topology))
             }
         };
         input.cancel.check()?;
@@ -80,6 +83,7 @@ impl Multiresolution {
         Ok(Self {
             bending,
             posed: base.patch.rest.clone(),
+            sheets,
             base,
             reconstruction,
         })
@@ -107,7 +111,11 @@ impl Multiresolution {
             }
         }
         self.posed = posed;
-        reconstructed
+        reconstructed?;
+        if let Some(sheets) = &mut self.sheets {
+            sheets.restore(displacements);
+        }
+        Ok(())
     }
 }
 

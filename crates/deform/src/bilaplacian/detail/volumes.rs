@@ -5,17 +5,20 @@
 //! of the ring's area vectors by 1 + Σ lack / (o · A). So details keep their direction, and no normal of the base is
 //! needed, which it lacks where it shrinks to a line. As neighbours scale by about as much, two corrections leave some
 //! percent of what was lacking, and further ones only sharpen what differs from vertex to vertex; iteration ends there.
+//! Over a thin sheet, whose base is hardly more than a line, prisms tell nothing, and little or nothing is corrected.
 //!
 //! Over a triangle of corners b the displacements o vary linearly, and the triangle with corners b + s o has the area
 //! vector A(s). So with m the mean of o the volume is m · ∫ A ds.
 
 use glam::{DMat3, DVec3};
-use pliant_mesh::{SurfaceVertex, Topology};
+use pliant_mesh::SurfaceVertex;
 use rayon::prelude::*;
 
 use super::base::Base;
 use super::donors::NONE;
 use super::frames::Frames;
+use super::sheets::Sheets;
+use crate::Problem;
 use crate::operators::CHUNK;
 
 /// The prisms over the base, and the frames that the iteration begins with.
@@ -32,6 +35,8 @@ pub(crate) struct Volumes {
     around: Vec<u32>,
     /// Of each row the least o · A, squared, that counts in full: a ring of less is folded or hardly displaced.
     least_squares: Vec<f64>,
+    /// Of each row how much of a correction counts, as [`Sheets::bodies`] has it.
+    bodies: Vec<f64>,
     room: Room,
 }
 
@@ -79,7 +84,8 @@ const SMALL: f64 = 0.05;
 
 impl Volumes {
     /// Of the base's faces.
-    pub fn of(base: &Base, iterations: u32, triangles: &[[SurfaceVertex; 3]], topology: &Topology) -> Self {
+    pub fn of(base: &Base, sheets: Option<&Sheets>, iterations: u32, problem: &Problem<'_>) -> Self {
+        let (triangles, topology) = (&problem.surface.triangles, problem.topology);
         let count = base.patch.rows.len();
         let mut row_of = vec![count as u32; base.patch.vertices.len()];
         for (row, &local) in base
@@ -148,6 +154,7 @@ impl Volumes {
                 .map(least_square)
                 .collect(),
             volumes: measured.iter().map(|measured| measured.volume).collect(),
+            bodies: sheets.map_or_else(|| vec![1.0; count], |sheets| sheets.bodies(base)),
             frames,
             iterations,
             prisms,
@@ -218,7 +225,7 @@ impl Volumes {
             let gain = turned.dot(area);
             let square = gain * gain + self.least_squares[row];
             let growth = if square > 0.0 { volume * gain / square } else { 0.0 };
-            *rough = (growths[row] + growth).clamp(-MOST, MOST);
+            *rough = self.bodies[row] * (growths[row] + growth).clamp(-MOST, MOST);
         });
     }
 
