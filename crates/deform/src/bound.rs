@@ -173,10 +173,10 @@ impl Bound {
             HandleFit::Exact => HandleResidual::default(),
             HandleFit::LeastSquares => HandleResidual::new(problem, &handles, &partition.soft),
         };
-        let turn_limit = problem.method.implementation().follows_turns_to();
-        let turn_limit = turn_limit.map(|most_degrees| TurnLimit {
+        let turn_limit = problem.method.implementation().follows_turns();
+        let turn_limit = turn_limit.map(|followed| TurnLimit {
             method: declaration.name,
-            most_degrees,
+            followed,
             is_held: partition.held.contains(&true),
         });
         let mut warnings = partition.warnings;

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::{Arap, ArapSolver};
+use crate::handles::turns::Followed;
 use crate::handles::{Motion, clear};
 use crate::method::{
     BindInput, BoundMethod, ConstraintKind, DeformMethod, Finite, MethodDeclaration, Needs, Solve, Stepped,
@@ -26,6 +27,11 @@ pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
 impl DeformMethod for Arap {
     fn declaration(&self) -> &'static MethodDeclaration {
         &DECLARATION
+    }
+
+    /// A neck is so short that stretching it costs less than the twist around it.
+    fn follows_turns(&self) -> Option<Followed> {
+        Some(Followed::by_necks(140.0))
     }
 
     fn needs(&self) -> Needs {

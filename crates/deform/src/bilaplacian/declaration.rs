@@ -7,6 +7,7 @@ use glam::DVec3;
 use crate::bilaplacian::detail::Multiresolution;
 use crate::bilaplacian::solver::BilaplacianSolver;
 use crate::handles::Motion;
+use crate::handles::turns::Followed;
 use crate::method::{
     BindInput, BoundMethod, ConstraintKind, DeformMethod, Finite, MethodDeclaration, Needs, OptionRefused, Solve,
     Stepped,
@@ -35,13 +36,17 @@ impl DeformMethod for Bilaplacian {
         &DECLARATION
     }
 
+    fn has_continuity(&self) -> bool {
+        self.operator_power() > 1
+    }
+
     fn counts_in_sizes(&self) -> Option<(&'static str, i32)> {
         (self.stretching > 0.0).then_some(("stretching", -2))
     }
 
     /// Between two turns it is their mean, which is narrower by the cosine of half the angle.
-    fn follows_turns_to(&self) -> Option<f64> {
-        Some(90.0)
+    fn follows_turns(&self) -> Option<Followed> {
+        Some(Followed::by_limbs(90.0))
     }
 
     fn needs(&self) -> Needs {

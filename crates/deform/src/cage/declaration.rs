@@ -18,6 +18,7 @@ use super::stored_field::stored_bytes;
 use super::{Cage, CageCoordinates, brought};
 use crate::BindError;
 use crate::budget::{Limit, bytes_of};
+use crate::handles::turns::Followed;
 use crate::method::{
     Attachment, AttachmentDeclaration, AttachmentKind, AttachmentRefused, BindInput, BoundMethod, ConstraintKind,
     DeformMethod, HandleFit, MethodDeclaration, Needs, Solve,
@@ -62,8 +63,8 @@ impl DeformMethod for Cage {
     }
 
     /// Between two turns it is their mean, which is narrower by the cosine of half the angle.
-    fn follows_turns_to(&self) -> Option<f64> {
-        Some(90.0)
+    fn follows_turns(&self) -> Option<Followed> {
+        Some(Followed::by_limbs(90.0))
     }
 
     fn needs(&self) -> Needs {

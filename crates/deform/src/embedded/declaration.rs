@@ -9,6 +9,7 @@ use super::solver::Solver;
 use super::system::System;
 use crate::budget::bytes_of;
 use crate::handles::Motion;
+use crate::handles::turns::Followed;
 use crate::method::{
     BindInput, BoundMethod, ConstraintKind, DeformMethod, Finite, MethodDeclaration, Needs, Solve, Stepped,
 };
@@ -53,8 +54,8 @@ impl DeformMethod for Embedded {
     }
 
     /// Nodes may stretch, and near half a turn that costs less than turning.
-    fn follows_turns_to(&self) -> Option<f64> {
-        Some(160.0)
+    fn follows_turns(&self) -> Option<Followed> {
+        Some(Followed::by_necks(120.0))
     }
 
     fn needs(&self) -> Needs {

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::{Frames, FramesSolver};
+use crate::handles::turns::Followed;
 use crate::handles::{Motion, only_moved};
 use crate::method::{
     BindInput, BoundMethod, ConstraintKind, DeformMethod, Finite, MethodDeclaration, Needs, Solve, Stepped,
@@ -28,6 +29,11 @@ const LARGE_RAD: f64 = 2.97;
 impl DeformMethod for Frames {
     fn declaration(&self) -> &'static MethodDeclaration {
         &DECLARATION
+    }
+
+    /// Frames are joined edge by edge, and between two that are half a turn apart their mean has no length.
+    fn follows_turns(&self) -> Option<Followed> {
+        Some(Followed::by_limbs(140.0))
     }
 
     fn needs(&self) -> Needs {
@@ -101,7 +107,7 @@ impl BoundMethod for FramesSolver {
                 Warning::of_handle(handle, |handle| {
                     format!(
                         "{handle} turns by {degrees:.0}°, and frames knows no turn beyond half a turn: take poisson, \
-                         which follows a drag beyond that, or arap"
+                         which follows a drag beyond that"
                     )
                 })
             })

@@ -6,12 +6,46 @@ use super::polar::Polar;
 use super::{Handle, Motion};
 use crate::Warning;
 
+/// The largest turn between handles, or between a handle and what is fixed, that leaves a limb at least about 0.7 of its
+/// radius everywhere, by `tests/large_turns.rs`.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(crate) struct Followed {
+    most_degrees: f64,
+    /// What it does beyond.
+    beyond: &'static str,
+}
+
+impl Followed {
+    /// Beyond, every limb narrows.
+    pub fn by_limbs(most_degrees: f64) -> Self {
+        Self {
+            most_degrees,
+            beyond: "narrows the limb",
+        }
+    }
+
+    /// Beyond, a limb narrows only where it is thinner than elsewhere.
+    pub fn by_necks(most_degrees: f64) -> Self {
+        Self {
+            most_degrees,
+            beyond: "narrows the limb where it is thin",
+        }
+    }
+
+    /// Beyond, all of the turn is in one place.
+    pub fn by_seams(most_degrees: f64) -> Self {
+        Self {
+            most_degrees,
+            beyond: "twists the limb in one place",
+        }
+    }
+}
+
 /// What a method follows, and what it is called.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct TurnLimit {
     pub method: &'static str,
-    /// The largest angle between the turns of two handles, or of a handle and what is fixed.
-    pub most_degrees: f64,
+    pub followed: Followed,
     /// Whether something is fixed.
     pub is_held: bool,
 }
@@ -19,9 +53,13 @@ pub(crate) struct TurnLimit {
 /// The warning waits for this much more than the limit, so that a turn by the limit itself is none.
 const ROOM_DEGREES: f64 = 5.0;
 
+/// Up to here ARAP follows as well.
+const OF_ARAP_DEGREES: f64 = 140.0;
+
 impl TurnLimit {
     /// A sentence where two turns are further apart than the method follows.
     pub fn warning(&self, handles: &[Handle], motions: &[Motion]) -> Option<Warning> {
+        let Followed { most_degrees, beyond } = self.followed;
         let turn = |(handle, motion): (&Handle, &Motion)| Polar::of(&handle.linear(motion)).turn_rad;
         let turns: Vec<DQuat> = handles
             .iter()
@@ -41,12 +79,17 @@ impl TurnLimit {
             }
         }
         let (degrees, number) = worst;
-        (degrees > self.most_degrees + ROOM_DEGREES).then(|| {
+        let others = if degrees > OF_ARAP_DEGREES {
+            "poisson"
+        } else {
+            "arap or poisson"
+        };
+        (degrees > most_degrees + ROOM_DEGREES).then(|| {
             Warning::of_handle(number, |handle| {
                 format!(
-                    "{handle} turns by {degrees:.0}° against what it bends, which {} narrows from about {:.0}° on: take \
-                     poisson, frames or arap, or turn it in parts",
-                    self.method, self.most_degrees
+                    "{handle} turns by {degrees:.0}° against what it bends. From about {most_degrees:.0}° on {} \
+                     {beyond}: take {others}, or turn it in parts",
+                    self.method
                 )
             })
         })

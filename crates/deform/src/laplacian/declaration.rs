@@ -39,6 +39,10 @@ impl DeformMethod for LaplacianEditing {
         }
     }
 
+    fn has_continuity(&self) -> bool {
+        true
+    }
+
     fn solve(&self) -> Solve {
         Solve::Direct
     }
@@ -121,7 +125,7 @@ impl BoundMethod for LaplacianSolver {
                 vec![Warning::of_handle(handle, |handle| {
                     format!(
                         "{handle} turns by {degrees:.0}°, and laplacian follows about 90° a step: set `steps` to \
-                         {steps:.0}, or take poisson, frames or arap"
+                         {steps:.0}, or take poisson or arap"
                     )
                 })]
             }

@@ -6,6 +6,7 @@ use super::fit::{fit_bytes, fitted, soft_unit};
 use super::grid::Grid;
 use super::{Lattice, brought};
 use crate::handles::Motion;
+use crate::handles::turns::Followed;
 use crate::method::{
     Attachment, AttachmentDeclaration, AttachmentKind, AttachmentRefused, BindInput, BoundMethod, ConstraintKind,
     ControlLattice, DeformMethod, Finite, HandleFit, MethodDeclaration, Needs, Solve, Stepped,
@@ -83,8 +84,8 @@ impl DeformMethod for Lattice {
     }
 
     /// Between two turns it is their mean, which is narrower by the cosine of half the angle.
-    fn follows_turns_to(&self) -> Option<f64> {
-        Some(90.0)
+    fn follows_turns(&self) -> Option<Followed> {
+        Some(Followed::by_limbs(90.0))
     }
 
     fn needs(&self) -> Needs {

@@ -70,6 +70,12 @@ impl Method {
         self.declaration().name
     }
 
+    /// Whether it joins constrained vertices as smoothly as [`crate::Constraints::continuity`] says; other methods have no
+    /// choice, and neither has the membrane.
+    pub fn has_continuity(&self) -> bool {
+        self.0.has_continuity()
+    }
+
     /// As [`DeformMethod::counts_in_sizes`].
     pub(crate) fn counts_in_sizes(&self) -> Option<(&'static str, i32)> {
         self.0.counts_in_sizes()

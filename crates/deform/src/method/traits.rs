@@ -9,6 +9,7 @@ use pliant_mesh::{Cancel, Progress};
 use super::{
     Attachment, AttachmentRefused, ControlLattice, MethodDeclaration, Needs, OptionRefused, OptionValue, Solve,
 };
+use crate::handles::turns::Followed;
 use crate::handles::{Handle, Motion};
 use crate::operators::triangulation::Triangulation;
 use crate::region::partition::Partition;
@@ -74,14 +75,19 @@ pub(crate) trait DeformMethod: Options {
         HandleFit::Exact
     }
 
+    /// Whether [`crate::Constraints::continuity`] changes what it does.
+    fn has_continuity(&self) -> bool {
+        false
+    }
+
     /// The option that counts in sizes of what bends ([`crate::Problem`]) as it is set, and the power of the size in it.
     fn counts_in_sizes(&self) -> Option<(&'static str, i32)> {
         None
     }
 
-    /// The largest turn between handles, or between a handle and what is fixed, that it bends a limb by without narrowing
-    /// it, in degrees; `None` where there is no such limit, or the method has a sentence of its own.
-    fn follows_turns_to(&self) -> Option<f64> {
+    /// The turns that it bends a limb by without narrowing it; `None` where it follows half a turn, or has a sentence of
+    /// its own.
+    fn follows_turns(&self) -> Option<Followed> {
         None
     }
 

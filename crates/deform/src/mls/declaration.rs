@@ -6,6 +6,7 @@ use super::moments::Entry;
 use super::points::Points;
 use super::{Mls, MlsTransforms};
 use crate::BindError;
+use crate::handles::turns::Followed;
 use crate::method::{BindInput, BoundMethod, ConstraintKind, DeformMethod, MethodDeclaration, Needs, Solve};
 use crate::space::field::FIELD_ROW;
 
@@ -28,8 +29,8 @@ impl DeformMethod for Mls {
     }
 
     /// Where several handles count alike, no rotation fits all of them.
-    fn follows_turns_to(&self) -> Option<f64> {
-        Some(90.0)
+    fn follows_turns(&self) -> Option<Followed> {
+        Some(Followed::by_seams(90.0))
     }
 
     fn needs(&self) -> Needs {

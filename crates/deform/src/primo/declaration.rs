@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::{Primo, PrimoSolver};
+use crate::handles::turns::Followed;
 use crate::handles::{Motion, clear};
 use crate::method::{
     BindInput, BoundMethod, ConstraintKind, DeformMethod, Finite, MethodDeclaration, Needs, Solve, Stepped,
@@ -28,6 +29,11 @@ impl DeformMethod for Primo {
 
     fn counts_in_sizes(&self) -> Option<(&'static str, i32)> {
         Some(("thickness", 1))
+    }
+
+    /// As ARAP does, where the surface twists most it gives way.
+    fn follows_turns(&self) -> Option<Followed> {
+        Some(Followed::by_necks(140.0))
     }
 
     fn needs(&self) -> Needs {

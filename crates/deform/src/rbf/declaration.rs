@@ -8,6 +8,7 @@ use super::constraints::Constraints;
 use super::kernel::{Sum, Weights};
 use crate::BindError;
 use crate::budget::bytes_of;
+use crate::handles::turns::Followed;
 use crate::method::{BindInput, BoundMethod, DeformMethod, MethodDeclaration, Needs, Solve};
 use crate::space::field::{Coefficients, FIELD_ROW, SpaceMap};
 use crate::space::linear::BoundLinear;
@@ -56,8 +57,8 @@ impl DeformMethod for Rbf {
     }
 
     /// Between two turns it is their mean, which is narrower by the cosine of half the angle.
-    fn follows_turns_to(&self) -> Option<f64> {
-        Some(90.0)
+    fn follows_turns(&self) -> Option<Followed> {
+        Some(Followed::by_limbs(90.0))
     }
 
     fn needs(&self) -> Needs {

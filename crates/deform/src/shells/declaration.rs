@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::{Descent, Shells, ShellsSolver};
+use crate::handles::turns::Followed;
 use crate::handles::{Motion, clear};
 use crate::method::{
     AttachmentDeclaration, AttachmentKind, BindInput, BoundMethod, ConstraintKind, DeformMethod, Finite,
@@ -42,6 +43,11 @@ impl DeformMethod for Shells {
 
     fn counts_in_sizes(&self) -> Option<(&'static str, i32)> {
         Some(("bending", 2))
+    }
+
+    /// As ARAP does, where the surface twists most it gives way.
+    fn follows_turns(&self) -> Option<Followed> {
+        Some(Followed::by_necks(150.0))
     }
 
     fn needs(&self) -> Needs {

@@ -8,6 +8,7 @@ use super::octree::{CELL, Octree};
 use super::weights::weigh;
 use crate::budget::bytes_of;
 use crate::handles::Motion;
+use crate::handles::turns::Followed;
 use crate::method::{
     BindInput, BoundMethod, ConstraintKind, DeformMethod, Finite, MethodDeclaration, Needs, Solve, Stepped,
 };
@@ -47,6 +48,11 @@ pub(super) struct BoundCells {
 impl DeformMethod for SpacePrimo {
     fn declaration(&self) -> &'static MethodDeclaration {
         &DECLARATION
+    }
+
+    /// Where the cells twist most they give way.
+    fn follows_turns(&self) -> Option<Followed> {
+        Some(Followed::by_necks(160.0))
     }
 
     fn needs(&self) -> Needs {

@@ -6,6 +6,7 @@ use glam::DVec3;
 
 use super::{Wrinkled, Wrinkles};
 use crate::bilaplacian::solver::BilaplacianSolver;
+use crate::handles::turns::Followed;
 use crate::handles::{Motion, clear};
 use crate::method::{
     Attachment, AttachmentDeclaration, AttachmentKind, BindInput, BoundMethod, DeformMethod, Finite, MethodDeclaration,
@@ -40,9 +41,13 @@ impl DeformMethod for Wrinkles {
         &DECLARATION
     }
 
+    fn has_continuity(&self) -> bool {
+        self.bending().has_continuity()
+    }
+
     /// Between two turns it is their mean, which is narrower by the cosine of half the angle.
-    fn follows_turns_to(&self) -> Option<f64> {
-        Some(90.0)
+    fn follows_turns(&self) -> Option<Followed> {
+        Some(Followed::by_limbs(90.0))
     }
 
     fn needs(&self) -> Needs {

@@ -1,11 +1,11 @@
 //! The continuity with which the bi-Laplacian joins constrained vertices, boundary by boundary.
 
 use glam::DVec3;
-use pliant_deform::{BilaplacianOrder, BindError};
+use pliant_deform::{BilaplacianOrder, BindError, METHODS, Method, OptionValue, Role};
 use pliant_mesh::shapes;
 
 use crate::bilaplacian::of_order;
-use crate::rig::{Scene, apart, back_substitute, step, turned};
+use crate::rig::{Scene, apart, back_substitute, settle, step, turned};
 use crate::strip::{heights, largest_error};
 
 /// Heights along a unit strip that joins the fixed end with the continuity `near` and the lifted one with `far`, from
@@ -155,5 +155,25 @@ fn a_continuity_out_of_range_is_refused() {
         scene.continuity = vec![1.0; scene.roles.len()];
         scene.continuity[3] = value;
         assert!(matches!(scene.try_bind(), Err(BindError::Continuity { vertex: 3, .. })));
+    }
+}
+
+#[test]
+fn continuity_changes_what_the_methods_do_that_have_it_and_nothing_else() {
+    let bent = |method: &Method, continuity: f64| {
+        let mut scene = Scene::new(shapes::tube(8, 14, 5.0))
+            .with(Role::Fixed, |p| p.z < 0.5)
+            .with(Role::Handle(0), |p| p.z > 4.5);
+        scene.method = method.clone();
+        scene.continuity = vec![continuity; scene.positions().len()];
+        settle(&mut scene.bind(), &[turned(DVec3::ZERO, 0.7, DVec3::Y)]).0
+    };
+    let membrane = Method::from_name("bilaplacian").unwrap();
+    let membrane = membrane.with([("order", OptionValue::Whole(1))]).unwrap();
+    let every = METHODS.iter().map(|method| (method.default)());
+    for method in every.chain([membrane]) {
+        let difference = apart(&bent(&method, 0.0), &bent(&method, 2.0));
+        let is_changed = difference > 1e-3;
+        assert_eq!(is_changed, method.has_continuity(), "{} {difference}", method.name());
     }
 }

@@ -61,7 +61,7 @@ fn row(ui: &mut egui::Ui, handle: &Handle, is_selected: bool, commands: &mut Out
         name(ui, handle, is_selected, commands);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             ui.spacing_mut().item_spacing.x = 2.0;
-            let hover = "Locked: it can be neither moved nor painted nor deleted.";
+            let hover = "Locked: it can't be moved, painted or deleted.";
             if toggle(ui, Icon::Lock, handle.locked, &format!("Lock {}", handle.name), hover) {
                 commands.push(Command::ToggleHandleLocked(handle.id));
             }
@@ -126,7 +126,7 @@ fn name(ui: &mut egui::Ui, handle: &Handle, is_selected: bool, commands: &mut Ou
     }
     let label = ui
         .selectable_label(is_selected, &handle.name)
-        .on_hover_text("Click to select, with Ctrl along with others; double-click to rename.");
+        .on_hover_text("Click to select, Ctrl-click to select several, double-click to rename.");
     if label.double_clicked() {
         ui.data_mut(|data| data.insert_temp(editing, (handle.id, handle.name.clone())));
     } else if label.clicked() {
@@ -220,7 +220,8 @@ fn pivot(ui: &mut egui::Ui, handle: &Handle, commands: &mut Outbox) {
         PivotPlace::Border => "border",
         PivotPlace::Picked => "picked",
     };
-    let label = row_label(ui, "Pivot").on_hover_text("The point that the handle turns about. Moving it moves nothing.");
+    let label = row_label(ui, "Pivot")
+        .on_hover_text("The point about which the handle turns. Moving it does not move the surface.");
     ui.horizontal(|ui| {
         let list = ComboBox::from_id_salt("pivot")
             .selected_text(name(handle.pivot_place))
@@ -258,7 +259,7 @@ fn reach(ui: &mut egui::Ui, handle: &Handle, commands: &mut Outbox) {
         Reach::Length(length) => (length, "", f64::MAX, Reach::Length),
     };
     let speed = (0.02 * value).max(1e-4);
-    let hover = "How far along the surface this handle takes the surface along.";
+    let hover = "How far the surface follows this handle, measured along the surface.";
     let field = number_field(ui, &mut value, |ui, value| {
         let field = DragValue::new(value).range(0.0..=most).speed(speed);
         ui.add(field.max_decimals(3).suffix(suffix).update_while_editing(false))
@@ -271,7 +272,7 @@ fn reach(ui: &mut egui::Ui, handle: &Handle, commands: &mut Outbox) {
 /// How smoothly the surface goes over into the handle, where the method has a choice.
 fn joint(ui: &mut egui::Ui, editor: &Editor, handle: &Handle, commands: &mut Outbox) {
     let label = row_label(ui, "Border");
-    let has_choice = editor.document().method().name() == "bilaplacian";
+    let has_choice = editor.document().method().has_continuity();
     let mut value = handle.continuity.unwrap_or(*CONTINUITY_RANGE.end());
     let word = match value {
         ..0.5 => "hinge",
@@ -283,7 +284,7 @@ fn joint(ui: &mut egui::Ui, editor: &Editor, handle: &Handle, commands: &mut Out
             let hover = if has_choice {
                 "How smoothly the surface joins this handle: 0 folds like a hinge, 1 keeps its tangents, 2 its curvature."
             } else {
-                "Only the bi-Laplacian has a choice of how smoothly the surface joins a handle."
+                "This method always joins a handle in the same way: the thin plate (`bilaplacian`), `laplacian` and `wrinkles` let you choose."
             };
             let field = number_field(ui, &mut value, |ui, value| {
                 let field = DragValue::new(value).range(CONTINUITY_RANGE).speed(0.02);
