@@ -65,7 +65,7 @@ fn hint(workspace: &Workspace, settings: &ToolSettings) -> String {
         match settings.mode {
             ToolMode::PaintHandle => "Paint what you want to move",
             ToolMode::PaintFree => "Paint what may bend, then a handle (1)",
-            ToolMode::PaintFixed => "Paint what is held still, then a handle (1)",
+            ToolMode::PaintFixed => "Paint the part that is held still, then a handle (1)",
             ToolMode::Pose => {
                 "Point at a limb and drag it: it turns about its joint, with Ctrl it twists, with Shift it grows"
             }

@@ -7,15 +7,9 @@ use crate::jobs::JobKind;
 use crate::workspace::{apply_shape, clear_regions, reset_shape, set_loose, set_loose_part, set_method, set_strength};
 use pliant_deform::{Loose, Method};
 
-/// Takes back the last step.
+/// Undoes the last step.
 pub(super) const UNDO: Entry<()> = Entry {
-    listed: &[item(
-        (),
-        "Undo",
-        "Takes back the last step.",
-        "back revert",
-        &[ctrl('z')],
-    )],
+    listed: &[item((), "Undo", "Undoes the last step.", "back revert", &[ctrl('z')])],
     scope: Scope::History,
     unavailable: |state, ()| {
         let undo = state.workspace.history.undo_name();
@@ -29,7 +23,7 @@ pub(super) const REDO: Entry<()> = Entry {
     listed: &[item(
         (),
         "Redo",
-        "Does the step that was taken back again.",
+        "Redoes the step that was undone.",
         "again forth",
         &[Shortcut::with(Modifiers::CTRL_SHIFT, Key::Character('z')), ctrl('y')],
     )],
@@ -74,7 +68,7 @@ pub(super) const RESET_SHAPE: Entry<()> = Entry {
     listed: &[item(
         (),
         "Reset shape",
-        "Takes the surface back to the file's shape.",
+        "Resets the surface to the file's shape.",
         "original revert",
         &[],
     )],
@@ -93,7 +87,7 @@ pub(super) const SET_STRENGTH: Entry<f64> = Entry {
         item(
             1.0,
             "Full strength",
-            "Shows all of what handles, control points and examples were moved by.",
+            "Shows the whole edit.",
             "amount intensity blend 100%",
             &[],
         ),
@@ -107,7 +101,7 @@ pub(super) const SET_STRENGTH: Entry<f64> = Entry {
         item(
             0.0,
             "No strength",
-            "Shows nothing of the edit and keeps it: the strength in the panel brings it back.",
+            "Shows the shape without the edit, which is kept: the strength in the panel brings it back.",
             "amount intensity blend off 0%",
             &[],
         ),
@@ -127,7 +121,7 @@ pub(super) const CLEAR_REGIONS: Entry<()> = Entry {
     listed: &[item(
         (),
         "Clear regions",
-        "Removes all handles and regions. What is bent stays bent: Reset shape takes it back to the file's shape.",
+        "Removes all handles and regions. The shape stays bent: Reset shape brings the file's shape back.",
         "remove delete all handles",
         &[],
     )],
@@ -165,7 +159,7 @@ pub(super) const COMPARE_METHODS: Entry<()> = Entry {
     listed: &[item(
         (),
         "Compare methods",
-        "Shows small views of what every method makes of the present edit; a click takes one.",
+        "Shows a small view of the edit by every method. Click one to use it.",
         "alternatives grid side by side arap poisson laplacian",
         &[],
     )],
@@ -187,7 +181,7 @@ pub(super) const COMPARE_METHODS: Entry<()> = Entry {
 
 /// Stops the jobs that run; what needs them starts them again.
 pub(super) const CANCEL_JOBS: Entry<()> = Entry {
-    listed: &[item((), "Stop", "Stops what is being computed.", "cancel abort", &[])],
+    listed: &[item((), "Stop", "Stops the computation.", "cancel abort", &[])],
     scope: Scope::View,
     unavailable: |state, ()| {
         let mut running = state.workspace.jobs.running().into_iter();

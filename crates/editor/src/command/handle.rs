@@ -16,7 +16,7 @@ pub(super) const WIDEN: Entry<()> = Entry {
     listed: &[item(
         (),
         "Widen reach",
-        "Follows the pointer: how far the surface comes along with the selected handle.",
+        "Sets by the pointer how far the surface follows the selected handle.",
         "region of influence roi falloff radius distance",
         &[character('e')],
     )],
@@ -48,21 +48,21 @@ pub(super) const MAKE_TWIN: Entry<usize> = Entry {
         item(
             0,
             "Twin across x",
-            "Makes the handle's mirror image a handle that does the same: drag left, right follows.",
+            "Makes a mirrored handle on the other side that follows: drag left, and right follows.",
             "mirror symmetry",
             &[shift('m')],
         ),
         item(
             1,
             "Twin across y",
-            "Makes the handle's mirror image, above and below, a handle that does the same.",
+            "Makes a mirrored handle above or below that follows.",
             "mirror symmetry",
             &[],
         ),
         item(
             2,
             "Twin across z",
-            "Makes the handle's mirror image, before and behind, a handle that does the same.",
+            "Makes a mirrored handle in front or behind that follows.",
             "mirror symmetry",
             &[],
         ),
@@ -82,12 +82,12 @@ pub(super) const MAKE_TWIN: Entry<usize> = Entry {
     }),
 };
 
-/// Lets the selected handle and its twin go their own ways.
+/// Lets the selected handle and its mirrored twin move separately again.
 pub(super) const UNTWIN: Entry<()> = Entry {
     listed: &[item(
         (),
         "Part twins",
-        "Lets the selected handle and its twin go their own ways.",
+        "Lets the selected handle and its mirrored twin move separately again.",
         "unlink mirror symmetry",
         &[],
     )],
@@ -105,7 +105,7 @@ pub(super) const RESET_REGION: Entry<()> = Entry {
     listed: &[item(
         (),
         "Reset region",
-        "Takes the selected handle and its region back to the file's shape, and nothing else.",
+        "Resets the selected handle and its region to the file's shape, and nothing else.",
         "original revert",
         &[],
     )],
@@ -114,12 +114,12 @@ pub(super) const RESET_REGION: Entry<()> = Entry {
     action: Action::Do(|context, ()| reset_region(context.workspace)),
 };
 
-/// The next stroke of the handle brush makes a handle of its own.
+/// The next stroke of the handle brush makes a new handle.
 pub(super) const NEW_HANDLE: Entry<()> = Entry {
     listed: &[item(
         (),
         "New handle",
-        "The next stroke of the handle brush makes a handle of its own.",
+        "The next stroke of the handle brush makes a new handle.",
         "add create",
         &[shift('n')],
     )],
@@ -217,7 +217,7 @@ pub(super) const PIN: Entry<()> = Entry {
     listed: &[item(
         (),
         "Pin or unpin",
-        "Has the selected handle stay where it is, or makes a pin a handle that can be moved.",
+        "Pins the selected handle where it is, or turns a pin into a handle again.",
         "hold stay here keep fix unpin",
         &[],
     )],

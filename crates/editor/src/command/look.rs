@@ -92,7 +92,7 @@ pub(super) const SET_SHADING: Entry<Shading> = Entry {
         item(
             Shading::Stiffness,
             "Stiffness",
-            "Colours the surface by how stiff it was painted.",
+            "Colours the surface by its painted stiffness.",
             "",
             &[],
         ),
@@ -162,7 +162,7 @@ pub(super) const TOGGLE_BASE: Entry<()> = Entry {
     listed: &[item(
         (),
         "Smooth base",
-        "Shows the smooth base that is bent in place of the surface, as the handles bend it, without the details.",
+        "Shows the smooth base without the details, as the handles bend it.",
         "fairing multiresolution detail",
         &[],
     )],
@@ -250,7 +250,7 @@ pub(super) const TOGGLE_OUTLINES: Entry<()> = Entry {
     listed: &[item(
         (),
         "Outlines",
-        "Shows or hides the outlines of handles, and the line where the region meets what is held.",
+        "Shows or hides the outlines of the handles and of the fixed region.",
         "contours",
         &[],
     )],
@@ -278,7 +278,7 @@ pub(super) const TOGGLE_SHADOW: Entry<()> = Entry {
     listed: &[item(
         (),
         "Ground shadow",
-        "Shows or hides the soft shadow on the ground. It is made anew when the shape rests.",
+        "Shows or hides the soft shadow on the ground. It is updated when the shape rests.",
         "contact occlusion floor",
         &[],
     )],

@@ -12,21 +12,21 @@ pub(super) const OBJECT_HERE: Entry<ObjectAction> = Entry {
         item(
             ObjectAction::Hide,
             "Hide object",
-            "Hides the object under the pointer: it is neither drawn nor picked nor painted, and moves along.",
+            "Hides the object under the pointer. It can't be picked or painted, but still follows.",
             "invisible",
             &[character('h')],
         ),
         item(
             ObjectAction::Solo,
             "Show only this object",
-            "Hides all objects but the one under the pointer; once more shows everything.",
+            "Hides all objects but the one under the pointer. Again: shows everything.",
             "solo",
             &[shift('h')],
         ),
         item(
             ObjectAction::Lock,
             "Lock object",
-            "Holds the object under the pointer still, whatever is painted on it.",
+            "Locks the object under the pointer: it is held still, whatever is painted on it.",
             "freeze protect",
             &[],
         ),
@@ -78,7 +78,7 @@ pub(super) const TOGGLE_SMALL_LOCKED: Entry<()> = Entry {
     listed: &[item(
         (),
         "Lock small parts",
-        "Holds connected parts with few vertices still, whatever is painted on them, or lets them bend again.",
+        "Locks connected parts with few vertices, so that they are held still, or unlocks them.",
         "debris floaters isolated pieces islands components freeze",
         &[],
     )],
@@ -91,12 +91,12 @@ pub(super) const TOGGLE_SMALL_LOCKED: Entry<()> = Entry {
     }),
 };
 
-/// Shows nothing but the connected part under the pointer; once more shows the others again.
+/// Hides all connected parts but the one under the pointer. Again: shows the others.
 pub(super) const ISOLATE: Entry<()> = Entry {
     listed: &[item(
         (),
         "Isolate part",
-        "Shows nothing but the connected part under the pointer; once more shows the others again.",
+        "Hides all connected parts but the one under the pointer. Again: shows the others.",
         "solo local view component",
         &[character('/')],
     )],
@@ -113,7 +113,7 @@ pub(super) const TURN_INSIDE_OUT: Entry<()> = Entry {
     listed: &[item(
         (),
         "Turn inside out",
-        "Swaps outside and inside of the parts that face inwards, or of all that is shown where none does: their triangles and normals are saved the other way round. What is bent stays.",
+        "Turns the parts that face inwards inside out, or all visible parts if none does. Their triangles and normals are saved reversed; the bend stays.",
         "flip normals faces winding reverse recalculate outside",
         &[],
     )],

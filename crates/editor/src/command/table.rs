@@ -81,7 +81,7 @@ macro_rules! commands {
 }
 
 commands! {
-    /// Takes back the last step.
+    /// Undoes the last step.
     Undo = document::UNDO;
     /// Does the last taken-back step again.
     Redo = document::REDO;
@@ -173,11 +173,11 @@ commands! {
     DuplicateHandle = handle::DUPLICATE_HANDLE;
     /// Makes the selected handle's mirror image a handle that does the same, across axis 0, 1, 2 for x, y, z.
     MakeTwin(axis: usize) = handle::MAKE_TWIN;
-    /// Lets the selected handle and its twin go their own ways.
+    /// Lets the selected handle and its mirrored twin move separately again.
     Untwin = handle::UNTWIN;
     /// Takes the selected handle's vertices and its region back to the file's shape.
     ResetRegion = handle::RESET_REGION;
-    /// The next stroke of the handle brush makes a handle of its own.
+    /// The next stroke of the handle brush makes a new handle.
     NewHandle = handle::NEW_HANDLE;
     /// Selects a handle; its gizmo is shown.
     SelectHandle(id: HandleId) = handle::SELECT_HANDLE;
@@ -239,7 +239,7 @@ commands! {
     ToggleSmallShown = object::TOGGLE_SMALL_SHOWN;
     /// Holds small parts still, or lets them bend.
     ToggleSmallLocked = object::TOGGLE_SMALL_LOCKED;
-    /// Shows nothing but the connected part under the pointer; once more shows the others again.
+    /// Hides all connected parts but the one under the pointer. Again: shows the others.
     Isolate = object::ISOLATE;
     /// Swaps outside and inside of the parts that face inwards, or of all that is shown.
     TurnInsideOut = object::TURN_INSIDE_OUT;

@@ -68,7 +68,7 @@ pub(super) const FRAME_INTERSECTION: Entry<usize> = Entry {
     listed: &[item(
         0,
         "Go to where the shape passes through itself",
-        "Comes close to the largest place where bending has put one part of the surface through another.",
+        "Moves the view to the largest place where the bent surface passes through itself.",
         "self-intersection crossing collision overlap penetrate",
         &[],
     )],
@@ -76,10 +76,7 @@ pub(super) const FRAME_INTERSECTION: Entry<usize> = Entry {
     unavailable: |state, place| {
         let found = state.workspace.intersections();
         let is_there = found.is_some_and(|found| *place < found.places.len());
-        unless(
-            is_there,
-            "The shape at rest passes through itself nowhere that the file's does not.",
-        )
+        unless(is_there, "The bent shape has no crossings that the file does not have.")
     },
     action: Action::Do(|context, place| {
         let found = context.workspace.intersections();
@@ -94,7 +91,7 @@ pub(super) const CAMERA_BACK: Entry<()> = Entry {
     listed: &[item(
         (),
         "View before",
-        "Looks from where you looked before.",
+        "Goes back to the previous view.",
         "camera back",
         &[alt('[')],
     )],
@@ -111,7 +108,7 @@ pub(super) const CAMERA_FORTH: Entry<()> = Entry {
     listed: &[item(
         (),
         "View after",
-        "Looks from where you looked before you went back.",
+        "Goes forward to the view that you came back from.",
         "camera forth forward",
         &[alt(']')],
     )],
@@ -154,7 +151,7 @@ pub(super) const TOGGLE_PROJECTION: Entry<()> = Entry {
     listed: &[item(
         (),
         "Orthographic",
-        "Changes between perspective and a view in which distance does not matter.",
+        "Switches between a perspective and an orthographic view.",
         "perspective projection parallel",
         &[numpad(5)],
     )],

@@ -25,7 +25,7 @@ pub enum BrushMetric {
     Screen,
     /// What is within the radius along the surface: into folds and around edges, visible or not.
     Surface,
-    /// Everything that the disc on the screen covers, however far behind.
+    /// Everything under the disc, through to the back of the model.
     Through,
 }
 

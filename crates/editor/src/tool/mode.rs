@@ -8,7 +8,7 @@ pub enum ToolMode {
     PaintHandle,
     /// Paints the free region.
     PaintFree,
-    /// Paints what is held still.
+    /// Paints the part that is held still.
     PaintFixed,
     /// Takes paint away.
     Erase,

@@ -77,7 +77,7 @@ impl Stroke for PaintStroke {
     fn doing(&self, workspace: &Workspace) -> String {
         match self.paint {
             Paint::Bare => "Erasing".to_owned(),
-            Paint::Fixed => "Painting what is held still".to_owned(),
+            Paint::Fixed => "Painting the part that is held still".to_owned(),
             Paint::Free => "Painting what may bend".to_owned(),
             Paint::Handle(id) => {
                 let handle = workspace.document.handle(id);

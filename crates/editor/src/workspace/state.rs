@@ -221,7 +221,7 @@ impl Workspace {
         }
     }
 
-    /// Takes back the last step.
+    /// Undoes the last step.
     pub(crate) fn undo(&mut self) {
         self.jobs.drop_solves();
         let before: Vec<HandleId> = self.document.handles().iter().map(|handle| handle.id).collect();

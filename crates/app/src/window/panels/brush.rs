@@ -68,17 +68,17 @@ fn brush_rows(ui: &mut egui::Ui, mut radius_px: f64, metric: BrushMetric, comman
         (
             BrushMetric::Screen,
             "as seen",
-            "What the disc on the screen covers and faces you.",
+            "Everything under the disc that faces you.",
         ),
         (
             BrushMetric::Surface,
             "along surface",
-            "What is near along the surface: into folds and round edges, seen or not.",
+            "Everything within the radius along the surface: into folds and around edges, seen or not.",
         ),
         (
             BrushMetric::Through,
             "through",
-            "Everything that the disc on the screen covers, however far behind.",
+            "Everything under the disc, through to the back of the model.",
         ),
     ];
     if let Some(metric) = choices(ui, metric, &METRICS) {
@@ -91,15 +91,11 @@ fn brush_rows(ui: &mut egui::Ui, mut radius_px: f64, metric: BrushMetric, comman
 fn depth_row(ui: &mut egui::Ui, depth: Depth, commands: &mut Outbox) {
     row_label(ui, "Takes");
     const DEPTHS: [(Depth, &str, &str); 2] = [
-        (
-            Depth::Visible,
-            "what is seen",
-            "Only what faces you and is hidden by nothing.",
-        ),
+        (Depth::Visible, "what is seen", "Only the surface that you see."),
         (
             Depth::Through,
             "all through",
-            "Everything inside, to the back of the model.",
+            "Everything inside, through to the back of the model.",
         ),
     ];
     if let Some(depth) = choices(ui, depth, &DEPTHS) {
@@ -116,11 +112,11 @@ fn symmetry_row(ui: &mut egui::Ui, symmetry: Symmetry, commands: &mut Outbox) {
         (
             Symmetry::Found,
             "found",
-            "Paints and poses both sides at once, across the plane that the shape has.",
+            "Paints and poses both sides at once, across the shape's own plane of symmetry.",
         ),
         (Symmetry::Axis(0), "x", "Paints and poses left and right at once."),
         (Symmetry::Axis(1), "y", "Paints and poses above and below at once."),
-        (Symmetry::Axis(2), "z", "Paints and poses before and behind at once."),
+        (Symmetry::Axis(2), "z", "Paints and poses front and back at once."),
     ];
     if let Some(symmetry) = choices(ui, symmetry, &PLANES) {
         commands.push(Command::SetSymmetry(symmetry));
@@ -134,17 +130,17 @@ fn correction(ui: &mut egui::Ui, brush: &CorrectionBrush, commands: &mut Outbox)
         (
             Correction::Smooth,
             "Smooth",
-            "Takes bumps and creases away, and keeps the volume. So does any correction with Shift held.",
+            "Smooths bumps and creases, and keeps the volume. Shift does so with every correction brush.",
         ),
         (
             Correction::Relax,
             "Relax",
-            "Evens the triangles out within the surface, which stays where it is.",
+            "Evens out the triangles. The surface keeps its shape.",
         ),
         (
             Correction::Grab,
             "Grab",
-            "Takes the surface along with the pointer, and keeps the volume.",
+            "Drags the surface with the pointer, and keeps the volume.",
         ),
     ];
     if let Some(correction) = choices(ui, brush.correction, &CORRECTIONS) {
@@ -187,7 +183,7 @@ fn stiffness(ui: &mut egui::Ui, editor: &Editor, brush: &StiffnessBrush, pressur
         (
             StiffnessAction::Erase,
             "Erase",
-            "Takes the surface back to 1. So does painting with Ctrl held.",
+            "Resets the stiffness to 1. So does painting with Ctrl held.",
         ),
     ];
     if let Some(action) = choices(ui, brush.action, &ACTIONS) {

@@ -36,7 +36,7 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, morph_targets: &[String], comman
                 });
             })
             .response
-            .on_hover_text("Takes a morph target of the file as an example.");
+            .on_hover_text("Adds a morph target of the file as an example.");
         }
     });
     let Some(examples) = editor.document().examples() else {

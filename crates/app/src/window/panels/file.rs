@@ -77,7 +77,7 @@ fn finding(ui: &mut egui::Ui, model: &Model, kind: FindingKind, sentence: &str, 
             let label = format!("Show place {} of: {sentence}", number + 1);
             button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &label));
             if button
-                .on_hover_text(format!("Comes close to vertex {vertex}."))
+                .on_hover_text(format!("Moves the view to vertex {vertex}."))
                 .clicked()
             {
                 commands.push(Command::FrameFileVertex(vertex));

@@ -14,12 +14,12 @@ const CHOICES: [(Loose, &str, &str); 3] = [
     (
         Loose::Follow,
         "follow",
-        "They keep their shape and move along with the surface beside them: eyes, buttons.",
+        "They keep their shape and follow the surface beside them: eyes, buttons.",
     ),
     (
         Loose::Bend,
         "bend along",
-        "Every place of them goes with the surface beside it: straps, seams, bandages.",
+        "Each point follows the surface beside it: straps, seams, bandages.",
     ),
     (Loose::Rest, "rest", "They stay where they are."),
 ];
@@ -80,7 +80,7 @@ fn row(ui: &mut egui::Ui, editor: &Editor, model: &Model, part: u32, commands: &
     let own = editor.document().loose_parts().get(&part).copied();
     let row = ui.horizontal(|ui| {
         let name = part_name(model, part, editor.view().camera.up);
-        let hover = format!("Comes close to it: {} vertices.", thousands(component.vertex_count));
+        let hover = format!("Moves the view to it: {} vertices.", thousands(component.vertex_count));
         let label = ui.button(name).on_hover_text(hover);
         if label.clicked() {
             commands.push(Command::FramePart(part));

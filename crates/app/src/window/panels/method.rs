@@ -93,7 +93,7 @@ fn control_points(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     };
     ui.label(sentence).on_hover_text(
         "Click a point to take it, Shift adds one. With the Select tool Ctrl and a drag, or a box or lasso, takes many; \
-         the gizmo, G, R and S move them. The options that make one count again once it is not your own.",
+         the gizmo, G, R and S move them. The options below make a new one again when you give up your own.",
     );
     ui.horizontal_wrapped(|ui| {
         let make = ui.add_enabled(
@@ -102,7 +102,7 @@ fn control_points(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
         );
         let why = editor.unavailable_because(&Command::MakeControls);
         let make = make.on_hover_text(format!(
-            "Has one made around the region, in place of your own {}.",
+            "Makes one around the region, in place of your own {}.",
             declared.title
         ));
         if make
@@ -114,7 +114,7 @@ fn control_points(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
         if FileCommand::LoadCage.unavailable_because(editor).is_none()
             && ui
                 .button(FileCommand::LoadCage.name())
-                .on_hover_text("Takes a closed mesh around the region from a file.")
+                .on_hover_text("Loads a closed mesh around the region from a file.")
                 .clicked()
         {
             commands.push_file(FileCommand::LoadCage);

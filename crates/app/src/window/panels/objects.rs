@@ -123,7 +123,7 @@ fn small_parts(ui: &mut egui::Ui, model: &Model, access: &Access, commands: &mut
             if toggle(ui, Icon::Lock, small.locked, "Lock small parts", hover) {
                 commands.push(Command::ToggleSmallLocked);
             }
-            let hover = "Hidden: neither drawn nor picked nor painted, but moving along.";
+            let hover = "Hidden: it can't be picked or painted, but still follows.";
             if toggle(ui, Icon::Eye, !small.hidden, "Show small parts", hover) {
                 commands.push(Command::ToggleSmallShown);
             }
@@ -181,7 +181,7 @@ fn row(ui: &mut egui::Ui, row: &Row, count: usize, access: &Access, commands: &m
                 };
                 commands.push(Command::Objects(action, row.objects.clone()));
             }
-            let hover = "Hidden: neither drawn nor picked nor painted, but moving along.";
+            let hover = "Hidden: it can't be picked or painted, but still follows.";
             if toggle(ui, Icon::Eye, !is_hidden, &format!("Show {}", row.name), hover) {
                 let action = if is_hidden {
                     ObjectAction::Show
@@ -192,7 +192,7 @@ fn row(ui: &mut egui::Ui, row: &Row, count: usize, access: &Access, commands: &m
             }
             if row.objects.len() < count {
                 let is_alone = !is_hidden && access.hidden.len() + row.objects.len() == count;
-                let hover = "Shows only this; once more shows everything.";
+                let hover = "Hides all others. Again: shows everything.";
                 if toggle(ui, Icon::Alone, is_alone, &format!("Show only {}", row.name), hover) {
                     commands.push(Command::Objects(ObjectAction::Solo, row.objects.clone()));
                 }

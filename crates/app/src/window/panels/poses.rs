@@ -42,11 +42,11 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
                     };
                     button(
                         "Remove",
-                        "Forgets this pose. Nothing moves.",
+                        "Deletes this pose. The shape stays as it is.",
                         true,
                         Command::RemovePose(place),
                     );
-                    let says = "Has this pose be what is shown now.";
+                    let says = "Replaces this pose by the present one.";
                     button("Renew", says, !is_shown, Command::RenewPose(place));
                     let says = "Puts everything where it stood in this pose. Locked handles and pins stay.";
                     button("Take", says, !is_shown, Command::TakePose(place));

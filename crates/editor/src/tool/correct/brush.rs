@@ -6,9 +6,9 @@ pub enum Correction {
     /// Takes bumps and creases away, and keeps the volume.
     #[default]
     Smooth,
-    /// Evens the triangles out within the surface, which stays where it is.
+    /// Evens out the triangles. The surface keeps its shape.
     Relax,
-    /// Takes the surface along with the pointer, and keeps the volume.
+    /// Drags the surface with the pointer, and keeps the volume.
     Grab,
 }
 
