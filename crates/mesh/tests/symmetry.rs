@@ -5,7 +5,8 @@
 
 use glam::{DAffine3, DQuat, DVec2, DVec3};
 use pliant_mesh::{
-    Bvh, Cancel, Counterparts, Drawn, MirrorPlane, Model, Progress, SurfaceVertex, shapes, symmetry_plane,
+    Bvh, Cancel, Counterparts, Drawn, MirrorPlane, Model, Progress, SurfaceVertex, mirror_planes, shapes,
+    symmetry_plane,
 };
 
 fn plane_of(model: &Model) -> Option<MirrorPlane> {
@@ -144,4 +145,24 @@ fn what_lies_on_one_side_alone_has_no_counterpart() {
     ));
     let all = counterparts(&model, MirrorPlane::across(0, 0.0));
     assert!((0..model.surface.positions.len() as u32).all(|v| all.of(SurfaceVertex(v)).is_empty()));
+}
+
+#[test]
+fn points_of_any_size_and_place_are_looked_at() {
+    let tower = shapes::bar(2, 2, 5).positions;
+    for size in [1e-300, 1e-30, 1.0, 1e30, 1e300] {
+        for far in [0.0, 1.0, 1e30, 1e300] {
+            let mut positions: Vec<DVec3> = tower.iter().map(|p| *p * size).collect();
+            positions.push(DVec3::splat(far));
+            for (share, plane) in mirror_planes(&positions) {
+                assert!(
+                    share > 0.5 && share <= 1.0 && plane.normal().is_normalized(),
+                    "{size} {far}"
+                );
+            }
+        }
+        let moved: Vec<DVec3> = tower.iter().map(|p| DVec3::splat(size) + *p).collect();
+        let planes = mirror_planes(&moved);
+        assert!(size > 1.0 || planes.iter().any(|(share, _)| *share == 1.0), "{size}");
+    }
 }

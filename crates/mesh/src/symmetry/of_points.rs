@@ -98,8 +98,12 @@ impl Places {
     }
 
     fn has_near(&self, position: DVec3) -> bool {
-        let [x, y, z] = self.cell(position);
-        let around = (0..27).map(|k| [x + k % 3 - 1, y + k / 3 % 3 - 1, z + k / 9 - 1]);
+        let cell = self.cell(position);
+        // A plane may be so far off that its image lies beyond the last cell.
+        let around = (0..27).map(|k| {
+            let steps = [k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1];
+            std::array::from_fn(|axis| i64::saturating_add(cell[axis], steps[axis]))
+        });
         let mut near = around.filter_map(|cell| self.cells.get(&cell)).flatten();
         near.any(|other| other.distance(position) <= self.width)
     }
