@@ -185,10 +185,10 @@ pub fn diagonal(positions: &[DVec3]) -> f64 {
     }
 }
 
-/// The files in `folders` of the data beside the project that the program can read, sorted. If a folder is missing, the
+/// The files in `folders` of the data folder that the program can read, sorted. If a folder is missing, the
 /// list is empty and standard error says which tests are skipped.
 pub fn data(folders: &[&str]) -> Vec<PathBuf> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data");
+    let root = data_folder();
     let mut files = Vec::new();
     for folder in folders {
         let before = files.len();
@@ -203,13 +203,16 @@ pub fn data(folders: &[&str]) -> Vec<PathBuf> {
 
 /// One file of the data folder. If it is missing, `None` and a message on standard error.
 pub fn datum(name: &str) -> Option<PathBuf> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../../shared/data")
-        .join(name);
+    let path = data_folder().join(name);
     if !path.exists() {
         eprintln!("skipped: there is no {}", path.display());
     }
     path.exists().then_some(path)
+}
+
+/// The folder that `PLIANT_DATA` names; `.cargo/config.toml` has its default.
+fn data_folder() -> PathBuf {
+    std::env::var_os("PLIANT_DATA").unwrap_or_default().into()
 }
 
 /// The folder with the samples that ship with the program.

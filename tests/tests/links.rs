@@ -14,6 +14,7 @@ fn pages() -> BTreeMap<PathBuf, String> {
     let mut pages = BTreeMap::new();
     for folder in [
         "",
+        "bench",
         "crates",
         "crates/deform",
         "crates/python",

@@ -122,7 +122,7 @@ pub enum BindError {
         alternatives::of_space()
     )]
     NotPositiveDefinite {
-        /// The component, as `cli.md` numbers them.
+        /// The component, as the edit format numbers them (`docs/edit-format.md`).
         component: u32,
         /// The vertex whose pivot failed.
         vertex: u32,
@@ -133,7 +133,7 @@ pub enum BindError {
         alternatives::of_space()
     )]
     Inaccurate {
-        /// The component, as `cli.md` numbers them.
+        /// The component, as the edit format numbers them (`docs/edit-format.md`).
         component: u32,
         /// Where the error is largest.
         vertex: u32,

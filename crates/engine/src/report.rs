@@ -1,4 +1,4 @@
-//! REPORT.json: what an edit did and how long each part took (`cli.md`). Times are in milliseconds.
+//! REPORT.json: what an edit did and how long each part took (`docs/edit-format.md`). Times are in milliseconds.
 
 use std::time::Instant;
 

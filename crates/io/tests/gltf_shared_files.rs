@@ -36,7 +36,7 @@ impl Resolver for Fresh<'_> {
 }
 
 fn files() -> Vec<PathBuf> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/gltf");
+    let root = PathBuf::from(std::env::var_os("PLIANT_DATA").unwrap_or_default()).join("gltf");
     let mut open = vec![root];
     let mut files = Vec::new();
     while let Some(folder) = open.pop() {

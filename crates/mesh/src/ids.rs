@@ -18,8 +18,8 @@ macro_rules! vertex_id {
 }
 
 vertex_id! {
-    /// A vertex as the file numbers it (`cli.md`): an OBJ `v` line, a PLY or OFF vertex, an STL corner, an element
-    /// of a glTF POSITION accessor.
+    /// A vertex as the file numbers it (`docs/edit-format.md`): an OBJ `v` line, a PLY or OFF vertex, an STL
+    /// corner, an element of a glTF POSITION accessor.
     FileVertex
 }
 vertex_id! {

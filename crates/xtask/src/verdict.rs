@@ -250,7 +250,7 @@ mod tests {
             ("skipped: pictures (no adapter)", Skips::Failures, true),
             ("skipped: the real window (no Xvfb)", Skips::Failures, true),
             ("skipped: the real window (no Xvfb)", Skips::Named, false),
-            ("skipped: there is no ../shared/data/scans", Skips::Failures, false),
+            ("skipped: there is no horse.ply", Skips::Failures, false),
         ] {
             let mut verdict = Verdict::default();
             verdict.count(line);

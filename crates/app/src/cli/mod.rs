@@ -1,4 +1,4 @@
-//! The command line (`cli.md`): arguments in, files and an exit status out.
+//! The command line (`pliant --help`): arguments in, files and an exit status out.
 
 mod apply;
 mod arguments;

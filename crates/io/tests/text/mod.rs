@@ -118,11 +118,9 @@ pub fn same_bits(a: &[DVec3], b: &[DVec3]) -> bool {
     bits(a) == bits(b)
 }
 
-/// The folder of shared data files beside the checkout; tests that need it skip by name where it is absent.
+/// The files of a folder in `PLIANT_DATA`; tests that need them skip by name where it is absent.
 pub fn data(folder: &str) -> Option<Vec<(PathBuf, Vec<u8>)>> {
-    let root = PathBuf::from(env!("CARGO_MANIFEST_DIR"))
-        .join("../../../shared/data")
-        .join(folder);
+    let root = PathBuf::from(std::env::var_os("PLIANT_DATA").unwrap_or_default()).join(folder);
     let mut files: Vec<PathBuf> = std::fs::read_dir(root)
         .ok()?
         .map(|entry| entry.unwrap().path())

@@ -7,20 +7,21 @@
 use std::path::{Path, PathBuf};
 
 use super::Scale;
+use super::beside::{data, peers};
 use super::table::{Row, folder, measured};
 use crate::process::output;
 
 /// One row per scene and program.
 pub fn rows(scale: Scale) -> Result<Vec<Row>, String> {
-    let data = crate::root().join("../shared/data");
+    let data = data();
     if !data.is_dir() {
-        return Ok(vec![Row::default().text("says", "not here: ../shared/data")]);
+        return Ok(vec![Row::default().text("says", "not here: the folder PLIANT_DATA")]);
     }
     let mut scenes = Vec::new();
     for name in ["bar", "cylinder", "cactus"] {
         scenes.push(copied(&data.join("survey"), name)?);
     }
-    let peers = crate::root().join("../shared/peers");
+    let peers = peers();
     scenes.extend(scan(&peers, &data, 0));
     if scale == Scale::Full {
         scenes.extend(scan(&peers, &data, 1));

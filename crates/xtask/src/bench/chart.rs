@@ -17,7 +17,7 @@ pub struct Line {
     pub points: Vec<[f64; 2]>,
 }
 
-/// What was asked for: a point that the lines should stay below.
+/// A limit: a point that the lines should stay below.
 pub struct Limit {
     pub at: [f64; 2],
     pub name: String,
@@ -166,7 +166,7 @@ mod tests {
             }],
             limit: Limit {
                 at: [5e6, 12.0],
-                name: "asked".to_owned(),
+                name: "the limit".to_owned(),
             },
         };
         let svg = chart(&[panel], "vertices", "a machine");
@@ -177,7 +177,7 @@ mod tests {
             .collect();
         assert_eq!(places.len(), 2);
         assert!(places.iter().all(|x| (0.0..SIZE[0]).contains(x)) && places[0] < places[1]);
-        assert!(!svg.contains("NaN") && svg.contains("a machine") && svg.contains(">asked<"));
+        assert!(!svg.contains("NaN") && svg.contains("a machine") && svg.contains(">the limit<"));
     }
 
     #[test]

@@ -5,6 +5,7 @@
 //! rows; and list it in [`SECTIONS`]. Printing and saving happen here.
 
 mod arap;
+mod beside;
 mod capacitance;
 mod chart;
 mod cholesky;

@@ -1,10 +1,11 @@
-//! Other programs on the same edit, in the same run: the times of `../shared/peers` on this machine, and how many times
+//! Other programs on the same edit, in the same run: the times of the scripts in `PLIANT_PEERS` on this machine, and how many times
 //! faster Pliant does the same.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use super::Scale;
+use super::beside;
 use super::table::{Row, folder, measured};
 use crate::process::output;
 
@@ -53,10 +54,10 @@ const VERSUS: [Versus; 15] = [
 
 /// One row per comparison, for horse.ply as it is and subdivided.
 pub fn rows(scale: Scale) -> Result<Vec<Row>, String> {
-    let peers = crate::root().join("../shared/peers");
-    let mesh = crate::root().join("../shared/data/scans/horse.ply");
+    let peers = beside::peers();
+    let mesh = beside::data().join("scans/horse.ply");
     if !peers.is_dir() || !mesh.is_file() {
-        return Ok(vec![said(0, "not here: ../shared/peers and ../shared/data")]);
+        return Ok(vec![said(0, "not here: the folders PLIANT_PEERS and PLIANT_DATA")]);
     }
     let subdivisions: &[usize] = match scale {
         Scale::Usual => &[0, 1],

@@ -6,14 +6,15 @@
 
 use super::Scale;
 use super::arap::copied;
+use super::beside::data;
 use super::table::{Row, measured};
 use crate::process::output;
 
 /// One row per scene and program.
 pub fn rows(_: Scale) -> Result<Vec<Row>, String> {
-    let survey = crate::root().join("../shared/data/survey");
+    let survey = data().join("survey");
     if !survey.is_dir() {
-        return Ok(vec![Row::default().text("says", "not here: ../shared/data")]);
+        return Ok(vec![Row::default().text("says", "not here: the folder PLIANT_DATA")]);
     }
     let script = crate::root().join("tests/peer/shells.py").display().to_string();
     let all = std::thread::available_parallelism().map_or(1, usize::from).to_string();

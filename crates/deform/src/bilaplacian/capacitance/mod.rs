@@ -14,7 +14,7 @@
 //! solved by conjugate directions ([`directions`]) that take all right-hand sides together, are as long as the rim,
 //! are found with the plate near the rim as preconditioner ([`near_rim`]), and are kept for the next right-hand side.
 //!
-//! The factor of P has 0.4 of the numbers of A's on scans, because its separators are one vertex wide in place of two. Multigrid with point smoothers on A itself was tried first, and lost: see `docs/measurements.md`.
+//! The factor of P has 0.4 of the numbers of A's on scans, because its separators are one vertex wide in place of two. Multigrid with point smoothers on A itself was tried first, and lost: see `bench/measurements.md`.
 
 mod directions;
 mod near_rim;
