@@ -23,10 +23,10 @@ vertex_id! {
     FileVertex
 }
 vertex_id! {
-    /// A file vertex seen through one node: what is rendered and picked.
+    /// A file vertex seen through one node. Drawn vertices are rendered and picked.
     DrawnVertex
 }
 vertex_id! {
-    /// A welded vertex in world space: what is solved.
+    /// A welded vertex in world space. The solver works on surface vertices.
     SurfaceVertex
 }
