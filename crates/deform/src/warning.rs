@@ -1,19 +1,19 @@
-//! What a person should know about a binding or its targets, in a sentence.
+//! Facts about a binding or its targets that a person should know, each in a sentence.
 
 use std::fmt;
 use std::ops::{Deref, Range};
 
-/// A sentence for a person. Where it is about a handle, it calls the handle by its number, which only the problem knows;
-/// [`Warning::naming`] puts the name there that a person knows.
+/// A sentence for a person. If it is about a handle, it has the handle's number, which only the problem knows;
+/// [`Warning::naming`] replaces it by the name that a person knows.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct Warning {
     sentence: String,
-    /// The handle that it is about, and which bytes of the sentence name it.
+    /// The handle that it is about, and the bytes of the sentence that name it.
     handle: Option<(usize, Range<usize>)>,
 }
 
 impl Warning {
-    /// What `word` makes of the handle's designation, which it uses once.
+    /// The sentence that `word` makes with the handle's designation, which it uses once.
     pub(crate) fn of_handle(handle: usize, word: impl FnOnce(&str) -> String) -> Self {
         let designation = format!("handle {handle}");
         let sentence = word(&designation);
@@ -29,7 +29,7 @@ impl Warning {
         self.handle.as_ref().map(|(number, _)| *number)
     }
 
-    /// The sentence with `designation` in place of "handle" and its number.
+    /// The sentence with `designation` instead of "handle" and its number.
     pub fn naming(&self, designation: &str) -> String {
         let mut sentence = self.sentence.clone();
         if let Some((_, place)) = &self.handle {
