@@ -1,5 +1,5 @@
-//! How binding grows with the mesh, by the thin plate's own factor and by the Laplacian's, by the example `capacitance`
-//! of `deform`: a table, and with the large meshes the picture `bench/growth.svg`.
+//! The growth of binding with the mesh, by the thin plate's own factor and by the Laplacian's, with the example
+//! `capacitance` of `deform`: a table, and with the large meshes the picture `bench/growth.svg`.
 
 use super::Scale;
 use super::chart::{Limit, Line, Panel, chart};
@@ -7,20 +7,20 @@ use super::machine::machine;
 use super::meshes::creature_off;
 use super::table::{self, Row, measured};
 
-/// The meshes: vertices, and how often each is subdivided.
+/// The meshes: vertices, and the number of subdivisions of each.
 const USUAL: &[(usize, u32)] = &[(50_000, 0), (50_000, 1)];
 const FULL: &[(usize, u32)] = &[(50_000, 0), (50_000, 1), (50_000, 2), (83_000, 3)];
 
-/// What each way is called in the example and in the picture, and its colour.
+/// The name of each way in the example and in the picture, and its colour.
 const WAYS: [(&str, &str, &str); 2] = [
     ("factor", "own factor", "#b4552d"),
     ("laplacian", "the Laplacian's factor", "#2d6fb4"),
 ];
 
-/// The limits at so many free vertices: seconds to bind, and bytes.
+/// The limits at this many free vertices: seconds to bind, and bytes.
 const LIMITS: (f64, f64, f64) = (5e6, 60.0, 10e9);
 
-/// One row for each mesh and way, on all threads. What an interrupted run has measured is taken from
+/// One row for each mesh and way, on all threads. Measurements of an interrupted run are taken from
 /// `target/bench/growth.json`; without that file everything is measured anew.
 pub fn rows(scale: Scale) -> Result<Vec<Row>, String> {
     let meshes = match scale {
@@ -40,7 +40,7 @@ pub fn rows(scale: Scale) -> Result<Vec<Row>, String> {
             if rows.iter().any(is_it) {
                 continue;
             }
-            // One process for each, so that its peak of memory is its own.
+            // Each runs in a separate process, so that its peak of memory is its own.
             let arguments = [
                 file.display().to_string(),
                 all.clone(),
