@@ -1,4 +1,4 @@
-//! macOS links what Python brings only when the module is loaded.
+//! macOS links Python's symbols only when the module is loaded.
 fn main() {
     pyo3_build_config::add_extension_module_link_args();
 }

@@ -1,4 +1,4 @@
-"""The stubs and docstrings say what there is."""
+"""The stubs and docstrings match the module."""
 
 import ast
 import inspect
