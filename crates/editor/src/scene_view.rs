@@ -72,7 +72,7 @@ pub struct SceneView<'a> {
     pub stroke_shape: StrokeShape,
     /// The depth of a lasso or a box.
     pub depth: Depth,
-    /// The plane across which both sides are painted at once, found or still searched.
+    /// The plane across which both sides are painted at once, found or still being searched for.
     pub symmetry: Symmetry,
     /// The measure of the brush's radius.
     pub brush_metric: BrushMetric,

@@ -1,4 +1,4 @@
-//! The warning if a shape passes through itself: found once it rests, never searched while it moves, and only about
+//! The warning if a shape passes through itself: found once it rests, never searched for while it moves, and only about
 //! crossings that the edit has made.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "tests fail by panicking")]
 

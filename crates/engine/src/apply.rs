@@ -226,7 +226,7 @@ struct FileTimes {
     check_ms: f64,
 }
 
-/// The most crossings to search: the sentence says "and more" beyond them.
+/// The most crossings to search for: the sentence says "and more" beyond them.
 const MOST_CROSSINGS: usize = 20_000;
 
 /// The faults of the shape, as sentences.

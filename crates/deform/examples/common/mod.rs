@@ -39,7 +39,7 @@ pub fn read(off: &Path) -> Model {
     Model::weld(drawn, &WeldOptions::default(), &Progress::new(), &Cancel::new()).unwrap()
 }
 
-/// A problem with one handle, and defaults for what is not given.
+/// A problem with one handle, and defaults for missing inputs.
 pub fn one_handle<'a>(model: &'a Model, roles: &'a [Role], stiffness: &'a [f64], method: &'a Method) -> Problem<'a> {
     Problem {
         surface: &model.surface,

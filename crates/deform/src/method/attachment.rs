@@ -34,11 +34,11 @@ pub enum AttachmentKind {
 /// An attachment. A binding depends on its rest shape, a frame on the moved positions of its points or on its weights.
 #[derive(Clone, PartialEq, Debug)]
 pub enum Attachment {
-    /// Of [`AttachmentKind::ControlMesh`].
+    /// The attachment of [`AttachmentKind::ControlMesh`].
     Mesh(ControlMesh),
-    /// Of [`AttachmentKind::ControlLattice`].
+    /// The attachment of [`AttachmentKind::ControlLattice`].
     Lattice(ControlLattice),
-    /// Of [`AttachmentKind::Shapes`].
+    /// The attachment of [`AttachmentKind::Shapes`].
     Shapes(Examples),
 }
 

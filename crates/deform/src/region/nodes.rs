@@ -124,7 +124,7 @@ impl<'a> Search<'a> {
             let at = self.positions[vertex as usize];
             for &SurfaceVertex(other) in self.topology.neighbours(SurfaceVertex(vertex)) {
                 let way = distance + at.distance(self.positions[other as usize]);
-                // Of equally near nodes the first one gets a vertex, even if rounding makes a difference.
+                // The first of equally near nodes gets a vertex, even if rounding makes a difference.
                 let is_nearer = way < self.distances[other as usize] * (1.0 - EQUAL);
                 if self.is_in_part[other as usize] && is_nearer {
                     self.distances[other as usize] = way;

@@ -22,7 +22,7 @@ pub struct BothSides {
 }
 
 impl BothSides {
-    /// Searches them across the given plane, or across the shape's own; `None` if it has none. `bvh` is that of the
+    /// Searches for them across the given plane, or across the shape's own; `None` if it has none. `bvh` is that of the
     /// file's shape, if it exists.
     pub(crate) fn find(
         model: &Model,

@@ -91,7 +91,7 @@ pub(super) struct Wanted {
 
 impl Wanted {
     /// The document's targets for `handles`, from the shown shape and from the last solution, if that continues a kept
-    /// shape; `None` if a handle is gone.
+    /// shape; `None` if a handle no longer exists.
     pub(super) fn of(
         document: &Document,
         handles: &[HandleId],

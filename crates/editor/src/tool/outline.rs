@@ -31,7 +31,7 @@ pub(crate) struct OutlineStroke {
 enum Phase {
     /// The button is held.
     Drawing,
-    /// It was let go, and a job searches the vertices inside.
+    /// It was let go, and a job searches for the vertices inside.
     Looking,
 }
 

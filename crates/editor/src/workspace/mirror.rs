@@ -1,4 +1,4 @@
-//! The mirror image of a region: a job searches it, because every vertex needs the nearest one across the plane.
+//! The mirror image of a region: a job searches for it, because every vertex needs the nearest one across the plane.
 //!
 //! The action on the image waits meanwhile. If the paint has changed when it arrives, nothing is done, and a message
 //! says so.

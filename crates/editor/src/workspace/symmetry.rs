@@ -19,7 +19,7 @@ impl Workspace {
         self.both_sides.as_ref()
     }
 
-    /// The plane, found or still searched.
+    /// The plane, found or still being searched for.
     pub(crate) fn symmetry(&self) -> Symmetry {
         self.symmetry
     }

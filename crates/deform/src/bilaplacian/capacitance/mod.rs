@@ -217,7 +217,7 @@ impl Capacitance {
             if let Some(near_rim) = &self.near_rim {
                 near_rim.precondition(&mut block);
             }
-            // Leaving the rounding once makes two passes enough.
+            // One pass leaves the rounding; two are enough.
             for _ in 0..2 {
                 kept.remove_from(&mut block);
                 own.remove_from(&mut block);
