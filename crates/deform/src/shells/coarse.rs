@@ -1,4 +1,4 @@
-//! The coarse level of a large surface: the same method on a surface of clusters, small enough for Gauss–Newton steps in
+//! The coarse level of a large surface: the same method on a surface of clusters, small enough for Newton steps in
 //! a frame, as the decimated shells of [FB11].
 //!
 //! Dead loads make its gradient equal to that of the fine shape it was last restricted from (the full approximation

@@ -140,7 +140,7 @@ impl BoundMethod for ShellsSolver {
         self.stored()
     }
 
-    /// A Gauss–Newton step factors: 6·10¹⁰ operations take about as long as cheap steps of three million vertices.
+    /// A Newton step factors: 6·10¹⁰ operations take about as long as cheap steps of three million vertices.
     fn step_cost(&self) -> usize {
         let solved = self.energy.elements.solved_count;
         match &self.descent {

@@ -1,8 +1,8 @@
 //! What free weights of examples change of the matrix.
 //!
-//! With the weights eliminated (see `examples`) the Gauss–Newton matrix is K − C (G + ε diag G)⁻¹ Cᵀ with K = JᵀJ and
-//! C = JᵀW Δ. Its inverse is K⁻¹ + U S⁻¹ Uᵀ with U = K⁻¹ C and S = G + ε diag G − Cᵀ U: one solution more for each free
-//! weight, while the pattern of K stays. It is positive definite whenever S is, even where U is of an older K.
+//! With the weights eliminated (see `examples`) the matrix is K − C (G + ε diag G)⁻¹ Cᵀ, with K the matrix of held weights
+//! (`system`) and C = JᵀW Δ. Its inverse is K⁻¹ + U S⁻¹ Uᵀ with U = K⁻¹ C and S = G + ε diag G − Cᵀ U: one more solution
+//! for each free weight, while the pattern of K stays. It is positive definite if S is.
 
 use glam::DVec3;
 use rayon::prelude::*;

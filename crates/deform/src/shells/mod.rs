@@ -1,5 +1,5 @@
 //! Discrete shells [GHDS03]: a surface keeps the lengths of its edges, the angles at them, its triangles'
-//! areas and, if wished, the volume that it encloses. Minimised by Gauss–Newton as in [FB11].
+//! areas and, if wished, the volume that it encloses. [FB11] minimises it by Gauss–Newton; here Newton's method does, with the elements' exact Hessians.
 //!
 //! E = ½ Σ_e k_s s_e A_e (l_e / l̄_e − 1)² + ½ Σ_t k_a k_s s_t Ā_t (A_t / Ā_t − 1)²
 //!   + ½ Σ_e k_b D² s_e (l̄_e² / A_e) (θ_e − θ̄_e)² + ½ Σ_c k_v A_c (V_c / V̄_c − 1)²
@@ -17,8 +17,7 @@
 //! an edge, each pair of them has one, weaker in proportion, so that each triangle is held as firmly as at any other
 //! edge; where very many meet, each is paired only with the largest.
 //!
-//! A step solves with the matrix JᵀJ of all residuals. Its pattern is analysed once, its numbers are factored anew at each
-//! step. The volume's gradient would fill the matrix: it stays outside and enters by the formula of Sherman and
+//! Steps are Newton's, as exact as leaves the matrix positive definite (`system`). The matrix' pattern is analysed once. The volume's gradient would fill the matrix: it stays outside and enters by the formula of Sherman and
 //! Morrison, component by component, since components do not meet in the matrix. A line search on the true energy ends
 //! each step, so it never rises; where no length lowers it, the diagonal is raised [NW06, section 10.3].
 //!
@@ -26,7 +25,7 @@
 //! move a part, `frames` says where it stands.
 //!
 //! Parts: `elements` are the edges, hinges and triangles, `hinge` the angle and its gradient, `face` the area's gradient and barrier,
-//! `enclosed` the volumes, `springs` the soft handles, `shape` where the vertices are and their energy, `system` the
+//! `curvature` their second derivatives, `enclosed` the volumes, `springs` the soft handles, `shape` where the vertices are and their energy, `system` the
 //! matrix, `unfolded` a quadratic energy that gives the handles' weights, `start` chooses where to begin, `blended` is the
 //! start for examples, and `descent` takes a step. A large surface has a `coarse` level that takes the `lead`; `carry`
 //! brings over what it does.
@@ -34,6 +33,7 @@
 mod blended;
 mod carry;
 mod coarse;
+mod curvature;
 mod declaration;
 mod descent;
 mod elements;
@@ -113,7 +113,7 @@ pub(crate) struct ShellsSolver {
 /// How steps are found.
 #[derive(Debug)]
 enum Descent {
-    /// By Gauss–Newton, with a factor of the whole matrix.
+    /// By Newton's method, with a factor of the whole matrix.
     Newton(Box<System>),
     /// Led by a coarse level.
     Led(Box<Led>),

@@ -35,7 +35,7 @@ options! {
         max_iterations: u32 = MAX_ITERATIONS; advanced,
     }
     beside {
-        /// With more solved vertices than this a coarse level leads; with fewer, every step is a Gauss–Newton step of
+        /// With more solved vertices than this a coarse level leads; with fewer, every step is a Newton step of
         /// the whole surface.
         led_above: usize = 10_000,
     }

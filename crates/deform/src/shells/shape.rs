@@ -205,6 +205,36 @@ impl Energy {
         self.faces_at.at(vertex)
     }
 
+    /// An edge's length, and the derivative of its energy by it.
+    pub fn edge_at(&self, shape: &Shape, place: usize) -> (f64, f64) {
+        let edge = &self.elements.edges[place];
+        let [a, b] = edge.ends.map(|local| self.position(shape, local));
+        let length = a.distance(b);
+        let stretched = length - edge.length - self.examples.length(place, &shape.weights);
+        (length, edge.weight * stretched)
+    }
+
+    /// A triangle's corners and area, and the derivative of its energy by the area.
+    pub fn face_at(&self, shape: &Shape, place: usize) -> ([DVec3; 3], f64, f64) {
+        let own = &self.elements.faces[place];
+        let corners = own.corners.map(|local| self.position(shape, local));
+        let area = face_area(corners);
+        let grown = area - own.area - self.examples.area(place, &shape.weights);
+        (corners, area, own.weight * grown + Barrier::of(own, area).slope)
+    }
+
+    /// A hinge's corners, and the derivative of its energy by the angle, which an evaluation has found.
+    pub fn hinge_at(&self, shape: &Shape, place: usize) -> ([DVec3; 4], f64) {
+        let hinge = &self.elements.hinges[place];
+        let corners = hinge.corners.map(|local| self.position(shape, local));
+        let bent = shape.angles_rad[place] - hinge.angle_rad - self.examples.angle_rad(place, &shape.weights);
+        (corners, hinge.weight * bent)
+    }
+
+    fn position(&self, shape: &Shape, local: u32) -> DVec3 {
+        self.elements.rest[local as usize] + shape.displacements[local as usize]
+    }
+
     /// What is added to a matrix' diagonal at a solved vertex: the springs, and the inertia of what nothing holds.
     pub fn on_diagonal(&self) -> impl Iterator<Item = (u32, f64)> + '_ {
         let springs = self.springs.all().iter().map(|spring| (spring.local, spring.strength));
@@ -318,24 +348,16 @@ impl Energy {
                 let mut sum = DVec3::ZERO;
                 for &entry in self.edges_at(vertex) {
                     let place = entry as usize / 2;
-                    let edge = &edges[place];
-                    let [a, b] = edge.ends.map(at);
-                    let stretched = a.distance(b) - edge.length - examples.length(place, weights);
-                    let pull = along[place] * (edge.weight * stretched);
+                    let pull = along[place] * self.edge_at(shape, place).1;
                     sum += if entry % 2 == 0 { -pull } else { pull };
                 }
                 for &entry in self.hinges_at(vertex) {
                     let (place, corner) = (entry as usize / 4, entry as usize % 4);
-                    let hinge = &hinges[place];
-                    let bent = shape.angles_rad[place] - hinge.angle_rad - examples.angle_rad(place, weights);
-                    sum += turning[place][corner] * (hinge.weight * bent);
+                    sum += turning[place][corner] * self.hinge_at(shape, place).1;
                 }
                 for &entry in self.faces_at(vertex) {
                     let (place, corner) = (entry as usize / 4, entry as usize % 4);
-                    let own = &faces[place];
-                    let area = face_area(own.corners.map(at));
-                    let grown = area - own.area - examples.area(place, weights);
-                    sum += growing[place][corner] * (own.weight * grown + Barrier::of(own, area).slope);
+                    sum += growing[place][corner] * self.face_at(shape, place).2;
                 }
                 sum.to_array()
             })
@@ -525,7 +547,7 @@ mod tests {
             let Some(Descent::Newton(system)) = &mut solver.descent else {
                 unreachable!("a small surface")
             };
-            system.factor(&solver.energy, &slopes).unwrap();
+            system.factor(&solver.energy, &rest, &slopes).unwrap();
             let length = 1e-7;
             let mut moved = rest;
             let count = solver.energy.elements.solved_count;

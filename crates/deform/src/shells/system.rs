@@ -1,16 +1,23 @@
-//! The matrix JᵀJ of the residuals, whose pattern is analysed once.
+//! The matrix of a Newton step, whose pattern is analysed once.
+//!
+//! The Hessian is P − N with two positive matrices: P is JᵀJ and the positive part of the residuals' own second
+//! derivatives, N the negative part (`curvature`). A step takes P − N if that is positive definite, which its
+//! factor tells, and otherwise P − c N with the first c of a few that is. On bent scans P alone took two to six times as
+//! many steps: it is too firm where a shape is about to buckle. A multiple of the diagonal in place of a smaller c, which
+//! resists moves of whole limbs most, took up to twice as many.
 //!
 //! A column's rows are the vertices that share an edge or a hinge with its own; those of a triangle share its edges.
 //! Volumes are left out of it: their gradients g enter the solution by the formula of Sherman and Morrison,
 //! (K + w g gᵀ)⁻¹ b = y − z w gᵀy / (1 + w gᵀz) with y = K⁻¹ b and z = K⁻¹ g, component by component.
 
-use glam::DVec3;
+use glam::DMat3;
 use pliant_mesh::Cancel;
 use rayon::prelude::*;
 
+use super::curvature::{self, FaceCurvature, Parts, Wing, outer};
 use super::elements::Elements;
 use super::leaning::Leaning;
-use super::shape::{Energy, Slopes};
+use super::shape::{Energy, Shape, Slopes};
 use crate::budget::{Budget, bytes_of, filled, reserved};
 use crate::numerical::sums::Field;
 use crate::operators::{CHUNK, place_in};
@@ -21,20 +28,33 @@ use crate::sparse::matrix::ScaledMatrix;
 /// Unknowns of a vertex.
 const DOF: usize = 3;
 
-/// What is added to the unit diagonal: the least for rounding, more where no length of a step lowers the energy or the
-/// matrix is singular.
-const DAMPINGS: [f64; 5] = [1e-13, 1e-10, 1e-7, 1e-4, 1e-2];
+/// Matrices from the exact to the firmest: how much of N counts, and what is added to the unit diagonal. A later one is
+/// taken where an earlier one is not positive definite or no length of its step lowers the energy.
+const RUNGS: [(f64, f64); 8] = [
+    (1.0, 1e-13),
+    (0.95, 1e-13),
+    (0.8, 1e-13),
+    (0.0, 1e-13),
+    (0.0, 1e-10),
+    (0.0, 1e-7),
+    (0.0, 1e-4),
+    (0.0, 1e-2),
+];
+
+/// The first rung that is positive definite but for rounding.
+const SAFE: usize = 3;
 
 /// The matrix and its factor.
 #[derive(Debug)]
 pub(super) struct System {
     pattern: Pattern,
+    /// Its values are those of a combination of the two parts.
     matrix: ScaledMatrix,
+    positive: Vec<f64>,
+    negative: Vec<f64>,
     factor: Factor,
-    /// The place in [`DAMPINGS`].
-    damping: usize,
-    /// Steps with the present factor, or none if there is none.
-    age: Option<u32>,
+    /// The place in [`RUNGS`].
+    rung: usize,
     /// What the free weights of examples change of the inverse, as of the present factor.
     leaning: Option<Leaning>,
 }
@@ -136,7 +156,10 @@ impl System {
     /// # Errors
     /// It takes more than the budget, or more memory than there is.
     pub fn of(pattern: &Pattern, ends: &[u32], budget: Budget) -> Result<(Self, Budget), FactorError> {
-        let bytes = bytes_of(pattern.rows.len(), DOF * DOF * (size_of::<f64>() + size_of::<u32>()));
+        let bytes = bytes_of(
+            pattern.rows.len(),
+            DOF * DOF * (3 * size_of::<f64>() + size_of::<u32>()),
+        );
         let budget = budget.without(bytes)?;
         let matrix = pattern.matrix(DOF)?;
         let ends: Vec<u32> = ends.iter().map(|end| DOF as u32 * end).collect();
@@ -144,10 +167,11 @@ impl System {
         let budget = budget.without(bytes_of(factor.stored(), size_of::<f64>()))?;
         let system = Self {
             pattern: pattern.clone(),
+            positive: filled(0.0, matrix.lower_values.len())?,
+            negative: filled(0.0, matrix.lower_values.len())?,
             matrix,
             factor,
-            damping: 0,
-            age: None,
+            rung: SAFE,
             leaning: None,
         };
         Ok((system, budget))
@@ -163,50 +187,34 @@ impl System {
         self.factor.work()
     }
 
-    /// The next step factors, as little damped as possible.
+    /// The next step takes P: behind a jump of the handles nothing nearer to the Hessian is positive definite.
     pub fn undamp(&mut self) {
-        self.damping = 0;
-        self.age = None;
+        self.rung = SAFE;
     }
 
-    /// The next step factors, damped more. Whether it can be.
+    /// The next step takes a firmer matrix. Whether there is one.
     pub fn damp(&mut self) -> bool {
-        self.damping += 1;
-        self.age = None;
-        self.damping < DAMPINGS.len()
+        self.rung += 1;
+        self.rung < RUNGS.len()
     }
 
-    /// A step went well: the next factor is damped less.
+    /// A step went well: the next one tries a matrix nearer to the Hessian.
     pub fn relax(&mut self) {
-        if self.damping > 0 {
-            self.damping -= 1;
-            self.age = None;
-        }
+        self.rung = self.rung.saturating_sub(1);
     }
 
-    /// The next step factors.
-    pub fn renew(&mut self) {
-        self.age = None;
-    }
-
-    /// Whether a factor is due, which has served for so many steps or is missing; counts a step.
-    pub fn is_due(&mut self, steps: u32) -> bool {
-        let age = self.age.filter(|age| *age < steps);
-        self.age = Some(age.unwrap_or(0) + 1);
-        age.is_none()
-    }
-
-    /// Fills in the matrix with these gradients and factors it.
+    /// Fills in the matrix at an evaluated shape with its gradients, and factors it.
     ///
     /// # Errors
-    /// It is not positive definite, however much it is damped, or memory is short.
-    pub fn factor(&mut self, energy: &Energy, slopes: &Slopes) -> Result<(), FactorError> {
-        self.assemble(energy, slopes);
+    /// It is not positive definite on any rung, or memory is short.
+    pub fn factor(&mut self, energy: &Energy, shape: &Shape, slopes: &Slopes) -> Result<(), FactorError> {
+        self.assemble(energy, shape, slopes);
         let cancel = Cancel::new();
         loop {
-            let damping = DAMPINGS[self.damping.min(DAMPINGS.len() - 1)];
+            let (share, damping) = RUNGS[self.rung.min(RUNGS.len() - 1)];
+            self.combine(energy, share);
             match self.factor.fill(&self.matrix, damping, &cancel) {
-                Err(FactorError::Pivot(_)) if self.damping + 1 < DAMPINGS.len() => self.damping += 1,
+                Err(FactorError::Pivot(_)) if self.rung + 1 < RUNGS.len() => self.rung += 1,
                 Err(error) => return Err(error),
                 Ok(()) => break,
             }
@@ -215,44 +223,63 @@ impl System {
         Ok(())
     }
 
-    fn assemble(&mut self, energy: &Energy, slopes: &Slopes) {
-        let Self { pattern, matrix, .. } = self;
+    /// Makes the matrix P less a share of N, scaled.
+    fn combine(&mut self, energy: &Energy, share: f64) {
+        let parts = self.positive.par_iter().zip(&self.negative);
+        self.matrix
+            .lower_values
+            .par_iter_mut()
+            .zip(parts)
+            .with_min_len(CHUNK)
+            .for_each(|(value, (positive, negative))| *value = positive - share * negative);
+        for (local, more) in energy.on_diagonal() {
+            for k in 0..DOF {
+                let diagonal = self.matrix.lower_offsets[DOF * local as usize + k];
+                self.matrix.lower_values[diagonal as usize] += more;
+            }
+        }
+        scale(&mut self.matrix);
+    }
+
+    /// Finds P and N.
+    fn assemble(&mut self, energy: &Energy, shape: &Shape, slopes: &Slopes) {
+        let Self {
+            pattern,
+            matrix,
+            positive,
+            negative,
+            ..
+        } = self;
         let count = pattern.count();
         let mut chunks = Vec::with_capacity(count / CHUNK + 1);
-        let mut rest = matrix.lower_values.as_mut_slice();
+        let mut rest = [positive.as_mut_slice(), negative.as_mut_slice()];
         for first in (0..count).step_by(CHUNK) {
             let end = (first + CHUNK).min(count);
             let entries = matrix.lower_offsets[DOF * end] - matrix.lower_offsets[DOF * first];
-            let (own, tail) = rest.split_at_mut(entries as usize);
+            let [own, tail] = split(rest, entries as usize);
             chunks.push((first..end, own));
             rest = tail;
         }
         chunks.into_par_iter().for_each(|(vertices, mut values)| {
-            let mut blocks: Vec<[[f64; DOF]; DOF]> = Vec::new();
+            let mut blocks: Vec<Parts> = Vec::new();
             for vertex in vertices {
                 let rows = pattern.rows(vertex);
                 blocks.clear();
-                blocks.resize(rows.len(), [[0.0; DOF]; DOF]);
-                add_blocks(energy, slopes, vertex, rows, &mut blocks);
+                blocks.resize(rows.len(), curvature::NONE);
+                add_blocks(energy, shape, slopes, vertex, rows, &mut blocks);
                 for k in 0..DOF {
-                    let len = DOF * rows.len() - k;
-                    let (column, tail) = values.split_at_mut(len);
+                    let [columns, tail] = split(values, DOF * rows.len() - k);
                     values = tail;
-                    let entries = blocks.iter().flatten().skip(k).map(|row| row[k]);
-                    column.iter_mut().zip(entries).for_each(|(value, entry)| *value = entry);
+                    for (part, column) in columns.into_iter().enumerate() {
+                        let entries = blocks.iter().flat_map(|own| own[part].col(k).to_array()).skip(k);
+                        column.iter_mut().zip(entries).for_each(|(value, entry)| *value = entry);
+                    }
                 }
             }
         });
-        for (local, more) in energy.on_diagonal() {
-            for k in 0..DOF {
-                let diagonal = matrix.lower_offsets[DOF * local as usize + k];
-                matrix.lower_values[diagonal as usize] += more;
-            }
-        }
-        scale(matrix);
     }
 
-    /// x ← (JᵀJ)⁻¹ x, with the volumes of `slopes` and the free weights as of the factor.
+    /// x ← H⁻¹ x for the factored matrix H, with the volumes of `slopes` and the free weights as of the factor.
     pub fn apply(&self, energy: &Energy, slopes: &Slopes, x: &mut [[f64; 3]]) {
         let right = self.leaning.as_ref().map(|_| x.to_vec());
         self.apply_residuals(energy, slopes, x);
@@ -304,40 +331,57 @@ impl System {
     }
 }
 
-/// Adds w ∇ᵣr ∇_vr ᵀ of all residuals r around a vertex v to the blocks of the `rows`.
-fn add_blocks(energy: &Energy, slopes: &Slopes, vertex: usize, rows: &[u32], blocks: &mut [[[f64; DOF]; DOF]]) {
-    let mut add = |row: u32, weight: f64, of_row: DVec3, own: DVec3| {
+/// Both slices, cut at a place.
+fn split(both: [&mut [f64]; 2], at: usize) -> [[&mut [f64]; 2]; 2] {
+    let [(a, b), (c, d)] = both.map(|slice| slice.split_at_mut(at));
+    [[a, c], [b, d]]
+}
+
+/// Adds the second derivatives of all residuals around a vertex to the blocks of the `rows` in its column.
+fn add_blocks(energy: &Energy, shape: &Shape, slopes: &Slopes, vertex: usize, rows: &[u32], blocks: &mut [Parts]) {
+    let mut add = |row: u32, block: Parts| {
         if row < vertex as u32 {
             return;
         }
         if let Some(place) = place_in(rows, &row) {
-            let own = (own * weight).to_array();
-            for (sums, factor) in blocks[place].iter_mut().zip(of_row.to_array()) {
-                sums.iter_mut().zip(own).for_each(|(sum, own)| *sum += factor * own);
-            }
+            blocks[place].iter_mut().zip(block).for_each(|(sum, own)| *sum += own);
         }
     };
+    let elements = &energy.elements;
     for &entry in energy.edges_at(vertex) {
         let (place, end) = (entry as usize / 2, entry as usize % 2);
-        let edge = &energy.elements.edges[place];
-        let along = slopes.edges[place];
-        add(vertex as u32, edge.weight, along, along);
-        add(edge.ends[1 - end], edge.weight, -along, along);
+        let (edge, along) = (&elements.edges[place], slopes.edges[place]);
+        let (length, pull) = energy.edge_at(shape, place);
+        let [mut positive, negative] = curvature::of_edge(along, length, pull);
+        positive += outer(along, along) * edge.weight;
+        add(vertex as u32, [positive, negative]);
+        add(edge.ends[1 - end], [-positive, -negative]);
     }
     for &entry in energy.faces_at(vertex) {
         let (place, corner) = (entry as usize / 4, entry as usize % 4);
-        let corners = &energy.elements.faces[place].corners;
         let (weight, slopes) = (slopes.face_weights[place], &slopes.faces[place]);
-        for (&row, &slope) in corners.iter().zip(slopes) {
-            add(row, weight, slope, slopes[corner]);
+        let (corners, area, pull) = energy.face_at(shape, place);
+        let curvature = FaceCurvature::of(corners, area, pull);
+        for (row, &local) in elements.faces[place].corners.iter().enumerate() {
+            let of_both = [slopes[row], slopes[corner]];
+            let [positive, negative] = curvature.block([row, corner], of_both);
+            add(local, [positive + outer(of_both[0], of_both[1] * weight), negative]);
         }
     }
     for &entry in energy.hinges_at(vertex) {
         let (place, corner) = (entry as usize / 4, entry as usize % 4);
-        let hinge = &energy.elements.hinges[place];
-        let slopes = &slopes.hinges[place];
+        let (hinge, slopes) = (&elements.hinges[place], &slopes.hinges[place]);
         for (&row, &slope) in hinge.corners.iter().zip(slopes) {
-            add(row, hinge.weight, slope, slopes[corner]);
+            add(row, [outer(slope, slopes[corner] * hinge.weight), DMat3::ZERO]);
+        }
+        let (corners, moment) = energy.hinge_at(shape, place);
+        for (wing, own) in Wing::both(corners, moment).iter().zip([[0, 1, 2], [0, 1, 3]]) {
+            let Some(column) = own.iter().position(|&k| k == corner) else {
+                continue;
+            };
+            for (row, &k) in own.iter().enumerate() {
+                add(hinge.corners[k], wing.block(row, column));
+            }
         }
     }
 }
