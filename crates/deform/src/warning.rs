@@ -10,7 +10,12 @@ pub struct Warning {
     sentence: String,
     /// The handle that it is about, and which bytes of the sentence name it.
     handle: Option<(usize, Range<usize>)>,
+    /// Of each component that it says nothing holds: its handles, and how many of its vertices each has.
+    unheld: Vec<Vec<(usize, usize)>>,
 }
+
+/// So many vertices that have places hold a component.
+const HOLDING: usize = 3;
 
 impl Warning {
     /// What `word` makes of the handle's designation, which it uses once.
@@ -21,7 +26,30 @@ impl Warning {
         Self {
             handle: start.map(|start| (handle, start..start + designation.len())),
             sentence,
+            unheld: Vec::new(),
         }
+    }
+
+    /// A sentence on components that nothing holds: each with its handles, and how many of its vertices each has.
+    pub(crate) fn of_unheld(sentence: String, unheld: Vec<Vec<(usize, usize)>>) -> Self {
+        Self {
+            sentence,
+            handle: None,
+            unheld,
+        }
+    }
+
+    /// Whether it says that nothing holds a component that handles move. Vertices with places of their own hold one, so
+    /// it may be void once there are targets.
+    pub fn is_of_unheld(&self) -> bool {
+        !self.unheld.is_empty()
+    }
+
+    /// Whether it is about components alone that are held, because their vertices have places by the handles `placed`.
+    pub(crate) fn is_void(&self, placed: &[bool]) -> bool {
+        let is_placed = |&&(handle, _): &&(usize, usize)| placed.get(handle).is_some_and(|placed| *placed);
+        let count = |handles: &Vec<(usize, usize)>| handles.iter().filter(is_placed).map(|(_, count)| count).sum();
+        self.is_of_unheld() && self.unheld.iter().map(count).all(|count: usize| count >= HOLDING)
     }
 
     /// The number of the handle that it is about, if it is about one.
@@ -41,7 +69,11 @@ impl Warning {
 
 impl From<String> for Warning {
     fn from(sentence: String) -> Self {
-        Self { sentence, handle: None }
+        Self {
+            sentence,
+            handle: None,
+            unheld: Vec::new(),
+        }
     }
 }
 
