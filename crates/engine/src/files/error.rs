@@ -31,6 +31,16 @@ impl FileError {
         }
     }
 
+    /// The file that it is about.
+    pub fn file(&self) -> &Path {
+        &self.file
+    }
+
+    /// What kind of error the system told.
+    pub fn kind(&self) -> ErrorKind {
+        self.source.kind()
+    }
+
     /// What the system said, with the remedy.
     pub fn reason(&self) -> String {
         reason(&self.source)
