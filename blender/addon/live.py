@@ -66,6 +66,8 @@ class Session:
         mesh.loop_triangles.foreach_get("vertices", corners.ravel())
         self.places = {handle.group: place_of(handle) for handle in obj.pliant.handles}
         self.bound = pliant.bind(others, corners, method=method_of(obj.pliant), **region_of(obj))
+        # With transforms, here of rest, its warnings say what nothing holds; positions could hold it.
+        self.bound.step({}, iterations=1)
         self.shape = others.copy()
         self.counts = counts(mesh)
         self.seen = None

@@ -102,7 +102,55 @@ fn check(array: &Bound<'_, PyAny>, place: &str, columns: usize, kinds: &str, wha
     )))
 }
 
+/// A sentence on positions that are not finite, if there are some: what uses them can't be solved for.
+pub fn not_finite(positions: &[DVec3], place: &str) -> Option<String> {
+    let mut rows = (0..).zip(positions).filter(|(_, position)| !position.is_finite());
+    let (first, DVec3 { x, y, z }) = rows.next()?;
+    let stays = match 1 + rows.count() {
+        1 => ": it stays as it is, without the triangles that use it".to_owned(),
+        count => {
+            format!(", the first of {count} such rows: they stay as they are, without the triangles that use them")
+        }
+    };
+    Some(format!("{place}[{first}] is not finite ({x}, {y}, {z}){stays}"))
+}
+
+/// Refuses positions that are not finite.
+///
+/// # Errors
+/// `ValueError` naming `place` and the first such row.
+pub fn check_finite(positions: &[DVec3], place: &str) -> PyResult<()> {
+    match positions.iter().position(|position| !position.is_finite()) {
+        None => Ok(()),
+        Some(row) => {
+            let DVec3 { x, y, z } = positions[row];
+            Err(refused(format!(
+                "{place}[{row}] is not finite ({x}, {y}, {z}): give finite positions"
+            )))
+        }
+    }
+}
+
+/// An array of the shape `[p, 2]` of whole numbers.
+///
+/// # Errors
+/// `ValueError` naming `place`, for another shape or other elements.
+pub fn pairs(any: &Bound<'_, PyAny>, place: &str) -> PyResult<Vec<[i64; 2]>> {
+    let array = array(any, place)?;
+    if shape(&array)?.contains(&0) {
+        return Ok(Vec::new());
+    }
+    check(&array, place, 2, "iu", "whole numbers")?;
+    let array = of_type(&array, "int64")?;
+    let numbers: PyReadonlyArray2<'_, i64> = array.extract()?;
+    let rows = numbers.as_array();
+    Ok(rows.rows().into_iter().map(|row| [row[0], row[1]]).collect())
+}
+
 /// Numbers of vertices, as they stand: a flat array of them, or a mask of `vertex_count` switches.
+///
+/// Whole numbers are a mask, too, where there is one for each vertex and all are 0 or 1: as numbers of vertices they would
+/// name two vertices again and again. Of up to two vertices they are numbers.
 ///
 /// # Errors
 /// `ValueError` naming `place`.
@@ -125,13 +173,26 @@ pub fn numbers(any: &Bound<'_, PyAny>, place: &str, vertex_count: usize) -> PyRe
         ([_], 'i' | 'u') => {
             let array = of_type(&array, "int64")?;
             let numbers: PyReadonlyArray1<'_, i64> = array.extract()?;
-            Ok(numbers.as_array().to_vec())
+            let numbers = numbers.as_array();
+            let is_mask =
+                numbers.len() == vertex_count && vertex_count > 2 && numbers.iter().all(|n| matches!(n, 0 | 1));
+            if is_mask {
+                let selected = numbers.iter().zip(0..).filter(|(is, _)| **is == 1);
+                return Ok(selected.map(|(_, number)| number).collect());
+            }
+            Ok(numbers.to_vec())
         }
         _ => Err(refused(format!(
             "{place} is an array of the shape {shape:?} and type {}: give numbers of vertices, a mask, or a selector",
             array.getattr("dtype")?
         ))),
     }
+}
+
+/// Whether a flat list or array has names among its elements, such as "rigid".
+pub fn has_names(any: &Bound<'_, PyAny>) -> PyResult<bool> {
+    let array = array(any, "")?;
+    Ok("UO".contains(kind(&array)?) && shape(&array)?.len() == 1)
 }
 
 /// Real numbers in any shape, in C order, and the shape.

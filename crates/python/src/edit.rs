@@ -1,6 +1,6 @@
 //! Arguments as an edit: what `bind` takes are the edit format's members, with arrays of vertices as selections.
 
-use pliant_deform::Method;
+use pliant_deform::Arap;
 use pliant_editor::{EDIT_VERSION, EditFile};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList, PyString, PyTuple};
@@ -28,16 +28,26 @@ pub struct Arguments<'py> {
     pub loose: Option<Bound<'py, PyAny>>,
 }
 
+/// What they describe.
+pub struct Edit {
+    /// As the edit format has it.
+    pub file: EditFile,
+    /// Each handle's vertices in the order in which an array named them; `None` where a selector did.
+    pub orders: Vec<Option<Vec<i64>>>,
+}
+
 impl Arguments<'_> {
     /// The edit that they describe, on a mesh of `vertex_count` vertices.
     ///
     /// # Errors
     /// `ValueError`, as the edit format refuses.
-    pub fn edit(&self, vertex_count: usize) -> PyResult<EditFile> {
+    pub fn edit(&self, vertex_count: usize) -> PyResult<Edit> {
         let mut members = Map::new();
+        let mut orders = Vec::new();
         members.insert("version".to_owned(), EDIT_VERSION.into());
         let method = match &self.method {
-            None => json!({ "name": Method::default().name() }),
+            // Its options follow.
+            None => json!({ "name": "arap" }),
             Some(method) => match method.cast::<PyString>() {
                 Ok(name) => json!({ "name": name.to_cow()? }),
                 Err(_) => value(method, "method")?,
@@ -50,7 +60,10 @@ impl Arguments<'_> {
             }
         }
         if let Some(handles) = &self.handles {
-            members.insert("handles".to_owned(), handle_entries(handles, vertex_count)?);
+            members.insert(
+                "handles".to_owned(),
+                handle_entries(handles, vertex_count, &mut orders)?,
+            );
         }
         for (name, field) in [("stiffness", &self.stiffness), ("continuity", &self.continuity)] {
             if let Some(field) = field {
@@ -61,8 +74,11 @@ impl Arguments<'_> {
             members.insert("loose".to_owned(), value(loose, "loose")?);
         }
         let mut edit = EditFile::from_value(&Value::Object(members)).map_err(refused)?;
+        if self.method.is_none() {
+            edit.method = Arap::first_choice().into();
+        }
         refuse_files(&mut edit)?;
-        Ok(edit)
+        Ok(Edit { file: edit, orders })
     }
 }
 
@@ -83,27 +99,41 @@ fn refuse_files(edit: &mut EditFile) -> PyResult<()> {
 
 /// A selection: the edit format's selector, or an array of vertices or of switches.
 fn selector(any: &Bound<'_, PyAny>, place: &str, vertex_count: usize) -> PyResult<Value> {
-    if any.is_instance_of::<PyString>() || any.is_instance_of::<PyDict>() {
-        return value(any, place);
-    }
-    Ok(json!({ "vertices": arrays::numbers(any, place, vertex_count)? }))
+    Ok(match numbers(any, place, vertex_count)? {
+        Some(numbers) => json!({ "vertices": numbers }),
+        None => value(any, place)?,
+    })
 }
 
-/// Handles by name, or in a row.
-fn handle_entries(handles: &Bound<'_, PyAny>, vertex_count: usize) -> PyResult<Value> {
+/// The vertices that an array names, in its order; `None` for a selector.
+fn numbers(any: &Bound<'_, PyAny>, place: &str, vertex_count: usize) -> PyResult<Option<Vec<i64>>> {
+    if any.is_instance_of::<PyString>() || any.is_instance_of::<PyDict>() {
+        return Ok(None);
+    }
+    arrays::numbers(any, place, vertex_count).map(Some)
+}
+
+/// Handles by name, or in a row; adds the order of each one's vertices.
+fn handle_entries(
+    handles: &Bound<'_, PyAny>,
+    vertex_count: usize,
+    orders: &mut Vec<Option<Vec<i64>>>,
+) -> PyResult<Value> {
     let mut entries = Vec::new();
     if let Ok(named) = handles.cast::<PyDict>() {
         for (name, handle) in named {
             let name: String = name
                 .extract()
                 .map_err(|_| refused(format!("handles has the key {name}: a handle's name is a string")))?;
-            let mut entry = handle_entry(&handle, &format!("handles[{name:?}]"), vertex_count)?;
+            let (mut entry, order) = handle_entry(&handle, &format!("handles[{name:?}]"), vertex_count)?;
+            orders.push(order);
             entry.insert("name".to_owned(), name.into());
             entries.push(Value::Object(entry));
         }
     } else if handles.is_instance_of::<PyList>() || handles.is_instance_of::<PyTuple>() {
         for (number, handle) in handles.try_iter()?.enumerate() {
-            let entry = handle_entry(&handle?, &format!("handles[{number}]"), vertex_count)?;
+            let (entry, order) = handle_entry(&handle?, &format!("handles[{number}]"), vertex_count)?;
+            orders.push(order);
             entries.push(Value::Object(entry));
         }
     } else {
@@ -115,9 +145,13 @@ fn handle_entries(handles: &Bound<'_, PyAny>, vertex_count: usize) -> PyResult<V
     Ok(Value::Array(entries))
 }
 
+/// A handle's members, and its vertices where an array names them.
+type HandleEntry = (Map<String, Value>, Option<Vec<i64>>);
+
 /// A selection, or a dict with `select` and what else a handle has.
-fn handle_entry(handle: &Bound<'_, PyAny>, place: &str, vertex_count: usize) -> PyResult<Map<String, Value>> {
+fn handle_entry(handle: &Bound<'_, PyAny>, place: &str, vertex_count: usize) -> PyResult<HandleEntry> {
     let mut entry = Map::new();
+    let mut order = None;
     match handle.cast::<PyDict>() {
         Ok(members) if members.contains("select")? => {
             for (name, member) in members {
@@ -126,7 +160,10 @@ fn handle_entry(handle: &Bound<'_, PyAny>, place: &str, vertex_count: usize) -> 
                     .map_err(|_| refused(format!("{place} has the member {name}: names are strings")))?;
                 let at = format!("{place}.{name}");
                 let member = match &*name {
-                    "select" => selector(&member, &at, vertex_count)?,
+                    "select" => {
+                        order = numbers(&member, &at, vertex_count)?;
+                        selector(&member, &at, vertex_count)?
+                    }
                     "transform" => {
                         return Err(refused(format!(
                             "{place} has a `transform`: leave it out, and give it to `step`"
@@ -138,10 +175,11 @@ fn handle_entry(handle: &Bound<'_, PyAny>, place: &str, vertex_count: usize) -> 
             }
         }
         _ => {
+            order = numbers(handle, place, vertex_count)?;
             entry.insert("select".to_owned(), selector(handle, place, vertex_count)?);
         }
     }
-    Ok(entry)
+    Ok((entry, order))
 }
 
 /// The edit format's list or number, or an array with a value for each vertex.
@@ -152,6 +190,12 @@ fn field_entries(field: &Bound<'_, PyAny>, place: &str) -> PyResult<Value> {
     };
     if is_list_of_entries {
         return value(field, place);
+    }
+    if place == "stiffness" && field.cast::<PyString>().is_ok_and(|name| name == "rigid") {
+        return Ok(json!([{ "select": "all", "value": "rigid" }]));
+    }
+    if place == "stiffness" && arrays::has_names(field)? {
+        return Ok(json!([{ "per_vertex": value(field, place)? }]));
     }
     let (shape, numbers) = arrays::reals(field, place)?;
     match shape[..] {

@@ -11,14 +11,22 @@
 
 mod arrays;
 mod bound;
+mod compare;
+mod compared;
 mod edit;
 mod interruptible;
 mod mesh;
 mod methods;
+mod origin;
 mod pool;
 mod refusal;
-mod transforms;
+mod rows;
+mod shape;
+mod targets;
+mod transfer;
 mod values;
+mod warned;
+mod welded;
 
 use pyo3::pymodule;
 
@@ -27,9 +35,16 @@ mod native {
     #[pymodule_export]
     use super::bound::{BoundMesh, bind};
     #[pymodule_export]
+    use super::compare::compare;
+    #[pymodule_export]
+    use super::compared::{diff, distortion};
+    #[pymodule_export]
     use super::mesh::{Mesh, load, save};
     #[pymodule_export]
     use super::methods::methods;
+
+    #[pymodule_export]
+    use super::transfer::transfer;
 
     #[pymodule_export]
     #[expect(non_upper_case_globals, reason = "Python's name for it")]

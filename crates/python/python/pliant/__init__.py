@@ -1,8 +1,8 @@
 """Bends meshes: ARAP, thin plates, coupled prisms, shells, cages, lattices and more.
 
 >>> import pliant
->>> bound = pliant.bind(vertices, faces, handles={"tip": tip}, fixed=foot, method="arap")
->>> bent = bound.step({"tip": matrix})
+>>> bound = pliant.bind(vertices, faces, handles={"tip": tip}, fixed=foot)
+>>> bent = bound.step({"tip": positions})
 
 The methods, their options and the selectors are those of Pliant's edit format; `methods()` lists them. A refusal is a
 `ValueError` (an `OSError` for files) of one sentence that names the culprit and the remedy. Long calls let other
@@ -10,6 +10,30 @@ threads run and stop at Ctrl-C. Results are the same bits whatever the number of
 processors or what the environment variable `RAYON_NUM_THREADS` says.
 """
 
-from ._native import Bound, Mesh, __version__, bind, load, methods, save
+from ._native import (
+    Bound,
+    Mesh,
+    __version__,
+    bind,
+    compare,
+    diff,
+    distortion,
+    load,
+    methods,
+    save,
+    transfer,
+)
 
-__all__ = ["Bound", "Mesh", "__version__", "bind", "load", "methods", "save"]
+__all__ = [
+    "Bound",
+    "Mesh",
+    "__version__",
+    "bind",
+    "compare",
+    "diff",
+    "distortion",
+    "load",
+    "methods",
+    "save",
+    "transfer",
+]

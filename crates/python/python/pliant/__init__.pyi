@@ -31,7 +31,9 @@ Method = Union[MethodName, Mapping[str, Any]]
 
 Selection = Union[npt.ArrayLike, Literal["all", "none"], Mapping[str, Any]]
 """Numbers of vertices, a mask with a value for each vertex, or a selector of the edit format: `"all"`,
-`{"sphere": {"center": [0, 0, 0], "radius": 1}}` and so on. A vertex takes along those in the same place."""
+`{"sphere": {"center": [0, 0, 0], "radius": 1}}` and so on. A vertex takes along those in the same place.
+
+A mask holds booleans, or whole numbers that are all 0 or 1 and as many as there are vertices (more than two)."""
 
 class HandleEntry(TypedDict, total=False):
     """A handle with more than its vertices."""
@@ -47,18 +49,27 @@ Handles = Union[Mapping[str, Union[Selection, HandleEntry]], Sequence[Union[Sele
 """Handles by name, or in a row; those in a row are called "handle 1", "handle 2", ..."""
 
 Field = Union[npt.ArrayLike, Sequence[Mapping[str, Any]]]
-"""One number, an array with one for each vertex, or the edit format's list of selections and values."""
+"""One number, an array with one for each vertex, or the edit format's list of selections and values. A stiffness may be
+"rigid" in place of a number, which is infinity."""
 
 Loose = Union[Literal["follow", "bend", "rest"], Sequence[Mapping[str, Any]]]
 """What parts do that nothing holds, or the edit format's list of selections and what they do."""
 
 Transform = Union[npt.ArrayLike, tuple[npt.ArrayLike, npt.ArrayLike], Mapping[str, Any]]
-"""A map of world positions from rest: a 4x4 matrix whose last row is 0, 0, 0, 1; a pair (R, t) of a 3x3 matrix and a
-translation, which takes p to R p + t; or the edit format's dict of `translation`, `rotation`, `scale` and `pivot`."""
+"""A map of world positions from rest: a 3x4 matrix; a 4x4 matrix whose last row is 0, 0, 0, 1; a translation of the
+shape (3,) or (3, 1); a pair (R, t) of a 3x3 matrix and a translation, which takes p to R p + t; or the edit format's
+dict of `translation`, `rotation`, `scale` and `pivot`."""
 
-Transforms = Union[npt.ArrayLike, Sequence[Transform], Mapping[str, Transform], Transform]
-"""One transform for each handle: an array of the shape (handles, 4, 4), a list, or a dict by names, where a handle that
-is not named is at rest. The only handle's may stand alone."""
+Positions = npt.ArrayLike
+"""World positions of a handle's vertices, shape (k, 3): a row for each, in the order in which an array named them at
+`bind`, or ascending for a mask or a selector."""
+
+Transforms = Union[Transform, Positions, Sequence[Any], Mapping[str, Union[Transform, Positions]]]
+"""One transform, or positions, for each handle: an array of the shape (handles, 4, 4), a list, or a dict by names,
+where a handle that is not named is at rest. The only handle's may stand alone."""
+
+Shape = Union["Mesh", tuple[npt.ArrayLike, npt.ArrayLike]]
+"""A mesh from a file, or a pair (vertices, faces) as `bind` takes them."""
 
 Out = TypeVar("Out", npt.NDArray[np.float64], npt.NDArray[np.float32])
 
@@ -103,15 +114,18 @@ def bind(
 ) -> Bound:
     """Binds a mesh: factors and solves everything that does not depend on where the handles go.
 
-    :param vertices: positions, shape (n, 3).
+    :param vertices: positions, shape (n, 3). Rows that are not finite stay as they are, with a warning.
     :param faces: triangles, whole numbers, shape (m, 3); none for points alone, which methods that bend space take.
-    :param handles: what moves; handles win over `fixed` and `region`.
-    :param fixed: what is held still; by default nothing.
-    :param region: what may move; the rest is held still. By default everything.
-    :param stiffness: 0.001 to 1000; by default 1.
-    :param continuity: how the surface joins what is held, 0 to 2; by default 2.
+    :param handles: what moves, by name or in a row; handles win over `fixed` and `region`. Each is numbers of vertices,
+        a mask of the shape (n,), a selector, or a dict with `select` and `soft` or `continuity`.
+    :param fixed: what is held still: numbers of vertices, a mask or a selector; by default nothing.
+    :param region: what may move, likewise; the rest is held still. By default everything.
+    :param stiffness: one number or one for each vertex, shape (n,), from 0.001 to 1000; "rigid", or infinity, moves as
+        one body. By default 1.
+    :param continuity: how the surface joins what is held, one number or one for each vertex, 0 to 2; by default 2.
     :param loose: what parts do that nothing holds: "follow" (the default), "bend" or "rest".
-    :param method: by default "bilaplacian" with its defaults.
+    :param method: a name, or a dict of its `name` and options. By default {"name": "arap", "energy": "smooth"}, as in
+        Pliant's window. A name alone has the edit format's defaults, for "arap" the energy "spokes-and-rims".
     :param weld: the distance within which vertices are joined, 0 for equal ones alone. Without it, the distance follows
         from the mesh's edges.
     :raises ValueError: one sentence that names the culprit and the remedy.
@@ -122,7 +136,7 @@ def load(path: str | os.PathLike[str], *, weld: float | None = None) -> Mesh:
 
     :param weld: the distance within which vertices are joined, in the file's units; 0 joins equal ones alone. Without
         it, the distance follows from the mesh's edges and from how the file rounds its numbers.
-    :raises OSError: if the file can't be read.
+    :raises OSError: if the file can't be read: `FileNotFoundError` if there is none, with its `filename`.
     :raises ValueError: if it is no such file.
     """
 
@@ -137,6 +151,116 @@ def save(path: str | os.PathLike[str], mesh: Mesh, vertices: npt.ArrayLike | Non
     :return: what a person should know, as sentences.
     :raises OSError: if the file can't be written.
     :raises ValueError: if the format can't hold it.
+    """
+
+class Distortion(TypedDict):
+    """How much a shape is distorted, as in the command line's report."""
+
+    edge_stretch_mean: float
+    """The mean over the edges of the larger of new by old length and old by new: 1 for a rigid motion."""
+    edge_stretch_max: float
+    """The largest of them; infinite where an edge shrank to a point."""
+    flipped_faces: int
+    """Faces that turned over against the faces around them."""
+    volume_ratio: float
+    """The enclosed volume, new by old; 1 where the surface encloses none."""
+
+def distortion(mesh: Shape, bent: npt.ArrayLike) -> Distortion:
+    """How much a mesh is distorted by moving its vertices: the figures of the command line's report.
+
+    :param mesh: the mesh at rest: what `load` returned, or a pair (vertices, faces).
+    :param bent: its vertices, moved; shape (n, 3).
+    :return: `edge_stretch_mean` and `edge_stretch_max` (1 for a rigid motion), `flipped_faces` and `volume_ratio`.
+    :raises ValueError: one sentence that names the culprit and the remedy.
+    """
+
+class DifferencePlace(TypedDict):
+    """Where two files differ, and how."""
+
+    place: str
+    """Where: "mesh 0, primitive 1, POSITION"."""
+    sentence: str
+    """What differs, in words."""
+
+class Difference(DifferencePlace, total=False):
+    """Something that differs between two files. Where it is numbers of a list it says more."""
+
+    elements: list[int]
+    """The elements that differ, ascending."""
+    of: int
+    """How many elements there are."""
+    largest: float
+    """The largest difference of two numbers; infinite if one of them is not finite."""
+
+def diff(first: str | os.PathLike[str] | Mesh, second: str | os.PathLike[str] | Mesh) -> list[Difference]:
+    """What differs between two files, as `pliant diff --json` tells it; an empty list if they hold the same.
+
+    :param first: a path, or what `load` returned: the file as it was read.
+    :param second: likewise.
+    :return: dicts with `place` and `sentence`; where numbers of a list differ also with `elements`, `of` and `largest`.
+    :raises OSError: if a file can't be read.
+    """
+
+def transfer(
+    source: Shape, pose: Mesh | npt.ArrayLike, target: Shape, *, correspondences: npt.ArrayLike | None = None
+) -> npt.NDArray[np.float64]:
+    """Puts a pose of one mesh onto another, as `pliant transfer` does.
+
+    :param source: the mesh that has the pose, at rest: what `load` returned, or a pair (vertices, faces).
+    :param pose: the same vertices in the pose: what `load` returned, or positions of the shape (n, 3).
+    :param target: the mesh that is to take it on: what `load` returned, or a pair (vertices, faces).
+    :param correspondences: pairs of a triangle of `source` and the one of `target` that belongs to it, whole numbers,
+        shape (p, 2). Left out, both have the same triangles.
+    :return: the target's vertices in the pose, shape (k, 3); `save` writes them into its file. What a person should
+        know is a `UserWarning`.
+    :raises ValueError: one sentence that names the culprit and the remedy.
+    """
+
+class Outcome(TypedDict, total=False):
+    """What one method makes of an edit: its shape and figures, or `refused` alone."""
+
+    vertices: npt.NDArray[np.float64]
+    """The positions of all vertices, shape (n, 3)."""
+    distortion: Distortion
+    detail_error: float
+    """How much the details changed as seen from the surface, without unit; what the edit itself bends counts alike for
+    all methods."""
+    detail_error_ratio: float | None
+    """That over the best method's; `None` where the best has none."""
+    method: MethodName
+    free_vertices: int
+    iterations: int
+    converged: bool
+    energy: float
+    handle_residual: float
+    warnings: list[str]
+    refused: str
+    """Why the method can't do it."""
+
+def compare(
+    mesh: Shape,
+    transforms: Transforms,
+    *,
+    methods: Method | Sequence[Method] | Mapping[str, Method] | None = None,
+    handles: Handles | None = None,
+    fixed: Selection | None = None,
+    region: Selection | None = None,
+    stiffness: Field | None = None,
+    continuity: Field | None = None,
+    loose: Loose | None = None,
+) -> dict[str, Outcome]:
+    """One edit by several methods, as `pliant compare` does, as data.
+
+    :param mesh: what `load` returned, or a pair (vertices, faces).
+    :param transforms: where the handles go, as `Bound.step` takes it.
+    :param methods: names, or dicts of a `name` and options, in a row or by labels of your own. By default every method
+        with its defaults.
+    :param handles: what moves, as `bind` takes it; and likewise `fixed`, `region`, `stiffness`, `continuity` and
+        `loose`.
+    :return: by name or label a dict with `vertices`, `distortion`, `detail_error` and its ratio to the best method's,
+        `method`, `free_vertices`, `iterations`, `converged`, `energy`, `handle_residual` and `warnings`; or with
+        `refused`, a sentence, where a method can't do it.
+    :raises ValueError: if the mesh is none.
     """
 
 @final
@@ -171,7 +295,13 @@ class Mesh:
         loose: Loose | None = None,
         method: Method | None = None,
     ) -> Bound:
-        """Binds the file's mesh, as `pliant.bind` does with arrays. Masks and fields are by the file's vertices."""
+        """Binds the file's mesh: factors and solves everything that does not depend on where the handles go.
+
+        The parameters are those of `pliant.bind`, with the same defaults. Numbers of vertices, masks and fields are by
+        the file's vertices (`file_vertices`).
+
+        :raises ValueError: one sentence that names the culprit and the remedy.
+        """
 
 @final
 class Bound:
@@ -183,17 +313,22 @@ class Bound:
     @overload
     def step(
         self, transforms: Transforms, *, iterations: int | None = None, out: None = None
-    ) -> npt.NDArray[np.float64]: ...
-    @overload
-    def step(self, transforms: Transforms, *, iterations: int | None = None, out: Out) -> Out: ...
-    def step(self, transforms: Transforms, *, iterations: int | None = None, out: Any = None) -> Any:
+    ) -> npt.NDArray[np.float64]:
         """Moves the handles and returns the positions of all vertices, shape (n, 3).
 
+        :param transforms: for each handle a transform from rest (a 3x4 or 4x4 matrix, a translation of the shape (3,)
+            or (3, 1), a pair of a 3x3 matrix and a translation, or the edit format's dict), or a position for each of
+            its vertices, shape (k, 3): row i is where its i-th vertex goes, in the order in which an array named them,
+            or ascending for a mask or a selector. An array or a list in the order of `handles`, or a dict by names,
+            where a handle that is not named is at rest. The only handle's may stand alone. "arap", "bilaplacian",
+            "shells", "poisson", "frames" and "wrinkles" take positions.
         :param iterations: how many steps a method that iterates takes at most. By default it goes on until it has
             converged or met the limit of its options. Fewer follow a moving hand; calls with the same transforms go on.
         :param out: an array that is filled and returned in place of a new one.
         :raises ValueError: one sentence that names the culprit and the remedy.
         """
+    @overload
+    def step(self, transforms: Transforms, *, iterations: int | None = None, out: Out) -> Out: ...
     @property
     def handles(self) -> list[str]:
         """The handles' names, in the order that `step` takes transforms in."""
