@@ -166,3 +166,20 @@ def test_a_handle_of_a_thousand_points_binds_as_one_point_does():
         return min(times)
 
     assert taken(handle) < 2 * taken(handle[:1]) + 0.05
+
+
+def test_libigl_s_constraints_give_libigl_s_shape(mesh, ends):
+    igl = pytest.importorskip("igl")
+    vertices, faces = mesh
+    b = np.r_[ends["fixed"], ends["handles"]["top"]]
+    bc = np.where(vertices[b, 1:2] > 0.5, moved(vertices[b], quarter_turn((0.2, 0.3, 0))), vertices[b])
+    arap = igl.ARAPData()
+    arap.energy = igl.ARAPEnergyType.ARAP_ENERGY_TYPE_SPOKES
+    arap.max_iter = 3000
+    igl.arap_precomputation(vertices, faces.astype(np.int64), 3, b, arap)
+    # It starts where ours ends, because there are several minima.
+    method = {"name": "arap", "energy": "spokes", "tolerance": 1e-9, "max_iterations": 4000}
+    bound = pliant.bind(vertices, faces, handles={"b": b}, method=method)
+    bent = bound.step({"b": bc})
+    assert bound.converged and np.array_equal(bent[b], bc)
+    assert np.abs(igl.arap_solve(bc, arap, bent) - bent).max() < 1e-4
