@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 
 ROOT = Path(__file__).parents[2]
-SCANS = Path(os.environ.get("PLIANT_SCANS", ROOT / "../shared/data/scans"))
+SCANS = Path(os.environ.get("PLIANT_DATA", "")) / "scans"
 
 
 def load_addon():

@@ -593,7 +593,7 @@ assert "FINISHED" in bpy.ops.pliant.add_handle()
 
 def test_the_hand_of_a_scan_follows_an_empty_and_is_baked_saved_and_reopened(addon, tmp_path):
     if not (SCANS / "armadillo.obj").is_file():
-        pytest.skip("there is no ../shared/data/scans")
+        pytest.skip("there are no scans in PLIANT_DATA")
     scan = pliant.load(SCANS / "armadillo.obj")
     obj, target = hand(scan)
     rest = stored(obj.data)

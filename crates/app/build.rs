@@ -1,4 +1,4 @@
-//! Tells the program which commit it was built from; "unknown" where there is no git or no repository.
+//! Gives the program the commit that it was built from; "unknown" without git or a repository.
 
 use std::path::Path;
 use std::process::Command;
@@ -7,7 +7,8 @@ fn main() {
     let commit = git(&["rev-parse", "--short=10", "HEAD"]).unwrap_or_else(|| "unknown".to_owned());
     println!("cargo::rustc-env=PLIANT_COMMIT={commit}");
     println!("cargo::rerun-if-changed=build.rs");
-    // A new commit moves HEAD's log; a fresh clone has it, and where it is missing the commit stays as first built.
+    // A new commit changes HEAD's log; a fresh clone has the log, and without it the commit stays that of the first
+    // build.
     if let Some(log) = git(&["rev-parse", "--git-path", "logs/HEAD"]) {
         let log = Path::new(&log);
         if log.exists() {

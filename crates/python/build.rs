@@ -1,5 +1,5 @@
-//! The docstrings are the stub's text: each is written to a file of its own, which the sources include. And macOS links
-//! what Python brings only when the module is loaded.
+//! Writes each docstring of the stub to its own file, which the sources include. macOS links Python's symbols only when
+//! the module is loaded.
 
 use std::path::Path;
 use std::{env, fs, io};
@@ -21,7 +21,7 @@ fn main() -> io::Result<()> {
 fn docstrings(stub: &str) -> Vec<(String, String)> {
     let mut found = Vec::new();
     let mut class = String::new();
-    // What the next docstring is of.
+    // The name for the next docstring.
     let mut of = None;
     let mut lines = stub.lines();
     while let Some(line) = lines.next() {
@@ -35,7 +35,7 @@ fn docstrings(stub: &str) -> Vec<(String, String)> {
                 0 => name.to_owned(),
                 _ => format!("{class}.{name}"),
             });
-            // Its parameters may have lines of their own.
+            // Its parameters may be on separate lines.
             let mut last = line;
             while !last.ends_with(':') && !last.ends_with("...") {
                 let Some(next) = lines.next() else { break };

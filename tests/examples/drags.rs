@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use pliant_tests::trials::{Outcome, Trial, scans};
 
-/// A frame that takes less is not noticed, whatever the others took; in milliseconds.
+/// A shorter frame is not noticeable, independent of the others; in milliseconds.
 const NOTICED_MS: f64 = 16.0;
 
 fn main() {
@@ -20,7 +20,7 @@ fn main() {
         let place = (seed % subjects.len() as u64) as usize;
         let subject = &mut subjects[place];
         let trial = Trial::with(seed, &subject.model, Some(method));
-        // The first frame stands at rest and ends the binding; the check of a frame counts in the next one's time.
+        // The first frame is at rest and ends the binding; the check of a frame counts in the next one's time.
         let (mut times, mut last) = (Vec::new(), Instant::now());
         let outcome = trial.drag(subject, &mut |_| {
             times.push(last.elapsed().as_secs_f64() * 1e3);

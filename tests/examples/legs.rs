@@ -1,6 +1,6 @@
-//! Two legs that are near each other, one of which is moved: how far the other follows, by each method that bends space.
-//! `legs METHOD[:OPTION=VALUE ..] ..` bends `assets/creature.glb`: a cage by `assets/legs-cage.edit.json`, whose own
-//! vertices are moved around one leg, every other method by the handle of `assets/legs.edit.json`.
+//! Two adjacent legs, one of which is moved: the example measures the motion of the other, by each method that bends
+//! space. `legs METHOD[:OPTION=VALUE ..] ..` bends `assets/creature.glb`: a cage with `assets/legs-cage.edit.json`,
+//! whose own vertices are moved around one leg, every other method with the handle of `assets/legs.edit.json`.
 #![allow(
     clippy::print_stdout,
     clippy::print_stderr,
@@ -17,10 +17,10 @@ use pliant_mesh::{Cancel, Progress};
 use pliant_tests::{assets, open};
 use serde_json::{Value, json};
 
-/// The steps after which a method has to be done.
+/// The number of steps after which a method must be done.
 const STEPS: usize = 500;
 
-/// What is free at x < 0 is the other leg, and below this height its foot.
+/// The free vertices at x < 0 are the other leg, and those below this height its foot.
 const FOOT: f64 = 0.12;
 
 fn main() {
@@ -48,7 +48,7 @@ fn main() {
                 foot.push(displacement.length());
             }
         }
-        // Shares of how far what is moved most moves.
+        // Shares of the largest displacement of a moved vertex.
         let moved = displacements.iter().map(|d| d.length()).fold(0.0, f64::max);
         let foot = foot.iter().sum::<f64>() / foot.len() as f64;
         println!(
@@ -62,7 +62,7 @@ fn main() {
     }
 }
 
-/// The edit of a method that is given as `NAME[:OPTION=VALUE ..]`.
+/// The edit of a method in the form `NAME[:OPTION=VALUE ..]`.
 fn edit(words: &str) -> Value {
     let mut parts = words.split(':');
     let name = parts.next().unwrap();

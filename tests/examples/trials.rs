@@ -66,7 +66,7 @@ fn main() {
     assert_eq!(sum[3], 0, "{} trials broke", sum[3]);
 }
 
-/// The most memory that this process has held; 0 where the system doesn't say.
+/// The most memory that this process has held; 0 if the system doesn't report it.
 fn resident_peak_mb() -> f64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));

@@ -1,9 +1,9 @@
-"""Whether Blender finds as much in each OUT as in its IN.
+"""Checks that Blender finds as much in each OUT as in its IN.
 
     pip install bpy==4.5.*
     python blender_counts.py IN OUT [IN OUT ..]
 
-Prints meshes, vertices, polygons, materials, images, armatures, actions and shape keys, and ends with status 1 where a
+Prints meshes, vertices, polygons, materials, images, armatures, actions and shape keys, and ends with status 1 if a
 pair differs or a file can't be opened.
 """
 

@@ -5,7 +5,7 @@ needs: pip install bpy numpy (bpy 4.2 runs on Python 3.11)
 
 The shape is the bumpy ball of the example `space`. The lattice has 8 x 8 x 8 points with B-splines between them. The
 cage of the other two is a ball of 320 triangles around the shape. One JSON object a line: the milliseconds of the
-binding (0 where there is none) and the median milliseconds of a frame, in which the controls have moved. Blender uses
+binding (0 if there is none) and the median milliseconds of a frame, in which the controls have moved. Blender uses
 all cores.
 """
 import json

@@ -1,10 +1,10 @@
-// Whether three.js' loader finds as much in OUT as in IN.
+// Checks that three.js' loader finds as much in OUT as in IN.
 //
 //   npm install three
 //   node counts.mjs IN OUT
 //
 // Prints vertices, triangles, materials, images, skins, animations and morph targets of both, and ends with status 1
-// where they differ. Images are counted and not decoded: node has no pictures.
+// if they differ. Images are counted and not decoded: node has no pictures.
 
 import { createRequire } from 'node:module';
 import { readFileSync } from 'node:fs';
@@ -20,7 +20,7 @@ const THREE = await load('build/three.module.js');
 const { GLTFLoader } = await load('examples/jsm/loaders/GLTFLoader.js');
 const { MeshoptDecoder } = await load('examples/jsm/libs/meshopt_decoder.module.js');
 
-// Draco as three.js' own decoder reads it, without the browser's workers that its loader stands on.
+// Draco by three.js' own decoder, without the browser's workers that its loader needs.
 const dracoFolder = resolve(root, 'examples/jsm/libs/draco/gltf');
 const dracoText = readFileSync(resolve(dracoFolder, 'draco_decoder.js'), 'utf8');
 const script = new Function('require', '__filename', '__dirname', `${dracoText}; return DracoDecoderModule;`);
@@ -60,7 +60,7 @@ async function counts(path) {
     const loader = new GLTFLoader(manager);
     loader.setMeshoptDecoder(MeshoptDecoder);
     loader.setDRACOLoader(dracoLoader);
-    // No pictures: a texture of nothing stands for each.
+    // There are no pictures: an empty texture replaces each.
     loader.register((parser) => {
         parser.loadTextureImage = async () => new THREE.Texture();
         return { name: 'no-pictures' };

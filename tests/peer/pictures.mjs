@@ -1,11 +1,11 @@
-// What three.js shows of FILE under the studio's light, from where `pliant render` looks at REST.
+// The picture of FILE by three.js under the studio's light, with the camera of `pliant render` for REST.
 //
 //   npm install three puppeteer-core
 //   CHROMIUM=/usr/bin/chromium node pictures.mjs REST FILE OUT.png [linear]
 //   pliant render REST --output OURS.png --size 900x900 --shading material --transparent
 //
-// Lamps, exposure and key are read from our shaders, so that what differs is how a surface answers light. `linear` adds
-// up light where one thing is seen through another, as we do; three.js by itself mixes the screen's numbers.
+// Lamps, exposure and key are read from our shaders, so that only a surface's response to light differs. `linear` adds
+// light where one object is seen through another, like Pliant; three.js by itself mixes the screen's numbers.
 
 import { createServer } from 'node:http';
 import { createRequire } from 'node:module';
@@ -21,7 +21,7 @@ const three = dirname(dirname(require.resolve('three')));
 const shaders = resolve(dirname(fileURLToPath(import.meta.url)), '../../crates/render/shaders');
 const shader = (name) => readFileSync(join(shaders, name), 'utf8');
 
-/// The numbers of a piece of WGSL: those in a type's name are none.
+/// The numbers in a piece of WGSL, without those in a type's name.
 const numbers = (text) => [...text.replace(/vec\df/g, '').matchAll(/-?\d+\.\d+/g)].map((match) => Number(match[0]));
 const lines = (text, start) => text.split('\n').filter((line) => line.trim().startsWith(start)).map(numbers);
 const environment = shader('environment.wgsl');
@@ -34,7 +34,7 @@ const studio = {
     exposure: lines(shader('material.wgsl'), 'const EXPOSURE')[0][0],
 };
 
-/// Runs in the browser: draws, and says so in `window.done`.
+/// Runs in the browser: it draws, and then sets `window.done`.
 async function draw({ studio, side, rest, file, linear }) {
     const THREE = await import('three');
     const { GLTFLoader } = await import('three/addons/loaders/GLTFLoader.js');
@@ -46,7 +46,7 @@ async function draw({ studio, side, rest, file, linear }) {
     renderer.setClearColor(0, 0);
     renderer.toneMapping = THREE.NeutralToneMapping;
 
-    // The eye, as the camera of crates/editor frames a shape, and as much farther away as `render` stands.
+    // The eye frames a shape like the camera of crates/editor, and is as much farther away as that of `render`.
     const [fov, yaw, pitch, margin, room] = [(Math.PI / 4) * 0.9, 0.6, 0.35, 1.15, 1.2];
     const back = V(Math.sin(yaw) * Math.cos(pitch), Math.sin(pitch), Math.cos(yaw) * Math.cos(pitch));
     const right = V(0, 1, 0).cross(back).normalize();

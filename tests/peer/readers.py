@@ -1,4 +1,4 @@
-"""Edited saves of every format and kind, read back by readers that are not Pliant's.
+"""Edited saves of every format and kind, read back by readers other than Pliant's.
 
 usage: readers.py PLIANT
   PLIANT  the program, e.g. target/release/pliant
@@ -6,9 +6,9 @@ needs:  pip install DracoPy meshoptimizer numpy numpy-stl plyfile scipy trimesh
 
 A tube is written in each kind by an independent writer: OFF, OBJ, PLY and STL, as text and as bytes of either order,
 of triangles and of quads, and GLB in floats, quantised, and compressed by meshopt and by Draco. `pliant apply` bends
-each by the same edit. What it wrote is read by plyfile, numpy-stl, trimesh, DracoPy and meshoptimizer, and by a few
-lines of this script for OFF, OBJ and GLB. Every kind must show the vertices that the tube in OFF shows, to its own
-rounding, keep its faces, and keep all that is not a position. The exit status is 1 where one does not.
+each by the same edit. Its output is read by plyfile, numpy-stl, trimesh, DracoPy and meshoptimizer, and by a few lines
+of this script for OFF, OBJ and GLB. Every kind must show the same vertices as the tube in OFF, to its own rounding,
+keep its faces, and keep everything except positions. The exit status is 1 if one does not.
 """
 import json
 import pathlib
@@ -39,7 +39,7 @@ EDIT = {
     ],
 }
 FLOATS, DOUBLES = 2e-6, 1e-12
-# Two steps of the grid that positions are rounded to.
+# Two steps of the grid of rounded positions.
 STEPS_16, STEPS_14 = 2 * LENGTH / 65535, 2 * LENGTH / 16383
 
 
@@ -80,7 +80,7 @@ def obj(vertices, faces):
 
 
 def ply(vertices, faces, colours, form, number):
-    """A PLY in `form` ("ascii", "<" or ">") with positions of type `number`, more properties and an element more."""
+    """A PLY in `form` ("ascii", "<" or ">") with positions of type `number`, more properties and one more element."""
     types = [(axis, number) for axis in "xyz"] + [(c, "u1") for c in ("red", "green", "blue")] + [("quality", "f4")]
     table = np.empty(len(vertices), dtype=types)
     for axis, name in enumerate("xyz"):
@@ -184,7 +184,7 @@ def glb(vertices, faces, colours, kind):
     return head + text + struct.pack("<II", len(binary), 0x004E4942) + binary
 
 
-# Readers: vertices and faces, and whatever must stay as it was.
+# Readers: vertices and faces, and everything that must stay unchanged.
 
 
 def read_off(path):
@@ -218,7 +218,7 @@ def read_ply(path):
 
 
 def read_stl(path):
-    """Vertices and faces of a soup; its header and attributes where it has them."""
+    """Vertices and faces of a soup; its header and attributes if it has them."""
     solid = stl.mesh.Mesh.from_file(str(path), calculate_normals=False)
     faces = np.arange(3 * len(solid.vectors)).reshape(-1, 3)
     data = path.read_bytes()
@@ -265,13 +265,13 @@ def read_glb(path):
         faces, colours = accessor(primitive["indices"]), accessor(primitive["attributes"]["COLOR_0"])
     vertices = vertices * node.get("scale", [1] * 3) + node.get("translation", [0] * 3)
     extras = document["meshes"][0]["extras"]
-    # Draco sorts vertices; what a vertex has is compared as a set.
+    # Draco sorts vertices; their data are compared as a set.
     kept = sorted(np.asarray(colours)[:, :3].tolist())
     return vertices, np.asarray(faces).reshape(-1, 3), [extras, kept]
 
 
 def trimesh_shows(path, vertices):
-    """How far trimesh's vertices are from these, for what it can read."""
+    """The distance of trimesh's vertices from these, for the kinds that it can read."""
     scene = trimesh.load(path, process=False)
     shown = scene.to_geometry() if isinstance(scene, trimesh.Scene) else scene
     return apart(np.asarray(shown.vertices), vertices)
@@ -283,7 +283,7 @@ def apart(a, b):
 
 
 def kinds():
-    """Name, file name, what writes it, what reads it, its rounding, and of which faces it is made."""
+    """Name, file name, writer, reader, rounding, and kind of faces."""
     vertices, quads, colours = tube()
     corners = triangles(quads)
 

@@ -88,7 +88,7 @@ class Shells:
         return np.arctan2(sine, (one * other).sum(1) * np.linalg.norm(edge, axis=1))
 
     def residuals(self, x, near):
-        """With the angles nearest to `near`, which are returned too."""
+        """The residuals with the angles nearest to `near`, which are returned too."""
         angles = self.angle(x)
         angles += 2 * np.pi * np.round((near - angles) / (2 * np.pi))
         stretched = self.edge_weights * (self.length(x) - self.lengths)

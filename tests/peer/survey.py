@@ -3,7 +3,7 @@
 usage: survey.py PLIANT [SCENES]
   PLIANT  the program, e.g. target/release/pliant
   SCENES  a folder with plane, cylinder, bar and cactus, each as NAME.off and NAME.edit.json
-          (by default ../shared/data/survey beside the project)
+          (by default `survey` in the folder that PLIANT_DATA names)
 needs:  pip install libigl numpy scipy
 
 For each scene `pliant apply` writes its OUT. The same edit is then solved here: K = L M^-1 L with libigl's cotangent
@@ -12,6 +12,7 @@ by scipy's sparse LU with one step of refinement. Printed is the largest distanc
 diagonal of the rest shape's bounding box; the exit status is 1 where one is 1e-3 or more.
 """
 import json
+import os
 import pathlib
 import subprocess
 import sys
@@ -67,7 +68,7 @@ def main():
     if len(sys.argv) < 2 or sys.argv[1] in ("-h", "--help"):
         sys.exit(__doc__)
     program = pathlib.Path(sys.argv[1]).resolve()
-    beside = pathlib.Path(__file__).resolve().parents[2].parent / "shared" / "data" / "survey"
+    beside = pathlib.Path(os.environ.get("PLIANT_DATA", "")) / "survey"
     scenes = pathlib.Path(sys.argv[2]) if len(sys.argv) > 2 else beside
     worst = 0.0
     for name in SCENES:

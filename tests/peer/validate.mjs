@@ -1,11 +1,11 @@
-// What the Khronos validator finds in OUT that it did not find in IN.
+// The findings of the Khronos validator in OUT that are not in IN.
 //
 //   npm install gltf-validator
 //   node validate.mjs IN OUT
 //
-// Prints each new finding as one line and ends with status 1 where there are any, 0 where there are none. A finding is
-// known where IN has as many of the same code at the same place; places that the edit added (a new accessor, a cloned
-// mesh) count as new. Set NODE_PATH where the package lies elsewhere.
+// Prints each new finding as one line and ends with status 1 if there are any, 0 if there are none. A finding is
+// known if IN has as many of the same code at the same place; places that the edit added (a new accessor, a cloned
+// mesh) count as new. Set NODE_PATH if the package is elsewhere.
 
 import { createRequire } from 'node:module';
 import { readFileSync } from 'node:fs';

@@ -26,7 +26,7 @@ use pliant_engine::watch::Watch;
 use pliant_mesh::{Drawn, WeldOptions};
 use serde_json::{Value, json};
 
-/// What the program printed, and its exit status.
+/// The program's output, and its exit status.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct Ended {
     pub status: u8,
@@ -56,7 +56,7 @@ pub fn run<S: Into<OsString>>(arguments: impl IntoIterator<Item = S>) -> Ended {
 }
 
 impl Ended {
-    /// Asserts status 0 and nothing but warnings on standard error.
+    /// Asserts status 0 and only warnings on standard error.
     #[track_caller]
     pub fn done(self) -> Self {
         let is_warning = |line: &str| line.starts_with("pliant: warning: ");
@@ -143,7 +143,7 @@ impl Folder {
     }
 }
 
-/// Reads and welds a file like the program does.
+/// Reads and welds a file like the program.
 pub fn open(path: &Path) -> Loaded {
     try_open(path).unwrap_or_else(|error| panic!("{error}"))
 }
@@ -185,10 +185,10 @@ pub fn diagonal(positions: &[DVec3]) -> f64 {
     }
 }
 
-/// The files in `folders` of the data beside the project that the program can read, sorted. If a folder is missing, the
-/// list is empty and standard error says which tests are skipped.
+/// The files in `folders` of the data folder that the program can read, sorted. If a folder is missing, the list is
+/// empty and standard error names the skipped tests.
 pub fn data(folders: &[&str]) -> Vec<PathBuf> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data");
+    let root = data_folder();
     let mut files = Vec::new();
     for folder in folders {
         let before = files.len();
@@ -203,13 +203,16 @@ pub fn data(folders: &[&str]) -> Vec<PathBuf> {
 
 /// One file of the data folder. If it is missing, `None` and a message on standard error.
 pub fn datum(name: &str) -> Option<PathBuf> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../../shared/data")
-        .join(name);
+    let path = data_folder().join(name);
     if !path.exists() {
         eprintln!("skipped: there is no {}", path.display());
     }
     path.exists().then_some(path)
+}
+
+/// The folder in `PLIANT_DATA`; `.cargo/config.toml` has its default.
+fn data_folder() -> PathBuf {
+    std::env::var_os("PLIANT_DATA").unwrap_or_default().into()
 }
 
 /// The folder with the samples that ship with the program.

@@ -1,4 +1,4 @@
-//! The crates' sources as tokens: which paths a file names outside tests.
+//! The crates' sources as tokens: the paths that a file names outside tests.
 //!
 //! Scanning tokens rather than lines finds a path in a grouped `use`, after a unit test's module or inside a macro call
 //! like any other, and ignores comments and strings.
@@ -9,7 +9,7 @@ use std::str::FromStr;
 
 use proc_macro2::{Delimiter, Spacing, TokenStream, TokenTree};
 
-/// A source file and what it names.
+/// A source file and the paths that it names.
 #[derive(Clone, Debug)]
 pub struct Source {
     pub file: PathBuf,

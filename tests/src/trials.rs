@@ -1,4 +1,4 @@
-//! Seeded random trials of everything that a problem can ask for, on any mesh: options, roles, stiffness, transforms.
+//! Seeded random trials of all inputs of a problem, on any mesh: options, roles, stiffness, transforms.
 //!
 //! A trial ends with a shape that is finite and meets its constraints, or with a refusal that names a vertex.
 
@@ -18,21 +18,21 @@ const STEPS: u32 = 12;
 const DRAG_FRAMES: u32 = 10;
 const DRAG_STEPS: u32 = 3;
 
-/// How a trial ended.
+/// The end of a trial.
 #[derive(Clone, PartialEq, Debug)]
 pub enum Outcome {
     /// A shape that meets all requirements.
     Bent {
         /// Whether its system had to be regularised, which is reported.
         regularised: Regularised,
-        /// How many vertices were solved for.
+        /// The number of solved vertices.
         solved_count: usize,
     },
-    /// A refusal in words that names a vertex.
+    /// A refusal that names a vertex.
     Refused(String),
 }
 
-/// Whether a system was factored as it is.
+/// Whether a system was factored without changes.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Regularised {
     No,
@@ -170,7 +170,7 @@ impl Trial {
         self.go(subject, &[1.0], STEPS, &mut |_| {})
     }
 
-    /// Binds and follows the handles along their paths, a few steps per frame. Panics as [`Trial::run`] does, and if a
+    /// Binds and follows the handles along their paths, a few steps per frame. Panics like [`Trial::run`], and if a
     /// step raises the energy. Calls `drawn` with each frame's number as soon as the frame has its shape.
     pub fn drag(&self, subject: &mut Subject, drawn: &mut dyn FnMut(usize)) -> Outcome {
         let way: Vec<f64> = (0..=DRAG_FRAMES)
@@ -281,7 +281,7 @@ fn around(model: &Model, diagonal: f64, centre: usize, radius: f64) -> impl Fn(D
     move |p: DVec3| p.distance(centre) <= radius * diagonal
 }
 
-/// The role of each vertex, and how many handles there are.
+/// The role of each vertex, and the number of handles.
 fn random_roles(model: &Model, diagonal: f64, chance: &mut Chance) -> (Vec<Role>, u16) {
     let count = model.surface.positions.len();
     let ball = |chance: &mut Chance, radius: f64| around(model, diagonal, chance.below(count), radius);
@@ -293,7 +293,7 @@ fn random_roles(model: &Model, diagonal: f64, chance: &mut Chance) -> (Vec<Role>
             }
         }
     };
-    // A free region as a person would paint it, in most trials, and a few patches that are fixed.
+    // A free region like a person's, in most trials, and a few patches that are fixed.
     if chance.share() < 0.8 {
         let radius = chance.between(0.02, 0.35);
         let region = ball(chance, radius);
@@ -327,7 +327,7 @@ fn random_roles(model: &Model, diagonal: f64, chance: &mut Chance) -> (Vec<Role>
     (roles, handle_count)
 }
 
-/// Numbers anew those of `count` handles that no later one covers completely, and returns how many they are.
+/// Renumbers the handles, of `count`, that no later one covers completely, and returns their number.
 fn without_covered(roles: &mut [Role], count: u16) -> u16 {
     let mut numbers: Vec<Option<u16>> = vec![None; usize::from(count)];
     let mut next = 0;

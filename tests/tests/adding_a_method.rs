@@ -1,5 +1,5 @@
-//! A new method needs only its folder and its line in `METHODS`. `identity`, which is compiled for tests, has no more
-//! than that, and appears in the help, the edit format, the panel and the palette, and works.
+//! A new method needs only its folder and its line in `METHODS`. `identity`, which is compiled for tests, has only
+//! these, and appears in the help, the edit format, the panel and the palette, and works.
 
 #![allow(
     clippy::unwrap_used,
@@ -120,7 +120,7 @@ fn an_edit_names_it_and_its_options_and_moves_the_handles_alone() {
         folder.apply(&file, &by(method), &out, &[]).refused(1, &words);
     }
 
-    // A warning says what the method ignores, and which methods do not.
+    // A warning names the inputs that the method ignores, and the methods that use them.
     let mut soft = by(json!({ "name": "identity" }));
     soft["handles"][0]["soft"] = json!(1);
     soft["stiffness"] = json!([{ "select": "all", "value": 10 }]);

@@ -1,4 +1,5 @@
-//! What an edit does to a surface, for every kind of file: handles arrive, fixed vertices stay, and the rest follows.
+//! The effect of an edit on a surface, for every kind of file: handles arrive, fixed vertices stay, and the rest
+//! follows.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -78,7 +79,7 @@ fn a_scan_that_is_inside_out_bends_the_same_and_is_saved_facing_outwards() {
     assert!(turned.model.findings.inside_out_components.is_empty());
     let wound_back = as_read.model.drawn_triangles().into_iter().map(|[a, b, c]| [a, c, b]);
     assert!(turned.model.drawn_triangles().into_iter().eq(wound_back));
-    // It alone is an edit, too.
+    // It is also an edit alone.
     edit = bare_edit();
     edit["inside_out"] = json!("all");
     folder.apply(&file, &edit, &out, &[]).done();
@@ -162,7 +163,7 @@ fn the_surveys_scenes_meet_their_constraints() {
     }
 }
 
-/// Loose parts that nothing holds follow what they touch: no triangle edge of a translated helmet is torn.
+/// Loose parts that nothing holds follow their contacts: no triangle edge of a translated helmet is torn.
 #[test]
 fn loose_parts_of_real_models_travel_with_the_surface() {
     for name in ["gltf/DamagedHelmet.glb", "gltf/FlightHelmet/FlightHelmet.gltf"] {
@@ -213,7 +214,7 @@ fn a_translation_of_the_only_handle_moves_every_shape_as_a_whole() {
                     "{name}: vertex {v} went {}",
                     *b - *a
                 ),
-                // Vertices that are not finite stay as the file has them.
+                // Vertices that are not finite stay as in the file.
                 None => assert_eq!(
                     a.to_array().map(f64::to_bits),
                     b.to_array().map(f64::to_bits),
@@ -306,7 +307,7 @@ fn welded_twins_go_together_whichever_of_them_is_named() {
 /// Whether a selector should select the file vertex with this number.
 type Test = Box<dyn Fn(usize) -> bool>;
 
-/// Every kind of selector moves the vertices that it describes and, because the region is empty, nothing else.
+/// Every kind of selector moves the vertices that it describes and, because the region is empty, no others.
 #[test]
 fn selectors_select_what_they_say() {
     let sheet = shapes::grid(4, 6);

@@ -1,5 +1,5 @@
 //! The dependencies between the crates are those that `crates/README.md` draws, and its "Invariant:" lines hold.
-//! Cargo's metadata tells what a crate is linked with; its sources tell what it uses of the standard library.
+//! Cargo's metadata show a crate's linked crates; its sources show its use of the standard library.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -8,7 +8,7 @@ use std::path::Path;
 use cargo_metadata::{DependencyKind, Metadata, MetadataCommand};
 use pliant_tests::sources::{self, Source};
 
-/// Which crate may depend on which others; `tests` and `xtask` are exempt.
+/// The crates on which each crate may depend; `tests` and `xtask` are exempt.
 const ARROWS: &[(&str, &[&str])] = &[
     ("pliant-assets", &[]),
     ("pliant-mesh", &[]),
@@ -38,7 +38,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ),
 ];
 
-/// What a crate must not be linked with, even indirectly (names that begin with these).
+/// The crates with which a crate must not be linked, even indirectly (names that begin with these).
 const NEVER_LINKED: &[(&str, &[&str])] = &[
     ("pliant-mesh", &["wgpu", "naga", "egui", "eframe", "winit", "serde"]),
     ("pliant-deform", &["wgpu", "naga", "egui", "eframe", "winit", "serde"]),
@@ -49,7 +49,7 @@ const NEVER_LINKED: &[(&str, &[&str])] = &[
     ("pliant-python", &["wgpu", "naga", "egui", "eframe", "winit"]),
 ];
 
-/// What a crate must not depend on directly.
+/// The crates on which a crate must not depend directly.
 const NEVER_NAMED: &[(&str, &[&str])] = &[
     ("pliant-mesh", &["log", "tracing"]),
     ("pliant-deform", &["log", "tracing"]),
@@ -81,7 +81,7 @@ const NEVER_WRITTEN: &[(&str, &[&str])] = &[
     ),
 ];
 
-/// The clock, threads, files, and everything else that makes a result depend on more than its inputs.
+/// The clock, threads, files, and all other sources of results that depend on more than their inputs.
 const OUTSIDE_WORLD: &[&str] = &[
     "std::time",
     "std::thread",
@@ -107,7 +107,7 @@ fn workspace() -> Metadata {
         .lines()
         .find_map(|line| line.strip_prefix("host: "))
         .expect("rustc names its host");
-    // Offline, because the registry holds what this host builds but perhaps not other systems' crates.
+    // Offline, because the registry has this host's crates but perhaps not other systems'.
     MetadataCommand::new()
         .manifest_path(Path::new(env!("CARGO_MANIFEST_DIR")).join("../Cargo.toml"))
         .other_options(["--locked", "--offline", "--filter-platform", host].map(str::to_owned))
@@ -130,7 +130,7 @@ fn asked_for(metadata: &Metadata, name: &str) -> BTreeSet<String> {
         .collect()
 }
 
-/// All crates that `name` is linked with: its normal dependencies and theirs, recursively.
+/// All crates with which `name` is linked: its normal dependencies and theirs, recursively.
 fn linked_with(metadata: &Metadata, name: &str) -> BTreeSet<String> {
     let names: BTreeMap<_, _> = metadata
         .packages
@@ -236,7 +236,7 @@ fn sources_do_not_use_what_their_crate_must_not_know() {
 
 #[test]
 fn mesh_and_deform_have_no_globals() {
-    // Which vectors loops run with holds for a process, as what its processor has does, and changes no result.
+    // The choice of loops' vectors holds for a process, like its processor's features, and changes no result.
     let vectors = Path::new("mesh/src/vectors.rs");
     for name in ["mesh", "deform"] {
         let sources = sources::of_crate(name);

@@ -1,5 +1,5 @@
-//! Points and lines without triangles: methods of space bend and save them in every format, surface methods carry them
-//! along or say what does, and all else of the file stays.
+//! Points and lines without triangles: methods of space bend and save them in every format, surface methods move them
+//! along or name methods that bend them, and the rest of the file stays.
 
 #![allow(clippy::unwrap_used, reason = "a test that fails may panic")]
 
@@ -22,7 +22,7 @@ fn methods_of_space() -> impl Iterator<Item = &'static str> {
         .filter(|name| *name != "identity")
 }
 
-/// The points of a slanted tube, in steps that single precision holds exactly.
+/// The points of a slanted tube, in steps that are exact in single precision.
 fn cloud() -> Vec<DVec3> {
     let exact = |x: f64| (x * 1024.0).round() / 1024.0;
     let tube = shapes::tube(12, 20, 6.0).positions;
@@ -31,7 +31,7 @@ fn cloud() -> Vec<DVec3> {
         .collect()
 }
 
-/// One end held, the other turned and moved.
+/// One end is held, the other turned and moved.
 fn edit(method: &str) -> Value {
     let slab = |from: f64, to: f64| json!({ "slab": { "axis": "longest", "from": from, "to": to } });
     let mut edit = bare_edit();
@@ -63,15 +63,15 @@ fn files(folder: &Folder) -> Vec<std::path::PathBuf> {
     ]
 }
 
-/// What a glTF of points has beside them.
+/// The other content of a glTF of points.
 #[derive(Clone, Copy, PartialEq)]
 enum Beside {
     Nothing,
-    /// A tube of triangles, on whose vertices the points lie.
+    /// A tube of triangles, on whose vertices the points are.
     Tube,
 }
 
-/// A glTF's JSON and its buffer: points with colours, a line strip over the same accessor, and lines of their own.
+/// A glTF's JSON and its buffer: points with colours, a line strip over the same accessor, and separate lines.
 fn points_and_lines(beside: Beside) -> (Value, Vec<u8>) {
     let cloud = cloud();
     let mut bin: Vec<u8> = Vec::new();
@@ -312,7 +312,7 @@ fn info_tells_of_points_that_no_triangle_uses() {
     assert_eq!(told["components"].as_array().unwrap().len(), 1);
 }
 
-/// How many pixels of a picture without background show something.
+/// The number of pixels that are drawn in a picture without background.
 fn shown(path: &Path) -> (usize, image::RgbaImage) {
     let picture = image::open(path).unwrap().into_rgba8();
     (picture.pixels().filter(|pixel| pixel.0[3] > 0).count(), picture)

@@ -1,4 +1,4 @@
-//! No file of a crate depends on itself through other files: to understand a file one reads only those below it.
+//! No file of a crate depends on itself through other files: understanding a file requires only those below it.
 //!
 //! The paths that a file names (`crate::…`, `super::…`, `self::…`, in `use` lines and elsewhere) are resolved to the
 //! file that defines the item, through folders' `mod.rs` and their `pub use` re-exports. Unit tests and comments are
@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 /// and a folder's own file (`mod.rs`) counts as one with the files below it.
 const STRICT: &[&str] = &["editor"];
 
-/// Which dependencies count.
+/// The dependencies that count.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 enum Counted {
     /// All of them.
@@ -67,7 +67,7 @@ fn no_file_needs_itself_through_others() {
     assert!(found.is_empty(), "circles of files:\n{}", found.join("\n"));
 }
 
-/// Tests the scan itself: what it must find in a made-up crate, and what it must not find.
+/// Tests the scan itself: the circles that it must find in a made-up crate, and those that it must not find.
 #[test]
 fn the_scan_sees_grouped_paths_and_follows_what_is_handed_on() {
     let mut modules = Modules::new();
@@ -170,7 +170,7 @@ fn module(file: PathBuf, own: &[String], text: &str) -> Module {
     module
 }
 
-/// Where the next `use` statement begins.
+/// The start of the next `use` statement.
 fn next_use(code: &str) -> Option<usize> {
     code.match_indices("use ").map(|(start, _)| start).find(|&start| {
         let before = code[..start].chars().next_back();
@@ -178,7 +178,7 @@ fn next_use(code: &str) -> Option<usize> {
     })
 }
 
-/// The paths of a `use` tree, each with the name it is imported as.
+/// The paths of a `use` tree, each with its imported name.
 fn expanded(tree: &str) -> Vec<(Vec<String>, String)> {
     let tree = tree.trim();
     if let Some(open) = tree.find('{') {
@@ -253,7 +253,7 @@ fn absolute(path: &[String], own: &[String]) -> Vec<String> {
     absolute
 }
 
-/// The file that defines what a path names, if it is one of the crate's files.
+/// The file that defines a path's item, if it is one of the crate's files.
 fn definer<'a>(modules: &'a Modules, path: &[String], counted: Counted, depth: usize) -> Option<&'a Path> {
     if depth == 0 {
         return None;
@@ -280,7 +280,7 @@ fn definer<'a>(modules: &'a Modules, path: &[String], counted: Counted, depth: u
     modules.get(&at).map(|module| module.file.as_path())
 }
 
-/// Which file depends on which others.
+/// The dependencies of each file.
 fn arrows(modules: &Modules, counted: Counted) -> BTreeMap<PathBuf, BTreeSet<PathBuf>> {
     let mut arrows: BTreeMap<PathBuf, BTreeSet<PathBuf>> = BTreeMap::new();
     for (own, module) in modules {
@@ -290,7 +290,7 @@ fn arrows(modules: &Modules, counted: Counted) -> BTreeMap<PathBuf, BTreeSet<Pat
             .filter(|(name, _)| module.words.contains(*name))
             .map(|(_, path)| path);
         for path in module.paths.iter().chain(used) {
-            // Naming a child module is no dependency on it.
+            // Naming a child module does not make a dependency on it.
             let is_module = modules.contains_key(path);
             match definer(modules, path, counted, 8) {
                 Some(file) if file != module.file && !(is_module && path.starts_with(own)) => {

@@ -51,7 +51,7 @@ fn wrong_arguments_have_status_2() {
     .refused(2, &["o.jpg", ".png"]);
 }
 
-/// Where every method refuses the edit there is no sheet, and the refusal says why.
+/// If every method refuses the edit there is no sheet, and the refusal gives the reason.
 #[test]
 fn a_comparison_of_methods_that_all_refuse_is_refused() {
     let folder = Folder::new();

@@ -98,7 +98,7 @@ fn a_cage_of_a_file_is_read_beside_the_edit_whatever_its_format() {
     let still = edit(json!({ "name": "cage", "cage": { "file": "cage.obj" } }));
     folder.apply(&file, &still, &folder.at("same.off"), &[]).done();
     assert_eq!(fs::read(&file).unwrap(), fs::read(folder.at("same.off")).unwrap());
-    // What is read is not written over.
+    // Inputs are not overwritten.
     let edit_path = folder.write("named.json", still.to_string());
     let arguments = [
         "apply".into(),
@@ -125,13 +125,13 @@ fn a_lattice_of_numbers_moves_what_is_in_it_and_handles_are_met_beside_it() {
     let method = json!({ "name": "lattice", "basis": "bernstein", "lattice": lattice(&moved(&rest, affine())) });
     let folder = Folder::new();
     moves_by(&folder, &edit(method.clone()), affine());
-    // As a drag, the hand's moves are there in the end.
+    // In a drag, the hand's moves are complete at the end.
     let file = folder.at("sphere.off");
     let (once, drag) = (folder.at("once.off"), folder.at("drag.off"));
     folder.apply(&file, &edit(method.clone()), &once, &[]).done();
     folder.apply(&file, &edit(method), &drag, &["--frames", "3"]).done();
     assert_eq!(fs::read(once).unwrap(), fs::read(drag).unwrap());
-    // A handle that rests is met by a lattice that is fine enough.
+    // A fine enough lattice meets a resting handle.
     let counts = 7;
     let fine: Vec<DVec3> = (0..counts * counts * counts)
         .map(|k| DVec3::new(f64::from(k % 7), f64::from(k / 7 % 7), f64::from(k / 49)) * 0.75 - 2.25)
@@ -153,7 +153,7 @@ fn a_lattice_of_numbers_moves_what_is_in_it_and_handles_are_met_beside_it() {
     assert!(largest_distance(&open(&out).model.rest_positions(), &before) > 0.1);
 }
 
-/// Each of these methods is refused with status 1 and one line that has the words.
+/// Each of these methods is refused with status 1 and one line that contains the words.
 #[test]
 fn what_is_no_cage_and_no_lattice_is_refused_by_its_place() {
     let folder = Folder::new();

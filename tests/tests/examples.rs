@@ -61,7 +61,7 @@ fn a_file_is_met_at_weight_1_and_its_numbers_say_the_same() {
     let numbers = edit(json!([{ "displacements": displacements, "weight": 0.5 }]));
     folder.apply(&file, &numbers, &out, &[]).done();
     assert!(largest_distance(&positions(&out), &by_file) < 1e-9);
-    // Half of the way along the arc, as far from the elbow as before.
+    // Half of the displacement along the arc, at the same distance from the elbow.
     let tip = |places: &[DVec3]| *places.iter().max_by(|a, b| a.x.total_cmp(&b.x)).unwrap();
     let elbow = DVec3::new(8.0, 1.5, 1.5);
     let lengths = [tip(&by_file), tip(&from.model.rest_positions())].map(|tip| tip.distance(elbow));
@@ -170,7 +170,7 @@ fn an_edit_says_its_examples_again() {
     assert!(!Beginning::from(parsed).changes_nothing());
 }
 
-/// The face that ships: wrinkles are what its weights multiply, and with none it is the thin plate.
+/// The shipped face: its weights multiply the wrinkles, and without weights it is the thin plate.
 #[test]
 fn the_faces_edit_wrinkles_it_by_the_weights_of_its_examples() {
     let folder = Folder::new();

@@ -1,5 +1,5 @@
-//! What a stranger sees first of each crate: what it says of itself where crates are listed, and on its first page the
-//! smallest program that uses it, which is run as a test.
+//! A stranger's first view of each crate: its description in lists of crates, and on its first page the smallest
+//! program that uses it, which is run as a test.
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use std::collections::BTreeSet;
@@ -80,7 +80,7 @@ fn every_crate_carries_the_files_that_it_embeds() {
     }
 }
 
-/// The files that a registry would be given of a crate.
+/// The files of a crate for a registry.
 fn packaged(package: &Package) -> Vec<String> {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let mut list = Command::new(cargo);
@@ -123,7 +123,7 @@ fn every_crate_s_first_page_has_a_program_that_is_run() {
         assert!(library.doctest, "{}: its examples are not run", package.name);
         let page = source.lines().take_while(|line| line.starts_with("//!"));
         let fences: Vec<&str> = page.filter(|line| line.starts_with("//! ```")).collect();
-        // A fence that says nothing is a program that is compiled and run.
+        // A fence without a word is a program that is compiled and run.
         assert!(
             fences.contains(&"//! ```"),
             "{}: there is no program on its first page",

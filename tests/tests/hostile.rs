@@ -1,5 +1,5 @@
 //! A few hundred hostile cases: a folder with a broken model, edit or project, with links and unrelated files; the
-//! program's commands run on it, and the laws that hold whatever the folder contains.
+//! program's commands run on it, and the laws hold for any content of the folder.
 //!
 //! `cargo run --release -p pliant-tests --example hostile -- 0 100000` runs more of them under limits of memory and
 //! time, which a test can't set.
@@ -10,10 +10,10 @@ use std::collections::BTreeMap;
 
 use pliant_tests::hostile::{Case, Kind, Law, Size, Unmetered, exercise, listen_for_panics};
 
-/// How many cases of each kind except the rendered one, unless `PLIANT_CASES` says otherwise.
+/// The number of cases of each kind except the rendered one, unless `PLIANT_CASES` gives another.
 const CASES: u64 = 50;
 
-/// How many cases are rendered: fewer, because opening a graphics device takes as long as many saves. Without a device
+/// The number of rendered cases: fewer, because opening a graphics device takes as long as many saves. Without a device
 /// they are refused in words.
 const DRAWN: u64 = 8;
 

@@ -1,4 +1,4 @@
-//! Binding where its factor does not fit the memory that it may take: by the command line alone.
+//! Binding with a factor that exceeds the allowed memory: only by the command line.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -9,13 +9,13 @@ use pliant_mesh::shapes;
 use pliant_tests::{Folder, bend, diagonal, largest_distance, open};
 use serde_json::{Value, json};
 
-/// How far the shapes by both factors may be apart, in diagonals.
+/// The largest distance between the shapes by both factors, in diagonals.
 const SAME: f64 = 1e-6;
 
-/// What came of the edit.
+/// The result of the edit.
 #[derive(Clone, PartialEq, Debug)]
 enum Outcome {
-    /// The file's positions, and whether the report says that they were solved for with the Laplacian's factor.
+    /// The file's positions, and whether the report says that the Laplacian's factor solved for them.
     Bent(Vec<DVec3>, bool),
     Refused,
 }
@@ -49,7 +49,7 @@ fn with_less_memory_the_shape_is_the_same_and_with_too_little_it_is_refused() {
         panic!("there is memory enough on any machine")
     };
     let size = diagonal(&expected);
-    // From what the own factor needs down to less than a byte for each vertex.
+    // From the memory that the own factor needs down to less than a byte for each vertex.
     let steps = [64.0, 16.0, 12.0, 10.0, 9.0, 8.0, 7.0, 6.0, 5.0, 4.0, 2.0, 0.01];
     let (mut by_laplacian, mut refused) = (0, 0);
     for megabytes in steps {

@@ -124,7 +124,7 @@ fn a_neighbour_outside_of_the_folder_is_read_and_never_written() {
 fn a_buffer_that_another_file_misses_is_left_to_it() {
     let (folder, gltf) = gltf_in_a_folder();
     let missed = buffer_uri(&gltf);
-    // Another copy that has lost its buffer, in the folder that the result goes to.
+    // Another copy that has lost its buffer, in the result's folder.
     fs::create_dir(folder.at("other")).unwrap();
     let (lost, output) = (folder.at("other/lost.gltf"), folder.at("other/out.gltf"));
     fs::copy(&gltf, &lost).unwrap();

@@ -59,7 +59,7 @@ fn on_a_fine_surface_they_are_those_of_the_triangles() {
         .map(|(a, b)| angle(*a, *b))
         .fold(0.0, f32::max);
     assert!(worst < 0.06, "{worst} rad");
-    // They have turned at all.
+    // They have turned.
     let rest = vec![DVec3::ZERO; displacements.len()];
     let at_rest = drawing.pose(&model, &rest).normals;
     let way = at_rest

@@ -1,5 +1,5 @@
-//! What a command writes is none of the files that it reads, whatever names those, and replaces nothing that has changed
-//! since; warnings are heard without a report.
+//! A command's output is never one of its input files, under any name, and replaces no file that has changed since;
+//! warnings are printed without a report.
 #![allow(clippy::unwrap_used, reason = "tests fail by panicking")]
 
 use std::ffi::OsString;
@@ -15,7 +15,8 @@ use pliant_mesh::shapes;
 use pliant_tests::{Folder, bare_edit, bend, run};
 use serde_json::json;
 
-/// A folder in which a bar is bent by an example that is a glTF with a buffer beside it, and by a cage. All of its files.
+/// A folder in which a bar is bent by an example that is a glTF with a buffer beside it, and by a cage. Returns all of
+/// its files.
 fn folder() -> (Folder, Vec<PathBuf>) {
     let folder = Folder::new();
     let bar = folder.write_mesh("bar.off", &shapes::bar(12, 2, 2));
@@ -93,7 +94,7 @@ fn no_output_of_any_command_is_a_file_that_it_reads() {
             }
         }
     }
-    // An output in the format of what is read: the example itself, and a pose that is transferred.
+    // An output in an input's format: the example itself, and a transferred pose.
     for words in [
         &["apply", "rest.gltf", "--edit", "examples.json", "--output", "pose.gltf"][..],
         &["apply", "bar.off", "--edit", "cage.json", "--output", "cage.off"],
@@ -129,7 +130,7 @@ fn a_file_that_changes_while_it_is_bent_is_not_replaced() {
     let loaded = pliant_tests::open(&file);
     job(&file).unwrap();
     let bent = fs::read(&file).unwrap();
-    // What was read before is another file now; one of another name is free.
+    // The earlier input is another file now; a file of another name is free.
     let staging = Staging::default();
     let staged = |name: &str| staging.stage([(folder.at(name), &b"new"[..])]).unwrap();
     let error = loaded.refuse_changed(&staged("bar.off")).unwrap_err().to_string();
@@ -139,7 +140,7 @@ fn a_file_that_changes_while_it_is_bent_is_not_replaced() {
     );
     loaded.refuse_changed(&staged("other.off")).unwrap();
     assert_eq!(fs::read(&file).unwrap(), bent);
-    // Its own save is no change for who reads it anew.
+    // Its own save is no change for a new reader.
     job(&file).unwrap();
 }
 

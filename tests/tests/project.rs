@@ -101,7 +101,7 @@ fn a_project_bends_its_mesh_to_the_shape_that_was_on_the_screen_with_what_was_ap
         .fold(0.0, f64::max);
     assert!((farthest - rest.length()).abs() < 0.2, "both bends are in it");
 
-    // At rest and with nothing applied, the save is the file's own bytes.
+    // At rest and without an applied shape, the save has the file's own bytes.
     let (fresh, _) = self::editor(&loaded);
     let mesh = MeshReference {
         name: None,
@@ -167,7 +167,7 @@ fn what_was_corrected_by_hand_is_in_the_project_and_in_the_exported_edit() {
             let bent = open(&output).model.rest_positions();
             let off = bent.iter().zip(&shown).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
             assert!(off < 1e-6 * size, "{case}, {name}: {off}");
-            // And the window opens it in that shape.
+            // The window also opens it in that shape.
             let jobs = InlineExecutor::new();
             let mut again = Editor::new(Box::new(jobs.clone()));
             again.handle(Event::Opened {

@@ -123,7 +123,7 @@ fn translations_and_bases_agree_with_solves_on_every_scan() {
                 }
             }
         }
-        // Points that no triangle uses go rigidly with what is beside them, which is not linear.
+        // Points that no triangle uses move rigidly with their surroundings, which is not linear.
         let solved_count = model.topology.bare_points().start;
         let (sum, whole) = (&sum[..solved_count], &whole[..solved_count]);
         let apart = largest_distance(sum, whole);
@@ -146,7 +146,7 @@ fn units_and_place_do_not_matter_on_any_scan() {
             turned(centre, -0.5, DVec3::Y * 0.1 * size),
         ];
         let here = step(&mut setting.bind(), &targets);
-        // Millimetres, kilometres, and a hundred diagonals from the origin.
+        // The scale is millimetres and kilometres, and the place a hundred diagonals from the origin.
         for (scale, offset) in [
             (1e-3, DVec3::ZERO),
             (1e6, DVec3::ZERO),
@@ -182,20 +182,21 @@ fn a_stiffer_band_bends_less_on_every_scan() {
             .unwrap();
         let from_middle = |p: &DVec3| ((p[axis] - bounds.min[axis]) / bounds.extent()[axis] - 0.5).abs();
         let from_middle: Vec<f64> = model.surface.positions.iter().map(from_middle).collect();
-        // Only well inside the band: at its border, next to softer material, the contrast itself bends the surface.
+        // This holds only well inside the band: at its border, next to softer material, the contrast itself bends the
+        // surface.
         let inside: Vec<usize> = (0..from_middle.len()).filter(|&v| from_middle[v] < 0.1).collect();
         let rest: Vec<DVec3> = inside.iter().map(|&v| model.surface.positions[v]).collect();
         let mut targets = [DAffine3::IDENTITY; 2];
         targets[1] = DAffine3::from_translation(DVec3::AXES[(axis + 1) % 3] * 0.3 * bounds.diagonal());
-        // At an even stiffness the energy is the Laplacian's and else the Hessian's, which a coarse scan tells apart: a
-        // tenth is too near to 1 to be compared with it.
+        // At an even stiffness the energy is the Laplacian's and otherwise the Hessian's, which differ on a coarse
+        // scan: a tenth is too near to 1 to be compared with it.
         let bends = [0.01, 1.0, 10.0, 100.0].map(|stiffness| {
             for (own, from_middle) in setting.stiffness.iter_mut().zip(&from_middle) {
                 *own = if *from_middle < 0.15 { stiffness } else { 1.0 };
             }
             let d = step(&mut setting.bind(), &targets);
             let moved: Vec<DVec3> = inside.iter().map(|&v| d[v]).collect();
-            // A turn of all of it is no bend.
+            // A turn of the whole band is no bend.
             let fit = RigidMotion::fit(&rest, &moved).unwrap();
             let apart = rest
                 .iter()

@@ -1,4 +1,4 @@
-//! The laws of the normals that the view shows: those of the shape, with the file's smooth and hard edges.
+//! The laws of the shown normals: those of the shape, with the file's smooth and hard edges.
 
 #![allow(clippy::unwrap_used, reason = "tests fail by panicking")]
 
@@ -7,14 +7,14 @@ use pliant_app::drawing::Drawing;
 use pliant_io::Appearance;
 use pliant_mesh::{Drawn, DrawnVertex, Model, SurfaceVertex, shapes};
 
-/// Shown of the shape that is moved by `displacements`.
+/// The shown normals of the shape moved by `displacements`.
 fn shown(model: &Model, stored: Option<&[[f32; 3]]>, displacements: &[DVec3]) -> Vec<Vec3> {
     let appearance = Appearance {
         normals: stored.map(<[_]>::to_vec),
         ..Appearance::default()
     };
     let drawing = Drawing::new(model, appearance, Default::default());
-    // What another pose left in the memory changes nothing.
+    // Memory that another pose has used changes nothing.
     drawing.put_back(drawing.pose(model, &vec![DVec3::ONE; displacements.len()]));
     let pose = drawing.pose(model, displacements);
     pose.normals.into_iter().map(Vec3::from).collect()
@@ -32,7 +32,7 @@ fn bent(model: &Model) -> Vec<DVec3> {
     model.surface.positions.iter().map(moved).collect()
 }
 
-/// By the area of the triangles at each drawn vertex's surface vertex; not where these nearly cancel.
+/// Normals by the area of the triangles at each drawn vertex's surface vertex, except where these nearly cancel.
 fn expected(model: &Model, displacements: &[DVec3]) -> Vec<Option<DVec3>> {
     let surface = &model.surface;
     let at = |v: SurfaceVertex| surface.positions[v.index()] + displacements[v.index()];
@@ -125,7 +125,7 @@ fn hard_edges_stay_hard() {
             assert!(normal.dot(own) > 0.9, "{normal} {own}");
         }
     }
-    // What turns as a whole turns its normals.
+    // A turn of the whole shape turns its normals.
     let turn = DAffine3::from_rotation_x(1.0) * DAffine3::from_rotation_z(0.4);
     let turned: Vec<DVec3> = model
         .surface

@@ -1,5 +1,5 @@
 //! Input that arrives within one slow frame goes to the widget that had the pointer and the keyboard at that moment,
-//! and Escape in a field reverts what was typed. Skipped by name if there is no graphics device at all.
+//! and Escape in a field reverts the typed text. Skipped by name if there is no graphics device at all.
 
 #![allow(
     clippy::unwrap_used,

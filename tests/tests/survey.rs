@@ -125,7 +125,7 @@ fn the_scenes_come_out_as_another_implementation_has_them() {
     }
 }
 
-/// Where `pliant apply` puts each drawn vertex.
+/// The positions of each drawn vertex after `pliant apply`.
 fn bent(folder: &Folder, mesh: &Path, edit: &Path) -> Vec<DVec3> {
     let edit = serde_json::from_str(&fs::read_to_string(edit).unwrap()).unwrap();
     let out = folder.at(&format!("out.{}", extension(mesh)));

@@ -44,7 +44,7 @@ fn positions(path: &Path) -> Vec<DVec3> {
     open(path).model.rest_positions()
 }
 
-/// Without where they are as a whole.
+/// The positions relative to their mean.
 fn centred(positions: &[DVec3]) -> Vec<DVec3> {
     let middle = positions.iter().sum::<DVec3>() / positions.len() as f64;
     positions.iter().map(|p| *p - middle).collect()
@@ -98,7 +98,7 @@ fn a_rigid_motion_turns_any_shape_as_a_whole() {
         let out = folder.at("out.off");
         let ended = transfer(&folder, ["rest.off", "pose.off", "target.off"], &out, &[]);
         ended.done();
-        // Each part by itself: how far it goes depends on the surfaces' sizes.
+        // Each part is compared separately: its displacement depends on the surfaces' sizes.
         let model = open(&out).model.clone();
         let missed: Vec<DVec3> = positions(&out)
             .iter()

@@ -1,5 +1,5 @@
-//! What the view shows of a shape: the triangle under a pixel is the one that a ray hits, on deformed scans; and the
-//! pictures that `pliant render` writes. Skipped by name if there is no graphics device.
+//! The view of a shape: the triangle under a pixel is the one that a ray hits, on deformed scans; and the pictures that
+//! `pliant render` writes. Skipped by name if there is no graphics device.
 
 #![allow(
     clippy::unwrap_used,
@@ -42,7 +42,7 @@ fn bent(model: &Model) -> Vec<DVec3> {
     model.surface.positions.iter().map(moved).collect()
 }
 
-/// Which triangle each pixel shows.
+/// The triangle that each pixel shows.
 fn ids(renderer: &mut Renderer, model: &Model, displacements: &[DVec3], camera: &Camera) -> Vec<Option<u32>> {
     let drawing = Drawing::new(model, pliant_io::Appearance::default(), Default::default());
     // As in the window, the chunks' boxes come from the rest shape and move with the displacements.
@@ -170,8 +170,8 @@ fn rendered(folder: &Folder, name: &str, arguments: &[&str]) -> image::RgbaImage
     }
 }
 
-/// A sheet has a cell for each method, equal where the methods are the same and different where they are not, and its
-/// report tells what `apply` would.
+/// A sheet has a cell for each method, equal for the same methods and different otherwise, and its report is that of
+/// `apply`.
 #[test]
 fn a_comparison_shows_each_method_beside_the_others_and_tells_what_apply_does() {
     let Some(_) = renderer() else { return };
@@ -312,6 +312,6 @@ fn images_that_a_picture_does_not_show_are_told() {
         said.lines().count() == 1 && said.contains("skin.png") && said.contains("is not shown"),
         "{said:?}"
     );
-    // A shading that shows no image leaves none out.
+    // A shading that shows no image reports no missing one.
     assert_eq!(told("clay"), "");
 }

@@ -1,4 +1,4 @@
-//! Whatever was done in the window, `apply` of its project and of its exported edit gives the shape that was seen.
+//! After any actions in the window, `apply` of its project and of its exported edit gives the visible shape.
 //!
 //! `PLIANT_WALKS=1000 cargo test --release -p pliant-tests --test walks` takes more walks than the 50 of every run.
 
@@ -22,10 +22,10 @@ use pliant_tests::{Folder, assets, diagonal, largest_distance, open, run};
 use rig::{Random, Rig, VIEWPORT_PX};
 use serde_json::{Value, json};
 
-/// How far the shapes may be apart, in diagonals: a linear solution is found anew to its rounding.
+/// The largest distance between the shapes, in diagonals: a linear solution is found anew to its rounding.
 const ALIKE: f64 = 1e-6;
 
-/// A program with a file of this mesh open, and what `edit` asks for, if anything.
+/// A program with a file of this mesh open, and with `edit`, if there is one.
 fn opened(file: &Path, edit: Option<&Value>) -> Rig {
     let model = open(file).model;
     let jobs = InlineExecutor::new();
@@ -41,7 +41,7 @@ fn opened(file: &Path, edit: Option<&Value>) -> Rig {
     rig
 }
 
-/// The drawn positions that a save would write.
+/// The drawn positions of a save.
 fn seen(rig: &Rig) -> Vec<DVec3> {
     let mut positions = Vec::new();
     rig.model
@@ -49,7 +49,7 @@ fn seen(rig: &Rig) -> Vec<DVec3> {
     positions
 }
 
-/// What `apply` makes of `edit`'s text.
+/// The result of `apply` for the text of `edit`.
 fn applied(folder: &Folder, file: &Path, edit: &str) -> Vec<DVec3> {
     let (edit, out) = (folder.write("walk.json", edit), folder.at("out.off"));
     let mut arguments: Vec<OsString> = vec!["apply".into(), file.into(), "--edit".into(), edit.into()];
@@ -67,7 +67,7 @@ fn project(rig: &Rig) -> String {
     rig.editor.snapshot().unwrap().project(mesh).to_json()
 }
 
-/// The file that is seen, the project applied and the edit applied are one shape.
+/// The visible file, the applied project and the applied edit have the same shape.
 fn assert_found_again(rig: &Rig, folder: &Folder, file: &Path, case: &str) {
     let seen = seen(rig);
     let alike = |positions: &[DVec3], of: &str| {
@@ -95,7 +95,7 @@ fn meshes() -> [(&'static str, Drawn); 3] {
     ]
 }
 
-/// One thing that an artist might do.
+/// An action that an artist might take.
 fn act(rig: &mut Rig, random: &mut Random) {
     const MODES: [ToolMode; 4] = [
         ToolMode::PaintHandle,
@@ -154,7 +154,7 @@ fn random_walks_are_found_again() {
     }
 }
 
-/// The bar pressed together and then turned ends in another minimum than one that is moved and turned at once.
+/// A bar that is compressed and then turned ends in another minimum than one that is moved and turned at once.
 fn pressed_and_turned(file: &Path) -> Rig {
     let slab = |from: f64, to: f64| json!({ "slab": { "axis": "y", "from": from, "to": to } });
     let edit = json!({

@@ -1,4 +1,4 @@
-//! What a method can't follow is told in the report and in the window, and the handle is called by its name.
+//! The report and the window name motions that a method can't follow, with the handle's name.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -9,7 +9,7 @@ use pliant_mesh::shapes;
 use pliant_tests::{Folder, bend, open};
 use serde_json::{Value, json};
 
-/// By how much this method turns a handle without being able to follow, in radians.
+/// A turn of a handle that this method can't follow, in radians.
 const TOO_FAR: [(&str, f64); 2] = [("laplacian", 2.5), ("frames", 3.1)];
 
 fn edit(method: &str, turn_rad: f64) -> Value {

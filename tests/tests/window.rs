@@ -25,8 +25,8 @@ use pliant_editor::{BrushMetric, Command, Reach, Shading, ToolMode};
 use pliant_tests::{Folder, assets, open, run};
 use window_rig::Session;
 
-/// How far apart, in diagonals, two descents to one minimum may end: the window's, which followed the pointer, and the
-/// command line's, which started at the rest shape.
+/// The largest distance, in diagonals, between the ends of two descents to one minimum: the window's, which followed
+/// the pointer, and the command line's, which started at the rest shape.
 const DESCENDED: f64 = 1e-3;
 
 fn moved(shape: &[DVec3]) -> usize {
@@ -36,7 +36,7 @@ fn moved(shape: &[DVec3]) -> usize {
         .count()
 }
 
-/// The method that bends as the bi-Laplacian does, to the bit, until there are examples of what to add.
+/// The method that bends like the bi-Laplacian, to the bit, as long as there are no examples.
 const WITHOUT_EXAMPLES: &str = "wrinkles";
 
 #[test]
@@ -64,8 +64,8 @@ fn a_session_from_opening_to_saving_gives_what_the_command_line_gives() {
     );
     assert_eq!(moved(&session.shape()), 0);
 
-    // Drag it by G, X, a number, Enter. If a handle goes farther than its region is wide there are several minima, and
-    // the path decides which is found: this drag stays well below that.
+    // Drag it by G, X, a number, Enter. If a handle moves farther than the width of its region there are several
+    // minima, and the path determines the result: this drag stays well below that.
     let id = session.harness.state().editor().view().handles[0].id;
     session
         .harness
@@ -127,7 +127,8 @@ fn a_session_from_opening_to_saving_gives_what_the_command_line_gives() {
     }
     assert_eq!(session.shape(), dragged);
 
-    // Save, and compare with the command line's result for the same edit, which reaches the same minimum another way.
+    // Save, and compare with the command line's result for the same edit, which reaches the same minimum by another
+    // path.
     let folder = Folder::new();
     let saved = folder.path().join("saved.glb");
     session.harness.state_mut().save_to(saved.clone(), KeepOriginal::No);
@@ -152,7 +153,7 @@ fn a_session_from_opening_to_saving_gives_what_the_command_line_gives() {
         );
     }
 
-    // Reopen: the file has what was on the screen.
+    // Reopen: the file has the shown shape.
     let before: Vec<DVec3> = {
         let editor = session.harness.state().editor();
         let mut positions = Vec::new();
@@ -257,7 +258,7 @@ fn a_project_comes_back_as_it_was_though_its_mesh_was_saved_over() {
     }
     session.settle();
     assert!(moved(&session.shape()) > 0);
-    // Save over the source twice: after that, what was read exists only as the backup of the original.
+    // Save over the source twice: after that, the input exists only as the backup of the original.
     for _ in 0..2 {
         session.harness.state_mut().save_to(mesh.clone(), KeepOriginal::Yes);
         session.settle();
@@ -284,7 +285,7 @@ fn a_project_comes_back_as_it_was_though_its_mesh_was_saved_over() {
     );
 }
 
-/// Everything in one session: undo and redo restore the shape, and the saved file reopens as what was saved.
+/// Everything in one session: undo and redo restore the shape, and the saved file reopens unchanged.
 #[test]
 fn a_whole_session_undone_redone_saved_and_opened_again_is_the_same_document_by_its_hash() {
     let Some(mut session) = Session::begin() else { return };
@@ -392,7 +393,7 @@ fn all_methods_are_compared_in_small_views_and_a_click_takes_one() {
             "{number}"
         );
     }
-    // A click takes what is shown there.
+    // A click takes the shape shown there.
     let own = session.harness.state().editor().document().method().name();
     let (number, other) = (0..)
         .zip(METHODS)
@@ -626,7 +627,7 @@ fn the_windows_loops_wait_for_no_job() {
     assert!(session.harness.state().drawings() > drawings, "and all that was shown");
 }
 
-/// "Make cage or lattice" is listed earlier, and a lattice has first to be the method.
+/// "Make cage or lattice" is listed earlier, and the method must first be the lattice.
 #[test]
 fn the_palette_offers_what_can_be_done_now_first() {
     let Some(mut session) = Session::begin() else { return };
@@ -662,7 +663,7 @@ fn escape_closes_the_window_on_top_and_then_means_the_editor_again() {
     session.key(Key::Escape, Modifiers::NONE);
     assert!(!session.harness.state().editor().is_acting());
     assert!(has(&session, of_log) && has(&session, of_keys));
-    // Then the windows, the one used last first.
+    // Then the windows, the last used one first.
     session.key(Key::Escape, Modifiers::NONE);
     assert!(has(&session, of_log) && !has(&session, of_keys));
     session.key(Key::Escape, Modifiers::NONE);

@@ -1,4 +1,4 @@
-//! What assistive technologies and the keyboard reach: every control has a name, and Tab comes to each. Skipped by name
+//! Access by assistive technologies and the keyboard: every control has a name, and Tab comes to each. Skipped by name
 //! if there is no graphics device at all.
 
 #![allow(
@@ -28,7 +28,7 @@ const TOOLS: [ToolMode; 7] = [
     ToolMode::Pose,
 ];
 
-/// A control as assistive technologies see it.
+/// A control for assistive technologies.
 #[derive(Clone, PartialEq, Eq, PartialOrd, Ord, Debug)]
 struct Control {
     role: String,
@@ -43,8 +43,8 @@ fn controls(session: &Session) -> Vec<Control> {
         let node = node.accesskit_node();
         let can = |action| node.data().supports_action(action);
         let is_control = can(Action::Focus) || can(Action::Click);
-        // Panels and scroll areas only pass the focus on, and a scroll bar is all that its role says. Text is its own
-        // name, and can be clicked to be selected.
+        // Panels and scroll areas only pass the focus on, and a scroll bar needs no name besides its role. Text is its
+        // own name, and can be clicked to be selected.
         let is_container = matches!(
             node.role(),
             Role::Unknown

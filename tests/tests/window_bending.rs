@@ -1,6 +1,5 @@
-//! What a person does with a bent shape, by pointer and keyboard: its strength, the warning where it passes through
-//! itself, poses that are kept, and the shape as it was opened beside it. Skipped by name if there is no graphics device
-//! at all.
+//! A person's work on a bent shape, by pointer and keyboard: its strength, the warning if it passes through itself,
+//! kept poses, and the opened shape beside it. Skipped by name if there is no graphics device at all.
 
 #![allow(
     clippy::unwrap_used,
@@ -19,7 +18,7 @@ use glam::{DQuat, DVec3};
 use pliant_editor::{Command, Document, HandleTransform};
 use window_rig::Session;
 
-/// The sample with a handle at its top that stands elsewhere, in a window so high that the whole panel is seen.
+/// The sample with a moved handle at its top, in a window that is high enough for the whole panel.
 fn bent(translation: DVec3, turn_rad: f64) -> Option<Session> {
     let mut session = Session::with_handle()?;
     session.harness.set_size(vec2(1000.0, 1500.0));
@@ -81,7 +80,7 @@ fn the_strength_is_dragged_and_typed_and_what_is_moved_next_goes_on_from_it() {
     assert_eq!(document(&session).strength(), 0.0);
     assert!(session.shape().iter().all(|displacement| *displacement == DVec3::ZERO));
 
-    // From the palette, and on by G, X and a number: what was seen is the whole.
+    // From the palette, then by G, X and a number: the shown state is the whole.
     session.palette("half strength");
     session.key(Key::Enter, Modifiers::NONE);
     session.settle();
@@ -98,7 +97,7 @@ fn the_strength_is_dragged_and_typed_and_what_is_moved_next_goes_on_from_it() {
     assert!(translation.distance(DVec3::X * 0.035) < 1e-9, "{translation}");
 }
 
-/// Lets frames pass until it is known where the shape passes through itself.
+/// Lets frames pass until the search for self-intersections is done.
 fn await_intersections(session: &mut Session) {
     let start = Instant::now();
     while session.harness.state().editor().intersections().is_none() {
@@ -160,7 +159,7 @@ fn a_shape_that_passes_through_itself_is_told_and_shown() {
         .fold(f64::INFINITY, f64::min);
     assert!(nearest < 0.2 * height, "{nearest}");
     assert!(after.distance < before.distance);
-    // Undone, nothing is left to be told.
+    // After undo there is nothing to report.
     session.key(Key::Z, Modifiers::COMMAND);
     session.settle();
     assert!(session.harness.query_by_label(&sentence).is_none());
@@ -196,7 +195,7 @@ fn a_pose_is_kept_and_taken_again() {
     assert!(document(&session).poses().is_empty());
 }
 
-/// The window's picture once it is as smooth as it gets.
+/// The window's picture at its full smoothness.
 fn picture(session: &mut Session) -> image::RgbaImage {
     session.settle();
     let start = Instant::now();
@@ -214,7 +213,7 @@ fn picture(session: &mut Session) -> image::RgbaImage {
     }
 }
 
-/// In how many places of the view two pictures differ, what is written over its top and its corner apart.
+/// The number of places of the view in which two pictures differ, without the text over its top and its corner.
 fn differences(session: &Session, a: &image::RgbaImage, b: &image::RgbaImage) -> usize {
     let view = session.harness.state().view_rect();
     let (columns, rows) = (
@@ -263,7 +262,7 @@ fn the_original_is_seen_beside_the_present_shape_and_through_it() {
     }
     assert_eq!(document(&session).handles().len(), 1, "the line is no stroke");
 
-    // A ghost lies between both.
+    // A ghost is between both.
     session.key(Key::O, Modifiers::SHIFT);
     let ghost = picture(&mut session);
     for shape in [&present, &original] {

@@ -51,7 +51,7 @@ fn wait(session: &mut Session, until: impl Fn(&Session) -> bool) {
     session.settle();
 }
 
-/// Where a control point is in the window that no surface lies under.
+/// The place in the window of a control point without surface under it.
 fn point_beside(session: &Session) -> Pos2 {
     let application = session.harness.state();
     let (editor, view) = (application.editor(), application.editor().view());

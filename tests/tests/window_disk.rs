@@ -1,5 +1,5 @@
-//! What the window knows of the files on disk: originals, strangers, other programs' writes, projects with their meshes,
-//! and what is saved when. Skipped by name if there is no graphics device at all.
+//! The window's knowledge of the files on disk: originals, strangers, other programs' writes, projects with their
+//! meshes, and the times and contents of saves. Skipped by name if there is no graphics device at all.
 
 #![allow(
     clippy::unwrap_used,
@@ -60,7 +60,7 @@ fn says(session: &Session, words: &str) -> bool {
     session.harness.query_all_by_label_contains(words).next().is_some()
 }
 
-/// Runs frames until the window says this.
+/// Runs frames until the window shows this text.
 #[track_caller]
 fn await_words(session: &mut Session, words: &str) {
     let start = Instant::now();
@@ -84,7 +84,7 @@ fn click(session: &mut Session, label: &str) {
 fn the_original_is_kept_beside_a_stranger_of_its_name_and_the_question_says_so() {
     let folder = Folder::new();
     let file = ball(&folder, "scan.off", 3);
-    // Another model's.
+    // This is another model's.
     let stranger = fs::read(ball(&folder, "scan.original.off", 1)).unwrap();
     let scan = fs::read(&file).unwrap();
     let Some(mut session) = open(&file) else { return };
@@ -105,7 +105,7 @@ fn the_original_is_kept_beside_a_stranger_of_its_name_and_the_question_says_so()
     let again = open(&project).unwrap();
     assert_eq!(again.shape(), shape);
     assert_eq!(again.harness.state().path(), Some(&*file));
-    // What is kept by its content is not kept twice.
+    // A file kept by its content is not kept twice.
     drop(again);
     fs::copy(folder.at("scan.original-2.off"), &file).unwrap();
     let mut session = open(&file).unwrap();
@@ -186,7 +186,7 @@ fn what_another_program_has_written_is_not_lost_without_a_question() {
     let Some(mut session) = open(&file) else { return };
     edit(&mut session);
     for round in 0..2 {
-        // Before the first save, and between two of them; the content alone tells.
+        // Before the first save, and between two of them; only the content shows it.
         let theirs = format!("{}# round {round}\n", fs::read_to_string(&file).unwrap());
         fs::write(&file, &theirs).unwrap();
         move_up(&mut session, ".1");
@@ -217,7 +217,7 @@ fn what_another_program_has_written_is_not_lost_without_a_question() {
         );
         assert!(!session.harness.state().editor().view().unsaved);
     }
-    // What only has another time is no change.
+    // A new time alone is no change.
     fs::write(&file, fs::read(&file).unwrap()).unwrap();
     move_up(&mut session, ".1");
     session.settle();
@@ -257,7 +257,7 @@ fn a_project_is_never_saved_without_the_mesh_that_it_needs() {
     edit(&mut session);
     session.harness.state_mut().save_to(file.clone(), KeepOriginal::Yes);
     session.settle();
-    // The mesh as it was read is nowhere, and another one has the name that it would be kept under.
+    // The mesh that was read no longer exists, and another one has the name under which it would be kept.
     fs::remove_file(original_name(&file)).unwrap();
     let stranger = fs::read(ball(&folder, "work.source.off", 1)).unwrap();
     let project = folder.at("work.pliant");
@@ -288,7 +288,7 @@ fn a_save_waits_until_the_shape_has_settled() {
     for digit in "120".chars() {
         session.key(Key::from_name(&digit.to_string()).unwrap(), Modifiers::NONE);
     }
-    // Before the solves of this have come, and in the middle of it.
+    // Before the solves of this move have ended, and in the middle of it.
     session.key(Key::S, Modifiers::COMMAND);
     let waiting = session.harness.state().waiting_save();
     assert!(waiting.is_some_and(|waiting| waiting.starts_with("saved.glb is saved once")));
@@ -301,7 +301,7 @@ fn a_save_waits_until_the_shape_has_settled() {
     session.settle();
     assert_eq!(fs::read(&saved).unwrap(), fs::read(&last).unwrap());
 
-    // Who does not want to wait gets the shape of the moment, and what follows is not saved.
+    // A save without waiting has the shape of the moment, and later shapes are not saved.
     session.harness.state_mut().command(Command::Undo);
     session.settle();
     session.harness.state_mut().command(Command::Redo);
@@ -332,7 +332,7 @@ fn save_first_saves_the_project_that_is_open_and_then_goes_on() {
     session.harness.state_mut().command(Command::KeepPose);
     move_up(&mut session, ".1");
     session.settle();
-    // The model alone is not all of the work.
+    // The model alone does not have all changes.
     let copy = folder.at("copy.off");
     session.harness.state_mut().save_to(copy.clone(), KeepOriginal::No);
     session.settle();
@@ -361,7 +361,7 @@ fn a_file_that_was_changed_is_reloaded_with_the_edit_on_top() {
             session.harness.state_mut().save_to(file.clone(), KeepOriginal::Yes);
             session.settle();
         }
-        // Another program moves all of it.
+        // Another program moves the whole mesh.
         let theirs = pliant_tests::open(&file).model.rest().positions.clone();
         let lifted: Vec<_> = theirs.iter().map(|p| *p + glam::DVec3::X).collect();
         let mut drawn = pliant_mesh::shapes::icosphere(3);
@@ -369,7 +369,7 @@ fn a_file_that_was_changed_is_reloaded_with_the_edit_on_top() {
         folder.write_mesh("scan.off", &drawn);
         let whole = |session: &Session| {
             let view = session.harness.state().editor().view();
-            // Welding has an order of its own in every shape.
+            // Welding has a different order in every shape.
             let mut positions = Vec::new();
             view.model.unwrap().drawn_positions(view.displacements, &mut positions);
             positions
@@ -395,7 +395,7 @@ fn a_file_that_was_changed_is_reloaded_with_the_edit_on_top() {
         assert!(apart < 1e-3, "{is_saved_before}: {apart}");
         assert!(before.iter().zip(&moved).any(|(a, b)| a.distance(*b) > 0.05));
         assert!(session.harness.state().editor().view().unsaved);
-        // And it can be saved over that file, which stays beside it.
+        // It can also be saved over that file, which stays beside it.
         save(&mut session);
         click(&mut session, "Save");
         session.settle();
@@ -444,11 +444,11 @@ fn vertices_are_joined_as_the_panel_says_and_the_work_stays() {
         session.settle();
         assert_eq!(parts(&session), count, "{choice}");
         assert!(session.translation().distance(handle) < 1e-12, "{choice}");
-        // What the lower half does differs, the handle's place does not.
+        // The lower half's motion differs, the handle's place does not.
         assert!((self::highest(&session) - highest).abs() < 1e-9, "{choice}");
         assert!(session.harness.state().editor().view().unsaved, "{choice}");
     }
-    // The shape is what the command line makes of the edit.
+    // The shape is that of the command line for the edit.
     let edit = session.harness.state().editor().edit_file().unwrap().to_json();
     let edit = folder.write("halves.edit.json", &edit);
     session.harness.state_mut().save_to(file.clone(), KeepOriginal::Yes);
@@ -470,7 +470,7 @@ fn vertices_are_joined_as_the_panel_says_and_the_work_stays() {
     }
 }
 
-/// How high the shape reaches.
+/// The height of the shape.
 fn highest(session: &Session) -> f64 {
     let view = session.harness.state().editor().view();
     let rest = &view.model.unwrap().surface.positions;

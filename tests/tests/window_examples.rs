@@ -1,5 +1,5 @@
-//! Examples in the whole window: taken from files and from the file's own morph targets, weighed by their sliders,
-//! undone, saved. Skipped by name if there is no graphics device at all.
+//! Examples in the whole window: from files and from the file's own morph targets, weighted by their sliders, undone,
+//! saved. Skipped by name if there is no graphics device at all.
 #![allow(
     clippy::unwrap_used,
     clippy::expect_used,
@@ -39,7 +39,7 @@ fn bent(angle: f64) -> Drawn {
     bent
 }
 
-/// A window so high that the whole panel is seen, with `path` open and bent by `method`.
+/// A window that is high enough for the whole panel, with `path` open and bent by `method`.
 fn begin(path: PathBuf, method: &str) -> Option<Session> {
     let mut session = Session::begin_in(Source::File(path), AppDirectories::default())?;
     session.harness.set_size(vec2(1000.0, 1800.0));
@@ -81,7 +81,7 @@ fn says(session: &Session, words: &[&str]) -> bool {
     line.is_some_and(|line| words.iter().all(|word| line.contains(word)))
 }
 
-/// Where the window has what is labelled so and has this role.
+/// The place in the window of the control with this label and role.
 fn place(session: &Session, label: &str, role: Role) -> Rect {
     let mut nodes = session.harness.get_all_by_label(label);
     let node = nodes.find(|node| node.accesskit_node().role() == role);
@@ -89,7 +89,7 @@ fn place(session: &Session, label: &str, role: Role) -> Rect {
         .rect()
 }
 
-/// Draws the slider's knob from where `from` stands to where `to` does, both shares of its width.
+/// Drags the slider's knob from `from` to `to`, both shares of its width.
 fn slide(session: &mut Session, example: &str, from: f32, to: f32) {
     let place = place(session, example, Role::Slider);
     let at = |share: f32| pos2(place.left() + share * place.width(), place.center().y);
@@ -131,7 +131,7 @@ fn a_file_is_taken_as_an_example_weighed_undone_and_saved() {
     session.harness.get_by_label("Add from file…");
     assert!(session.harness.query_by_label("Add a morph target").is_none());
 
-    // Other counts, and no file at all, are told; nothing is taken.
+    // A wrong count and a missing file give messages; nothing is added.
     for (path, words) in [
         (other, ["other.off", "bar.off", "vertices", "same vertices"]),
         (folder.at("none.off"), ["none.off", "", "", ""]),
@@ -145,7 +145,7 @@ fn a_file_is_taken_as_an_example_weighed_undone_and_saved() {
     assert_eq!(names(&session), ["pose"]);
     assert!(session.shape().iter().all(|d| *d == DVec3::ZERO));
 
-    // The knob goes from 0, a quarter of −0.5 to 1.5, to 1.
+    // The knob moves from 0, a quarter of −0.5 to 1.5, to 1.
     slide(&mut session, "pose", 0.25, 0.75);
     let weight = examples(&session).unwrap().weights[0].unwrap();
     assert!((weight - 1.0).abs() < 0.1, "{weight}");
@@ -155,7 +155,7 @@ fn a_file_is_taken_as_an_example_weighed_undone_and_saved() {
         .state_mut()
         .command(Command::SetExampleWeight(0, Some(1.0)));
     session.settle();
-    // It is the pose, and since nothing is held, wherever that stands.
+    // It is the pose, at any place, because nothing is held.
     let model = Arc::clone(session.harness.state().editor().view().model.unwrap());
     let example = &examples(&session).unwrap().shapes[0].displacements;
     let places = model.surface.positions.iter().zip(&**example);
@@ -229,7 +229,7 @@ fn morph_targets_of_the_file_are_taken_from_a_list() {
     assert!(pulled > 1.0, "{pulled}");
 }
 
-/// Wrinkles are learnt from what the file has, and the slider multiplies them.
+/// Wrinkles are learnt from the file's targets, and the slider multiplies them.
 #[test]
 fn the_faces_wrinkles_come_from_its_morph_targets_and_go_by_the_slider() {
     let Some(mut session) = begin(assets().join("face.glb"), "bilaplacian") else {
@@ -282,7 +282,7 @@ fn the_faces_wrinkles_come_from_its_morph_targets_and_go_by_the_slider() {
     let whole = session.shape();
     assert!(largest_distance(&whole, &plain) > 1e-4 * height);
 
-    // The knob stands at 1, the middle of 0 to 2: to the left end, the wrinkles are gone, and Undo brings them back.
+    // The knob is at 1, the middle of 0 to 2: at the left end there are no wrinkles, and Undo restores them.
     slide(&mut session, "Brows raised", 0.5, -0.1);
     assert_eq!(examples(&session).unwrap().weights, [Some(0.0)]);
     assert!(largest_distance(&session.shape(), &plain) < 1e-5 * height);

@@ -1,4 +1,4 @@
-//! The window's own dialog for files, by keys and pointer, where the system has none. Skipped by name if there is no
+//! The window's own dialog for files, by keys and pointer, for a system without one. Skipped by name if there is no
 //! graphics device at all.
 
 #![allow(
@@ -81,7 +81,7 @@ fn a_scan_that_is_inside_out_is_shown_and_saved_facing_outwards() {
     let begin = |file| Session::begin_in(Source::File(file), AppDirectories::default());
     let Some(mut session) = begin(wanted) else { return };
     let view = session.harness.state().view_rect();
-    // The middle of the view, without what the panels say.
+    // The middle of the view, without the panels' texts.
     let middle = |session: &mut Session| {
         let picture = session.harness.render().unwrap();
         let (centre, scale) = (view.center(), session.harness.ctx.pixels_per_point());
@@ -133,7 +133,7 @@ fn an_edit_that_can_t_be_read_is_named_and_nothing_is_opened() {
     assert!(session.harness.state().editor().view().model.is_none());
 }
 
-/// Where an entry of the list is.
+/// The place of an entry of the list.
 fn row(session: &Session, name: &str) -> Option<Rect> {
     let row = session.harness.query_by_role_and_label(Role::ListBoxOption, name);
     row.map(|row| row.rect())
@@ -186,7 +186,7 @@ fn a_file_is_found_by_typing_by_arrows_and_by_pointer() {
     assert!(tops.is_sorted(), "folders come first: {tops:?}");
     assert!(row(&session, "note.txt").is_none());
 
-    // Letters filter, and Enter opens what they lead to.
+    // Letters filter, and Enter opens the result.
     type_text(&mut session, "sec");
     assert!(row(&session, "second.off").is_some() && row(&session, "first.off").is_none());
     session.key(Key::Enter, Modifiers::NONE);
@@ -209,7 +209,7 @@ fn a_file_is_found_by_typing_by_arrows_and_by_pointer() {
     session.settle();
     assert_eq!(session.harness.state().path(), Some(&*folder.at("old/third.off")));
 
-    // Tab completes, and the way up leads out again.
+    // Tab completes, and "up" leads out again.
     session.harness.state_mut().browse_to_open();
     await_row(&mut session, "third.off");
     session.key(Key::ArrowUp, Modifiers::ALT);
@@ -219,7 +219,7 @@ fn a_file_is_found_by_typing_by_arrows_and_by_pointer() {
     await_row(&mut session, "third.off");
     let path = text_of(&session, "Path");
     assert!(path.ends_with(&format!("old{}", std::path::MAIN_SEPARATOR)), "{path}");
-    // And goes to the next widget where there is nothing to complete.
+    // It moves to the next widget if there is nothing to complete.
     session.key(Key::Tab, Modifiers::NONE);
     assert_eq!(text_of(&session, "Path"), path);
     session.key(Key::Escape, Modifiers::NONE);
@@ -267,7 +267,7 @@ fn a_copy_is_saved_under_a_typed_name_and_a_file_in_its_place_is_asked_about_onc
     session.harness.state_mut().browse_to_save();
     await_row(&mut session, "second.off");
     assert_eq!(text_of(&session, "Name"), "first.off");
-    // The stem is selected: what is typed leaves the extension.
+    // The stem is selected: typing keeps the extension.
     type_text(&mut session, "copy");
     assert_eq!(text_of(&session, "Name"), "copy.off");
     session.key(Key::Enter, Modifiers::NONE);

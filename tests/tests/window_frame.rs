@@ -1,6 +1,6 @@
-//! What surrounds the model in the window: toolbars that are laid out again, messages that shift nothing, hints that
-//! end, remembered settings, recovery, and materials whose images are still loading. Skipped by name if there is no
-//! graphics device at all.
+//! The surroundings of the model in the window: toolbars that are laid out again, messages that shift nothing, hints
+//! that end, remembered settings, recovery, and materials whose images are still loading. Skipped by name if there is
+//! no graphics device at all.
 
 #![allow(
     clippy::unwrap_used,
@@ -57,7 +57,7 @@ fn bend(session: &mut Session) {
     session.settle();
 }
 
-/// Where the button with this name is.
+/// The place of the button with this name.
 fn place_of(session: &Session, label: &str) -> Rect {
     session
         .harness
@@ -136,7 +136,7 @@ fn the_last_hint_goes_once_the_bent_model_was_saved() {
     assert!(again.harness.query_by_label("1 of 3").is_none());
 }
 
-/// A window that fills the screen does so again the next time.
+/// A window that filled the screen does so again the next time.
 #[test]
 fn a_maximised_window_is_remembered() {
     let folder = Folder::new();
@@ -156,7 +156,7 @@ fn a_maximised_window_is_remembered() {
     }
 }
 
-/// How much memory binding may take is chosen by pointer and keyboard, reaches the editor and is there the next time.
+/// The memory limit of binding is chosen by pointer and keyboard, reaches the editor and is kept for the next time.
 #[test]
 fn the_memory_that_binding_may_take_is_remembered() {
     let folder = Folder::new();
@@ -181,7 +181,7 @@ fn the_memory_that_binding_may_take_is_remembered() {
     session.key(Key::Enter, Modifiers::NONE);
     session.settle();
     assert_eq!((most(&session), kept()), (Some(1_500_000_000), "1.5GB".into()));
-    // The second view's bindings, too.
+    // This includes the second view's bindings.
     session.palette("compare two methods");
     session.key(Key::Enter, Modifiers::NONE);
     session.settle();
@@ -200,7 +200,7 @@ fn the_memory_that_binding_may_take_is_remembered() {
     assert!(session.harness.query_by_label("At most").is_none());
 }
 
-/// What a session left behind is listed by the model's name, and messages about it use that name.
+/// The leftovers of a session are listed by the model's name, and messages about it use that name.
 #[test]
 fn a_recovery_names_its_file() {
     let folder = Folder::new();
@@ -218,7 +218,7 @@ fn a_recovery_names_its_file() {
             .find(|path| path.extension().is_some_and(|extension| extension == "pliant"))
     };
     wait_until(&mut session, |_| kept().is_some());
-    // As a session that was killed would leave it: nothing holds its lock.
+    // It is like the leftovers of a killed session: nothing holds its lock.
     fs::copy(kept().unwrap(), folder.at("recovery/session-0-0.pliant")).unwrap();
     drop(session);
     let mut session = Session::begin_in(Source::Sample, places(&folder)).unwrap();
@@ -229,7 +229,7 @@ fn a_recovery_names_its_file() {
     assert!(session.harness.query_by_label("ball of clay.off").is_none());
 }
 
-/// Which axis is up belongs to the file; changing it frames the whole model again.
+/// The up axis belongs to the file; changing it frames the whole model again.
 #[test]
 fn z_up_frames_the_model_and_ends_with_the_file() {
     let Some(mut session) = Session::begin() else { return };

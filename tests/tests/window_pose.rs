@@ -16,13 +16,13 @@ use pliant_editor::{Command, NamedView, ToolMode};
 use pliant_tests::{Folder, assets, open, run};
 use window_rig::Session;
 
-/// Where the view shows the tip of the sample's tail.
+/// The place of the tip of the sample's tail in the view.
 fn tail(session: &Session) -> Pos2 {
     session.point_of(|positions| {
         let near = positions.iter().min_by(|a, b| a.z.total_cmp(&b.z)).unwrap();
         let around: Vec<DVec3> = positions.iter().filter(|p| p.distance(*near) < 0.15).copied().collect();
         let middle = around.iter().sum::<DVec3>() / around.len() as f64;
-        // The tail is bent, so its middle may lie beside it.
+        // The tail is bent, so its middle may be beside it.
         let from_middle = |p: &&DVec3| p.distance_squared(middle);
         *around
             .iter()
@@ -66,8 +66,7 @@ fn from_a_fresh_start_a_limb_is_posed_and_saved_as_a_morph_target_in_five_action
     );
     let info = run(["info".into(), saved.clone().into_os_string()]).done();
     assert!(info.out.contains("1 morph target"), "{}", info.out);
-    // The target's weight is 1, so that other programs show what was seen.
-    // The target's weight is 1, so that other programs show what was seen.
+    // The target's weight is 1, so that other programs show the visible shape.
     let mut bent = Vec::new();
     open(&assets().join("creature.glb"))
         .model
@@ -122,16 +121,16 @@ fn a_right_click_on_a_handle_opens_its_menu_and_a_click_beside_it_paints_nothing
         session.harness.state().editor().view().selected.is_some(),
         "what was clicked is selected"
     );
-    // Of what the menu lists this alone is not in the panel, too.
+    // This is the menu's only item that is not also in the panel.
     let is_open = |session: &Session| {
         let listed = session.harness.query_all_by_label_contains("Select all handles");
         listed.count() > 0
     };
     assert!(is_open(&session));
     let steps = session.harness.state().editor().history().names().1;
-    // Far from the menu, which is as high as half the view.
+    // The place is far from the menu, whose height is half the view's.
     let beside = session.harness.state().view_rect().right_bottom() - vec2(30.0, 30.0);
-    // A click is soon over; a stroke of the tests takes its time.
+    // A click is short; a stroke of the tests takes longer.
     session.pointer(beside, None);
     session.pointer(beside, Some(true));
     session.pointer(beside, Some(false));

@@ -1,9 +1,9 @@
-//! How long the editor takes for an event on a mesh of 400k triangles, and what a hundred strokes leave in memory: one
-//! JSON object a line.
+//! The time that the editor takes for an event on a mesh of 400k triangles, and the memory that a hundred strokes keep:
+//! one JSON object a line.
 //!
 //! `cargo run --release -p pliant-app --example editor_times`: every stroke and command is done [`ROUNDS`] times. Jobs
 //! run in between and are not counted, as in the window, where they run on threads of their own; drawing and uploading
-//! are not in it.
+//! are not included.
 
 #![allow(
     clippy::expect_used,
@@ -29,7 +29,7 @@ struct Timed {
     editor: Editor,
     jobs: InlineExecutor,
     times: Vec<Duration>,
-    /// What was timed, in the order in which it first came.
+    /// The timed actions, in the order in which they first came.
     noted: Vec<(String, Vec<Duration>)>,
     binds: bool,
 }
@@ -51,7 +51,7 @@ impl Timed {
             }
         };
         while let Some(done) = next() {
-            // Taking a result is the window's work too.
+            // Taking a result is the window's work, too.
             self.send(Event::JobDone(done));
         }
     }
@@ -108,7 +108,7 @@ impl Timed {
         }
     }
 
-    /// The file once more, with nothing done to it yet.
+    /// The file again, before any edit.
     fn open(&mut self, model: &Arc<Model>) {
         self.editor.handle(Event::Opened {
             model: Arc::clone(model),
@@ -123,7 +123,7 @@ fn ms(time: Duration) -> f64 {
     time.as_secs_f64() * 1e3
 }
 
-/// What the process holds in memory, in megabytes, where the system tells.
+/// The memory that the process holds, in megabytes, if the system reports it.
 fn resident_mb() -> Option<f64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
@@ -153,11 +153,11 @@ fn main() {
         binds: true,
     };
     timed.editor.handle(Event::Viewport { size_px: SIZE_PX });
-    // First, while nothing lies about that was freed and would be taken again.
+    // This comes first, while there is no freed memory that would be used again.
     hundred_strokes(&mut timed, &model);
     timed.binds = true;
     timed.open(&model);
-    // Jobs are not counted: the method that is done soonest.
+    // Jobs are not counted, so this takes the fastest method.
     timed.command(Command::SetMethod(Method::from(Bilaplacian::default())));
     for _ in 0..ROUNDS {
         strokes(&mut timed);
@@ -173,7 +173,7 @@ fn across(y: f64) -> impl Iterator<Item = DVec2> {
     line(middle + DVec2::new(-150.0, y), middle + DVec2::new(150.0, y))
 }
 
-/// Painting with every kind of brush, and taking it back.
+/// Painting with every kind of brush, and undoing it.
 fn strokes(timed: &mut Timed) {
     timed.command(Command::SetStrokeShape(StrokeShape::Brush));
     for (metric, name) in [
@@ -207,7 +207,7 @@ fn strokes(timed: &mut Timed) {
     timed.time("undo of stiffness", Command::Undo);
 }
 
-/// A lasso around most of it, and what is done with the region as a whole.
+/// A lasso around most of it, and the commands for the region as a whole.
 fn regions(timed: &mut Timed) {
     timed.command(Command::SetTool(ToolMode::PaintFixed));
     timed.command(Command::SetStrokeShape(StrokeShape::Lasso));
@@ -235,7 +235,7 @@ fn regions(timed: &mut Timed) {
     }
 }
 
-/// Every other command that goes over the whole mesh, with a large handle that is moved.
+/// Every other command that visits the whole mesh, with a large handle that is moved.
 fn handles(timed: &mut Timed) {
     let middle = SIZE_PX * 0.5;
     timed.command(Command::ClearRegions);
@@ -284,15 +284,15 @@ fn handles(timed: &mut Timed) {
     }
 }
 
-/// What a hundred strokes leave in the history and in the process.
+/// The memory of a hundred strokes in the history and in the process.
 fn hundred_strokes(timed: &mut Timed, model: &Arc<Model>) {
     timed.open(model);
     timed.command(Command::SetStrokeShape(StrokeShape::Brush));
     timed.command(Command::SetBrushMetric(BrushMetric::Screen));
     timed.command(Command::SetBrushRadius(30.0));
-    // Nothing is bound between these strokes: only the pointer's structure is kept up.
+    // Nothing is bound between these strokes: only the pointer's structure is updated.
     timed.binds = false;
-    // The first stroke makes the brush's own memory.
+    // The first stroke allocates the brush's own memory.
     timed.stroke(across(0.0));
     timed.command(Command::Undo);
     let resident = resident_mb();

@@ -1,7 +1,7 @@
 //! The pictures of the walk-through in `docs/first-edit.md`, taken from the whole application without a display.
 //!
-//! `cargo run --release -p pliant-app --example walkthrough -- FOLDER` goes the way that the page describes, on the
-//! built-in sample, and writes a picture of each step to FOLDER.
+//! `cargo run --release -p pliant-app --example walkthrough -- FOLDER` follows the page on the built-in sample, and
+//! writes a picture of each step to FOLDER.
 
 #![allow(
     clippy::expect_used,
@@ -56,7 +56,7 @@ impl Walk {
         println!("{}", path.display());
     }
 
-    /// Where the view shows the vertex that `choose` picks.
+    /// The view's pixel for the vertex that `choose` picks.
     fn point(&self, choose: impl Fn(&[DVec3]) -> DVec3) -> Pos2 {
         let view = self.harness.state().editor().view();
         let model = view.model.unwrap();

@@ -1,9 +1,9 @@
-//! How long the window's thread is kept busy, and how long a drag takes from the pointer to the GPU's buffers: one JSON
+//! The time that the window's thread is busy, and the time of a drag from the pointer to the GPU's buffers: one JSON
 //! object a line.
 //!
 //! `cargo run --release -p pliant-app --example window_times -- FILE [REACH]`: opens FILE in the whole application
-//! without a display, paints a handle on its highest part, drags it for 60 pointer moves and does what menus offer.
-//! Drawing itself is left out: on a software device it is the processor that draws.
+//! without a display, paints a handle on its highest part, drags it for 60 pointer moves and runs the menus' commands.
+//! Drawing itself is left out, because a software device draws on the processor.
 
 #![allow(
     clippy::expect_used,
@@ -47,7 +47,7 @@ impl Session {
         self.harness.step();
     }
 
-    /// Whether the shape in the buffers has the handle where the pointer has put it: an earlier move's result has not.
+    /// Whether the shape in the buffers has the handle at the pointer's place: an earlier move's result does not.
     fn shows_handle(&self, size: f64) -> bool {
         let application = self.harness.state();
         let document = application.editor().document();
@@ -121,7 +121,7 @@ fn main() {
     let bound_ms = ms(start.elapsed());
     session.longest("while it binds");
 
-    // As much of the surface as the second argument says (a share of the diagonal) comes along.
+    // The second argument (a share of the diagonal) sets how much of the surface comes along.
     if let Some(reach) = std::env::args().nth(2).and_then(|share| share.parse::<f64>().ok()) {
         let application = session.harness.state_mut();
         let handle = application
@@ -171,7 +171,7 @@ fn main() {
     );
 }
 
-/// Every kind of command that a menu offers, each until all that it starts has ended.
+/// Every kind of command in a menu, each until all its jobs have ended.
 fn menus(session: &mut Session) {
     let commands = [
         Command::Region(RegionAction::Grow),

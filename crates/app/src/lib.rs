@@ -1,7 +1,7 @@
 //! The program: the command line, the window, threads and the clock, over the engine. `pliant` itself is a thin binary
 //! over it.
 //!
-//! The command line, with what it prints kept in memory:
+//! The command line, with its output kept in memory:
 //!
 //! ```
 //! use pliant_app::cli::{Console, run};

@@ -3,8 +3,8 @@
 use eframe::egui::{self, Painter, Pos2, Rect, Vec2};
 use pliant_render::{Image, RenderError, Renderer};
 
-/// What `paint` paints into a rectangle of this size in points, whose upper left corner is the origin, as an image with
-/// a transparent background at `pixels_per_point`.
+/// The picture that `paint` makes in a rectangle of this size in points, with the origin at its upper left corner, as
+/// an image with a transparent background at `pixels_per_point`.
 ///
 /// # Errors
 /// Out of memory, or the device does not respond.

@@ -9,36 +9,36 @@ use pliant_engine::report::Report;
 /// The height of a caption in points.
 const CAPTION: f32 = 76.0;
 
-/// How pictures are laid out on a sheet.
+/// The layout of pictures on a sheet.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Layout {
     /// The sheet's size in pixels.
     pub sheet_px: [u32; 2],
-    /// How many cells stand side by side, and how many rows of them.
+    /// The number of cells in a row, and the number of rows.
     pub grid: [u32; 2],
     /// A cell's size in pixels, its caption included.
     pub cell_px: [u32; 2],
     /// A picture's size in pixels.
     pub view_px: [u32; 2],
-    /// How large a point of text is.
+    /// The size of a point of text.
     pub pixels_per_point: f32,
 }
 
-/// A picture and what stands beneath it.
+/// A picture and the text beneath it.
 #[derive(Clone, Debug)]
 pub struct Cell {
-    /// `None` where there is nothing to show.
+    /// `None` if there is nothing to show.
     pub picture: Option<Image>,
     /// The text.
     pub caption: Caption,
 }
 
-/// What stands beneath a picture.
+/// The text beneath a picture.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct Caption {
     title: String,
     lines: Vec<String>,
-    /// Why there is no picture.
+    /// The reason why there is no picture.
     refusal: Option<String>,
 }
 
@@ -72,8 +72,8 @@ impl Layout {
     }
 }
 
-/// How many columns make the shorter side of so many pictures longest in an area of this size, with a caption of this
-/// height beneath each; of equals the fewest.
+/// The number of columns that makes the shorter side of so many pictures longest in an area of this size, with a
+/// caption of this height beneath each; the fewest of equals.
 pub fn columns(count: u32, [width, height]: [f32; 2], caption: f32) -> u32 {
     let side = |columns: u32| {
         let rows = count.div_ceil(columns);
@@ -85,7 +85,7 @@ pub fn columns(count: u32, [width, height]: [f32; 2], caption: f32) -> u32 {
     )
 }
 
-/// How long binding and a frame took.
+/// The times of binding and of a frame.
 pub fn times(bind_ms: f64, frame_ms: f64) -> String {
     format!("bind {}   frame {}", time(bind_ms), time(frame_ms))
 }
@@ -129,7 +129,7 @@ impl Caption {
     }
 }
 
-/// Milliseconds as a person says them.
+/// Milliseconds in words.
 fn time(ms: f64) -> String {
     match ms {
         ms if ms < 10.0 => format!("{ms:.2} ms"),
@@ -164,7 +164,7 @@ pub fn compose(renderer: &Renderer, layout: &Layout, cells: &[Cell]) -> Result<I
     Ok(sheet)
 }
 
-/// What is behind captions.
+/// The background of captions.
 const PAPER: [u8; 4] = [30, 32, 36, 255];
 
 /// Writes a cell's text: beneath a picture of this height, or a refusal in the picture's place.

@@ -1,4 +1,4 @@
-//! A save is there whole or not at all: cut off at every step, on a full disk, in a folder that can't be written.
+//! A save is complete or absent: cut off at every step, on a full disk, in a folder that can't be written.
 
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
@@ -50,7 +50,7 @@ fn lifted(positions: &[DVec3]) -> Vec<DVec3> {
     positions.iter().map(|p| *p + DVec3::Z * (1.0 + p.x)).collect()
 }
 
-/// Saves the scan over itself and is cut off before the given step: not a test by itself.
+/// Saves the scan over itself and is cut off before the given step: this is not a test by itself.
 #[test]
 #[ignore = "a part of the one below, in a process of its own"]
 fn the_one_that_is_cut_off() {
@@ -88,7 +88,7 @@ fn cut_off_at_any_step_the_old_file_or_the_new_one_stands_there_whole() {
         let after = load(&scan).model.rest_positions();
         let is_new = after == lifted(&before);
         assert!(is_new || after == before, "cut off before step {cut}: {after:?}");
-        // A file cut off on its way can be saved again.
+        // A file that was cut off can be saved again.
         let loaded = load(&scan);
         let staged = stage(&loaded, &lifted(&after), &scan).unwrap();
         staged.commit().unwrap();
@@ -105,7 +105,7 @@ fn cut_off_at_any_step_the_old_file_or_the_new_one_stands_there_whole() {
             break;
         }
     }
-    // Passing name, bridge, buffer, file, and taking the passing name away: cut off before each, and not at all.
+    // Temporary name, bridge, buffer, file, and removal of the temporary name: cut off before each, and not at all.
     assert_eq!(states, [false, false, true, true, true, true]);
 }
 
@@ -153,15 +153,15 @@ fn stopped_at_any_look_every_file_is_as_it_was() {
         }
         looks += 1;
     };
-    // Before its bytes are made, while they are, and as each of the two files is begun, written and made to last.
+    // Before its bytes are made, during that, and as each of the two files is begun, written and synced.
     assert!(looks > 8, "it looked {looks} times");
     assert_ne!(contents(), before, "staged, the files stand beside their targets");
     staged.commit().unwrap();
     assert_eq!(load(&scan).model.rest_positions(), positions);
 }
 
-/// Runs the program with files held to so many blocks. Beyond them the system sends SIGXFSZ, which ends whoever does
-/// not expect it.
+/// Runs the program with files limited to so many blocks. Beyond them the system sends SIGXFSZ, which ends a program
+/// that does not expect it.
 fn with_files_of_at_most(blocks: usize, arguments: &[&Path]) -> Output {
     Command::new("sh")
         .arg("-c")
@@ -216,7 +216,7 @@ fn a_folder_that_can_not_be_written_is_named() {
     let folder = tempfile::tempdir().unwrap();
     write_scan(folder.path());
     let loaded = load(&folder.path().join("a scan.gltf"));
-    // No one makes a file there, whatever the rights.
+    // Nobody can make a file there, with any rights.
     let out = Path::new("/proc/out.glb");
     let refused = stage(&loaded, &lifted(&loaded.model.rest_positions()), out);
     let said = refused.map(|_| ()).unwrap_err().to_string();

@@ -1,4 +1,4 @@
-//! Ctrl-C: the program stops with one sentence and leaves neither OUT nor anything else, whatever it was doing.
+//! Ctrl-C: the program stops with one sentence and leaves neither OUT nor any other file, at every stage.
 
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
@@ -16,10 +16,10 @@ use rustix::fs::{Mode, OFlags};
 use rustix::process::{Pid, Signal, kill_process};
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 
-/// What the progress line says, in this order. A stage that is too short to be shown is interrupted in the next.
+/// The stages of the progress line, in this order. A stage that is too short to be shown is interrupted in the next.
 const STAGES: [&str; 5] = ["reading", "welding", "ordering", "binding", "bending"];
 
-/// How long one run may take on the slowest machine: a program that hangs is ended, and the test fails.
+/// The time limit of one run on the slowest machine: a program that hangs is ended, and the test fails.
 const DEADLINE: Duration = Duration::from_secs(300);
 
 #[test]
@@ -63,8 +63,8 @@ fn write_sheet(path: &Path) {
     fs::write(path, text).unwrap();
 }
 
-/// Runs `pliant apply` on a terminal and sends SIGINT when the progress line says `stage`, or a later stage where this
-/// one was too short to be shown. Gives the exit status and all that stood on the terminal.
+/// Runs `pliant apply` on a terminal and sends SIGINT when the progress line says `stage`, or a later stage if this one
+/// was too short to be shown. Returns the exit status and all text on the terminal.
 fn interrupted_at(stage: &str, folder: &Path) -> (Option<i32>, String) {
     let (mut terminal, program_side) = open_terminal();
     let mut program = Command::new(env!("CARGO_BIN_EXE_pliant"))
@@ -87,7 +87,7 @@ fn interrupted_at(stage: &str, folder: &Path) -> (Option<i32>, String) {
     let mut said = String::new();
     let mut bytes = [0; 4096];
     let mut is_sent = false;
-    // Linux ends with an error once the program has closed its side, other systems with nothing more to read.
+    // Linux ends with an error when the program has closed its side, other systems with an empty read.
     while let Ok(count @ 1..) = terminal.read(&mut bytes) {
         said.push_str(&String::from_utf8_lossy(&bytes[..count]));
         if !is_sent && awaited.iter().any(|word| said.contains(word)) {

@@ -30,7 +30,7 @@ fn every_spelling_of_a_path_gives_the_same_bytes_read_once() {
         std::os::unix::fs::symlink("a.bin", folder.path().join("in/link.bin")).unwrap();
         spellings.push("link.bin");
     }
-    // Had it been read again, it would be the new one.
+    // If it had been read again, it would be the new one.
     fs::write(folder.path().join("in/a.bin"), b"changed").unwrap();
     for spelling in spellings {
         assert_eq!(neighbours.read(spelling).unwrap().place(), first.place(), "{spelling}");
@@ -69,7 +69,7 @@ fn sizes_are_added_up_against_a_budget_that_is_told() {
     let refused = less.read("../b.bin").unwrap_err();
     assert!(refused.contains("GiB"), "{refused}");
     assert!(within(5).read("a.bin").is_err());
-    // Nothing is taken up for a file that is too large, be it sparse and larger than the memory.
+    // No memory is allocated for a file that is too large, even a sparse one larger than the memory.
     let huge = fs::File::create(folder.path().join("in/huge.bin")).unwrap();
     if huge.set_len(1 << 42).is_ok() {
         assert!(neighbours(folder.path()).read("huge.bin").is_err());
@@ -88,12 +88,12 @@ fn what_would_wait_or_never_end_is_not_opened() {
     for uri in ["pipe.bin", "zero.bin", "../in"] {
         assert!(neighbours.read(uri).is_err(), "{uri}");
     }
-    // A file of the system that tells no size has an end all the same: the budget's.
+    // A system file without a size has an end all the same: the budget's.
     std::os::unix::fs::symlink("/proc/self/maps", folder.path().join("in/maps.bin")).unwrap();
     assert!(self::neighbours(folder.path()).within(16).read("maps.bin").is_err());
 }
 
-/// What a save through a link has written is what is read through it again.
+/// A save through a link can be read through the link again.
 #[cfg(unix)]
 #[test]
 fn behind_a_link_the_neighbours_of_its_target_count() {

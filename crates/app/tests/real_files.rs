@@ -1,7 +1,7 @@
 //! A day with files in the real window, by pointer and keys: strangers under the names that saves use, another program
 //! that writes the open file, a project, and unsaved work when the window is closed.
 //!
-//! Skipped by name where Xvfb, xdotool or a graphics device is missing.
+//! The tests are skipped by name if Xvfb, xdotool or a graphics device is missing.
 
 #![cfg(target_os = "linux")]
 #![allow(
@@ -19,7 +19,7 @@ use std::thread::sleep;
 use desktop::{Desktop, PAUSE, SIZE};
 use serde_json::Value;
 
-/// The middle of the 3D view, which takes the window less the panel.
+/// The middle of the 3D view, which takes the window except the panel.
 const MIDDLE: (i32, i32) = ((SIZE.0 - 270) / 2, SIZE.1 / 2 + 20);
 
 fn project(path: &Path) -> Value {
@@ -59,7 +59,7 @@ fn a_day_with_files_loses_neither_the_artist_s_work_nor_anybody_s_file() {
     assert_eq!(fs::read(at("scan.original-2.glb")).unwrap(), scan);
     sleep(4 * PAUSE);
 
-    // Another program writes it: nothing is lost without a question, and beside it is a free name.
+    // Another program writes it: nothing is lost without a question, and a free name is beside it.
     fs::write(at("scan.glb"), &scan).unwrap();
     move_up();
     desktop.key("ctrl+s");
@@ -79,7 +79,7 @@ fn a_day_with_files_loses_neither_the_artist_s_work_nor_anybody_s_file() {
     assert_eq!(fs::read(at("scan.glb")).unwrap(), scan);
     desktop.wait_for_title("scan-2.glb");
 
-    // Closed with unsaved work: what is open is saved, which is the project.
+    // Closed with unsaved work: the open project is saved.
     desktop.answer_with("ctrl+alt+s", "Save the project as", &at("day.pliant"));
     sleep(4 * PAUSE);
     let saved = project(&at("day.pliant"));
@@ -100,7 +100,7 @@ fn a_day_with_files_loses_neither_the_artist_s_work_nor_anybody_s_file() {
     }
     assert!(desktop.left_behind().is_empty());
 
-    // And it can be opened again.
+    // It can be opened again.
     desktop.start(&at("day.pliant"));
     desktop.wait_for_title("scan");
     let again = desktop.project(folder.path(), "again");

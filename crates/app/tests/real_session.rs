@@ -1,7 +1,7 @@
 //! A whole session in the real window, by pointer and keys: open, region by distance, two handles, stiffness, a drag
 //! with each method, comparing two, apply, undo all, redo all, save, reopen.
 //!
-//! Skipped by name where Xvfb, xdotool or a graphics device is missing.
+//! The tests are skipped by name if Xvfb, xdotool or a graphics device is missing.
 
 #![cfg(target_os = "linux")]
 #![allow(
@@ -21,7 +21,7 @@ use pliant_engine::watch::Watch;
 use pliant_mesh::WeldOptions;
 use serde_json::Value;
 
-/// The middle of the 3D view, which takes the window less the panel.
+/// The middle of the 3D view, which takes the window except the panel.
 const MIDDLE: (i32, i32) = ((SIZE.0 - 270) / 2, SIZE.1 / 2 + 20);
 
 fn sample() -> PathBuf {
@@ -37,7 +37,7 @@ fn handles(project: &Value) -> &[Value] {
     project["handles"].as_array().map_or(&[], Vec::as_slice)
 }
 
-/// What the project says of the document: where files stand and from where it is looked at is no part of that.
+/// The document's part of the project: without the paths of files and the camera.
 fn document(project: &Value) -> Value {
     let mut document = project.clone();
     document["mesh"]["path"] = Value::Null;
@@ -88,7 +88,7 @@ fn a_whole_session_by_pointer_and_keys_comes_back_by_undo_redo_and_reopening() {
     desktop.move_to(x + 100, y);
     desktop.keys(&["5", "Tab", "r", "z", "4", "0", "Return"]);
     let mut shapes: Vec<Value> = Vec::new();
-    // ARAP, with which a document begins, then the others by the names that papers call them.
+    // ARAP, the method of a new document, then the others by the names in papers.
     for method in ["arap", "bilaplacian", "primo"] {
         if method != "arap" {
             desktop.command(method);

@@ -1,7 +1,7 @@
-//! The real window under a virtual display, driven by real pointer and key events: paint, drag, save, and find the
-//! shape that the command line makes of the exported edit.
+//! The real window under a virtual display, driven by real pointer and key events: paint, drag, save, and compare with
+//! the shape that the command line makes from the exported edit.
 //!
-//! Skipped by name where Xvfb, xdotool or a graphics device is missing.
+//! The tests are skipped by name if Xvfb, xdotool or a graphics device is missing.
 
 #![cfg(target_os = "linux")]
 #![allow(
@@ -25,7 +25,8 @@ use pliant_engine::watch::Watch;
 use pliant_mesh::WeldOptions;
 
 impl Desktop {
-    /// Saves the model and exports the edit: the command line must make the same of the edit, to `tolerance` diagonals.
+    /// Saves the model and exports the edit: the command line must get the same shape from the edit, to `tolerance`
+    /// diagonals.
     fn saves_what_the_engine_makes(&self, sample: &Path, folder: &Path, name: &str, tolerance: f64) {
         let [saved, edit, applied] =
             ["saved.glb", "edit.json", "applied.glb"].map(|end| folder.join(format!("{name}-{end}")));
@@ -63,7 +64,7 @@ fn sample() -> PathBuf {
     path.canonicalize().unwrap()
 }
 
-/// The middle of the 3D view, which takes the window less the panel.
+/// The middle of the 3D view, which takes the window except the panel.
 const MIDDLE: (i32, i32) = ((SIZE.0 - 270) / 2, SIZE.1 / 2 + 20);
 
 fn load(path: &Path) -> Loaded {
@@ -99,9 +100,9 @@ fn pointer_and_keys_make_the_shape_that_the_engine_says() {
     desktop.xdotool(&["click", "1"]);
     sleep(8 * PAUSE);
 
-    // ARAP, with which a document begins: the window's descent followed the hand, the command line's starts at rest.
+    // ARAP, the method of a new document: the window's descent followed the hand, the command line's starts at rest.
     desktop.saves_what_the_engine_makes(&sample, folder.path(), "arap", 1e-3);
-    // A linear method has one answer, whichever way it was come to.
+    // A linear method has one result, on any way to it.
     desktop.key("F1");
     desktop.type_text(&format!("Method: {}", Method::default().declaration().title));
     desktop.key("Return");
@@ -109,8 +110,8 @@ fn pointer_and_keys_make_the_shape_that_the_engine_says() {
     desktop.saves_what_the_engine_makes(&sample, folder.path(), "bilaplacian", 1e-6);
 }
 
-/// Killed in the middle of a drag, at moments by chance, the work is there at the next start. `PLIANT_KILLS` says how
-/// often; a few times in passing.
+/// After a kill in the middle of a drag, at random moments, the work is there at the next start. `PLIANT_KILLS` sets
+/// the number of kills; it is small by default.
 #[test]
 fn killed_in_the_middle_of_drags_the_window_recovers_each_time() {
     let Some(mut desktop) = Desktop::open(&sample()) else {
@@ -158,7 +159,7 @@ fn killed_in_the_middle_of_drags_the_window_recovers_each_time() {
         for member in ["handles", "region", "fixed", "method", "rest"] {
             assert_eq!(recovered[member], kept[member], "kill {kill}: {member}");
         }
-        // Saved: nothing is left, and the next round begins afresh.
+        // After a save nothing is left, and the next round begins from scratch.
         let start = std::time::Instant::now();
         while !desktop.left_behind().is_empty() {
             assert!(
@@ -172,7 +173,7 @@ fn killed_in_the_middle_of_drags_the_window_recovers_each_time() {
     }
 }
 
-/// A window that filled the screen does so when the program is started again; one that didn't has its size.
+/// A window that filled the screen does so when the program starts again; another one has its size.
 #[test]
 fn a_maximised_window_comes_back_maximised() {
     let Some(mut desktop) = Desktop::open(&sample()) else {

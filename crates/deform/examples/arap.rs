@@ -1,9 +1,9 @@
 //! Times as-rigid-as-possible deformation: `arap MESH.off THREADS ENERGY [REACH.off]`.
 //!
-//! The edit stands beside the mesh as MESH.sel (a line per vertex: 0 fixed, 1 free, 2 handle) and MESH.def (the
-//! handle's matrix, row by row); without them it is the one that peers are timed on: the lowest 5% along the longest
-//! axis are fixed, the highest 5% turned by 60° and moved. One JSON object; times in milliseconds. With REACH.off,
-//! another's result for the same edit, it also says how long it took to get below that shape's energy.
+//! The edit is beside the mesh as MESH.sel (a line per vertex: 0 fixed, 1 free, 2 handle) and MESH.def (the handle's
+//! matrix, row by row); without them it is the one that peers are timed on: the lowest 5% along the longest axis are
+//! fixed, the highest 5% turned by 60° and moved. One JSON object; times in milliseconds. With REACH.off, another
+//! program's result for the same edit, it also gives the time until the energy was below that shape's.
 #![allow(clippy::print_stdout, clippy::unwrap_used, reason = "a program that measures")]
 
 mod common;
@@ -53,7 +53,7 @@ fn measure(file: &Path, threads: usize, energy: ArapEnergy, reach: Option<&Strin
     let mut displacements = vec![DVec3::ZERO; roles.len()];
     let mut exactly = bind(&exact);
 
-    // The usual solve, and on from there to the minimum.
+    // The usual solve, and then on to the minimum.
     let (solve_ms, iterations, solved_energy) = solve(&mut bound, target, &mut displacements);
     let mut minimum = displacements.clone();
     let (_, _, least_energy) = solve(&mut exactly, target, &mut minimum);
@@ -76,8 +76,7 @@ fn measure(file: &Path, threads: usize, energy: ArapEnergy, reach: Option<&Strin
         }
     });
     let first_ms = steps[0];
-    // An iteration is a local and a global step at full resolution: a coarse level that leads would be beside the
-    // point.
+    // An iteration is a local and a global step at full resolution: a leading coarse level would take other steps.
     let mut alone = options(energy, 1e-10);
     alone.coarse_above = usize::MAX;
     let mut iterations_ms = self::steps(&mut bind(&Method::from(alone)), target, |_, _| {});
@@ -104,7 +103,7 @@ fn measure(file: &Path, threads: usize, energy: ArapEnergy, reach: Option<&Strin
     );
 }
 
-/// At most 400 steps from rest, each with its time and the time since rest: milliseconds of each.
+/// At most 400 steps from rest, each with its time and the time since rest, in milliseconds.
 fn steps(bound: &mut Bound, target: DAffine3, mut look: impl FnMut(f64, Step)) -> Vec<f64> {
     let mut displacements = vec![DVec3::ZERO; bound.vertex_count()];
     bound.set_targets(&[DAffine3::IDENTITY]).unwrap();
@@ -134,9 +133,9 @@ fn solve(bound: &mut Bound, target: DAffine3, displacements: &mut [DVec3]) -> (f
     }
 }
 
-/// What a drag of 60 frames was like.
+/// The measurements of a drag of 60 frames.
 struct Drag {
-    /// From a new target to the first shape for it.
+    /// The time from a new target to the first shape for it.
     frame_median_ms: f64,
     frame_max_ms: f64,
     /// The largest distance from the minimum half a second after the last target, in diagonals.
@@ -162,7 +161,7 @@ fn drag(bound: &mut Bound, model: &Model, target: DAffine3, minimum: &[DVec3]) -
         let start = Instant::now();
         bound.step(&mut displacements).unwrap();
         frames.push(ms(start));
-        // What is left of the frame is used.
+        // The rest of the frame is used.
         let length = if frame == 60 { 500.0 } else { FRAME_MS };
         while ms(start) < length && !bound.step(&mut displacements).unwrap().finished {}
     }

@@ -1,8 +1,8 @@
 //! Times binding the thin plate by its own factor or by the Laplacian's: `capacitance MESH.off THREADS [TIMES [factor|laplacian|both]]`.
 //!
-//! The mesh is once subdivided as often as TIMES says, by the middles of its edges. The edit is the one that peers are
-//! timed on. One JSON object a line, for each factor that was asked for: times in seconds, the most memory held while
-//! ordering and binding in megabytes, beyond the mesh, and the largest distance between both shapes in diagonals.
+//! The mesh is first subdivided TIMES times at the middles of its edges. The edit is the one that peers are timed on.
+//! One JSON object a line, for each requested factor: times in seconds, the most memory held while ordering and binding
+//! in megabytes, beyond the mesh, and the largest distance between both shapes in diagonals.
 #![allow(clippy::print_stdout, clippy::unwrap_used, reason = "a program that measures")]
 
 mod common;

@@ -2,8 +2,8 @@
 //!
 //! Both factor the bi-Laplacian of the edit that peers are timed on, in the same elimination order and on as many
 //! threads; a process for each, so that its peak of memory is its own. faer factors on all threads and solves on one,
-//! where it is quicker. Ours allocates its factor in every numeric factorisation, faer writes into one that is there.
-//! One JSON object; times are medians in milliseconds, sizes in megabytes; `more_mb` is the peak beyond the matrix.
+//! which is quicker. Ours allocates its factor in every numeric factorisation, faer writes into an existing one. One
+//! JSON object; times are medians in milliseconds, sizes in megabytes; `more_mb` is the peak beyond the matrix.
 #![allow(clippy::print_stdout, clippy::unwrap_used, reason = "a program that measures")]
 
 mod common;
@@ -57,14 +57,14 @@ fn main() {
     });
 }
 
-/// What a solver took and found.
+/// The costs and the result of a solver.
 struct Found {
     symbolic_ms: f64,
     numeric_ms: f64,
     solve_ms: f64,
-    /// Numbers of the factor.
+    /// The number of the factor's entries.
     stored: usize,
-    /// Of the matrix and three right-hand sides that are one everywhere.
+    /// The size of the matrix and three right-hand sides that are one everywhere.
     solution: Vec<[f64; 3]>,
 }
 
@@ -147,7 +147,7 @@ fn by_faer(matrix: &Sorted, threads: usize, times: usize) -> Found {
     let lower = SparseColMatRef::new(pattern, &matrix.values);
     let upper = SymbolicSparseColMatRef::new_checked(count, count, &matrix.upper_offsets, None, &matrix.upper_rows);
     let par = if threads == 1 { Par::Seq } else { Par::rayon(threads) };
-    // The order is made already; ours never takes the simplicial way either.
+    // The order is made already; ours is never simplicial either.
     let params = || CholeskySymbolicParams {
         supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
         ..Default::default()

@@ -1,8 +1,8 @@
 //! Times the differential methods and the kinds of detail during a drag: `differential MESH.off THREADS [METHOD..]`.
 //!
 //! The edit is the one that peers are timed on, its target approached in sixty frames. One JSON object a method, the
-//! bi-Laplacian first; times are medians in milliseconds. A method's binding alternates with the bi-Laplacian's, so that
-//! their ratio is of one time.
+//! bi-Laplacian first; times are medians in milliseconds. A method's binding alternates with the bi-Laplacian's, so
+//! that their ratio compares runs close in time.
 #![allow(clippy::print_stdout, clippy::unwrap_used, reason = "a program that measures")]
 
 mod common;

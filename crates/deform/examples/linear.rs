@@ -1,8 +1,8 @@
 //! Times the bi-Laplacian step by step: `linear MESH.off THREADS [cpu]`.
 //!
 //! The edit is the one that peers are timed on: the lowest 5% along the longest axis are fixed, the highest 5% are the
-//! handle. One JSON object a line; times are medians in milliseconds, sizes in megabytes. With
-//! `cpu` times are the processor's, summed over threads: what a busy machine leaves comparable.
+//! handle. One JSON object a line; times are medians in milliseconds, sizes in megabytes. With `cpu`, times are the
+//! processor's, summed over threads, which stay comparable on a busy machine.
 #![allow(clippy::print_stdout, clippy::unwrap_used, reason = "a program that measures")]
 
 mod common;
@@ -65,7 +65,7 @@ fn measure(file: &Path, threads: usize, clock: fn() -> f64) {
     let mut displacements = vec![DVec3::ZERO; count];
     let (solve_ms, _) = watch.of(times, || bound.step_by_back_substitution(&mut displacements).unwrap());
     let (frame_ms, _) = watch.of(60, || bound.step(&mut displacements).unwrap());
-    // What the renderer's buffers take, made as the window makes it: in single precision, relative to a centre.
+    // The contents of the renderer's buffers, made as the window makes them: in single precision, relative to a centre.
     let rest = &model.surface.positions;
     let centre = model.bounds().unwrap().centre();
     let (mut positions, mut drawn): (Vec<Vec3A>, Vec<[f32; 3]>) = (Vec::new(), Vec::new());
@@ -83,7 +83,7 @@ fn measure(file: &Path, threads: usize, clock: fn() -> f64) {
         let single = |v: SurfaceVertex| normals[v.index()].to_array();
         model.spread(single, |_, v| v.map_or([0.0; 3], single), &mut drawn);
     });
-    // From here on another bound problem stands beside this one, as it does in the window while a stroke is bound.
+    // From here on another bound problem exists beside this one, as in the window while a stroke is bound.
     let peak_mb = peak_mb();
     let former = problem(&roles).rebind(&ordering, None, &progress, &cancel).unwrap();
     let reusable_factor = former.reusable_factor();
@@ -108,13 +108,13 @@ fn measure(file: &Path, threads: usize, clock: fn() -> f64) {
     );
 }
 
-/// Times things by a clock.
+/// Measures times with a clock.
 struct Watch {
     clock: fn() -> f64,
 }
 
 impl Watch {
-    /// The median time of some runs, and what the last one gave.
+    /// The median time of some runs, and the last one's result.
     fn of<T>(&self, times: usize, mut run: impl FnMut() -> T) -> (f64, T) {
         let mut last = None;
         let mut taken: Vec<f64> = (0..times)
@@ -145,7 +145,7 @@ fn processor_ms() -> f64 {
     threads.map(spent).sum::<f64>() * 1e-6
 }
 
-/// How fast all threads together read memory in order, in GB/s.
+/// The speed at which all threads together read memory in order, in GB/s.
 fn bandwidth(watch: &Watch) -> f64 {
     let numbers = vec![1.0_f64; 64 << 20];
     let (ms, sum) = watch.of(5, || {

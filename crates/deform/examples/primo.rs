@@ -1,7 +1,7 @@
 //! Times coupled prisms on a scene of the survey: `primo SCENE THREADS [THICKNESS]`, where SCENE.off, SCENE.sel and
 //! SCENE.def are its mesh, its roles and its handle's matrix.
 //!
-//! One JSON object a line: binding; how many steps and how long until the energy is within 1% of the best known
+//! One JSON object a line: binding; the number of steps and the time until the energy is within 1% of the best known
 //! minimum, and until the method says it converged; the longest step; milliseconds. The best known minimum is the lower
 //! of two solves to a tolerance of 1e-9, one at once and one as a drag of 20 frames.
 #![allow(clippy::print_stdout, clippy::unwrap_used, reason = "a program that measures")]
@@ -94,7 +94,7 @@ fn solve(bound: &mut Bound, target: DAffine3) -> Vec<(f64, f64)> {
     }
 }
 
-/// A part of the way to a rigid motion.
+/// A share of a rigid motion.
 fn part_of(target: &DAffine3, share: f64) -> DAffine3 {
     let rotation = DQuat::IDENTITY.slerp(DQuat::from_mat3(&target.matrix3), share);
     DAffine3::from_rotation_translation(rotation, target.translation * share)

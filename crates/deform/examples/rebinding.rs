@@ -1,10 +1,10 @@
-//! The peak memory of binding once, or of binding again after a stroke as the window does:
-//! `rebinding MESH.off ORDER TRIANGULATION once|again|work`, for instance `rebinding armadillo.off 3 tufted again`.
+//! The peak memory of binding once, or of binding again after a stroke like the window: `rebinding MESH.off ORDER
+//! TRIANGULATION once|again|work`, for instance `rebinding armadillo.off 3 tufted again`.
 //!
-//! `work` tells the operations of the factorisation instead.
+//! `work` prints the operations of the factorisation instead.
 //!
-//! The edit is the one that peers are timed on, the stroke one on its handle's rim. In the window the binding on which
-//! the next one builds stays until that is done. A process of its own for each figure: what counts is its peak.
+//! The edit is the one that peers are timed on, and the stroke is on its handle's rim. In the window a binding stays
+//! until the next one, which builds on it, is done. Each figure is the peak of a separate process.
 #![allow(clippy::print_stdout, clippy::unwrap_used, reason = "a program that measures")]
 
 mod common;

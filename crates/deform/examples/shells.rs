@@ -1,11 +1,11 @@
 //! Times discrete shells: `shells MESH.off THREADS [OPTION=NUMBER ..]`.
 //!
-//! The edit is the one beside the mesh, or the one that peers are timed on (see `common`). One JSON object: binding, the
-//! first shape, the solve from rest until it converges, and a drag of 60 frames: the median and the longest time from new
-//! targets to the first shape for them, and the largest distance from the converged shape at the end of the drag and
-//! half a second later, in diagonals. Then the converged shape is an example, nothing is held but what is fixed, and its
-//! weight goes from 0 to 1 in 60 frames: binding, the median and the longest time to the first shape, and its distance
-//! from the example at 1. Times in milliseconds.
+//! The edit is the one beside the mesh, or the one that peers are timed on (see `common`). One JSON object: binding,
+//! the first shape, the solve from rest until it converges, and a drag of 60 frames: the median and the longest time
+//! from new targets to the first shape for them, and the largest distance from the converged shape at the end of the
+//! drag and half a second later, in diagonals. Then the converged shape is an example, only fixed vertices are held,
+//! and its weight goes from 0 to 1 in 60 frames: binding, the median and the longest time to the first shape, and its
+//! distance from the example at 1. Times in milliseconds.
 #![allow(clippy::print_stdout, clippy::unwrap_used, reason = "a program that measures")]
 
 mod common;
@@ -22,7 +22,7 @@ use pliant_mesh::{Cancel, Model, Progress};
 /// A frame of a drag, in milliseconds.
 const FRAME_MS: f64 = 16.0;
 
-/// The longest solve that is waited for.
+/// The longest wait for a solve.
 const PATIENCE_MS: f64 = 12_000.0;
 
 fn main() {
@@ -100,7 +100,7 @@ fn measure(file: &Path, threads: usize, method: &Method) {
     );
 }
 
-/// 60 frames on the way to the target: how long each took, and the last one's shape.
+/// 60 frames on the way to the target: the time of each, and the last one's shape.
 fn drag(bound: &mut Bound, target: DAffine3, count: usize) -> (Vec<f64>, Vec<DVec3>) {
     let mut displacements = vec![DVec3::ZERO; count];
     let rotation = DQuat::from_mat3(&target.matrix3);
@@ -118,7 +118,7 @@ fn drag(bound: &mut Bound, target: DAffine3, count: usize) -> (Vec<f64>, Vec<DVe
         let start = Instant::now();
         bound.step(&mut displacements).unwrap();
         frames.push(ms(start));
-        // What is left of the frame is used.
+        // The rest of the frame is used.
         while frame < 60 && ms(start) < FRAME_MS && !bound.step(&mut displacements).unwrap().finished {}
     }
     (frames, displacements)

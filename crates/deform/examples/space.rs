@@ -1,9 +1,9 @@
 //! Times the methods that bend space: `space VERTICES THREADS METHOD [OPTION=VALUE ..] [by-hand]`.
 //!
 //! Points are spread over a bumpy ball; a cap is the handle, the lower third is fixed. One JSON object: binding, the
-//! median frame of a drag and the median of its normals, in milliseconds. Normals are turned by Jacobians, whose time that
-//! is; where the method gives none, they are those of the triangles. With `by-hand` the cage or lattice that the method
-//! makes is brought back, and one of its points is moved in each frame, too.
+//! median frame of a drag and the median of its normals, in milliseconds. Jacobians turn the normals, and the time is
+//! theirs; if the method gives none, the normals are those of the triangles. With `by-hand` the cage or lattice that
+//! the method makes is brought back, and one of its points is moved in each frame, too.
 #![allow(
     clippy::print_stdout,
     clippy::print_stderr,

@@ -12,7 +12,7 @@ use glam::DVec3;
 use pliant_deform::{Arap, ArapEnergy, Method, Problem};
 use pliant_mesh::{Cancel, Progress};
 
-/// Steps that are timed, behind the first, which also starts.
+/// The number of timed steps after the first, which also starts the solver.
 const STEPS: usize = 10;
 
 fn main() {
@@ -38,7 +38,7 @@ fn measure(file: &Path, threads: usize, method: &Method) {
     let stiffness = vec![1.0; roles.len()];
     let problem = one_handle(&model, &roles, &stiffness, method);
     let (bind_ms, mut bound) = timed(|| problem.bind(ordering.as_ref(), &progress, &cancel).unwrap());
-    // Peers' steps are at full resolution: a coarse level that leads would be beside the point.
+    // Peers' steps are at full resolution: a leading coarse level would take other steps.
     if let Some(mut options) = method.options::<Arap>().cloned() {
         options.coarse_above = usize::MAX;
         bound = Problem {

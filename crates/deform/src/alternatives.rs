@@ -1,4 +1,4 @@
-//! Names of methods that do what another one can't, for messages.
+//! Names of methods that can do something that another one can't, for messages.
 
 use crate::method::option::joined;
 use crate::{ConstraintKind, METHODS, MethodDeclaration, Needs};
@@ -18,12 +18,12 @@ pub(crate) fn of_space_for_many_handles() -> String {
     either(METHODS.iter().filter(keeps_nothing))
 }
 
-/// All methods that heed a constraint.
+/// All methods that support a constraint.
 pub(crate) fn heeding(constraint: ConstraintKind) -> String {
     either(METHODS.iter().filter(|declaration| declaration.heeds(constraint)))
 }
 
-/// All methods in which each vertex of a handle can have a place of its own.
+/// All methods in which each vertex of a handle can have its own target position.
 pub(crate) fn taking_places() -> String {
     let takes = |declaration: &&&MethodDeclaration| (declaration.default)().implementation().takes_places();
     either(METHODS.iter().filter(takes))

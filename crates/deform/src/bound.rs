@@ -26,31 +26,32 @@ pub struct Bound {
     vertex_count: usize,
     free_count: usize,
     handles: Vec<Handle>,
-    /// Their rest positions, of a method that takes places for them.
+    /// The handles' rest positions, if the method takes places.
     world_rest: Vec<Vec<DVec3>>,
     motions: Vec<Motion>,
-    /// Where single vertices of handles go beside these.
+    /// The offsets of handles' vertices from the motions.
     offsets: Arc<Offsets>,
     iteration: u32,
     solve: Solve,
     name: &'static str,
     method: Box<dyn BoundMethod>,
-    /// What the method's control points belong to: its name, and what a person calls it.
+    /// The attachment with the method's control points: its name, and its label for a person.
     attachment: Option<(&'static str, &'static str)>,
-    /// Of the examples that were brought; `None` where one is to be found.
+    /// The weights of the brought examples; `None` for a weight to be found.
     weights: Vec<Option<f64>>,
     followers: Followers,
-    /// What is rigid, if something is.
+    /// The rigid parts, if there are any.
     rigid: Option<Box<RigidParts>>,
     turn_limit: Option<TurnLimit>,
-    /// Of hard handles that the method only fits.
+    /// The residual of hard handles that the method only fits.
     residual: HandleResidual,
-    /// Those of the binding.
+    /// The binding's warnings.
     of_binding: Vec<Warning>,
-    /// First those of the binding that hold with the present targets, then what the present targets ask for and the method can't follow.
+    /// The binding's warnings that apply with the present targets first, then those about targets that the method can't
+    /// follow.
     warnings: Vec<Warning>,
     binding_warnings: usize,
-    /// How many there are before those about the last step.
+    /// The number of warnings before those about the last step.
     target_warnings: usize,
 }
 
@@ -63,13 +64,13 @@ impl ReusableFactor {
         &self.0
     }
 
-    /// The share of the factor's numbers that were taken over from `other`, 0 to 1.
+    /// The share of the factor's numbers that were reused from `other`, 0 to 1.
     pub fn share_of(&self, other: &Self) -> f64 {
         self.0.share_of(&other.0)
     }
 }
 
-/// Where a handle is to go, from rest.
+/// A handle's target, from rest.
 #[derive(Clone, PartialEq, Debug)]
 pub enum Target {
     /// An affine map of world positions.
@@ -85,21 +86,22 @@ enum Way {
     BackSubstitution,
 }
 
-/// What one step did.
+/// The result of one step.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct Step {
     /// Whether further steps to the same targets would change nothing. Linear methods: always.
     pub converged: bool,
-    /// Whether further steps to the same targets do nothing: it converged, found no way on, or met the method's limit.
+    /// Whether further steps to the same targets do nothing: it converged, found no lower energy, or met the method's
+    /// limit.
     pub finished: bool,
     /// The deformation energy, 0 at rest, without unit and independent of the model's scale. For the bi-Laplacian it is
     /// ½ dᵀ A d (see [`crate::Bilaplacian`]) and the energy of the soft handles' springs; for ARAP its own energy and
     /// its springs', divided by ½ Σ w |e|² of the rest shape; for gradient editing likewise. Components without a handle are left out.
     pub energy: f64,
-    /// How many steps were taken towards these targets, this one included.
+    /// The number of steps taken towards these targets, this one included.
     pub iteration: u32,
-    /// The largest distance of a hard handle's vertex from where the handle's transform takes it, in world units: 0
-    /// for every method that holds handles exactly.
+    /// The largest distance of a hard handle's vertex from its target by the handle's transform, in world units: 0 for
+    /// every method that holds handles exactly.
     pub handle_residual: f64,
 }
 
@@ -233,13 +235,13 @@ impl Bound {
         })
     }
 
-    /// What the next binding can reuse if only a few vertices' roles change. Only linear methods have such a factor, and
-    /// it holds little unless [`Problem::rebind`] bound it.
+    /// The data that the next binding can reuse if only a few vertices' roles change. Only linear methods have such a
+    /// factor, and it holds little unless [`Problem::rebind`] bound it.
     pub fn reusable_factor(&self) -> Option<ReusableFactor> {
         self.method.reusable_factor()
     }
 
-    /// Sets where the handles are to go: for each handle, one affine map of world positions, from rest.
+    /// Sets the handles' targets: for each handle, one affine map of world positions, from rest.
     ///
     /// # Errors
     /// A wrong count, or a transform that is not finite; the previous targets stay.
@@ -263,11 +265,12 @@ impl Bound {
         Ok(())
     }
 
-    /// As [`Bound::set_targets`], with places for all vertices of a handle in place of its map where there are some:
-    /// every vertex of a hard handle then goes exactly to its place, and those of a soft one pull there.
+    /// Like [`Bound::set_targets`], but a handle's target may be places for all its vertices instead of a map: every
+    /// vertex of a hard handle then goes exactly to its place, and every vertex of a soft handle is pulled there.
     ///
     /// # Errors
-    /// As [`Bound::set_targets`]; [`SolveError::NoPlaces`] for a method that takes none; the previous targets stay.
+    /// Those of [`Bound::set_targets`], and [`SolveError::NoPlaces`] for a method that takes no places; the previous
+    /// targets stay.
     pub fn set_places(&mut self, targets: &[Target]) -> Result<(), SolveError> {
         let expected = self.handles.len();
         if targets.len() != expected {
@@ -295,13 +298,13 @@ impl Bound {
         Ok(())
     }
 
-    /// The surface vertices of a handle, ascending; none where there is no such handle.
+    /// The surface vertices of a handle, ascending; empty for a number that no handle has.
     pub fn handle_vertices(&self, handle: usize) -> &[u32] {
         self.handles.get(handle).map_or(&[], |handle| &handle.vertices)
     }
 
-    /// Sets motions and offsets, and says what these targets ask for; `placed` are the handles whose vertices have
-    /// places.
+    /// Sets motions and offsets, and updates the warnings for these targets. `placed` tells for each handle whether its
+    /// vertices have places.
     fn aim(&mut self, motions: Vec<Motion>, offsets: Offsets, placed: &[bool]) {
         if offsets != *self.offsets {
             self.put_offsets(Arc::new(offsets));
@@ -328,7 +331,7 @@ impl Bound {
         self.offsets = offsets;
     }
 
-    /// Sets the handles' motions. A method that iterates goes on where it is.
+    /// Sets the handles' motions. An iterative method continues from its present shape.
     pub(crate) fn put_motions(&mut self, motions: Vec<Motion>) {
         if self.solve == Solve::Direct || motions != self.motions {
             self.iteration = 0;
@@ -339,14 +342,14 @@ impl Bound {
         self.motions = motions;
     }
 
-    /// Sets motions that another solve has found and goes on finding: they count as the same targets.
+    /// Sets motions that another solve finds and keeps improving: they count as the same targets.
     pub(crate) fn follow(&mut self, motions: Vec<Motion>) {
         self.motions = motions;
     }
 
-    /// Sets where the control points of the attachment that the problem brought are moved to by hand: one world position
-    /// for each. What the hand does adds to what the handles do: the control points take on the hand's displacements,
-    /// and the handles, which are met as before, correct them by as little as they can.
+    /// Sets the positions to which a person moved the control points of the problem's attachment: one world position
+    /// for each. These displacements add to the handles' effect: the control points take them on, and the handles,
+    /// which are still met, correct them as little as possible.
     ///
     /// # Errors
     /// A wrong count, a position that is not finite, or a binding without brought control points; the previous places
@@ -371,7 +374,7 @@ impl Bound {
             .map_or(Ok(()), |rigid| rigid.bound.set_controls(moved))
     }
 
-    /// Sets the weight of each example that the problem brought, as in [`crate::Examples::weights`].
+    /// Sets the weight of each of the problem's examples, as in [`crate::Examples::weights`].
     ///
     /// # Errors
     /// A wrong count, or a weight that is not finite or too large; the previous weights stay.
@@ -389,20 +392,20 @@ impl Bound {
             .map_or(Ok(()), |rigid| rigid.bound.set_weights(weights))
     }
 
-    /// The weight of each example that the problem brought, as the last step took or found it; 0 before the first.
+    /// The weight of each of the problem's examples that the last step used or found; 0 before the first step.
     pub fn weights(&self) -> &[f64] {
         self.method.weights()
     }
 
-    /// The cage or lattice in force, by its declared name: what the problem brought, with its points where the hand has
-    /// moved them, or else what the method has made for itself, at rest. `None` for a method without one.
+    /// The cage or lattice in force, by its declared name: the problem's, with its points where a person moved them, or
+    /// else the one that the method made, at rest. `None` for a method without one.
     pub fn attachment(&self) -> Option<(&'static str, &Attachment)> {
         let (name, _) = self.attachment?;
         Some((name, &self.method.controls()?.attachment))
     }
 
-    /// Where its points are with the present targets, moved by handles and by hand: world positions, empty for a method
-    /// without control points.
+    /// The positions of its points with the present targets, moved by handles and by hand: world positions, empty for a
+    /// method without control points.
     pub fn control_positions(&self) -> Vec<DVec3> {
         match self.method.controls() {
             Some(controls) if self.is_at_rest() => controls.rest.clone(),
@@ -410,7 +413,7 @@ impl Bound {
         }
     }
 
-    /// Whether neither a handle, nor the hand, nor an example moves anything. An example whose weight is to be found moves
+    /// Whether nothing is moved by a handle, by hand or by an example. An example whose weight is to be found moves
     /// nothing by itself.
     fn is_at_rest(&self) -> bool {
         let are_moved = self.method.controls().is_some_and(|controls| controls.are_moved());
@@ -420,8 +423,8 @@ impl Bound {
 
     /// One step towards the targets: fills `displacements`, one per surface vertex, in world units.
     ///
-    /// A hard handle's vertices get exactly what its transform says; vertices that nothing moves get zero to the last
-    /// bit.
+    /// A hard handle's vertices get exactly their displacements by its transform; vertices that nothing moves get zero
+    /// to the last bit.
     ///
     /// # Errors
     /// A wrong length, or a result that is not finite; `displacements` are then all zero.
@@ -429,16 +432,16 @@ impl Bound {
         self.frame(displacements, Way::Shortest)
     }
 
-    /// As [`Bound::step`], but solves with the factor in f64 instead of using the handle bases. A method without bases
-    /// takes an ordinary step.
+    /// Like [`Bound::step`], but solves with the factor in f64 instead of using the handle bases. A method without
+    /// bases takes an ordinary step.
     ///
     /// # Errors
-    /// As [`Bound::step`].
+    /// Those of [`Bound::step`].
     pub fn step_by_back_substitution(&mut self, displacements: &mut [DVec3]) -> Result<Step, SolveError> {
         self.frame(displacements, Way::BackSubstitution)
     }
 
-    /// The method's displacements and zeros elsewhere, then those of followers; then checks that all are finite.
+    /// Computes the method's displacements, zeros elsewhere, then those of followers; then checks that all are finite.
     fn frame(&mut self, displacements: &mut [DVec3], way: Way) -> Result<Step, SolveError> {
         if displacements.len() != self.vertex_count {
             displacements.fill(DVec3::ZERO);
@@ -514,30 +517,30 @@ impl Bound {
         self.method.energy_of(&self.motions, displacements)
     }
 
-    /// A handle's weight at each surface vertex, from 0 to 1: how much of its turn and stretch the surface takes on
-    /// there. `None` if the method has no such weights, or no such handle.
+    /// A handle's weight at each surface vertex, from 0 to 1: the share of its turn and stretch that the surface takes
+    /// on there. `None` if the method has no such weights, or no such handle.
     pub fn handle_weights(&self, handle: usize) -> Option<Vec<f64>> {
         let mut weights = vec![0.0; self.vertex_count];
         (handle < self.handles.len() && self.method.weights_of(handle, &mut weights)).then_some(weights)
     }
 
-    /// Replaces the displacements that the last step has filled by those that take the surface's vertices to the smooth
-    /// base that was bent in its place, where the method has one; before the first step, and where all handles rest, it
-    /// is the base at rest. What is not solved for keeps its displacement. Whether the method has a base; only linear
+    /// Replaces the displacements of the last step by those that take the surface's vertices to the smooth base that
+    /// was bent instead, if the method has one; before the first step, and if all handles rest, that is the base at
+    /// rest. Vertices that are not solved keep their displacements. Returns whether the method has a base; only linear
     /// methods do.
     pub fn base(&self, displacements: &mut [DVec3]) -> bool {
         let bound = self.rigid.as_ref().map_or(self, |rigid| &rigid.bound);
         displacements.len() == self.vertex_count && bound.method.base(displacements)
     }
 
-    /// The Jacobian J of the displacements at each surface vertex, as of the last step; `None` where the method does not
-    /// know its map's derivative. A normal there turns by the inverse transpose of I + J.
+    /// The Jacobian J of the displacements at each surface vertex, in the last step; `None` if the method does not know
+    /// its map's derivative. A normal there turns by the inverse transpose of I + J.
     pub fn jacobians(&self) -> Option<Vec<Mat3>> {
         let mut jacobians = Vec::new();
         self.jacobians_into(&mut jacobians).then_some(jacobians)
     }
 
-    /// As [`Bound::jacobians`], into a table that is kept from frame to frame. Whether the method knows them.
+    /// Like [`Bound::jacobians`], into a table that is kept from frame to frame. Returns whether the method knows them.
     pub fn jacobians_into(&self, jacobians: &mut Vec<Mat3>) -> bool {
         jacobians.resize(self.vertex_count, Mat3::ZERO);
         let are_known = match &self.rigid {
@@ -555,44 +558,44 @@ impl Bound {
         self.method.handle_bases().filter(|_| self.rigid.is_none())
     }
 
-    /// How the method comes to its shape.
+    /// The way in which the method finds its shape.
     pub fn solve(&self) -> Solve {
         self.solve
     }
 
-    /// Sentences for a person: what components without a handle or a fixed vertex do, what was repaired, what the present
-    /// targets ask for that the method can't follow, and how far the last step misses handles that are only fitted.
+    /// Sentences for a person about components without a handle or a fixed vertex, repairs, present targets that the
+    /// method can't follow, and the distance by which the last step misses handles that are only fitted.
     pub fn warnings(&self) -> &[Warning] {
         &self.warnings
     }
 
-    /// Of these, what the present targets ask for and the method can't follow.
+    /// The sentences about present targets that the method can't follow.
     pub fn blind_to(&self) -> &[Warning] {
         &self.warnings[self.binding_warnings..]
     }
 
-    /// How many vertices the surface has: the length of what [`Bound::step`] fills.
+    /// The number of the surface's vertices, which is the length of the displacements that [`Bound::step`] fills.
     pub fn vertex_count(&self) -> usize {
         self.vertex_count
     }
 
-    /// How many vertices have the role [`crate::Role::Free`].
+    /// The number of vertices with the role [`crate::Role::Free`].
     pub fn free_count(&self) -> usize {
         self.free_count
     }
 
-    /// How many of them are solved for: those that a handle can reach.
+    /// The number of solved vertices: those that a handle can reach.
     pub fn solved_count(&self) -> usize {
         self.method.solved_count()
     }
 
-    /// About what a step costs, in vertices of a method with cheap steps. Callers that show intermediate shapes take
-    /// fewer steps between two of them if steps are expensive.
+    /// The approximate cost of a step, in vertices of a method with cheap steps. Callers that show intermediate shapes
+    /// take fewer steps between two of them if steps are expensive.
     pub fn step_cost(&self) -> usize {
         self.method.step_cost() + self.rigid.as_ref().map_or(0, |rigid| rigid.bound.step_cost())
     }
 
-    /// How many numbers the system's factor stores, 8 bytes each.
+    /// The number of entries that the system's factor stores, 8 bytes each.
     pub fn factor_len(&self) -> usize {
         self.method.factor_len() + self.rigid.as_ref().map_or(0, |rigid| rigid.bound.factor_len())
     }
@@ -603,7 +606,7 @@ impl Bound {
     }
 }
 
-/// How far a handle's vertices are displaced to be at these places.
+/// The displacements that take a handle's vertices to these places.
 ///
 /// # Errors
 /// A wrong count, or a place that is not finite.
@@ -633,9 +636,9 @@ fn displacements_to(
         .collect())
 }
 
-/// Every result passes through here, so that none with a displacement that is not finite gets out.
+/// Every result passes through here, so that none with a non-finite displacement is returned.
 fn gate(displacements: &mut [DVec3]) -> Result<(), SolveError> {
-    // Beyond the root of the largest number the energy overflows. What can be measured is finite.
+    // Beyond the root of the largest number the energy overflows. Any value that can be measured is finite.
     let is_measurable = displacements.par_chunks(FRAME_CHUNK).all(|chunk| {
         chunk
             .iter()

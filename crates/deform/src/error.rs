@@ -1,4 +1,4 @@
-//! What can go wrong, each in one sentence that names the culprit and the remedy.
+//! Errors, each in one sentence that names the culprit and the remedy.
 
 use pliant_mesh::{Cancelled, SurfaceVertex, Topology};
 
@@ -11,14 +11,14 @@ pub enum BindError {
     /// The flag was raised.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-    /// A table has another length than the surface.
+    /// A table's length differs from the surface's.
     #[error("{table} has {found} entries where {expected} are expected: give one for each")]
     Length {
-        /// Which table.
+        /// The table.
         table: &'static str,
         /// Its length.
         found: usize,
-        /// What it should be.
+        /// The expected length.
         expected: usize,
     },
     /// A vertex belongs to a handle that does not exist.
@@ -30,7 +30,7 @@ pub enum BindError {
         vertex: u32,
         /// Its handle.
         handle: u16,
-        /// How many there are.
+        /// The number of handles.
         handle_count: usize,
     },
     /// A handle without vertices.
@@ -39,12 +39,12 @@ pub enum BindError {
         /// The handle.
         handle: usize,
     },
-    /// A stiffness that is not a number above 0.
+    /// A stiffness that is not a positive number.
     #[error("the stiffness {value} of vertex {vertex} is not a number above 0: paint it again")]
     Stiffness {
         /// The vertex.
         vertex: u32,
-        /// What it has.
+        /// Its stiffness.
         value: f64,
     },
     /// Rigid paint on too many separate parts.
@@ -52,9 +52,9 @@ pub enum BindError {
         "{found} separate parts are painted rigid, and {most} can move as bodies: paint fewer, or paint a stiffness of 1000"
     )]
     RigidParts {
-        /// How many there are.
+        /// The number of parts.
         found: usize,
-        /// How many there may be.
+        /// The allowed number.
         most: usize,
     },
     /// A soft handle's weight that is not allowed.
@@ -62,7 +62,7 @@ pub enum BindError {
     SoftWeight {
         /// The handle.
         handle: usize,
-        /// What it has.
+        /// Its weight.
         value: f64,
     },
     /// A continuity that is not from 0 to 2.
@@ -70,18 +70,18 @@ pub enum BindError {
     Continuity {
         /// The vertex.
         vertex: u32,
-        /// What it has.
+        /// Its continuity.
         value: f64,
     },
-    /// What was brought beside the handles can't be taken.
+    /// An attachment can't be used.
     #[error("the {title} {refused}")]
     Attachment {
-        /// What a person calls it.
+        /// Its label for a person.
         title: &'static str,
-        /// What is wrong with it.
+        /// Its fault.
         refused: AttachmentRefused,
     },
-    /// Points alone, and a method that bends surfaces.
+    /// The surface has only points, and the method bends surfaces.
     #[error(
         "there is no triangle, and {method} bends surfaces: take {}, which bend points and lines",
         alternatives::of_space()
@@ -95,9 +95,9 @@ pub enum BindError {
         "the ordering is for {found} vertices and power {found_power}, not for {expected} and {expected_power}: make one from this surface"
     )]
     Ordering {
-        /// Its vertices.
+        /// The ordering's vertices.
         found: usize,
-        /// Its power.
+        /// The ordering's power.
         found_power: u32,
         /// The surface's vertices.
         expected: usize,
@@ -122,7 +122,7 @@ pub enum BindError {
         alternatives::of_space()
     )]
     NotPositiveDefinite {
-        /// The component, as `cli.md` numbers them.
+        /// The component, as numbered in the edit format (`docs/edit-format.md`).
         component: u32,
         /// The vertex whose pivot failed.
         vertex: u32,
@@ -133,11 +133,11 @@ pub enum BindError {
         alternatives::of_space()
     )]
     Inaccurate {
-        /// The component, as `cli.md` numbers them.
+        /// The component, as numbered in the edit format (`docs/edit-format.md`).
         component: u32,
-        /// Where the error is largest.
+        /// The vertex with the largest error.
         vertex: u32,
-        /// By how much a constant is missed.
+        /// The error of a constant.
         error: f64,
     },
     /// A bi-Laplacian of an order above 1 was refused; a lower order may work.
@@ -145,10 +145,10 @@ pub enum BindError {
     Order {
         /// The bi-Laplacian's order.
         order: u32,
-        /// Why it was refused.
+        /// The reason for the refusal.
         refused: Box<BindError>,
     },
-    /// The region that is solved for is too long and thin to compute with.
+    /// The solved region is too long and thin for the computation.
     #[error(
         "vertex {vertex} lies {edges} edges from all that holds it, too far to be solved for: fix vertices on the way, make \
          the mesh coarser, {}or take {}",
@@ -158,30 +158,30 @@ pub enum BindError {
     Slender {
         /// The vertex that is farthest.
         vertex: u32,
-        /// How many edges lie between it and the nearest fixed vertex or handle.
+        /// The number of edges between it and the nearest fixed vertex or handle.
         edges: usize,
         /// The bi-Laplacian's order, if that is the method.
         order: Option<u32>,
     },
-    /// Binding would take more than its [`crate::Budget`].
+    /// Binding would exceed its [`crate::Budget`].
     #[error("{}", over_budget(*.free_count, *.limit, .crowded.as_ref()))]
     Budget {
-        /// How many vertices are solved for.
+        /// The number of solved vertices.
         free_count: usize,
-        /// What the budget allows.
+        /// The budget's limit.
         limit: Limit,
-        /// The vertex with the most neighbours, where these are many.
+        /// The vertex with the most neighbours, if it has many.
         crowded: Option<Crowded>,
     },
-    /// What is kept for each handle would together take more than the [`crate::Budget`].
+    /// The handles' tables together would exceed the [`crate::Budget`].
     #[error(
         "{handle_count} handles over {free_count} free vertices take more memory than allowed: join handles, make the region smaller, or take {}",
         alternatives::of_space_for_many_handles()
     )]
     Handles {
-        /// How many handles there are.
+        /// The number of handles.
         handle_count: usize,
-        /// How many vertices are solved for.
+        /// The number of solved vertices.
         free_count: usize,
     },
     /// The factor does not fit.
@@ -190,7 +190,7 @@ pub enum BindError {
         alternatives::of_space()
     )]
     OutOfMemory {
-        /// How many vertices are solved for.
+        /// The number of solved vertices.
         free_count: usize,
     },
 }
@@ -200,7 +200,7 @@ pub enum BindError {
 pub struct Crowded {
     /// The vertex.
     pub vertex: u32,
-    /// How many neighbours it has.
+    /// The number of its neighbours.
     pub neighbours: usize,
 }
 
@@ -233,7 +233,8 @@ fn over_budget(free_count: usize, limit: Limit, crowded: Option<&Crowded>) -> St
 }
 
 impl BindError {
-    /// The refusal for this many free vertices, which exceed what was left of the budget; the binding fills in the rest.
+    /// The refusal for this many free vertices, which exceed the remaining budget; the binding fills in the other
+    /// facts.
     pub(crate) fn budget(free_count: usize, limit: Limit) -> Self {
         Self::Budget {
             free_count,
@@ -258,7 +259,7 @@ impl BindError {
         self
     }
 
-    /// The vertex that the refusal is about.
+    /// The vertex of the refusal.
     pub fn vertex(&self) -> Option<u32> {
         match self {
             Self::UnknownHandle { vertex, .. }
@@ -274,7 +275,7 @@ impl BindError {
         }
     }
 
-    /// The error with the file's vertex in place of the surface's.
+    /// The error with the file's vertex instead of the surface's.
     #[must_use]
     pub fn renumbered(mut self, known: impl Fn(u32) -> u32) -> Self {
         match &mut self {
@@ -296,7 +297,7 @@ impl BindError {
 }
 
 impl SolveError {
-    /// As [`BindError::renumbered`].
+    /// Like [`BindError::renumbered`].
     #[must_use]
     pub fn renumbered(mut self, known: impl Fn(u32) -> u32) -> Self {
         if let Self::NotFinite { vertex } = &mut self {
@@ -313,18 +314,18 @@ pub enum SolveError {
     /// The number of transforms is not the number of handles.
     #[error("{found} transforms came for {expected} handles: give one for each")]
     TargetCount {
-        /// How many came.
+        /// The number of transforms.
         found: usize,
-        /// How many handles there are.
+        /// The number of handles.
         expected: usize,
     },
-    /// A transform holds a NaN or an infinity.
+    /// A transform contains a NaN or an infinity.
     #[error("the transform of handle {handle} is not finite: reset it")]
     TargetNotFinite {
         /// The handle.
         handle: usize,
     },
-    /// A handle's vertices have places of their own, and the method takes none.
+    /// A handle's vertices have places, and the method takes no places.
     #[error(
         "{method} moves all of a handle by one map and takes no positions for its vertices: give a transform, or take {}",
         alternatives::taking_places()
@@ -354,15 +355,15 @@ pub enum SolveError {
     /// The moved control points do not fit those of the binding.
     #[error("the {title} {refused}")]
     Controls {
-        /// What a person calls what they belong to.
+        /// The attachment's label for a person.
         title: &'static str,
-        /// What is wrong with them.
+        /// Their fault.
         refused: AttachmentRefused,
     },
-    /// Control points were moved, and none were brought to the binding.
+    /// Control points were moved, but the binding has none.
     #[error("control points were moved that the binding does not have: bind with a cage or a lattice")]
     NoControls,
-    /// The output has another length than the surface.
+    /// The output's length differs from the surface's.
     #[error("room for {found} displacements was given for {expected} surface vertices: give one for each")]
     OutputLength {
         /// The output's length.
@@ -376,16 +377,16 @@ pub enum SolveError {
         alternatives::of_space()
     )]
     Inaccurate {
-        /// An estimate of what is wrong, relative to the largest displacement.
+        /// An estimate of the error, relative to the largest displacement.
         error: f64,
     },
-    /// The energy is beyond what can be computed with.
+    /// The energy is too large for the computation.
     #[error("the energy of the bent surface is not finite: move the handles less far or scale the model down")]
     EnergyNotFinite,
     /// A displacement is not finite.
     #[error("the displacement of vertex {vertex} is not finite: move the handles less far")]
     NotFinite {
-        /// The first such vertex.
+        /// The first vertex with such a displacement.
         vertex: u32,
     },
 }

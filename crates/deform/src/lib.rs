@@ -1,15 +1,15 @@
 //! The core solver: a surface, the roles of its vertices and a method in; displacements out.
 //!
 //! Rates of change are types: [`Ordering`] changes with the mesh, [`Bound`] with roles, stiffness and options, and a
-//! [`Bound::step`] with the handles' transforms. There is no clock here, no file, no thread of its own: rayon's
-//! current pool is the caller's, and every result is the same bit for bit whatever its size.
+//! [`Bound::step`] with the handles' transforms. The crate uses no clock, no file and no thread of its own: rayon's
+//! current pool is the caller's, and every result is the same bit for bit for every size of the pool.
 //!
-//! Binding goes from the [`Problem`] through `region` (who is solved for) to the [`Laplacian`] (`operators`), to a
+//! Binding goes from the [`Problem`] through `region` (the solved vertices) to the [`Laplacian`] (`operators`), to a
 //! matrix in the restricted [`Ordering`], which is factored (`sparse`), and to the method: `bilaplacian` gives
 //! [`HandleBases`], so that a frame is a product with them; `arap` shares everything up to the factor and takes as many
-//! steps as it needs; `primo` steps with rigid prisms, `shells` with edges' lengths and
-//! angles; `wrinkles` adds learnt details to the bi-Laplacian; `poisson` spreads the handles' turns and solves for what fits
-//! them, `laplacian` does so with differential coordinates, and `frames` solves for the turns first. `rbf`, `mls`,
+//! steps as it needs; `primo` steps with rigid prisms, `shells` with edges' lengths and angles; `wrinkles` adds learnt
+//! details to the bi-Laplacian; `poisson` spreads the handles' turns and solves for the surface that fits them,
+//! `laplacian` does so with differential coordinates, and `frames` solves for the turns first. `rbf`, `mls`,
 //! `embedded`, `lattice` and `cage` bend the space around points, connected or not (`space`).
 //!
 //! A bar whose one end is held while its other, the handle, is lifted:

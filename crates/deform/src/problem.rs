@@ -1,4 +1,4 @@
-//! What is to be solved: a surface, and what each of its vertices does.
+//! The problem to solve: a surface, and the role of each of its vertices.
 
 use pliant_mesh::{Bounds, Cancel, Progress, Surface, Topology, bounding_box};
 
@@ -7,28 +7,29 @@ use crate::size;
 use crate::sparse::refactorisation::Refactorisation;
 use crate::{Attachment, BindError, Bound, Budget, Constraints, Examples, Method, Ordering, ReusableFactor};
 
-/// What a surface vertex does.
+/// The role of a surface vertex.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
 pub enum Role {
-    /// Stays where it is.
+    /// It keeps its position.
     Fixed,
-    /// Goes where the method puts it.
+    /// The method determines its position.
     #[default]
     Free,
-    /// Moves with the handle of this number.
+    /// It moves with the handle of this number.
     Handle(u16),
 }
 
-/// What a connected component without a handle and without a fixed vertex does.
+/// The behaviour of a connected component without a handle and without a fixed vertex.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
 pub enum Loose {
-    /// It moves rigidly with what it touches: the deformed surface, or a larger part that follows. If it touches
-    /// neither, it moves with the nearest part of the deformed surface. Eyes, buttons and straps do so.
+    /// It moves rigidly with the part that it touches: the deformed surface, or a larger part that follows. If it
+    /// touches neither, it moves with the nearest part of the deformed surface. This suits eyes, buttons and straps.
     #[default]
     Follow,
-    /// It stays where it is.
+    /// It keeps its position.
     Rest,
-    /// Each place on it moves with the nearest part of the deformed surface: a strap bends along with what it lies on.
+    /// Each place on it moves with the nearest part of the deformed surface: a strap bends along with the surface below
+    /// it.
     Bend,
 }
 
@@ -41,33 +42,33 @@ pub struct Problem<'a> {
     pub surface: &'a Surface,
     /// The adjacency of `surface`.
     pub topology: &'a Topology,
-    /// What each surface vertex does.
+    /// The role of each surface vertex.
     pub roles: &'a [Role],
-    /// How many handles there are; [`Role::Handle`] numbers lie below it, and every number occurs.
+    /// The number of handles; [`Role::Handle`] numbers are below it, and every number occurs.
     pub handle_count: usize,
-    /// Painted stiffness of each surface vertex, above 0, 1 where nothing was painted: the factor of the
-    /// energy's density there. A face is as stiff as the mean of its three vertices. Where it is [`f64::INFINITY`] the
-    /// surface is rigid: each connected part of such vertices moves as one body, by every method, and with the handle or
-    /// what is fixed that some of its vertices belong to.
+    /// Painted stiffness of each surface vertex, above 0, 1 where nothing was painted: the factor of the energy's
+    /// density there. A face is as stiff as the mean of its three vertices. The surface is rigid where it is
+    /// [`f64::INFINITY`]: each connected part of such vertices moves as one body, by every method; if some of its
+    /// vertices belong to a handle or are fixed, it moves with those.
     pub stiffness: &'a [f64],
-    /// How firmly handles pull and how smoothly the surface joins what holds it.
+    /// The strength of the handles' pull, and the smoothness at constrained vertices.
     pub constraints: Constraints<'a>,
-    /// What components that nothing holds do; [`Constraints::parts`] overrides it for single ones.
+    /// The behaviour of components that nothing holds; [`Constraints::parts`] overrides it for single ones.
     pub loose: Loose,
     /// The method and its options.
     pub method: &'a Method,
-    /// What was brought beside the handles, by the names that methods declare. The method makes for itself what is not
-    /// here, and what others declare it leaves alone.
+    /// The attachments, by the names that methods declare. The method makes those that are missing, and ignores those
+    /// that other methods declare.
     pub attachments: &'a [(&'static str, Attachment)],
     /// The caller's stamp, handed back by [`Bound::revision`].
     pub revision: u64,
 }
 
-/// Sizes whose logarithms differ by less make no difference that is to be told.
+/// Sizes whose logarithms differ by less than this need no sentence.
 const ABOUT_ALIKE: f64 = 0.25;
 
 impl Problem<'_> {
-    /// What was brought of what the method declares.
+    /// The attachments that the method declares.
     pub(crate) fn attachment(&self) -> Option<(&'static str, &Attachment)> {
         let declared = self.method.declaration();
         let own = self
@@ -77,7 +78,7 @@ impl Problem<'_> {
         own.map(|(name, attachment)| (*name, attachment))
     }
 
-    /// The examples that were brought, if the method takes some.
+    /// The examples, if the method takes some.
     pub(crate) fn examples(&self) -> Option<&Examples> {
         match self.attachment() {
             Some((_, Attachment::Shapes(examples))) => Some(examples),
@@ -85,7 +86,7 @@ impl Problem<'_> {
         }
     }
 
-    /// What each component does if nothing holds it.
+    /// The behaviour of each component if nothing holds it.
     pub(crate) fn loose_by_component(&self) -> Vec<Loose> {
         let mut loose = vec![self.loose; self.topology.components().len()];
         for &(part, own) in self.constraints.parts {
@@ -96,18 +97,18 @@ impl Problem<'_> {
         loose
     }
 
-    /// The surface's bounding box; bare points beside triangles don't count.
+    /// The surface's bounding box; bare points don't count if there are triangles.
     pub(crate) fn bounds(&self) -> Option<Bounds> {
         bounding_box(self.topology.main_positions(&self.surface.positions))
     }
 
-    /// The size of what bends, in world units.
+    /// The size of the bending part, in world units.
     pub(crate) fn size(&self) -> f64 {
         size::size(self)
     }
 
-    /// What to say of an edit that was made while an option still counted in diagonals of the scene's box, where that makes
-    /// a difference.
+    /// The sentence about an edit made while an option was still in diagonals of the scene's box, if that makes a
+    /// difference.
     pub fn counted_otherwise(&self) -> Option<String> {
         let (option, power) = self.method.counts_in_sizes()?;
         let (now, former) = (self.size(), self.bounds()?.diagonal());
@@ -131,7 +132,7 @@ impl Problem<'_> {
         self.roles.iter().filter(|role| **role == Role::Free).count()
     }
 
-    /// Refuses the problem where already its tables and its ordering would exceed a budget, before any of it is made.
+    /// Refuses the problem if its tables and its ordering alone would exceed a budget, before any of them is made.
     ///
     /// # Errors
     /// [`BindError::Budget`].
@@ -146,11 +147,11 @@ impl Problem<'_> {
     /// Factors and solves everything that does not depend on the handles' transforms.
     ///
     /// `ordering` must come from [`Method::ordering`] for the same topology, or be of the power that
-    /// [`Problem::ordering_power_within`] gives. A method that needs none ignores it. Uses
-    /// rayon's current pool; the result is the same bit for bit whatever its size.
+    /// [`Problem::ordering_power_within`] gives. A method that needs none ignores it. Uses rayon's current pool; the
+    /// result is the same bit for bit for every size of the pool.
     ///
     /// # Errors
-    /// [`BindError`] names what is wrong with the problem, or where the system could not be solved;
+    /// [`BindError`] names the problem's fault, or the place where the system could not be solved;
     /// [`BindError::Cancelled`] once `cancel` is raised, which is checked between the steps and many times within a
     /// factorisation.
     pub fn bind<'o>(
@@ -162,10 +163,10 @@ impl Problem<'_> {
         self.bind_within(ordering, Budget::default(), progress, cancel)
     }
 
-    /// As [`Problem::bind`], with another budget of memory than the default one.
+    /// Like [`Problem::bind`], with another budget of memory than the default one.
     ///
     /// # Errors
-    /// As [`Problem::bind`]; [`BindError::Budget`] if the binding would take more.
+    /// Those of [`Problem::bind`]; [`BindError::Budget`] if the binding would exceed the budget.
     pub fn bind_within<'o>(
         &self,
         ordering: impl Into<Option<&'o Ordering>>,
@@ -176,12 +177,12 @@ impl Problem<'_> {
         Bound::bind(self, ordering.into(), Refactorisation::Never, budget, progress, cancel)
     }
 
-    /// As [`Problem::bind`], with the same result to the bit, for callers that bind repeatedly: whatever an earlier
-    /// binding's `reusable_factor` holds and no change has touched is not factored again. What is kept for the next
-    /// binding takes at most as much memory as the factor.
+    /// Like [`Problem::bind`], with the same result to the bit, for callers that bind repeatedly: parts of an earlier
+    /// binding's `reusable_factor` that no change has touched are not factored again. The data kept for the next
+    /// binding need at most as much memory as the factor.
     ///
     /// # Errors
-    /// As [`Problem::bind`].
+    /// Those of [`Problem::bind`].
     pub fn rebind<'o>(
         &self,
         ordering: impl Into<Option<&'o Ordering>>,
@@ -192,10 +193,10 @@ impl Problem<'_> {
         self.rebind_within(ordering, reusable_factor, Budget::default(), progress, cancel)
     }
 
-    /// As [`Problem::rebind`], with another budget of memory than the default one.
+    /// Like [`Problem::rebind`], with another budget of memory than the default one.
     ///
     /// # Errors
-    /// As [`Problem::bind_within`].
+    /// Those of [`Problem::bind_within`].
     pub fn rebind_within<'o>(
         &self,
         ordering: impl Into<Option<&'o Ordering>>,

@@ -1,8 +1,8 @@
 //! Parts of infinite stiffness: each moves as one body, by every method.
 //!
-//! A method is bound twice. First the parts are very stiff, which tells where each of them goes: the rigid
-//! motion that fits its vertices best [Hor87]. Then each part is a handle with that motion, so that it keeps its shape to
-//! rounding and what is around it joins it as it joins any handle.
+//! A method is bound twice. First the parts are very stiff, which gives each one's motion: the rigid motion that fits
+//! its vertices best [Hor87]. Then each part is a handle with that motion, so that it keeps its shape to rounding and
+//! its surroundings join it like any handle.
 
 use glam::DVec3;
 use pliant_mesh::{Cancel, Progress, SurfaceVertex};
@@ -13,28 +13,28 @@ use crate::numerical::rigid_fit::RigidMotion;
 use crate::sparse::refactorisation::Refactorisation;
 use crate::{BindError, Bound, Budget, Ordering, Problem, Role, SolveError, Step, Warning};
 
-/// How stiff the parts are while their motions are looked for. The stiffer, the slower iterative methods converge: on a
-/// bar ARAP takes 76 steps at 30, 129 at 100 and 550 at 1000, and the parts go up to 0.5%, 0.2% and 0.02% of their way
-/// elsewhere than at 10,000.
+/// The stiffness of the parts during the search for their motions. With more stiffness iterative methods converge more
+/// slowly: on a bar ARAP takes 76 steps at 30, 129 at 100 and 550 at 1000, and the parts' motions differ from those at
+/// 10,000 by up to 0.5%, 0.2% and 0.02% of the displacement.
 const FIRM: f64 = 1e2;
 
-/// The most parts: every part takes the tables of a handle.
+/// The most parts: every part needs the tables of a handle.
 pub const MOST_RIGID_PARTS: usize = 256;
 
-/// A problem in which rigid parts are firm, and which parts these are.
+/// A problem in which rigid parts are very stiff, and these parts.
 #[derive(Debug)]
 pub(crate) struct Softened {
-    /// With the parts that hang together with one handle, or with what is fixed, in its role.
+    /// The roles, in which parts connected to one handle, or to fixed vertices, have that role.
     pub roles: Vec<Role>,
     pub stiffness: Vec<f64>,
     /// The free vertices of each other part, ascending.
     parts: Vec<Vec<u32>>,
-    /// How many free vertices stay because their part reaches into what is fixed.
+    /// The number of free vertices that stay because their part contains fixed ones.
     held_count: usize,
 }
 
 impl Softened {
-    /// `None` where nothing is rigid, or the tables don't fit the surface.
+    /// `None` if nothing is rigid, or the tables don't fit the surface.
     ///
     /// # Errors
     /// [`BindError::RigidParts`].
@@ -129,7 +129,7 @@ impl Softened {
         }
     }
 
-    /// A sentence where paint holds more still than a person may have meant.
+    /// A sentence if paint fixes more than a person may have meant.
     pub fn warning(&self) -> Option<Warning> {
         let count = self.held_count;
         (count > 0).then(|| {
@@ -141,11 +141,11 @@ impl Softened {
         })
     }
 
-    /// Binds the problem of [`Softened::problem`] once more, with a handle for each part; `None` where every part belongs to
-    /// a handle or to what is fixed.
+    /// Binds the problem of [`Softened::problem`] once more, with a handle for each part; `None` if every part belongs
+    /// to a handle or is fixed.
     ///
     /// # Errors
-    /// As any binding's.
+    /// Those of any binding.
     pub fn bind_parts(
         &self,
         problem: &Problem,
@@ -202,10 +202,10 @@ pub(crate) struct RigidParts {
 }
 
 impl RigidParts {
-    /// Replaces a shape in which the parts are firm by one in which they are rigid.
+    /// Replaces a shape in which the parts are very stiff by one in which they are rigid.
     ///
     /// # Errors
-    /// As a step's.
+    /// Those of a step.
     pub fn step(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> Result<Step, SolveError> {
         let mut all = motions.to_vec();
         for part in &self.parts {

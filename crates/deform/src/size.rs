@@ -1,8 +1,8 @@
-//! The size of what bends, by which options count that are shares of it.
+//! The size of the bending part, the unit of some options.
 //!
 //! It is √12 times the radius of gyration of the surface's components that have a handle: the length of a thin rod, and
-//! the diagonal of the box around a ball or a square. It depends neither on how the axes lie nor on what stands beside
-//! those components, as a box around the scene does.
+//! the diagonal of the box around a ball or a square. Unlike a box around the scene, it depends neither on the axes'
+//! directions nor on other components.
 
 use glam::DVec3;
 use pliant_mesh::{SurfaceVertex, face_area};
@@ -12,7 +12,7 @@ use crate::{Problem, Role};
 /// A rod's length over its radius of gyration.
 const OF_RODS: f64 = 3.464_101_615_137_754_6;
 
-/// The size of what bends in a problem, in world units; 0 of points in one place.
+/// The size of the bending part of a problem, in world units; 0 for points in one place.
 pub(crate) fn size(problem: &Problem) -> f64 {
     let topology = problem.topology;
     let mut bends = vec![false; topology.components().len()];
@@ -30,7 +30,7 @@ pub(crate) fn size(problem: &Problem) -> f64 {
         }
     };
     let of_handles = of_part(&|component| bends[component]);
-    // Examples bend what has no handle.
+    // Examples bend components without a handle.
     if of_handles > 0.0 {
         of_handles
     } else {
@@ -38,7 +38,7 @@ pub(crate) fn size(problem: &Problem) -> f64 {
     }
 }
 
-/// Moments around a point of the part itself, so that nothing is lost far from the origin.
+/// Moments around a point of the part itself, so that no digits are lost far from the origin.
 #[derive(Default)]
 struct Moments {
     mass: f64,
@@ -100,7 +100,7 @@ mod tests {
     use super::size;
     use crate::{Constraints, Loose, Method, Problem, Role};
 
-    /// That of a shape whose first component has a handle.
+    /// The size of a shape whose first component has a handle.
     fn of(drawn: Drawn) -> f64 {
         let model = shapes::model(drawn);
         let first = model.drawn.surface_vertex(DrawnVertex(0)).map_or(0, |v| v.index());

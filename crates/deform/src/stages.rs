@@ -1,4 +1,4 @@
-//! The stages of a binding, for measurements: nothing else needs them separately.
+//! The stages of a binding, for measurements, which alone need them separately.
 
 use pliant_mesh::Cancel;
 
@@ -43,7 +43,7 @@ impl Operator {
         })
     }
 
-    /// Its matrix, the curvature at hubs included; `None` where it takes too much memory.
+    /// Its matrix, the curvature at hubs included; `None` if it needs too much memory.
     pub fn assemble(&self) -> Option<Matrix> {
         let laplacian = &self.operator.laplacian;
         let columns: Vec<u32> = laplacian.locals(&self.elimination.order);
@@ -69,20 +69,20 @@ impl Operator {
 }
 
 impl Matrix {
-    /// How many columns it has.
+    /// The number of columns.
     pub fn column_count(&self) -> usize {
         self.0.scale.len()
     }
 
     /// Column starts, rows and values on and below the diagonal, in the order of elimination. The diagonal comes first
-    /// in its column; the other rows are in no order.
+    /// in its column; the other rows are in any order.
     pub fn lower_columns(&self) -> (&[u32], &[u32], &[f64]) {
         (&self.0.lower_offsets, &self.0.lower_rows, &self.0.lower_values)
     }
 }
 
 impl Factored {
-    /// Factors; `None` where the matrix is not positive definite.
+    /// Factors; `None` if the matrix is not positive definite.
     pub fn fill(&mut self, matrix: &Matrix) -> Option<()> {
         self.0.fill(&matrix.0, 0.0, &Cancel::new()).ok()
     }
@@ -92,12 +92,12 @@ impl Factored {
         self.0.solve(x);
     }
 
-    /// How many numbers it stores.
+    /// The number of stored entries.
     pub fn stored(&self) -> usize {
         self.0.stored()
     }
 
-    /// How many columns it has.
+    /// The number of columns.
     pub fn column_count(&self) -> usize {
         self.0.column_count()
     }

@@ -1,9 +1,9 @@
-//! Deformation transfer between surfaces [SP04]: each triangle takes on the map that a triangle of another surface has,
-//! and a Poisson system joins the triangles.
+//! Deformation transfer between surfaces [SP04]: each triangle takes on the map of a triangle of another surface, and a
+//! Poisson system joins the triangles.
 //!
-//! The maps are deformation gradients ([`face_gradient`]). The shape whose gradients are nearest to them,
-//! ∫ |∇p' − T ∇p|² → min [SP04, equation 5], solves the Poisson equation of [`Gradients`]. It leaves every connected part
-//! free to be moved as a whole, which is decided by how far the other surface's triangles have gone.
+//! The maps are deformation gradients ([`face_gradient`]). The shape whose gradients are nearest to them, ∫ |∇p' − T
+//! ∇p|² → min [SP04, equation 5], solves the Poisson equation of [`Gradients`]. It does not determine the shift of a
+//! connected part as a whole, which the displacements of the other surface's triangles determine.
 
 use std::collections::VecDeque;
 
@@ -22,12 +22,12 @@ use crate::region::slender;
 use crate::sparse::refactorisation::Refactorisation;
 use crate::{BindError, Budget, Discretisation, Laplacian, Ordering, SolveError};
 
-/// A surface at rest and in a pose, as its file has it.
+/// A surface at rest and in a pose, as in its file.
 #[derive(Clone, Copy, Debug)]
 pub struct PosedShape<'a> {
-    /// Its vertices' places at rest.
+    /// Its vertices' positions at rest.
     pub rest: &'a [DVec3],
-    /// The same vertices' places in the pose.
+    /// The same vertices' positions in the pose.
     pub posed: &'a [DVec3],
     /// Its triangles.
     pub triangles: &'a [[usize; 3]],
@@ -40,7 +40,7 @@ impl PosedShape<'_> {
         face_gradient(corners.map(|v| self.rest[v]), corners.map(|v| self.posed[v]))
     }
 
-    /// Whether a triangle has a map: in neither place it is without area.
+    /// Whether a triangle has a map: its area is zero neither at rest nor in the pose.
     fn has_map(&self, triangle: usize) -> bool {
         let corners = self.triangles[triangle];
         [self.rest, self.posed]
@@ -53,7 +53,7 @@ impl PosedShape<'_> {
         box_diagonal(self.triangles.iter().flatten().map(|&corner| self.rest[corner]))
     }
 
-    /// How far a triangle's middle has gone.
+    /// The displacement of a triangle's middle.
     fn shift(&self, triangle: usize) -> DVec3 {
         let corners = self.triangles[triangle];
         corners.iter().map(|&v| self.posed[v] - self.rest[v]).sum::<DVec3>() / 3.0
@@ -65,7 +65,7 @@ impl PosedShape<'_> {
 pub struct DeformationTransfer<'a> {
     surface: &'a Surface,
     topology: &'a Topology,
-    /// `None` where no part has more than one vertex.
+    /// The target; `None` if no part has more than one vertex.
     system: Option<(BilaplacianSystem, Gradients)>,
 }
 
@@ -73,7 +73,7 @@ impl<'a> DeformationTransfer<'a> {
     /// Factors the surface's Laplacian with one vertex of each connected part held. `ordering` is for power 1.
     ///
     /// # Errors
-    /// As the binding of a method: degenerate triangles, a strip without end, memory, [`BindError::Cancelled`].
+    /// The errors of a method's binding: degenerate triangles, a strip without end, memory, [`BindError::Cancelled`].
     pub fn bind(
         surface: &'a Surface,
         topology: &'a Topology,
@@ -121,8 +121,9 @@ impl<'a> DeformationTransfer<'a> {
     }
 
     /// The displacements by which the surface takes on a pose. `partners` has for each of its triangles the one of
-    /// `source` whose map it takes; a triangle without takes that of the nearest one which has (edge by edge; so does one whose
-    /// partner has no area), and a part without any rests. Each part goes as far as its partners on average, in the proportion of the surfaces' sizes.
+    /// `source` whose map it takes; a triangle without a partner, or with one without area, takes the map of the
+    /// nearest triangle that has one (edge by edge), and a part without any partner rests. Each part moves by its
+    /// partners' mean displacement, in the proportion of the surfaces' sizes.
     ///
     /// # Errors
     /// If the solution stays too inaccurate, or is not finite.
@@ -179,7 +180,7 @@ impl<'a> DeformationTransfer<'a> {
         taken
     }
 
-    /// Moves each part so that its triangles go, on average by area, as far as their partners do.
+    /// Moves each part so that the mean displacement of its triangles, by area, is that of their partners.
     fn place(&self, source: &PosedShape<'_>, taken: &[Option<usize>], displacements: &mut [DVec3]) {
         let proportion = diagonal_of(self.surface) / source.diagonal();
         if !proportion.is_finite() {

@@ -1,24 +1,25 @@
-//! What a person should know about a binding or its targets, in a sentence.
+//! Facts about a binding or its targets that a person should know, each in a sentence.
 
 use std::fmt;
 use std::ops::{Deref, Range};
 
-/// A sentence for a person. Where it is about a handle, it calls the handle by its number, which only the problem knows;
-/// [`Warning::naming`] puts the name there that a person knows.
+/// A sentence for a person. If it is about a handle, it has the handle's number, which only the problem knows;
+/// [`Warning::naming`] replaces it by the name that a person knows.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct Warning {
     sentence: String,
-    /// The handle that it is about, and which bytes of the sentence name it.
+    /// The handle that it is about, and the bytes of the sentence that name it.
     handle: Option<(usize, Range<usize>)>,
-    /// Of each component that it says nothing holds: its handles, and how many of its vertices each has.
+    /// For each component that nothing holds: its handles, and the number of its vertices in each. Empty for other
+    /// warnings.
     unheld: Vec<Vec<(usize, usize)>>,
 }
 
-/// So many vertices that have places hold a component.
+/// The number of vertices with places that hold a component.
 const HOLDING: usize = 3;
 
 impl Warning {
-    /// What `word` makes of the handle's designation, which it uses once.
+    /// The sentence that `word` makes with the handle's designation, which it uses once.
     pub(crate) fn of_handle(handle: usize, word: impl FnOnce(&str) -> String) -> Self {
         let designation = format!("handle {handle}");
         let sentence = word(&designation);
@@ -30,7 +31,8 @@ impl Warning {
         }
     }
 
-    /// A sentence on components that nothing holds: each with its handles, and how many of its vertices each has.
+    /// A sentence on components that nothing holds; `unheld` gives each component's handles, and the number of its
+    /// vertices in each.
     pub(crate) fn of_unheld(sentence: String, unheld: Vec<Vec<(usize, usize)>>) -> Self {
         Self {
             sentence,
@@ -39,13 +41,13 @@ impl Warning {
         }
     }
 
-    /// Whether it says that nothing holds a component that handles move. Vertices with places of their own hold one, so
-    /// it may be void once there are targets.
+    /// Whether the warning is that nothing holds a component that handles move. Vertices with places hold a component,
+    /// so targets can make the warning void.
     pub fn is_of_unheld(&self) -> bool {
         !self.unheld.is_empty()
     }
 
-    /// Whether it is about components alone that are held, because their vertices have places by the handles `placed`.
+    /// Whether vertices of the handles in `placed`, which have places, hold every component that the warning names.
     pub(crate) fn is_void(&self, placed: &[bool]) -> bool {
         let is_placed = |&&(handle, _): &&(usize, usize)| placed.get(handle).is_some_and(|placed| *placed);
         let count = |handles: &Vec<(usize, usize)>| handles.iter().filter(is_placed).map(|(_, count)| count).sum();
@@ -57,7 +59,7 @@ impl Warning {
         self.handle.as_ref().map(|(number, _)| *number)
     }
 
-    /// The sentence with `designation` in place of "handle" and its number.
+    /// The sentence with `designation` instead of "handle" and its number.
     pub fn naming(&self, designation: &str) -> String {
         let mut sentence = self.sentence.clone();
         if let Some((_, place)) = &self.handle {

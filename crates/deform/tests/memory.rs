@@ -1,6 +1,6 @@
-//! What binding allocates: it grows as the mesh does and stays within the budget.
+//! The allocations of binding: they grow with the mesh and stay within the budget.
 //!
-//! One test, alone in its binary: an allocator counts for the whole process.
+//! The single test is alone in its binary, because an allocator counts for the whole process.
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use std::alloc::{GlobalAlloc, Layout, System};
@@ -16,14 +16,14 @@ use pliant_deform::{
 };
 use pliant_mesh::{Cancel, Drawn, DrawnVertex, Model, Progress, shapes};
 
-/// The system's allocator, which counts.
+/// The system's allocator, with counters.
 struct Counting;
 
-/// All that was allocated since it was last set.
+/// All bytes allocated since it was last set.
 static ALLOCATED: AtomicUsize = AtomicUsize::new(0);
-/// What is held.
+/// The bytes held.
 static HELD: AtomicUsize = AtomicUsize::new(0);
-/// The most that was held at once since it was last set.
+/// The most bytes held at once since it was last set.
 static PEAK: AtomicUsize = AtomicUsize::new(0);
 
 fn count(bytes: usize) {
@@ -36,7 +36,7 @@ fn count(bytes: usize) {
     unsafe_code,
     reason = "each call is handed to the system's allocator with the very arguments that came in"
 )]
-// SAFETY: as `System`, to which everything is handed on.
+// SAFETY: as `System`, to which every call is passed on.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         count(layout.size());
@@ -52,7 +52,7 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// Three rings of so many vertices around a tip.
+/// Three rings of this many vertices around a tip.
 fn fan(count: usize) -> Drawn {
     let mut positions = vec![DVec3::Z * 0.2];
     for ring in 1..=3 {
@@ -74,7 +74,7 @@ fn fan(count: usize) -> Drawn {
     Drawn::once(positions, triangles)
 }
 
-/// A torus and so many loose triangles beside it.
+/// A torus and this many loose triangles beside it.
 fn soup(count: usize) -> Drawn {
     let mut drawn = shapes::torus(12, 8);
     for crumb in 0..count {
@@ -94,7 +94,7 @@ struct Scene {
 }
 
 impl Scene {
-    /// With so many examples.
+    /// With this many examples.
     fn new(drawn: Drawn, (method, examples): &(Method, usize)) -> Self {
         let model = shapes::model(drawn);
         let bounds = model.bounds().unwrap();
@@ -111,7 +111,8 @@ impl Scene {
         }
     }
 
-    /// Orders and binds within a budget: how much was held at most and allocated in all beyond what was before.
+    /// Orders and binds within a budget; returns the most bytes held at once and all bytes allocated, beyond those
+    /// before.
     fn bind(&self, budget: Budget) -> (Result<usize, BindError>, usize, usize) {
         let stiffness = vec![1.0; self.roles.len()];
         let problem = Problem {
@@ -207,7 +208,7 @@ fn methods() -> Vec<Method> {
     methods
 }
 
-/// Every method with each of its numbers as large as it may be, one at a time and all together.
+/// Every method with each of its numbers at the largest value, one at a time and all together.
 fn largest() -> Vec<(Method, usize)> {
     let mut methods = Vec::new();
     for declaration in METHODS {
@@ -227,7 +228,7 @@ fn largest() -> Vec<(Method, usize)> {
                 .unwrap()
                 .with(options.to_vec())
                 .unwrap();
-            // Examples are what these two blend and learn from.
+            // These two methods blend examples and learn from them.
             let examples = if ["shells", "wrinkles"].contains(&declaration.name) {
                 2
             } else {
@@ -246,7 +247,7 @@ const PLENTY: Budget = Budget {
 
 #[test]
 fn binding_allocates_as_the_mesh_grows_and_within_its_budget() {
-    // Rooms are kept by thread: one thread, so that what is counted is the same each time.
+    // Scratch memory is kept by thread; one thread makes the counts repeatable.
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     pool.install(|| {
         for method in cases() {
@@ -257,7 +258,8 @@ fn binding_allocates_as_the_mesh_grows_and_within_its_budget() {
             ] {
                 let measured = sizes.map(|size| {
                     let (bound, peak, allocated) = Scene::new(shape(size), &method).bind(PLENTY);
-                    // The coupled system of implicit transformations loses too many digits at an edge of so many triangles.
+                    // The coupled system of implicit transformations loses too many digits at an edge with this many
+                    // triangles.
                     let may_refuse = name == "edge" && method.0 == Method::from_name("laplacian").unwrap();
                     let refused = bound.err();
                     assert!(
@@ -268,8 +270,8 @@ fn binding_allocates_as_the_mesh_grows_and_within_its_budget() {
                 });
                 let [(peak, allocated), (twice, all_twice)] = measured;
                 assert!(twice < 3 * peak, "{name}, {method:?}: {peak} {twice} held");
-                // Each correction takes its memory anew, and at a crowded vertex order 3 needs more of them the more crowded
-                // it is.
+                // Each correction allocates its memory anew, and at a crowded vertex order 3 needs more corrections for
+                // more neighbours.
                 let order = method.0.options::<Bilaplacian>().map(|options| options.order);
                 let corrects_more = name == "vertex" && order == Some(BilaplacianOrder::CurvatureVariation);
                 assert!(
@@ -277,7 +279,7 @@ fn binding_allocates_as_the_mesh_grows_and_within_its_budget() {
                     "{name}, {method:?}: {allocated} {all_twice} in all"
                 );
             }
-            // A surface of no crowded vertex at all is refused before its memory is taken.
+            // A surface without a crowded vertex is also refused before its memory is allocated.
             let scene = Scene::new(shapes::grid(70, 70), &method);
             let (bound, peak, _) = scene.bind(PLENTY);
             bound.unwrap();
@@ -291,8 +293,8 @@ fn binding_allocates_as_the_mesh_grows_and_within_its_budget() {
             );
             assert!(least < peak, "{method:?}: {least} {peak}");
         }
-        // What binding is granted covers what it takes: with a tenth less than it held at most it is refused, or makes do
-        // with less.
+        // The granted budget covers the memory of a binding: with a tenth less than its peak it is refused, or needs
+        // less.
         for method in cases() {
             for drawn in [shapes::grid(120, 120), soup(8000)] {
                 let scene = Scene::new(drawn, &method);
@@ -310,8 +312,8 @@ fn binding_allocates_as_the_mesh_grows_and_within_its_budget() {
                 );
             }
         }
-        // However large its options are, on a small mesh, a method takes no more than it is granted, and is refused before
-        // it takes that.
+        // On a small mesh a method needs no more than its budget, even with the largest options, and is refused before
+        // it exceeds it.
         for method in largest() {
             let scene = Scene::new(shapes::icosphere(3), &method);
             let (bound, peak, _) = scene.bind(PLENTY);
@@ -322,7 +324,7 @@ fn binding_allocates_as_the_mesh_grows_and_within_its_budget() {
                     bytes: granted,
                     ..PLENTY
                 });
-                // Small tables are estimated by the vertex.
+                // Small tables are estimated per vertex.
                 let most = granted + 200 * scene.roles.len() as u64;
                 let most = if bound.is_ok() { most } else { most + granted / 10 };
                 assert!(
@@ -332,7 +334,7 @@ fn binding_allocates_as_the_mesh_grows_and_within_its_budget() {
                 );
             }
         }
-        // A mesh whose factorisation takes too many operations is refused before its memory is taken.
+        // A mesh whose factorisation needs too many operations is refused before its memory is allocated.
         let method = (Method::from(Bilaplacian::default()), 0);
         let scene = Scene::new(shapes::tangle(170), &method);
         let (bound, peak, _) = scene.bind(PLENTY);

@@ -1,6 +1,6 @@
 //! Wide and narrow vectors give the same bits.
 //!
-//! One test, alone in its binary: which vectors are taken holds for the whole process.
+//! The single test is alone in its binary, because the choice of vectors holds for the whole process.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test may panic")]
 
 #[allow(dead_code, reason = "the laws need more of it")]
@@ -12,7 +12,7 @@ use pliant_deform::{METHODS, Method, OptionKind, OptionValue, Role};
 use pliant_mesh::{Vectors, shapes, vertex_normals};
 use rig::{Scene, far, settle};
 
-/// Each method with its defaults, and with each other choice that one of its options offers.
+/// Each method with its defaults, and with each other choice of one of its options.
 fn methods() -> Vec<Method> {
     let mut methods = Vec::new();
     for declaration in METHODS {

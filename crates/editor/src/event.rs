@@ -16,19 +16,19 @@ use crate::input::{Button, Key, Modifiers, Pointer};
 use crate::jobs::JobDone;
 use crate::snapshot::Snapshot;
 
-/// One thing that happened. No event carries the time: the editor has no clock.
+/// An event. No event carries the time: the editor has no clock.
 #[derive(Debug)]
 pub enum Event {
-    /// The 3D view has this size, in points. Sent before the first pointer event and whenever it changes.
+    /// The 3D view has this size, in points. It is sent before the first pointer event and after every change.
     Viewport {
         /// Width and height in points, both positive.
         size_px: DVec2,
     },
     /// The pointer moved within the view, or anywhere while a button is held.
     PointerMoved(Pointer),
-    /// The pointer has stood still over the view for a moment: it means what lies under it.
+    /// The pointer has rested over the view for a moment.
     PointerRested,
-    /// The pointer left the view: nothing is hovered any more.
+    /// The pointer left the view: nothing is hovered.
     PointerLeft,
     /// A button went down over the view.
     PointerPressed(Pointer, Button),
@@ -36,40 +36,40 @@ pub enum Event {
     PointerReleased(Pointer, Button),
     /// The wheel turned or two fingers scrolled by `lines` (positive: towards the surface).
     Wheel {
-        /// Where the pointer stands.
+        /// The pointer's position.
         pointer: Pointer,
         /// Notches of a mouse wheel; fractions for smooth scrolling.
         lines: f64,
     },
     /// Two fingers pinched: `factor` above 1 comes closer.
     Pinch {
-        /// Where the pointer stands.
+        /// The pointer's position.
         pointer: Pointer,
         /// The ratio of the fingers' distances since the last event.
         factor: f64,
     },
     /// How hard the pen presses, 0 to 1; `None` for a device that reports no force.
     Pressure(Option<f64>),
-    /// A key went down (repeats of a held key included). Characters come in lower case, one event a key.
+    /// A key went down (repeats of a held key included). Characters come in lower case, one event per key.
     Key(Key, Modifiers),
     /// A key went up.
     KeyReleased(Key),
-    /// Something a menu, a button or the command palette asks for.
+    /// A command from a menu, a button or the command palette.
     Command(Command),
     /// A person's choice of keys.
     Keys(KeyMap),
-    /// The most memory in bytes that a person lets bindings take; `None`: what there is.
+    /// The most memory in bytes that a person allows for bindings; `None` is all available memory.
     Memory(Option<u64>),
-    /// A widget is being dragged: the command's change is shown, and becomes one step of the history with all that
-    /// follow until [`Event::Adjusted`].
+    /// A widget is being dragged: the command's change is shown, and all changes until [`Event::Adjusted`] become one
+    /// step of the history.
     Adjust(Command),
     /// The widget was let go.
     Adjusted,
-    /// A job that the executor was given has ended, or has an intermediate result.
+    /// A job given to the executor has ended, or has an intermediate result.
     JobDone(JobDone),
-    /// A file was loaded and welded; `beginning` is what is to be set up on it.
+    /// A file was loaded and welded; `beginning` is set up on it.
     Opened {
-        /// What the file shows and its welded surface.
+        /// The file's scene and its welded surface.
         model: Arc<Model>,
         /// The file's name, for the status line.
         name: String,
@@ -79,14 +79,14 @@ pub enum Event {
     /// Takes over another editor's document, except the method: the same handles, bent by `method`. The results of this
     /// editor's own jobs come by [`Event::JobDone`].
     Follow {
-        /// What the other editor has.
+        /// The other editor's state.
         leader: Box<Snapshot>,
-        /// By which method this one bends.
+        /// The method of this editor.
         method: Method,
     },
-    /// The document was recovered from a session that ended without saving, or carried over to a file that another program
-    /// has changed: no file has it, and such a one is needed.
+    /// The document was recovered from a session that ended without saving, or carried over to a file that another
+    /// program has changed: no file has it, and one is needed.
     Recovered(SavedAs),
-    /// The document was written to a file as it stood at the mark ([`Editor::save_mark`](crate::Editor::save_mark)).
+    /// The document was written to a file in the state of the mark ([`Editor::save_mark`](crate::Editor::save_mark)).
     Saved(SavedAs, SaveMark),
 }

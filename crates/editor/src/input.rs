@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-/// Where the pointer is, and which modifier keys are held.
+/// The position of the pointer, and the held modifier keys.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct Pointer {
     /// Position within the view in points, x to the right and y down from its upper left corner.
@@ -11,7 +11,7 @@ pub struct Pointer {
     pub modifiers: Modifiers,
 }
 
-/// The modifier keys that are held.
+/// The held modifier keys.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
 pub struct Modifiers {
     /// Shift.
@@ -62,11 +62,11 @@ pub enum Button {
     Primary,
     /// The middle button: the camera.
     Middle,
-    /// The right button: aborts what is going on, and else moves the camera; a click is the menu's.
+    /// The right button: aborts the active gesture, or else moves the camera; a click opens the menu.
     Secondary,
 }
 
-/// A key that means something to the editor.
+/// A key with a meaning in the editor.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Hash)]
 pub enum Key {
     /// A key that types a character: letters in lower case, digits, punctuation.

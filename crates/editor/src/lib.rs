@@ -1,10 +1,10 @@
 //! The program without a window: document, history, selection, camera, brush, gizmo, tools, commands and jobs, and
 //! the edit format that the command line reads.
 //!
-//! Everything happens through [`Editor::handle`]: the window, a test and a script send it [`Event`]s. What is to be
-//! shown is a [`SceneView`]; long work goes to the [`Executor`] that the application provides.
+//! Everything happens through [`Editor::handle`]: the window, a test and a script send it [`Event`]s. The window shows
+//! a [`SceneView`]; long work goes to the [`Executor`] that the application provides.
 //!
-//! A sphere is opened, a handle painted in the middle of the view and moved along x by typing, as a person does:
+//! A sphere is opened, a handle painted in the middle of the view and moved along x by typing, like a person's work:
 //!
 //! ```
 //! use std::sync::Arc;

@@ -29,12 +29,12 @@ impl Selection {
         !self.selected.contains(&true)
     }
 
-    /// How many vertices the set has.
+    /// The number of vertices in the set.
     pub fn len(&self) -> usize {
         self.selected.iter().filter(|&&selected| selected).count()
     }
 
-    /// The set's vertices, rising.
+    /// The set's vertices, ascending.
     pub fn iter(&self) -> impl Iterator<Item = SurfaceVertex> {
         self.selected
             .iter()
@@ -54,7 +54,7 @@ impl Selector {
         self.evaluate_at(model, "the selector")
     }
 
-    /// As [`Selector::evaluate`], naming `place` in a refusal.
+    /// Like [`Selector::evaluate`], naming `place` in a refusal.
     pub(crate) fn evaluate_at(&self, model: &Model, place: &str) -> Result<Selection, EditError> {
         let selected = match self {
             Self::All => vec![true; model.surface.positions.len()],
@@ -164,7 +164,7 @@ fn by_slab(model: &Model, axis: Axis, from: f64, to: f64) -> Vec<bool> {
     })
 }
 
-/// The bounding box of the finite vertices that triangles of the scene use, of all where there is no triangle.
+/// The bounding box of the finite vertices that triangles of the scene use, or of all if there is no triangle.
 fn bounds_of_used_vertices(model: &Model) -> Option<(DVec3, DVec3)> {
     let Drawn {
         positions, triangles, ..
@@ -180,7 +180,7 @@ fn bounds_of_used_vertices(model: &Model) -> Option<(DVec3, DVec3)> {
         })
 }
 
-/// The first axis that is as long as the longest, to within 1e-6 of it.
+/// The first axis whose length is within 1e-6 of the longest.
 fn longest_axis(extent: DVec3) -> usize {
     let least = extent.max_element() * (1.0 - 1e-6);
     (0..3).find(|&axis| extent[axis] >= least).unwrap_or(0)

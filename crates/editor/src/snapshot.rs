@@ -1,4 +1,4 @@
-//! The state of an editor at one moment, to be written or shown elsewhere while the person goes on.
+//! The state of an editor at one moment, for writing or showing it elsewhere while the person continues to work.
 
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ use crate::view::{Camera, Look};
 use crate::workspace::WorkspaceSnapshot;
 use crate::{Beginning, MeshReference, Project, geometry_hash};
 
-/// An immutable copy of the document, and how it is shown. Taking one is cheap: its long vectors are shared.
+/// An immutable copy of the document and its display. Making one is cheap: its long vectors are shared.
 #[derive(Clone, Debug)]
 pub struct Snapshot {
     pub(crate) work: WorkspaceSnapshot,
@@ -21,14 +21,14 @@ pub struct Snapshot {
 }
 
 impl Snapshot {
-    /// The project of this state. Takes some tens of milliseconds on a large mesh.
+    /// The project of this state. This takes some tens of milliseconds on a large mesh.
     pub fn project(&self, mesh: MeshReference) -> Project {
         Project::of(&self.work.document, &self.work.model, Some(&self.camera), mesh)
     }
 
-    /// The document on its mesh as it was read again, after another program has changed the file or with its vertices
-    /// joined otherwise, and how many vertices of that stand for none of the former mesh. `saved` is what the file was
-    /// moved by when it was saved last (an entry per surface vertex), if it was.
+    /// The document on its mesh when that is read again, after another program has changed the file or with another
+    /// joining of its vertices, and the number of vertices of the new mesh without a counterpart. `saved` are the
+    /// file's displacements at its last save (an entry per surface vertex), if there was one.
     pub fn on_changed_mesh(&self, model: &Model, saved: Option<&[DVec3]>) -> (Beginning, usize) {
         let matching = Matching::of(&self.work.model, model, saved);
         let document = self.work.document.onto(&matching, saved);

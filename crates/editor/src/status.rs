@@ -1,4 +1,4 @@
-//! The status line: what the program is doing, and what can be done next.
+//! The status line: the program's activity, and the next possible actions.
 
 use crate::jobs::{Activity, Counts, JobKind};
 use crate::tool::{Gesture, ToolMode, ToolSettings};
@@ -46,13 +46,13 @@ fn descent(workspace: &Workspace) -> Option<String> {
     Some(said.to_owned())
 }
 
-/// Whether bending has put the surface through itself; the panel says more, but may be scrolled away.
+/// A note that bending has put the surface through itself; the panel says more, but may be scrolled away.
 fn crossing(workspace: &Workspace) -> Option<String> {
     let found = workspace.intersections()?;
     (!found.is_empty()).then(|| "The shape passes through itself".to_owned())
 }
 
-/// What can be done when no gesture is active, and how many vertices have each role.
+/// The possible actions without an active gesture, and the number of vertices of each role.
 fn hint(workspace: &Workspace, settings: &ToolSettings) -> String {
     let document = &workspace.document;
     let hint = if !workspace.controls.is_empty() {
@@ -88,7 +88,7 @@ fn hint(workspace: &Workspace, settings: &ToolSettings) -> String {
     format!("{hint} · {handle} handle, {free} free, {fixed} fixed vertices")
 }
 
-/// What is computed in the background, if a person waits for it.
+/// The background computation for which a person waits.
 fn working(workspace: &Workspace, is_dragging: bool) -> Option<String> {
     let (jobs, document) = (&workspace.jobs, &workspace.document);
     let mut needed = [JobKind::Order, JobKind::Region, JobKind::Bind].into_iter();
@@ -115,7 +115,7 @@ fn working(workspace: &Workspace, is_dragging: bool) -> Option<String> {
     })
 }
 
-/// A count with its thousands apart: 48 485.
+/// A count with separated thousands: 48 485.
 pub fn thousands(count: usize) -> String {
     let digits = count.to_string();
     let mut spaced = String::with_capacity(digits.len() + digits.len() / 3);

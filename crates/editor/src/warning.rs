@@ -1,11 +1,11 @@
-//! The solver's warnings, in words that call handles by their names.
+//! The solver's warnings, in sentences with the handles' names.
 
 use pliant_deform::Warning;
 
 use crate::document::{Document, HandleId};
 use crate::format::shortened;
 
-/// A warning of a binding, with the handle that it is about: the binding knows it only by a number.
+/// A warning of a binding, with the handle that it is about: the binding knows only its number.
 #[derive(Clone, PartialEq, Debug)]
 pub(crate) struct HandleWarning {
     warning: Warning,
@@ -13,7 +13,7 @@ pub(crate) struct HandleWarning {
 }
 
 impl HandleWarning {
-    /// The warnings of a binding whose handles these are.
+    /// The warnings of a binding with these handles.
     pub(crate) fn list(warnings: &[Warning], handles: &[HandleId]) -> Vec<Self> {
         let with_handle = |warning: &Warning| Self {
             handle: warning.handle().and_then(|number| handles.get(number).copied()),
@@ -22,7 +22,7 @@ impl HandleWarning {
         warnings.iter().map(with_handle).collect()
     }
 
-    /// The sentence, with the name that the handle has now.
+    /// The sentence, with the present name of the handle.
     pub(crate) fn worded(&self, document: &Document) -> String {
         let handle = self.handle.and_then(|id| document.handle(id));
         worded(&self.warning, handle.map(|handle| &*handle.name))

@@ -1,4 +1,4 @@
-//! What the methods make of the present edit, beside what each makes of it alone.
+//! The methods' results for the present edit, against each method's result alone.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test that can't go on fails")]
 
 mod rig;
@@ -26,7 +26,7 @@ fn shapes_of(rig: &Rig) -> Vec<Arc<Vec<DVec3>>> {
     shapes.collect()
 }
 
-/// How many jobs of the comparison wait.
+/// The number of waiting jobs of the comparison.
 fn waiting(rig: &Rig) -> usize {
     let jobs = rig.jobs.waiting().into_iter();
     jobs.filter(|kind| *kind == JobKind::Compare).count()
@@ -138,7 +138,7 @@ fn what_is_not_wanted_any_more_is_stopped_and_dropped() {
     turn(&mut rig, "rx30");
     rig.drain();
     rig.command(Command::CompareMethods);
-    // Another region: what is being bound for the old one is of no use.
+    // Another region: the running binding for the old one is useless.
     let stale = rig
         .jobs
         .take(JobKind::Compare)
@@ -150,7 +150,7 @@ fn what_is_not_wanted_any_more_is_stopped_and_dropped() {
     rig.drain();
     assert!(rig.editor.comparison().unwrap().is_current());
     let shown = shapes_of(&rig);
-    // Of many moves the newest is solved, once what runs has ended.
+    // The newest of many moves is solved, once the running job has ended.
     let mut later = None;
     for _ in 0..5 {
         turn(&mut rig, "rx5");
@@ -161,7 +161,7 @@ fn what_is_not_wanted_any_more_is_stopped_and_dropped() {
     rig.drain();
     assert!(rig.editor.comparison().unwrap().is_current());
     assert!(shapes_of(&rig).iter().zip(&shown).all(|(now, before)| now != before));
-    // Esc closes, and what still runs is stopped.
+    // Esc closes, and running jobs are stopped.
     turn(&mut rig, "rx5");
     let running = rig.jobs.take(JobKind::Compare).unwrap();
     rig.key(Key::Escape);
@@ -169,7 +169,7 @@ fn what_is_not_wanted_any_more_is_stopped_and_dropped() {
     rig.send(Event::JobDone(running.run()));
     rig.drain();
     assert!(rig.editor.comparison().is_none());
-    // So does what leaves nothing to bend.
+    // A change that leaves nothing to bend closes too.
     rig.command(Command::CompareMethods);
     rig.drain();
     assert!(rig.editor.comparison().unwrap().is_current());
@@ -178,7 +178,7 @@ fn what_is_not_wanted_any_more_is_stopped_and_dropped() {
     assert!(rig.editor.comparison().is_none());
 }
 
-/// An executor that lets a binding have only as much memory.
+/// An executor that gives a binding only this much memory.
 struct Poor(InlineExecutor);
 
 impl Executor for Poor {

@@ -20,7 +20,7 @@ fn ball(method: &str) -> Rig {
     rig
 }
 
-/// Where the control points are on the screen, those that are not selected first.
+/// The control points' places on the screen, unselected ones first.
 fn points_px(rig: &Rig) -> Vec<DVec2> {
     let view = rig.editor.view();
     let squares = view.controls[2..].iter().flat_map(|shape| shape.triangles.chunks(2));
@@ -28,7 +28,7 @@ fn points_px(rig: &Rig) -> Vec<DVec2> {
     middles.map(|p| view.camera.project(p, VIEWPORT_PX).unwrap()).collect()
 }
 
-/// A point beside the ball, the nearest to it: where it is seen no other thing is taken.
+/// A point beside the ball, the nearest to it: at its place on the screen nothing else can be taken.
 fn beside(rig: &Rig) -> DVec2 {
     let points = points_px(rig).into_iter().filter(|p| rig.editor.pick(*p).is_none());
     let distance = |p: &DVec2| p.distance(CENTRE_PX);
@@ -137,7 +137,7 @@ fn points_are_added_boxed_and_moved_together_in_one_step() {
     rig.send(Event::PointerPressed(shift, Button::Primary));
     rig.send(Event::PointerReleased(shift, Button::Primary));
     assert_eq!(selected(&rig), 2);
-    // Everything that is seen, in a box that is drawn with Ctrl.
+    // Everything visible, in a box drawn with Ctrl.
     let [from, to] = [DVec2::splat(1.0), VIEWPORT_PX - 1.0].map(|p| with(p, Modifiers::CTRL));
     rig.send(Event::PointerMoved(from));
     rig.send(Event::PointerPressed(from, Button::Primary));
@@ -154,7 +154,7 @@ fn points_are_added_boxed_and_moved_together_in_one_step() {
     assert_eq!(selected(&rig), points.len());
     rig.move_by('x', "0.5");
     rig.drain();
-    // All points by the same way: so does the ball.
+    // All points have the same displacement: so does the ball.
     for displacement in rig.editor.document().from_file().iter() {
         assert!(displacement.distance(DVec3::X * 0.5) < 1e-9);
     }
@@ -166,7 +166,7 @@ fn points_are_added_boxed_and_moved_together_in_one_step() {
             .iter()
             .any(|shape| shape.part == GizmoPart::Ring(1))
     );
-    // The gizmo of the points moves them on.
+    // The gizmo moves the points further.
     assert!(rig.drag(GizmoPart::Arrow(1), DVec2::new(0.0, -40.0)));
     rig.drain();
     assert!(rig.editor.document().from_file().iter().all(|d| d.y > 0.01));
@@ -204,7 +204,7 @@ fn handles_are_met_beside_moved_points_and_both_are_undone_step_by_step() {
     rig.command(Command::Redo);
     rig.drain();
     assert_eq!(Fingerprint::of(rig.editor.document()), two);
-    // A handle that is clicked takes the gizmo back.
+    // A clicked handle takes the gizmo back.
     rig.swipe(&[CENTRE_PX]);
     assert_eq!(selected(&rig), 0);
     rig.command(Command::Apply);

@@ -1,5 +1,6 @@
-//! Laws of corrections by hand: smoothing takes bumps away and keeps the volume, relaxing evens triangles within the surface,
-//! a grab follows the pointer; each is a step that undo takes back, and the next drag goes on from what is seen.
+//! Laws of corrections by hand: smoothing removes bumps and keeps the volume, relaxing evens triangles within the
+//! surface, a grab follows the pointer; each is a step that undo takes back, and the next drag continues from the
+//! visible shape.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "tests fail by panicking")]
 
 mod rig;
@@ -55,7 +56,7 @@ fn positions(rig: &Rig) -> Vec<DVec3> {
         .collect()
 }
 
-/// The vertices that a stroke in front has moved.
+/// The vertices moved by a stroke in front.
 fn moved(document: &Document) -> Vec<usize> {
     let shape = document.from_file();
     (0..shape.len())
@@ -63,7 +64,7 @@ fn moved(document: &Document) -> Vec<usize> {
         .collect()
 }
 
-/// How far vertices are from the mean of their neighbours, along the way out and beside it.
+/// The distances of vertices from the mean of their neighbours, along the outward direction and across it.
 fn roughness(rig: &Rig, positions: &[DVec3], vertices: &[usize]) -> [f64; 2] {
     let of = |&vertex: &usize| {
         let neighbours = rig.model.topology.neighbours(SurfaceVertex(vertex as u32));
@@ -91,7 +92,7 @@ fn smoothing_takes_bumps_away_and_keeps_the_volume() {
     let [rough, smooth] = [&before, &after].map(|shape| roughness(&rig, shape, &inner)[0]);
     assert!(smooth < 0.5 * rough, "{rough} {smooth}");
     let volume = Distortion::of(&rig.model.surface, &rig.model.topology, &after).volume_ratio;
-    // The cap that was smoothed is a hundredth of the ball: its mean height stays to a thousandth of the radius.
+    // The smoothed cap is a hundredth of the ball: its mean height stays to a thousandth of the radius.
     assert!((volume - 1.0).abs() < 1e-4, "{volume}");
 }
 
@@ -192,7 +193,7 @@ fn the_next_drag_goes_on_from_what_was_corrected_and_a_project_keeps_it() {
     });
     assert_eq!(again.document().from_rest(), corrected);
 
-    // A handle at the top, hardly moved: what is far from it stays as it was corrected.
+    // A handle at the top, hardly moved: vertices far from it keep their correction.
     rig.command(Command::SetTool(ToolMode::PaintHandle));
     rig.command(Command::SetBrushRadius(20.0));
     let camera = *rig.editor.view().camera;
@@ -253,7 +254,8 @@ fn with_symmetry_both_sides_are_corrected_alike() {
     }
 }
 
-/// The front of a ball is grabbed, or not, while a handle at its top is moved by `methods[0]`, and `methods[1]` goes on.
+/// The front of a ball is grabbed, or not, while a handle at its top is moved by `methods[0]`, and `methods[1]`
+/// continues.
 fn bent_by(methods: [&str; 2], is_corrected: bool) -> (Rig, Vec<DVec3>) {
     let mut rig = opened(shapes::icosphere(4), Correction::Grab);
     rig.choose(methods[0]);
@@ -300,7 +302,7 @@ fn corrections_by_hand_are_carried_along_by_every_other_method() {
             apart.fold(0.0, f64::max) / size
         };
         assert!(compare(&corrected, &by_hand) < rig::ITERATED, "{methods:?}");
-        // The project and the edit on the command line's way: the method is chosen when they are read.
+        // The project and the edit take the command line's path: the method is chosen when they are read.
         let shape = corrected.editor.document().from_file().clone();
         corrected.undo();
         corrected.drain();

@@ -1,4 +1,4 @@
-//! The edit format: what is written is what was read, and transforms go their way from rest to target.
+//! The edit format: an edit that was read is written unchanged, and transforms move from rest to target.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -60,7 +60,7 @@ fn a_transform_goes_from_rest_to_its_target_and_turns_about_its_pivot() {
     for transform in transforms() {
         assert_eq!(transform.at(0.0, default_pivot), DAffine3::IDENTITY);
         assert_eq!(transform.at(1.0, default_pivot), transform.affine(default_pivot));
-        // Near its ends the way is near its ends: nothing jumps.
+        // Near its ends the path is near its end points: nothing jumps.
         for (t, end) in [(1e-9, 0.0), (1.0 - 1e-9, 1.0)] {
             assert!(
                 transform
@@ -69,7 +69,7 @@ fn a_transform_goes_from_rest_to_its_target_and_turns_about_its_pivot() {
                 "{transform:?}"
             );
         }
-        // The pivot goes straight.
+        // The pivot moves on a straight line.
         let pivot = transform.pivot_or(default_pivot);
         let whole = transform.affine(default_pivot).transform_point3(pivot) - pivot;
         let half = transform.at(0.5, default_pivot).transform_point3(pivot) - pivot;
@@ -139,7 +139,7 @@ fn loose_parts_are_told_all_at_once_or_one_by_one() {
     let edit = read(entries).unwrap();
     assert_eq!((edit.loose, edit.loose_parts.len()), (Loose::Rest, 2));
     assert_eq!(EditFile::parse(&edit.to_json()).unwrap(), edit);
-    // What is said of all is said of those before it, too.
+    // An entry for all also replaces earlier ones.
     let last = read(r#"[{"select": {"component": 2}, "value": "bend"}, {"select": "all", "value": "rest"}]"#).unwrap();
     assert_eq!((last.loose, last.loose_parts.len()), (Loose::Rest, 0));
     for (loose, culprit) in [
@@ -189,7 +189,7 @@ fn a_transform_that_can_not_be_undone_is_refused_by_name() {
         (r#"{"scale": [1, 0, 1]}"#, "scale"),
         (r#"{"scale": [1, -0.0, 1]}"#, "scale"),
         (r#"{"scale": [1, null, 1]}"#, "scale[1]"),
-        // A projection, a column of zeros, two columns alike, three in a plane.
+        // A projection, a column of zeros, two equal columns, three in a plane.
         (
             r#"{"matrix": [1, 0, 0, 0.5, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}"#,
             "matrix",
@@ -210,7 +210,7 @@ fn a_transform_that_can_not_be_undone_is_refused_by_name() {
         let refused = read(transform).unwrap_err().to_string();
         assert!(refused.contains(&format!("handles[0].transform.{place} ")), "{refused}");
     }
-    // What is uneven, tiny, huge, sheared or mirrored is a transform.
+    // An uneven, tiny, huge, sheared or mirrored map is a transform.
     for transform in [
         r#"{"scale": [1e-200, 1, 1e200]}"#,
         r#"{"scale": [-1, 1, 1]}"#,
@@ -278,7 +278,7 @@ fn a_refusal_names_the_place_the_value_and_what_is_allowed() {
     }
 }
 
-/// Whatever a version is, its refusal is one short line.
+/// The refusal of any version is one short line.
 #[test]
 fn a_version_that_is_no_number_is_not_quoted_whole() {
     let text = format!(

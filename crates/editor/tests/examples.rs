@@ -20,7 +20,7 @@ fn moved_up(height: f64) -> HandleTransform {
     }
 }
 
-/// A ball with a handle that was pulled out, kept as an example and put back.
+/// A ball with a handle that was pulled out, kept as an example and moved back.
 fn with_example() -> Rig {
     let mut rig = Rig::open(shapes::icosphere(3));
     rig.choose("shells");

@@ -1,4 +1,4 @@
-//! An editor that follows another makes of the same handles what its own method does.
+//! An editor that follows another bends the same handles by its own method.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test that can't go on fails")]
 
 mod rig;
@@ -55,7 +55,7 @@ fn the_follower_shows_its_own_methods_shape_of_the_leaders_handles() {
         let size = 3.0;
         let apart = |a: &[DVec3], b: &[DVec3]| a.iter().zip(b).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
         let (ours, theirs) = (shape(&follower), shape(&leader.editor));
-        // From another start it comes to nearly the same energy, so nearly to the same shape.
+        // From another start it reaches nearly the same energy, so nearly the same shape.
         assert!(
             apart(&ours, &shape(&alone.editor)) < 0.02 * size,
             "{number}: {}",
@@ -65,7 +65,7 @@ fn the_follower_shows_its_own_methods_shape_of_the_leaders_handles() {
             assert!(apart(&ours, &theirs) > 1e-3 * size, "another method bends otherwise");
         }
     }
-    // Nothing has come back.
+    // Nothing is sent back.
     assert_eq!(leader.editor.document().method(), &linear);
     assert!(follower.view().undo.is_none());
 }

@@ -1,5 +1,5 @@
-//! What artists have in their fingers: sizing the brush, the wheel, the right button, A, snapped turns, the original while
-//! a key is held.
+//! The habits of artists: sizing the brush, the wheel, the right button, A, snapped turns, the original while a key is
+//! held.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test that can't go on fails")]
 
 mod rig;

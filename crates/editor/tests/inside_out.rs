@@ -1,5 +1,5 @@
-//! Parts that are turned inside out: by one command, back by the same, undone, kept by projects and edits, and nothing
-//! bends by it.
+//! Parts that are turned inside out: one command turns them and turns them back, undo works, projects and edits keep
+//! them, and nothing bends.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test that can't go on fails")]
 
 mod rig;
@@ -11,7 +11,7 @@ use pliant_editor::{Beginning, Command, Editor, Event, InlineExecutor, MeshRefer
 use pliant_mesh::{Drawn, shapes};
 use rig::Rig;
 
-/// Two balls beside each other, the smaller one inside out.
+/// Two adjacent balls, the smaller one inside out.
 fn balls() -> Drawn {
     let (mut inwards, large) = (shapes::icosphere(2), shapes::icosphere(3));
     for triangle in &mut inwards.triangles {
@@ -45,7 +45,7 @@ fn what_faces_inwards_is_turned_or_else_all_that_is_shown_and_undo_takes_it_back
     rig.redo();
     assert_eq!(turned(&rig), [1]);
 
-    // A part that is shown alone, whichever way it faces.
+    // An isolated part, facing inwards or outwards.
     rig.command(Command::Isolate);
     rig.drain();
     if let Some(part) = rig.editor.document().access().isolated {

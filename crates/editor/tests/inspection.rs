@@ -1,4 +1,4 @@
-//! What can be seen of a binding: the weights of the selected handle, and the smooth base.
+//! The visible parts of a binding: the weights of the selected handle, and the smooth base.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test that can't go on fails")]
 
 mod rig;
@@ -107,7 +107,7 @@ fn the_smooth_base_is_shown_in_place_of_the_surface_and_nothing_else_changes() {
     }
     assert!(faired > 10, "{faired}");
     assert_eq!((rig.fingerprint(), rig.drawn()), before);
-    // Where there is none, the surface is shown.
+    // If there is none, the surface is shown.
     rig.choose("arap");
     let view = rig.editor.view();
     assert!(Arc::ptr_eq(view.drawn, view.displacements));
@@ -121,7 +121,7 @@ fn the_smooth_base_is_shown_in_place_of_the_surface_and_nothing_else_changes() {
     assert!(!rig.editor.view().look.base);
 }
 
-/// The base that is drawn.
+/// The drawn base.
 fn base(rig: &Rig) -> Arc<Vec<DVec3>> {
     let view = rig.editor.view();
     assert!(!Arc::ptr_eq(view.drawn, view.displacements), "the base is drawn");
@@ -166,7 +166,7 @@ fn the_smooth_base_bends_with_the_edit_and_rests_with_it() {
     rig.undo();
     rig.drain();
     assert_eq!(base(&rig), turned);
-    // Applied, what is bent is another surface with another base, at rest again.
+    // After applying, the bent surface is another one with another base, at rest again.
     rig.command(Command::Apply);
     rig.drain();
     let view = rig.editor.view();

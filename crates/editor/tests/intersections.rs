@@ -1,5 +1,5 @@
-//! The warning where a shape passes through itself: found once it rests, never looked for while it moves, and only about
-//! what the edit has made.
+//! The warning if a shape passes through itself: found once it rests, never searched for while it moves, and only about
+//! crossings that the edit has made.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "tests fail by panicking")]
 
 mod rig;
@@ -18,7 +18,7 @@ fn moved(translation: DVec3) -> HandleTransform {
     }
 }
 
-/// A ball with a handle, and the way from the handle to the ball's middle.
+/// A ball with a handle, and the vector from the handle to the ball's middle.
 fn ball() -> (Rig, HandleId, DVec3) {
     let mut rig = Rig::open(shapes::icosphere(4));
     rig.choose("bilaplacian");
@@ -54,7 +54,7 @@ fn a_cap_that_is_pushed_through_the_other_side_is_told_once_it_rests() {
         .sum::<usize>();
     let segments = found.places.iter().map(|place| place.segments.len()).sum::<usize>();
     assert_eq!(lines, segments, "each is drawn");
-    // Where the cap comes out on the other side.
+    // These are the places where the cap comes out on the other side.
     for end in found.places[0].segments.as_flattened() {
         assert!(end.dot(inward) > 0.0 && (end.length() - 1.0).abs() < 0.1, "{end}");
     }
@@ -85,7 +85,7 @@ fn nothing_is_looked_for_while_a_handle_is_dragged() {
     rig.key(Key::Enter);
     rig.drain();
     assert!(rig.editor.intersections().is_some_and(|found| !found.is_empty()));
-    // A search that is late says nothing of the shape that there is now.
+    // A late search does not apply to the present shape.
     rig.move_by('x', ".01");
     while !rig.jobs.waiting().contains(&JobKind::Intersect) {
         let done = rig.jobs.run_next().unwrap();

@@ -1,5 +1,5 @@
-//! What parts do that nothing holds, one by one, and how the surface joins each handle: in the document, its history
-//! and what is written of it.
+//! The behaviour of single parts that nothing holds, and the continuity of each handle: in the document, its history
+//! and its files.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test that can't go on fails")]
 
 mod rig;
@@ -30,7 +30,7 @@ fn each_loose_part_does_what_it_is_told_and_files_keep_it() {
     rig.command(Command::SetStrokeShape(StrokeShape::Component));
     rig.paint(ToolMode::PaintHandle, &[CENTRE_PX]);
     rig.drain();
-    // Only the small ball lies so far behind.
+    // Only the small ball is so far behind.
     let behind = rig.model.surface.positions.iter().position(|p| p.z < -1.1).unwrap();
     let small = rig.model.topology.component(SurfaceVertex(behind as u32));
     let way = |rig: &Rig| rig.editor.document().from_file()[behind];
@@ -142,7 +142,7 @@ fn farthest(a: &[[u64; 3]], b: &[[u64; 3]]) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// The project of what is open, opened again.
+/// The project of the open document, opened again.
 fn reopened(rig: &mut Rig) {
     let reference = MeshReference {
         name: None,

@@ -1,4 +1,4 @@
-//! Strokes on a bent shape: handles keep their transforms, and the next drag begins from what is seen.
+//! Strokes on a bent shape: handles keep their transforms, and the next drag begins from the visible shape.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test that can't go on fails")]
 
 mod rig;
@@ -38,7 +38,7 @@ fn stroke(rig: &mut Rig, mode: ToolMode, from: DVec2, to: DVec2) {
     rig.drain();
 }
 
-/// Above the handle, where the surface bends but is not held.
+/// A place above the handle, where the surface bends but is not fixed.
 fn beside() -> [DVec2; 2] {
     let middle = rig::VIEWPORT_PX * 0.5;
     [middle + DVec2::new(-70.0, -75.0), middle + DVec2::new(-50.0, -80.0)]
@@ -61,20 +61,20 @@ fn a_second_handle_leaves_the_first_ones_numbers_and_the_first_goes_back_to_wher
         assert!(!document.is_applied(), "nothing was baked");
         assert_eq!(translation(&rig, 0), DVec3::new(0.2, 0.0, 0.0), "{}", declaration.name);
         assert!(seen == rig.drawn(), "no stroke moves a drawn vertex");
-        // The new handle stands where its part of the surface was seen.
+        // The new handle is at its vertices' visible positions.
         let document = rig.editor.document();
         let mut painted = document.paint().iter().zip(document.from_rest());
         let has_moved = painted.any(|(paint, by)| *paint == Paint::Handle(HandleId(1)) && *by != DVec3::ZERO);
         let new = document.handle(HandleId(1)).unwrap();
         assert_eq!(new.is_displaced(), has_moved, "{}", declaration.name);
-        // The first is lowered: its vertices are where they rested.
+        // The first is lowered: its vertices are back at rest.
         rig.command(Command::SelectHandle(HandleId(0)));
         rig.command(Command::ResetHandle);
         rig.drain();
         let paint = rig.editor.document().paint().to_vec();
         let from_rest = rig.editor.document().from_rest();
         let own = (0..paint.len()).filter(|&vertex| paint[vertex] == Paint::Handle(HandleId(0)));
-        // A method that only fits its handles leaves them at rest only where nothing else moves.
+        // A method that only fits its handles leaves them at rest only if nothing else moves.
         if (declaration.default)().handle_fit() == HandleFit::LeastSquares {
             continue;
         }
@@ -130,7 +130,7 @@ fn what_is_painted_fixed_on_a_bent_shape_is_a_pin_that_stays_whatever_is_dragged
     rig.drain();
     let now: Vec<DVec3> = held.iter().map(|&v| rig.editor.document().from_rest()[v]).collect();
     assert!(farthest(&seen, &now) < 1e-9, "{}", farthest(&seen, &now));
-    // Nobody moves it, and it has no gizmo, until it is a handle again.
+    // It can't be moved and has no gizmo until it is a handle again.
     rig.command(Command::SelectHandle(pin.id));
     assert!(rig.editor.view().gizmo.is_empty());
     rig.key(Key::Character('g'));

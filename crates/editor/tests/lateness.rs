@@ -1,4 +1,4 @@
-//! Jobs that come late, twice or never: what they bring, and what is dropped.
+//! Jobs that end late, twice or never: the results that are kept, and those that are dropped.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test that can't go on fails")]
 
 mod rig;
@@ -8,14 +8,14 @@ use pliant_editor::{Command, Event, GizmoPart, JobKind, JobOutcome, Key, Paint, 
 use pliant_mesh::shapes;
 use rig::{CENTRE_PX, Rig};
 
-/// A sphere to be bent by this method.
+/// A sphere for bending by this method.
 fn open(method: &str) -> Rig {
     let mut rig = Rig::open(shapes::icosphere(3));
     rig.choose(method);
     rig
 }
 
-/// A method that is done at once, and one that goes on from wherever it is.
+/// A direct method, and an iterative one that continues from its present shape.
 const METHODS: [&str; 2] = ["bilaplacian", "arap"];
 
 #[test]
@@ -72,7 +72,7 @@ fn a_drag_that_was_undone_before_it_settled_settles_when_it_is_redone() {
     }
 }
 
-/// Solves are cut into shapes worth showing: undone between two of them, the drag goes on when it is redone.
+/// Solves are cut into shapes worth showing: after undo between two of them, redo continues the drag.
 #[test]
 fn a_descent_that_was_undone_on_its_way_goes_on_when_it_is_redone() {
     let mut rig = Rig::open(shapes::icosphere(5));
@@ -120,7 +120,7 @@ fn binding_starts_when_a_stroke_ends_and_is_cancelled_by_the_next() {
     assert!(!bind.cancel.is_cancelled());
     rig.press(CENTRE_PX + DVec2::new(60.0, 0.0));
     assert!(bind.cancel.is_cancelled());
-    // However it ends, its result is not taken.
+    // Its result is ignored for every outcome.
     rig.editor.handle(Event::JobDone(bind.run()));
     rig.release(CENTRE_PX + DVec2::new(60.0, 0.0));
     rig.drain();

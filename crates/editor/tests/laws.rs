@@ -12,7 +12,7 @@ use pliant_editor::{
 use pliant_mesh::{Drawn, Object, shapes};
 use rig::{Fingerprint, Random, Rig};
 
-/// Closed, with boundary, in several parts.
+/// Meshes that are closed, with boundary, and in several parts.
 fn meshes() -> Vec<(&'static str, Drawn)> {
     let mut apart = shapes::icosphere(2);
     for position in &mut apart.positions {
@@ -50,7 +50,7 @@ const PARTS: [GizmoPart; 6] = [
     GizmoPart::Box(0),
 ];
 
-/// One thing that a person might do. Some are strokes and changes of role, which must move nothing.
+/// A possible action of a person. Some are strokes and changes of role, which must move nothing.
 fn act(rig: &mut Rig, random: &mut Random) {
     match random.below(24) {
         22..24 => act_on_objects(rig, random),
@@ -138,7 +138,7 @@ fn act(rig: &mut Rig, random: &mut Random) {
     }
 }
 
-/// A region as a whole changes hands or shape: nothing moves.
+/// A whole region changes its role or shape: nothing moves.
 fn act_on_regions(rig: &mut Rig, random: &mut Random) {
     let actions = [
         RegionAction::Grow,
@@ -158,7 +158,7 @@ fn act_on_regions(rig: &mut Rig, random: &mut Random) {
     unmoved(rig, |rig| rig.command(Command::Region(action)));
 }
 
-/// Something from the list of objects, or the part under the pointer: nothing moves.
+/// An action from the list of objects, or on the part under the pointer: nothing moves.
 fn act_on_objects(rig: &mut Rig, random: &mut Random) {
     let actions = [
         ObjectAction::Hide,
@@ -177,7 +177,7 @@ fn act_on_objects(rig: &mut Rig, random: &mut Random) {
     unmoved(rig, |rig| rig.command(command));
 }
 
-/// Something from the list of handles. All but taking a region back moves nothing.
+/// An action from the list of handles. All except the reset of a region move nothing.
 fn act_on_handles(rig: &mut Rig, random: &mut Random) {
     let Some(id) = rig.editor.view().selected else { return };
     let command = match random.below(12) {
@@ -188,7 +188,7 @@ fn act_on_handles(rig: &mut Rig, random: &mut Random) {
         4 => Command::SetPivotPlace(id, PivotPlace::Centroid),
         5 => Command::DuplicateHandle,
         6 => {
-            // Its other half goes where a handle that has moved already has gone.
+            // Its twin gets the mirrored transform of a handle that has already moved.
             let is_displaced = |handle: &Handle| handle.id == id && handle.is_displaced();
             let moves = rig.editor.document().handles().iter().any(is_displaced);
             let twin = Command::MakeTwin(random.below(3) as usize);
@@ -261,8 +261,8 @@ fn stroke(rig: &mut Rig, random: &mut Random) {
     }
 }
 
-/// Does something that must not move a drawn vertex, now or when its jobs are done, and leaves each handle's numbers
-/// what they were last set to.
+/// Executes an action that must not move a drawn vertex, now or when its jobs are done, and must keep each handle's
+/// numbers.
 fn unmoved(rig: &mut Rig, action: impl FnOnce(&mut Rig)) {
     let before = rig.editor.document().handles().to_vec();
     unmoved_but_in_numbers(rig, action);
@@ -279,7 +279,7 @@ fn unmoved(rig: &mut Rig, action: impl FnOnce(&mut Rig)) {
     }
 }
 
-/// Does something that must not move a drawn vertex, now or when its jobs are done.
+/// Executes an action that must not move a drawn vertex, now or when its jobs are done.
 fn unmoved_but_in_numbers(rig: &mut Rig, action: impl FnOnce(&mut Rig)) {
     let before = rig.drawn();
     action(rig);
@@ -357,7 +357,7 @@ fn with_jobs_that_come_late_strokes_still_move_nothing_and_all_comes_back_in_the
                     rig.run(pliant_editor::JobKind::ALL[random.below(6) as usize]);
                     continue;
                 }
-                // The picking structure is kept up, so that strokes are answered; everything else is late.
+                // The picking structure is kept up to date, so that strokes have hits; everything else is late.
                 while rig.run(pliant_editor::JobKind::Pick) {}
                 if random.below(2) == 0 {
                     late_stroke(&mut rig, &mut random);
@@ -444,7 +444,7 @@ fn what_changes_nothing_leaves_no_step() {
     assert_eq!(rig.editor.history().names().1, steps);
 }
 
-/// What holds of every document, whatever was done.
+/// Laws of every document, after any action.
 fn assert_sound(rig: &Rig, at: &str) {
     let document = rig.editor.document();
     for paint in document.paint() {

@@ -1,4 +1,4 @@
-//! What a person lets bindings take of the memory, and what is bound anew for it.
+//! A person's limit on the memory of bindings, and the new bindings after its change.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test that can't go on fails")]
 
 mod rig;
@@ -19,7 +19,7 @@ fn open() -> Rig {
     rig
 }
 
-/// Lets bindings take so many bytes. Whether something is bound anew.
+/// Allows bindings this many bytes. Returns whether something is bound anew.
 fn allow(rig: &mut Rig, most: Option<u64>) -> bool {
     rig.send(Event::Memory(most));
     let is_bound_anew = !rig.editor.view().settled;
@@ -32,7 +32,7 @@ fn says_so(rig: &Rig) -> bool {
     warnings.iter().any(|warning| warning.contains("Laplacian's factor"))
 }
 
-/// Allows less and less, until another factor is chosen, and says with how many bytes.
+/// Allows less and less, until another factor is chosen, and returns that number of bytes.
 fn scarce(rig: &mut Rig) -> u64 {
     let free = rig.editor.view().counts.free as u64;
     let most = (1..40).rev().map(|share| 50 * share * free);
@@ -59,7 +59,7 @@ fn less_memory_binds_anew_by_another_factor_and_bends_the_same() {
     let apart = shapes[0].iter().zip(&shapes[1]).map(|(a, b)| a.distance(*b));
     let apart = apart.fold(0.0, f64::max);
     assert!(apart < 2e-6, "{apart:e}");
-    // What chooses the same factor binds nothing.
+    // A limit that selects the same factor binds nothing.
     assert!(!allow(&mut rig, Some(most - 1)));
     assert!(allow(&mut rig, None) && !says_so(&rig));
     assert!(!allow(&mut rig, Some(1 << 40)));
@@ -79,7 +79,7 @@ fn what_was_refused_is_tried_again_with_more_and_the_refusal_is_gone() {
     assert!(refusal.contains("memory"), "{refusal}");
     rig.move_by('y', ".3");
     rig.drain();
-    // Not enough either, and said again.
+    // This is not enough either, and the message comes again.
     assert!(allow(&mut rig, Some(2000)));
     assert!(rig.editor.view().problem.is_some());
     assert!(allow(&mut rig, None));

@@ -1,4 +1,4 @@
-//! Objects of the file: what is hidden is neither picked nor painted but moves along, what is locked stays where it is.
+//! Objects of the file: hidden ones are neither picked nor painted but still move, locked ones keep their positions.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test that can't go on fails")]
 
 mod rig;
@@ -44,7 +44,7 @@ fn objects(rig: &mut Rig, action: ObjectAction, objects: &[u32]) {
     rig.drain();
 }
 
-/// How far from the middle the point under the view's middle lies.
+/// The distance of the point under the view's middle from the balls' middle.
 fn met(rig: &Rig) -> Option<f64> {
     Some(rig.editor.pick(CENTRE_PX)?.point.length())
 }
@@ -103,7 +103,7 @@ fn what_is_hidden_takes_no_paint_of_any_tool_and_moves_along() {
             .all(|v| !is_outer(&rig, v) || rig.editor.document().paint()[v] == Paint::Bare)
     );
     rig.command(Command::ClearRegions);
-    // The whole outer ball is a loose part around the inner one's handle: it follows, seen or not.
+    // The whole outer ball is a loose part around the inner one's handle: it follows, visible or not.
     rig.command(Command::SetStrokeShape(StrokeShape::Component));
     rig.paint(ToolMode::PaintHandle, &[CENTRE_PX]);
     let id = rig.editor.view().selected.unwrap();
@@ -145,14 +145,14 @@ fn what_is_locked_stays_where_it_is_whatever_is_painted_on_it() {
         let is_locked = surface.is_some_and(|vertex| locked.contains(&vertex.index()));
         assert!(!is_locked || before[drawn] == after[drawn]);
     }
-    // With every one of its vertices locked a handle says so, and stays.
+    // A handle with all vertices locked gives a message and stays.
     objects(&mut rig, ObjectAction::Lock, &[1]);
     let before = rig.fingerprint();
     rig.move_by('z', ".3");
     rig.drain();
     assert!(rig.editor.view().problem.unwrap().contains("locked object"));
     assert_eq!(before, rig.fingerprint());
-    // A brush says so, too.
+    // A brush gives a message too.
     rig.command(Command::SetStrokeShape(StrokeShape::Brush));
     rig.paint(ToolMode::PaintFixed, &[CENTRE_PX]);
     assert!(rig.editor.view().problem.unwrap().contains("locked"));
@@ -201,7 +201,7 @@ fn a_part_is_isolated_under_the_pointer_and_a_project_keeps_what_is_hidden_and_l
     assert_eq!(*rig.editor.document().access(), access);
     assert_eq!(first, rig.fingerprint());
     assert!(rig.editor.shown_triangles().is_some());
-    // The command line holds still what is locked.
+    // The command line fixes locked objects.
     let setup = Beginning::parse(&text).unwrap().resolve(&rig.model).unwrap();
     assert!(setup.roles.iter().all(|role| *role == Role::Fixed));
     let broken = text.replace("\"object\": 0", "\"object\": 9");
@@ -209,7 +209,7 @@ fn a_part_is_isolated_under_the_pointer_and_a_project_keeps_what_is_hidden_and_l
     assert!(refused.to_string().contains("number 9"), "{refused}");
 }
 
-/// A ball with debris around it: two parts of 42 vertices, one of them on the ball's way, and twenty of 12.
+/// A ball with debris around it: two parts of 42 vertices, one of them in the ball's path, and twenty of 12.
 fn with_debris() -> Drawn {
     let ball = shapes::icosphere(4);
     let mut parts = vec![ball];
@@ -264,7 +264,7 @@ fn small_parts_are_hidden_and_held_still_by_their_size() {
         let edit = rig.editor.edit_file().unwrap();
         Beginning::from(edit).resolve(&rig.model).unwrap().roles
     };
-    // All but a spot of the ball is free, and what is small is held all the same once it is locked.
+    // All of the ball except a spot is free, and small parts are fixed all the same once they are locked.
     rig.command(Command::ShowEverything);
     rig.drain();
     rig.command(Command::SetStrokeShape(StrokeShape::Brush));
@@ -295,7 +295,7 @@ fn small_parts_are_hidden_and_held_still_by_their_size() {
         2 * 42 + 20 * 12,
         "what is seen again is still held"
     );
-    // A project keeps it; a share that is none is refused.
+    // A project keeps it; an invalid share is refused.
     let reference = MeshReference {
         name: None,
         path: None,

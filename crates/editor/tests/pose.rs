@@ -10,10 +10,10 @@ use pliant_editor::{
 use pliant_mesh::{Drawn, shapes};
 use rig::{Rig, VIEWPORT_PX};
 
-/// Where both arms of [`body_with_arms`] are narrowest.
+/// The narrowest places of both arms of [`body_with_arms`].
 const JOINT: f64 = 1.45;
 
-/// A ball of radius 1.3 about the origin with two arms along x, to 5 and -5; each is narrowest where it begins.
+/// A ball of radius 1.3 about the origin with two arms along x, to 5 and -5; each is narrowest at its beginning.
 fn body_with_arms() -> Drawn {
     let profile = |share: f64| {
         let x: f64 = 5.0 * (1.0 - 2.0 * share);
@@ -32,7 +32,7 @@ fn open() -> Rig {
     rig
 }
 
-/// Where the view shows the middle of the surface's vertices with x between these.
+/// The place on the screen of the middle of the surface's vertices with x between these.
 fn seen(rig: &Rig, x: std::ops::Range<f64>) -> DVec2 {
     let view = rig.editor.view();
     let vertices = rig.model.surface.positions.iter().zip(view.displacements.iter());
@@ -48,7 +48,7 @@ fn pointer(position_px: DVec2, modifiers: Modifiers) -> Pointer {
     Pointer { position_px, modifiers }
 }
 
-/// Drags with these modifiers, from one point by some points.
+/// Drags with these modifiers, from one point by a number of points.
 fn drag(rig: &mut Rig, from_px: DVec2, by_px: DVec2, modifiers: Modifiers) {
     rig.send(Event::PointerMoved(pointer(from_px, modifiers)));
     rig.drain();
@@ -162,7 +162,7 @@ fn a_limb_that_was_posed_is_taken_again_and_its_handle_is_one_like_any_other() {
     assert_eq!(rig.editor.document().handles().len(), 1);
     assert!(twice.turn_deg.length() > once.turn_deg.length() + 5.0);
     assert!(twice.centre().distance(once.centre()) < 1e-9);
-    // The joint's falloff is the handle's reach, and the pivot can be put elsewhere.
+    // The joint's falloff is the handle's reach, and the pivot can be moved.
     let Reach::Length(reach) = twice.reach else {
         panic!("the falloff is a length")
     };
@@ -171,7 +171,7 @@ fn a_limb_that_was_posed_is_taken_again_and_its_handle_is_one_like_any_other() {
     rig.command(Command::SetPivot(twice.id, DVec3::X));
     rig.drain();
     assert!(rig.editor.document().handles()[0].centre().distance(DVec3::X) < 1e-9);
-    // Beside the far side the same arm is still the same handle's.
+    // Beside the far side the arm still belongs to the same handle.
     let elbow_px = seen(&rig, 1.75..1.85);
     drag(&mut rig, elbow_px, DVec2::new(0.0, 30.0), Modifiers::NONE);
     assert_eq!(rig.editor.document().handles().len(), 1);
@@ -226,7 +226,7 @@ fn ctrl_twists_and_shift_scales_and_each_goes_on_from_where_the_other_ended() {
     let factor = handle.affine().transform_vector3(DVec3::X).x;
     assert!((factor - 1.0).abs() > 0.01, "{factor}");
 
-    // First a turn, then from there a twist.
+    // First a turn, then a twist from there.
     let mut rig = open();
     let from_px = seen(&rig, 4.0..4.6);
     rig.move_to(from_px);
@@ -339,7 +339,7 @@ fn with_symmetry_the_other_limb_is_posed_in_a_mirror_and_one_step_takes_both_bac
 #[test]
 fn a_limb_across_the_plane_of_symmetry_has_no_twin() {
     let mut rig = open();
-    // Each arm lies across y = 0.
+    // Each arm is on both sides of y = 0.
     rig.command(Command::SetSymmetry(Symmetry::Axis(1)));
     rig.drain();
     let hand_px = seen(&rig, 4.0..4.6);

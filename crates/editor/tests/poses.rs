@@ -1,5 +1,5 @@
-//! Laws of named poses: a pose that is taken is where everything stood when it was kept, each change of the list is one
-//! step, and a project holds it.
+//! Laws of named poses: taking a pose restores the positions at which it was kept, each change of the list is one step,
+//! and a project stores it.
 #![allow(clippy::unwrap_used, reason = "tests fail by panicking")]
 
 mod rig;
@@ -55,7 +55,8 @@ fn alike(a: &[DAffine3], b: &[DAffine3]) -> bool {
     a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.abs_diff_eq(*b, 1e-12))
 }
 
-/// A ball with the poses "pose 1", in which it is bent, and "pose 2", in which it is bent otherwise, as it is now.
+/// A ball with the poses "pose 1", in which it is bent, and "pose 2", its present state, in which it is bent
+/// differently.
 fn posed() -> (Rig, [HandleId; 2], [Vec<DAffine3>; 2]) {
     let (mut rig, ids) = ball();
     put(&mut rig, ids[0], trs(DVec3::Z * 0.4, 0.5));
@@ -87,7 +88,7 @@ fn a_pose_that_is_taken_is_where_everything_stood_and_undo_gives_every_bit_back(
     rig.drain();
     assert!(Fingerprint::of(rig.editor.document()) == before);
     assert!(alike(&affines(&rig), &second));
-    // Halfway there by the strength: a share of the pose is a share of each handle's way.
+    // Halfway by the strength: a share of the pose is a share of each handle's displacement.
     rig.command(Command::TakePose(0));
     rig.command(Command::SetStrength(0.5));
     rig.drain();
@@ -151,7 +152,7 @@ fn another_pivot_and_another_rest_shape_leave_a_pose_where_it_is() {
     rig.command(Command::TakePose(0));
     rig.drain();
     assert!(alike(&affines(&rig), &first));
-    // Where a handle's vertices are seen in the pose.
+    // The visible positions of a handle's vertices in the pose.
     let seen = |rig: &Rig| -> Vec<DVec3> {
         let document = rig.editor.document();
         let positions = rig.model.surface.positions.iter().zip(document.from_file().iter());

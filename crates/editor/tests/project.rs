@@ -1,4 +1,4 @@
-//! Laws of the project format: what was saved is what is opened, to the bit, whatever was done before.
+//! Laws of the project format: an opened project is the saved one, to the bit, after any actions.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test that can't go on fails")]
 
 mod rig;
@@ -173,11 +173,11 @@ fn what_a_project_can_not_be_is_refused_in_a_sentence() {
             .and_then(|project| project.resolve(&rig.model));
         assert!(refused.as_ref().unwrap_err().to_string().contains(word), "{refused:?}");
     }
-    // Cut off anywhere, it is refused and no panic.
+    // Cut off anywhere, it is refused without a panic.
     for end in (0..text.len()).step_by(97) {
         assert!(Beginning::parse(&text[..end]).is_err());
     }
-    // A handle's name comes from the file: however long it is, the sentence stays short.
+    // A handle's name comes from the file: the sentence stays short for a name of any length.
     let mut named: serde_json::Value = serde_json::from_str(&text).unwrap();
     named["handles"][0]["name"] = "é\u{1b}".repeat(1500).into();
     let with = |member: &str, value: serde_json::Value| {
@@ -214,7 +214,7 @@ fn what_a_project_can_not_be_is_refused_in_a_sentence() {
     assert!(refused.unwrap_err().to_string().contains(&count.to_string()));
 }
 
-/// The format refuses it, so a document must not come to have it.
+/// The format refuses it, so no document may have it.
 #[test]
 fn no_handle_is_flattened_by_a_number_that_is_typed() {
     let mut rig = Rig::open(shapes::icosphere(3));

@@ -1,5 +1,5 @@
-//! Laws of rigid paint: what a stroke makes rigid moves as one body, is undone in one step, and is saved with the project
-//! and with the edit.
+//! Laws of rigid paint: a part that a stroke makes rigid moves as one body, is undone in one step, and is saved with
+//! the project and with the edit.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "tests fail by panicking")]
 
 mod rig;
@@ -66,7 +66,7 @@ fn what_is_painted_rigid_moves_as_one_body() {
     let mut rig = Rig::open(shapes::icosphere(4));
     paint(&mut rig, StiffnessAction::Rigid);
     let body = rigid(&rig);
-    // A handle beside it, whose reach takes all of it along.
+    // A handle beside it, whose reach covers all of it.
     rig.command(Command::SetTool(ToolMode::PaintHandle));
     rig.swipe(&[CENTRE_PX - DVec2::new(130.0, 60.0), CENTRE_PX - DVec2::new(120.0, 60.0)]);
     rig.drain();

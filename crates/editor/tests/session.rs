@@ -1,4 +1,4 @@
-//! A session as an artist has it, and the same edit by way of the edit file.
+//! An artist's session, and the same edit by way of the edit file.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test that can't go on fails")]
 
 mod rig;
@@ -309,7 +309,7 @@ fn a_save_has_the_state_at_which_it_began_and_no_later_one() {
     assert!(rig.editor.view().unsaved, "it was moved while the file was written");
     rig.undo();
     assert!(!rig.editor.view().unsaved);
-    // The same for a shape that arrives after its step.
+    // The same holds for a shape that arrives after its step.
     let mut rig = Rig::open(shapes::icosphere(5));
     rig.choose("shells");
     rig.paint_handle();

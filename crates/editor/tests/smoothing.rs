@@ -1,5 +1,5 @@
-//! Laws of smoothing: a stroke with Shift straightens what a brush has painted and paints nothing anew; stiffness is
-//! blurred, sharpened, grown and shrunk as a whole.
+//! Laws of smoothing: a stroke with Shift straightens the border of painted regions and paints nothing new; stiffness
+//! is blurred, sharpened, grown and shrunk as a whole.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "tests fail by panicking")]
 
 mod rig;
@@ -26,7 +26,7 @@ fn swipe_with_shift(rig: &mut Rig, way_px: &[DVec2]) {
     rig.drain();
 }
 
-/// Edges between a vertex that is painted so and one that is not.
+/// Edges between a vertex with this paint and one without it.
 fn border(rig: &Rig, paint: Paint) -> usize {
     let all = rig.editor.document().paint();
     let is = |vertex: SurfaceVertex| all[vertex.index()] == paint;

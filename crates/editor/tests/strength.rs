@@ -1,5 +1,5 @@
-//! Laws of the strength: a share of an edit is a pose that a drag could have stopped at, all of it comes back to the
-//! bit, and what is moved next goes on from what is seen.
+//! Laws of the strength: a share of an edit is a pose at which a drag could have stopped, the whole edit is restored to
+//! the bit, and the next move continues from the visible shape.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "tests fail by panicking")]
 
 mod rig;
@@ -23,7 +23,7 @@ fn turned_and_moved() -> HandleTransform {
     }
 }
 
-/// A ball with a handle that stands elsewhere.
+/// A ball with a moved handle.
 fn bent(method: &str) -> (Rig, HandleId) {
     let mut rig = Rig::open(shapes::icosphere(3));
     rig.choose(method);
@@ -131,12 +131,12 @@ fn a_turn_beyond_half_a_turn_goes_back_the_way_it_came() {
     shown(&mut rig, 1.0 / 3.0);
     let handle = &rig.editor.document().handles()[0];
     assert!(handle.turn_deg.distance(DVec3::Z * 90.0) < 1e-6, "{}", handle.turn_deg);
-    // An edit counts no full turns: it says what is shown.
+    // An edit counts no full turns: it has the shown ones.
     let edit = rig.editor.edit_file().unwrap();
     assert_eq!(edit.strength, 1.0);
     let resolved = edit.resolve(&rig.model).unwrap().targets(1.0)[0];
     assert!(resolved.abs_diff_eq(handle.affine(), 1e-9));
-    // A project does.
+    // A project counts them.
     let mut again = reopened(&rig, Beginning::parse(&project(&rig)).unwrap());
     shown(&mut again, 1.0);
     assert_eq!(again.editor.document().handles()[0].turn_deg, DVec3::Z * 270.0);
@@ -182,7 +182,7 @@ fn what_is_moved_next_goes_on_from_what_is_seen() {
     rig.drain();
     assert!(Fingerprint::of(rig.editor.document()) == before);
     assert_eq!(rig.editor.document().strength(), 0.5);
-    // A drag that is taken back leaves the strength as it was, and so do strokes and names.
+    // An aborted drag does not change the strength, nor do strokes and names.
     rig.type_keys("gx.5");
     rig.key(Key::Escape);
     rig.command(Command::RenameHandle(id, "arm".to_owned()));

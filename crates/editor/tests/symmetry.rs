@@ -1,5 +1,5 @@
-//! Laws of symmetry: what is painted or posed on one side is done on the other, as one step; a handle on one side has a
-//! twin on the other, and one across the plane is one handle.
+//! Laws of symmetry: paint and poses on one side are repeated on the other, as one step; a handle on one side has a
+//! twin on the other, and one on both sides of the plane is one handle.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "tests fail by panicking")]
 
 mod rig;
@@ -185,7 +185,7 @@ fn the_plane_of_a_scan_that_stands_askew_is_found_and_twins_across_it_are_saved(
     );
     assert_eq!(again.to_json(), text);
 
-    // Another scale along each axis is no such scale in a plane that stands askew: the twin takes a matrix.
+    // A different scale along each axis is no such scale in an oblique plane: the twin gets a matrix.
     let stretched = HandleTransform::Trs {
         translation: DVec3::ZERO,
         rotation: DQuat::IDENTITY,

@@ -1,4 +1,4 @@
-//! Whether what a reach cuts off from the body comes along: chosen by a command, undone, and exported.
+//! The parts that a reach cuts off from the body, free or fixed: chosen by a command, undone, and exported.
 #![allow(clippy::unwrap_used, reason = "a test that can't go on fails")]
 
 mod rig;

@@ -1,4 +1,4 @@
-//! Laws of the view: what Ctrl holds, what is read beside a handle, what the brush reaches, and where keys look from.
+//! Laws of the view: snapping by Ctrl, the number beside a handle, the reach of the brush, and the views of keys.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test that can't go on fails")]
 
 mod rig;
@@ -94,7 +94,7 @@ fn a_brush_that_reaches_through_takes_the_far_side_and_one_that_does_not_leaves_
         };
         assert!(side(1.0) > 4, "{}", side(1.0));
         assert_eq!(side(-1.0) > 4, through, "{} on the far side", side(-1.0));
-        // Through: exactly what appears under the ring's way.
+        // Through the model: exactly the vertices that appear under the ring's path.
         if through {
             let view = rig.editor.view();
             for (vertex, paint) in paint.iter().enumerate() {
@@ -117,7 +117,7 @@ fn a_stroke_however_fast_leaves_no_gap() {
     let mut rig = Rig::open(shapes::icosphere(5));
     rig.command(Command::View(NamedView::Front));
     let [from, to] = [-200.0, 200.0].map(|x| CENTRE_PX + DVec2::new(x, 10.0));
-    // Two events alone.
+    // Only two events.
     rig.paint(ToolMode::PaintFixed, &[from, to]);
     let view = rig.editor.view();
     let under = rig
@@ -128,7 +128,7 @@ fn a_stroke_however_fast_leaves_no_gap() {
         .zip(rig.editor.document().paint())
         .filter(|(p, _)| {
             let seen = view.camera.project(**p, view.viewport_px).unwrap();
-            // Well within the ring and where the surface does not fall off steeply.
+            // Vertices well within the ring at which the surface is not steep.
             p.z > 0.6 && (seen.y - from.y).abs() < 0.9 * view.brush_radius_px && seen.x > from.x && seen.x < to.x
         });
     let (mut all, mut painted) = (0, 0);

@@ -1,8 +1,8 @@
 //! The steps from a file on disk to an edited file on disk: read → weld →
 //! resolve the edit → order → bind → frames → distortion → save.
 //!
-//! Each step is a function of its own, so that the window can keep the results that have not changed; [`apply`] runs
-//! all of them and measures their time.
+//! Each step is a separate function, so that the window can keep unchanged results; [`apply`] runs all of them and
+//! measures their time.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -23,8 +23,8 @@ use crate::report::{Distortion, Energy, ExampleWeight, FrameTimes, Report, finit
 use crate::saving::{self, SaveAs};
 use crate::watch::Watch;
 
-/// Orders a model's equations for a method that needs it, once for all regions: for the Laplacian's factor where the
-/// method's own is too large for the memory that is left.
+/// Orders a model's equations for a method that needs it, once for all regions: for the Laplacian's factor if the
+/// method's own is too large for the remaining memory.
 ///
 /// # Errors
 /// [`EngineError::Interrupted`] soon after `cancel` is raised.
@@ -43,7 +43,7 @@ pub fn order(
 /// Binds a setup.
 ///
 /// # Errors
-/// What stands in the way of a solution, naming `file`.
+/// The obstacle to a solution, naming `file`.
 pub fn bind(
     file: &Path,
     model: &Model,
@@ -64,7 +64,7 @@ pub(crate) fn refused(file: &Path, model: &Model, error: BindError) -> EngineErr
     }
 }
 
-/// Refuses a method that bends surfaces where the file holds points alone.
+/// Refuses a method that bends surfaces for a file with only points.
 ///
 /// # Errors
 /// [`BindError::NoTriangles`], naming `file`.
@@ -73,7 +73,7 @@ pub fn check_bends(file: &Path, model: &Model, method: &Method) -> Result<(), En
     checked.map_err(|error| refused(file, model, error))
 }
 
-/// Refuses a file that holds neither triangles nor points.
+/// Refuses a file without triangles and points.
 ///
 /// # Errors
 /// [`EngineError::Empty`].
@@ -84,28 +84,28 @@ pub fn check_not_empty(file: &Path, model: &Model) -> Result<(), EngineError> {
     Ok(())
 }
 
-/// What [`apply`] is to do.
+/// The input of [`apply`].
 #[derive(Clone, Debug)]
 pub struct Apply<'a> {
-    /// The file to be bent.
+    /// The file to bend.
     pub file: &'a Path,
-    /// How.
+    /// The edit.
     pub edit: &'a Beginning,
-    /// Where the edit was read from, for messages.
+    /// The place that the edit was read from, for messages.
     pub edit_path: &'a Path,
-    /// The file to be written.
+    /// The file to write.
     pub output: &'a Path,
-    /// Where the report goes, if anywhere.
+    /// The file for the report, if one is wanted.
     pub report: Option<&'a Path>,
     /// Replays the edit as a drag of this many frames; `None` is one solve to the target.
     pub frames: Option<usize>,
     /// The distance within which vertices of the file are joined, in world units; `None` is the edit's own.
     pub weld: Option<f64>,
-    /// The memory that binding may take.
+    /// The memory that binding may use.
     pub budget: Budget,
     /// Whether the deltas of the file's own morph targets turn with the surface.
     pub deltas: MorphDeltas,
-    /// Saves the edit as a morph target beside the shape as it was.
+    /// Saves the edit as a morph target beside the unchanged shape.
     pub morph: Option<MorphTarget<'a>>,
 }
 
@@ -114,7 +114,7 @@ pub struct Apply<'a> {
 /// # Errors
 /// Any refusal of the file, the edit or the result. OUT is then unchanged.
 pub fn apply(apply: &Apply<'_>, watch: &Watch, staging: &Staging) -> Result<Report, EngineError> {
-    // What is no file is refused before anything is read.
+    // A path that is not a file is refused before anything is read.
     Destination::of(apply.output)?;
     let report_to = apply.report.map(Destination::of).transpose()?;
     let start = Instant::now();
@@ -182,7 +182,7 @@ pub fn apply(apply: &Apply<'_>, watch: &Watch, staging: &Staging) -> Result<Repo
     Ok(report)
 }
 
-/// Solves an edit, whose setup this is, on a file that is read, and reports on it; nothing is saved.
+/// Solves an edit with this setup on a file that was read, and reports on it; nothing is saved.
 ///
 /// # Errors
 /// Any refusal of the binding or of the result, naming `file`.
@@ -209,16 +209,16 @@ pub fn solved(
     })
 }
 
-/// A shape and what is to be told of it.
+/// A shape and the report about it.
 #[derive(Clone, Debug)]
 pub struct Solved {
-    /// Of each surface vertex, in world space.
+    /// The position of each surface vertex, in world space.
     pub surface_positions: Vec<DVec3>,
-    /// Its report, without times of files.
+    /// Its report, without the times of files.
     pub report: Report,
 }
 
-/// How long the files took.
+/// The times of the files.
 #[derive(Default)]
 struct FileTimes {
     load_ms: f64,
@@ -226,10 +226,10 @@ struct FileTimes {
     check_ms: f64,
 }
 
-/// The most crossings that are searched for: the sentence says "and more" beyond them.
+/// The most crossings to search for: the sentence says "and more" beyond them.
 const MOST_CROSSINGS: usize = 20_000;
 
-/// What came out badly, as sentences.
+/// The faults of the shape, as sentences.
 ///
 /// # Errors
 /// [`EngineError::Interrupted`].
@@ -296,11 +296,11 @@ fn report(
     })
 }
 
-/// What came of the frames.
+/// The result of the frames.
 struct Solution {
-    /// Of each drawn vertex, in world space.
+    /// The position of each drawn vertex, in world space.
     positions: Vec<DVec3>,
-    /// Of each surface vertex, in world space.
+    /// The position of each surface vertex, in world space.
     surface_positions: Vec<DVec3>,
     free_vertices: usize,
     order_ms: f64,
@@ -325,10 +325,10 @@ fn example_weights(setup: &Setup, weights: &[f64]) -> Vec<ExampleWeight> {
 }
 
 impl Solution {
-    /// Nothing is solved where nothing is to change.
+    /// The result without a solve, if nothing changes.
     fn at_rest(model: &Model, setup: &Setup) -> Self {
         let (mut positions, mut surface_positions) = (model.rest_positions(), model.surface.positions.clone());
-        // What was corrected by hand, and is bent by nothing else.
+        // This is the correction by hand, which nothing else bends.
         if let Some(kept) = &setup.kept {
             model.drawn_positions(&kept.shape.shape, &mut positions);
             let moved = surface_positions.iter_mut().zip(kept.shape.shape.iter());
@@ -351,21 +351,21 @@ impl Solution {
     }
 }
 
-/// A binding, and how long it took.
+/// A binding, and its times.
 #[derive(Debug)]
 pub struct Prepared {
     /// The bound problem.
     pub bound: Bound,
-    /// The mesh's ordering, in milliseconds.
+    /// The time of the mesh's ordering, in milliseconds.
     pub order_ms: f64,
-    /// From the ordering to the binding, in milliseconds.
+    /// The time from the ordering to the binding, in milliseconds.
     pub bind_ms: f64,
 }
 
 /// Orders and binds a setup, once its tables are known to fit the budget.
 ///
 /// # Errors
-/// As [`bind`]; [`EngineError::Interrupted`] soon after the watch's flag is raised.
+/// Those of [`bind`]; [`EngineError::Interrupted`] soon after the watch's flag is raised.
 pub fn prepare(
     file: &Path,
     model: &Model,
@@ -433,24 +433,24 @@ fn solve(
     })
 }
 
-/// The shape after the last frame, and what the frames took.
+/// The shape after the last frame, and the frames' times.
 struct Bent {
-    /// Of each drawn vertex, in world space.
+    /// The position of each drawn vertex, in world space.
     positions: Vec<DVec3>,
-    /// Of each surface vertex, in world space.
+    /// The position of each surface vertex, in world space.
     surface_positions: Vec<DVec3>,
     frames: FrameTimes,
-    /// Mean iterations per frame.
+    /// The mean number of iterations per frame.
     iterations: f64,
     last: Step,
 }
 
-/// Steps towards the targets that were set until the shape has converged or met the limit that the method's options
-/// say, or at the latest after `most` steps. `displacements` has one entry per surface vertex. Stops after the step
-/// during which `cancel` was raised.
+/// Steps towards the set targets until the shape has converged or met the limit of the method's options, or at the
+/// latest after `most` steps. `displacements` has one entry per surface vertex. Stops after the step during which
+/// `cancel` was raised.
 ///
 /// # Errors
-/// As [`Bound::step`].
+/// Those of [`Bound::step`].
 pub fn settle(
     bound: &mut Bound,
     displacements: &mut [DVec3],
@@ -467,12 +467,12 @@ pub fn settle(
     Ok(last)
 }
 
-/// The solution for the handles as they stood when a shape was kept; `None` where none was.
+/// The solution for the handles at the time of the kept shape; `None` if none was kept.
 fn at_first(setup: &Setup, bound: &mut Bound, cancel: &Cancel) -> Result<Option<Vec<DVec3>>, SolveError> {
     let Some(kept) = &setup.kept else { return Ok(None) };
     let mut displacements = kept.shape.shape.to_vec();
     bound.set_targets(&kept.targets)?;
-    // Points and weights of another method say nothing of this one's.
+    // Points and weights of another method do not apply to this one.
     let controls = kept.shape.controls.as_ref();
     let own = setup.controls(1.0);
     let is_same = |kept: &&Arc<Vec<DVec3>>| own.as_ref().is_some_and(|own| own.len() == kept.len());
@@ -486,7 +486,7 @@ fn at_first(setup: &Setup, bound: &mut Bound, cancel: &Cancel) -> Result<Option<
     Ok(Some(displacements))
 }
 
-/// Takes the handles to their targets frame by frame.
+/// Moves the handles to their targets frame by frame.
 fn bend(
     file: &Path,
     count: usize,
@@ -509,7 +509,7 @@ fn bend(
     let (mut iterations, mut last) = (0_u64, Step::default());
     let at_first = at_first(setup, bound, &watch.cancel).map_err(refuse)?;
     if let (Some(at_first), 1) = (&at_first, count) {
-        // From where the descent ended that the kept shape is compared with.
+        // Starts at the end of the descent to which the kept shape is compared.
         displacements.clone_from(at_first);
     }
     for frame in 1..=count {

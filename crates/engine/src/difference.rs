@@ -1,4 +1,4 @@
-//! What differs between two files.
+//! The differences of two files.
 
 use std::path::Path;
 
@@ -8,16 +8,16 @@ use pliant_mesh::Drawn;
 use crate::watch::Watch;
 use crate::{EngineError, Loaded, open};
 
-/// A file that is compared.
+/// A file to compare.
 #[derive(Clone, Copy, Debug)]
 pub enum Compared<'a> {
-    /// One that is to be read.
+    /// A file to read.
     File(&'a Path),
-    /// One that was.
+    /// A file that was read.
     Loaded(&'a Loaded),
 }
 
-/// What differs between two files; empty if they hold the same.
+/// The differences of two files; empty if they hold the same.
 ///
 /// # Errors
 /// A file that can't be read.

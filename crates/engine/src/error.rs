@@ -1,4 +1,4 @@
-//! Why the program refuses: one sentence that names the culprit and the remedy.
+//! The program's refusals: one sentence that names the culprit and the remedy.
 
 use std::path::PathBuf;
 
@@ -14,13 +14,13 @@ pub enum EngineError {
     /// A file could not be read or written.
     #[error(transparent)]
     File(#[from] FileError),
-    /// The extension of FILE tells no known format.
+    /// The extension of FILE is of no known format.
     #[error(transparent)]
     Format(#[from] pliant_io::UnknownFormat),
-    /// A file's content can't be read as its format; the file is named in it.
+    /// A file's content can't be read as its format; the text names the file.
     #[error(transparent)]
     Read(pliant_io::ReadError),
-    /// A file that holds nothing to edit.
+    /// A file without anything to edit.
     #[error("{} holds no triangle and no point, so there is nothing to edit: choose a file with a shape", shown(.0))]
     Empty(PathBuf),
     /// The edit can't be read, or does not fit the file.
@@ -28,10 +28,10 @@ pub enum EngineError {
     Edit {
         /// The edit's file.
         edit: PathBuf,
-        /// What is wrong with it.
+        /// Its fault.
         source: pliant_editor::EditError,
     },
-    /// An example of other vertices or triangles.
+    /// An example with other vertices or triangles.
     #[error(
         "{}: it has {what}, and {} has {expected}: give an example of the same vertices and triangles",
         shown(.example), shown(.file)
@@ -39,14 +39,14 @@ pub enum EngineError {
     Example {
         /// The example's file.
         example: PathBuf,
-        /// What it has.
+        /// Its counts.
         what: String,
-        /// The file that is bent.
+        /// The bent file.
         file: PathBuf,
-        /// What that has.
+        /// The counts of that file.
         expected: String,
     },
-    /// A project's mesh is not where it was, or is another one.
+    /// A project's mesh is missing or is another one.
     #[error(
         "{}: its mesh {} is {what}: put the one it was made on there, or beside the project", shown(.project),
         shown(.mesh)
@@ -54,50 +54,50 @@ pub enum EngineError {
     ProjectMesh {
         /// The project's file.
         project: PathBuf,
-        /// Where its mesh should be.
+        /// The expected place of its mesh.
         mesh: PathBuf,
-        /// What is there.
+        /// The fault there.
         what: &'static str,
     },
-    /// A project where a mesh is asked for.
+    /// A project in place of a mesh.
     #[error("{} is a project, and FILE must be a mesh: give the mesh, and the project as --edit", shown(.0))]
     ProjectAsFile(PathBuf),
     /// The problem could not be factored. Its vertices are the file's.
     #[error("{}: {source}", shown(.file))]
     Bind {
-        /// The file that was to be bent.
+        /// The file to bend.
         file: PathBuf,
-        /// What stands in the way.
+        /// The obstacle.
         source: pliant_deform::BindError,
     },
     /// A step could not be done. Its vertices are the file's.
     #[error("{}: {source}", shown(.file))]
     Solve {
-        /// The file that was to be bent.
+        /// The file to bend.
         file: PathBuf,
-        /// What stands in the way.
+        /// The obstacle.
         source: pliant_deform::SolveError,
     },
-    /// The result can't be stored as asked.
+    /// The result can't be stored as requested.
     #[error("{}: {source}", shown(.file))]
     Save {
-        /// The file that was to be written.
+        /// The file to write.
         file: PathBuf,
-        /// What stands in the way.
+        /// The obstacle.
         source: pliant_io::SaveError,
     },
-    /// What was written does not read back as it should; nothing was replaced.
+    /// The written file does not read back correctly; nothing was replaced.
     #[error(
         "{}: what was written does not read back as it was to be saved ({what}), so nothing was replaced: this is a \
          fault of the program or the disk; save as another kind, and report it with the file", shown(.file)
     )]
     ReadBack {
-        /// The file that was to be written.
+        /// The file to write.
         file: PathBuf,
-        /// What differs, or why it can't be read.
+        /// The difference, or the reason why it can't be read.
         what: String,
     },
-    /// A file that was to be replaced is another one than was read.
+    /// A file to be replaced differs from the one that was read.
     #[error(
         "{} was changed by another program since it was read, so nothing was written: run the command again, or give \
          another --output", shown(.0)
@@ -106,10 +106,10 @@ pub enum EngineError {
     /// Ctrl-C.
     #[error("stopped before the end, so nothing was written: run the command again for a result")]
     Interrupted,
-    /// Something that this version does not do.
+    /// A feature that this version does not have.
     #[error("{0}")]
     Unsupported(String),
-    /// The system refused something that is no file.
+    /// The system refused an operation on something other than a file.
     #[error("{0}")]
     System(String),
 }

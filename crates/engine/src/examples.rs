@@ -1,4 +1,4 @@
-//! The examples that an edit names: files of the same vertices and triangles, and morph targets of the file itself.
+//! The examples that an edit names: files with the same vertices and triangles, and morph targets of the file itself.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -36,7 +36,7 @@ pub fn bring(edit: &mut Beginning, edit_path: &Path, loaded: &Loaded, watch: &Wa
     Ok(())
 }
 
-/// How far the surface's vertices are moved in the shape that the file at `path` has.
+/// The displacements of the surface's vertices in the shape of the file at `path`.
 ///
 /// # Errors
 /// A file that can't be read, or has other vertices or triangles.
@@ -44,7 +44,7 @@ pub fn from_file(path: &Path, loaded: &Loaded, watch: &Watch) -> Result<Vec<DVec
     Ok(of_surface(&loaded.model, &displacements_to(path, loaded, watch)?))
 }
 
-/// How far the file's morph targets of this name, applied whole, move the surface's vertices.
+/// The displacements of the surface's vertices by the file's morph targets of this name at full weight.
 ///
 /// # Errors
 /// The file has none of this name, or it can't be read.
@@ -65,7 +65,7 @@ fn displacements_to(path: &Path, loaded: &Loaded, watch: &Watch) -> Result<Vec<D
     Ok(each.map(|(to, from)| *to - *from).collect())
 }
 
-/// Where a pose puts the vertices that the file draws.
+/// The positions of the file's drawn vertices in a pose.
 ///
 /// # Errors
 /// [`EngineError::Example`] if it has other vertices or faces than the file.
@@ -107,7 +107,7 @@ fn morph_target(target: &str, loaded: &Loaded, watch: &Watch) -> Result<Vec<DVec
     })
 }
 
-/// Of each surface vertex that of its first drawn one.
+/// The displacement of each surface vertex' first drawn vertex.
 fn of_surface(model: &Model, of_drawn: &[DVec3]) -> Vec<DVec3> {
     let mut displacements = vec![None; model.surface.positions.len()];
     for (vertex, displacement) in model.drawn.surface_vertices().zip(of_drawn) {

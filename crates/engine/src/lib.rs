@@ -1,9 +1,9 @@
-//! The engine: from files and an edit to files. The command line, the window and the Python package run it.
+//! The engine turns files and an edit into files. The command line, the window and the Python package run it.
 //!
-//! It reads a file with its neighbours and welds it (`loading`), binds and bends it
-//! (`apply`), puts a pose of one mesh onto another (`transfer`), and writes all of a result or nothing (`saving`,
-//! [`files`]). It starts no threads: long loops run on the caller's rayon pool, and a [`Watch`](watch::Watch) tells the
-//! caller's other threads how far they are.
+//! It reads a file with its neighbours and welds it (`loading`), binds and bends it (`apply`), puts a pose of one mesh
+//! onto another (`transfer`), and writes all of a result or nothing (`saving`, [`files`]). It starts no threads: long
+//! loops run on the caller's rayon pool, and a [`Watch`](watch::Watch) shows their progress to the caller's other
+//! threads.
 //!
 //! `pliant apply` without its arguments: the upper edge of a strip is lifted, and the rest follows:
 //!

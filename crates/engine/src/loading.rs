@@ -13,27 +13,27 @@ use crate::watch::Watch;
 /// A file, read and welded.
 #[derive(Debug)]
 pub struct Loaded {
-    /// Where it was read from.
+    /// The path that it was read from.
     pub path: PathBuf,
-    /// The file as stored.
+    /// The stored file.
     pub scene: Scene,
     /// Its geometry.
     pub model: Arc<Model>,
-    /// The files beside it that were read with it, as they were then.
+    /// The files beside it that were read with it, in their state at that time.
     pub neighbours: Vec<(PathBuf, Stamp)>,
-    /// The file as it was when it was read; `None` if its bytes came from elsewhere.
+    /// The stamp of the file when it was read; `None` if its bytes came from elsewhere.
     pub stamp: Option<Stamp>,
 }
 
 impl Loaded {
-    /// Every file that it was read from, with a description of each, to refuse outputs that would overwrite one.
+    /// All of its input files, each with a description, to refuse outputs that would overwrite one.
     pub fn sources(&self) -> impl Iterator<Item = (&'static str, &Path)> {
         let neighbours = self.neighbours.iter();
         let neighbours = neighbours.map(|(path, _)| ("a file that FILE needs", &**path));
         std::iter::once(("FILE", &*self.path)).chain(neighbours)
     }
 
-    /// Refuses to replace one of them that another program has changed since it was read.
+    /// Refuses to replace an input file that another program has changed since it was read.
     ///
     /// # Errors
     /// [`EngineError::Changed`], naming the file.
@@ -48,7 +48,7 @@ impl Loaded {
         }
     }
 
-    /// The same as they were when they were read, without what came from elsewhere.
+    /// Their stamps when they were read, without input from elsewhere.
     pub fn stamps(&self) -> impl Iterator<Item = (&Path, &Stamp)> {
         let own = self.stamp.iter().map(|stamp| (&*self.path, stamp));
         own.chain(self.neighbours.iter().map(|(path, stamp)| (&**path, stamp)))
@@ -72,7 +72,7 @@ pub fn load(path: &Path, weld: &WeldOptions, watch: &Watch) -> Result<Loaded, En
 /// Reads a file without welding it.
 ///
 /// # Errors
-/// As [`load`].
+/// Those of [`load`].
 pub fn open(path: &Path, watch: &Watch) -> Result<SceneAndDrawn, EngineError> {
     check_mesh(path)?;
     watch.begin("reading");
@@ -80,7 +80,7 @@ pub fn open(path: &Path, watch: &Watch) -> Result<SceneAndDrawn, EngineError> {
     open_bytes(bytes, path, &neighbours, watch)
 }
 
-/// Refuses a path that is not called a mesh.
+/// Refuses a path without the extension of a mesh.
 fn check_mesh(path: &Path) -> Result<(), EngineError> {
     if is_project(path) {
         return Err(EngineError::ProjectAsFile(path.to_owned()));
@@ -92,7 +92,7 @@ fn check_mesh(path: &Path) -> Result<(), EngineError> {
 /// Reads and welds a file's bytes; `path` gives its name and the folder of its neighbours.
 ///
 /// # Errors
-/// As [`load`].
+/// Those of [`load`].
 pub fn load_bytes(bytes: Vec<u8>, path: &Path, weld: &WeldOptions, watch: &Watch) -> Result<Loaded, EngineError> {
     let neighbours = Neighbours::of(path);
     let opened = open_bytes(bytes, path, &neighbours, watch)?;
@@ -135,7 +135,7 @@ fn welded(opened: SceneAndDrawn, path: &Path, weld: &WeldOptions, watch: &Watch)
     })
 }
 
-/// Whether a path is called a project.
+/// Whether a path has the extension of a project.
 pub fn is_project(path: &Path) -> bool {
     path.extension()
         .is_some_and(|extension| extension.eq_ignore_ascii_case("pliant"))

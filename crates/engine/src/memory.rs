@@ -1,19 +1,19 @@
-//! How much memory the machine has left for solving.
+//! The memory that the machine has left for solving.
 
 use std::fs;
 use std::path::Path;
 
 use pliant_deform::Budget;
 
-/// The memory that binding may take: the solver's own budget, or what the system has left if that is less.
+/// The memory that binding may use: the solver's own budget, or the system's remaining memory if that is less.
 ///
 /// Linux grants more memory than there is and kills the program once it is used, so waiting for a failed allocation
-/// would be too late. If the system does not tell, it is the solver's own budget.
+/// would be too late. If the system does not report its memory, it is the solver's own budget.
 pub fn budget() -> Budget {
     budget_within(None)
 }
 
-/// As [`budget`], with `most` bytes in place of the solver's own budget, where somebody has set them.
+/// Like [`budget`], with `most` bytes instead of the solver's own budget, if a person has set them.
 pub fn budget_within(most: Option<u64>) -> Budget {
     let own = Budget::of_most(most);
     let left = [left_in_machine(), left_in_group(), left_to_process()]
@@ -26,10 +26,10 @@ pub fn budget_within(most: Option<u64>) -> Budget {
     }
 }
 
-/// The bytes that a text such as `8GB`, `1.5GiB` or `500MB` stands for.
+/// The bytes of a text such as `8GB`, `1.5GiB` or `500MB`.
 ///
 /// # Errors
-/// One sentence if it stands for none.
+/// One sentence if it is not such a text.
 pub fn bytes(text: &str) -> Result<u64, String> {
     const UNITS: [(&str, f64); 4] = [
         ("GiB", (1_u64 << 30) as f64),
@@ -51,8 +51,8 @@ fn left_in_machine() -> Option<u64> {
     Some((kilobytes("MemAvailable:")? + kilobytes("SwapFree:").unwrap_or(0)) * 1024)
 }
 
-/// Three quarters of what the process's own limits leave it of addresses and of data (`ulimit -v` and `-d`): allocators
-/// reserve more than they hand out.
+/// Three quarters of the remainder of the process's own limits of addresses and of data (`ulimit -v` and `-d`):
+/// allocators reserve more than they return.
 fn left_to_process() -> Option<u64> {
     let limits = fs::read_to_string("/proc/self/limits").ok()?;
     let status = fs::read_to_string("/proc/self/status").ok()?;
@@ -65,7 +65,7 @@ fn left_of_limits(limits: &str, status: &str) -> Option<u64> {
     left.into_iter().flatten().min()
 }
 
-/// What the limits of the process's control groups (usually a container's) leave: the least of all its groups.
+/// The remainder of the limits of the process's control groups (usually a container's): the least of all its groups.
 fn left_in_group() -> Option<u64> {
     let groups = fs::read_to_string("/proc/self/cgroup").ok()?;
     let limits = groups.lines().filter_map(|line| {
@@ -92,7 +92,7 @@ fn left_of(group: &Path, limit: &str, used: &str) -> Option<u64> {
     Some(limit.saturating_sub(number(&stat, used)?))
 }
 
-/// The number behind a name at a line's beginning.
+/// The number after a name at the beginning of a line.
 fn number(text: &str, name: &str) -> Option<u64> {
     let rest = text.lines().find_map(|line| line.strip_prefix(name))?;
     rest.split_whitespace().next()?.parse().ok()

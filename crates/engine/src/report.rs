@@ -1,4 +1,4 @@
-//! REPORT.json: what an edit did and how long each part took (`cli.md`). Times are in milliseconds.
+//! REPORT.json: the effect of an edit and the time of each part (`docs/edit-format.md`). Times are in milliseconds.
 
 use std::time::Instant;
 
@@ -6,55 +6,55 @@ use glam::DVec3;
 use pliant_mesh::{Model, mean_curvatures, mixed_voronoi_areas};
 use serde::Serialize;
 
-/// What an edit did. Every number is finite.
+/// The effect of an edit. Every number is finite.
 #[derive(Clone, PartialEq, Debug, Serialize)]
 pub struct Report {
     /// The method's name.
     pub method: String,
-    /// How many vertices the file has.
+    /// The number of the file's vertices.
     pub vertices: usize,
-    /// How many there are once welded.
+    /// The number of welded vertices.
     pub welded_vertices: usize,
-    /// How many were solved for.
+    /// The number of solved vertices.
     pub free_vertices: usize,
-    /// From the file on disk to the welded surface.
+    /// The time from the file on disk to the welded surface.
     pub load_ms: f64,
-    /// The mesh's fill-reducing ordering.
+    /// The time of the mesh's fill-reducing ordering.
     pub order_ms: f64,
-    /// Binding: from the ordering and the regions until the first solve is possible.
+    /// The time of binding: from the ordering and the regions until the first solve is possible.
     pub bind_ms: f64,
-    /// Saving: from the new positions to synced files that were read back.
+    /// The time of saving: from the new positions to synced files that were read back.
     pub save_ms: f64,
-    /// Of that, reading back what was written.
+    /// The part of that for reading back.
     pub check_ms: f64,
     /// The frames' times.
     pub frames: FrameTimes,
-    /// Mean iterations a frame.
+    /// The mean number of iterations per frame.
     pub iterations: f64,
     /// Whether the last frame converged.
     pub converged: bool,
     /// The deformation energy.
     pub energy: Energy,
-    /// The largest distance of a hard handle's vertex from where the handle takes it, in world units: 0 for methods that
-    /// hold handles exactly.
+    /// The largest distance of a hard handle's vertex from its target, in world units: 0 for methods that hold handles
+    /// exactly.
     pub handle_residual: f64,
-    /// The weights of the examples that the edit has, as set or as found.
+    /// The weights of the edit's examples, set or found.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub examples: Vec<ExampleWeight>,
-    /// How much the shape was distorted.
+    /// The distortion of the shape.
     pub distortion: Distortion,
-    /// What a person should know, as sentences.
+    /// Sentences that a person should know.
     pub warnings: Vec<String>,
 }
 
-/// How long the frames took, from new handle transforms to new positions of every vertex of the file.
+/// The times of the frames, from new handle transforms to new positions of every vertex of the file.
 #[derive(Clone, Copy, PartialEq, Debug, Default, Serialize)]
 pub struct FrameTimes {
-    /// How many frames were solved.
+    /// The number of solved frames.
     pub count: usize,
     /// Their median.
     pub median_ms: f64,
-    /// What 95 of 100 stay under.
+    /// The 95th percentile.
     pub p95_ms: f64,
     /// The longest.
     pub max_ms: f64,
@@ -62,7 +62,7 @@ pub struct FrameTimes {
     pub normals_ms: f64,
 }
 
-/// How much of an example the shape has taken.
+/// An example's share in the shape.
 #[derive(Clone, PartialEq, Debug, Serialize)]
 pub struct ExampleWeight {
     /// The example's name.
@@ -80,21 +80,21 @@ pub struct Energy {
     pub r#final: f64,
 }
 
-/// How much the shape was distorted.
+/// The distortion of the shape.
 #[derive(Clone, Copy, PartialEq, Debug, Serialize)]
 pub struct Distortion {
     /// The mean over the edges of the larger of new by old length and old by new.
     pub edge_stretch_mean: f64,
-    /// The largest.
+    /// The largest such ratio.
     pub edge_stretch_max: f64,
     /// Faces whose normal turned by more than a right angle against their neighbourhood.
     pub flipped_faces: usize,
-    /// The enclosed volume, new by old; 1 where the surface encloses none.
+    /// The enclosed volume, new by old; 1 if the surface encloses none.
     pub volume_ratio: f64,
 }
 
 impl FrameTimes {
-    /// The statistics of frames that took `solve_ms` each, and their normals `normals_ms`.
+    /// The statistics of frames with the times `solve_ms`, and of their normals with `normals_ms`.
     pub fn of(solve_ms: &mut [f64], normals_ms: &mut [f64]) -> Self {
         solve_ms.sort_by(f64::total_cmp);
         normals_ms.sort_by(f64::total_cmp);
@@ -108,7 +108,7 @@ impl FrameTimes {
     }
 }
 
-/// The smallest of `sorted` that at least the share `q` of them does not exceed; 0 of none.
+/// The smallest of `sorted` that at least the share `q` of them does not exceed; 0 if there are none.
 fn quantile(sorted: &[f64], q: f64) -> f64 {
     let rank = (q * sorted.len() as f64).ceil() as usize;
     sorted.get(rank.saturating_sub(1)).copied().unwrap_or(0.0)
@@ -122,10 +122,10 @@ impl Report {
     }
 }
 
-/// How much the surface's details changed as seen from the surface: the root of ∫ (H' − H)² dA over the rest shape,
-/// with the mean curvatures H and H' before and after. It has no unit, and neither a rigid motion nor a turn of a detail
-/// with its surroundings changes it; what the edit itself bends counts alike for all methods. `bent` has a position for
-/// each surface vertex.
+/// The change of the surface's details as seen from the surface: the root of ∫ (H' − H)² dA over the rest shape, with
+/// the mean curvatures H and H' before and after. It has no unit, and neither a rigid motion nor a turn of a detail
+/// with its surroundings changes it; the edit's own bend counts equally for all methods. `bent` has a position for each
+/// surface vertex.
 pub fn detail_error(model: &Model, bent: &[DVec3]) -> f64 {
     let (surface, topology) = (&model.surface, &model.topology);
     let curvatures = |positions: &[DVec3]| mean_curvatures(surface, topology, positions);

@@ -1,4 +1,4 @@
-//! Saving a model: its files are encoded, named so that nothing is lost, written beside their places and read back.
+//! Saving a model: its files are encoded, named so that no file is lost, written beside their places and read back.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -15,7 +15,7 @@ use crate::files::{self, Bridge, Destination, NewFile, Share, Staged, Staging};
 use crate::loading::Loaded;
 use crate::report::ms_since;
 
-/// What is saved, and where.
+/// The content and the place of a save.
 #[derive(Clone, Copy, Debug)]
 pub struct SaveAs<'a> {
     /// The new world position of each drawn vertex.
@@ -24,16 +24,16 @@ pub struct SaveAs<'a> {
     pub inside_out: &'a BTreeSet<u32>,
     /// Whether the deltas of the file's morph targets turn with the surface.
     pub deltas: MorphDeltas,
-    /// Saves the edit as a morph target beside the shape as it was.
+    /// Saves the edit as a morph target beside the unchanged shape.
     pub morph: Option<&'a MorphTarget<'a>>,
-    /// The file to be written.
+    /// The file to write.
     pub output: &'a Path,
     /// A further output with a description: no neighbour may be the same file.
     pub beside: Option<(&'a str, &'a Destination)>,
 }
 
 impl<'a> SaveAs<'a> {
-    /// A shape alone.
+    /// Only a shape.
     pub fn shape(positions: &'a [DVec3], output: &'a Path) -> Self {
         Self {
             positions,
@@ -51,17 +51,17 @@ impl<'a> SaveAs<'a> {
 pub struct StagedSave {
     /// Its files.
     pub staged: Staged,
-    /// What a person should know, as sentences.
+    /// Sentences that a person should know.
     pub warnings: Vec<String>,
-    /// How long reading back took, in milliseconds.
+    /// The time of reading back, in milliseconds.
     pub check_ms: f64,
 }
 
-/// Prepares a model's files: encoded, written beside their targets, synced and read back, to be committed.
+/// Prepares a model's files: encoded, written beside their targets, synced and read back, ready for a commit.
 ///
 /// # Errors
-/// If the format can't hold it or the disk can't take it; [`EngineError::ReadBack`] if what was written shows another
-/// shape; [`EngineError::Interrupted`] soon after `cancel` is raised. Nothing is left behind then.
+/// The format can't represent it or the disk can't store it; [`EngineError::ReadBack`] if the written files show
+/// another shape; [`EngineError::Interrupted`] soon after `cancel` is raised. Nothing is left behind then.
 pub fn stage(
     loaded: &Loaded,
     what: &SaveAs<'_>,
@@ -141,10 +141,10 @@ pub fn stage(
     })
 }
 
-/// The bytes that [`stage`] writes for the model at rest under the name `output`; its neighbours apart.
+/// The bytes that [`stage`] writes for the model at rest under the name `output`, without its neighbours.
 ///
 /// # Errors
-/// As [`stage`].
+/// Those of [`stage`].
 pub fn bytes_at_rest(
     loaded: &Loaded,
     output: &Path,
@@ -169,10 +169,10 @@ pub fn bytes_at_rest(
     Ok(file.map(|file| file.bytes).unwrap_or_default())
 }
 
-/// The name of OUT as its format has it.
+/// The name of OUT in its format.
 fn name_in(format: Format, to: &Destination) -> String {
     match format {
-        // Only URIs have a way to name what is not UTF-8.
+        // Only URIs can name files whose names are not UTF-8.
         Format::Glb | Format::Gltf => files::name_as_text(to.name()),
         _ => to.name().to_string_lossy().into_owned(),
     }
@@ -188,7 +188,7 @@ fn refused(file: &Path, error: SaveError) -> EngineError {
     }
 }
 
-/// Writes OUT's neighbours and then OUT beside their places. Also the names of the neighbours that are written.
+/// Writes OUT's neighbours and then OUT beside their places. Returns the names of the written neighbours too.
 fn write(
     saved: &Saved,
     settled: &[Settled],
@@ -197,7 +197,7 @@ fn write(
     progress: &Progress,
     cancel: &Cancel,
 ) -> Result<(Staged, Vec<String>), EngineError> {
-    // Neighbours first: the file that names them must not be there without them.
+    // Neighbours come first: the file that names them must not exist without them.
     let neighbours: Vec<&Settled> = settled
         .iter()
         .filter(|settled| settled.action == Action::Write)

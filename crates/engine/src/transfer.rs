@@ -1,4 +1,4 @@
-//! A pose of one mesh is put onto another: files in, a file out.
+//! Puts a pose of one mesh onto another: files in, a file out.
 
 use std::path::Path;
 
@@ -16,31 +16,31 @@ use crate::saving::{self, SaveAs};
 use crate::watch::Watch;
 use crate::{EngineError, memory};
 
-/// What [`transfer`] is to do.
+/// The input of [`transfer`].
 #[derive(Clone, Debug)]
 pub struct Transfer<'a> {
-    /// The mesh that has the pose, at rest.
+    /// The mesh of the pose, at rest.
     pub source: &'a Path,
     /// The same vertices and triangles in the pose.
     pub pose: &'a Path,
-    /// The mesh that is to take it on.
+    /// The mesh that takes it on.
     pub target: &'a Path,
-    /// Which triangles belong together; `None` is the same triangles in both.
+    /// The pairs of triangles; `None` is the same triangles in both.
     pub correspondences: Option<&'a Path>,
-    /// The file to be written.
+    /// The file to write.
     pub output: &'a Path,
-    /// How TARGET's vertices are joined.
+    /// The joining of TARGET's vertices.
     pub weld: WeldOptions,
     /// Whether the deltas of the target file's own morph targets turn with the surface.
     pub deltas: MorphDeltas,
-    /// Saves the pose as a morph target beside the shape as it was.
+    /// Saves the pose as a morph target beside the unchanged shape.
     pub morph: Option<MorphTarget<'a>>,
 }
 
-/// Puts the pose onto the target and writes it, or nothing at all. Returns what a person should know, as sentences.
+/// Puts the pose onto the target and writes it, or nothing at all. Returns sentences that a person should know.
 ///
 /// # Errors
-/// Any refusal of the files, of what belongs together, of the solution or of the result. The output is then unchanged.
+/// Any refusal of the files, of the pairs, of the solution or of the result. The output is then unchanged.
 pub fn transfer(job: &Transfer<'_>, watch: &Watch, staging: &Staging) -> Result<Vec<String>, EngineError> {
     Destination::of(job.output)?;
     let inputs = [("SOURCE", job.source), ("POSE", job.pose)].into_iter();
@@ -81,8 +81,8 @@ pub fn transfer(job: &Transfer<'_>, watch: &Watch, staging: &Staging) -> Result<
     Ok(warnings)
 }
 
-/// Where the pose puts the drawn vertices of a model, and what a person should know, as sentences. `partners` has for each
-/// of its drawn triangles the one of `posed` that belongs to it; `name` stands in refusals.
+/// The positions of a model's drawn vertices in the pose, and warnings as sentences. `partners` gives the triangle of
+/// `posed` for each drawn triangle of the model; refusals name `name`.
 ///
 /// # Errors
 /// A surface that can't be bound, or a solution that stays too inaccurate.
@@ -112,7 +112,7 @@ pub fn transferred(
     Ok((positions, warnings))
 }
 
-/// The source's triangle for each of the target's.
+/// The source's triangle for each triangle of the target's surface.
 fn partners(
     job: &Transfer<'_>,
     source: &Drawn,
@@ -138,7 +138,7 @@ fn partners(
     })
 }
 
-/// The same for each triangle of the surface, and what to say of parts that have none.
+/// The partner of each triangle of the surface, and a warning about parts without partners.
 fn on_surface(of_drawn: &[Option<usize>], model: &Model) -> (Vec<Option<usize>>, Vec<String>) {
     let of_surface = model.drawn.triangle_of_surface().iter();
     let partners: Vec<Option<usize>> = of_surface.map(|&drawn| of_drawn[drawn as usize]).collect();

@@ -1,4 +1,4 @@
-//! The stage and progress of long work, its cancel flag, and which files it has read.
+//! The stage and progress of long work, its cancel flag, and the files that it has read.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -9,13 +9,13 @@ use pliant_mesh::{Cancel, Progress};
 use crate::EngineError;
 use crate::files::refuse_shared;
 
-/// Shared between the work and its watcher. Cloning shares it.
+/// The state shared between the work and its watcher. Cloning shares it.
 #[derive(Clone, Debug, Default)]
 pub struct Watch {
     /// Raised when the result is no longer wanted.
     pub cancel: Cancel,
     stage: Arc<Mutex<Option<(&'static str, Progress)>>>,
-    /// Every file that was read, with what it is.
+    /// Every file that was read, with its description.
     read: Arc<Mutex<BTreeMap<PathBuf, &'static str>>>,
 }
 
@@ -35,20 +35,21 @@ impl Watch {
         progress
     }
 
-    /// What is being done, and its share from 0 to 1.
+    /// The present activity, and its share from 0 to 1.
     pub fn now(&self) -> Option<(&'static str, f32)> {
         let stage = self.stage.lock().unwrap_or_else(PoisonError::into_inner);
         stage.as_ref().map(|(doing, progress)| (*doing, progress.get()))
     }
 
-    /// Notes that a file is read, and what it is for a person: the last word counts.
+    /// Notes that a file is read, and its description for a person; the last one counts.
     pub(crate) fn note_read(&self, what: &'static str, path: &Path) {
         let mut read = self.read.lock().unwrap_or_else(PoisonError::into_inner);
         read.insert(path.to_owned(), what);
     }
 
-    /// Refuses outputs, each with its argument's name, of which one is another, or any file that was read: meshes, what
-    /// these and an edit name, and edits. `edited` is the file that the first output may replace.
+    /// Refuses outputs, each with its argument's name, if one is the same as another, or as any file that was read:
+    /// meshes, the files that these and an edit name, and edits. `edited` is the file that the first output may
+    /// replace.
     ///
     /// # Errors
     /// [`EngineError::Arguments`], naming the output.

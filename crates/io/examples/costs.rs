@@ -1,7 +1,7 @@
-//! What small files that ask for much cost: `cargo run --release --example costs -p pliant-io -- [FACTOR] [NAME]`.
+//! The costs of small files that ask for much: `cargo run --release --example costs -p pliant-io -- [FACTOR] [NAME]`.
 //!
-//! Each maker's file at its size and at twice that, times FACTOR: bytes, the most memory held, and the seconds that
-//! reading, looking and saving take. With NAME only makers with that in their name.
+//! It prints, for each maker's file at its size and at twice that, times FACTOR: bytes, peak memory, and the seconds
+//! for reading, inspecting and saving. With NAME it runs only makers whose names contain it.
 
 #![allow(clippy::print_stdout, clippy::unwrap_used, reason = "an example speaks")]
 

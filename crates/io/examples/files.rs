@@ -1,10 +1,10 @@
-//! How fast files are read and saved: `files FILE [KIND..]` prints a JSON object a line for FILE and for the same mesh
-//! as each KIND (obj, ply, ..), which is written beside it: megabytes a second beside those of a plain read of the
-//! file, medians of several rounds. `cargo xtask bench files` makes a table of them.
+//! The speed of reading and saving: `files FILE [KIND..]` prints a JSON object a line for FILE and for the same mesh as
+//! each KIND (obj, ply, ..), which is written beside it: megabytes a second, and those of a plain read of the file,
+//! medians of several rounds. `cargo xtask bench files` makes a table of them.
 //!
-//! Saving is what it takes to make the bytes of the file as its own kind with every vertex moved; writing them to disk
-//! is the disk's. Memory is told in multiples of the file, which is in it: the most that was held while the file was
-//! read, while it was looked at (`pliant info`) and while it was opened to be edited, and what is held once it is open.
+//! The time of saving is that of making the file's bytes in its own format with every vertex moved, without writing
+//! them to disk. Memory is in multiples of the file, which is included: the peak while the file was read, inspected
+//! (`pliant info`) and opened for editing, and the memory held once it is open.
 
 #![allow(
     clippy::print_stdout,
@@ -36,7 +36,7 @@ impl Resolver for Alone {
     }
 }
 
-/// Rounds of each measurement; the median counts.
+/// The number of rounds of each measurement; the median counts.
 const ROUNDS: usize = 3;
 
 fn main() {
@@ -148,7 +148,8 @@ fn measure(path: &Path) {
     );
 }
 
-/// What `work` gives first, the most bytes that it held at once, and what its second result holds at the end.
+/// The first result of `work`, the most bytes that it held at once, and the bytes that its second result holds at the
+/// end.
 fn memory<T, Kept>(work: impl FnOnce() -> (T, Kept)) -> (T, usize, usize) {
     let before = HELD.load(Ordering::Relaxed);
     PEAK.store(before, Ordering::Relaxed);

@@ -1,10 +1,10 @@
 //! Puts broken files through every parser: `cargo run --release --example fuzz -p pliant-io -- SEED COUNT [FILE..]`.
 //!
-//! Begins from the test corpus and from FILEs; COUNT may be FIRST..END, for runs have numbers that make them
-//! repeatable alone. Tells panics, runs beyond 5 s, and what reading allocated, and keeps the files that did it; ends
-//! with status 1 where there was a panic, a slow run or an allocation beyond 64 times the file. A slow run is tried
-//! again at once, and the shorter time counts: on a busy machine a thread may be kept waiting. A run that does not end
-//! is told by its number after 10 s of the processor, and ends the program.
+//! It begins from the test corpus and from FILEs; COUNT may be FIRST..END, because runs have numbers by which each can
+//! be repeated alone. It reports panics, runs beyond 5 s, and the bytes that reading allocated, and keeps the files
+//! that caused them; it ends with status 1 after a panic, a slow run or an allocation beyond 64 times the file. A slow
+//! run is repeated at once, and the shorter time counts: on a busy machine a thread may have to wait. After 10 s of
+//! processor time a run that does not end is reported by its number, and the program ends.
 
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "an example speaks")]
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "it measures, and fails loudly")]
@@ -25,10 +25,10 @@ use counting::{Counting, LARGEST, cpu_ms};
 use fuzzing::{Beside, Chance, Kind, Outcome, Sound, broken, corpus, exercise};
 use pliant_io::Format;
 
-/// Reading may allocate this many bytes at once for each of the file's.
+/// Reading may allocate this many bytes at once for each byte of the file.
 const MOST_GROWTH: usize = 64;
 
-/// What anything may allocate at once: buffers of fixed size, and files of a few bytes.
+/// Bytes that any run may allocate at once: buffers of fixed size, and files of a few bytes.
 const ANYWAY: usize = 1 << 20;
 
 const SLOW: Duration = Duration::from_secs(5);
@@ -45,9 +45,9 @@ struct Tally {
     read: u64,
     panics: u64,
     slow: u64,
-    /// Runs in which reading allocated more at once than it may.
+    /// Runs in which reading allocated more at once than the limit.
     large: u64,
-    /// The largest single allocation in bytes a byte of the file, of files beyond the least that counts.
+    /// The largest single allocation in bytes per byte of the file, for files above the smallest size that counts.
     growth: f64,
     longest: Duration,
 }
@@ -158,8 +158,8 @@ fn fuzz(seed: u64, runs: Range<u64>, sound: &[Sound]) -> BTreeMap<String, Tally>
         tally.runs += 1;
         tally.longest = tally.longest.max(took);
         tally.slow += u64::from(took > SLOW);
-        // The neighbour counts as part of the file. What an image unpacks to is no measure: a plain one packs to
-        // nothing.
+        // The neighbour counts as part of the file. An image's unpacked size is not measured: a plain image packs to
+        // almost nothing.
         let size = (bytes.len() + beside.0.len()).max(1);
         if file.kind != Kind::Image {
             tally.growth = tally.growth.max(largest as f64 / size as f64);

@@ -12,7 +12,7 @@ pub struct Bytes {
 }
 
 impl Bytes {
-    /// The bytes of `range`, counted from this one's start; `None` where they are not all there.
+    /// The bytes of `range`, counted from this one's start; `None` if they are not all there.
     pub fn slice(&self, range: Range<usize>) -> Option<Self> {
         self.get(range.clone())?;
         let start = self.range.start;
@@ -22,7 +22,7 @@ impl Bytes {
         })
     }
 
-    /// Where the bytes are in memory: equal only for two that share them, as long as both live.
+    /// The place of the bytes in memory: equal only for two that share them, as long as both live.
     pub fn place(&self) -> (usize, Range<usize>) {
         (Arc::as_ptr(&self.whole).addr(), self.range.clone())
     }

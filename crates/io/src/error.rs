@@ -1,10 +1,10 @@
-//! What can go wrong, each as one sentence that names the culprit and the remedy.
+//! Errors, each as one sentence that names the culprit and the remedy.
 
 use pliant_mesh::Cancelled;
 
 use crate::{Format, quoted};
 
-/// A name whose extension tells no known kind of file.
+/// A name whose extension is that of no known format.
 #[derive(Clone, PartialEq, Eq, Debug, thiserror::Error)]
 #[error("\"{}\" has no extension of a known kind: name it .glb, .gltf, .obj, .ply, .stl or .off", quoted(.name))]
 pub struct UnknownFormat {
@@ -15,34 +15,34 @@ pub struct UnknownFormat {
 /// Why a file could not be read.
 #[derive(Clone, PartialEq, Eq, Debug, thiserror::Error)]
 pub enum ReadError {
-    /// The bytes are not what the format asks for.
+    /// The bytes are not in the format.
     #[error("{} is not a readable {format} file: {reason}", quoted(.name))]
     Malformed {
         /// The file's name.
         name: String,
-        /// What it was read as.
+        /// The format that it was read as.
         format: Format,
-        /// What is wrong and where (an accessor, a line), without a final stop.
+        /// The fault and its place (an accessor, a line), without a final stop.
         reason: String,
     },
-    /// The file is whole but uses something that is not read.
+    /// The file is whole but uses a feature that is not read.
     #[error("{} uses {feature}, which is not read: {remedy}", quoted(.name))]
     Unsupported {
         /// The file's name.
         name: String,
-        /// What it uses.
+        /// The feature.
         feature: String,
-        /// What the person can do.
+        /// The remedy.
         remedy: String,
     },
-    /// A neighbour that holds geometry could not be read.
+    /// A neighbour with geometry could not be read.
     #[error("{} names {}, which could not be read ({reason}): put it back beside the file", quoted(.name), quoted(.uri))]
     Neighbour {
         /// The file's name.
         name: String,
         /// The neighbour as the file names it.
         uri: String,
-        /// What the resolver said.
+        /// The resolver's message.
         reason: String,
     },
     /// The file asks for more than its bytes can justify.
@@ -53,7 +53,7 @@ pub enum ReadError {
     TooLarge {
         /// The file's name.
         name: String,
-        /// What is too many.
+        /// The quantity that is too large.
         what: String,
     },
     /// The caller cancelled.
@@ -75,19 +75,19 @@ pub enum SaveError {
     /// The positions don't belong to this scene.
     #[error("{given} positions were given for the {wanted} drawn vertices of this scene: open the file again")]
     OtherScene {
-        /// How many positions were given.
+        /// The number of positions that were given.
         given: usize,
-        /// How many drawn vertices the scene has.
+        /// The number of the scene's drawn vertices.
         wanted: usize,
     },
     /// The target can't hold the change.
     #[error("{what} can't be saved as {format}: {remedy}")]
     CannotHold {
-        /// What can't be saved.
+        /// The change.
         what: String,
         /// The kind of OUT.
         format: Format,
-        /// What the person can do.
+        /// The remedy.
         remedy: String,
     },
     /// A neighbour would have to be written outside OUT's folder.
@@ -114,6 +114,6 @@ pub enum SaveError {
 #[derive(Clone, PartialEq, Eq, Debug, thiserror::Error)]
 #[error("the image could not be decoded ({reason}): convert it to PNG or JPEG, or make it smaller")]
 pub struct ImageError {
-    /// What the decoder said.
+    /// The decoder's message.
     pub reason: String,
 }

@@ -4,7 +4,7 @@ use std::fmt;
 
 use crate::UnknownFormat;
 
-/// A kind of file, told by the extension of its name.
+/// A file format, recognised by the extension of the file's name.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum Format {
     /// Binary glTF 2.0, everything in one file.
@@ -25,7 +25,7 @@ impl Format {
     /// Every format, in the order in which they are listed for a person.
     pub const ALL: [Self; 6] = [Self::Glb, Self::Gltf, Self::Obj, Self::Ply, Self::Stl, Self::Off];
 
-    /// The format by the extension of a file's name or path, whatever its case.
+    /// The format for the extension of a file's name or path, in any case.
     pub fn of_name(name: &str) -> Result<Self, UnknownFormat> {
         let file = name.rsplit(['/', '\\']).next().unwrap_or(name);
         let extension = file.rsplit_once('.').map_or("", |(_, extension)| extension);

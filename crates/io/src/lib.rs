@@ -1,11 +1,11 @@
 //! Files as bytes: glTF/GLB, OBJ, PLY, STL and OFF in and out, losslessly; image decoding.
 //!
-//! [`read`] gives the file as stored (a [`Scene`], nothing thrown away) and what it shows ([`pliant_mesh::Drawn`]).
-//! [`Scene::save`] gives bytes back in which only the moved vertices' numbers differ, or the same shape as another
-//! kind of file. Bytes come in and go out; neighbours (a `.gltf`'s buffers, an `.obj`'s materials) are asked for
-//! through a [`Resolver`], so nothing here knows a path.
+//! [`read`] gives the complete file as stored (a [`Scene`]) and the geometry that it shows ([`pliant_mesh::Drawn`]).
+//! [`Scene::save`] gives bytes back in which only the moved vertices' numbers differ, or the same shape as another kind
+//! of file. Bytes come in and go out; a [`Resolver`] supplies neighbours (a `.gltf`'s buffers, an `.obj`'s materials),
+//! so nothing here knows a path.
 //!
-//! One vertex of an OFF file is moved; all else in it stays as it was:
+//! One vertex of an OFF file is moved; the rest of the file stays the same:
 //!
 //! ```
 //! use pliant_io::{Bytes, Format, MorphDeltas, Placement, Resolver, Save, SceneAndDrawn, read};

@@ -1,9 +1,9 @@
-//! Polygons as triangles: how a face with more than three corners is drawn and bent. The file keeps the polygon.
+//! Polygons as triangles, for drawing and bending faces with more than three corners. The file keeps the polygon.
 //!
-//! A quad is cut along the shorter of its diagonals that don't fold it over, of equal ones along [one that a mirror
-//! keeps](diagonals); a larger polygon is cut by ears in the
-//! plane of its Newell normal, which is right for every simple planar polygon, convex or not. Ears cost n times the
-//! reflex corners, so polygons beyond [`MOST_EARS`] corners, and those whose corners aren't finite, become a fan.
+//! A quad is cut along the shorter of its diagonals that don't fold it over; if they are equal, along [one that a
+//! mirror keeps](diagonals); a larger polygon is cut by ears in the plane of its Newell normal, which is right for
+//! every simple planar polygon, convex or not. Ears cost n times the reflex corners, so polygons beyond [`MOST_EARS`]
+//! corners, and those whose corners aren't finite, become a fan.
 
 pub(crate) mod diagonals;
 
@@ -19,11 +19,12 @@ use diagonals::Diagonals;
 /// The most corners that are cut by ears.
 const MOST_EARS: usize = 256;
 
-/// Corners of faces between two looks at whether they are still wanted.
+/// The number of corners of faces between two checks for cancellation.
 pub(crate) const CORNERS_BETWEEN_LOOKS: usize = 1 << 12;
 
-/// Cuts all faces of a file whose vertices are drawn as they are numbered: `corners` of all faces, one after the other,
-/// which end at `face_ends`. Gives the triangles, and the faces themselves where one isn't a triangle.
+/// Cuts all faces of a file whose drawn vertices are its vertices in order. `corners` has the corners of all faces, one
+/// after the other, and `face_ends` the end of each face. Gives the triangles, and the faces themselves if one isn't a
+/// triangle.
 pub(crate) fn cut_faces(
     positions: &[DVec3],
     corners: Vec<u32>,
@@ -54,7 +55,7 @@ pub(crate) fn cut_faces(
     Ok((triangles, polygons))
 }
 
-/// A sentence about faces that draw nothing, where there are any.
+/// A sentence about faces that draw nothing, if there are any.
 pub(crate) fn left_out_note(count: usize) -> Option<String> {
     let faces = if count == 1 { "face" } else { "faces" };
     (count > 0)
@@ -64,7 +65,7 @@ pub(crate) fn left_out_note(count: usize) -> Option<String> {
 /// Calls `emit` with the three corners (numbers within the polygon) of each triangle that `corners` is cut into:
 /// n − 2 of them, wound as the polygon is; none for fewer than three corners.
 ///
-/// `position` gives the place of a corner, counted within the polygon; `diagonals` are those of the polygon's file.
+/// `position` gives the position of a corner, numbered within the polygon; `diagonals` are those of the polygon's file.
 pub(crate) fn triangulate(
     corner_count: usize,
     position: impl Fn(usize) -> DVec3,
@@ -105,18 +106,18 @@ fn fan(corner_count: usize, emit: &mut impl FnMut([usize; 3])) {
     }
 }
 
-/// Ears of the polygon projected along its Newell normal. Where no ear is left (a polygon that crosses itself) the
-/// corner that turns most is cut off, so that n − 2 triangles come out whatever the shape.
+/// Ears of the polygon projected along its Newell normal. If no ear is left (a polygon that crosses itself), the corner
+/// that turns most is cut off, so that every shape gives n − 2 triangles.
 ///
-/// Only a reflex corner can lie in the triangle of another, so a convex polygon takes n log n steps.
+/// Only a reflex corner can be in the triangle of another, so a convex polygon takes n log n steps.
 fn cut_ears(corners: &[DVec3], emit: &mut impl FnMut([usize; 3])) {
     let flat = match flatten(corners) {
         Some(flat) => flat,
         None => return fan(corners.len(), emit),
     };
     let mut ring = Ring::of(&flat);
-    // Among the ears the one with the shortest cut, which keeps slivers away in the convex polygons of scans. A corner
-    // whose neighbours changed since stands in it again, with another version.
+    // Takes the ear with the shortest cut, which keeps slivers away in the convex polygons of scans. A corner whose
+    // neighbours have changed is in the queue again, with another version.
     let mut ears: BinaryHeap<Reverse<Ear>> = (0..flat.len())
         .filter_map(|corner| ring.ear(corner))
         .map(Reverse)
@@ -143,7 +144,7 @@ fn cut_ears(corners: &[DVec3], emit: &mut impl FnMut([usize; 3])) {
 /// A corner that can be cut off, ordered by the length of the cut and then by its number.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
 struct Ear {
-    /// The bits of a number that is not negative, which are ordered as it is.
+    /// The bits of a number that is not negative, which sort like the number.
     cut_length: u64,
     corner: usize,
     version: u32,
@@ -154,9 +155,9 @@ struct Ring<'a> {
     flat: &'a [DVec2],
     before: Vec<usize>,
     behind: Vec<usize>,
-    /// How often a corner's neighbours changed; the last of all numbers once it is cut off.
+    /// The number of changes of a corner's neighbours; the largest number once the corner is cut off.
     version: Vec<u32>,
-    /// The corners that don't turn left, some of which may do so by now.
+    /// The corners that don't turn left; some of them may do so by now.
     reflex: Vec<usize>,
     left: usize,
 }
@@ -210,7 +211,7 @@ impl<'a> Ring<'a> {
         self.version[a] += 1;
         self.version[c] += 1;
         self.left -= 1;
-        // A corner that turns left goes on doing so, but in a polygon that crosses itself.
+        // A corner that turns left goes on doing so, except in a polygon that crosses itself.
         let mut reflex = std::mem::take(&mut self.reflex);
         reflex.retain(|&corner| self.is_there(corner) && !self.turns_left(corner));
         for neighbour in [a, c] {
@@ -222,7 +223,7 @@ impl<'a> Ring<'a> {
         [a, c]
     }
 
-    /// The corner as an ear, if it can be cut off: it turns left and no other corner lies in its triangle.
+    /// The corner as an ear, if it can be cut off: it turns left and no other corner is in its triangle.
     fn ear(&self, corner: usize) -> Option<Ear> {
         let [a, b, c] = self.around(corner).map(|corner| self.flat[corner]);
         let is_inside = |p: DVec2| turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0;
@@ -235,7 +236,7 @@ impl<'a> Ring<'a> {
         })
     }
 
-    /// The corner that turns most; of equal ones the last.
+    /// The corner that turns most; the last of equal ones.
     fn sharpest(&self) -> usize {
         let all = (0..self.flat.len()).filter(|&corner| self.is_there(corner));
         all.max_by(|&a, &b| self.turn_at(a).total_cmp(&self.turn_at(b)))
@@ -248,7 +249,7 @@ fn turn(a: DVec2, b: DVec2, c: DVec2) -> f64 {
     (b - a).perp_dot(c - a)
 }
 
-/// The corners in the plane of the polygon, counter-clockwise; `None` where it has no plane.
+/// The corners in the plane of the polygon, counterclockwise; `None` if it has no plane.
 fn flatten(corners: &[DVec3]) -> Option<Vec<DVec2>> {
     let origin = corners[0];
     let mut newell = DVec3::ZERO;
@@ -346,7 +347,8 @@ mod tests {
         assert!(cut(&[DVec3::ZERO, DVec3::X]).is_empty());
     }
 
-    /// Faces of a file, as cut: each triangle by the places of its corners, in an order that forgets how they are numbered.
+    /// Faces of a file, as cut: each triangle by the positions of its corners, in an order that does not depend on
+    /// their numbers.
     fn cut_of(positions: &[DVec3], faces: &[[u32; 4]]) -> Vec<[[i64; 3]; 3]> {
         let ends: Vec<u32> = (1..=faces.len() as u32).map(|face| 4 * face).collect();
         let cut = cut_faces(positions, faces.as_flattened().to_vec(), &ends, &Cancel::new());
@@ -364,8 +366,8 @@ mod tests {
         places
     }
 
-    /// A tower of square or round section whose quads all have equal diagonals; the corners of each face begin anywhere.
-    /// `lean` leaves it one plane of symmetry, across x.
+    /// A tower of square or round section whose quads all have equal diagonals; the corners of each face begin
+    /// anywhere. `lean` leaves it one plane of symmetry, across x.
     fn tower(sides: usize, is_square: bool, lean: f64) -> (Vec<DVec3>, Vec<[u32; 4]>) {
         let (mut positions, mut faces) = (Vec::new(), Vec::new());
         let rings = 9;
@@ -419,7 +421,7 @@ mod tests {
                 let (cut, cut_of_image) = (cut_of(&own, &faces), cut_of(&images, &wound_back));
                 let differ = cut.iter().filter(|triangle| !cut_of_image.contains(triangle)).count();
                 assert_eq!(differ, 0, "{sides} sides, lean {lean}, at {by}");
-                // So are they when its corners are cut as a mirror has them.
+                // So are they when its corners are cut by the rule for a mirror.
                 let mirrored = |place: &[i64; 3]| -> [i64; 3] {
                     let p = DVec3::from_array(place.map(|x| x as f64 / 1e4));
                     let back = turn.inverse() * (p - by) * DVec3::new(-1.0, 1.0, 1.0);
@@ -431,7 +433,7 @@ mod tests {
                     let is_image = |other: &[[i64; 3]; 3]| image.iter().all(|a| other.iter().any(|b| near(a, b)));
                     cut.iter().any(is_image)
                 };
-                // A face across the plane, of which there are none but in round sections of some sizes, has no such cut.
+                // A face across the plane, which only round sections of some sizes have, has no such cut.
                 let lone = cut.iter().filter(|triangle| !has_image(triangle)).count();
                 assert_eq!(lone, 0, "{sides} sides, lean {lean}, at {by}");
             }

@@ -1,16 +1,16 @@
-//! Text from a file or a name, made fit for a message.
+//! Text from a file or a name, made safe for a message.
 
 /// The most characters of foreign text that a message shows.
 const MOST: usize = 200;
 
-/// How many of a longer text's first characters are shown; its last ones fill the rest.
+/// The number of a longer text's first characters that are shown; its last ones fill the rest.
 const HEAD: usize = 120;
 
 /// `text` as a message may show it: one line of at most 200 characters.
 ///
 /// Control characters, line separators and marks that turn the direction of writing become U+FFFD, so that a file's
 /// words can't steer a terminal or rearrange the sentence around them. A longer text keeps its beginning and its end (a
-/// path's last part tells most), with `…` between them. No quotation marks are added.
+/// path's last part says most), with `…` between them. No quotation marks are added.
 pub fn quoted(text: &str) -> String {
     let shown = |letter: char| if steers(letter) { '\u{fffd}' } else { letter };
     // No text has more characters than bytes, so most need no counting.
@@ -26,7 +26,7 @@ pub fn quoted(text: &str) -> String {
     out
 }
 
-/// Whether a character acts on what shows it (a terminal, a line of text) instead of being shown.
+/// Whether a character controls a terminal or a line of text instead of being shown.
 pub fn steers(letter: char) -> bool {
     letter.is_control()
         || matches!(letter, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')

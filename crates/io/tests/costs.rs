@@ -1,6 +1,6 @@
-//! Small files that ask for much: what they cost grows as their bytes do, and stays within a budget that is told.
+//! Small files that ask for much: their costs grow in proportion to their bytes, and stay within a stated budget.
 //!
-//! One test, alone in its program: it counts what all threads allocate.
+//! This is the only test in its program, because it counts the allocations of all threads.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test fails by panicking")]
 
 #[path = "../examples/counting/mod.rs"]
@@ -31,7 +31,7 @@ fn opened(file: &Hostile, cancel: &Cancel) -> Result<SceneAndDrawn, ReadError> {
     read(file.bytes.clone(), file.format, "in", &beside, &Progress::new(), cancel)
 }
 
-/// What reading, looking and saving allocate in all, and hold at most, in bytes.
+/// The bytes that reading, inspecting and saving allocate in all, and hold at most.
 fn cost(file: &Hostile) -> [usize; 2] {
     let before = ALLOCATED.load(Ordering::Relaxed);
     let held = HELD.load(Ordering::Relaxed);
@@ -78,7 +78,8 @@ fn cost(file: &Hostile) -> [usize; 2] {
     ]
 }
 
-/// Files of which one line, face, record or mesh is as long as the file, with how many looks reading them takes.
+/// Files in which one line, face, record or mesh is as long as the file, with the number of cancellation checks while
+/// reading them.
 const LONG: [(&str, usize); 8] = [
     ("primitives of one accessor", 100),
     ("a face of many corners, OBJ", 6),
@@ -92,7 +93,7 @@ const LONG: [(&str, usize); 8] = [
 
 #[test]
 fn what_a_file_costs_grows_as_its_bytes_do() {
-    // The threads, and whatever is made once.
+    // The threads, and everything that is made once.
     cost(&hostile::many_primitives(10));
     let mut faults = Vec::new();
     for (name, make, size) in MAKERS {

@@ -1,4 +1,4 @@
-//! What a file says never steers a terminal: names, addresses and keywords are quoted wherever a sentence tells them.
+//! Text in a file never controls a terminal: names, addresses and keywords are quoted wherever a sentence names them.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test fails by panicking")]
 
 mod gltf_maker;
@@ -8,7 +8,7 @@ use gltf_maker::{Folder, Maker, grid, moved, try_open, try_save};
 use pliant_io::{Format, Placement};
 use serde_json::json;
 
-/// Clears the screen, rings, turns the writing around, and goes on for very long.
+/// Text that clears the screen, rings, reverses the writing direction, and is very long.
 fn evil() -> String {
     "\u{1b}[2J\u{7}\u{202e}\r\n\u{9b}31m".to_owned() + &"x".repeat(5000)
 }
@@ -23,7 +23,7 @@ fn assert_harmless(sentence: &str) {
     );
 }
 
-/// What is said of a file, whether it is read or not.
+/// The messages about a file, whether it is read or not.
 fn said(bytes: &[u8], format: Format, folder: &Folder) -> Vec<String> {
     match try_open(bytes, format, folder) {
         Ok(opened) => opened.scene.notes().to_vec(),

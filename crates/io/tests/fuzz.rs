@@ -1,5 +1,5 @@
-//! A short run over the corpus with a fixed seed: whatever the bytes, a parser reads or refuses. Long ones:
-//! `cargo run --release --example fuzz -p pliant-io -- SEED COUNT`.
+//! A short run over the corpus with a fixed seed: a parser reads or refuses any bytes. Long ones: `cargo run --release
+//! --example fuzz -p pliant-io -- SEED COUNT`.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test fails by panicking")]
 
 mod fuzzing;

@@ -1,4 +1,4 @@
-//! Reading glTF: what is drawn, how it is numbered, and what is refused.
+//! Reading glTF: the drawn set, its numbering, and refusals.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test fails by panicking")]
 
 mod gltf_maker;
@@ -193,7 +193,7 @@ fn file_vertices_are_counted_in_the_order_in_which_primitives_name_their_accesso
     let opened = open(&maker.glb());
     assert_eq!(opened.drawn.file_vertex_count, 4 + 2 + 9);
     let first: Vec<u32> = opened.drawn.file_vertex.iter().map(|file| file.0).collect();
-    // Lines come behind the triangles of their mesh.
+    // Lines come after the triangles of their mesh.
     let wanted: Vec<u32> = (6..15).chain(0..4).chain(4..6).chain(0..4).collect();
     assert_eq!(
         first, wanted,
@@ -416,7 +416,7 @@ fn maps_take_the_coordinates_that_their_transforms_say() {
     );
     for vertex in 0..shape.uvs.len() {
         let [u, v] = shape.uvs[vertex];
-        // Scaled, turned by 0.7 and shifted, as the extension's matrices say.
+        // Scaled, turned by 0.7 and shifted, by the extension's matrices.
         let (sin, cos) = 0.7_f32.sin_cos();
         let wanted = [3.0 * u * cos + 4.0 * v * sin, 4.0 * v * cos - 3.0 * u * sin + 0.25];
         let found = at(material.normal_map.unwrap(), vertex);

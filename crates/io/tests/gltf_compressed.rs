@@ -1,5 +1,5 @@
-//! Compressed glTF: meshopt and Draco are read as what they were made from, come back byte for byte, and an edit writes
-//! out no more than it must.
+//! Compressed glTF: meshopt and Draco files are read as their originals, come back byte for byte, and an edit
+//! decompresses no more than it must.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test fails by panicking")]
 
 mod gltf_maker;
@@ -16,7 +16,7 @@ use meshoptimizer_rs::codec::{
 use pliant_io::{Format, Placement};
 use serde_json::{Value, json};
 
-/// A file of `shape` in which every view is compressed and stands in for a buffer without bytes.
+/// A file of `shape` in which every view is compressed and replaces a buffer without bytes.
 fn with_meshopt(shape: &Shape, extension: &str, version: u8) -> Maker {
     let plain = Maker::of(shape);
     let mut out = plain.clone();
@@ -130,7 +130,7 @@ fn an_edit_of_meshopt_adds_what_changed_and_leaves_the_rest_compressed() {
     }
     let (old_bin, new_bin) = (split(&before).1, split(&after).1);
     assert!(new_bin.starts_with(&old_bin), "new bytes stand behind the others");
-    // What was edited once is edited again in place.
+    // Geometry that was edited once is edited again in place.
     let twice = moved(&again, |v| v % 3 == 0, bent);
     let third = saved_glb(&again, &twice);
     assert_eq!(split(&third).1.len(), new_bin.len());
@@ -164,7 +164,7 @@ fn meshopt_is_packed_and_unpacked_with_its_placeholder() {
     }
 }
 
-/// Lets `accessor` read a compressed view, which stands in for a buffer without bytes.
+/// Lets `accessor` read a compressed view, which replaces a buffer without bytes.
 fn compress(maker: &mut Maker, accessor: usize, packed: &[u8], layout: (usize, usize), mode: &str, filter: &str) {
     let (count, stride) = layout;
     let view = maker.view(packed);
@@ -183,7 +183,7 @@ fn compress(maker: &mut Maker, accessor: usize, packed: &[u8], layout: (usize, u
     }
 }
 
-/// The bytes of filtered attributes behind the codec.
+/// The bytes of filtered attributes under the codec.
 fn packed_attributes(bytes: &[u8], (count, stride): (usize, usize)) -> Vec<u8> {
     let encoding = VertexEncoding::new(0, 2).unwrap();
     encode_vertex_buffer(bytes, count, stride, encoding, &mut Workspace::default()).unwrap()
@@ -317,7 +317,7 @@ fn draco_reads_as_what_it_was_made_from() {
         let opened = open(&with_draco(data, 1).glb());
         let looks = opened.scene.appearance();
         assert_eq!(opened.drawn.triangles.len(), wanted.triangles.len());
-        // The codec renumbers vertices and quantises to 11 bits or more: each has its original near it.
+        // The codec renumbers vertices and quantises to 11 bits or more: each has its original nearby.
         for (v, position) in opened.drawn.positions.iter().enumerate() {
             let near = |k: &usize| DVec3::from(wanted.positions[*k].map(f64::from)).distance(*position) < 2e-3;
             let twin = (0..16).find(near).expect("a vertex that is not the square's");
@@ -345,7 +345,7 @@ fn an_edit_of_draco_writes_its_mesh_out_and_no_other() {
             assert!(new["meshes"][0]["primitives"][0].get("extensions").is_none());
             assert_eq!(new.get("extensionsRequired").is_some(), meshes == 2, "{new}");
             assert_eq!(new["meshes"].get(1), json_of(&before)["meshes"].get(1));
-            // Plain now, so that the next edit changes bytes in place.
+            // The data is plain now, so the next edit changes bytes in place.
             let twice = moved(&again, |v| v < 16, bent);
             let third = saved_glb(&again, &twice);
             assert_eq!(split(&third).1.len(), split(&after).1.len());
@@ -354,7 +354,7 @@ fn an_edit_of_draco_writes_its_mesh_out_and_no_other() {
     }
 }
 
-/// An accessor without a view may tell an offset, which says nothing as long as Draco fills it.
+/// An accessor without a view may have an offset, which means nothing while Draco fills it.
 #[test]
 fn an_offset_without_a_view_does_not_reach_into_what_an_edit_writes() {
     for offset in [4, 12, 100_000] {
@@ -371,7 +371,7 @@ fn an_offset_without_a_view_does_not_reach_into_what_an_edit_writes() {
     }
 }
 
-/// What data may become is shared by their sizes, and those that several primitives name are decoded once.
+/// The budget is shared by the sizes of the data, and data that several primitives name is decoded once.
 #[test]
 fn many_primitives_of_the_same_draco_data_are_read() {
     let mut maker = with_draco(DRACO[0], 1);

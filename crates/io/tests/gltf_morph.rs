@@ -1,5 +1,5 @@
-//! An edit saved as a morph target: the shape stays, the target leads to the edited one, and whatever tells weights
-//! tells one more.
+//! An edit saved as a morph target: the shape stays, the target leads to the edited one, and every list of weights gets
+//! one more.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test fails by panicking")]
 
 mod gltf_maker;
@@ -54,7 +54,7 @@ fn the_target_leads_from_the_shape_to_the_edited_one() {
         let again = open(&shown);
         assert_near(&again.drawn.positions, &positions, 4.0);
         assert_eq!(again.scene.summary().morph_targets, 1);
-        // The normals go where those of the edited shape go.
+        // The normals move to those of the edited shape.
         let edited = open(&saved_glb(&opened, &positions))
             .scene
             .appearance()
@@ -111,7 +111,7 @@ fn whatever_tells_weights_tells_one_more() {
         ],
     }]);
     let opened = open(&maker.glb());
-    // Only what the first node shows of the first primitive moves, so that the mesh is cloned for it.
+    // Only the vertices that the first node shows of the first primitive move, so that the mesh is cloned for it.
     let positions = moved(&opened, |v| v < 9, bent);
     let after = morphed(&opened, &positions, 0.75);
     let root = json_of(&after);
@@ -287,7 +287,7 @@ fn deltas_turn_or_stay_as_a_save_asks() {
     let file = maker.glb();
     let opened = open(&file);
     let way = DVec3::Z * f64::from(0.3_f32);
-    // By a few degrees, and far.
+    // Turns by a few degrees, and by many.
     for angle in [0.2, 1.2] {
         let turn = DQuat::from_rotation_x(angle);
         let positions = moved(&opened, |_| true, |p| turn * p);

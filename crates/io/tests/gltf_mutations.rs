@@ -1,4 +1,4 @@
-//! Damaged glTF: every one is read or refused in a sentence; what is read can be saved or is refused; none panics.
+//! Damaged glTF: each is read or refused in a sentence; a file that is read can be saved or is refused; none panics.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test fails by panicking")]
 
 mod gltf_maker;
@@ -7,7 +7,7 @@ use gltf_maker::{Folder, Maker, bent, cube, glb, grid, moved, open, sphere, spli
 use pliant_io::{Format, Placement};
 use serde_json::{Value, json};
 
-/// A small generator of numbers; the seed makes the run.
+/// A small generator of numbers; the seed determines the run.
 struct Dice(u64);
 
 impl Dice {
@@ -20,7 +20,7 @@ impl Dice {
     }
 }
 
-/// A file with a bit of everything.
+/// A file with a little of everything.
 fn rich() -> Maker {
     let mut maker = Maker::default();
     let mut first = maker.primitive(&grid(2));
@@ -45,7 +45,7 @@ fn rich() -> Maker {
     maker
 }
 
-/// Reads, looks, moves and saves; panics are the only failure.
+/// Reads, inspects, moves and saves; only panics are failures.
 fn exercise(bytes: &[u8], format: Format) -> bool {
     let mut folder = Folder::default();
     folder.0.insert("a.bin".to_owned(), vec![7; 500]);

@@ -1,4 +1,4 @@
-//! A new glTF from the other kinds: everything that glTF can hold comes along, and the result is sound.
+//! A new glTF from the other formats: it contains everything that glTF can hold, and is sound.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test fails by panicking")]
 
 mod gltf_maker;
@@ -140,7 +140,7 @@ fn named_parts_become_nodes_that_keep_their_names_and_triangles() {
         assert_near(after.as_flattened(), before.as_flattened(), 4.0);
     }
     assert_eq!(again.scene.summary().nodes, 2);
-    // Two vertices stand on the rim between the parts, and one is used by none.
+    // Two vertices are on the rim between the parts, and one is unused.
     assert_eq!(again.drawn.positions.len(), 9);
     assert!(
         saved

@@ -1,4 +1,4 @@
-//! Normals and tangents are carried along: exactly under rigid motion, alike for twins, near to recomputed ones.
+//! Normals and tangents are carried along: exactly under rigid motion, alike for twins, close to recomputed ones.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test fails by panicking")]
 
 mod gltf_maker;
@@ -53,7 +53,7 @@ fn a_rigid_motion_turns_normals_and_tangents_rigidly_whatever_the_node() {
                 &opened,
                 &moved(&opened, |_| true, |p| turn * p + DVec3::new(7.0, 8.0, 9.0)),
             );
-            // World normals go by the inverse transpose of the node's matrix, tangents by the matrix.
+            // World normals are transformed by the inverse transpose of the node's matrix, tangents by the matrix.
             let to_world = world.matrix3.inverse().transpose();
             let used: Vec<usize> = used_with_area(&opened);
             let pairs = stored::<3>(&before, "NORMAL")
@@ -67,7 +67,7 @@ fn a_rigid_motion_turns_normals_and_tangents_rigidly_whatever_the_node() {
                 );
             }
             if node == "stretched" || node == "mirrored" {
-                continue; // There stored tangents and normals aren't square to each other in the world.
+                continue; // There stored tangents and normals aren't perpendicular in the world.
             }
             let pairs = stored::<4>(&before, "TANGENT")
                 .into_iter()
@@ -81,7 +81,7 @@ fn a_rigid_motion_turns_normals_and_tangents_rigidly_whatever_the_node() {
     }
 }
 
-/// Vertices that some triangle with an area uses.
+/// Vertices of at least one triangle with an area.
 fn used_with_area(opened: &pliant_io::SceneAndDrawn) -> Vec<usize> {
     let drawn = &opened.drawn;
     let has_area = |t: &&[pliant_mesh::DrawnVertex; 3]| {
@@ -135,7 +135,7 @@ fn on_a_smooth_mesh_carried_normals_are_near_recomputed_ones() {
         }
         for v in 0..positions.len() {
             let own = Vec3::from(shape.normals[v]).as_dvec3();
-            // Open rims and poles have no recomputed normal to speak of.
+            // Open rims and poles have no reliable recomputed normal.
             if rest_sums[v] == DVec3::ZERO || own.angle_between(rest_sums[v]) > 0.02 {
                 continue;
             }

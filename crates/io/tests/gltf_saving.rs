@@ -1,4 +1,4 @@
-//! Saving glTF: nothing but the moved vertices' numbers and their bounds may differ, whatever shares what.
+//! Saving glTF: only the moved vertices' numbers and their bounds may differ, for any shared data.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test fails by panicking")]
 
 mod gltf_maker;
@@ -10,7 +10,7 @@ use gltf_maker::{
 use pliant_io::{Format, Placement, SaveError};
 use serde_json::{Value, json};
 
-/// Where the elements of an attribute of mesh 0's first primitive stand in the BIN chunk.
+/// The place of the elements of an attribute of mesh 0's first primitive in the BIN chunk.
 fn element_bytes(root: &Value, attribute: &str, element: usize) -> std::ops::Range<usize> {
     let accessor = root["meshes"][0]["primitives"][0]["attributes"][attribute]
         .as_u64()
@@ -37,7 +37,7 @@ fn without_bounds(text: &str) -> String {
     out + rest
 }
 
-/// Asserts that every accessor of f32 that has bounds tells its elements' own.
+/// Asserts that every accessor of f32 with bounds has those of its elements.
 fn assert_bounds(glb: &[u8]) {
     let (text, bin) = split(glb);
     let root: Value = serde_json::from_str(&text).unwrap();
@@ -328,7 +328,7 @@ fn neighbours_go_where_out_goes_and_never_outside() {
     let save = |name, placement| try_save(&opened, &positions, name, placement).unwrap();
     let other = save("out.gltf", Placement::OtherFolder);
     assert_eq!(names(&other), ["out.gltf", "sub/a.bin", "textures/skin 1.png"]);
-    // Another file may need a buffer that is not called as this one is.
+    // Another file may need a buffer with another name than this one's.
     let over_itself = names(&save("test.gltf", Placement::SameFile));
     assert_eq!(over_itself, ["test.gltf", "test.bin"]);
     for (own, is_kept) in [

@@ -1,5 +1,5 @@
-//! The shared glTF files, where they are there: unedited they come back byte for byte, edited they differ in nothing
-//! but the moved vertices' numbers and their bounds, and on every number of threads they are the same.
+//! The shared glTF files, if present: unedited they come back byte for byte, edited they differ only in the moved
+//! vertices' numbers and their bounds, and on every number of threads they are the same.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test fails by panicking")]
 #![allow(clippy::print_stderr, reason = "a test that is skipped says so")]
 
@@ -25,7 +25,7 @@ impl Resolver for Disk {
     }
 }
 
-/// What was just saved, before the disk.
+/// A fresh save, before the disk.
 struct Fresh<'a>(&'a Saved, Disk);
 
 impl Resolver for Fresh<'_> {
@@ -36,7 +36,7 @@ impl Resolver for Fresh<'_> {
 }
 
 fn files() -> Vec<PathBuf> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/gltf");
+    let root = PathBuf::from(std::env::var_os("PLIANT_DATA").unwrap_or_default()).join("gltf");
     let mut open = vec![root];
     let mut files = Vec::new();
     while let Some(folder) = open.pop() {
@@ -112,7 +112,7 @@ fn every_file_comes_back_byte_for_byte() {
     }
 }
 
-/// Compressed positions are those that the accessor's own bounds tell of.
+/// Compressed positions match the accessor's own bounds.
 #[test]
 fn compressed_geometry_lies_where_its_file_says() {
     for (name, triangles, min, max) in [
@@ -140,8 +140,8 @@ fn compressed_geometry_lies_where_its_file_says() {
     }
 }
 
-/// What may differ after an edit: numbers of moved vertices and their bounds; and where an accessor, a mesh or a
-/// compressed primitive could not change in place, how it is stored.
+/// The differences that an edit may cause: numbers of moved vertices and their bounds; and, if an accessor, a mesh or a
+/// compressed primitive could not change in place, its storage.
 fn may_differ(difference: &Difference, allowance: Allowance) -> bool {
     let place = difference.place.as_str();
     let is_moved_attribute = ["POSITION", "NORMAL", "TANGENT"]

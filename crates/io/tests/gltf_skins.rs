@@ -1,5 +1,5 @@
-//! Skinned meshes: they are drawn where their joints put them, and an edited and saved one looks, posed by an
-//! evaluation of the skin that shares no code with the program, as it was shown.
+//! Skinned meshes: they are drawn where their joints put them. An edited and saved one, posed by an evaluation of the
+//! skin that shares no code with the program, looks the same as shown.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test fails by panicking")]
 
 mod gltf_maker;
@@ -9,7 +9,7 @@ use gltf_maker::{Maker, Shape, grid, moved, open, saved_glb, sphere, split};
 use pliant_io::SceneAndDrawn;
 use serde_json::{Value, json};
 
-/// How positions are stored.
+/// The storage of positions.
 #[derive(Clone, Copy, PartialEq, Debug)]
 enum Stored {
     Floats,
@@ -17,11 +17,11 @@ enum Stored {
     Quantised,
 }
 
-/// What a test needs of a figure.
+/// The parameters of a figure.
 #[derive(Clone, Copy, Debug)]
 struct Figure {
     stored: Stored,
-    /// Scales the root, as files of centimetres do.
+    /// Scales the root, as in files in centimetres.
     scale: f64,
     /// Binds each vertex by two sets of joints and weights.
     two_sets: bool,
@@ -30,8 +30,7 @@ struct Figure {
 
 const JOINTS: usize = 6;
 
-/// A mesh bound to a chain of joints, which have left the places that they were bound in; beside it its hat, a child of
-/// the last joint.
+/// A mesh bound to a chain of joints, which have left their bind pose; beside it its hat, a child of the last joint.
 fn figure(shape: &Shape, figure: Figure) -> Maker {
     let mut maker = Maker::default();
     let mut primitive = maker.primitive(shape);
@@ -85,7 +84,7 @@ fn figure(shape: &Shape, figure: Figure) -> Maker {
         }
         maker.loose_node(node);
     }
-    // From the stored numbers to where the joint was bound.
+    // From the stored numbers to the joint's bind position.
     let from_grid = match figure.stored {
         Stored::Floats => DMat4::IDENTITY,
         Stored::Quantised => {
@@ -174,7 +173,8 @@ fn world_of_nodes(root: &Value) -> Vec<DMat4> {
     world
 }
 
-/// Where glTF's formula puts the vertices of mesh 0 and where their normals point, with morph targets at these weights.
+/// The positions of the vertices of mesh 0 by glTF's formula and the directions of their normals, with morph targets at
+/// these weights.
 fn posed_with(glb: &[u8], weights: &[f64]) -> (Vec<DVec3>, Vec<DVec3>) {
     let (text, bin) = split(glb);
     let root: Value = serde_json::from_str(&text).unwrap();
@@ -337,11 +337,12 @@ fn a_skinned_figure_with_morph_targets_looks_as_it_was_shown_and_its_targets_tur
             let shown = posed_with(&before, &[0.0, weight]).0;
             let size = size_of(&shown);
             assert_within(&opened.drawn.positions, &shown, 1e-6 * size, &kind);
-            // Little turns, so the deltas stay: the shape is the edited one at the default weights.
+            // The turns are small, so the deltas stay: the shape is the edited one at the default weights.
             let positions = moved(&opened, |v| v % 3 != 0, |p| p + 0.1 * bent(p, size));
             let after = saved_glb(&opened, &positions);
             assert_within(&posed_with(&after, &[0.0, weight]).0, &positions, 1e-5 * size, &kind);
-            // All turns far, so they turn along: each target shows the turned figure that it showed before.
+            // Everything turns far, so the deltas turn along: each target shows the turned figure that it showed
+            // before.
             let turn = DQuat::from_rotation_y(1.1) * DQuat::from_rotation_x(0.4);
             let motion = |p: DVec3| turn * p + DVec3::ONE * size;
             let positions = moved(&opened, |_| true, motion);

@@ -1,5 +1,5 @@
-//! What stands around a glTF's geometry: deep trees, skins, extensions nobody knows, points, containers without a
-//! chunk of their own. None of it stops a file, and an edit leaves it as it is.
+//! The surroundings of a glTF's geometry: deep trees, skins, unknown extensions, points, containers without their own
+//! chunk. None of it stops a file, and an edit does not change it.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test fails by panicking")]
 
 mod gltf_maker;
@@ -21,7 +21,7 @@ fn view_bytes(glb: &[u8], accessor: usize) -> Vec<u8> {
     bin[start..start + view["byteLength"].as_u64().unwrap() as usize].to_vec()
 }
 
-/// All of a file's JSON but what an edit of accessors `edited` changes: their bounds.
+/// All of a file's JSON except the parts that an edit of accessors `edited` changes: their bounds.
 fn beside_bounds(glb: &[u8], edited: &[usize]) -> Value {
     let mut root = json_of(glb);
     for &accessor in edited {
@@ -87,7 +87,7 @@ fn an_edit_leaves_joints_and_weights_as_they_are() {
     let attributes = &mut maker.root["meshes"][0]["primitives"][0]["attributes"];
     attributes["JOINTS_0"] = joints.into();
     attributes["WEIGHTS_0"] = weights.into();
-    // The joint has left the place that it was bound in.
+    // The joint has left its bind pose.
     let joint = maker.node(json!({ "translation": [7, 0, 0] }));
     maker.root["skins"] = json!([{ "joints": [joint], "inverseBindMatrices": inverse }]);
     maker.root["nodes"][0]["skin"] = 0.into();

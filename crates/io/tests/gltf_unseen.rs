@@ -1,5 +1,5 @@
-//! What a file's default scene does not show keeps its bytes and its shape: other scenes, nodes of none, and whatever an
-//! extension may read. Copies of a node are drawn, and bent each for itself.
+//! Data that a file's default scene does not show keeps its bytes and its shape: other scenes, nodes of none, and
+//! everything that an extension may read. Copies of a node are drawn, and bent separately.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test fails by panicking")]
 
 mod gltf_maker;
@@ -53,7 +53,7 @@ fn a_mesh_that_another_scene_shows_too_keeps_its_shape_there() {
 #[test]
 fn a_part_turned_inside_out_is_not_turned_in_another_scene() {
     let mut maker = Maker::of(&grid(3));
-    // Without normals nothing but the triangles changes.
+    // Without normals only the triangles change.
     let attributes = &mut maker.root["meshes"][0]["primitives"][0]["attributes"];
     *attributes = json!({ "POSITION": attributes["POSITION"] });
     let unseen = maker.loose_node(json!({ "mesh": 0 }));
@@ -110,7 +110,7 @@ fn what_an_extension_may_read_is_copied_and_not_written_over() {
         }),
     ];
     for (what, name) in names {
-        // Accessors before those of the mesh, so that numbers of accessors and of views differ.
+        // Accessors come before those of the mesh, so that numbers of accessors and of views differ.
         let mut maker = Maker::default();
         for _ in 0..7 {
             maker.accessor(json!({ "componentType": 5126, "count": 1, "type": "SCALAR" }));
@@ -200,7 +200,7 @@ fn copies_that_an_edit_makes_differ_become_nodes_and_others_stay_copies() {
     let before = with_copies(&places()).glb();
     let opened = open(&before);
     let count = cube().positions.len();
-    // One of them alone.
+    // Only one of them.
     let positions = moved(
         &opened,
         |v| (count..2 * count).contains(&v),
@@ -215,7 +215,7 @@ fn copies_that_an_edit_makes_differ_become_nodes_and_others_stay_copies() {
     assert_eq!(wood["children"], json!([2, 3, 4, 0]));
     assert_eq!(root["nodes"][3]["mesh"], 1);
     assert!(pliant_io::is_same_document(&before, &after));
-    // All of them, the same in their own space: they stay copies of one mesh.
+    // All of them move the same in their own space: they stay copies of one mesh.
     let nudge = DVec3::new(0.0, 0.25, 0.0);
     let mut positions = opened.drawn.positions.clone();
     for (number, (_, rotation, scale)) in places().into_iter().enumerate() {

@@ -1,7 +1,7 @@
-//! All images of a document are decoded within one budget: larger ones come out smaller, and what can't is refused
-//! before it is decoded.
+//! All images of a document are decoded within one budget: large ones are decoded smaller, and those that can't be are
+//! refused before decoding.
 //!
-//! One test, alone in its program: it counts what all threads hold.
+//! This is the only test in its program, because it counts the memory of all threads.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test fails by panicking")]
 
 #[path = "../examples/counting/mod.rs"]
@@ -37,7 +37,7 @@ fn encoded(format: ImageFormat, side: u32) -> Vec<u8> {
     out.into_inner()
 }
 
-/// What comes out, and the most that was held on the way.
+/// The result, and the most bytes held on the way.
 fn decoded(images: &[Vec<u8>], budget: u64) -> (Vec<Result<DecodedImage, ImageError>>, u64) {
     let images: Vec<&[u8]> = images.iter().map(Vec::as_slice).collect();
     let held = HELD.load(Ordering::Relaxed);
@@ -49,7 +49,7 @@ fn decoded(images: &[Vec<u8>], budget: u64) -> (Vec<Result<DecodedImage, ImageEr
 #[test]
 fn images_fit_into_their_budget_or_are_refused() {
     let kinds = [ImageFormat::Png, ImageFormat::Jpeg, ImageFormat::WebP];
-    // The threads, and whatever is made once.
+    // The threads, and everything that is made once.
     decoded(&kinds.map(|kind| encoded(kind, 64)), 1 << 30);
 
     for kind in kinds {
@@ -60,7 +60,7 @@ fn images_fit_into_their_budget_or_are_refused() {
                 .map(|image| image.as_ref().unwrap().pixels.width)
                 .collect()
         };
-        // Decoded beside each other they take no more than each and its decoder does.
+        // Decoded side by side they take no more than each and its decoder do.
         let (whole, _) = decoded(&images, 1 << 30);
         assert_eq!(sizes(&whole), [1024, 1024, 512, 1024, 16, 1024], "{kind:?}");
         for budget in [18 * MIB, 16 * MIB, 14 * MIB] {
@@ -91,7 +91,7 @@ fn images_fit_into_their_budget_or_are_refused() {
     let stopped = Cancel::new();
     stopped.cancel();
     assert_eq!(decode_images(&[&image], MIB, &stopped), Err(Cancelled));
-    // An image is stopped within itself: wherever its decoder reads, and at every row that is scaled.
+    // A cancelled image stops in the middle: wherever its decoder reads, and at every row that is scaled.
     for kind in kinds {
         let image = encoded(kind, 512);
         let mut scaled = 0;
@@ -108,7 +108,7 @@ fn images_fit_into_their_budget_or_are_refused() {
         }
         assert!(scaled > 0, "{kind:?}");
     }
-    // A KTX2 has smaller levels, or is scaled as others are.
+    // A KTX2 has smaller levels, or is scaled like others.
     let ktx2 = include_bytes!("corpus/ramp-uastc.ktx2").to_vec();
     let (small, _) = decoded(&[ktx2], 16 * 16 * 4);
     let small = small[0].as_ref().unwrap();

@@ -1,4 +1,5 @@
-//! How PLY, OFF, STL and OBJ files look, and what of it goes along: textures, colours, and what is said to stay behind.
+//! The appearance of PLY, OFF, STL and OBJ files, and the parts of it that are carried over or reported as left behind:
+//! textures, colours.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test fails by panicking")]
 
 mod text;
@@ -19,7 +20,8 @@ fn textures(first: &[u8], second: &[u8]) -> Folder {
     folder
 }
 
-/// A square of two triangles around a seam: the corners of vertices 0 and 2 have other texture coordinates in each face.
+/// A square of two triangles around a seam: the corners of vertices 0 and 2 have other texture coordinates in each
+/// face.
 const WEDGES: &str = "ply\nformat ascii 1.0\ncomment TextureFile skin one.png\ncomment TextureFile b.png\nelement vertex 4\n\
     property float x\nproperty float y\nproperty float z\nproperty float nx\nproperty float ny\nproperty float nz\n\
     property uchar red\nproperty uchar green\nproperty uchar blue\nelement face 2\nproperty list uchar int vertex_indices\n\
@@ -55,7 +57,7 @@ fn texture_coordinates_of_faces_are_drawn_and_a_vertex_stays_one() {
         .map(|group| look.materials[group.material].base_colour_image)
         .collect();
     assert_eq!(of_groups, [Some(1), Some(0)]);
-    // Each corner has the coordinates that its face gives it, v down.
+    // Each corner has its face's coordinates, v down.
     let uvs = look.uvs.unwrap();
     let of_corners: Vec<[f32; 2]> = opened
         .drawn
@@ -71,7 +73,7 @@ fn texture_coordinates_of_faces_are_drawn_and_a_vertex_stays_one() {
     let colours = look.colours.unwrap();
     let corner = opened.drawn.triangles[1][0];
     assert_eq!(colours[corner.index()], [65535, 0, 0, 65535]);
-    // The file keeps one vertex, whose normal turns by all the faces around it.
+    // The file keeps one vertex, whose normal turns with all the faces around it.
     let bytes = save(&opened, &opened.drawn.positions);
     assert_eq!(bytes, WEDGES.as_bytes());
     let bent = moved(&opened, |_| true, |p| DVec3::new(p.x, -p.z, p.y));
@@ -139,7 +141,7 @@ fn textures_go_along_to_other_formats_and_folders() {
     let expected = WEDGES.replace("skin one.png", "skin one-2.png");
     assert_eq!(String::from_utf8(out.files[0].bytes.clone()).unwrap(), expected);
     assert_eq!(saved(&opened, rest, Format::Ply, Placement::SameFolder).files.len(), 1);
-    // A texture that is not there is named.
+    // A missing texture is named.
     let bare = open(WEDGES.as_bytes(), Format::Ply);
     assert!(
         bare.scene.notes()[0].contains("skin one.png"),
@@ -245,7 +247,7 @@ fn what_stays_behind_is_named() {
         Format::Stl,
     );
     assert!(warnings(&stl, Format::Ply)[0].contains("2 solids"));
-    // Nothing stays behind of plain files.
+    // Plain files lose nothing.
     let plain = open(b"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 # comment\n", Format::Off);
     assert_eq!((plain.scene.notes().len(), warnings(&plain, Format::Glb).len()), (0, 0));
 }
@@ -368,7 +370,7 @@ fn flat_faces_are_flat_and_hard_edges_that_are_drawn_smooth_are_told() {
     let open_obj = |first: &str, second: &str| open(obj(first, second).as_bytes(), Format::Obj);
     let flat = open_obj("s off\n", "");
     assert!(flat.scene.notes().is_empty(), "{:?}", flat.scene.notes());
-    // The fifth vertex is of no face.
+    // The fifth vertex is in no face.
     assert_eq!(flat.scene.appearance().flat, std::slice::from_ref(&(0..4)));
     let normals_in_glb = |opened: &SceneAndDrawn| {
         let glb = save_as(opened, &opened.drawn.positions, Format::Glb);

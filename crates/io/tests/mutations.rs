@@ -1,7 +1,7 @@
-//! Broken files: whatever the bytes, a parser reads or refuses, and what it reads comes back.
+//! Broken files: a parser reads or refuses any bytes, and a file that it reads comes back.
 //!
-//! The mutations know how such files are built: they drop, repeat and swap lines, put impossible numbers in the place
-//! of possible ones, flip bytes, cut and stretch. The seeds are fixed, so a failure repeats.
+//! The mutations follow the structure of such files: they drop, repeat and swap lines, replace possible numbers by
+//! impossible ones, flip bytes, cut and stretch. The seeds are fixed, so a failure repeats.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test fails by panicking")]
 
 mod text;
@@ -105,7 +105,7 @@ fn mutate(bytes: &mut Vec<u8>, chance: &mut Chance) {
     }
 }
 
-/// Mutates `seeds` `runs` times and puts what is still read through every kind of saving.
+/// Mutates `seeds` `runs` times and puts every file that is still read through every kind of saving.
 fn survive(format: Format, seeds: &[&[u8]], runs: usize) {
     let library = "newmtl red\nKd 1 0 0\nmap_Kd -s 1 1 tex.png\nnewmtl b\nd 0.5\nTr 1\n";
     let mut chance = Chance(0x0001_5eed ^ format.extension().len() as u64);
@@ -166,7 +166,7 @@ fn survive(format: Format, seeds: &[&[u8]], runs: usize) {
                 .unwrap_or_else(|error| panic!("{error}: {:?}", String::from_utf8_lossy(&saved.files[0].bytes)));
             assert_eq!(again.drawn.triangles.len(), drawn.triangles.len());
             if target == format && target == Format::Obj {
-                // Corners that come to have other normals are drawn apart.
+                // Corners whose normals come to differ are drawn separately.
                 assert!(same_bits(
                     &of_file(&again.drawn, &again.drawn.positions),
                     &of_file(drawn, &positions)

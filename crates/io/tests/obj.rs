@@ -1,4 +1,4 @@
-//! OBJ: what is read, and that saving changes the moved vertices' lines alone.
+//! OBJ: reading, and that saving changes only the moved vertices' lines.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test fails by panicking")]
 
 mod text;
@@ -8,7 +8,7 @@ use pliant_io::{AlphaMode, Format, Placement, Save};
 use pliant_mesh::{Cancel, Progress};
 use text::{changed_lines, folder, moved, open, open_in, refusal, save, save_as, try_open};
 
-/// Every form that a line may take: comments, both line ends, continuations, w, colours, groups, a negative index.
+/// Every form of a line: comments, both line endings, continuations, w, colours, groups, a negative index.
 const ODD: &[u8] = b"# caf\xe9 \\\r\nmtllib missing.mtl\n o thing  \nv 0 0 0 1.0 # w\n\tv  1.0 0 \\\n  0\r\nv 1 1 0 0.5 0.25 1\nv 0 1 0\n\
 v 5 5 5\nvt 0 0\nvt 1 1\nvn 0 0 1\ng side\nusemtl red\ns off\nf 1/1/1 2/2/1 3//1 4\nf -5 -4 \\\n -3 # end\nl 1 2\ncurv 0 1";
 
@@ -112,7 +112,7 @@ fn one_vertex_in_many_seams_is_drawn_once_for_each() {
 fn polygons_are_drawn_as_triangles_and_saved_as_they_were() {
     let text = b"v 0 0 0\nv 4 0 0\nv 1 1 0\nv 0 4 0\nv 9 9 9\nf 1 2 3 4\nf 1 2\nf 5\nf\n";
     let opened = open(text, Format::Obj);
-    // The dart's reflex corner is 3: only the cut through it stays inside.
+    // The dart's reflex corner is 3: only the cut through it is inside.
     let mut corners: Vec<Vec<u32>> = opened
         .drawn
         .triangles
@@ -217,7 +217,7 @@ fn normals_turn_with_a_rigid_motion_and_keep_their_length() {
     );
 }
 
-/// The normal that each corner of each face names, looked up as a reader does that comes from line to line.
+/// The normal of each corner of each face, looked up by a reader that goes from line to line.
 fn normals_of_corners(text: &[u8]) -> Vec<Vec<DVec3>> {
     let text = String::from_utf8(text.to_vec()).unwrap();
     let (mut normals, mut faces) = (Vec::new(), Vec::new());
@@ -250,8 +250,8 @@ fn angle(a: DVec3, b: DVec3) -> f64 {
     a.angle_between(b).to_degrees()
 }
 
-/// Two ribbons, each behind its own `v` and `vn` lines, as Blender writes objects: one `vn` line for a whole flat side.
-/// `counting` writes the name of a normal whose number from 1 is given, with how many there are so far.
+/// Two ribbons, each after its own `v` and `vn` lines, as Blender writes objects: one `vn` line for a whole flat side.
+/// `counting` writes the name of a normal with the given number from 1, given the count so far.
 fn ribbons(counting: impl Fn(usize, usize) -> String) -> String {
     let mut text = String::new();
     let n = 12;
@@ -279,7 +279,7 @@ fn a_normal_that_is_shared_by_what_bends_apart_becomes_several() {
         |number, _| number.to_string(),
         |number, so_far| format!("-{}", so_far + 1 - number),
     ];
-    // Around the ribbons' end, and of the second ribbon the first half at rest.
+    // Around the ribbons' end, with the first half of the second ribbon at rest.
     let curl = |p: DVec3, from: f64| match p.x > from {
         true => {
             let angle = (p.x - from) * 0.4;
@@ -307,7 +307,7 @@ fn a_normal_that_is_shared_by_what_bends_apart_becomes_several() {
                     let from = if ribbon == 0 { from_first } else { from_second };
                     let turned = ((rest.x - from) * 0.4).max(0.0);
                     let wanted = DVec3::new(-turned.sin(), turned.cos(), 0.0);
-                    // A vertex's frame is the mean of the faces around it, of which there is one at an end.
+                    // A vertex's frame is the mean of the faces around it; at an end there is only one.
                     let most = if k == 0 || k == 11 { 6.5 } else { 3.5 };
                     assert!(angle(normal, wanted) < most, "face {face}: {normal} is not {wanted}");
                 }
@@ -351,7 +351,7 @@ fn one_normal_of_all_turns_where_all_turn() {
     );
     assert!(all.warnings.is_empty(), "{:?}", all.warnings);
     assert!(changed_lines(text.as_bytes(), &all.files[0].bytes).contains(&15));
-    // What moves without turning changes none.
+    // A move without a turn changes none.
     let shifted = save(&opened, &moved(&opened, |_| true, |p| p + DVec3::Y));
     let changed = changed_lines(text.as_bytes(), &shifted);
     assert!(changed.iter().all(|line| line % 2 == 0), "{changed:?}");
@@ -380,7 +380,7 @@ fn a_part_that_is_turned_inside_out_after_its_normals_were_divided_has_them_turn
     };
     for (face, (as_is, turned)) in save(&[]).into_iter().zip(save(&turned)).enumerate() {
         let sign = if face < 12 { 1.0 } else { -1.0 };
-        // A turned face has its corners in reverse, but for the first.
+        // A turned face has its corners in reverse, except the first.
         assert!((as_is[0] * sign).distance(turned[0]) < 1e-6, "face {face}");
         let last = if face < 12 { 3 } else { 1 };
         assert!((as_is[3] * sign).distance(turned[last]) < 1e-6, "face {face}");
@@ -449,7 +449,7 @@ fn a_new_file_carries_materials_and_looks_that_read_back() {
     let mut files = folder(&[("a.mtl", "newmtl red\nKd 1 0 0\nmap_Kd skin.png\nnewmtl b\nd 0.5\n")]);
     files.0.insert("skin.png".to_owned(), b"\x89PNG\r\n\x1a\n".to_vec());
     let opened = open_in(text, Format::Obj, &files).unwrap();
-    // By way of a GLB: an OBJ is written anew only from another kind.
+    // Through a GLB: an OBJ is written from scratch only from another format.
     let (before, drawn) = (opened.scene.appearance(), &opened.drawn);
     let glb = save_as(&opened, &drawn.positions, Format::Glb);
     let from_glb = open(&glb.files[0].bytes, Format::Glb);

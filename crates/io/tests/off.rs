@@ -1,4 +1,4 @@
-//! OFF: its variants and layouts, and that saving changes the moved vertices' numbers alone.
+//! OFF: its variants and layouts, and that saving changes only the moved vertices' numbers.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test fails by panicking")]
 
 mod text;

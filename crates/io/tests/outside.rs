@@ -1,5 +1,5 @@
-//! Neighbours outside the file's own folder are read and told of, and taken into a result only if they are what the
-//! file says they are: a stranger's file may point at anything there.
+//! Neighbours outside the file's own folder are read and reported, and go into a result only if they really are of the
+//! kind that the file claims: a stranger's file may point at any file there.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test fails by panicking")]
 
 mod gltf_maker;
@@ -25,7 +25,7 @@ fn holds(saved: &Saved, needle: &[u8]) -> bool {
     saved.files.iter().any(|file| holds(&file.bytes))
 }
 
-/// A square whose buffer is `buffer`, dressed in `image`.
+/// A square with the buffer `buffer` and the image `image`.
 fn gltf(buffer: &str, image: &str, files: &[(&str, &[u8])]) -> SceneAndDrawn {
     let mut maker = Maker::of(&grid(2));
     maker.root["images"] = json!([{ "uri": image }]);
@@ -63,7 +63,7 @@ fn what_is_used_and_decodes_is_packed_and_told() {
         let again = open(&saved.files[0].bytes);
         assert_eq!(*again.scene.appearance().images[0].encoded, *png);
     }
-    // Beside the file nothing is said.
+    // No message for neighbours beside the file.
     let beside = gltf("a.bin", "./b/../a.png", &[("./b/../a.png", &png)]);
     assert!(beside.scene.notes().is_empty(), "{:?}", beside.scene.notes());
     assert!(
@@ -76,7 +76,7 @@ fn what_is_used_and_decodes_is_packed_and_told() {
 
 #[test]
 fn what_is_no_image_is_never_taken_along() {
-    // As an image of another kind than it begins as, and as one that begins as an image.
+    // One image claims another kind than its first bytes; one is true to its first bytes.
     let disguised = [&png()[..16], SECRET].concat();
     for bytes in [SECRET, &disguised] {
         let opened = gltf("a.bin", "../../key", &[("../../key", bytes)]);

@@ -1,4 +1,4 @@
-//! PLY: every encoding, order and type, and that saving changes the moved vertices' numbers alone.
+//! PLY: every encoding, order and type, and that saving changes only the moved vertices' numbers.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test fails by panicking")]
 
 mod text;
@@ -45,7 +45,7 @@ fn a_moved_ascii_vertex_changes_its_numbers_by_their_types() {
     assert_eq!(text, expected);
 }
 
-/// A binary file with an element before and behind the vertices, in either byte order.
+/// A binary file with an element before and after the vertices, in either byte order.
 fn binary(is_big: bool) -> Vec<u8> {
     let order = if is_big { "big" } else { "little" };
     let mut out = format!(
@@ -149,7 +149,7 @@ fn counts_are_checked_before_anything_is_allocated() {
         let message = refusal(head(&elements).as_bytes(), Format::Ply);
         assert!(!message.contains('\n') && message.len() < 300, "{message}");
     }
-    // An element without properties takes no bytes, however many it has.
+    // An element without properties takes no bytes, with any number of records.
     let many = head(&format!(
         "element nothing 18446744073709551615\nelement vertex 0\n{xyz}"
     ));

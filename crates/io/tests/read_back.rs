@@ -1,5 +1,5 @@
-//! A save that is read back is held against what was to be saved: as it was written it passes, whatever the kinds, and
-//! any other shape is found out.
+//! A save that is read back is compared with the intended one: the unchanged one passes in every format, and any other
+//! shape is detected.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -12,7 +12,7 @@ fn back(saved: &Saved, format: Format) -> SceneAndDrawn {
     read(bytes, format, "back", saved, &Progress::new(), &Cancel::new()).unwrap()
 }
 
-/// A mesh as OFF, with quads among its faces, far from the origin and hardly larger than there are digits for in f32.
+/// A mesh as OFF, with quads among its faces, far from the origin and hardly larger than the resolution of f32 there.
 fn source(at: DVec3) -> SceneAndDrawn {
     let grid = shapes::grid(6, 5);
     let mut text = format!("OFF\n{} {} 0\n", grid.positions.len(), grid.triangles.len() - 1);
@@ -31,7 +31,7 @@ fn source(at: DVec3) -> SceneAndDrawn {
         .into_iter()
         .find(|corner| ![a, b, c].contains(corner))
         .unwrap();
-    // The two triangles share an edge: between its ends lies the fourth corner.
+    // The two triangles share an edge, and the fourth corner is between its ends.
     let shared = |corner: &u32| second.iter().any(|other| other.0 == *corner);
     let ring = match (shared(&a), shared(&b), shared(&c)) {
         (true, true, false) => [a, fourth, b, c],
@@ -83,7 +83,7 @@ fn what_was_saved_passes_and_anything_else_is_found_out() {
                 };
                 of.scene.save(&save, &Progress::new(), &Cancel::new()).unwrap()
             };
-            // The mesh as each kind, and that saved as each kind again.
+            // The mesh in each format, and that saved in each format again.
             let rest = save(&off, &off.drawn.positions, first);
             let opened = back(&rest, first);
             let new = bent(&opened.drawn.positions);
@@ -105,7 +105,7 @@ fn what_was_saved_passes_and_anything_else_is_found_out() {
                         .check_read_back(&save, None, saved.triangles.as_deref(), found)
                 };
                 check(&new, &found).unwrap_or_else(|what| panic!("{first} to {second} at {at}: {what}"));
-                // One vertex a thousandth off.
+                // One vertex wrong by a thousandth.
                 let mut other = new.clone();
                 let used = opened.drawn.triangles[7][1].index();
                 other[used].y += 1e-3 * at.length().max(1.0).sqrt();
@@ -114,14 +114,14 @@ fn what_was_saved_passes_and_anything_else_is_found_out() {
                     "{first} to {second}"
                 );
                 assert!(check(&opened.drawn.positions, &found).is_err());
-                // A face that joins other vertices, and one that is gone.
+                // A face with other vertices, and a missing one.
                 let mut turned = back(&saved, second);
                 turned.drawn.triangles.pop();
                 let is_by_faces = !matches!(second, Format::Glb | Format::Gltf | Format::Stl) && first != second;
                 assert!(is_by_faces || check(&new, &turned).is_err(), "{first} to {second}");
                 if matches!(second, Format::Glb | Format::Gltf) {
                     let mut turned = back(&saved, second);
-                    // Far away single precision leaves some triangles no extent: one that has it.
+                    // Far away single precision leaves some triangles no extent: this one has some.
                     let positions = &turned.drawn.positions;
                     let reach = |triangle: &[DrawnVertex; 3]| {
                         let ways = triangle.map(|v| positions[v.index()].distance(positions[0]));
@@ -222,7 +222,7 @@ fn text_that_names_single_precision_passes_as_it_was_written() {
     }
 }
 
-/// The grid of [`source`] as text of each kind, its coordinates written by `number`.
+/// The grid of [`source`] as text of each format, its coordinates written by `number`.
 fn texts(number: impl Fn(f64) -> String) -> Vec<(Format, String)> {
     let grid = shapes::grid(4, 3);
     let vector = |p: DVec3| format!("{} {} {}", number(p.x), number(p.y), number(p.z));
@@ -315,7 +315,7 @@ fn text_of_any_number_of_digits_is_saved_and_read_back() {
     }
 }
 
-/// A tube of quads whose diagonals are nearly as long, as OBJ with one `vn` line for all corners.
+/// A tube of quads whose diagonals are nearly equal, as OBJ with one `vn` line for all corners.
 fn tube() -> (String, usize) {
     let (mut text, rings, sides) = (String::new(), 7, 9);
     for ring in 0..rings {
@@ -375,7 +375,7 @@ fn a_bent_file_is_a_pose_of_the_file_whatever_its_polygons_are_cut_by() {
         let triangles = |difference: &pliant_io::Difference| difference.place.contains("triangles");
         let differences = rest.scene.differences(&rest.drawn, &pose.scene, &pose.drawn);
         assert!(!differences.iter().any(triangles), "{differences:?}");
-        // Another face is no pose.
+        // A file with another face is not a pose.
         let text = tube()
             .0
             .replacen("f 1//1 2//1 11//1 10//1", "f 1//1 2//1 12//1 10//1", 1);

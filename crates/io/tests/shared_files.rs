@@ -1,5 +1,5 @@
-//! Real scans and broken files beside the checkout: each is read or refused in one line, comes back byte for byte when
-//! nothing moved, and differs only where something did. Skipped by name where the folder is absent.
+//! Real scans and broken files in `PLIANT_DATA`: each is read or refused in one line, comes back byte for byte when
+//! nothing moved, and differs only where something did. The tests are skipped by name if the folder is missing.
 #![allow(
     clippy::unwrap_used,
     clippy::expect_used,
@@ -31,7 +31,7 @@ fn each(folder: &str, mut check: impl FnMut(&str, Format, &[u8])) {
     }
 }
 
-/// The file vertices that the tests move: some here and there.
+/// The file vertices that the tests move: every seventh.
 fn is_moved(file: u32) -> bool {
     file % 7 == 3
 }
@@ -69,7 +69,7 @@ fn check_edit(name: &str, opened: &SceneAndDrawn, before: &[u8]) {
     }
 }
 
-/// An OBJ without its `vn` lines and what corners name of them, which an edit may add to.
+/// An OBJ without its `vn` lines and the corners' references to them, which an edit may add to.
 fn without_normals(text: &[u8]) -> Vec<u8> {
     let mut out = Vec::new();
     for line in text
@@ -94,7 +94,7 @@ fn without_normals(text: &[u8]) -> Vec<u8> {
     out
 }
 
-/// Where the records of a binary file begin and how far apart they are.
+/// The start of a binary file's records and their distance.
 fn layout(opened: &SceneAndDrawn, bytes: &[u8]) -> (usize, usize) {
     if opened.scene.format() == Format::Stl {
         return (84, 50);

@@ -1,4 +1,4 @@
-//! A result that single precision can't hold is refused, in the same words, whatever kind of file it goes to.
+//! A result that single precision can't hold is refused, with the same words in every format.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test fails by panicking")]
 
 mod text;
@@ -10,7 +10,7 @@ use text::open;
 
 const OFF: &[u8] = b"OFF\n4 2 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n3 0 1 2\n3 1 3 2\n";
 
-/// The same square as each kind of file.
+/// The same square in each format.
 fn sources() -> Vec<SceneAndDrawn> {
     let square = open(OFF, Format::Off);
     let other = |format| open(&saved(&square, &square.drawn.positions, format).unwrap(), format);
@@ -57,7 +57,7 @@ fn a_vertex_moved_beyond_it_is_refused_in_every_format_alike() {
                 );
             }
         }
-        // The largest that it holds is saved, and read back.
+        // The largest representable value is saved, and read back.
         let mut positions = source.drawn.positions.clone();
         positions[2].y = f64::from(f32::MAX);
         for format in [Format::Ply, Format::Obj, Format::Off, Format::Stl] {
@@ -78,7 +78,7 @@ fn what_a_file_holds_beyond_it_is_refused_in_every_other_kind_of_file_alike() {
         let refused = saved(&far, &far.drawn.positions, format);
         assert_eq!(refused, Err(SaveError::NotFinite { file_vertex: 2 }), "{format}");
     }
-    // Its own bytes say it still, as long as they are kept.
+    // The file's own bytes keep it, as long as they are kept.
     let mut positions = far.drawn.positions.clone();
     positions[0].x = -1.0;
     assert!(saved(&far, &positions, Format::Off).is_ok());

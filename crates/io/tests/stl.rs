@@ -1,4 +1,4 @@
-//! STL: both kinds told apart, and that saving changes the moved corners and their facets' normals alone.
+//! STL: both kinds are recognised, and saving changes only the moved corners and their facets' normals.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test fails by panicking")]
 
 mod text;

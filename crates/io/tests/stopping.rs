@@ -1,5 +1,5 @@
-//! Laws of a save that is watched: it tells how far it is all along, stops wherever it is told to, and comes to the
-//! same bytes as one that nobody watches.
+//! Laws of a watched save: it reports its progress all along, stops wherever it is asked to, and produces the same
+//! bytes as an unwatched one.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test fails by panicking")]
 
 mod text;
@@ -24,7 +24,7 @@ enum Normals {
     Own,
 }
 
-/// A sheet of so many vertices that every loop over them looks several times, with or without normals.
+/// A sheet with so many vertices that every loop over them checks several times, with or without normals.
 fn sheet(normals: Normals) -> SceneAndDrawn {
     let sheet = shapes::grid(200, 200);
     let mut off = format!("OFF\n{} {} 0\n", sheet.positions.len(), sheet.triangles.len());
@@ -37,7 +37,7 @@ fn sheet(normals: Normals) -> SceneAndDrawn {
     let plain = open(off.as_bytes(), Format::Off);
     match normals {
         Normals::None => plain,
-        // New glTF has normals, whatever it is made from.
+        // New glTF has normals, from any source.
         Normals::Own => open(
             &save_as(&plain, &plain.drawn.positions, Format::Glb).files[0].bytes,
             Format::Glb,
@@ -49,7 +49,7 @@ fn bent(positions: &[DVec3]) -> Vec<DVec3> {
     positions.iter().map(|p| *p + DVec3::Z * p.x * p.x).collect()
 }
 
-/// How far a save came that was stopped at each of its looks, in their order, and what came of it in the end.
+/// The progress of a save that was stopped at each of its checks, in their order, and its final result.
 fn stopped_everywhere(save: impl Fn(&Progress, &Cancel) -> Result<Saved, SaveError>) -> (Vec<f32>, Saved) {
     let mut shares = Vec::new();
     loop {
@@ -68,7 +68,7 @@ fn stopped_everywhere(save: impl Fn(&Progress, &Cancel) -> Result<Saved, SaveErr
     }
 }
 
-/// Shares rise, and no two stand far apart.
+/// Shares rise, and no two are far apart.
 #[track_caller]
 fn assert_told(shares: &[f32], what: &str) {
     let ends = shares.iter().copied().chain([1.0]);
@@ -88,7 +88,7 @@ fn a_save_as_any_kind_stops_wherever_it_is_told_to_and_tells_its_way() {
         }
         let opened = open(&bytes.files[0].bytes, from);
         let positions = bent(&opened.drawn.positions);
-        // Patched, and, from one kind, made anew as each of the others.
+        // Patched files, and new ones of each other format.
         for to in KINDS.into_iter().filter(|to| *to == from || from == Format::Ply) {
             let name = format!("out.{}", to.extension());
             let request = Save {

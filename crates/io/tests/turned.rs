@@ -1,5 +1,5 @@
-//! Laws of parts that are turned inside out when they are saved: what is read back faces the other way and is else the
-//! same, turned twice the bytes are the same, and the check of what was written sees when nothing was turned.
+//! Laws of parts that are turned inside out when they are saved: the file that is read back faces the other way and is
+//! otherwise the same, turned twice the bytes are the same, and the check of the written file detects a missing turn.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod gltf_maker;
@@ -27,7 +27,7 @@ fn saved(of: &SceneAndDrawn, positions: &[DVec3], turned: &[bool], format: Forma
     of.scene.save(&save, &Progress::new(), &Cancel::new()).unwrap()
 }
 
-/// What is read back, once it was checked against what was asked for.
+/// The file that is read back, after the check against the request.
 fn back(of: &SceneAndDrawn, positions: &[DVec3], turned: &[bool], format: Format) -> SceneAndDrawn {
     let saved = saved(of, positions, turned, format);
     let back = opened(&saved.files[0].bytes, format, &saved);
@@ -62,7 +62,7 @@ fn six_volumes(drawn: &Drawn) -> f64 {
         .sum()
 }
 
-/// Two spheres of which the second is inside out: with everything that glTF's triangles carry along.
+/// Two spheres of which the second is inside out: with everything that glTF's triangles carry.
 fn spheres() -> (SceneAndDrawn, Vec<bool>) {
     let mut shape = sphere(6);
     let first = shape.positions.len();
@@ -173,14 +173,14 @@ fn strips_fans_and_corners_without_indices_become_lists_of_triangles() {
         json!({ "attributes": { "POSITION": strip }, "mode": 6 }),
     ]);
     maker.node(json!({ "mesh": mesh }));
-    // A mirrored node winds everything the other way, and turned it is turned all the same.
+    // A mirrored node reverses all windings; turning it works all the same.
     maker.node(json!({ "mesh": mesh, "scale": [-1.0, 1.0, 1.0], "translation": [5.0, 0.0, 0.0] }));
     let source = gltf_maker::open(&maker.glb());
     let all = vec![true; source.drawn.positions.len()];
     let after = back(&source, &source.drawn.positions, &all, Format::Glb);
     assert!((six_volumes(&source.drawn) + six_volumes(&after.drawn)).abs() < 1e-9);
     assert_eq!(after.drawn.positions, source.drawn.positions);
-    // In one of its nodes alone it can't be turned.
+    // In only one of its nodes it can't be turned.
     let half = all.len() / 2;
     let some: Vec<bool> = (0..all.len()).map(|v| v < half).collect();
     let save = request(&source, &source.drawn.positions, &some, Format::Glb);

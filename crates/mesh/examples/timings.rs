@@ -1,4 +1,4 @@
-//! Times loading's and a frame's work on a surface of about a million triangles, as indexed and as a soup.
+//! Times the work of loading and of a frame on a surface of about a million triangles, indexed and as a soup.
 //!
 //! `cargo run --release -p pliant-mesh --example timings [rings]`
 
@@ -89,7 +89,7 @@ fn main() {
         bvh.vertices_within(&[DVec3::Z.extend(-0.9)], |_, _| count += 1);
         count
     });
-    // A sphere that is pressed together until its poles pass through each other, as a bent limb may.
+    // A sphere that is pressed together until its poles pass through each other, as can happen to a bent limb.
     let pressed = |v: SurfaceVertex| {
         let p = surface.positions[v.index()];
         let pole = (1.0 - 4.0 * p.truncate().length_squared()).max(0.0);
@@ -118,7 +118,7 @@ fn main() {
     }
 }
 
-/// Tells the median of five runs, and what the last one gave.
+/// Prints the median of five runs, and returns the last one's result.
 fn time(what: &str, mut work: impl FnMut() -> usize) {
     let mut last = 0;
     let mut ms: Vec<f64> = (0..5)
@@ -132,7 +132,7 @@ fn time(what: &str, mut work: impl FnMut() -> usize) {
     println!("{what:28} {:9.3} ms   ({last})", ms[2]);
 }
 
-/// The same mesh with its vertices and triangles in no order.
+/// The same mesh with its vertices and triangles in random order.
 fn shuffled(shape: &Drawn) -> Drawn {
     let order = |count: usize| {
         let mut order: Vec<u32> = (0..count as u32).collect();

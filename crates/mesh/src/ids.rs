@@ -18,15 +18,15 @@ macro_rules! vertex_id {
 }
 
 vertex_id! {
-    /// A vertex as the file numbers it (`cli.md`): an OBJ `v` line, a PLY or OFF vertex, an STL corner, an element
-    /// of a glTF POSITION accessor.
+    /// A vertex as the file numbers it (`docs/edit-format.md`): an OBJ `v` line, a PLY or OFF vertex, an STL
+    /// corner, an element of a glTF POSITION accessor.
     FileVertex
 }
 vertex_id! {
-    /// A file vertex seen through one node: what is rendered and picked.
+    /// A file vertex seen through one node. Drawn vertices are rendered and picked.
     DrawnVertex
 }
 vertex_id! {
-    /// A welded vertex in world space: what is solved.
+    /// A welded vertex in world space. The solver works on surface vertices.
     SurfaceVertex
 }

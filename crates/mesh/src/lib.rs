@@ -1,12 +1,12 @@
 //! A triangle surface in memory: topology, geometry, welding, findings, distances along the surface, symmetry and
 //! a bounding-volume hierarchy, and the one pair of [`Progress`] and [`Cancel`] that every long job takes.
 //!
-//! Three vertex sets exist and must not be mixed; each has its own id type:
-//! [`FileVertex`] (what is saved), [`DrawnVertex`] (a file vertex seen through one node: what is rendered and
-//! picked) and [`SurfaceVertex`] (welded in world space: what is solved). [`Model`] holds the tables between them.
+//! Three vertex sets exist and must not be mixed; each has its own id type: [`FileVertex`] (saved), [`DrawnVertex`] (a
+//! file vertex seen through one node; rendered and picked) and [`SurfaceVertex`] (welded in world space; solved for).
+//! [`Model`] holds the tables between them.
 //!
-//! Long loops run on the rayon pool that the caller installed. How work is cut into pieces never depends on the
-//! number of threads, so results are the same bits whatever it is.
+//! Long loops run on the rayon pool that the caller installed. The pieces of the work never depend on the number of
+//! threads, so the bits of results do not either.
 //!
 //! A square of two triangles that don't share their vertices, welded into a surface:
 //!

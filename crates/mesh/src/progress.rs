@@ -1,15 +1,15 @@
-//! How a long job reports its progress and learns that its result is no longer wanted.
+//! A long job reports its progress here, and learns that its result is no longer wanted.
 //!
 //! Both are cheap handles to shared atomics: the caller keeps a clone, the job gets a reference.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, AtomicUsize, Ordering};
 
-/// How far a job is, from 0 to 1. Cloning shares the counter.
+/// The progress of a job, from 0 to 1. Cloning shares the counter.
 #[derive(Clone, Debug)]
 pub struct Progress {
     counter: Arc<AtomicU32>,
-    /// Where on the counter the job begins and ends.
+    /// The job's range on the counter.
     from: f32,
     to: f32,
 }
@@ -47,7 +47,7 @@ impl Progress {
         self.counter.store(at.to_bits(), Ordering::Relaxed);
     }
 
-    /// The last fraction that was told of the whole, 0 to 1, also where this is a part of it.
+    /// The last fraction of the whole that was reported, 0 to 1, also if this is a part of it.
     pub fn get(&self) -> f32 {
         f32::from_bits(self.counter.load(Ordering::Relaxed))
     }
@@ -60,7 +60,7 @@ pub struct Cancel(Arc<Flag>);
 #[derive(Debug, Default)]
 struct Flag {
     is_raised: AtomicBool,
-    /// At how many looks more it raises itself.
+    /// The number of further checks after which it raises itself.
     looks_left: Option<AtomicUsize>,
 }
 

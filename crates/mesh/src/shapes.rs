@@ -1,7 +1,7 @@
 //! Sample shapes for tests and examples, each a file that shows its vertices once: closed and open ones, several
-//! components, and the broken kinds that real scans hold.
+//! components, and the broken kinds that occur in real scans.
 //!
-//! Unless said otherwise they are manifold and their normals point outward.
+//! Unless their comment says otherwise, they are manifold and their normals point outward.
 
 use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
@@ -102,7 +102,8 @@ pub fn grid(nx: usize, ny: usize) -> Drawn {
     drawn(positions, quads(nx, ny, |x, y| y * (nx + 1) + x))
 }
 
-/// The sheet of [`grid`] whose vertices coincide at random, a sixth of the places being left: no surface any more.
+/// The sheet of [`grid`] with vertices that coincide at random, so that a sixth of the places are left: it is no longer
+/// a surface.
 pub fn tangle(side: usize) -> Drawn {
     let mut sheet = grid(side, side);
     let mut state = 1_u64;
@@ -201,9 +202,9 @@ pub fn bowtie() -> Drawn {
     drawn(positions, triangles)
 }
 
-/// `shape` with one of everything that welding must remove or tolerate: a vertex that is not a number with a triangle
+/// `shape` with one of each fault that welding must remove or tolerate: a vertex that is not a number with a triangle
 /// at it, a vertex without a triangle, a triangle with two corners in one place, a repeated triangle, and a triangle
-/// without area that hangs on the shape by one edge. The shape must have a triangle.
+/// without area that is joined to the shape by one edge. The shape must have a triangle.
 pub fn broken(shape: &Drawn) -> Drawn {
     let mut positions = shape.positions.clone();
     let mut triangles = shape.triangles.clone();
@@ -286,7 +287,7 @@ pub fn classes() -> Vec<(&'static str, Drawn)> {
     ]
 }
 
-/// `drawn` welded as the program does by default.
+/// `drawn`, welded with the program's defaults.
 pub fn model(drawn: Drawn) -> Model {
     // No one else has the cancel flag, so the default is never used.
     Model::weld(drawn, &WeldOptions::default(), &Progress::new(), &Cancel::new()).unwrap_or_default()

@@ -1,8 +1,8 @@
-//! Which of the processor's vectors the loops run with.
+//! The processor's vectors that the loops run with.
 //!
-//! Loops are compiled for several vectors and dispatched when they run. Usually the widest that the processor has are
-//! taken. A program may ask for narrower ones, to see on one machine what another one computes, and how fast. No loop
-//! fuses or reorders operations by the width of vectors, so all of them give the same bits.
+//! Loops are compiled for several vectors and dispatched when they run, usually to the widest that the processor has. A
+//! program may ask for narrower ones, to reproduce another machine's results and speed on this one. No loop fuses or
+//! reorders operations by the width of vectors, so all of them give the same bits.
 
 use std::sync::atomic::{AtomicU8, Ordering};
 
@@ -16,15 +16,15 @@ pub enum Vectors {
     Avx512 = 1,
     /// AVX2 with fused multiply-add: four.
     Avx2 = 2,
-    /// What every processor of its kind has: SSE2 or NEON, two.
+    /// The vectors of every processor of its kind: SSE2 or NEON, two numbers.
     Baseline = 3,
 }
 
-/// The [`Vectors`] that were asked for, 0 for the widest.
+/// The chosen [`Vectors`], 0 for the widest.
 static CHOSEN: AtomicU8 = AtomicU8::new(0);
 
 impl Vectors {
-    /// All, from the widest to the narrowest.
+    /// All vectors, from the widest to the narrowest.
     pub const ALL: [Self; 3] = [Self::Avx512, Self::Avx2, Self::Baseline];
 
     /// The name on the command line.
@@ -77,7 +77,7 @@ impl Vectors {
     }
 }
 
-/// What loops are dispatched by: the vectors that were chosen, or else the widest.
+/// The dispatcher of loops: the chosen vectors, or else the widest.
 #[inline]
 pub fn vectors() -> Arch {
     let chosen = CHOSEN.load(Ordering::Relaxed);

@@ -1,4 +1,4 @@
-//! What was welded comes back as it was, to the bit, whatever the surface tells of it.
+//! A welded file comes back unchanged, to the bit, whichever parts of it the surface stores.
 
 #![allow(clippy::unwrap_used, reason = "a test that fails may panic")]
 
@@ -9,7 +9,7 @@ fn bits(positions: &[DVec3]) -> Vec<[u64; 3]> {
     positions.iter().map(|p| p.to_array().map(f64::to_bits)).collect()
 }
 
-/// Variants of a shape: as it is; cut along seams (some triangles have a corner of their own); cut throughout; shaken
+/// Variants of a shape: unchanged; cut along seams (some triangles have a corner of their own); cut throughout; shaken
 /// by less than the tolerance, which joins its corners but not to the bit; with minus zeros; each triangle turned; with
 /// triangles and vertices in reverse, and with file vertices that are not the drawn ones.
 fn variants(shape: &Drawn) -> Vec<Drawn> {

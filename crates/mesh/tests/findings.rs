@@ -1,4 +1,4 @@
-//! What is found wrong with a mesh, and where.
+//! The faults of a mesh are found, and their places.
 
 #![allow(clippy::expect_used, reason = "a test that fails may panic")]
 
@@ -87,7 +87,7 @@ fn specks_are_small_and_far_away_and_stand_outside_of_what_is_looked_at() {
     assert!(shapes::model(Drawn::default()).bounds_without_specks().is_none());
 }
 
-/// On every class of mesh, and on one with every fault: what is told is told with where it is.
+/// On every class of mesh, and on one with every fault: each reported fault has its place.
 #[test]
 fn every_example_stands_where_it_was_found() {
     let mut all: Vec<Drawn> = shapes::classes().into_iter().map(|(_, drawn)| drawn).collect();
@@ -136,7 +136,7 @@ fn a_look_finds_what_welding_finds() {
         let inspection = inspection.expect("nobody cancels it");
         assert_eq!(inspection.findings, model.findings);
         assert_eq!(inspection.located_findings, model.located_findings());
-        // Bare points, which have no face, are counted apart.
+        // Bare points, which have no face, are counted separately.
         let with_faces = model.topology.components().iter().filter(|part| part.face_count > 0);
         assert_eq!(inspection.components, with_faces.cloned().collect::<Vec<_>>());
         assert_eq!(inspection.bounds, model.bounds());

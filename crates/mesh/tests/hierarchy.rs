@@ -1,4 +1,4 @@
-//! The hierarchy answers as looking at every triangle does.
+//! The hierarchy answers like a search of every triangle.
 
 #![allow(clippy::unwrap_used, reason = "a test that fails may panic")]
 
@@ -14,7 +14,7 @@ fn hit_point(model: &Model, hit: &Hit) -> DVec3 {
         .sum()
 }
 
-/// Directions all around.
+/// Directions over the whole sphere.
 fn directions() -> impl Iterator<Item = DVec3> {
     shapes::icosphere(2).positions.into_iter()
 }
@@ -25,7 +25,7 @@ fn rays_from_within_a_closed_surface_always_hit_it() {
         let sphere = shapes::moved(&shapes::icosphere(3), DAffine3::from_translation(offset));
         let model = shapes::model(sphere);
         let bvh = Bvh::build(&model.surface.positions, &model.surface.triangles);
-        // Straight at vertices and at the middles of edges, where rays would slip through.
+        // Aimed at vertices and at the middles of edges, where rays could slip through.
         let targets = model.surface.positions.iter().copied().chain(
             model
                 .topology
@@ -87,7 +87,7 @@ fn nearest_vertices_are_those_of_every_vertex_tried() {
 fn a_refitted_hierarchy_answers_as_a_new_one_and_its_copy_as_before() {
     let everywhere = |p: DVec3| 3.0 * p + DVec3::new(p.y * p.y, 5.0, p.x.sin());
     let in_a_corner = |p: DVec3| if p.x > 0.9 { p + DVec3::new(0.3, 0.0, p.x) } else { p };
-    // Of several blocks of boxes and positions, and of one.
+    // Meshes of several blocks of boxes and positions, and of one.
     for (around, across) in [(120, 90), (30, 14)] {
         let model = shapes::model(shapes::torus(around, across));
         let (rest, triangles) = (&model.surface.positions, &model.surface.triangles);
@@ -164,7 +164,7 @@ fn planes_find_every_vertex_before_them_and_none_far_behind() {
     }
 }
 
-/// This took minutes where every pair of triangles had a union of the same area.
+/// This took minutes when every pair of triangles had a union of the same area.
 #[test]
 fn triangles_in_one_place_or_on_one_line_have_a_hierarchy_like_any_other() {
     let count = 60_000;
@@ -173,7 +173,7 @@ fn triangles_in_one_place_or_on_one_line_have_a_hierarchy_like_any_other() {
         .collect();
     for step in [0.0, 1.0] {
         let mut positions: Vec<DVec3> = (0..3 * count).map(|v| DVec3::X * (step * f64::from(v / 3))).collect();
-        // Something that gives the whole a size.
+        // A part that gives the whole a size.
         positions[0].y = 1000.0;
         let bvh = Bvh::build(&positions, &corners);
         let place = DVec3::X * (step * 777.0) + DVec3::Z;

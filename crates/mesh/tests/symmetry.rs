@@ -1,4 +1,4 @@
-//! Mirror symmetry: the plane that a shape has is found wherever the shape stands, a shape without one has none, and
+//! Mirror symmetry: the plane of a symmetric shape is found wherever the shape is, a shape without one has none, and
 //! counterparts leave no vertex out.
 
 #![allow(clippy::unwrap_used, reason = "a test that fails may panic")]
@@ -64,7 +64,7 @@ fn what_one_side_lacks_does_not_tilt_the_plane() {
 
 #[test]
 fn a_shape_without_a_plane_has_none() {
-    // A tube along a helix: one hand, whatever the mirror.
+    // A tube along a helix: one hand, across any plane.
     let helix = |angle: f64| DVec3::new(angle.cos(), angle.sin(), 0.25 * angle);
     let mut drawn = shapes::tube(12, 240, 1.0);
     let (min, max) = drawn

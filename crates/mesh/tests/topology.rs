@@ -1,4 +1,4 @@
-//! Rows, fans, components and rims say the same as the list of triangles.
+//! Rows, fans, components and rims agree with the list of triangles.
 
 #![allow(clippy::unwrap_used, reason = "a test that fails may panic")]
 
@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use glam::{DAffine3, DVec3};
 use pliant_mesh::{FanKind, FileVertex, Model, SurfaceVertex, shapes, vertex_normals};
 
-/// How many triangles lie on each edge, lower vertex first.
+/// The number of triangles on each edge, lower vertex first.
 fn edges_of_triangles(model: &Model) -> BTreeMap<[SurfaceVertex; 2], usize> {
     let mut edges = BTreeMap::new();
     for &[a, b, c] in &model.surface.triangles {
@@ -160,7 +160,7 @@ fn non_manifold_places_are_counted() {
 #[test]
 fn components_stand_by_size_then_by_their_first_file_vertex() {
     let apart = |x: f64| shapes::moved(&shapes::bar(1, 1, 1), DAffine3::from_translation(DVec3::X * x));
-    // The second bar in the file lies first in space; the sphere is the largest and last.
+    // The second bar in the file is first in space; the sphere is the largest and last.
     let sphere = shapes::moved(&shapes::icosphere(2), DAffine3::from_translation(DVec3::X * 50.0));
     let model = shapes::model(shapes::together(&[apart(20.0), apart(0.0), apart(10.0), sphere]));
     let components = model.topology.components();
@@ -195,7 +195,7 @@ fn a_corner_with_very_many_triangles_is_no_trouble() {
     assert!(corners == expected, "its neighbours' triangles are found among them");
     assert!(model.topology.is_closed());
     assert_eq!(model.topology.non_manifold_vertices(), 0);
-    // Two such corners; all others have fans, and normals don't care.
+    // Two such corners; all other vertices have fans, and normals don't depend on it.
     let all = || (0..model.topology.vertex_count() as u32).map(SurfaceVertex);
     let irregular = all().filter(|&v| model.topology.fan(v).0 == FanKind::Irregular);
     assert_eq!(irregular.count(), 2);

@@ -1,4 +1,4 @@
-//! Welding joins what is in one place, leaves out what can't be solved, and tells.
+//! Welding joins vertices in one place, leaves out faulty geometry, and reports it.
 
 #![allow(clippy::unwrap_used, reason = "a test that fails may panic")]
 
@@ -11,7 +11,7 @@ fn weld(drawn: Drawn, distance: Option<f64>) -> Model {
     Model::weld(drawn, &WeldOptions { distance }, &Progress::new(), &Cancel::new()).unwrap()
 }
 
-/// A number between -1 and 1 that depends on nothing but `seed`.
+/// A number between -1 and 1 that depends only on `seed`.
 fn noise(seed: usize) -> f64 {
     let bits = (seed as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     let bits = (bits ^ bits >> 29).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -82,7 +82,7 @@ fn corners_within_the_tolerance_join_wherever_they_lie() {
             let mut soup = shapes::soup(&shapes::moved(&sphere, DAffine3::from_translation(offset)));
             let diagonal = 2.0 * 3.0_f64.sqrt();
             for (i, p) in soup.positions.iter_mut().enumerate() {
-                // Two corners of one vertex are then less than the tolerance apart.
+                // Two corners of one vertex are then closer than the tolerance.
                 *p += noise3(i) * (0.2 * tolerance * diagonal);
             }
             let model = weld(soup.clone(), Some(tolerance * diagonal));
@@ -96,7 +96,7 @@ fn corners_within_the_tolerance_join_wherever_they_lie() {
 
 #[test]
 fn joining_agrees_with_comparing_all_pairs() {
-    // Clusters and loners at every scale, on the walls of cells too.
+    // Clusters and single vertices at every scale, also on the walls of cells.
     let mut positions = vec![DVec3::ZERO, DVec3::ONE];
     for i in 0..300 {
         let at = (noise3(i) * 8.0).round() / 16.0 + DVec3::splat(0.5);
@@ -108,7 +108,7 @@ fn joining_agrees_with_comparing_all_pairs() {
     let drawn = Drawn::once(positions.clone(), triangles);
     let tolerance = 1e-6;
     let model = weld(drawn, Some(tolerance));
-    // The greedy rule, said plainly.
+    // The greedy rule, in plain code.
     let mut representative: Vec<usize> = Vec::new();
     for i in 0..positions.len() {
         let distance = |j: &usize| positions[*j].distance(positions[i]);
@@ -126,8 +126,7 @@ fn joining_agrees_with_comparing_all_pairs() {
     }
 }
 
-/// A soup whose corners are as far from each other as single precision sets them, beside what must not change how it is
-/// welded.
+/// A soup whose corners are as far apart as single precision puts them, beside parts that must not change its welding.
 fn shaken_soup(shape: &Drawn, by: f64) -> Drawn {
     let mut soup = shapes::soup(shape);
     for (i, p) in soup.positions.iter_mut().enumerate() {

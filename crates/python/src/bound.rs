@@ -1,4 +1,4 @@
-//! A bound mesh: everything but the handles' transforms is solved.
+//! A bound mesh: everything is solved except the handles' targets.
 
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
@@ -28,34 +28,34 @@ use crate::welded::welded;
 pub struct BoundMesh {
     model: Arc<Model>,
     setup: Setup,
-    /// How positions of each handle's vertices are read, once there are some.
+    /// Each handle's rows of positions, read with the first positions.
     handles: Vec<HandleRows>,
-    /// Steps of several threads wait for one another.
+    /// Steps of several threads wait for each other.
     solving: Mutex<Solving>,
 }
 
-/// A handle's vertices as its positions name them.
+/// The vertices that a handle's positions are for.
 struct HandleRows {
-    /// In the order in which an array named them; `None` where a selector did.
+    /// In the order of the array that named them; `None` for a selector.
     order: Option<Vec<i64>>,
-    /// The surface vertices that it moves, ascending.
+    /// The handle's surface vertices, ascending.
     moved: Vec<u32>,
     rows: OnceLock<Result<Rows, String>>,
 }
 
-/// Where the handles are to go: as the solver takes it, and the positions of those that have some.
+/// The handles' targets for the solver, and the positions of the handles that have them.
 struct Targets {
     of_solver: Vec<Target>,
     positions: Vec<(usize, Vec<DVec3>)>,
 }
 
-/// What a step changes.
+/// The data that a step changes.
 struct Solving {
     solver: Solver,
-    /// Of each surface vertex.
+    /// One for each surface vertex.
     displacements: Vec<DVec3>,
     last: Step,
-    /// Whether there were targets already.
+    /// Whether targets were set before.
     has_targets: bool,
 }
 
@@ -107,7 +107,7 @@ pub fn bind<'py>(
 /// Binds a model to an edit.
 ///
 /// # Errors
-/// `ValueError`, as `pliant apply` refuses.
+/// `ValueError` with the refusal of `pliant apply`.
 pub fn bind_model(origin: Origin<'_>, model: Arc<Model>, edit: &Edit, cancel: &Cancel) -> PyResult<BoundMesh> {
     let name = origin.name();
     let setup = edit.file.resolve(&model);
@@ -182,7 +182,7 @@ impl BoundMesh {
     #[getter]
     fn warnings(&self, py: Python<'_>) -> Vec<String> {
         self.with(py, |solving| {
-            // Positions may hold what has no fixed vertex: that is known with the first targets.
+            // Positions may hold a part without a fixed vertex: only the first targets show this.
             let said = solving.solver.warnings().iter();
             let said = said.filter(|warning| solving.has_targets || !warning.is_of_unheld());
             self.setup.worded(&said.cloned().collect::<Vec<_>>())
@@ -227,7 +227,7 @@ impl BoundMesh {
 }
 
 impl BoundMesh {
-    /// The positions of all vertices with the handles moved so.
+    /// The positions of all vertices for these targets of the handles.
     ///
     /// # Errors
     /// `ValueError`, or a signal's exception.
@@ -251,10 +251,10 @@ impl BoundMesh {
         positions.map_err(refused)
     }
 
-    /// Tells about the last step by the report's names.
+    /// Fills in the last step's figures, under the report's names.
     ///
     /// # Errors
-    /// Where Python has no memory.
+    /// If Python has no memory.
     pub fn tell(&self, py: Python<'_>, told: &Bound<'_, PyDict>) -> PyResult<()> {
         told.set_item("method", self.method())?;
         told.set_item("free_vertices", self.free_count(py))?;
@@ -290,14 +290,14 @@ impl BoundMesh {
         Ok(targets)
     }
 
-    /// How a handle's positions are read.
+    /// A handle's rows of positions.
     fn rows(&self, handle: usize) -> &Result<Rows, String> {
         let HandleRows { order, moved, rows } = &self.handles[handle];
         rows.get_or_init(|| Rows::of(&self.model, &self.setup, handle, order.as_deref(), moved))
     }
 
     fn with<T: Send>(&self, py: Python<'_>, read: impl FnOnce(&Solving) -> T + Send) -> T {
-        // Another thread may hold it for as long as a step takes, and may need Python's lock to be stopped.
+        // Another thread may hold it during a whole step, and stopping that step may need Python's lock.
         py.detach(|| read(&self.solving.lock().unwrap_or_else(PoisonError::into_inner)))
     }
 

@@ -1,4 +1,4 @@
-//! One edit by several methods, as `pliant compare` does, without its picture.
+//! One edit by several methods, like `pliant compare` without its picture.
 
 use std::sync::Arc;
 
@@ -66,7 +66,7 @@ pub fn compare<'py>(
     Ok(outcomes)
 }
 
-/// Methods by label: those that are asked for, or all as a person begins with them.
+/// Methods by label: the given ones, or all with their defaults.
 fn asked<'py>(py: Python<'py>, methods: Option<&Bound<'py, PyAny>>) -> PyResult<Vec<(String, Bound<'py, PyAny>)>> {
     let Some(methods) = methods else {
         let all = METHODS.iter().map(|declaration| declaration.name);
@@ -105,7 +105,7 @@ fn asked<'py>(py: Python<'py>, methods: Option<&Bound<'py, PyAny>>) -> PyResult<
     Ok(asked)
 }
 
-/// Fills in what one method makes of the edit; returns its detail error.
+/// Fills in one method's result; returns its detail error.
 fn bent<'py>(
     py: Python<'py>,
     shape: &Shape,

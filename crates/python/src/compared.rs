@@ -1,4 +1,4 @@
-//! What differs between two files, and how much a shape is distorted.
+//! The differences of two files, and the distortion of a shape.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -33,7 +33,7 @@ pub fn distortion<'py>(
     as_dict(py, &distortion)
 }
 
-/// Finite positions for so many vertices.
+/// Finite positions for `vertex_count` vertices.
 fn rows(bent: &Bound<'_, PyAny>, count: usize) -> PyResult<Vec<DVec3>> {
     let bent = arrays::points(bent, "bent")?;
     if bent.len() != count {
@@ -46,12 +46,12 @@ fn rows(bent: &Bound<'_, PyAny>, count: usize) -> PyResult<Vec<DVec3>> {
     Ok(bent)
 }
 
-/// Of a surface whose vertices are moved to `bent`.
+/// The distortion of a surface whose vertices are moved to `bent`.
 pub fn distortion_of(model: &Model, bent: &[DVec3]) -> Distortion {
     Distortion::of(&model.surface, &model.topology, bent)
 }
 
-/// The surface vertices' positions: as far from rest as their first drawn ones.
+/// The surface vertices' positions: each has the displacement of its first drawn vertex.
 pub fn on_surface(model: &Model, bent: &[DVec3]) -> Vec<DVec3> {
     let rest = model.rest_positions();
     let mut surface: Vec<Option<DVec3>> = vec![None; model.surface.positions.len()];
@@ -66,7 +66,7 @@ pub fn on_surface(model: &Model, bent: &[DVec3]) -> Vec<DVec3> {
     each.map(|(moved, rest)| moved.unwrap_or(*rest)).collect()
 }
 
-/// By the report's names.
+/// A dict with the report's names.
 pub fn as_dict<'py>(py: Python<'py>, distortion: &Distortion) -> PyResult<Bound<'py, PyDict>> {
     let told = PyDict::new(py);
     told.set_item("edge_stretch_mean", distortion.edge_stretch_mean)?;
@@ -91,7 +91,7 @@ pub fn diff<'py>(
     differences.iter().map(|one| of_difference(py, one)).collect()
 }
 
-/// A file that was named or read.
+/// A file's path, or a file that was read.
 enum File {
     Named(PathBuf),
     Read(Arc<Loaded>),
@@ -113,7 +113,7 @@ impl File {
     }
 }
 
-/// As `pliant diff --json` tells it.
+/// A dict with the members of `pliant diff --json`.
 fn of_difference<'py>(py: Python<'py>, difference: &Difference) -> PyResult<Bound<'py, PyDict>> {
     let told = PyDict::new(py);
     told.set_item("place", &difference.place)?;

@@ -1,4 +1,4 @@
-//! Arguments as an edit: what `bind` takes are the edit format's members, with arrays of vertices as selections.
+//! Arguments as an edit: those of `bind` are the edit format's members, with arrays of vertices as selections.
 
 use pliant_deform::Arap;
 use pliant_editor::{EDIT_VERSION, EditFile};
@@ -10,7 +10,7 @@ use crate::arrays;
 use crate::refusal::refused;
 use crate::values::value;
 
-/// What `bind` takes beside the mesh. All that is `None` has the edit format's default.
+/// The arguments of `bind` beside the mesh. `None` stands for the edit format's default.
 pub struct Arguments<'py> {
     /// A name, or a name and options.
     pub method: Option<Bound<'py, PyAny>>,
@@ -28,25 +28,25 @@ pub struct Arguments<'py> {
     pub loose: Option<Bound<'py, PyAny>>,
 }
 
-/// What they describe.
+/// An edit, and the order of its handles' vertices.
 pub struct Edit {
-    /// As the edit format has it.
+    /// The edit in the edit format.
     pub file: EditFile,
-    /// Each handle's vertices in the order in which an array named them; `None` where a selector did.
+    /// Each handle's vertices in the order of the array that named them; `None` for a selector.
     pub orders: Vec<Option<Vec<i64>>>,
 }
 
 impl Arguments<'_> {
-    /// The edit that they describe, on a mesh of `vertex_count` vertices.
+    /// The arguments' edit on a mesh of `vertex_count` vertices.
     ///
     /// # Errors
-    /// `ValueError`, as the edit format refuses.
+    /// `ValueError` with the edit format's refusal.
     pub fn edit(&self, vertex_count: usize) -> PyResult<Edit> {
         let mut members = Map::new();
         let mut orders = Vec::new();
         members.insert("version".to_owned(), EDIT_VERSION.into());
         let method = match &self.method {
-            // Its options follow.
+            // The options follow.
             None => json!({ "name": "arap" }),
             Some(method) => match method.cast::<PyString>() {
                 Ok(name) => json!({ "name": name.to_cow()? }),
@@ -82,7 +82,7 @@ impl Arguments<'_> {
     }
 }
 
-/// Cages and examples come as numbers: a file that a name would lead to has no folder to be sought in.
+/// Refuses names of files: cages and examples are given as numbers, because a name has no folder to start from.
 fn refuse_files(edit: &mut EditFile) -> PyResult<()> {
     let named = edit.attachment_files().into_iter().map(|(name, _)| name).next();
     let examples = edit.examples_mut().any(|example| {
@@ -113,7 +113,7 @@ fn numbers(any: &Bound<'_, PyAny>, place: &str, vertex_count: usize) -> PyResult
     arrays::numbers(any, place, vertex_count).map(Some)
 }
 
-/// Handles by name, or in a row; adds the order of each one's vertices.
+/// Handles by name, or in a row; adds the order of each handle's vertices.
 fn handle_entries(
     handles: &Bound<'_, PyAny>,
     vertex_count: usize,
@@ -145,10 +145,10 @@ fn handle_entries(
     Ok(Value::Array(entries))
 }
 
-/// A handle's members, and its vertices where an array names them.
+/// A handle's members, and its vertices if an array names them.
 type HandleEntry = (Map<String, Value>, Option<Vec<i64>>);
 
-/// A selection, or a dict with `select` and what else a handle has.
+/// A selection, or a dict with `select` and a handle's other members.
 fn handle_entry(handle: &Bound<'_, PyAny>, place: &str, vertex_count: usize) -> PyResult<HandleEntry> {
     let mut entry = Map::new();
     let mut order = None;
@@ -222,7 +222,7 @@ fn field_value(number: f64, field: &str, place: &str) -> PyResult<Value> {
     finite(number, place).map(|number| json!(number))
 }
 
-/// JSON has no other numbers.
+/// JSON has only finite numbers.
 fn finite(number: f64, place: &str) -> PyResult<f64> {
     match number.is_finite() {
         true => Ok(number),

@@ -2,12 +2,12 @@
 //!
 //! # This crate
 //!
-//! What is here the package `pliant` re-exports, and its docstrings and stubs (`python/pliant/__init__.pyi`) say it to
-//! those who write Python.
+//! The package `pliant` re-exports this module, and its docstrings and stubs (`python/pliant/__init__.pyi`) document it
+//! for people who write Python.
 //!
-//! An edit is put together as the edit format has it (`edit`), so that methods, options, selections and refusals are
-//! the same; only the handles' transforms come later, with every step. Whatever takes long runs without Python's lock
-//! and stops at Ctrl-C (`interruptible`).
+//! `edit` builds an edit in the edit format, so that methods, options, selections and refusals are the same; only the
+//! handles' targets come later, with every step. Long calls run without Python's lock and stop at Ctrl-C
+//! (`interruptible`).
 
 mod arrays;
 mod bound;

@@ -1,4 +1,4 @@
-//! Files: read with everything in them, and saved with new positions.
+//! Files, read with their whole contents and saved with new positions.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

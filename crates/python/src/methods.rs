@@ -1,4 +1,4 @@
-//! The methods as Python sees them: their declarations as dicts.
+//! The methods' declarations as dicts.
 
 use pliant_deform::{METHODS, MethodDeclaration, OptionKind, OptionValue};
 use pyo3::prelude::*;

@@ -1,8 +1,8 @@
-//! Where a mesh comes from.
+//! The origin of a mesh.
 
 use std::path::Path;
 
-/// Where a mesh comes from: what refusals speak of.
+/// The origin of a mesh, which refusals name.
 #[derive(Clone, Copy, Debug)]
 pub enum Origin<'a> {
     /// A file.
@@ -12,7 +12,7 @@ pub enum Origin<'a> {
 }
 
 impl<'a> Origin<'a> {
-    /// The file's path, or what stands for it.
+    /// The file's path, or a word for arrays.
     pub fn name(self) -> &'a Path {
         match self {
             Self::File(path) => path,

@@ -17,7 +17,7 @@ pub fn refused(sentence: impl Display) -> PyErr {
     PyValueError::new_err(sentence.to_string())
 }
 
-/// What the engine refuses: an `OSError` where the disk is in the way, and a `ValueError` otherwise.
+/// The engine's refusal: an `OSError` for a failure of the disk, and a `ValueError` otherwise.
 pub fn of_engine(error: &EngineError) -> PyErr {
     match error {
         EngineError::File(error) => of_file(error),
@@ -27,7 +27,7 @@ pub fn of_engine(error: &EngineError) -> PyErr {
     }
 }
 
-/// An edit that does not fit the mesh. Of arrays it says "the mesh has" and never "the file".
+/// The refusal of an edit that does not fit the mesh. For arrays it says "the mesh has" and never "the file".
 pub fn of_edit(error: &EditError, origin: Origin<'_>) -> PyErr {
     let sentence = error.to_string();
     let speaks_of_counts = matches!(
@@ -44,7 +44,7 @@ pub fn of_edit(error: &EditError, origin: Origin<'_>) -> PyErr {
     }
 }
 
-/// An `OSError` of the kind that Python has for it, such as `FileNotFoundError`, with the file as `filename`.
+/// An `OSError` of Python's own kind, such as `FileNotFoundError`, with the file as `filename`.
 fn of_file(error: &FileError) -> PyErr {
     let number = match error.kind() {
         ErrorKind::NotFound => 2,
@@ -53,6 +53,6 @@ fn of_file(error: &FileError) -> PyErr {
         ErrorKind::IsADirectory => 21,
         _ => return PyOSError::new_err(error.to_string()),
     };
-    // Made of three values an OSError becomes the kind that the number names.
+    // An OSError of three values takes its kind from the number.
     PyOSError::new_err((number, error.reason(), error.file().as_os_str().to_owned()))
 }

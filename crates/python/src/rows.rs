@@ -1,4 +1,4 @@
-//! Positions as targets: which vertices a handle's rows are for, and where these rows take the surface.
+//! Positions as targets: the vertices of a handle's rows, and the places that the rows give the surface's vertices.
 
 use std::collections::HashMap;
 
@@ -6,27 +6,27 @@ use glam::DVec3;
 use pliant_editor::Setup;
 use pliant_mesh::{DrawnVertex, Model, SurfaceVertex};
 
-/// The rows of a handle's positions: which vertices they are for.
+/// The vertices of the rows of a handle's positions.
 #[derive(Debug)]
 pub struct Rows {
-    /// The vertex of each row, as selections number them.
+    /// The vertex of each row, with the numbers of selections.
     pub numbers: Vec<u32>,
-    /// Where each row's vertex rests.
+    /// The rest position of each row's vertex.
     rest: Vec<DVec3>,
-    /// The row that takes each of the handle's surface vertices along.
+    /// For each of the handle's surface vertices, the row that it follows.
     of_surface: Vec<(SurfaceVertex, u32)>,
-    /// The drawn vertices that go exactly to a row: its own, and those in the same place.
+    /// The drawn vertices that go exactly to a row: the row's vertex and the vertices in the same place.
     drawn: Vec<(u32, u32)>,
-    /// Rows of vertices in the same place, which must be the same.
+    /// Rows of vertices in the same place, which must be equal.
     alike: Vec<(u32, u32)>,
 }
 
 impl Rows {
-    /// For a handle that moves these surface vertices, ascending. `numbers` has its vertices in the order in which an
-    /// array named them; where a selector did, they ascend.
+    /// The rows of a handle that moves these surface vertices, ascending. `numbers` has its vertices in the order of
+    /// the array that named them; for a selector they ascend.
     ///
     /// # Errors
-    /// A sentence without its subject, where a row would stand for no vertex or for several, or a vertex has no row.
+    /// A sentence without its subject, if a row would be for no vertex or for several, or a vertex has no row.
     pub fn of(
         model: &Model,
         setup: &Setup,
@@ -105,7 +105,7 @@ impl Rows {
         Ok(rows)
     }
 
-    /// Where the handle's surface vertices go, ascending.
+    /// The targets of the handle's surface vertices, ascending.
     ///
     /// # Errors
     /// A sentence without its subject.
@@ -144,7 +144,7 @@ impl Rows {
         Ok(self.of_surface.iter().map(place).collect())
     }
 
-    /// Puts the drawn vertices exactly on their rows, which a sum of rest and displacement may miss by a rounding.
+    /// Puts the drawn vertices exactly on their rows: the sum of rest and displacement may miss them by a rounding.
     pub fn put(&self, positions: &[DVec3], drawn: &mut [DVec3]) {
         for &(place, row) in &self.drawn {
             drawn[place as usize] = positions[row as usize];
@@ -152,7 +152,7 @@ impl Rows {
     }
 }
 
-/// A position that compares as its bits; zeros of both signs are one.
+/// A position that is compared by its bits; zeros of both signs are equal.
 fn bits(position: DVec3) -> [u64; 3] {
     position.to_array().map(|number| (number + 0.0).to_bits())
 }

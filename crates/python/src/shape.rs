@@ -1,4 +1,4 @@
-//! A mesh as functions take it: one that was read from a file, or a pair of vertices and faces.
+//! A mesh as an argument: a mesh that was read from a file, or a pair of vertices and faces.
 
 use std::sync::Arc;
 
@@ -13,7 +13,7 @@ use crate::origin::Origin;
 use crate::refusal::refused;
 use crate::welded::welded;
 
-/// A mesh that a function was given.
+/// A function's mesh.
 pub enum Shape {
     /// From a file.
     Loaded(Arc<Loaded>),
@@ -24,7 +24,7 @@ pub enum Shape {
 /// The mesh at `place`.
 ///
 /// # Errors
-/// `ValueError` for what is none.
+/// `ValueError` for any other value.
 pub fn shape(any: &Bound<'_, PyAny>, place: &str) -> PyResult<Shape> {
     if let Ok(mesh) = any.cast::<Mesh>() {
         return Ok(Shape::Loaded(Arc::clone(mesh.get().loaded())));
@@ -41,7 +41,7 @@ pub fn shape(any: &Bound<'_, PyAny>, place: &str) -> PyResult<Shape> {
 }
 
 impl Shape {
-    /// What it shows.
+    /// The mesh's drawn vertices and triangles.
     pub fn drawn(&self) -> Drawn {
         match self {
             Self::Loaded(loaded) => loaded.model.rest(),
@@ -49,7 +49,7 @@ impl Shape {
         }
     }
 
-    /// How many vertices it shows.
+    /// The number of drawn vertices.
     pub fn vertex_count(&self) -> usize {
         match self {
             Self::Loaded(loaded) => loaded.model.drawn.vertex_count(),
@@ -57,7 +57,7 @@ impl Shape {
         }
     }
 
-    /// How many vertices selections number.
+    /// The number of vertices that selections number.
     pub fn file_vertex_count(&self) -> usize {
         match self {
             Self::Loaded(loaded) => loaded.model.drawn.file_vertex_count(),
@@ -65,7 +65,7 @@ impl Shape {
         }
     }
 
-    /// What refusals speak of.
+    /// The origin that refusals name.
     pub fn origin(&self) -> Origin<'_> {
         match self {
             Self::Loaded(loaded) => Origin::File(&loaded.path),
@@ -73,7 +73,7 @@ impl Shape {
         }
     }
 
-    /// How many triangles it shows.
+    /// The number of drawn triangles.
     pub fn triangle_count(&self) -> usize {
         match self {
             Self::Loaded(loaded) => loaded.model.drawn.triangle_count(),
@@ -81,7 +81,7 @@ impl Shape {
         }
     }
 
-    /// Its welded surface.
+    /// The mesh's welded surface.
     ///
     /// # Errors
     /// `KeyboardInterrupt`.

@@ -1,4 +1,4 @@
-//! Where each handle is to go, in world space: a transform from rest, or a position for each of its vertices.
+//! Each handle's target in world space: a transform from rest, or a position for each of its vertices.
 
 use glam::{DAffine3, DMat3, DVec3};
 use pliant_editor::{EDIT_VERSION, EditFile, HandleTransform, Setup};
@@ -10,17 +10,17 @@ use crate::arrays::{points, reals};
 use crate::refusal::refused;
 use crate::values::value;
 
-/// Where a handle is to go.
+/// A handle's target.
 #[derive(Debug)]
 pub enum Goal {
     /// A map of world positions, from rest.
     Map(DAffine3),
-    /// A position for each of its vertices.
+    /// A position for each of the handle's vertices.
     Rows(Vec<DVec3>),
 }
 
-/// One for each handle of the setup: an array, a list, a goal for the only handle, or a dict by names. A handle that a
-/// dict does not name is at rest. `vertex_count` tells how many rows a handle's positions have.
+/// A goal for each handle of the setup, from an array, a list, a goal for the only handle, or a dict by names. A handle
+/// that a dict does not name is at rest. `vertex_count` gives the number of rows of a handle's positions.
 ///
 /// # Errors
 /// `ValueError` naming the handle.
@@ -70,7 +70,7 @@ pub fn goals(
         .collect()
 }
 
-/// Whether a value is the only handle's goal, and no list of one goal.
+/// Whether a value is the only handle's goal, and not a list of one goal.
 fn stands_alone(any: &Bound<'_, PyAny>, vertex_count: impl Fn() -> Option<usize>) -> PyResult<bool> {
     let Ok((shape, _)) = reals(any, "") else {
         return Ok(false);
@@ -153,7 +153,7 @@ fn goal(any: &Bound<'_, PyAny>, place: &str, pivot: DVec3) -> PyResult<Goal> {
     Ok(Goal::Map(map))
 }
 
-/// Of a matrix of four columns, row by row. The last of four rows says nothing.
+/// The map of a matrix of four columns, row by row. A fourth row has no effect.
 fn of_matrix(matrix: &[f64], place: &str) -> PyResult<DAffine3> {
     if matrix.len() > 12 && matrix[12..] != [0.0, 0.0, 0.0, 1.0] {
         return Err(refused(format!(
@@ -175,7 +175,7 @@ fn affine(entry: impl Fn(usize, usize) -> f64, translation: &[f64]) -> DAffine3 
     }
 }
 
-/// A transform as the edit format has it.
+/// A transform in the edit format.
 fn of_format(any: &Bound<'_, PyAny>, place: &str, pivot: DVec3) -> PyResult<DAffine3> {
     let edit = json!({
         "version": EDIT_VERSION,

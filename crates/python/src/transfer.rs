@@ -1,4 +1,4 @@
-//! A pose of one mesh put onto another, as `pliant transfer` does.
+//! Puts a pose of one mesh onto another, like `pliant transfer`.
 
 use glam::DVec3;
 use pliant_deform::PosedShape;
@@ -63,7 +63,7 @@ pub fn transfer<'py>(
     Ok(arrays::of_points(py, positions)?.into_any())
 }
 
-/// Where the pose has the source's vertices.
+/// The positions of the source's vertices in the pose.
 fn posed(source: &Bound<'_, PyAny>, pose: &Bound<'_, PyAny>, own: &Drawn) -> PyResult<Vec<DVec3>> {
     let Ok(pose_mesh) = pose.cast::<Mesh>() else {
         let positions = arrays::points(pose, "pose")?;
@@ -97,7 +97,7 @@ fn posed(source: &Bound<'_, PyAny>, pose: &Bound<'_, PyAny>, own: &Drawn) -> PyR
     found.map_err(|error| of_engine(&error))
 }
 
-/// For each of the target's triangles that of the source.
+/// The source's triangle for each triangle of the target.
 fn partners(pairs: &Bound<'_, PyAny>, sources: usize, targets: usize) -> PyResult<Vec<Option<usize>>> {
     let mut partners = vec![None; targets];
     let pairs = arrays::pairs(pairs, "correspondences")?;

@@ -1,14 +1,14 @@
-//! What a person should know, as Python's warnings.
+//! Sentences for a person as Python's warnings.
 
 use std::ffi::CString;
 
 use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
 
-/// Warns of each sentence, at the line that called the function.
+/// Gives each sentence as a warning at the line that called the function.
 ///
 /// # Errors
-/// Where warnings are errors.
+/// If warnings are errors.
 pub fn warn(py: Python<'_>, sentences: &[String]) -> PyResult<()> {
     for sentence in sentences {
         let sentence = CString::new(sentence.replace('\0', " "))?;

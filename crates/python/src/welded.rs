@@ -8,7 +8,7 @@ use pyo3::PyResult;
 
 use crate::refusal::of_engine;
 
-/// The model of what arrays show.
+/// The model of arrays.
 ///
 /// # Errors
 /// `KeyboardInterrupt`.

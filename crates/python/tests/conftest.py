@@ -1,4 +1,4 @@
-"""Meshes for the tests, and the command line that results are compared with."""
+"""Meshes for the tests, and the command line for comparing results."""
 
 import os
 import shutil
@@ -11,7 +11,7 @@ import pliant
 
 ROOT = Path(__file__).parents[3]
 
-# A build with the workspace's tests has one more method, which shows how one is added.
+# A build with the workspace's tests has one more method, as an example of adding one.
 METHODS = [name for name in pliant.methods() if name != "identity"]
 
 
@@ -33,14 +33,14 @@ def mesh():
 
 @pytest.fixture
 def ends(mesh):
-    """The bar's two ends: what is held still, and the handle."""
+    """The bar's two ends: the fixed vertices and the handle."""
     height = mesh[0][:, 1]
     return {"fixed": np.flatnonzero(height < 0.1), "handles": {"top": np.flatnonzero(height > 0.9)}}
 
 
 @pytest.fixture(scope="session")
 def program():
-    """The `pliant` of this build, or the one that the variable PLIANT names."""
+    """The `pliant` of this build, or the one in the variable PLIANT."""
     named = os.environ.get("PLIANT") or shutil.which("pliant")
     built = [ROOT / "target" / profile / "pliant" for profile in ("release", "debug")]
     found = [Path(path) for path in [named, *built] if path and Path(path).is_file()]

@@ -1,4 +1,4 @@
-"""What binding and steps promise, on arrays."""
+"""The laws of binding and steps, on arrays."""
 
 import multiprocessing
 import os
@@ -40,7 +40,7 @@ def test_rest_gives_the_given_positions_to_the_bit(mesh, ends, method):
 
 
 def search_path():
-    """Where a script finds this folder's helpers and the package that is tested."""
+    """The search path of a script for this folder's helpers and the tested package."""
     return os.pathsep.join([os.path.dirname(__file__), os.environ.get("PYTHONPATH", "")])
 
 

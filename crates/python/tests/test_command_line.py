@@ -1,4 +1,4 @@
-"""What the command line does beside bending, by the same names and with the same results."""
+"""Functions with the names and results of the command line's commands."""
 
 import json
 import subprocess
@@ -19,7 +19,7 @@ def run(program, *words):
 
 @pytest.fixture
 def creature(tmp_path):
-    """The creature, and the same with a wave in it, as files."""
+    """Files of the creature and of the creature with a wave in it."""
     mesh = pliant.load(CREATURE)
     bent = mesh.vertices + 0.1 * np.sin(3 * mesh.vertices[:, ::-1])
     pliant.save(tmp_path / "pose.glb", mesh, bent)

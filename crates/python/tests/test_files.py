@@ -1,4 +1,4 @@
-"""Files: read, bent as the command line bends them, and saved with all that is in them."""
+"""Files: read, bent like on the command line, and saved with their whole content."""
 
 import errno
 import json
@@ -16,14 +16,14 @@ EDIT = json.loads((ASSETS / "creature.edit.json").read_text())
 
 
 def arguments(edit):
-    """An edit's members as `bind` takes them, and its transforms as `step` does."""
+    """An edit's members for `bind`, and its transforms for `step`."""
     members = {name: member for name, member in edit.items() if name not in ("version", "handles")}
     handles = {handle["name"]: {k: v for k, v in handle.items() if k not in ("name", "transform")} for handle in edit["handles"]}
     return {**members, "handles": handles}, {handle["name"]: handle.get("transform", {}) for handle in edit["handles"]}
 
 
 def applied(program, mesh, edit, folder, extension):
-    """What `pliant apply` makes of an edit."""
+    """The output of `pliant apply` for an edit."""
     (folder / "edit.json").write_text(json.dumps(edit))
     output = folder / f"applied{extension}"
     command = [program, "apply", mesh, "--edit", folder / "edit.json", "--output", output]

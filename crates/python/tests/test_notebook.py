@@ -1,4 +1,4 @@
-"""The notebook runs, and its figures are what it says they are."""
+"""The notebook runs, and its figures are correct."""
 
 import os
 import re
@@ -25,7 +25,7 @@ def test_the_tutorial_notebook_runs_with_libigl_and_pliant():
     print(text)
     pictures = [output for output in outputs if "image/png" in output.get("data", {})]
     assert len(pictures) == 2
-    # The shapes are one another's, as far as libigl's iterations go.
+    # The shapes are equal, up to the limit of libigl's iterations.
     shapes = re.findall(r"libigl energy (\S+) .*pliant (\S+) .*converged: (\w+)\), largest distance (\S+) of", text)
     assert len(shapes) == 3
     for libigl, own, converged, distance in shapes:

@@ -1,4 +1,4 @@
-"""Positions as targets, as igl, Open3D and pmp take them."""
+"""Positions as targets, like those of igl, Open3D and pmp."""
 
 import time
 
@@ -16,7 +16,7 @@ def moved(vertices, matrix):
 
 
 def waved(vertices):
-    """Each vertex its own way."""
+    """Moves each vertex its own way."""
     return moved(vertices, quarter_turn((0.1, 0, 0.05))) + 0.01 * np.sin(30 * vertices[:, ::-1])
 
 
@@ -104,7 +104,7 @@ def test_a_soft_handle_pulls_towards_its_rows(mesh, ends):
 def test_vertices_in_the_same_place_go_together(mesh, ends):
     vertices, faces = mesh
     top = ends["handles"]["top"]
-    # A seam: the last vertex once more, and one triangle on it.
+    # A seam: a copy of the last vertex, with one triangle.
     twice = np.concatenate([vertices, vertices[-1:]])
     faces = np.where(np.arange(len(faces))[:, None] == len(faces) - 1, np.where(faces == 479, 480, faces), faces)
     bound = pliant.bind(twice, faces, fixed=ends["fixed"], handles={"top": top})
@@ -177,7 +177,7 @@ def test_libigl_s_constraints_give_libigl_s_shape(mesh, ends):
     arap.energy = igl.ARAPEnergyType.ARAP_ENERGY_TYPE_SPOKES
     arap.max_iter = 3000
     igl.arap_precomputation(vertices, faces.astype(np.int64), 3, b, arap)
-    # It starts where ours ends, because there are several minima.
+    # It starts from our result, because there are several minima.
     method = {"name": "arap", "energy": "spokes", "tolerance": 1e-9, "max_iterations": 4000}
     bound = pliant.bind(vertices, faces, handles={"b": b}, method=method)
     bent = bound.step({"b": bc})

@@ -1,4 +1,4 @@
-"""The stubs and docstrings say what there is."""
+"""The stubs and docstrings match the module."""
 
 import ast
 import inspect
@@ -63,7 +63,7 @@ def test_every_function_and_member_is_in_the_stubs_with_its_parameters():
 
 
 def documented(body, of=""):
-    """Every docstring of the stubs by the name of what it is of."""
+    """Every docstring of the stubs, by its function's, class's or member's name."""
     for node in body:
         if isinstance(node, (ast.FunctionDef, ast.ClassDef)):
             if ast.get_docstring(node):

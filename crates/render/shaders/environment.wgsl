@@ -99,7 +99,7 @@ fn fs_prefiltered(in: EnvironmentFragment) -> @location(0) vec4f {
     return vec4f(sum / max(weights, 1e-4), 1.0);
 }
 
-// Cosine-weighted mean radiance over the hemisphere: the irradiance that a diffuse albedo is multiplied by, divided by
+// Cosine-weighted mean radiance over the hemisphere: the irradiance by which a diffuse albedo is multiplied, divided by
 // π.
 @fragment
 fn fs_irradiance(in: EnvironmentFragment) -> @location(0) vec4f {

@@ -19,7 +19,7 @@ struct Shadow {
 @group(1) @binding(1) var occlusion: texture_2d<f32>;
 @group(1) @binding(2) var occlusion_sampler: sampler;
 
-// The share of light that is lost under what touches the ground, and under what is over it.
+// The share of light that is lost under parts that touch the ground, and under parts above it.
 const TOUCHING: f32 = 0.8;
 const OVER: f32 = 0.65;
 

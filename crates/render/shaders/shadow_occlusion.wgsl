@@ -1,4 +1,4 @@
-// How near above the ground the surface is, seen from below the ground.
+// The height of the surface just above the ground, seen from below the ground.
 #include "lib/frame.wgsl"
 #include "lib/surface_vertex.wgsl"
 
@@ -8,7 +8,7 @@ fn vs_occlusion(@location(0) position: vec3f) -> @builtin(position) vec4f {
     return clip_from_vertex(position);
 }
 
-// Red is what nearly touches the ground, green what is over it.
+// Red marks parts that nearly touch the ground, green marks parts above it.
 @fragment
 fn fs_occlusion(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let near = position.z;

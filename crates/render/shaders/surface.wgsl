@@ -6,7 +6,7 @@
 #include "lib/tone.wgsl"
 
 // `MatcapUniform` in crates/render/src/frame/uniforms.rs. The matcap texture is a sphere seen from the eye: its left
-// half is half the diffuse light, which the colour is multiplied by; its right half is the specular light, which is
+// half is half the diffuse light, by which the colour is multiplied; its right half is the specular light, which is
 // added.
 struct Matcap {
     // Linear.
@@ -23,10 +23,10 @@ struct Matcap {
 
 struct SurfaceFragment {
     @builtin(position) @invariant position_clip: vec4f,
-    // Not of unit length.
+    // Not a unit vector.
     @location(0) normal_view: vec3f,
     @location(1) position_view: vec3f,
-    // As `region_share` gives it; alpha is how much of the surface's own colour it replaces.
+    // As `region_share` gives it; alpha is the share of the surface's own colour that it replaces.
     @location(2) region: vec4f,
 }
 

@@ -42,7 +42,7 @@ fn fs_visible(in: LineFragment) -> @location(0) vec4f {
     return in.colour * coverage(in);
 }
 
-// Without caps: overlapping caps of transparent lines would be darker than the rest.
+// No caps here: overlapping caps of transparent lines would be darker than the rest.
 @fragment
 fn fs_hidden(in: LineFragment) -> @location(0) vec4f {
     return in.colour * (coverage(in) * in.hidden_share * f32(beyond_px(in) <= 0.0));

@@ -121,7 +121,7 @@ impl IdAttachments {
 }
 
 impl PixelRect {
-    /// The whole of a picture of this width and height.
+    /// A whole picture of this width and height.
     pub const fn whole([width, height]: [u32; 2]) -> Self {
         Self {
             x: 0,

@@ -171,7 +171,7 @@ impl Renderer {
         })
     }
 
-    /// Creates and uploads what the frame needs.
+    /// Creates and uploads the resources of the frame.
     fn prepare<'a>(&mut self, frame: &'a Frame<'a>, samples: Samples) -> Result<PreparedFrame<'a>, RenderError> {
         let overlays = OverlayBatch::of(frame.overlays);
         self.overlay_triangles

@@ -50,7 +50,7 @@ fn the_id_in_each_pixel_is_the_triangle_that_a_ray_hits() {
                 let (origin, direction) = ray(&view, x, y);
                 let seen = ids[(y * SIZE_PX[0] + x) as usize];
                 match shape.ray(origin, direction) {
-                    // Too close to an edge to decide.
+                    // This is too close to an edge to decide.
                     Some((_, margin)) if margin < 0.02 => {}
                     Some((triangle, _)) => {
                         compared += 1;

@@ -1,4 +1,4 @@
-//! Laws of weak devices: what one lacks (compute, large buffers, timers, numbered triangles) changes no picture.
+//! Laws of weak devices: their gaps (compute, large buffers, timers, numbered triangles) change no picture.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may fail by panicking")]
 
 mod rig;
@@ -9,11 +9,11 @@ use pliant_render::{
 };
 use rig::{SIZE_PX, Shape, draw, oblique_view, renderer};
 
-/// How far the weak device's buffers reach. Real ones end at 128 MB; with so little, a mesh that a test draws in no time
-/// takes several.
+/// The limit of the weak device's buffers. Real ones end at 128 MB; with this limit, a mesh that a test draws quickly
+/// needs several.
 const LARGEST_BUFFER: u64 = 1 << 20;
 
-/// The least that WebGPU's downlevel devices offer, and less.
+/// The lowest limits that WebGPU's downlevel devices offer, and lower ones.
 fn weak_limits(adapter: &wgpu::Adapter) -> wgpu::Limits {
     let least = wgpu::Limits {
         max_compute_workgroup_storage_size: 0,
@@ -31,7 +31,7 @@ fn weak_limits(adapter: &wgpu::Adapter) -> wgpu::Limits {
     least.using_alignment(adapter.limits())
 }
 
-/// A renderer on the device that tests share, opened with no feature and the least limits.
+/// A renderer on the device that tests share, opened with no feature and the lowest limits.
 fn weak() -> Renderer {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
     let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default())).unwrap();
@@ -48,7 +48,7 @@ fn shape() -> Shape {
     Shape::open_ring(600, 143)
 }
 
-/// By every shading, with lines on it and marks over it.
+/// Every shading, with lines on the surface and marks over it.
 fn pictures(renderer: &mut Renderer, surface: &mut Surface) -> Vec<Image> {
     let seam = SurfaceLine {
         ends: [EdgePoint::at(0), EdgePoint::at(143)],
@@ -129,6 +129,6 @@ fn a_weak_device_says_that_it_cannot_number_triangles() {
     let refused = weak.pick(&mut IdTarget::new(), SIZE_PX, PixelRect::whole(SIZE_PX), &frame);
     assert!(matches!(refused, Err(RenderError::NoTriangleNumbers)));
     assert_eq!(weak.device_ms(), None, "it has no timer");
-    // What it can do goes on.
+    // Its other functions still work.
     weak.draw_to_image(SIZE_PX, Samples::Four, &frame).unwrap();
 }

@@ -30,7 +30,7 @@ pub enum Command {
     Help,
     /// Build Pliant and open its window.
     Run {
-        /// A mesh in place of the sample.
+        /// A mesh instead of the sample.
         file: Option<PathBuf>,
         /// Whether packages may be installed without asking.
         consent: Consent,
@@ -63,7 +63,7 @@ pub enum Command {
     Python,
 }
 
-/// Which samples to make, how fine, and where to put them.
+/// The samples to make, their size, and their folder.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub struct Order {
     /// Samples to make; empty for all.

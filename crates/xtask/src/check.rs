@@ -1,4 +1,4 @@
-//! `cargo xtask check`: the checks that are fast enough to run while working.
+//! `cargo xtask check`: the checks that are fast enough during work.
 
 use std::time::Instant;
 
@@ -18,7 +18,7 @@ pub fn check() -> Result<(), String> {
     formatting(&mut verdict);
     clippy(&mut verdict);
     dependencies(&mut verdict);
-    // Of the whole workspace, because without some of it other features would build all of it a second time.
+    // This builds the whole workspace, because without some crates other features would build all of it a second time.
     let units = ["test", "--locked", "--workspace", "--lib", "--bins", "--no-fail-fast"];
     verdict.tests("units", &mut process::cargo(&units));
     verdict.conclude(started, Skips::Named)
@@ -49,13 +49,13 @@ pub fn documentation(verdict: &mut Verdict) {
     verdict.step("documentation", doc.env("RUSTDOCFLAGS", "-D warnings"));
 }
 
-/// What checks dependencies.
+/// The tool that checks dependencies.
 const CARGO_DENY: Tool = Tool {
     program: "cargo-deny",
     install: "cargo install cargo-deny",
 };
 
-/// Checks the dependencies' licences and sources by `deny.toml`, and the known faults in them if their database is here.
+/// Checks the dependencies' licences and sources by `deny.toml`, and their known faults if the database is present.
 fn dependencies(verdict: &mut Verdict) {
     if let Err(sentence) = CARGO_DENY.find() {
         return verdict.skip(&format!("the dependencies' licences and faults ({sentence})"));

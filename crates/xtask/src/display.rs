@@ -23,7 +23,7 @@ impl Display {
         Self::with(&[])
     }
 
-    /// The same, whose pixels lie in a file of `folder`: [`Screen`] reads them.
+    /// The same with its pixels in a file of `folder`, which [`Screen`] reads.
     ///
     /// # Errors
     /// One sentence if Xvfb can't be started or the folder can't be made.
@@ -73,16 +73,16 @@ impl Display {
     }
 }
 
-/// What a virtual display shows.
+/// The picture of a virtual display.
 pub struct Screen {
     file: File,
-    /// Where the pixels begin in the file, and how many bytes a row takes.
+    /// The start of the pixels in the file, and the bytes of a row.
     start: u64,
     row: u64,
     size_px: [u64; 2],
 }
 
-/// The side of what is looked at in the middle.
+/// The side of the examined square in the middle.
 const MIDDLE_PX: u64 = 160;
 
 impl Screen {
@@ -94,7 +94,8 @@ impl Screen {
         let path = folder.join("Xvfb_screen0");
         let cannot = |e: std::io::Error| format!("{} can't be read: {e}.", path.display());
         let mut file = File::open(&path).map_err(cannot)?;
-        // An X window dump: a header of 25 numbers, its name, the colour table of 12 bytes each, the pixels.
+        // The file is an X window dump: a header of 25 numbers, its name, the colour table of 12 bytes each, the
+        // pixels.
         let mut header = [0_u8; 100];
         file.read_exact(&mut header).map_err(cannot)?;
         let number = |index: usize| {

@@ -1,9 +1,9 @@
-//! Reading and writing files, with sentences for what fails.
+//! Reading and writing files, with sentences for failures.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Makes an empty folder, without what was there.
+/// Makes an empty folder, removing earlier content.
 ///
 /// # Errors
 /// One sentence naming the folder.
@@ -12,7 +12,7 @@ pub fn fresh_folder(folder: &Path) -> Result<(), String> {
     fs::create_dir_all(folder).map_err(|e| format!("{} can't be made: {e}.", folder.display()))
 }
 
-/// Removes a folder with all that is in it, if it is there.
+/// Removes a folder with its content, if it exists.
 ///
 /// # Errors
 /// One sentence naming the folder.
@@ -60,7 +60,7 @@ pub fn text(path: &str) -> Result<String, String> {
     String::from_utf8(read(&file)?).map_err(|e| format!("{} is not UTF-8: {e}.", file.display()))
 }
 
-/// Copies a file, and makes the folder that it comes into. Its permissions come along, its time does not.
+/// Copies a file, and makes its new folder. The copy keeps the permissions, but not the time.
 ///
 /// # Errors
 /// One sentence naming the file.
@@ -72,10 +72,10 @@ pub fn copy(from: &Path, to: &Path) -> Result<(), String> {
         .map_err(|e| format!("{} can't be copied to {}: {e}.", from.display(), to.display()))
 }
 
-/// Copies a folder with all that is in it.
+/// Copies a folder with its content.
 ///
 /// # Errors
-/// One sentence naming what can't be copied.
+/// One sentence naming the failed copy.
 pub fn copy_folder(from: &Path, to: &Path) -> Result<(), String> {
     for file in all_files(from)? {
         copy(&from.join(&file), &to.join(&file))?;

@@ -1,5 +1,5 @@
-//! `cargo xtask gallery`: draws the samples' edits by every method into the docs, with their figures, and two legs that
-//! are near each other, one of which is moved, by the methods that bend space.
+//! `cargo xtask gallery`: draws the samples' edits by every method into the docs, with their figures, and two adjacent
+//! legs, one of which is moved, by the methods that bend space.
 
 use std::fs;
 use std::process::Command;
@@ -7,10 +7,10 @@ use std::process::Command;
 use crate::assets::SAMPLES;
 use crate::process::{build_program, cargo, said, target_folder};
 
-/// The methods of the gallery. Beside each method with its defaults, options that change what it can do.
+/// The methods of the gallery. Besides each method with its defaults, options that change its abilities.
 const METHODS: &str = "bilaplacian,poisson,laplacian,frames,frames:iterations=20,arap,arap:energy=smooth,primo,shells";
 
-/// The coordinates of cages that the legs are drawn by, and the other methods that they are measured by.
+/// The coordinates of cages for the legs' pictures, and the other methods for their figures.
 const CAGES: [&str; 3] = [
     "cage:coordinates=mean-value",
     "cage:coordinates=green",
@@ -18,7 +18,7 @@ const CAGES: [&str; 3] = [
 ];
 const OF_SPACE: [&str; 5] = ["rbf", "mls", "lattice", "embedded", "space-primo"];
 
-/// The sample that is drawn with wrinkles and without in place of by all methods.
+/// The sample drawn with wrinkles and without, instead of by all methods.
 const FACE: &str = "face";
 
 /// Discrete shells from paper to rubber.
@@ -31,7 +31,7 @@ const SIZE: &str = "1200x640";
 /// `docs/methods.md`, each between its marks.
 ///
 /// # Errors
-/// One sentence naming what can't be built, drawn or written.
+/// One sentence naming the failed build, picture or file.
 pub fn gallery() -> Result<(), String> {
     build_program()?;
     let root = crate::root();
@@ -69,7 +69,7 @@ pub fn gallery() -> Result<(), String> {
     fs::write(&page, text).map_err(|e| format!("{} can't be written: {e}.", page.display()))
 }
 
-/// Draws an edit of a sample by these methods into `docs/gallery/PICTURE.png`; the table of its figures.
+/// Draws an edit of a sample by these methods into `docs/gallery/PICTURE.png`; returns the table of its figures.
 fn sheet(picture: &str, sample: &str, edit: &str, methods: &str, look: &[&str]) -> Result<String, String> {
     let root = crate::root();
     let mut command = Command::new(target_folder().join("release/pliant"));
@@ -85,7 +85,7 @@ fn mark(name: &str) -> String {
     format!("<!-- figures of {name} -->\n")
 }
 
-/// `text` with this table behind the sample's mark, in place of the block that is there.
+/// `text` with this table after the sample's mark, instead of the present block.
 fn with_table(text: &str, name: &str, table: &str) -> Option<String> {
     let (before, rest) = text.split_once(&mark(name))?;
     let after = match rest.strip_prefix("```text\n") {

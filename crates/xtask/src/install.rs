@@ -21,11 +21,11 @@ pub enum Consent {
 pub enum Prepared {
     /// Everything is installed.
     Complete,
-    /// Something is missing, on a system whose packages are unknown: the sentence says what is skipped.
+    /// Something is missing, on a system with unknown packages: the sentence names the skipped part.
     Without(String),
 }
 
-/// Checks `requirements` and installs missing packages if allowed; `purpose` says in messages what they are for.
+/// Checks `requirements` and installs missing packages if allowed; `purpose` gives their purpose in messages.
 ///
 /// # Errors
 /// One sentence naming the packages, if the system has apt but they can't be installed.

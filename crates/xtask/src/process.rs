@@ -58,7 +58,7 @@ pub fn build_program() -> Result<(), String> {
     ]))
 }
 
-/// The folder in which cargo keeps what it fetched.
+/// The folder of cargo's downloads.
 pub fn cargo_home() -> PathBuf {
     std::env::var_os("CARGO_HOME").map_or_else(
         || std::env::home_dir().unwrap_or_default().join(".cargo"),
@@ -88,7 +88,7 @@ pub fn succeed(command: &mut Command) -> Result<(), String> {
     }
 }
 
-/// What a command prints.
+/// The output of a command.
 ///
 /// # Errors
 /// One sentence with the command line, if it can't be started or fails.

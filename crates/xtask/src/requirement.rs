@@ -1,17 +1,17 @@
-//! What building and testing Pliant needs from the system, how to detect it, and which package provides it.
+//! The requirements of building and testing Pliant: their detection, and the packages that provide them.
 
 use crate::{process, system};
 
-/// Something that must be installed.
+/// A requirement that must be installed.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Requirement {
-    /// How to detect it.
+    /// Its detection.
     pub evidence: Evidence,
     /// The Debian and Ubuntu package that provides it.
     pub package: &'static str,
 }
 
-/// How to detect something.
+/// The way to detect a requirement.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub enum Evidence {
     /// A program in `PATH`.
@@ -40,7 +40,7 @@ const fn tool(name: &'static str, package: &'static str) -> Requirement {
     }
 }
 
-/// For pictures: Vulkan and some driver.
+/// The requirements of pictures: Vulkan and some driver.
 pub const PICTURES: &[Requirement] = &[
     library("libvulkan.so.1", "libvulkan1"),
     Requirement {
@@ -49,7 +49,7 @@ pub const PICTURES: &[Requirement] = &[
     },
 ];
 
-/// For a window: the libraries that winit loads at run time.
+/// The requirements of a window: the libraries that winit loads at run time.
 pub const WINDOW: &[Requirement] = &[
     library("libX11.so.6", "libx11-6"),
     library("libX11-xcb.so.1", "libx11-xcb1"),
@@ -60,8 +60,8 @@ pub const WINDOW: &[Requirement] = &[
     library("libwayland-client.so.0", "libwayland-client0"),
 ];
 
-/// For the tests: a virtual display, a tool that moves its mouse, the driver that pictures are compared on, and the layer
-/// that checks how it is used.
+/// The requirements of the tests: a virtual display, a tool that moves its mouse, the driver for comparing pictures,
+/// and the layer that checks its use.
 pub const TESTS: &[Requirement] = &[
     Requirement {
         evidence: Evidence::SoftwareVulkanDriver,
@@ -77,7 +77,7 @@ pub const TESTS: &[Requirement] = &[
     tool("wmctrl", "wmctrl"),
 ];
 
-/// The packages of the libraries among the requirements: what a package of Pliant depends on.
+/// The packages of the libraries among the requirements: the dependencies of a package of Pliant.
 pub fn library_packages(requirements: &[&[Requirement]]) -> Vec<&'static str> {
     let libraries = requirements.iter().copied().flatten();
     let libraries = libraries.filter(|requirement| matches!(requirement.evidence, Evidence::Library(_)));

@@ -10,7 +10,7 @@ use crate::requirement::{PICTURES, WINDOW};
 /// headless.
 ///
 /// # Errors
-/// One sentence naming what failed.
+/// One sentence naming the failure.
 pub fn run(file: Option<&Path>, consent: Consent) -> Result<(), String> {
     let has_display = ["DISPLAY", "WAYLAND_DISPLAY"]
         .iter()

@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 
 use crate::process;
 
-/// The operating system, as far as installing packages is concerned.
+/// The operating system, for the installation of packages.
 #[derive(Clone, PartialEq, Debug)]
 pub enum System {
-    /// Debian, Ubuntu or a derivative: packages are installed with apt.
+    /// Debian, Ubuntu or a derivative: apt installs packages.
     Debian {
         /// Its name in `os-release`.
         name: String,
@@ -103,7 +103,7 @@ pub fn vulkan_drivers() -> Vec<PathBuf> {
     files
 }
 
-/// The manifest of Mesa's software driver, which pictures are compared on.
+/// The manifest of Mesa's software driver, on which pictures are compared.
 pub fn software_vulkan_driver() -> Option<PathBuf> {
     vulkan_drivers().into_iter().find(|file| {
         let name = file.file_name().unwrap_or_default().to_string_lossy();

@@ -33,7 +33,7 @@ pub fn test(filters: &[String], consent: Consent) -> Result<(), String> {
         check::documentation(&mut verdict);
     }
     let mut tests = process::cargo(&["test", "--locked", "--workspace", "--no-fail-fast"]);
-    // Show the output of passing tests, because it says what they skip.
+    // Show the output of passing tests, because it names skipped parts.
     tests.args(["--", "--show-output"]).args(filters);
     let display = match &prepared {
         Prepared::Complete => Some(Display::start()?),
@@ -58,7 +58,7 @@ pub fn test(filters: &[String], consent: Consent) -> Result<(), String> {
     verdict.conclude(started, skips)
 }
 
-/// Sets the virtual display and the driver that pictures are compared on.
+/// Sets the virtual display and the driver for comparing pictures.
 fn set_environment(tests: &mut Command, display: Option<&Display>) {
     tests.env_remove("WAYLAND_DISPLAY");
     match display {

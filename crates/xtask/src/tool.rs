@@ -1,10 +1,10 @@
-//! Programs that some commands use where they are installed.
+//! Programs that some commands use if they are installed.
 
 use std::path::PathBuf;
 
 use crate::process;
 
-/// A program that whoever runs a command can install.
+/// A program that the caller of a command can install.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Tool {
     /// Its name in `PATH`.
@@ -14,10 +14,10 @@ pub struct Tool {
 }
 
 impl Tool {
-    /// Where it is.
+    /// Its path.
     ///
     /// # Errors
-    /// One sentence naming it and how to install it.
+    /// One sentence naming it and its installation.
     pub fn find(self) -> Result<PathBuf, String> {
         process::program(self.program).ok_or_else(|| format!("{} is not installed: {}", self.program, self.install))
     }

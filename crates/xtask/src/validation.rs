@@ -1,7 +1,7 @@
-//! The tests of pictures once more, under Vulkan's validation layer: any complaint of it is a failure.
+//! The tests of pictures once more, under Vulkan's validation layer: any of its messages is a failure.
 //!
-//! Barriers that are missing, or sizes that a driver happens to round up, show on some cards alone; the layer sees them
-//! on every one.
+//! Missing barriers, or sizes that a driver happens to round up, show on some cards alone; the layer sees them on every
+//! one.
 
 use std::path::Path;
 use std::time::Instant;
@@ -12,7 +12,7 @@ use crate::{process, system};
 /// The tests of pictures, one process each.
 const TESTS: [&str; 5] = ["pictures", "overlays", "picks", "large", "weak"];
 
-/// With what the layer says that it is at work, and that it looks for missing barriers, too.
+/// The layer's message that it is active, and that it also checks for missing barriers.
 const AT_WORK: [&str; 2] = [
     "Khronos Validation Layer Active",
     "VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION",
@@ -40,8 +40,8 @@ pub fn pictures(verdict: &mut Verdict) {
             .env("VK_ICD_FILENAMES", &driver)
             .env("VK_INSTANCE_LAYERS", "VK_LAYER_KHRONOS_validation")
             .env("VK_LAYER_SETTINGS_PATH", &folder)
-            // wgpu would take the layer's messages for itself, and names its shaders' language, which older layers
-            // don't know.
+            // wgpu would intercept the layer's messages, and it names its shaders' language, which older layers don't
+            // know.
             .env("WGPU_VALIDATION", "0")
             .env("WGPU_DEBUG", "0");
         verdict.tests(&name, &mut command);
@@ -50,7 +50,7 @@ pub fn pictures(verdict: &mut Verdict) {
     }
 }
 
-/// Tells the layer what to look for, and where to write what it finds.
+/// Sets the layer's checks, and its output file.
 fn configure(folder: &Path, log: &Path) -> Result<(), String> {
     let settings = format!(
         "khronos_validation.enables = VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT\n\
@@ -65,7 +65,7 @@ fn configure(folder: &Path, log: &Path) -> Result<(), String> {
     written.map_err(|e| format!("{} can't be written: {e}.", folder.display()))
 }
 
-/// An error if the layer complained, or if it was not at work.
+/// An error if the layer had messages, or if it was not active.
 fn judge(log: &str) -> Result<(), String> {
     let mut complaints = log
         .lines()

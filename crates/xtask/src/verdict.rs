@@ -1,4 +1,4 @@
-//! Counts test results: the sum of all `test result:` lines and of the steps run here.
+//! Counts test results: the sum of all `test result:` lines and of the steps of this program.
 
 use std::collections::BTreeSet;
 use std::io::{BufRead, BufReader, Write};
@@ -20,10 +20,10 @@ pub struct Verdict {
     in_successes: bool,
 }
 
-/// How tests that were skipped without a graphics device or a display are counted.
+/// The treatment of tests that were skipped without a graphics device or a display.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Skips {
-    /// They are only listed: a user's machine may have neither, nor may a system whose packages are not known.
+    /// They are only listed: a user's machine may have neither, nor may a system with unknown packages.
     Named,
     /// They count as failures: continuous integration installed what both need.
     Failures,
@@ -37,7 +37,7 @@ const NEEDS_GRAPHICS: [&str; 4] = [
     "skipped: the real window",
 ];
 
-/// What to do with a line of output.
+/// The treatment of a line of output.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 enum Worth {
     Showing,
@@ -67,7 +67,7 @@ impl Verdict {
         }
     }
 
-    /// Counts something that was checked as a step with this name.
+    /// Counts a check as a step with this name.
     pub fn record(&mut self, name: &str, result: Result<(), String>, started: Instant) {
         let word = match result {
             Ok(()) => {
@@ -83,7 +83,7 @@ impl Verdict {
         self.steps.push(step(name, word, started));
     }
 
-    /// Names something that is not checked, as a test of pictures does that has no device.
+    /// Names a skipped check, like that of a test of pictures without a device.
     pub fn skip(&mut self, sentence: &str) {
         self.skipped.insert(format!("skipped: {sentence}"));
     }
@@ -111,7 +111,7 @@ impl Verdict {
         }
     }
 
-    /// Processes one line of cargo's output. Output of passing tests is hidden, except for what they skip.
+    /// Processes one line of cargo's output. Output of passing tests is hidden, except for the names of skipped parts.
     fn count(&mut self, line: &str) -> Worth {
         if line == "successes:" {
             self.in_successes = true;
@@ -160,7 +160,7 @@ impl Verdict {
         result
     }
 
-    /// The summary and the result, unprinted: a test that printed lines like those counted here would be counted.
+    /// The summary and the result, as text: a test that printed such lines would be counted.
     fn judge(mut self, seconds: f64, skips: Skips) -> (String, Result<(), String>) {
         if skips == Skips::Failures {
             let needed = |line: &&String| NEEDS_GRAPHICS.iter().any(|start| line.starts_with(start));
@@ -250,7 +250,7 @@ mod tests {
             ("skipped: pictures (no adapter)", Skips::Failures, true),
             ("skipped: the real window (no Xvfb)", Skips::Failures, true),
             ("skipped: the real window (no Xvfb)", Skips::Named, false),
-            ("skipped: there is no ../shared/data/scans", Skips::Failures, false),
+            ("skipped: there is no horse.ply", Skips::Failures, false),
         ] {
             let mut verdict = Verdict::default();
             verdict.count(line);

@@ -1,4 +1,4 @@
-//! The parent: hands out cases, ends a child that does not come back, tells what broke a law, and makes it smaller.
+//! The parent: it sends cases, ends a child that does not answer, reports broken laws, and minimises their cases.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -17,13 +17,13 @@ use crate::table::Table;
 /// The processor time after which a command is ended.
 const MOST_CPU_MS: u64 = 25_000;
 
-/// The time after which a command is ended that does nothing.
+/// The time after which an idle command is ended.
 const MOST_IDLE: Duration = Duration::from_secs(20);
 
-/// How often one law is told of for one kind.
+/// The most reports of one law for one kind.
 const TOLD: usize = 12;
 
-/// How many folders of one law and kind are kept.
+/// The most folders kept for one law and kind.
 const KEPT: usize = 2;
 
 /// Runs cases from `seed` on.
@@ -61,7 +61,7 @@ pub fn drive(seed: u64, count: u64, kind: Option<Kind>) -> ExitCode {
             }
             let mut shrunk = String::new();
             if *times <= KEPT {
-                // Once a case, before it is run again.
+                // Once per case, before it is run again.
                 if kept.is_empty() {
                     kept = format!("; its folder is {}", keep(scratch.path(), kind, number).display());
                 }
@@ -88,7 +88,7 @@ pub fn drive(seed: u64, count: u64, kind: Option<Kind>) -> ExitCode {
     }
 }
 
-/// Copies a case's folder to where it stays, as it was `before` the commands and as it is now.
+/// Copies a case's folder to its final place, in the state `before` the commands and in the present one.
 fn keep(scratch: &Path, kind: Kind, number: u64) -> PathBuf {
     let kept = std::env::temp_dir()
         .join("pliant-hostile")
@@ -104,7 +104,7 @@ fn keep(scratch: &Path, kind: Kind, number: u64) -> PathBuf {
     kept
 }
 
-/// A child that takes cases.
+/// A child that runs cases.
 struct Worker {
     scratch: PathBuf,
     child: Child,
@@ -141,7 +141,7 @@ impl Worker {
         }
     }
 
-    /// Has a case run; gives what came of it, with the save or the command that ended it as `last`.
+    /// Runs a case; returns its result, with the save or the command that ended it as `last`.
     fn case(&mut self, number: u64, kind: Kind, without: &[usize]) -> Value {
         let without: Vec<String> = without.iter().map(usize::to_string).collect();
         let order = format!("{number} {} {}\n", kind.name(), without.join(" "));
@@ -189,9 +189,9 @@ impl Worker {
         }
     }
 
-    /// What came of a case that ended the child. The next case gets another one.
+    /// The result of a case that ended the child. The next case gets another child.
     fn died(&mut self, law: &str, what: &str, last: Value, kind: Kind) -> Value {
-        // It can't tell any more how many changes there were; a mesh has none, anything else at most three.
+        // The child can no longer report the number of changes; a mesh has none, anything else at most three.
         let mutations = if kind == Kind::Mesh { 0 } else { 3 };
         let status = self.child.wait().unwrap();
         let errors = std::fs::read_to_string(self.scratch.join("errors")).unwrap_or_default();
@@ -222,7 +222,7 @@ impl Worker {
         json!({ "violations": [[law, what]], "last": last, "mutations": mutations })
     }
 
-    /// Which changes by chance can be left out with the same law broken.
+    /// The random changes that can be left out with the same law still broken.
     fn shrink(&mut self, number: u64, kind: Kind, law: &str, end: &Value) -> Vec<usize> {
         let count = end["mutations"].as_u64().unwrap_or(0) as usize;
         let mut without = Vec::new();

@@ -1,11 +1,11 @@
-//! Puts hostile cases through the program's commands: `cargo run --release -p pliant-tests --example hostile -- SEED
-//! COUNT [KIND]`, the cases of the numbers from SEED on; KIND is one of edit, project, neighbour, link, mesh, file,
-//! render and session, and without it they take turns.
+//! Runs the program's commands on hostile cases: `cargo run --release -p pliant-tests --example hostile -- SEED COUNT
+//! [KIND]`, the cases with the numbers from SEED on; KIND is one of edit, project, neighbour, link, mesh, file, render
+//! and session, and without it they take turns.
 //!
-//! A child process does the work under a limit of 2 GB, so that nothing it runs into ends the count; a command that
-//! takes more than 10 s of the processor (20 s where something is bound) breaks a law, and one that goes on is ended.
-//! Each broken law is told with the number that makes its case again, and the first folders of each are kept. Ends with
-//! a table of what the worst of each kind took, and with status 1 where a law was broken.
+//! A child process does the work under a limit of 2 GB, so that no failure ends the count; a command that takes more
+//! than 10 s of the processor (20 s if something is bound) breaks a law, and one that continues is ended. Each broken
+//! law is reported with the number that reproduces its case, and the first folders of each are kept. It ends with a
+//! table of the worst cases of each kind, and with status 1 if a law was broken.
 
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "an example speaks")]
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "it measures, and fails loudly")]

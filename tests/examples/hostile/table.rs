@@ -1,4 +1,4 @@
-//! What the worst of each kind took.
+//! The worst cases of each kind.
 
 use std::collections::BTreeMap;
 
@@ -21,7 +21,7 @@ struct Row {
 }
 
 impl Table {
-    /// Counts a case that ended as `end` says.
+    /// Counts a case with the result `end`.
     pub fn add(&mut self, kind: Kind, number: u64, end: &Value) {
         let class = end["class"].as_str().unwrap_or("ended");
         let count = |name: &str| end[name].as_u64().unwrap_or(0);

@@ -1,4 +1,4 @@
-//! The child: takes cases by their numbers, tells each command before it runs and each case's end.
+//! The child: it runs cases by their numbers, and reports each command before it runs and each case's end.
 
 use std::ffi::OsString;
 use std::io::{BufRead as _, Write as _};
@@ -10,7 +10,7 @@ use serde_json::json;
 
 use crate::counting::{HELD, LIMIT, PEAK, cpu_ms};
 
-/// What the commands may hold, on top of what the process held before.
+/// The memory limit of the commands, in addition to the process's earlier memory.
 const MEMORY: usize = 2 << 30;
 
 /// Works until standard input ends. A case is a line: its number, its kind, and the changes to leave out.
@@ -46,7 +46,7 @@ pub fn work(scratch: &Path) {
     }
 }
 
-/// Measures this process: what is allocated, and its processor time.
+/// Measures this process: its allocated memory, and its processor time.
 #[derive(Default)]
 struct Process {
     held: usize,

@@ -1,5 +1,5 @@
-//! A case: the contents of a folder, and what the program is asked to do there. It is only a description, so its number
-//! alone reproduces it anywhere.
+//! A case: the contents of a folder, and the program's commands there. It is only a description, so its number alone
+//! reproduces it anywhere.
 
 use std::collections::BTreeMap;
 use std::ffi::OsString;
@@ -11,7 +11,7 @@ use super::models::{self, Model};
 use super::{bytes, edits, json_text, links, neighbours, pictures, projects, strangers};
 use crate::trials::Chance;
 
-/// What is hostile about a case.
+/// The hostile part of a case.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
 pub enum Kind {
     Edit,
@@ -56,7 +56,7 @@ impl Kind {
     }
 }
 
-/// How large the meshes may be.
+/// The size of the meshes.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Size {
     /// Up to a few hundred triangles.
@@ -65,7 +65,7 @@ pub enum Size {
     Full,
 }
 
-/// What is at a path in the folder.
+/// The entry at a path in the folder.
 #[derive(Clone, PartialEq, Debug)]
 pub enum Entry {
     File(Vec<u8>),
@@ -73,7 +73,7 @@ pub enum Entry {
     Folder,
     /// A symbolic link; `@ROOT@` in it is the case's folder.
     Link(OsString),
-    /// A hard link to what is at that path.
+    /// A hard link to the file at that path.
     Hard(PathBuf),
     Fifo,
     Socket,
@@ -84,7 +84,7 @@ pub enum Entry {
 pub struct Case {
     pub seed: u64,
     pub kind: Kind,
-    /// What kind of mesh or file it uses, for the table of results.
+    /// The kind of its mesh or file, for the table of results.
     pub class: String,
     pub entries: BTreeMap<PathBuf, Entry>,
     pub input: PathBuf,
@@ -93,7 +93,7 @@ pub struct Case {
     pub report: Option<PathBuf>,
     /// Further arguments of `pliant apply` or `pliant render`.
     pub more: Vec<OsString>,
-    /// How many random changes were made to its base, including those that were left out.
+    /// The number of random changes to its base, including those that were left out.
     pub mutation_count: usize,
 }
 
@@ -122,7 +122,7 @@ impl Case {
         case
     }
 
-    /// The total size in bytes of the files that the program is given.
+    /// The total size in bytes of the files for the program.
     pub fn byte_count(&self) -> usize {
         let files = self.entries.values().map(|entry| match entry {
             Entry::File(bytes) | Entry::ReadOnly(bytes) => bytes.len(),
@@ -225,7 +225,7 @@ fn project_of(model: &Model, chance: &mut Chance) -> Vec<u8> {
     project.to_string().into_bytes()
 }
 
-/// Where the result goes: beside the input, over it, into another folder, or to another format.
+/// The place of the result: beside the input, over it, into another folder, or to another format.
 fn output(input: &std::path::Path, extension: &str, chance: &mut Chance) -> PathBuf {
     let other = *chance.of(&["glb", "gltf", "obj", "ply", "stl", "off"]);
     let extension = if chance.one_in(3) { other } else { extension };

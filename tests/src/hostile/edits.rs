@@ -17,8 +17,8 @@ pub fn plain(chance: &mut Chance) -> Value {
     })
 }
 
-/// The same with few iterations. On a large mesh the person answers for the number of iterations, the program only for
-/// the time to bind.
+/// The same with few iterations. On a large mesh the number of iterations is the person's choice, and the program is
+/// responsible only for the time to bind.
 pub fn short(chance: &mut Chance) -> Value {
     let mut edit = plain(chance);
     let declaration = METHODS.iter().find(|method| edit["method"]["name"] == method.name);
@@ -29,7 +29,7 @@ pub fn short(chance: &mut Chance) -> Value {
     edit
 }
 
-/// An edit that uses everything the format has, at random.
+/// An edit that uses all of the format, at random.
 pub fn rich(vertices: usize, chance: &mut Chance) -> Value {
     let mut edit = plain(chance);
     if chance.one_in(2) {

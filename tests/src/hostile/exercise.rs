@@ -60,7 +60,7 @@ pub struct Exercised {
 
 static PANIC: Mutex<String> = Mutex::new(String::new());
 
-/// Records where and why a panic happened, for the report of the violation, and keeps it off standard error.
+/// Records the place and the message of a panic, for the report of the violation, and keeps it off standard error.
 pub fn listen_for_panics() {
     std::panic::set_hook(Box::new(|panic| {
         *PANIC.lock().unwrap_or_else(PoisonError::into_inner) = panic.to_string().replace('\n', " ");
@@ -84,7 +84,7 @@ impl Runner<'_> {
         Some(ended)
     }
 
-    /// Does what `words` name under the limits of a command. `None` if it panicked.
+    /// Executes the command in `words` under its limits. `None` if it panicked.
     pub(super) fn metered<T>(&mut self, words: &[OsString], work: impl FnOnce() -> T) -> Option<T> {
         self.meter.begin(words);
         let ended = catch_unwind(AssertUnwindSafe(work));
@@ -280,14 +280,14 @@ fn names_root(bytes: &[u8]) -> bool {
     bytes.windows(6).any(|window| window == b"@ROOT@")
 }
 
-/// What `pliant info` says about a file; `None` if the file is refused.
+/// The output of `pliant info` about a file; `None` if the file is refused.
 fn told(path: &Path, root: &Path, tree: &Tree, runner: &mut Runner<'_>) -> Option<Value> {
     let words = ["info".into(), "--json".into(), "--".into(), path.as_os_str().to_owned()];
     let ended = runner.look(&words, root, tree).filter(|ended| ended.status == 0)?;
     serde_json::from_str(&ended.out).ok()
 }
 
-/// Checks that the result can be read and has everything that was drawn.
+/// Checks that the result can be read and has all drawn triangles.
 fn reads_back(old: Option<&Value>, output: &Path, root: &Path, tree: &Tree, runner: &mut Runner<'_>) {
     let Some(new) = told(output, root, tree, runner) else {
         runner
@@ -320,7 +320,7 @@ fn reads_back(old: Option<&Value>, output: &Path, root: &Path, tree: &Tree, runn
     }
 }
 
-/// Checks that models other than the result show what they showed before.
+/// Checks that models other than the result show the same shape as before.
 fn strangers(models: &BTreeMap<PathBuf, Shape>, places: &Places, runner: &mut Runner<'_>) {
     for (path, old) in models {
         let place = place_of(path);

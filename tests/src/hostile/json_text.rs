@@ -1,6 +1,6 @@
-//! Mutations of JSON text that know its structure: values replaced, moved, nested and removed, members repeated and
-//! renamed, numbers at the ends of their ranges. They work on text, because a tree of values can hold neither a
-//! repeated member nor a number like `1e999`.
+//! Mutations of JSON text by its structure: values replaced, moved, nested and removed, members repeated and renamed,
+//! numbers at the ends of their ranges. They work on text, because a tree of values can have neither a repeated member
+//! nor a number like `1e999`.
 
 use std::ops::Range;
 
@@ -60,7 +60,7 @@ const VALUES: [&str; 20] = [
     "-Infinity",
 ];
 
-/// Where the parts of a JSON text are.
+/// The places of the parts of a JSON text.
 #[derive(Default, Debug)]
 struct Places {
     /// Every value except the outermost.
@@ -73,7 +73,7 @@ struct Places {
     keys: Vec<Range<usize>>,
 }
 
-/// Makes one change to a JSON text. A text without anything to change stays as it is.
+/// Makes one change to a JSON text. A text without anything to change stays unchanged.
 pub fn mutate(text: &mut Vec<u8>, chance: &mut Chance) {
     let places = places(text);
     if places.values.is_empty() {
@@ -216,10 +216,10 @@ fn remove(text: &mut Vec<u8>, place: Range<usize>) {
     }
 }
 
-/// Scans a text that is JSON or was; the scan ends where the text can't be read any more.
+/// Scans a text that is JSON or was; the scan ends where the text is no longer readable.
 fn places(text: &[u8]) -> Places {
     let mut places = Places::default();
-    // Open lists and objects: where each began, and the member or element that is not complete yet.
+    // Open lists and objects: the start of each, and the incomplete member or element.
     let mut open: Vec<(usize, Option<usize>)> = Vec::new();
     let mut at = 0;
     while at < text.len() {
@@ -267,7 +267,7 @@ fn places(text: &[u8]) -> Places {
     places
 }
 
-/// Records a value that ended.
+/// Records the end of a value.
 fn close(places: &mut Places, text: &[u8], open: &mut [(usize, Option<usize>)], value: Range<usize>) {
     let Some((parent, under_way)) = open.last_mut() else {
         return;

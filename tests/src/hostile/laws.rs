@@ -1,4 +1,4 @@
-//! What holds after every command, whatever the folder contained.
+//! The laws after every command, for any content of the folder.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -32,15 +32,15 @@ pub enum Law {
     OnlyItsOwn,
     /// The report replaces no file that was read and no result, and the result replaces no other input.
     NothingGivenUp,
-    /// Every other model in the folder still shows the same shape.
+    /// Every other model in the folder shows the same shape as before.
     Strangers,
-    /// A link where the result goes stays a link.
+    /// A link at the result's place stays a link.
     LinkStays,
     /// A replaced file keeps its permissions.
     Rights,
     /// No temporary file is left.
     NothingLeft,
-    /// The result can be read, and has as many vertices and triangles as were drawn.
+    /// The result can be read, and has as many vertices and triangles as the drawn shape.
     ReadsBack,
     /// The report is JSON with all its members.
     Report,
@@ -50,11 +50,11 @@ pub enum Law {
     SameShape,
     /// A shape that the file does not have counts as unsaved.
     Unsaved,
-    /// Whatever another program wrote, and a save replaces, is kept beside it, unless the person gave it up.
+    /// A file that another program wrote, and a save replaces, is kept beside it, unless the person agreed to lose it.
     TheirsIsKept,
 }
 
-/// A law, and what broke it.
+/// A law, and the violation.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Violation {
     pub law: Law,
@@ -68,7 +68,7 @@ pub fn violation(law: Law, what: impl Into<String>) -> Violation {
     Violation { law, what: what.into() }
 }
 
-/// Checks what a command prints.
+/// Checks the output of a command.
 pub fn of_words(ended: &Ended, found: &mut Vec<Violation>) {
     if ended.status > 2 {
         found.push(violation(Law::Status, format!("status {}", ended.status)));
@@ -102,7 +102,7 @@ pub fn shortened(text: &str) -> String {
     text.chars().take(300).collect()
 }
 
-/// Where two trees differ.
+/// The differences of two trees.
 pub fn changed(before: &Tree, after: &Tree) -> Vec<PathBuf> {
     let all: BTreeSet<&PathBuf> = before.keys().chain(after.keys()).collect();
     let content = |node: &Node| (node.what.clone(), node.mode);
@@ -119,7 +119,7 @@ pub struct Places {
     pub report: Option<PathBuf>,
     /// The input, the edit, and the files that the input names.
     pub inputs: BTreeSet<PathBuf>,
-    /// The files named by what was at the result's path, even through a link.
+    /// The files named by the earlier file at the result's path, even through a link.
     pub old_neighbours: BTreeSet<PathBuf>,
 }
 
@@ -137,7 +137,7 @@ impl Places {
     }
 }
 
-/// Checks what a successful save changed. `root` is the case's folder, with no links in its path.
+/// Checks the changes of a successful save. `root` is the case's folder, without links in its path.
 pub fn of_save(root: &Path, before: &Tree, after: &Tree, places: &Places, found: &mut Vec<Violation>) {
     let within = |path: &PathBuf| path.strip_prefix(root).ok().map(Path::to_owned);
     let output = places.output.as_ref().and_then(within);
@@ -183,7 +183,7 @@ pub fn of_save(root: &Path, before: &Tree, after: &Tree, places: &Places, found:
         let (was, is) = (before.get(&place), after.get(&place));
         let is_other_name = was.is_some_and(|node| own_files.contains(&node.identity)) && is.is_some();
         if is_other_name && !own(&place) {
-            // Another name of one of the save's own files.
+            // This is another name of one of the save's own files.
         } else if name.starts_with(".pliant") {
             found.push(violation(Law::NothingLeft, format!("{}", place.display())));
         } else if own(&place) {

@@ -1,4 +1,4 @@
-//! Links, pipes, folders and odd names where files are expected, and results whose path is already taken.
+//! Links, pipes, folders and odd names where files are expected, and results with a taken path.
 
 use std::path::{Path, PathBuf};
 
@@ -16,7 +16,7 @@ pub fn mutate(case: &mut Case, chance: &mut Chance) {
     }
 }
 
-/// Puts something that is not a plain file where a file is read or written.
+/// Puts something other than a plain file at a path that is read or written.
 fn odd_place(case: &mut Case, chance: &mut Chance) {
     let mut places: Vec<PathBuf> = case
         .entries
@@ -77,7 +77,7 @@ fn odd_place(case: &mut Case, chance: &mut Chance) {
     }
 }
 
-/// Gives the result a name that is hard to handle, or the path of something else.
+/// Gives the result a difficult name, or the path of another object.
 fn odd_output(case: &mut Case, chance: &mut Chance) {
     let extension = models::extension(&case.input);
     case.output = match chance.below(5) {
@@ -88,7 +88,7 @@ fn odd_output(case: &mut Case, chance: &mut Chance) {
     };
 }
 
-/// Gives the report the path of something that is read or written, or an odd name.
+/// Gives the report the path of an input or output, or an odd name.
 fn odd_report(case: &mut Case, chance: &mut Chance) {
     let output = case.output.clone();
     case.report = Some(match chance.below(6) {
@@ -100,7 +100,7 @@ fn odd_report(case: &mut Case, chance: &mut Chance) {
     });
 }
 
-/// The path of something that exists, relative to `work`, in one of several spellings.
+/// The path of an existing object, relative to `work`, in one of several spellings.
 fn existing(case: &Case, chance: &mut Chance) -> PathBuf {
     let places: Vec<&PathBuf> = case.entries.keys().collect();
     let place = *chance.of(&places);
@@ -114,7 +114,7 @@ fn existing(case: &Case, chance: &mut Chance) -> PathBuf {
     }
 }
 
-/// Gives the input a name that is hard to handle.
+/// Gives the input a difficult name.
 fn rename_input(case: &mut Case, chance: &mut Chance) {
     let extension = models::extension(&case.input);
     let new = PathBuf::from(names::odd_name(&extension, chance));

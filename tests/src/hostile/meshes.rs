@@ -1,18 +1,18 @@
-//! Meshes that a solver or a reader may find hard: one vertex or edge shared by thousands, long strips, loose
+//! Meshes that are difficult for a solver or a reader: one vertex or edge shared by thousands, long strips, loose
 //! triangles, coincident vertices, no area, extreme sizes, numbers that are not finite.
 
 use std::f64::consts::TAU;
 
 use crate::trials::Chance;
 
-/// Triangles over positions, as a file holds them.
+/// Triangles over positions, as in a file.
 #[derive(Clone, Default, Debug)]
 pub struct Soup {
     pub positions: Vec<[f64; 3]>,
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// What is wrong with a mesh.
+/// The fault of a mesh.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
 pub enum Class {
     Sheet,
@@ -83,7 +83,7 @@ pub fn mesh(class: Class, triangles: usize, chance: &mut Chance) -> Soup {
     soup
 }
 
-/// Gives a sound mesh the fault that its class is named for.
+/// Gives a sound mesh the fault of its class.
 fn spoil(soup: &mut Soup, class: Class, chance: &mut Chance) {
     let scale = |soup: &mut Soup, factor: f64| {
         soup.positions.iter_mut().flatten().for_each(|number| *number *= factor);
@@ -245,7 +245,7 @@ fn shared_path(n: u32, edges: u32) -> Soup {
     soup
 }
 
-/// Triangles that share nothing.
+/// Triangles without common vertices.
 fn loose(n: u32) -> Soup {
     let mut soup = Soup::default();
     for triangle in 0..n {

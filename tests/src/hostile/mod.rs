@@ -1,9 +1,9 @@
 //! Hostile cases by the hundred thousand: a folder with a model, an edit or a project, with links and unrelated files,
-//! broken at random in ways that know how each is built; the program's commands run on it, and laws that hold whatever
-//! the folder contains.
+//! broken at random according to their structure; the program's commands run on it, and laws must hold for any content
+//! of the folder.
 //!
-//! A [`Case`] follows from its number alone. The test `hostile` runs a few hundred; the example `hostile` runs as many
-//! as it is asked to, each command under a limit of memory and time.
+//! A [`Case`] follows from its number alone. The test `hostile` runs a few hundred; the example `hostile` runs a given
+//! number, each command under a limit of memory and time.
 
 mod bytes;
 mod case;

@@ -1,4 +1,4 @@
-//! The models that cases start from: generated ones of every format and class, and those of the readers' corpus,
+//! The models from which cases start: generated ones of every format and class, and those of the readers' corpus,
 //! including compressed ones.
 
 use std::collections::BTreeMap;
@@ -18,12 +18,12 @@ pub struct Model {
     pub entries: Vec<(PathBuf, Entry)>,
     /// Relative to `work`.
     pub input: PathBuf,
-    /// Roughly how many vertices it has.
+    /// The approximate number of its vertices.
     pub vertices: usize,
     pub class: String,
 }
 
-/// The largest file, in bytes, that is taken from the data beside the project into the corpus.
+/// The largest file, in bytes, taken from the data beside the project into the corpus.
 const LARGEST: u64 = 130_000;
 
 /// A small sound mesh of any format, or a file of the corpus.
@@ -62,7 +62,7 @@ pub fn any(chance: &mut Chance) -> Model {
     made(&soup, format, format.to_owned(), chance)
 }
 
-/// A mesh that is hard to solve.
+/// A mesh that is difficult to solve.
 pub fn hard(size: Size, chance: &mut Chance) -> Model {
     let class = *chance.of(&Class::ALL);
     let most = match size {

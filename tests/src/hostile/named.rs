@@ -9,10 +9,10 @@ use std::path::{Path, PathBuf};
 use super::json_text;
 use super::tree::place_of;
 
-/// The paths of a model's neighbours. If the model is a link, each neighbour may be in the folder that the link leads
-/// to or in the link's own.
+/// The paths of a model's neighbours. If the model is a link, each neighbour may be in the folder to which the link
+/// leads or in the link's own.
 ///
-/// Everything that a reader may take for a name counts, because a file that is broken elsewhere may still be read.
+/// Every text that a reader may use as a name counts, because a file that is broken elsewhere may still be read.
 pub fn neighbours_of(path: &Path) -> BTreeSet<PathBuf> {
     let mut folders = vec![path.with_file_name("")];
     folders.extend(place_of(path).map(|place| place.with_file_name("")));
@@ -77,7 +77,7 @@ fn path_of(name: &str) -> String {
     name.trim().trim_matches('"').replace('\\', "/")
 }
 
-/// The URIs of a glTF or a GLB, also with backslashes read as slashes.
+/// The URIs of a glTF or a GLB, and the same with backslashes read as slashes.
 fn of_gltf(bytes: &[u8]) -> BTreeSet<OsString> {
     let text = if bytes.starts_with(b"glTF") {
         let length = bytes
@@ -102,7 +102,7 @@ fn slashed(path: &[u8]) -> Vec<u8> {
 }
 
 /// A path with its `.` and `..` segments removed as far as possible: a URI's are removed from its text (RFC 3986,
-/// 5.2.4), whatever is on the disk.
+/// 5.2.4), independent of the disk.
 fn without_dots(path: &[u8]) -> Vec<u8> {
     let mut steps: Vec<&[u8]> = Vec::new();
     for step in path.split(|byte| *byte == b'/') {

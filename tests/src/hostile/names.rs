@@ -1,12 +1,12 @@
-//! Names that are hard to handle: control characters, spaces, colons, bytes that are not text, great lengths, other
-//! spellings of paths, URIs of things that are not files.
+//! Difficult names: control characters, spaces, colons, bytes that are not text, great lengths, other spellings of
+//! paths, URIs of objects other than files.
 
 use std::ffi::OsString;
 use std::os::unix::ffi::OsStringExt as _;
 
 use crate::trials::Chance;
 
-/// A text that a file may contain and a message may quote, or that a file may use as a name.
+/// A text that a file may contain and a message may quote, or that may be a file's name.
 pub fn odd_text(chance: &mut Chance) -> String {
     match chance.below(16) {
         0 => "\u{1b}[31mred\u{1b}[0m".to_owned(),

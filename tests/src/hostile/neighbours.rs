@@ -1,5 +1,5 @@
-//! Odd things about the files that a model names: their spelling, two names for one file, other models that name the
-//! same file, files that are missing, short or elsewhere.
+//! Oddities of the files that a model names: their spelling, two names for one file, other models that name the same
+//! file, files that are missing, short or elsewhere.
 
 use std::path::PathBuf;
 

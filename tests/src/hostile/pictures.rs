@@ -15,7 +15,7 @@ use crate::trials::Chance;
 /// Width and height in pixels: small, and multiples of nothing special.
 const SIZE: [u32; 2] = [97, 61];
 
-/// Where a picture goes: usually beside the model, sometimes over a file that the model may need.
+/// The place of a picture: usually beside the model, sometimes over a file that the model may need.
 pub fn output(chance: &mut Chance) -> PathBuf {
     let free = "picture.png";
     let places = [free, free, free, free, "skin.png", "../target/picture.png", "sub/p.png"];

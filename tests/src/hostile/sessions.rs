@@ -1,5 +1,5 @@
-//! A session as the window has it, but for the picture: a file is opened and bent, other programs write meanwhile, and
-//! it is saved, sometimes before the shape has settled.
+//! A session like the window's, without the picture: a file is opened and bent, other programs write meanwhile, and it
+//! is saved, sometimes before the shape has settled.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ffi::OsString;
@@ -25,13 +25,14 @@ use super::tree::{Tree, What, look, place_of};
 use super::{models, shapes, strangers};
 use crate::trials::Chance;
 
-/// The most jobs that a shape takes to settle.
+/// The most jobs until a shape has settled.
 const JOBS: usize = 20_000;
 
-/// How far a saved file may be from what was seen, in the size of its coordinates; quantised files have coarse steps.
+/// The allowed difference of a saved file from the shown shape, in the size of its coordinates; quantised files have
+/// coarse steps.
 const ALIKE: f64 = 1e-3;
 
-/// What the window keeps of an open file.
+/// The window's state of an open file.
 struct Desk {
     editor: Editor,
     jobs: InlineExecutor,
@@ -39,14 +40,14 @@ struct Desk {
     known: KnownFiles,
     path: PathBuf,
     may_write_over: bool,
-    /// What the session itself has written, by place: nobody misses it.
+    /// The session's own files, by place, which may be overwritten.
     own: BTreeMap<PathBuf, What>,
 }
 
-/// What is saved.
+/// The kind of a save.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 enum Kind {
-    /// The model in its place.
+    /// The model, in place.
     Model,
     Copy,
     Project,
@@ -54,7 +55,7 @@ enum Kind {
     Edit,
 }
 
-/// A save, and what the person has agreed to lose for it.
+/// A save, and the files that the person has agreed to lose for it.
 struct Save {
     kind: Kind,
     path: PathBuf,
@@ -129,7 +130,7 @@ impl Desk {
         }
     }
 
-    /// Does what an artist might, and goes on at once or waits until the shape has settled.
+    /// Executes an artist's action, and continues at once or waits until the shape has settled.
     fn act(&mut self, chance: &mut Chance) {
         let command = match chance.below(5) {
             0 | 1 => Command::SetStrength(chance.between(0.0, 1.0)),
@@ -143,7 +144,7 @@ impl Desk {
         self.run_jobs(most);
     }
 
-    /// What is saved next, and where. A name that is taken was agreed to in the dialog for files.
+    /// The next save, and its place. A taken name was confirmed in the dialog for files.
     fn wish(&self, round: usize, chance: &mut Chance) -> Save {
         let kind = *chance.of(&[
             Kind::Model,
@@ -206,7 +207,7 @@ impl Desk {
         })
     }
 
-    /// Saves and judges what the disk holds then. False if it panicked.
+    /// Saves and checks the disk afterwards. False if it panicked.
     fn save(&mut self, save: &Save, root: &Path, runner: &mut Runner<'_>, chance: &mut Chance) -> bool {
         let Some(request) = self.request(save) else { return true };
         let words: [OsString; 3] = [
@@ -261,7 +262,7 @@ impl Desk {
         true
     }
 
-    /// The drawn positions that a save writes now.
+    /// The drawn positions for a save now.
     fn seen(&self) -> Vec<DVec3> {
         let mut positions = Vec::new();
         let model = &self.mesh.loaded.model;
@@ -269,8 +270,8 @@ impl Desk {
         positions
     }
 
-    /// Checks what a save changed on the disk, and takes note of what is the session's own since. `old` is what the
-    /// file showed before, and which neighbours it named.
+    /// Checks the changes of a save on the disk, and notes the session's new files. `old` is the file's earlier shape,
+    /// and its neighbours.
     fn judge(
         &mut self,
         save: &Save,
@@ -287,7 +288,7 @@ impl Desk {
             old_neighbours: old_neighbours.clone(),
             ..Places::default()
         };
-        // Originals and a project's mesh are kept under names that were free.
+        // Originals and a project's mesh are kept under free names.
         let mut others = after.clone();
         others.retain(|place, _| before.contains_key(place) || !is_kept(place));
         laws::of_save(root, before, &others, &places, found);
@@ -307,7 +308,7 @@ impl Desk {
                 found.push(violation(Law::TheirsIsKept, format!("{place:?} by a {:?}", save.kind)));
             }
         }
-        // What it wrote, and what stood there already as it would have written it.
+        // The files that it wrote, and existing ones that it would have written identically.
         let written = output.iter().cloned().chain(neighbours_of(&save.path));
         let written = written.filter_map(|place| Some(place.strip_prefix(root).ok()?.to_owned()));
         for place in written.chain(laws::changed(before, &after)) {
@@ -317,7 +318,7 @@ impl Desk {
         }
     }
 
-    /// Checks that a file that was written can be read, and shows what was seen.
+    /// Checks that a written file can be read, and has the shown shape.
     fn reads_back(&self, save: &Save, seen: &[DVec3], runner: &mut Runner<'_>) {
         let found = &mut runner.result.violations;
         let model = &self.mesh.loaded.model;
@@ -350,7 +351,7 @@ impl Desk {
         }
     }
 
-    /// Goes on with what was written, as the window does, and lets the shape settle: if it goes on, it is unsaved. False
+    /// Continues with the written file, like the window, and lets the shape settle: if it changes, it is unsaved. False
     /// if it panicked.
     fn took(&mut self, written: Written, save: &Save, seen: &[DVec3], runner: &mut Runner<'_>) -> bool {
         let saved = match written.what {
@@ -358,7 +359,7 @@ impl Desk {
                 if let Some(source) = source {
                     self.mesh.source = source;
                 }
-                // As after *Save as*, the session goes on with the file that it has written.
+                // Like after *Save as*, the session continues with the written file.
                 self.path = written.path;
                 self.may_write_over = true;
                 SavedAs::Model

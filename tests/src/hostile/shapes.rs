@@ -25,14 +25,14 @@ pub fn shape(path: &Path) -> Option<Shape> {
     Some(drawn.triangles.iter().map(corners).collect())
 }
 
-/// The shape of every model in a folder that shows something.
+/// The shape of every model in a folder that has one.
 pub fn of_folder(case: &Case, root: &Path) -> BTreeMap<PathBuf, Shape> {
     let is_model = |place: &&PathBuf| pliant_io::Format::of_name(&place.to_string_lossy()).is_ok();
     let paths = case.entries.keys().filter(is_model).map(|place| root.join(place));
     paths.filter_map(|path| Some((path.clone(), shape(&path)?))).collect()
 }
 
-/// Whether a file may have faces with more than three corners. The lines of an OBJ or an OFF tell, apart from continued
+/// Whether a file may have faces with more than three corners. The lines of an OBJ or an OFF show it, except continued
 /// ones; a PLY may always have them.
 pub fn may_hold_polygons(path: &Path) -> bool {
     let kind = crate::extension(path).to_lowercase();

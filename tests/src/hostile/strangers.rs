@@ -1,4 +1,4 @@
-//! Other people's files under every name that a session may use, and what other programs do to a folder meanwhile.
+//! Other people's files under every name that a session may use, and other programs' changes of a folder meanwhile.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -53,7 +53,7 @@ pub fn mutate(case: &mut Case, chance: &mut Chance) {
         4 => Entry::Fifo,
         5 => Entry::Hard("outside/secret.bin".into()),
         6 => match case.entries.get(&Path::new("work").join(&case.input)) {
-            // The file's own content, which is kept there already.
+            // This is the file's own content, which is already kept there.
             Some(Entry::File(bytes)) => Entry::File(bytes.clone()),
             _ => return,
         },
@@ -79,10 +79,10 @@ fn other_model(extension: &str, chance: &mut Chance) -> Vec<u8> {
     }
 }
 
-/// What another program does to the files in `work`, whose content the session may have read or written.
+/// Another program's changes of the files in `work`, whose content the session may have read or written.
 pub fn meddle(work: &Path, input: &Path, chance: &mut Chance) {
     let mut places: Vec<PathBuf> = names(input).iter().map(|name| work.join(name)).collect();
-    // The open file itself and its project most of all.
+    // Most often these are the open file itself and its project.
     places.extend(std::iter::repeat_n(work.join(input), 20));
     places.extend(std::iter::repeat_n(work.join("pose.pliant"), 5));
     let place = chance.of(&places).clone();
@@ -103,20 +103,20 @@ pub fn meddle(work: &Path, input: &Path, chance: &mut Chance) {
         (3, Some(old)) => replace(&place, &old),
         (4, Some(_)) => fs::rename(&place, work.join("moved")),
         (5, Some(_)) => replace(&place, &other_model(&extension, chance)),
-        // A pipe or a folder is nothing that it writes to.
+        // It does not write to a pipe or a folder.
         (_, None) if fs::symlink_metadata(&place).is_ok() => Ok(()),
         _ => fs::write(&place, other_model(&extension, chance)),
     };
 }
 
-/// Writes a new file and renames it into its place, as careful programs do.
+/// Writes a new file and renames it into its place, like careful programs.
 fn replace(place: &Path, bytes: &[u8]) -> std::io::Result<()> {
     let beside = place.with_extension("theirs");
     fs::write(&beside, bytes)?;
     fs::rename(beside, place)
 }
 
-/// The same number of bytes, one of which is another.
+/// The same number of bytes, with one of them changed.
 fn changed(mut bytes: Vec<u8>, chance: &mut Chance) -> Vec<u8> {
     if !bytes.is_empty() {
         let at = chance.below(bytes.len());

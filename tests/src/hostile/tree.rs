@@ -1,4 +1,4 @@
-//! A case's folder on disk: writing it, and recording what is in it before and after a command.
+//! A case's folder on disk: writing it, and recording its content before and after a command.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -11,7 +11,7 @@ use std::process::Command;
 
 use super::case::{Case, Entry};
 
-/// What is at a path.
+/// The entry at a path.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub enum What {
     /// The file's length and a digest of its bytes.
@@ -22,7 +22,7 @@ pub enum What {
     Other,
 }
 
-/// A path's content, its permissions, and which file it is.
+/// A path's content, its permissions, and its file's identity.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct Node {
     pub what: What,
@@ -33,7 +33,7 @@ pub struct Node {
 /// Everything below a folder, by path relative to the folder.
 pub type Tree = BTreeMap<PathBuf, Node>;
 
-/// Writes a case's folder. Whatever the file system rejects (a name that is too long) is left out.
+/// Writes a case's folder. Entries that the file system rejects (with a name that is too long) are left out.
 pub fn lay(case: &Case, root: &Path) {
     let mut hard = Vec::new();
     for (place, entry) in &case.entries {
@@ -123,7 +123,7 @@ fn walk(root: &Path, folder: &Path, tree: &mut Tree) -> io::Result<()> {
     Ok(())
 }
 
-/// Where a path leads after following links, whether or not a file is there. `None` for a path that leads nowhere.
+/// The place of a path after following links, with or without a file there. `None` for a path without a place.
 pub fn place_of(path: &Path) -> Option<PathBuf> {
     let mut path = path.to_owned();
     for _ in 0..40 {

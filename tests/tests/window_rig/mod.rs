@@ -1,4 +1,4 @@
-//! The whole application without a window, driven as a person would.
+//! The whole application without a window, driven like a person.
 #![allow(dead_code, reason = "each test file uses the verbs it needs")]
 #![allow(
     clippy::unwrap_used,
@@ -15,7 +15,7 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use glam::DVec3;
 use pliant_app::window::{AppDirectories, Application, Source};
 
-/// Drives the application as a person would.
+/// Drives the application like a person.
 pub struct Session {
     pub harness: Harness<'static, Application>,
 }
@@ -49,7 +49,7 @@ impl Session {
         Some(Self { harness })
     }
 
-    /// Lets frames pass until nothing is under way.
+    /// Lets frames pass until no work is running.
     #[track_caller]
     pub fn settle(&mut self) {
         let start = Instant::now();
@@ -70,7 +70,7 @@ impl Session {
         self.harness.state().editor().view().status
     }
 
-    /// The point of the window where the view shows the middle of what `choose` picks among the vertices.
+    /// The place in the window of the middle of the vertices that `choose` selects.
     pub fn point_of(&self, choose: impl Fn(&[DVec3]) -> DVec3) -> Pos2 {
         let application = self.harness.state();
         let view = application.editor().view();
@@ -121,7 +121,7 @@ impl Session {
         self.settle_if_idle();
     }
 
-    /// A modal transform is under way after G, R, S: only a confirmed one settles.
+    /// A modal transform is active after G, R, S: only a confirmed one settles.
     pub fn settle_if_idle(&mut self) {
         self.harness.step();
     }
@@ -139,8 +139,7 @@ impl Session {
 }
 
 impl Session {
-    /// Lets all of it happen within one frame, as it does where frames are slow, and then as many frames pass as it
-    /// takes.
+    /// Sends all events within one frame, like on a slow machine, and then lets frames pass until the work is done.
     pub fn in_one_frame(&mut self, events: impl IntoIterator<Item = Event>) {
         self.harness.input_mut().events.extend(events);
         self.harness.run_steps(24);

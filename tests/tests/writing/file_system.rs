@@ -1,4 +1,4 @@
-//! Links, devices, names, rights, attributes, and what a killed save has left.
+//! Links, devices, names, rights, attributes, and leftovers of a killed save.
 
 use std::ffi::OsStr;
 use std::fs;
@@ -12,7 +12,7 @@ use pliant_tests::{Folder, bare_edit};
 
 use crate::{apply, download, lift, names, replace_in, saved, shape, warnings};
 
-/// Law: a save goes where links lead, its neighbours with it, and the links stay.
+/// Law: a save follows links, its neighbours with it, and the links stay.
 #[test]
 fn links_are_followed_and_stay() {
     let folder = Folder::new();
@@ -28,7 +28,7 @@ fn links_are_followed_and_stay() {
         assert_eq!(names(&folder.at("target")), ["a.bin", "real.gltf"]);
         assert_eq!(shape(&link), shape(&folder.at("target/real.gltf")));
     }
-    // One that leads to the input is a save in place.
+    // A link that leads to the input is a save in place.
     let before = shape(&file);
     let own = folder.at("links/own.gltf");
     symlink("../a/a.gltf", &own).unwrap();
@@ -39,7 +39,7 @@ fn links_are_followed_and_stay() {
     assert_eq!(names(&folder.at("a")), ["a.bin", "a.gltf"]);
 }
 
-/// Law: what is no file is neither opened nor replaced.
+/// Law: an object that is not a file is neither opened nor replaced.
 #[test]
 fn devices_pipes_sockets_and_folders_are_refused_unopened() {
     let folder = Folder::new();
@@ -109,7 +109,7 @@ fn names_that_are_not_utf_8_stay_what_they_are() {
         assert_eq!(named(b"caf\xe9.bin").is_file(), kind != "glb");
         apply(&out, &edit, &out, &[]).done();
     }
-    // As a neighbour it comes along under its name.
+    // As a neighbour it is saved under its name.
     fs::create_dir(folder.at("out")).unwrap();
     let out = folder.at("out/plain.gltf");
     apply(&named(b"caf\xe9.gltf"), &edit, &out, &[]).done();
@@ -144,7 +144,7 @@ fn a_name_that_looks_like_an_address_can_be_read_back() {
     }
 }
 
-/// Law: whoever could read a file can read what replaces it, and nobody else; other names of it stay names of it.
+/// Law: the readers of a file can read its replacement, and nobody else can; its other names stay its names.
 #[test]
 fn rights_and_names_of_a_replaced_file_are_kept() {
     let folder = Folder::new();
@@ -172,7 +172,7 @@ fn rights_and_names_of_a_replaced_file_are_kept() {
         .done();
     folder.apply(&glb, &bare_edit(), &file, &[]).done();
     assert_eq!((mode(&file), mode(&folder.at("a/a.bin"))), (0o600, 0o600));
-    // Other names in other folders can't be found: that is told.
+    // Other names in other folders can't be found: a warning says so.
     fs::hard_link(&glb, folder.at("a/far.glb")).unwrap();
     let report = folder.at("report.json");
     folder
@@ -202,7 +202,7 @@ fn extended_attributes_are_kept_where_there_are_any() {
     assert_eq!(got.stdout, b"scanner");
 }
 
-/// Law: the next save clears away what a killed one has left, and nothing that somebody lives on.
+/// Law: the next save removes the leftovers of a killed one, and nothing that is in use.
 #[test]
 fn leftovers_go_with_the_next_save_unless_somebody_lives_on_them() {
     let folder = Folder::new();
@@ -226,7 +226,7 @@ fn leftovers_go_with_the_next_save_unless_somebody_lives_on_them() {
     folder.apply(&stranger, &lift(1.0), &stranger, &[]).done();
     assert_eq!(names(&folder.at("a")), [passing, "a.gltf", "stranger.off"]);
     assert_eq!(shape(&file), lives);
-    // And one of the file that was cut off: it gets its neighbour's name back, edited or not.
+    // A save of the file that was cut off: it gets its neighbour's name back, edited or not.
     let out = folder.at("kept");
     fs::create_dir(&out).unwrap();
     fs::copy(&file, out.join("a.gltf")).unwrap();

@@ -1,4 +1,4 @@
-//! What a save may write over, where it goes, and what it keeps: nothing of anybody's is lost.
+//! The files that a save may overwrite, its place, and the files that it keeps: nobody loses a file.
 
 #![cfg(unix)]
 #![allow(
@@ -24,7 +24,7 @@ fn lift(by: f64) -> Value {
     bend(&json!({ "translation": [0, 0, by] }))
 }
 
-/// A glTF of a torus in a folder of its own, its buffer called `scene.bin`, as downloads of one place are.
+/// A glTF of a torus in its own folder, with a buffer named `scene.bin`, like downloads from one site.
 fn download(folder: &Folder, name: &str, sides: usize) -> PathBuf {
     let gltf = saved(folder, name, sides);
     fs::rename(gltf.with_extension("bin"), gltf.with_file_name("scene.bin")).unwrap();
@@ -32,7 +32,7 @@ fn download(folder: &Folder, name: &str, sides: usize) -> PathBuf {
     gltf
 }
 
-/// A glTF in a folder of its name, whose buffer has that name, too.
+/// A glTF in a folder of its name, whose buffer also has that name.
 fn saved(folder: &Folder, name: &str, sides: usize) -> PathBuf {
     let mesh = folder.write_mesh("mesh.off", &shapes::torus(12, sides));
     fs::create_dir(folder.at(name)).unwrap();

@@ -1,4 +1,4 @@
-//! Files that are read and written together: none is lost, whoever shares them.
+//! Files that are read and written together: none is lost, even if several files share it.
 
 use std::fs;
 use std::os::unix::fs::symlink;
@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 
 use crate::{apply, contents, download, lift, names, saved, shape, warnings};
 
-/// Law: an output is never a file that is read or written otherwise, by whatever path, and nothing is written then.
+/// Law: an output is never a file that is read or written otherwise, by any path, and nothing is written then.
 #[test]
 fn no_output_may_be_a_file_that_is_read_or_written_otherwise() {
     let folder = Folder::new();
@@ -57,8 +57,8 @@ fn no_output_may_be_a_file_that_is_read_or_written_otherwise() {
     apply(&gltf, &edit, &gltf, &[]).done();
 }
 
-/// Law: of two documents saved into one folder both keep their shape, whatever their buffers are called, and a save
-/// that is done again writes the same files.
+/// Law: two documents saved into one folder both keep their shape, for any names of their buffers, and a repeated save
+/// writes the same files.
 #[test]
 fn two_downloads_in_one_folder_keep_both_shapes() {
     let folder = Folder::new();
@@ -85,7 +85,7 @@ fn two_downloads_in_one_folder_keep_both_shapes() {
             "round {round}"
         );
     }
-    // Another document over the first one's name: its neighbour is nobody's business.
+    // Another document over the first one's name: its neighbour must not change.
     let bytes = fs::read(folder.at("out/scene.bin")).unwrap();
     folder.apply(&b, &lift(1.0), &out_a, &[]).done();
     assert_eq!(fs::read(folder.at("out/scene.bin")).unwrap(), bytes);
@@ -112,7 +112,7 @@ fn what_a_new_gltf_unpacks_overwrites_nobody() {
     );
 }
 
-/// Law: a buffer that another file in the folder names as well is not edited under that file.
+/// Law: a buffer that another file in the folder also names is not changed for that file.
 #[test]
 fn a_buffer_that_two_files_share_is_edited_for_one_alone() {
     let folder = Folder::new();
@@ -146,7 +146,7 @@ fn images_are_shared_where_they_are_the_same_and_kept_apart_where_they_are_not()
         assert!(open(&out).scene.notes().is_empty());
     }
     assert_eq!(names(&folder.at("out/tex")), ["skin-2.png", "skin.png"]);
-    // An OBJ's library and texture likewise.
+    // The same holds for an OBJ's library and texture.
     let obj = folder.write(
         "a/s.obj",
         "mtllib s.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
@@ -166,7 +166,7 @@ fn images_are_shared_where_they_are_the_same_and_kept_apart_where_they_are_not()
     );
 }
 
-/// Law: two buffers that are one place on the disk, in whatever spelling, never lose one of their edits.
+/// Law: two buffers that are one place on the disk, in any spelling, never lose one of their edits.
 #[test]
 fn buffers_that_share_a_place_keep_both_edits() {
     for (first, second) in [

@@ -1,5 +1,5 @@
-//! Saves that are killed at a random moment, and pairs of saves at once: what stands there afterwards is the old state
-//! or the new one, whole, and the next save leaves nothing but files that belong there.
+//! Saves that are killed at a random moment, and pairs of saves at once: afterwards the folder has the complete old
+//! state or the complete new one, and the next save leaves only files that belong there.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -24,21 +24,21 @@ const SAVES: [(&str, &str); 10] = [
     ("in/scan.off", "out/scan.off"),
 ];
 
-/// How a save is ended.
+/// The way in which a save is ended.
 const ENDS: [&str; 5] = ["KILL", "TERM", "HUP", "XFSZ", "limit"];
 
 /// Figures of many trials.
 #[derive(Default, Debug)]
 pub struct Tally {
-    /// Trials after which the old state stood there.
+    /// Trials that ended with the old state.
     pub old: usize,
-    /// Trials after which the new one did.
+    /// Trials that ended with the new one.
     pub new: usize,
-    /// Trials that left something, which the next save cleared away.
+    /// Trials that left a file, which the next save removed.
     pub left_over: usize,
 }
 
-/// The program and what the trials start from.
+/// The program and the trials' initial files.
 pub struct Rig {
     program: PathBuf,
     /// Sources, edits and bystanders.
@@ -56,7 +56,7 @@ impl Rig {
     /// Makes the files of all kinds.
     ///
     /// # Errors
-    /// What went wrong, in words.
+    /// The failure, in words.
     pub fn new(program: &Path, seed: u64) -> Result<Self> {
         let pristine = words(tempfile::tempdir(), "a folder")?;
         let rig = Self {
@@ -85,7 +85,7 @@ impl Rig {
             let out = format!("in/scan.{kind}");
             rig.apply(rig.pristine.path(), "in/scan.off", "rest.json", &out)?;
         }
-        // A library and a texture, which come along to another folder.
+        // A library and a texture, which a save copies to another folder.
         let obj = words(fs::read(at("in/scan.obj")), "scan.obj")?;
         write(
             "in/scan.obj",
@@ -93,7 +93,7 @@ impl Rig {
         )?;
         write("in/scan.mtl", b"newmtl skin\nKd 1 1 1\nmap_Kd skin.png\n")?;
         write("in/skin.png", b"\x89PNG of a kind")?;
-        // Somebody else's, whom no save may touch.
+        // Files of others, which no save may touch.
         for folder in ["in", "out"] {
             write(
                 &format!("{folder}/stranger.gltf"),
@@ -131,7 +131,7 @@ impl Rig {
         )
     }
 
-    /// One whole save.
+    /// One complete save.
     fn apply(&self, folder: &Path, file: &str, edit: &str, out: &str) -> Result<()> {
         let status = words(self.start(folder, file, edit, out, None)?.wait(), "the program")?;
         if status.success() {
@@ -141,7 +141,7 @@ impl Rig {
         }
     }
 
-    /// A fresh copy of the start, with an earlier output of `edit-1` where that is asked for.
+    /// A fresh copy of the start, with an earlier output of `edit-1` if requested.
     fn fresh(&self, file: &str, earlier: Option<&str>) -> Result<tempfile::TempDir> {
         let folder = words(tempfile::tempdir(), "a folder")?;
         copy(self.pristine.path(), folder.path())?;
@@ -154,7 +154,7 @@ impl Rig {
     /// Kills `count` saves.
     ///
     /// # Errors
-    /// The first trial after which something else stood there than the old state or the new one.
+    /// The first trial that ended with anything but the old state or the new one.
     pub fn kills(&mut self, count: usize, tally: &mut Tally) -> Result<()> {
         for trial in 0..count {
             let (file, out) = SAVES[trial % SAVES.len()];
@@ -162,7 +162,7 @@ impl Rig {
             let earlier = (!in_place && self.below(2) == 0).then_some(out);
             let end = ENDS[self.below(ENDS.len() as u64) as usize];
             let here = format!("trial {trial}, {file} to {out}, {end}");
-            // What it comes to, undisturbed, and how long that takes.
+            // The result of an undisturbed save, and its time.
             let whole = self.fresh(file, earlier)?;
             let old = shape(&whole.path().join(out));
             let start = Instant::now();
@@ -175,7 +175,7 @@ impl Rig {
             let limit = (end == "limit").then(|| 1 + self.below(800));
             let mut child = self.start(folder.path(), file, "edit-2.json", out, limit)?;
             if limit.is_none() {
-                // The later half is where files are written.
+                // Files are written in the later half.
                 let micros = takes.as_micros() as u64;
                 let wait = if self.below(3) == 0 {
                     self.below(micros)
@@ -184,7 +184,7 @@ impl Rig {
                 };
                 std::thread::sleep(Duration::from_micros(wait));
                 let id = child.id().to_string();
-                // One that is done already can't be killed.
+                // A save that has ended can't be killed.
                 let _ = Command::new("kill")
                     .args([&format!("-{end}"), &id])
                     .stderr(Stdio::null())
@@ -201,7 +201,7 @@ impl Rig {
             }
             tally.left_over += usize::from(names(folder.path())?.iter().any(|name| name.contains(".pliant")));
             if in_place && found == new {
-                // The next one bends what is bent already.
+                // The next save bends the bent file.
                 self.apply(folder.path(), file, "edit-2.json", out)?;
                 let left = names(folder.path())?;
                 let wanted: Vec<String> = wanted.keys().cloned().collect();
@@ -236,7 +236,7 @@ impl Rig {
     /// into one folder.
     ///
     /// # Errors
-    /// The first pair after which something else stood there than one of the two, or one of them was refused.
+    /// The first pair that ended with anything but one of the two, or of which one was refused.
     pub fn pairs(&mut self, count: usize, tally: &mut Tally) -> Result<()> {
         for trial in 0..count {
             let (file, out) = SAVES[trial % SAVES.len()];
@@ -306,7 +306,7 @@ fn edit(way: Option<f64>) -> String {
     )
 }
 
-/// The bits of a file's positions; `None` where it can't be read.
+/// The bits of a file's positions; `None` if it can't be read.
 type Shape = Vec<[u64; 3]>;
 
 fn shape(path: &Path) -> Option<Shape> {

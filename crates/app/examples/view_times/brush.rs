@@ -1,4 +1,4 @@
-//! Brush strokes across the mesh: how long a pointer event occupies the window's thread until the new colours are
+//! Brush strokes across the mesh: the time that a pointer event occupies the window's thread until the new colours are
 //! queued for the device.
 
 use std::sync::Arc;
@@ -88,7 +88,7 @@ pub fn rows(
     Ok(rows)
 }
 
-/// A press where the mesh is nearest to the eye, thirty moves of ten points back and forth, and a release.
+/// A press at the place of the mesh nearest to the eye, thirty moves of ten points back and forth, and a release.
 fn stroke(editor: &Editor, model: &Model) -> Vec<Event> {
     let view = editor.view();
     let eye = view.camera.eye();

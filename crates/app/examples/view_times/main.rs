@@ -153,7 +153,7 @@ fn measure_looks(
     let device = renderer.device_name();
     for (name, look, camera) in looks {
         for (samples, count) in [(Samples::One, 1), (Samples::Four, 4)] {
-            // These take minutes on a software device and show nothing that the smaller meshes don't.
+            // These take minutes on a software device and show nothing beyond the smaller meshes.
             if triangles > 1_000_000 && !name.starts_with("clay,") && name != "clay" && count > 1 {
                 continue;
             }

@@ -26,7 +26,7 @@ pub fn row(model: &Model, moved: &[DVec3], camera: &Camera) -> String {
         })
     });
     let alone = picks(&bvh, camera, || ());
-    // Pauses between picks stand for the time between pointer events.
+    // Pauses between picks imitate the time between pointer events.
     let is_over = AtomicBool::new(false);
     let beside = std::thread::scope(|threads| {
         threads.spawn(|| {

@@ -419,7 +419,7 @@ fn unit_number(text: &str) -> Result<f64, String> {
         .ok_or_else(|| "a weight is a number from 0 to 1".to_owned())
 }
 
-/// Reads the arguments, the program's name first. What comes back as an error may be the help that was asked for.
+/// Reads the arguments, the program's name first. The error may be the help that was requested.
 pub(crate) fn parse(arguments: Vec<std::ffi::OsString>) -> Result<Arguments, clap::Error> {
     Arguments::from_arg_matches(&definition().try_get_matches_from(arguments)?)
 }
@@ -466,12 +466,12 @@ fn methods_help() -> String {
     )
 }
 
-/// A refusal of arguments as one line, in which arguments are as short as names are in other refusals.
+/// A refusal of arguments as one line, in which arguments are as short as names in other refusals.
 pub(crate) fn one_line(error: &clap::Error) -> String {
     let mut text = error.render().to_string();
     for (_, value) in error.context() {
         if let ContextValue::String(argument) = value {
-            // The argument may be contained in another one, which then is as short already.
+            // The argument may be contained in another one, which then is already short.
             text = text.replace(argument, &quoted(argument));
         }
     }

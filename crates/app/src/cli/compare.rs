@@ -54,14 +54,14 @@ pub(super) fn run(arguments: &CompareArguments, console: &mut Console<'_>) -> Re
     print(console.out, &table)
 }
 
-/// A method as it was asked for.
+/// A method as requested.
 struct Asked {
-    /// The words that ask for it.
+    /// The words of the request.
     name: String,
     method: Method,
 }
 
-/// The methods that `names` ask for, each once.
+/// The methods that `names` requests, each once.
 fn asked(names: &[String]) -> Result<Vec<Asked>, EngineError> {
     let all = METHODS.iter().map(|declaration| declaration.name.to_owned());
     let names = if *names == ["all"] {
@@ -85,7 +85,7 @@ fn asked(names: &[String]) -> Result<Vec<Asked>, EngineError> {
 }
 
 impl Asked {
-    /// What a person calls it, with the options that are set.
+    /// Its name for a person, with the options that are set.
     fn title(&self) -> String {
         let title = self.method.declaration().title.to_owned();
         match self.name.split_once(':') {
@@ -95,7 +95,7 @@ impl Asked {
     }
 }
 
-/// What is written.
+/// The output.
 struct Compared {
     /// The picture as PNG.
     sheet: Vec<u8>,
@@ -103,11 +103,11 @@ struct Compared {
     report: String,
     /// The figures as a table for a person.
     table: String,
-    /// What a person should know of each method's shape, as sentences that begin with its name.
+    /// Notes for a person on each method's shape, as sentences that begin with its name.
     warnings: Vec<String>,
 }
 
-/// What one method made of the edit.
+/// The result of one method.
 #[derive(Serialize)]
 #[serde(untagged)]
 enum Outcome {
@@ -116,7 +116,7 @@ enum Outcome {
         report: Box<Report>,
         /// See [`detail_error`].
         detail_error: f64,
-        /// That over the best method's, at least 1; `None` where the best has none.
+        /// The same over the best method's, at least 1; `None` if the best has none.
         detail_error_ratio: Option<f64>,
         #[serde(skip)]
         surface_positions: Vec<DVec3>,
@@ -171,7 +171,7 @@ fn compare(arguments: &CompareArguments, methods: &[Asked], watch: &Watch) -> Re
     })
 }
 
-/// What a method makes of the edit: a refusal is an outcome as well.
+/// The result of a method for the edit: a refusal is a result as well.
 ///
 /// # Errors
 /// It was interrupted, or the edit can't be read a second time.
@@ -221,7 +221,7 @@ fn warnings(methods: &[Asked], outcomes: &[Outcome]) -> Vec<String> {
     warnings
 }
 
-/// A line for each method: its times, how much it stretches, and how well it keeps volume and details.
+/// A line for each method: its times, its stretch, and how well it keeps volume and details.
 fn table(methods: &[Asked], outcomes: &[Outcome]) -> String {
     let mut rows = vec![
         [
@@ -276,7 +276,7 @@ fn table(methods: &[Asked], outcomes: &[Outcome]) -> String {
     rows.iter().map(line).collect::<String>() + &refusals
 }
 
-/// Tells each method's detail error relative to the least of them.
+/// Divides each method's detail error by the least of them.
 fn rank_details(outcomes: &mut [Outcome]) {
     let error = |outcome: &Outcome| match outcome {
         Outcome::Bent { detail_error, .. } => Some(*detail_error),
@@ -376,7 +376,7 @@ fn draw(
     sheet::compose(&renderer, &layout, &cells).map_err(render::refuse)
 }
 
-/// Of a shape that is more than this many times as large as the rest shape only what is in view is shown.
+/// If a shape is more than this many times as large as the rest shape, only its part in view is shown.
 const TOO_FAR: f64 = 3.0;
 
 /// A camera that sees the rest shape and every shape that is not far larger.

@@ -1,4 +1,4 @@
-//! `pliant diff`: what differs between two files, in words.
+//! `pliant diff`: the differences between two files, in words.
 
 use std::fmt::Write as _;
 
@@ -23,7 +23,7 @@ pub(super) fn run(arguments: &DiffArguments, console: &mut Console<'_>) -> Resul
     } else {
         let mut text = String::new();
         for difference in &differences {
-            // A String takes whatever is written to it.
+            // Writing to a String can't fail.
             let _ = writeln!(text, "{difference}");
         }
         text

@@ -1,5 +1,5 @@
-//! `pliant generate`: what packages and the manual take from the definitions of the command line and of the window's
-//! commands.
+//! `pliant generate`: the pages and completions that packages and the manual take from the definitions of the command
+//! line and of the window's commands.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -13,8 +13,8 @@ use super::arguments::{GenerateArguments, definition};
 use pliant_engine::EngineError;
 use pliant_engine::files::shown;
 
-/// Writes `man/*.1`, `completions/*`, `command-line.md` and `commands.md` into a folder, over what has these names there:
-/// all of them or none.
+/// Writes `man/*.1`, `completions/*`, `command-line.md` and `commands.md` into a folder, replacing files with these
+/// names there: all of them or none.
 ///
 /// # Errors
 /// If the folder can't be written.
@@ -39,7 +39,7 @@ pub(super) fn run(arguments: &GenerateArguments, console: &mut Console<'_>) -> R
 const MAN: &str = "man";
 const COMPLETIONS: &str = "completions";
 
-/// What is written, by its path in the folder.
+/// The files, by their paths in the folder.
 fn files() -> io::Result<Vec<(String, Vec<u8>)>> {
     let mut program = definition().disable_help_subcommand(true);
     program.build();
@@ -70,7 +70,7 @@ fn command_line() -> String {
     let commands = program.get_subcommands().cloned();
     for mut command in std::iter::once(program.clone()).chain(commands) {
         let name = command.get_display_name().unwrap_or_default().replace('-', " ");
-        // A String takes whatever is written to it.
+        // Writing to a String can't fail.
         let _ = write!(
             page,
             "\n## {name}\n\n```text\n{}\n```\n",
@@ -86,7 +86,7 @@ fn commands() -> String {
     for listed in Command::all_listed() {
         let keys: Vec<String> = listed.shortcuts.iter().map(Shortcut::label).collect();
         let cells = [listed.name, &keys.join(", "), listed.tooltip].map(|cell| cell.replace('|', "\\|"));
-        // A String takes whatever is written to it.
+        // Writing to a String can't fail.
         let _ = writeln!(page, "| {} |", cells.join(" | "));
     }
     page

@@ -1,4 +1,4 @@
-//! `pliant info`: what a file holds and what is wrong with its mesh.
+//! `pliant info`: the contents of a file and the faults of its mesh.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -13,7 +13,7 @@ use pliant_engine::EngineError;
 use pliant_engine::files::shown;
 use pliant_engine::watch::Watch;
 
-/// How many components are listed one by one.
+/// The number of components that are listed one by one.
 const LISTED_COMPONENTS: usize = 12;
 
 pub(super) fn run(arguments: &InfoArguments, console: &mut Console<'_>) -> Result<(), EngineError> {
@@ -47,7 +47,7 @@ fn look_at<'a>(path: &'a Path, weld: WeldOptions, watch: &Watch) -> Result<Looke
     })
 }
 
-/// What is told of a file, for a person.
+/// The report on a file, for a person.
 fn as_text(
     LookedAt {
         path,
@@ -58,7 +58,7 @@ fn as_text(
     let summary = scene.summary();
     let mut text = format!("{}: {}\n", shown(path), scene.format());
     let mut line = |what: &str, said: String| {
-        // A String takes whatever is written to it.
+        // Writing to a String can't fail.
         let _ = writeln!(text, "  {what:<12}{said}");
     };
     let counts = [
@@ -135,7 +135,7 @@ fn as_text(
     text
 }
 
-/// What is told of a file, for a program.
+/// The report on a file, for a program.
 fn as_json(
     LookedAt {
         path,

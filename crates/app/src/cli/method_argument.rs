@@ -5,7 +5,7 @@ use pliant_io::quoted;
 
 use pliant_engine::EngineError;
 
-/// The method that `text`, the value of `option`, names; what it does not set has its default.
+/// The method that `text`, the value of `option`, names; options that it does not set have their defaults.
 ///
 /// # Errors
 /// An unknown name, or a value that the option does not take.
@@ -27,7 +27,7 @@ pub(super) fn method_argument(option: &str, text: &str) -> Result<Method, Engine
             .split_once('=')
             .ok_or_else(|| refuse(format!("an option is set as OPTION=VALUE, not as {}", quoted(part))))?;
         let declared = method.declaration().options.iter().find(|own| own.name == key);
-        // An unknown option is refused by the method itself, in the same words as in an edit.
+        // The method itself refuses an unknown option, with the same words as in an edit.
         let value = declared.map_or(Some(OptionValue::Switch(true)), |own| value_of(own.kind, value));
         let value = value.ok_or_else(|| {
             let allowed = declared.map(|own| own.kind.allowed()).unwrap_or_default();
@@ -40,7 +40,7 @@ pub(super) fn method_argument(option: &str, text: &str) -> Result<Method, Engine
     method.with(values).map_err(refused)
 }
 
-/// A value of this kind; `None` where the text is none.
+/// A value of this kind; `None` if the text is not one.
 fn value_of(kind: OptionKind, text: &str) -> Option<OptionValue> {
     match kind {
         OptionKind::Number { .. } => text.parse().ok().map(OptionValue::Number),

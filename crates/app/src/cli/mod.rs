@@ -1,4 +1,4 @@
-//! The command line (`cli.md`): arguments in, files and an exit status out.
+//! The command line (`pliant --help`): arguments in, files and an exit status out.
 
 mod apply;
 mod arguments;
@@ -27,15 +27,15 @@ use pliant_engine::EngineError;
 use pliant_engine::files::Staging;
 use pliant_engine::watch::Watch;
 
-/// A command's output streams, and how it is watched and stopped.
+/// A command's output streams, and the means to watch and stop it.
 pub struct Console<'a> {
-    /// Standard output, or what stands in for it.
+    /// Standard output, or its replacement.
     pub out: &'a mut dyn Write,
-    /// Standard error, or what stands in for it: refusals, each one line.
+    /// Standard error, or its replacement: refusals, each one line.
     pub err: &'a mut dyn Write,
     /// The command's progress, and its cancel flag.
     pub watch: Watch,
-    /// The files that it is writing.
+    /// The files that it writes.
     pub staging: Staging,
 }
 
@@ -55,8 +55,8 @@ pub fn main() -> ExitCode {
     ExitCode::from(run(std::env::args_os().collect(), &mut console))
 }
 
-/// Does what the arguments say (the program's name comes first) and gives the exit status: 0 done, 1 refused, 2 wrong
-/// arguments. A refusal is one line on `console.err`.
+/// Does what the arguments request (the program's name comes first) and gives the exit status: 0 done, 1 refused, 2
+/// wrong arguments. A refusal is one line on `console.err`.
 pub fn run(arguments: Vec<OsString>, console: &mut Console<'_>) -> u8 {
     let result = match arguments::parse(arguments) {
         Ok(arguments) => match arguments.command {
@@ -74,17 +74,17 @@ pub fn run(arguments: Vec<OsString>, console: &mut Console<'_>) -> u8 {
     };
     let error = match result {
         Ok(()) => return 0,
-        // Whatever error a cancelled job returned: the person stopped it.
+        // A cancelled job may return any error: the person stopped it.
         Err(_) if console.watch.cancel.is_cancelled() => EngineError::Interrupted,
         Err(error) => error,
     };
     let line = plain(&error.to_string().replace(['\n', '\r'], " "));
-    // If not even the error can be written, the exit status still tells of it.
+    // If not even the error can be written, the exit status still reports it.
     let _ = writeln!(console.err, "pliant: {line}");
     error.status()
 }
 
-/// A line without control characters. Foreign text in it was shortened where it was quoted.
+/// A line without control characters. Text from files in it was shortened when it was quoted.
 fn plain(line: &str) -> String {
     line.chars()
         .map(|letter| if steers(letter) { '\u{fffd}' } else { letter })
@@ -101,7 +101,7 @@ fn print(out: &mut dyn Write, text: &str) -> Result<(), EngineError> {
 fn warn<'a>(err: &mut dyn Write, warnings: impl IntoIterator<Item = &'a String>) {
     for warning in warnings {
         let line = plain(&warning.replace(['\n', '\r'], " "));
-        // What was to be done is done, whether or not anybody hears of it.
+        // The work is done, even if nobody reads the warnings.
         let _ = writeln!(err, "pliant: warning: {line}");
     }
 }
@@ -119,7 +119,7 @@ fn print_json(out: &mut dyn Write, value: &serde_json::Value) -> Result<(), Engi
     write_out(out, &text)
 }
 
-/// Writes to standard output. A closed pipe is no error: its reader has read enough.
+/// Writes to standard output. A closed pipe is not an error: its reader has read enough.
 fn write_out(out: &mut dyn Write, text: &str) -> Result<(), EngineError> {
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(EngineError::System(format!(
@@ -132,7 +132,7 @@ fn write_out(out: &mut dyn Write, text: &str) -> Result<(), EngineError> {
 /// The most threads per core: more cost memory and gain nothing.
 const MOST_THREADS_A_CORE: usize = 4;
 
-/// Runs `work` on a pool of its own, with as many threads and with the vectors that are asked for.
+/// Runs `work` on a pool of its own, with the requested number of threads and the requested vectors.
 fn on_threads<T: Send>(asked: ComputeArguments, work: impl FnOnce() -> T + Send) -> Result<T, EngineError> {
     let ComputeArguments { threads, vectors } = asked;
     if let Some(vectors) = vectors.filter(|vectors| !vectors.choose()) {

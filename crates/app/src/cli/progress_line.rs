@@ -1,4 +1,4 @@
-//! A line on the terminal that says what is being done and how far it is.
+//! A line on the terminal with the present stage and its progress.
 
 use std::io::{self, Write};
 use std::sync::atomic::{AtomicBool, Ordering};

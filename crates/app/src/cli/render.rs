@@ -29,7 +29,7 @@ pub(super) fn run(arguments: &RenderArguments, console: &mut Console<'_>) -> Res
     let given = given.chain(arguments.edit.as_deref().map(|edit| ("--edit", edit)));
     for path in &paths {
         files::refuse_shared(("--output", path), given.clone())?;
-        // What is no file is refused before anything is drawn.
+        // A name that is not a file's is refused before anything is drawn.
         Destination::of(path)?;
     }
     let Pictures { pngs, notes } = on_threads(ComputeArguments::default(), || pictures(arguments, &paths, watch))??;
@@ -42,7 +42,7 @@ pub(super) fn run(arguments: &RenderArguments, console: &mut Console<'_>) -> Res
     print(console.out, &lines)
 }
 
-/// Refuses a name that is no picture's.
+/// Refuses a name without a picture's extension.
 pub(super) fn check_png(output: &Path) -> Result<(), EngineError> {
     let extension = output.extension();
     if extension.is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
@@ -54,14 +54,14 @@ pub(super) fn check_png(output: &Path) -> Result<(), EngineError> {
     )))
 }
 
-/// What is drawn.
+/// The pictures.
 struct Pictures {
     pngs: Vec<Vec<u8>>,
-    /// What of the file they don't show, a sentence each.
+    /// The parts of the file that they don't show, a sentence each.
     notes: Vec<String>,
 }
 
-/// Where the pictures go.
+/// The paths of the pictures.
 fn paths(arguments: &RenderArguments) -> Vec<PathBuf> {
     let output = &arguments.output;
     let Some(count) = arguments.turntable else {
@@ -75,7 +75,7 @@ fn paths(arguments: &RenderArguments) -> Vec<PathBuf> {
     (1..=count).map(numbered).collect()
 }
 
-/// How the arguments want the surface shown.
+/// The look of the surface that the arguments request.
 fn look(arguments: &RenderArguments) -> Look {
     Look {
         shading: shading(arguments.look.shading),
@@ -107,7 +107,7 @@ pub(super) fn shading(shading: arguments::Shading) -> Shading {
     }
 }
 
-/// How FILE's vertices are joined: as the arguments say, else as the edit does.
+/// The welding of FILE's vertices: by the arguments, or else by the edit.
 pub(super) fn weld_options(
     arguments: WeldArguments,
     edit: Option<&Path>,
@@ -208,16 +208,17 @@ fn pictures(arguments: &RenderArguments, paths: &[PathBuf], watch: &Watch) -> Re
     Ok(Pictures { pngs, notes })
 }
 
-/// What is on the device.
+/// The data on the device.
 pub(super) struct Uploaded {
     pub surface: Surface,
-    /// What the surface's colours stand for, if they are a field's.
+    /// The meaning of the surface's colours, if they show a field.
     pub scale: Option<Scale>,
-    /// What of the file's materials can't be shown, a sentence each.
+    /// The parts of the file's materials that can't be shown, a sentence each.
     pub notes: Vec<String>,
 }
 
-/// Uploads the surface with the shape's lines, and with what `look` shows on it: regions, a field, or the materials.
+/// Uploads the surface with the shape's lines, and with the data that `look` shows on it: regions, a field, or the
+/// materials.
 pub(super) fn upload(
     renderer: &Renderer,
     drawing: &Drawing,
@@ -254,8 +255,8 @@ pub(super) fn refuse(error: RenderError) -> EngineError {
     EngineError::System(error.to_string())
 }
 
-/// Where the eye of the first picture is: it sees all of the rest shape, whatever the edit does, so that before and
-/// after compare. Specks far away are left out.
+/// The eye of the first picture: it sees all of the rest shape, for any edit, so that pictures before and after can be
+/// compared. Specks far away are left out.
 fn camera(arguments: &RenderArguments, model: &Model, size_px: DVec2) -> Camera {
     let seen = model
         .vertices_without_specks()
@@ -272,7 +273,7 @@ fn camera(arguments: &RenderArguments, model: &Model, size_px: DVec2) -> Camera 
     camera
 }
 
-/// A camera that looks from this side at a model of this diagonal.
+/// A camera that looks from this side at a model with this diagonal.
 pub(super) fn looking(up_axis: Up, from: View, diagonal: f64) -> Camera {
     let mut camera = Camera {
         up: up(up_axis),
@@ -283,7 +284,8 @@ pub(super) fn looking(up_axis: Up, from: View, diagonal: f64) -> Camera {
     camera
 }
 
-/// How much farther away the eye is than for the rest shape alone, so that the bent shape is seen whole, too.
+/// The factor by which the eye is farther away than for the rest shape alone, so that the whole bent shape is visible,
+/// too.
 const ROOM_FOR_THE_EDIT: f64 = 1.2;
 
 /// Reads an edit that fits the model, with the same refusals as `apply`: the editor itself would accept any edit.
@@ -297,7 +299,7 @@ pub(super) fn resolved(path: &Path, loaded: &Loaded, watch: &Watch) -> Result<(B
     Ok((edit, setup))
 }
 
-/// What is drawn.
+/// The drawn shape.
 pub(super) struct Shape {
     pub displacements: Arc<Vec<DVec3>>,
     region_colours: Vec<[u8; 4]>,
@@ -305,7 +307,7 @@ pub(super) struct Shape {
     stiffness: Option<Vec<f64>>,
 }
 
-/// Which shape of an edit is asked for.
+/// The shape of an edit that is requested.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Posed {
     /// The file's, with the edit's regions; nothing is solved.
@@ -315,7 +317,7 @@ pub(super) enum Posed {
 }
 
 impl Shape {
-    /// The shape and the regions that the window shows when it has opened the file with the edit and come to rest.
+    /// The shape and the regions that the window shows after it has opened the file with the edit and come to rest.
     pub fn of(
         file: &Path,
         loaded: &Loaded,
@@ -336,7 +338,8 @@ impl Shape {
                 return Err(EngineError::Interrupted);
             }
             let Some(job) = executor.take(kind) else { break };
-            // A picture needs no hierarchy for rays, and a shape at rest no solver: without an ordering nothing is bound.
+            // A picture needs no hierarchy for rays, and a shape at rest needs no solver: without an ordering nothing
+            // is bound.
             let is_needed = match kind {
                 JobKind::Pick | JobKind::Compare | JobKind::Inspect | JobKind::Joint => false,
                 JobKind::Order => posed == Posed::Bent,

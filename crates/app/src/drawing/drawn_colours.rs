@@ -8,7 +8,7 @@ use rayon::prelude::*;
 /// Number of drawn vertices in a block; colours are uploaded in whole blocks.
 const BLOCK: usize = 1024;
 
-/// The colour of each drawn vertex; vertices of no kept triangle are transparent.
+/// The colour of each drawn vertex; vertices without a kept triangle are transparent.
 pub fn drawn_colours(model: &Model, surface_colours: &[[u8; 4]]) -> Vec<[u8; 4]> {
     (0..model.drawn.vertex_count() as u32)
         .into_par_iter()
@@ -30,7 +30,7 @@ pub fn recolour(
     drawn_colours: &mut [[u8; 4]],
 ) -> Vec<Range<usize>> {
     let mut is_touched = vec![false; drawn_colours.len().div_ceil(BLOCK)];
-    // Equal counts mean one drawn vertex per surface vertex, which any one of its triangles leads to.
+    // Equal counts mean one drawn vertex per surface vertex, which any of its triangles leads to.
     let is_one_to_one = model.drawn.vertex_count() == model.surface.positions.len();
     for &vertex in vertices {
         let colour = colour(vertex);

@@ -20,7 +20,7 @@ pub enum Field {
 }
 
 impl Field {
-    /// Whether it follows from the shape, as the others do not.
+    /// Whether it follows from the shape, unlike the others.
     pub fn is_of_shape(self) -> bool {
         !matches!(self, Self::Stiffness | Self::Weight)
     }
@@ -45,7 +45,7 @@ pub struct Tick {
     pub label: String,
 }
 
-/// How numbers are distributed along a scale.
+/// The distribution of numbers along a scale.
 #[derive(Clone, Copy, PartialEq, Debug)]
 enum Spacing {
     /// Logarithmic, from 1/most to most.
@@ -119,7 +119,7 @@ impl Spacing {
 }
 
 /// The colour at a position on the scale, 0 to 1: a diverging colour map from blue through grey to red, equally bright
-/// at both ends so that neither direction stands out, after \[Mor09\].
+/// at both ends so that neither direction is emphasised, after \[Mor09\].
 pub fn colour_at(share: f64) -> [u8; 4] {
     const STOPS: [[f64; 3]; 7] = [
         [40.0, 62.0, 176.0],
@@ -140,8 +140,8 @@ pub fn colour_at(share: f64) -> [u8; 4] {
     [mixed(0), mixed(1), mixed(2), 255]
 }
 
-/// The colours of the surface vertices in the shape given by `displacements`, or those of the `values` of a field that
-/// does not follow from the shape.
+/// The colours of the surface vertices in the shape given by `displacements`, or of the `values` of a field that does
+/// not follow from the shape.
 pub fn colours(
     field: Field,
     scale: &Scale,

@@ -1,7 +1,7 @@
 //! A file's materials and images, converted for the renderer.
 //!
 //! Decoding images takes longer than everything else in opening a file. So a file is shown at once with its materials
-//! without textures, and with textures when another thread has decoded the images.
+//! without textures, and with textures after another thread has decoded the images.
 
 use std::collections::HashMap;
 
@@ -15,10 +15,10 @@ use pliant_render::{
 #[derive(Debug)]
 pub struct EncodedMaterials {
     materials: Vec<Material>,
-    /// The images to show: number of the file's image, and what its bytes say.
+    /// The images to show: number of the file's image, and the encoding of its bytes.
     wanted: Vec<(usize, Encoding)>,
     images: Vec<Image>,
-    /// What all images together may take while they are decoded.
+    /// The memory that all images together may take during decoding.
     budget: u64,
 }
 
@@ -27,9 +27,9 @@ pub struct EncodedMaterials {
 pub struct DecodedMaterials {
     materials: Vec<Material>,
     images: Vec<DecodedImage>,
-    /// The number of each texture's image, and what its bytes say.
+    /// The number of each texture's image, and the encoding of its bytes.
     textures: Vec<(usize, Encoding)>,
-    /// What can't be shown, a sentence each.
+    /// The parts that can't be shown, a sentence each.
     pub notes: Vec<String>,
 }
 
@@ -114,7 +114,7 @@ impl EncodedMaterials {
         !self.wanted.is_empty()
     }
 
-    /// The same with images that together take at most this many bytes while they are decoded.
+    /// The same with images that together take at most this many bytes during decoding.
     #[must_use]
     pub fn within(self, budget: u64) -> Self {
         Self { budget, ..self }
@@ -178,10 +178,10 @@ impl EncodedMaterials {
     }
 }
 
-/// The most sentences about images that are told.
+/// The largest number of sentences about images.
 const MOST_NOTES: usize = 12;
 
-/// A sentence about an image that is smaller than it is stored.
+/// A sentence about an image that is smaller than stored.
 fn shrunk_note(name: &str, image: &DecodedImage, budget: u64) -> Option<String> {
     let [width, height] = image.stored_size;
     let shown = &image.pixels;
@@ -218,10 +218,10 @@ impl DecodedMaterials {
     }
 }
 
-/// The albedo of what says nothing of its colour, linear: as bright as clay. Under light, white leaves no form to see.
+/// The albedo of a surface without a colour, linear: as bright as clay. White under light would hide the form.
 const BARE_ALBEDO: [f32; 4] = [0.6, 0.6, 0.6, 1.0];
 
-/// Gives what has neither material nor colours of its own a grey one: `triangles` is how many are drawn.
+/// Gives triangles without a material and without colours a grey material: `triangles` is the number of drawn ones.
 pub fn dim_bare(appearance: &mut Appearance, triangles: u32) {
     if appearance.colours.is_some() {
         return;

@@ -1,8 +1,8 @@
 //! Converts a file's geometry and appearance for the renderer. Shared by the window and `pliant render`.
 //!
-//! A [`Drawing`] holds what stays the same while the shape changes: triangles, texture coordinates, materials, and
-//! which drawn vertices share a normal. A [`Pose`] is one shape in f32, relative to the drawing's centre. Computing one
-//! needs no device, so the window does it on another thread.
+//! A [`Drawing`] has the parts that stay the same while the shape changes: triangles, texture coordinates, materials,
+//! and the groups of drawn vertices that share a normal. A [`Pose`] is one shape in f32, relative to the drawing's
+//! centre. Computing one needs no device, so the window does it on another thread.
 
 mod drawn_colours;
 mod field;
@@ -36,7 +36,7 @@ use normals::NormalGroups;
 use pose::Kept;
 use relative::Relative;
 
-/// What stays the same while the shape changes.
+/// The parts that stay the same while the shape changes.
 #[derive(Debug)]
 pub struct Drawing {
     /// The file's materials and their encoded images.
@@ -108,13 +108,13 @@ impl Drawing {
         Pose::of(model, displacements, None, self)
     }
 
-    /// As [`Drawing::pose`], of a shape that the method's own map has made: normals turn by the inverse transpose of
-    /// I + J, with J the map's Jacobian at each surface vertex ([`pliant_deform::Bound::jacobians`]).
+    /// As [`Drawing::pose`], for a shape from the method's own map: normals turn by the inverse transpose of I + J,
+    /// with J the map's Jacobian at each surface vertex ([`pliant_deform::Bound::jacobians`]).
     pub fn pose_turned(&self, model: &Model, displacements: &[DVec3], jacobians: &[Mat3]) -> Pose {
         Pose::of(model, displacements, Some(jacobians), self)
     }
 
-    /// Takes back a pose whose numbers were uploaded, so that the next one is made in its memory.
+    /// Takes back a pose whose numbers were uploaded, so that the next one reuses its memory.
     pub fn put_back(&self, pose: Pose) {
         self.kept.put_back(pose);
     }

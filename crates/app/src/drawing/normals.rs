@@ -17,32 +17,32 @@ use rayon::prelude::*;
 
 use super::relative::Relative;
 
-/// Groups that one task takes.
+/// The number of groups for one task.
 const CHUNK: usize = 1024;
 
-/// Which drawn vertices share a normal, and the triangles that it is computed from.
+/// The drawn vertices that share a normal, and the triangles from which it is computed.
 #[derive(Debug)]
 pub struct NormalGroups {
-    /// The group of each drawn vertex: below the number of surface vertices all triangles at that vertex, from there on
-    /// a part of them.
+    /// The group of each drawn vertex: numbers below the count of surface vertices mean all triangles at that vertex,
+    /// higher ones a part of them.
     group_of_drawn: Vec<u32>,
     parts: Parts,
-    /// Whether each drawn vertex is of a part that is turned inside out, so that its normal points the other way; empty
-    /// where none is. Groups are as in the file.
+    /// Whether each drawn vertex belongs to a part that is turned inside out, so that its normal is reversed; empty if
+    /// none does. Groups are the same as in the file.
     turned: Vec<bool>,
     /// Drawn vertices without a normal, so that their triangles are drawn flat.
     flat: Vec<Range<u32>>,
     /// Geometric normals at rest and stored normals of each group; `None` if the file stores no normals.
     rest: Option<RestNormals>,
-    /// The normals of the groups that are shown at rest, once they were asked for.
+    /// The normals of the groups that are shown at rest, after their first use.
     shown_at_rest: OnceLock<Vec<Vec3>>,
 }
 
 /// The groups of surface vertices that have several.
 #[derive(Debug, Default)]
 struct Parts {
-    /// Triangles of part `p`: `triangles[offsets[p]..offsets[p + 1]]`, in the file's order, so that the order of sums is
-    /// fixed.
+    /// Triangles of part `p`: `triangles[offsets[p]..offsets[p + 1]]`, in the file's order, so that the order of sums
+    /// is fixed.
     offsets: Vec<u32>,
     triangles: Vec<[SurfaceVertex; 3]>,
 }
@@ -54,7 +54,7 @@ struct RestNormals {
 }
 
 impl NormalGroups {
-    /// Groups the model's drawn vertices. `triangles` are in drawn vertices, wound as in the file where not `turned`;
+    /// Groups the model's drawn vertices. `triangles` are in drawn vertices, with the file's winding unless `turned`;
     /// `stored` has one world-space unit normal per drawn vertex.
     pub fn of(
         model: &Model,
@@ -81,7 +81,7 @@ impl NormalGroups {
         groups
     }
 
-    /// The same, with normals of no length for these ranges of drawn vertices, whose triangles are drawn flat then.
+    /// The same, with zero normals for these ranges of drawn vertices, whose triangles are then drawn flat.
     pub fn with_flat(self, flat: Vec<Range<u32>>) -> Self {
         Self { flat, ..self }
     }
@@ -115,7 +115,7 @@ impl NormalGroups {
         self.turn(out);
     }
 
-    /// Turns the normals of parts that are turned inside out, and leaves flat triangles without.
+    /// Reverses the normals of parts that are turned inside out, and gives flat triangles none.
     fn turn(&self, normals: &mut [[f32; 3]]) {
         for range in &self.flat {
             if let Some(normals) = normals.get_mut(range.start as usize..range.end as usize) {
@@ -131,8 +131,9 @@ impl NormalGroups {
         }
     }
 
-    /// As [`NormalGroups::at`], from those at rest and the Jacobian J of the displacements at each surface vertex: a
-    /// normal n becomes the direction of cof(I + J) n, with cof(F) = det(F) F⁻ᵀ, which has no pole where F is singular.
+    /// As [`NormalGroups::at`], from the normals at rest and the Jacobian J of the displacements at each surface
+    /// vertex: a normal n becomes the direction of cof(I + J) n, with cof(F) = det(F) F⁻ᵀ, which has no pole where F is
+    /// singular.
     pub fn turned(&self, model: &Model, relative: &Relative, jacobians: &[Mat3], out: &mut Vec<[f32; 3]>) {
         let at_rest = self.shown_at_rest.get_or_init(|| {
             let mut normals = match &self.rest {
@@ -167,7 +168,7 @@ impl NormalGroups {
         self.turn(out);
     }
 
-    /// The geometric normal of each group; none where its triangles have no area.
+    /// The geometric normal of each group; none if its triangles have no area.
     fn geometric<V: Vector3>(&self, model: &Model, positions: &[V], normals: &mut Vec<V>) {
         vertex_normals(&model.surface.triangles, &model.topology, positions, normals);
         self.parts.add_normals(positions, normals);
@@ -219,7 +220,7 @@ impl Parts {
         }
     }
 
-    /// Puts the parts' normals behind those of the surface vertices.
+    /// Appends the parts' normals to those of the surface vertices.
     fn add_normals<V: Vector3>(&self, positions: &[V], normals: &mut Vec<V>) {
         let count = self.offsets.len() - 1;
         normals.resize(positions.len() + count, V::ZERO);
@@ -238,7 +239,7 @@ impl Parts {
     }
 }
 
-/// A normal as it is shown; the z axis if there is none.
+/// A normal for display; the z axis if there is none.
 fn direction(normal: impl Vector3) -> Vec3 {
     let normal = Vec3::from(normal.single());
     if normal == Vec3::ZERO { Vec3::Z } else { normal }

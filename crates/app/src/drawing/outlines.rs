@@ -1,5 +1,5 @@
 //! The outlines of regions as lines on the surface: each handle's in its own colour, and a pale one between the free
-//! region and what is held still. Every line has a wider, dark casing, so that it is visible on any shading.
+//! and the fixed region. Every line has a wider, dark casing, so that it is visible on any shading.
 
 use pliant_editor::{Editor, Rim};
 use pliant_mesh::{ContourLine, Model};

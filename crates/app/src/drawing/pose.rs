@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::Drawing;
 
-/// Poses that wait to be used again: one is in the renderer's hands while the next is made.
+/// The number of poses that wait to be reused: the renderer has one while the next is made.
 const MOST_SPARE: usize = 2;
 
 /// Positions and normals of the drawn vertices, rounded to f32 after subtracting the drawing's centre.
@@ -23,21 +23,21 @@ pub struct Pose {
     pub bounds: Vec<ChunkBounds>,
 }
 
-/// Memory that poses are made in, kept from frame to frame: mapping it anew takes longer than filling it.
+/// Memory for poses, kept from frame to frame: mapping it again takes longer than filling it.
 #[derive(Debug, Default)]
 pub(super) struct Kept {
     scratch: Mutex<Scratch>,
     spare: Mutex<Vec<Pose>>,
 }
 
-/// What a pose is made from, in the precision that the drawing needs.
+/// The input of a pose, in the precision that the drawing needs.
 #[derive(Debug, Default)]
 struct Scratch {
     single: Buffers<Vec3A>,
     double: Buffers<DVec3>,
 }
 
-/// Of each surface vertex, and of normals' groups beyond.
+/// One for each surface vertex, and then for further groups of normals.
 #[derive(Debug)]
 struct Buffers<V> {
     positions: Vec<V>,
@@ -54,7 +54,7 @@ impl<V> Default for Buffers<V> {
 }
 
 impl Kept {
-    /// Takes a pose that is not needed any more.
+    /// Takes a pose that is no longer needed.
     pub fn put_back(&self, pose: Pose) {
         let mut spare = self.spare.lock().unwrap_or_else(PoisonError::into_inner);
         if spare.len() < MOST_SPARE {
@@ -68,7 +68,7 @@ impl Pose {
         let Kept { scratch, spare } = &drawing.kept;
         let pose = spare.lock().unwrap_or_else(PoisonError::into_inner).pop();
         let mut pose = pose.unwrap_or_default();
-        // Another thread that poses the same drawing has it: the side view, or a picture that is saved.
+        // Another thread that poses the same drawing has the memory: the side view, or a picture that is being saved.
         let mut own = Scratch::default();
         let mut kept = scratch.try_lock().ok();
         let Scratch { single, double } = kept.as_deref_mut().unwrap_or(&mut own);

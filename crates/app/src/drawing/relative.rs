@@ -1,23 +1,23 @@
-//! Where the surface's vertices are relative to the drawing's centre.
+//! The positions of the surface's vertices relative to the drawing's centre.
 //!
-//! They are told in a unit of about the drawing's size, a power of two, so that areas of triangles have a square in
-//! single precision whatever the file's unit is.
+//! Their unit is a power of two near the drawing's size, so that the square of a triangle's area is representable in
+//! single precision for any unit of the file.
 
 use glam::DVec3;
 use pliant_mesh::{Model, Vector3};
 use rayon::prelude::*;
 
-/// Vertices that one task takes.
+/// The number of vertices for one task.
 const CHUNK: usize = 4096;
 
-/// Triangles whose sides are all shorter than this share of the drawing's diagonal are fine: rounded to single precision,
-/// their normals could be seen to be off (by 0.03° there, and the more the smaller they are).
+/// Triangles whose sides are all shorter than this share of the drawing's diagonal are fine: after rounding to single
+/// precision, the errors of their normals would be visible (0.03° at this size, and more for smaller ones).
 const FINE: f64 = 1e-4;
 
-/// Of all triangles this share may be fine before normals are computed in double precision.
+/// The share of triangles that may be fine before normals are computed in double precision.
 const MOST_FINE: f64 = 0.01;
 
-/// How positions are told.
+/// The frame of positions.
 #[derive(Clone, Copy, Debug)]
 pub struct Relative {
     /// The centre of the file's bounding box.
@@ -29,7 +29,7 @@ pub struct Relative {
 }
 
 impl Relative {
-    /// As it fits the file's shape.
+    /// The frame that fits the file's shape.
     pub fn of(model: &Model) -> Self {
         let (centre, diagonal) = model
             .bounds()

@@ -44,7 +44,7 @@ pub fn field(shading: Shading) -> Option<Field> {
 pub fn style(look: &Look, pixels_per_point: f32) -> Style {
     let (shading, region_share) = match look.shading {
         Shading::Clay => (pliant_render::Shading::Matcap(matcap(look.clay)), 1.0),
-        // The file's colours stay to be seen under painted stiffness, too.
+        // The file's colours stay visible under painted stiffness, too.
         Shading::Material => (pliant_render::Shading::Material, 0.8),
         Shading::Zebra => (pliant_render::Shading::Zebra, 0.0),
         Shading::Normals => (pliant_render::Shading::Normals, 0.0),
@@ -80,7 +80,8 @@ fn matcap(clay: Clay) -> Matcap {
     }
 }
 
-/// The overlays of a view, relative to `centre`: the method's cage or lattice, the joint of a limb or the arc of a turn, the brush ring, then the gizmo. `pixels_per_point` scales widths.
+/// The overlays of a view, relative to `centre`: the method's cage or lattice, the joint of a limb or the arc of a
+/// turn, the brush ring, then the gizmo. `pixels_per_point` scales widths.
 pub fn overlays(view: &SceneView<'_>, centre: DVec3, pixels_per_point: f32) -> Vec<Overlay> {
     let relative = |position: DVec3| (position - centre).as_vec3().to_array();
     let mut ring = Overlay {
@@ -129,7 +130,7 @@ pub fn overlays(view: &SceneView<'_>, centre: DVec3, pixels_per_point: f32) -> V
         lines: edges.collect(),
         ..Overlay::default()
     };
-    // Lines of one overlay lie over its triangles.
+    // Lines of one overlay are drawn over its triangles.
     let points = control_shapes().flat_map(|shape| {
         shape.triangles.iter().map(|corners| OverlayTriangle {
             corners: corners.map(relative),

@@ -10,8 +10,8 @@ const BARE_COLOUR: [u8; 4] = [214, 208, 196, 255];
 const DOT_WIDTH: f32 = 3.0;
 const LINE_WIDTH: f32 = 1.2;
 
-/// The lines, then a dot for each bare point. `drawn_colours` are the regions' colours of the drawn vertices; there may
-/// be none. Any share of them counts in full: a dot has no form to be seen under its colour.
+/// The lines, then a dot for each bare point. `drawn_colours` are the regions' colours of the drawn vertices; it may be
+/// empty. Any share of a colour counts in full: a dot has no form to show under its colour.
 pub fn wires(model: &Model, drawn_colours: &[[u8; 4]]) -> Vec<SurfaceLine> {
     let drawn = &model.drawn;
     let colour = |vertex: DrawnVertex| {
@@ -28,7 +28,7 @@ pub fn wires(model: &Model, drawn_colours: &[[u8; 4]]) -> Vec<SurfaceLine> {
         width_points: LINE_WIDTH,
     });
     let bare = model.topology.bare_points();
-    // Of twins only the first is drawn.
+    // Only the first of several twins is drawn.
     let mut is_drawn = vec![false; bare.len()];
     let of_points = (0..)
         .map(DrawnVertex)

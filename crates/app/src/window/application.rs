@@ -1,4 +1,4 @@
-//! The application: the window's state beside the editor's, and what can be asked of it from outside.
+//! The application: the window's state beside the editor's, and the queries from outside.
 
 use std::collections::{BTreeSet, VecDeque};
 use std::path::{Path, PathBuf};
@@ -48,10 +48,10 @@ pub struct Application {
     pub(super) viewport: Viewport,
     /// The second view, while two methods are compared.
     pub(super) compare: Option<Compare>,
-    /// The shape as it was opened, while it is shown along with the present one, and where the line between both stands.
+    /// The shape of the file, while it is shown along with the present one, and the position of the line between both.
     pub(super) original: Option<OriginalView>,
     pub(super) split: Split,
-    /// The small views of what each method makes of the edit, while they are compared.
+    /// The small views of each method's result, while methods are compared.
     pub(super) method_views: MethodViews,
     pub(super) workers: Workers,
     pub(super) messages: Receiver<Message>,
@@ -61,34 +61,34 @@ pub struct Application {
     pub(super) settings: SettingsFile,
     pub(super) recovery: Option<Recovery>,
     pub(super) palette: Option<Palette>,
-    /// Whether this is a person's window, where the first steps are shown.
+    /// Whether this is a person's window, which shows the first steps.
     pub(super) shows_hints: bool,
-    /// Whether the panel beside the view is put away.
+    /// Whether the panel beside the view is hidden.
     pub(super) is_panel_hidden: bool,
     pub(super) log: Log,
     pub(super) keys: KeysWindow,
     pub(super) memory: MemoryWindow,
     pub(super) question: Option<Question>,
-    /// What to do once the save that was asked for first has ended.
+    /// The action after the end of the save that comes first.
     pub(super) after_saving: Option<Then>,
     /// The saves that wait until the shape has settled.
     pub(super) wishes: Vec<SaveWish>,
-    /// What was not written because another program has changed the file, until the person decides.
+    /// The save that was held back because another program has changed the file, until the person decides.
     pub(super) unwritten: Option<Box<SaveRequest>>,
     pub(super) notes: Notes,
     pub(super) toast: Toast,
     pub(super) last_change: Instant,
     pub(super) closing: bool,
-    /// The left session that is open now, until its work is kept or saved by this one.
+    /// The recovered session that is open now, until this one keeps or saves its work.
     pub(super) recovered_from: Option<PathBuf>,
     pub(super) longest_frame: Duration,
-    /// Whether the window is still to fill the screen, as it did the last time.
+    /// Whether the window is still to fill the screen, as it did last time.
     pub(super) is_to_fill_screen: bool,
-    /// Where the window's content, its bars and its panel were in the last frame.
+    /// The places of the window's content, its bars and its panel in the last frame.
     pub(super) layout: [egui::Rect; 6],
-    /// Which parts are turned inside out in the drawing that is being made.
+    /// The parts that are turned inside out in the drawing that is being made.
     pub(super) redrawing: Option<Arc<BTreeSet<u32>>>,
-    /// Stops the decoding of the open file's images, once that was asked for.
+    /// Stops the decoding of the open file's images, if it has begun.
     pub(super) images: Option<Cancel>,
     pub(super) view_rect: egui::Rect,
     pub(super) title: String,
@@ -98,7 +98,7 @@ impl Application {
     /// The application in eframe's context, opening `source`.
     ///
     /// # Errors
-    /// Where there is no graphics device, or it can't run our pipelines.
+    /// If there is no graphics device, or if it can't run our pipelines.
     pub fn new(context: &eframe::CreationContext<'_>, source: Source) -> Result<Self, EngineError> {
         Self::with_places(context, source, &AppDirectories::default())
     }
@@ -183,8 +183,8 @@ impl Application {
         Ok(application)
     }
 
-    /// Goes on in another window of eframe's, on another device: the document, its history and the jobs that run are
-    /// as they were, and what was on the lost device is uploaded again.
+    /// Goes on in another window of eframe's, on another device: the document, its history and the running jobs stay
+    /// the same, and the data of the lost device is uploaded again.
     ///
     /// # Errors
     /// As [`Application::new`].
@@ -225,32 +225,32 @@ impl Application {
         self.input.numpad.extend(digits);
     }
 
-    /// Whether the graphics device is gone, so that the window must be opened anew.
+    /// Whether the graphics device is lost, so that the window must be opened again.
     pub fn has_lost_its_device(&self) -> bool {
         self.viewport.is_lost()
     }
 
-    /// Loses the graphics device, for trying out that nothing else is lost.
+    /// Loses the graphics device, to test that nothing else is lost.
     pub fn lose_device(&self) {
         self.viewport.lose_device();
     }
 
-    /// The editor, to look at.
+    /// The editor, for reading.
     pub fn editor(&self) -> &Editor {
         &self.editor
     }
 
-    /// The path that the open file was read from or saved to.
+    /// The path of the file that was last read or saved as the open one.
     pub fn path(&self) -> Option<&Path> {
         self.session.open.as_ref()?.path.as_deref()
     }
 
-    /// Whether materials are asked for and their images are still being decoded.
+    /// Whether materials are requested and their images are still being decoded.
     pub fn is_loading_textures(&self) -> bool {
         self.editor.view().look.shading == Shading::Material && self.viewport.awaits_images()
     }
 
-    /// Whether nothing is under way: no job, no file being read or written, and the picture shows the present shape.
+    /// Whether nothing is in progress: no job, no file being read or written, and the picture shows the present shape.
     pub fn is_settled(&self) -> bool {
         let view = self.editor.view();
         let shown = self
@@ -271,7 +271,7 @@ impl Application {
         self.viewport.displacements()
     }
 
-    /// Where the 3D view stands in the window, in points.
+    /// The place of the 3D view in the window, in points.
     pub fn view_rect(&self) -> egui::Rect {
         self.view_rect
     }
@@ -290,7 +290,7 @@ impl Application {
         self.last_change = Instant::now();
     }
 
-    /// How often the 3D view was drawn.
+    /// The number of times that the 3D view was drawn.
     pub fn drawings(&self) -> u64 {
         self.viewport.drawings()
     }
@@ -302,12 +302,12 @@ impl Application {
         }
     }
 
-    /// The longest that a frame has kept the window's thread busy, the drawing itself apart, since the last call.
+    /// The longest time that a frame has kept the window's thread busy since the last call, without the drawing itself.
     pub fn take_longest_frame(&mut self) -> Duration {
         std::mem::take(&mut self.longest_frame)
     }
 
-    /// How long drawing has kept the window's thread busy so far.
+    /// The time that drawing has kept the window's thread busy so far.
     pub fn drawing_time(&self) -> Duration {
         let second = self.compare.as_ref().map_or(Duration::ZERO, Compare::drawing_time);
         let original = self.original.as_ref();
@@ -315,7 +315,7 @@ impl Application {
         self.viewport.drawing_time() + second + original + self.method_views.drawing_time()
     }
 
-    /// Gives the editor a command, as a menu would.
+    /// Gives the editor a command, like a menu.
     pub fn command(&mut self, command: Command) {
         self.last_change = Instant::now();
         self.editor.handle(Event::Command(command));
@@ -327,7 +327,7 @@ impl Application {
             .load(Source::File(path), &self.viewport.gpu(), &self.workers);
     }
 
-    /// Has unsaved work written where the next session finds it.
+    /// Writes unsaved work where the next session finds it.
     pub(super) fn keep_for_recovery(&mut self) {
         let (Some(recovery), Some(open)) = (&mut self.recovery, &self.session.open) else {
             return;
@@ -340,7 +340,7 @@ impl Application {
             &open.mesh,
             [open.path.as_deref(), open.project.as_deref()],
         ) else {
-            // What was recovered is kept by this session now, or saved.
+            // This session now keeps or has saved the recovered work.
             if recovery.has(key) || !unsaved {
                 self.recovered_from.take().iter().for_each(|left| remove(left));
             }
@@ -357,13 +357,13 @@ impl Application {
         self.notes.headline = Some(Note::Failed(sentence));
     }
 
-    /// Tells the editor how much memory a person lets bindings take.
+    /// Gives the editor the memory limit that the person has chosen for bindings.
     pub(super) fn take_memory(&mut self) {
         let most = self.settings.get().memory;
         self.editor.handle(Event::Memory(most.map(|most| most.0)));
     }
 
-    /// Tells the editor which keys a person has chosen.
+    /// Gives the editor the keys that the person has chosen.
     pub(super) fn take_keys(&mut self) {
         let mut chosen = self.settings.get().keys.clone();
         let mut problems = own_keys::refuse(&mut chosen);

@@ -19,7 +19,7 @@ pub fn listen(folder: PathBuf) {
         before(info);
         if std::thread::current().id() == window {
             let kept = recovery::write_latest();
-            // There is nobody left to tell.
+            // Nobody is left to report to.
             let _ = report(info, kept.as_deref(), &folder);
         }
     }));

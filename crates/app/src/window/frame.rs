@@ -35,7 +35,7 @@ impl eframe::App for Application {
         let mut commands = Outbox::default();
         let (file_command, layout) = self.bars_and_panel(ui, &mut commands);
         if std::mem::replace(&mut self.layout, layout) != layout || has_heard {
-            // egui lays out by what it measured in the frame before.
+            // egui lays out by its measurements of the frame before.
             context.request_repaint();
         }
         let painted = CentralPanel::no_frame().show(ui, |ui| self.view(ui)).inner;
@@ -72,7 +72,8 @@ impl eframe::App for Application {
 }
 
 impl Application {
-    /// What surrounds the view. Returns what was chosen of files, and where the content, the bars and the panel are.
+    /// The bars and panels around the view. Returns the chosen file command, and the places of the content, the bars
+    /// and the panel.
     fn bars_and_panel(&mut self, ui: &mut egui::Ui, commands: &mut Outbox) -> (Option<FileCommand>, [egui::Rect; 6]) {
         let context = ui.ctx().clone();
         let title = self.session.open.as_ref().map(OpenFile::name).unwrap_or_default();
@@ -113,7 +114,7 @@ impl Application {
         (top.inner.or_else(|| commands.take_file()), layout)
     }
 
-    /// The panel beside the view. Returns where it is.
+    /// The panel beside the view. Returns its place.
     fn panel(&mut self, ui: &mut egui::Ui, commands: &mut Outbox) -> egui::Rect {
         let panel = Panel::right("panel")
             .default_size(self.settings.get().panel_width)
@@ -139,7 +140,7 @@ impl Application {
         rect
     }
 
-    /// What lies over the view and the panel: the palette, the log, the keys and the question that waits.
+    /// The layers over the view and the panel: the palette, the log, the keys and the waiting question.
     fn dialogs(&mut self, context: &egui::Context) {
         self.show_palette(context);
         for sentence in [
@@ -177,9 +178,9 @@ impl Application {
         }
     }
 
-    /// Esc means the nearest thing: a question, the palette, an open menu, a field that is typed into and what a tool is
-    /// doing come first; then it closes the window that lies on top of the list of keys, the choice of memory and the log,
-    /// and only where none is open does the editor get it.
+    /// Esc applies to the nearest thing. First come a question, the palette, an open menu, a field with the focus and
+    /// the gesture of a tool; then it closes the topmost window of the list of keys, the choice of memory and the log;
+    /// only if none is open does the editor get it.
     fn close_by_escape(&mut self, context: &egui::Context) {
         let is_taken = self.question.is_some()
             || self.palette.is_some()
@@ -206,7 +207,7 @@ impl Application {
         *open[nearest].1 = false;
     }
 
-    /// With which energy the shape has settled, for the log.
+    /// The energy with which the shape has settled, for the log.
     fn settled_with(&self) -> Option<String> {
         let view = self.editor.view();
         let descent = view.descent.filter(|_| view.settled)?;
@@ -219,7 +220,7 @@ impl Application {
     }
 }
 
-/// Whether an event may change what is shown, so that one more frame has to lay it out.
+/// Whether an event may change the picture, so that one more frame is needed to lay it out.
 fn may_change_layout(event: &egui::Event) -> bool {
     use egui::Event::{MouseMoved, MouseWheel, PointerGone, PointerMoved, Touch, Zoom};
     !matches!(

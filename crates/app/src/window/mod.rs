@@ -1,5 +1,5 @@
-//! The window: eframe around the editor. Panels show what the editor says and send it events; files, dialogs, threads
-//! and the clock are here; egui meets the renderer in `viewport` alone.
+//! The window: eframe around the editor. Panels show the editor's state and send it events; files, dialogs, threads and
+//! the clock are here; egui meets the renderer only in `viewport`.
 
 mod application;
 mod bars;
@@ -31,7 +31,7 @@ pub use files::app_directories::AppDirectories;
 pub use files::names::original_name;
 pub use files::session::{KeepOriginal, Source};
 
-/// Saves and projects apart from the window, for who drives them without one.
+/// Saves and projects without the window, for programs that drive them.
 pub mod saving {
     pub use super::files::project_file::{OpenedProject, read as read_project};
     pub use super::files::rest_mesh::{MeshSource, RestMesh};
@@ -48,13 +48,13 @@ use shell::Listener;
 
 use pliant_engine::EngineError;
 
-/// The variables that tell of a display, on systems with X11 or Wayland.
+/// The variables that name a display, on systems with X11 or Wayland.
 const DISPLAYS: [&str; 3] = ["WAYLAND_DISPLAY", "WAYLAND_SOCKET", "DISPLAY"];
 
 /// Opens the window and returns when it is closed.
 ///
 /// # Errors
-/// Where no window or no graphics device can be had.
+/// If there is no window or no graphics device.
 pub fn run(source: Source) -> Result<(), EngineError> {
     if cfg!(all(unix, not(target_os = "macos"))) && DISPLAYS.iter().all(|name| std::env::var_os(name).is_none()) {
         return Err(EngineError::System(format!(
@@ -73,7 +73,7 @@ pub fn run(source: Source) -> Result<(), EngineError> {
         .map_err(|error| refused(error.to_string()))?;
     let (application, numpad) = (Shared::default(), NumpadDigits::default());
     loop {
-        // eframe's handler tells nobody why it could not begin.
+        // eframe's handler does not report why it could not begin.
         let failure: Rc<RefCell<Option<EngineError>>> = Rc::default();
         let has_begun = Rc::new(Cell::new(false));
         let inner = eframe::create_native(
@@ -110,7 +110,7 @@ pub fn run(source: Source) -> Result<(), EngineError> {
             return Err(error);
         }
         if !has_begun.get() {
-            // Nearly always the cause is the device; asking for one without a window tells.
+            // Nearly always the device is the cause; asking for one without a window gives the reason.
             let reason = pliant_render::Headless::new().err().map_or_else(
                 || "the window system or the graphics driver refused it".to_owned(),
                 |error| error.to_string(),

@@ -1,4 +1,4 @@
-//! What eframe runs: the application, which outlives eframe's window when the graphics device is lost, and the keys of
+//! The application as eframe runs it, which outlives eframe's window when the graphics device is lost, and the keys of
 //! the numeric pad, which come directly from winit.
 
 use std::cell::RefCell;
@@ -19,8 +19,8 @@ use pliant_engine::EngineError;
 /// The application between two windows.
 pub type Shared = Rc<RefCell<Option<Application>>>;
 
-/// Digits of the numeric pad that went down and have not been taken yet: egui gives the keys of both rows of digits one
-/// name.
+/// Digits of the numeric pad that went down and have not been taken yet: egui gives the keys of both rows of digits the
+/// same name.
 pub type NumpadDigits = Rc<RefCell<VecDeque<u8>>>;
 
 /// The application in one of eframe's windows.
@@ -61,9 +61,9 @@ impl eframe::App for Shell {
 
 /// eframe's event handler, extended by the keys of the numeric pad.
 pub struct Listener<'a> {
-    /// eframe's own.
+    /// eframe's handler.
     pub inner: EframeWinitApplication<'a>,
-    /// Where the pad's digits go.
+    /// The queue for the pad's digits.
     pub numpad: NumpadDigits,
 }
 

@@ -1,4 +1,4 @@
-//! What the window system is told and tells: the title, the size, and whether the window fills the screen.
+//! The exchange with the window system: the title, the size, and whether the window fills the screen.
 
 use std::time::Instant;
 
@@ -7,7 +7,7 @@ use eframe::egui;
 use super::application::{Application, REST};
 
 impl Application {
-    /// Fills the screen once the window is seen: X11's window managers pass over what is asked for before.
+    /// Fills the screen after the window appears: X11's window managers ignore earlier requests.
     pub(super) fn fill_screen(&mut self, context: &egui::Context) {
         if !self.is_to_fill_screen {
             return;
@@ -23,7 +23,7 @@ impl Application {
         }
     }
 
-    /// Notes how large the window is, and whether it fills the screen, once nobody pulls at it.
+    /// Notes the window's size, and whether it fills the screen, when nobody is resizing it.
     pub(super) fn remember_size(&mut self, context: &egui::Context) {
         if self.last_change.elapsed() < REST {
             return;
@@ -37,7 +37,7 @@ impl Application {
         if let Some(maximised) = maximised.filter(|&maximised| maximised != self.settings.get().maximised) {
             self.settings.change(|settings| settings.maximised = maximised);
         }
-        // The size in points at the scale of the system, whatever the person's own is.
+        // The size in points at the system's scale, not the person's.
         let Some(size) = size.map(|size| size * context.zoom_factor()) else {
             return;
         };
@@ -48,7 +48,7 @@ impl Application {
         }
     }
 
-    /// Names the open file, or the question that waits, in the window's title.
+    /// Puts the name of the open file, or the waiting question, in the window's title.
     pub(super) fn entitle(&mut self, context: &egui::Context) {
         let about = match (&self.question, &self.session.open) {
             (Some(question), _) => question.title().to_owned(),

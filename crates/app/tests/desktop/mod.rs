@@ -1,4 +1,4 @@
-//! The program's real window on a virtual display of its own, acted on by a slow hand's pointer and keys.
+//! The program's real window on a virtual display of its own, driven by a slow hand's pointer and keys.
 #![allow(dead_code, reason = "each test file uses the verbs it needs")]
 #![allow(
     clippy::unwrap_used,
@@ -19,7 +19,7 @@ pub const SIZE: (i32, i32) = (1280, 800);
 /// Software drawing of a frame takes about a tenth of a second: act like a slow hand.
 pub const PAUSE: Duration = Duration::from_millis(250);
 
-/// How long anything may take on a machine that has other things to do.
+/// The time limit of any action on a busy machine.
 pub const PATIENCE: Duration = Duration::from_secs(60);
 
 /// A process that ends with its owner.
@@ -32,7 +32,7 @@ impl Drop for Running {
     }
 }
 
-/// A display, a window manager where there is one, and the program's window on it.
+/// A display, a window manager if there is one, and the program's window on it.
 pub struct Desktop {
     display: String,
     window: String,
@@ -41,17 +41,17 @@ pub struct Desktop {
     home: tempfile::TempDir,
     _manager: Option<Running>,
     _server: Running,
-    /// Where pictures go and how many there are, for looking at: `PLIANT_SHOTS` names a folder.
+    /// The folder for pictures and their number, for inspection: `PLIANT_SHOTS` names a folder.
     shots: Option<PathBuf>,
     shot: std::cell::Cell<u32>,
-    /// Two at once would be slower than a hand is patient.
+    /// Two at once would be slower than the time limits.
     _turn: MutexGuard<'static, ()>,
 }
 
 static TURN: Mutex<()> = Mutex::new(());
 
 impl Desktop {
-    /// The window with a file open; `None`, said by name, where a tool is missing.
+    /// The window with a file open; `None`, reported by name, if a tool is missing.
     pub fn open(file: &Path) -> Option<Self> {
         let turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
         let (server, display) = display()?;
@@ -77,7 +77,7 @@ impl Desktop {
         Some(desktop)
     }
 
-    /// Starts the program anew, with the settings and the work that the last one has left, at a known place and size.
+    /// Starts the program again, with the settings and the work of the last run, at a known place and size.
     pub fn start(&mut self, file: &Path) {
         self.launch(file);
         self.xdotool(&["windowmove", &self.window, "0", "0"]);
@@ -119,7 +119,7 @@ impl Desktop {
         }
     }
 
-    /// Has the window manager let the window fill the screen; `false`, said by name, where there is none that could.
+    /// Asks the window manager to let the window fill the screen; `false`, reported by name, if no window manager can.
     pub fn maximise(&self) -> bool {
         let states = ["-i", "-r", &self.window, "-b", "add,maximized_vert,maximized_horz"];
         let asked = Command::new("wmctrl")
@@ -133,14 +133,14 @@ impl Desktop {
         is_asked && self._manager.is_some()
     }
 
-    /// The settings as they are kept.
+    /// The settings as stored.
     pub fn settings(&self) -> serde_json::Value {
         let file = self.home.path().join("pliant").join("settings.json");
         let text = std::fs::read_to_string(file).unwrap_or_default();
         serde_json::from_str(&text).unwrap_or_default()
     }
 
-    /// Asks the window manager to close the window; `false`, said by name, where there is none that could.
+    /// Asks the window manager to close the window; `false`, reported by name, if no window manager can.
     pub fn close(&self) -> bool {
         let asked = Command::new("wmctrl")
             .args(["-i", "-c", &self.window])
@@ -163,7 +163,7 @@ impl Desktop {
         }
     }
 
-    /// Ends the program as `kill -9` does.
+    /// Ends the program like `kill -9`.
     pub fn kill(&mut self) {
         self.program = None;
         let start = Instant::now();
@@ -176,7 +176,7 @@ impl Desktop {
         }
     }
 
-    /// What sessions have left to be recovered.
+    /// The recoverable work of sessions.
     pub fn left_behind(&self) -> Vec<PathBuf> {
         let folder = self.home.path().join("pliant").join("recovery");
         let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
@@ -186,7 +186,7 @@ impl Desktop {
             .collect()
     }
 
-    /// Keeps a picture of the screen, where somebody wants to look at it.
+    /// Keeps a picture of the screen, if requested.
     pub fn shoot(&self, what: &str) {
         let Some(folder) = &self.shots else { return };
         self.shot.set(self.shot.get() + 1);
@@ -198,7 +198,7 @@ impl Desktop {
             .status();
     }
 
-    /// Does a command by its name in the palette.
+    /// Runs a command by its name in the palette.
     pub fn command(&self, name: &str) {
         self.key("F1");
         sleep(PAUSE);
@@ -241,7 +241,7 @@ impl Desktop {
         }
     }
 
-    /// The titles of the windows that are to be seen.
+    /// The titles of the visible windows.
     fn titles(&self) -> String {
         let windows = self.xdotool(&["search", "--onlyvisible", "--name", "."]);
         let titles = windows.lines().map(|window| self.xdotool(&["getwindowname", window]));
@@ -261,7 +261,7 @@ impl Desktop {
         self.xdotool(&["mousemove", "--window", &self.window, &x.to_string(), &y.to_string()]);
     }
 
-    /// Presses the left button at one point, goes to the other in steps, and lets go.
+    /// Presses the left button at one point, goes to the other in steps, and releases it.
     pub fn drag(&self, from: (i32, i32), to: (i32, i32)) {
         self.move_to(from.0, from.1);
         sleep(PAUSE);
@@ -285,7 +285,7 @@ impl Desktop {
         sleep(PAUSE);
     }
 
-    /// Types a path into the question that comes up where the system has no file dialog, and waits for the file.
+    /// Types a path into the question that appears if the system has no file dialog, and waits for the file.
     pub fn answer_with(&self, key: &str, question: &str, path: &Path) {
         self.key(key);
         self.wait_for_title(question);
@@ -293,7 +293,7 @@ impl Desktop {
         self.wait_for_file(path);
     }
 
-    /// The project of what is open, saved by its command under another name.
+    /// The open project, saved by its command under another name.
     pub fn project(&self, folder: &Path, name: &str) -> serde_json::Value {
         let path = folder.join(name).with_extension("pliant");
         self.command("save project as");
@@ -303,7 +303,7 @@ impl Desktop {
         serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
     }
 
-    /// The same once `holds` says yes to it: what was asked for takes its time.
+    /// The same once `holds` accepts it: the requested work takes time.
     pub fn project_once(
         &self,
         folder: &Path,
@@ -326,7 +326,7 @@ impl Desktop {
         self.wait_until(path, Path::exists);
     }
 
-    /// Waits until a file is as `holds` wants it.
+    /// Waits until `holds` accepts a file.
     pub fn wait_until(&self, path: &Path, holds: impl Fn(&Path) -> bool) {
         let start = Instant::now();
         while !holds(path) {
@@ -340,7 +340,7 @@ impl Desktop {
         }
     }
 
-    /// Types a path into the question that is shown.
+    /// Types a path into the shown question.
     pub fn answer(&self, path: &Path) {
         sleep(2 * PAUSE);
         self.key("ctrl+a");
@@ -350,7 +350,7 @@ impl Desktop {
     }
 }
 
-/// A virtual display of its own; `None`, said by name, where a tool or a device is missing.
+/// A virtual display of its own; `None`, reported by name, if a tool or a device is missing.
 fn display() -> Option<(Running, String)> {
     if Command::new("xdotool").arg("version").output().is_err() {
         eprintln!("skipped: the real window (no xdotool)");

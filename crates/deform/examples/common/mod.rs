@@ -1,4 +1,4 @@
-//! What the examples share: meshes and edits from files, the edit that peers are timed on, and a stop-watch.
+//! The common code of the examples: meshes and edits from files, the edit that peers are timed on, and a stop-watch.
 #![allow(dead_code, reason = "no example needs all of it")]
 
 use std::path::Path;
@@ -9,8 +9,8 @@ use pliant_deform::{Constraints, Loose, Method, Problem, Role};
 use pliant_mesh::{Cancel, Drawn, DrawnVertex, Model, Progress, SurfaceVertex, Vectors, WeldOptions};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-/// A pool of so many threads. The environment variable `PLIANT_VECTORS` names the vectors that loops run with from now
-/// on (`avx512`, `avx2`, `baseline`); without it they are the widest that the processor has.
+/// A pool of this many threads. The environment variable `PLIANT_VECTORS` names the vectors that loops use from now on
+/// (`avx512`, `avx2`, `baseline`); without it they are the widest that the processor has.
 pub fn pool(threads: usize) -> ThreadPool {
     if let Ok(name) = std::env::var("PLIANT_VECTORS") {
         let vectors = Vectors::from_name(&name).unwrap_or_else(|| panic!("there are no vectors {name}"));
@@ -39,7 +39,7 @@ pub fn read(off: &Path) -> Model {
     Model::weld(drawn, &WeldOptions::default(), &Progress::new(), &Cancel::new()).unwrap()
 }
 
-/// A problem with one handle, and defaults for what is not given.
+/// A problem with one handle, and defaults for missing inputs.
 pub fn one_handle<'a>(model: &'a Model, roles: &'a [Role], stiffness: &'a [f64], method: &'a Method) -> Problem<'a> {
     Problem {
         surface: &model.surface,
@@ -55,13 +55,13 @@ pub fn one_handle<'a>(model: &'a Model, roles: &'a [Role], stiffness: &'a [f64],
     }
 }
 
-/// What a mesh's file is called.
+/// The name of a mesh's file.
 pub fn name(file: &Path) -> String {
     file.file_stem().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-/// The edit that stands beside a mesh as MESH.sel (a number per vertex: 0 fixed, 1 free, 2 handle) and MESH.def (the
-/// handle's matrix, row by row); without them the one that peers are timed on.
+/// The edit beside a mesh as MESH.sel (a number per vertex: 0 fixed, 1 free, 2 handle) and MESH.def (the handle's
+/// matrix, row by row); without them the one that peers are timed on.
 pub fn edit(mesh: &Path, model: &Model) -> (Vec<Role>, DAffine3) {
     let numbers = |extension: &str| -> Option<Vec<f64>> {
         let text = std::fs::read_to_string(mesh.with_extension(extension)).ok()?;
@@ -114,7 +114,7 @@ pub fn peers_edit(model: &Model) -> (Vec<Role>, DAffine3) {
     (roles, target)
 }
 
-/// What something gave, and how many milliseconds it took.
+/// The result of a function, and its time in milliseconds.
 pub fn timed<T>(run: impl FnOnce() -> T) -> (f64, T) {
     let start = Instant::now();
     let result = run();
@@ -126,13 +126,13 @@ pub fn ms(start: Instant) -> f64 {
     start.elapsed().as_secs_f64() * 1e3
 }
 
-/// The middle one of `values`; not a number where there are none.
+/// The median of `values`; NaN if there are none.
 pub fn median(values: &mut [f64]) -> f64 {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
 }
 
-/// The most memory that this process has held; 0 where the system doesn't say.
+/// The most memory that this process has held; 0 if the system doesn't report it.
 pub fn peak_mb() -> f64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let kilobytes = status
@@ -141,7 +141,7 @@ pub fn peak_mb() -> f64 {
     kilobytes.map_or(0.0, |kb: f64| kb / 1024.0)
 }
 
-/// Lets [`peak_mb`] begin again at what the process holds now, where the system can do that.
+/// Resets [`peak_mb`] to the memory that the process holds now, if the system can do that.
 pub fn forget_peak() {
     let _ = std::fs::write("/proc/self/clear_refs", "5");
 }

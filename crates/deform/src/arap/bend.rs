@@ -15,7 +15,7 @@ pub(crate) struct Bend {
 }
 
 impl Bend {
-    /// B β K and half its product with B, which the energy is less by; B becomes what R is fitted to.
+    /// B β K and half its product with B, by which the energy is smaller; B becomes the matrix to which R is fitted.
     #[inline(always)]
     pub fn bear(&self, b: &mut [Quad; 3]) -> ([Quad; 3], f64) {
         let forces = times(b, &self.hold);
@@ -29,7 +29,8 @@ impl Bend {
         (forces, 0.5 * (products[0] + products[1] + products[2]))
     }
 
-    /// Z = −dE/dB / (1 + β), of R − 1 and what `bear` found: where all turns alike it is R − 1 again, whatever β is.
+    /// Z = −dE/dB / (1 + β), from R − 1 and the result of `bear`: if everything turns alike it is R − 1 again, for
+    /// every β.
     #[inline(always)]
     pub fn pull(&self, turn: &[Quad; 3], forces: &[Quad; 3]) -> [Quad; 3] {
         let mut pull = times(turn, &self.gain);
@@ -42,7 +43,7 @@ impl Bend {
     }
 }
 
-/// m a, by columns. Plain loops: a closure would be compiled apart from the vectors that the pass runs on.
+/// m a, by columns. Plain loops: a closure would not be compiled for the pass's vectors.
 #[inline(always)]
 fn times(m: &[Quad; 3], &[xx, xy, xz, yy, yz, zz]: &[f64; 6]) -> [Quad; 3] {
     let columns = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];

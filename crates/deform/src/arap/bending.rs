@@ -18,12 +18,12 @@
 //!
 //! With S⁰ = Σ_f ⅓ A_f P_f the cell's rest matrix (the cotangents' Σ w e eᵀ of a triangle is A P), N = Σ_f ⅓ A_f n nᵀ =
 //! ½ tr S⁰ − S⁰, μ = ν/β and K = (S⁰ + μ N)⁻¹, all of which commute, the best map is 1 + Φ with Φ = (B + μ (R − 1) N)
-//! K, and what is left is
+//! K, and the rest is
 //!
 //! ½ β Σ w |D|² − ½ ⟨B β K, B⟩ − ⟨R − 1, ν S⁰ N K + B ν K N⟩:
 //!
-//! the stencil's weights grow by β, and R is fitted to more, in the same fit. So the energy stays a function of the
-//! positions, and the majorising quadratic's matrix is that of the first two terms and the rims.
+//! the stencil's weights grow by β, and R is fitted to a further term, in the same fit. So the energy stays a function
+//! of the positions, and the majorising quadratic's matrix is that of the first two terms and the rims.
 
 use glam::{DMat3, DVec3};
 use pliant_mesh::{Surface, SurfaceVertex, Topology};
@@ -50,8 +50,8 @@ pub(crate) fn stiffness(surface: &Surface, domain: &Domain, smoothness: f64) -> 
     smoothness * 0.5 * area
 }
 
-/// β of each cell, for κ A = `stiffness`: ½ κ A over what the triangles' gradients of a function with second
-/// derivatives of length 1 are squared, on average over the kinds of them and over the cell's area.
+/// β of each cell, for κ A = `stiffness`: ½ κ A over the squared gradients in the triangles of a function with second
+/// derivatives of length 1, averaged over the kinds of such functions and over the cell's area.
 pub(crate) fn ties(surface: &Surface, topology: &Topology, domain: &Domain, stiffness: f64) -> Vec<f64> {
     domain.vertices[..domain.cell_count]
         .par_iter()
@@ -188,7 +188,7 @@ mod tests {
             paid.iter().sum::<f64>() / 3.0
         };
         let [coarse, fine] = [20, 40].map(|side| (mean(side) - 1.0).abs());
-        // What is missing is missing along the border.
+        // The missing part is along the border.
         assert!(fine < 0.05 && fine < 0.55 * coarse, "{coarse} {fine}");
     }
 }

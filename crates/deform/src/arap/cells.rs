@@ -1,4 +1,4 @@
-//! An ARAP energy as one stencil a cell, whatever its edges are.
+//! An ARAP energy as one stencil a cell, for any choice of its edges.
 //!
 //! With displacements d, D_v = d_v − d_i over a cell's ring and B_i = Σ_v D_v G_ivᵀ, a cell's matrix is S_i = S⁰_i +
 //! B_i and its energy
@@ -10,8 +10,8 @@
 //!
 //! dE/dd_i = −Σ_v w_iv D_v + (R_i − 1) Σ_v (G_iv − G_vi) − Σ_v (R_v − R_i) G_vi,
 //!
-//! so a solver gathers over the ring twice: positions for the matrices, rotations for the gradient. Where cells bend, Z
-//! (see `bending`) stands for R − 1 here, and w, G_iv and G_vi have grown by their cells' 1 + β. `rims` and `spokes`
+//! so a solver gathers over the ring twice: positions for the matrices, rotations for the gradient. If cells bend, Z
+//! (see `bending`) replaces R − 1 here, and w, G_iv and G_vi have grown by their cells' 1 + β. `rims` and `spokes`
 //! define G, S⁰ and w. The edges that the sums over both ends count wrongly are all constrained; `constant` corrects
 //! them.
 
@@ -23,14 +23,14 @@ pub(crate) use super::bend::Quad;
 /// The stencils of a domain's cells.
 #[derive(Debug, Default)]
 pub(crate) struct Cells {
-    /// Of each cell: where its entries start; one more at the end.
+    /// The start of each cell's entries; one more at the end.
     pub offsets: Vec<u32>,
     /// The local vertices around the cells.
     pub ends: Vec<u32>,
     /// G_iv and w_iv of each entry.
     pub towards: Vec<Quad>,
-    /// G_vi of each entry of a solved cell, times 1 + β_v. **f32**: they enter the gradient alone, and differences of
-    /// turns are what they multiply.
+    /// G_vi of each entry of a solved cell, times 1 + β_v. **f32**: they enter the gradient alone, and only multiply
+    /// differences of turns.
     pub back: Vec<[f32; 3]>,
     /// w_iv of each entry of a solved cell, **f32** for the gradient of cells whose turns are given.
     pub weights: Vec<f32>,
@@ -38,7 +38,7 @@ pub(crate) struct Cells {
     pub own: Vec<DVec3>,
     /// S⁰'s entries xx, xy, xz, yy, yz, zz of each cell.
     pub rest: Vec<[f64; 6]>,
-    /// Pairs of constrained vertices whose squared difference enters the energy besides, and by what factor.
+    /// Pairs of constrained vertices whose squared difference also enters the energy, with its factor.
     pub constant: Vec<(u32, u32, f64)>,
     /// The bending term of each cell, or none.
     pub bending: Vec<Bend>,
@@ -53,12 +53,12 @@ impl Cells {
         self.offsets[cell] as usize..self.offsets[cell + 1] as usize
     }
 
-    /// The unit of length of single-precision fields: about the model's size.
+    /// The unit of length of single-precision fields, about the model's size.
     pub fn unit(&self) -> f64 {
         if self.scale > 0.0 { self.scale.sqrt() } else { 1.0 }
     }
 
-    /// How many cells there are.
+    /// The number of cells.
     pub fn count(&self) -> usize {
         self.rest.len()
     }
@@ -107,7 +107,7 @@ impl Cells {
 /// Whether a cell's vertex is solved for.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Solved {
-    /// It is.
+    /// It is solved for.
     Yes,
     /// It is constrained.
     No,

@@ -11,17 +11,17 @@ use super::domain::{ABSENT, Domain};
 use crate::handles::Handle;
 use crate::{Problem, Role};
 
-/// How many centres at a distance of 1 from each other there are per unit of area: 0.81 were found on scans.
+/// The number of centres at a distance of 1 from each other per unit of area: 0.81 was found on scans.
 const DENSITY: f64 = 0.81;
 
-/// A coarse surface, and which vertices belong to each of its vertices.
+/// A coarse surface, and the cluster behind each of its vertices.
 pub(crate) struct Clusters {
     pub surface: Surface,
     pub topology: Topology,
-    /// Of each coarse vertex: the surface's that it is.
+    /// The surface vertex at each coarse vertex.
     pub centres: Vec<u32>,
     pub roles: Vec<Role>,
-    /// The mean of each cluster's.
+    /// The mean of each cluster's stiffness.
     pub stiffness: Vec<f64>,
     /// The cluster of each surface vertex, [`ABSENT`] outside of the domain.
     pub cluster_of: Vec<u32>,
@@ -82,7 +82,7 @@ fn triangles(surface: &Surface, cluster_of: &[u32]) -> Vec<[SurfaceVertex; 3]> {
     let between = |corners: &[SurfaceVertex; 3]| {
         let [a, b, c] = corners.map(|corner| cluster_of[corner.index()]);
         let differ = a != b && b != c && c != a && a.max(b).max(c) != ABSENT;
-        // From its lowest corner on, turned the same way round.
+        // The corners from the lowest one on, turned the same way round.
         let from_lowest = match a.min(b).min(c) {
             lowest if lowest == a => [a, b, c],
             lowest if lowest == b => [b, c, a],

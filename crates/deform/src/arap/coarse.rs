@@ -4,7 +4,7 @@
 //! shape it was last restricted from (the full approximation scheme of [Bra77], as optimisation [Nas00]): at the fine
 //! minimum it does not move, and otherwise its motion is a correction. Only rotations are prolongated. Each fine cell
 //! turns with the coarse cells around it, and one global step (see `lead`) moves the vertices accordingly, so that the
-//! clusters don't show and the details of the fine shape stay.
+//! clusters are invisible and the details of the fine shape stay.
 
 use glam::Quat;
 use pliant_mesh::{Cancel, Progress};
@@ -22,28 +22,28 @@ use crate::operators::CHUNK;
 use crate::region::clustered::{Share, Shares, on_clusters, shares, transposed};
 use crate::{Arap, Method, Ordering, Problem};
 
-/// The fewest vertices of a cluster: the smaller, the less stiff against bending, the closer to the fine surface, and
-/// the more expensive. At the end of a drag of a scan of 173k vertices the energy is 4% above the minimum with 12, 5%
+/// The fewest vertices of a cluster: smaller clusters are less stiff against bending and closer to the fine surface,
+/// but more expensive. At the end of a drag of a scan of 173k vertices the energy is 4% above the minimum with 12, 5%
 /// with 16, 3% with 8 and 2% with 4; without a coarse level it is 62%.
 const CLUSTER: f64 = 12.0;
 
-/// About how many clusters there are at most, so that steps of the coarse level fit into a frame.
+/// The approximate limit of the number of clusters, so that steps of the coarse level fit into a frame.
 const MOST: f64 = 25_000.0;
 
 /// The level's own solver, and how it is connected with the fine one.
 #[derive(Debug)]
 pub(crate) struct Coarse {
     solver: Box<ArapSolver>,
-    /// For each fine cell; they sum to 1, or are 0 if no coarse cell is near.
+    /// The coarse cells near each fine cell, with shares; they sum to 1, or are 0 if no coarse cell is near.
     shares: Vec<Shares>,
     leads_all: bool,
-    /// Where each solved coarse vertex' row in `members` starts; one more at the end.
+    /// The start of each solved coarse vertex' row in `members`; one more at the end.
     offsets: Vec<u32>,
-    /// The solved fine vertices with a share in it, and which.
+    /// The solved fine vertices with a share in it, and that share.
     members: Vec<Share>,
-    /// Of each solved coarse vertex: the fine local vertex that it is.
+    /// The fine local vertex at each solved coarse vertex.
     fine_of: Vec<u32>,
-    /// The surface vertex that each coarse one is.
+    /// Each coarse vertex's surface vertex.
     centres: Vec<u32>,
     next_offsets: Option<Offsets>,
     /// The coarse rotations that were last prolongated.
@@ -51,7 +51,7 @@ pub(crate) struct Coarse {
 }
 
 impl Coarse {
-    /// For the bound `fine` domain of `problem`; `None` if no coarse level can be made.
+    /// The level for the bound `fine` domain of `problem`; `None` if no coarse level can be made.
     pub fn of(problem: &Problem, options: &Arap, handles: &[Handle], fine: &Domain, cancel: &Cancel) -> Option<Self> {
         let size = CLUSTER.max(fine.vertices.len() as f64 / MOST);
         let clusters = Clusters::of(problem, fine, handles, size);
@@ -106,25 +106,25 @@ impl Coarse {
         self.leads_all
     }
 
-    /// How many numbers its factor stores.
+    /// The number of entries that its factor stores.
     pub fn factor_len(&self) -> usize {
         self.solver.factor_len()
     }
 
-    /// Sets by how much vertices of handles go elsewhere than the motions take them, once [`Coarse::aim`] is called: a
-    /// restriction before that is to the offsets of the fine shape.
+    /// Sets the offsets of handles' vertices from the motions. They take effect with [`Coarse::aim`], because a
+    /// restriction before it still uses the offsets of the fine shape.
     pub fn set_offsets(&mut self, offsets: &Offsets) {
         self.next_offsets = Some(offsets.of((0..).zip(self.centres.iter().copied())));
     }
 
-    /// Has the offsets that were set count.
+    /// Passes the offsets that were set last to the solver.
     pub fn aim(&mut self) {
         if let Some(offsets) = self.next_offsets.take() {
             self.solver.set_offsets(&offsets);
         }
     }
 
-    /// Back to the rest shape.
+    /// Returns to the rest shape.
     pub fn rest(&mut self) {
         self.solver.rest();
         self.followed.fill(IDENTITY);
@@ -180,8 +180,8 @@ impl Coarse {
         self.followed.copy_from_slice(&current.rotations);
     }
 
-    /// Starts for new motions and takes `steps` steps. Returns where it started: if from rest, the fine shape must
-    /// start from rest too.
+    /// Starts for new motions and takes `steps` steps. Returns its start: if that is the rest shape, the fine shape
+    /// must start from rest too.
     pub fn start(&mut self, motions: &[Motion], steps: u32) -> Origin {
         let origin = self.solver.start(motions);
         if origin == Origin::Rest {
@@ -199,13 +199,13 @@ impl Coarse {
             }
         }
         if !self.solver.current.energy.is_finite() {
-            // These rotations are not prolongated; the next restriction decides where the level goes on.
+            // These rotations are not prolongated; the level continues from the next restriction.
             self.rest();
         }
     }
 
-    /// Turns the fine cells with the coarse ones, `from` being their rotations at the last restriction; those without a
-    /// coarse cell near stay as they are in `to`.
+    /// Turns the fine cells with the coarse ones, `from` being their rotations at the last restriction; fine cells
+    /// without a coarse cell near keep their rotations in `to`.
     pub fn turn(&mut self, from: &[Rotation], to: &mut [Rotation]) {
         let rotations = &self.solver.current.rotations;
         let turn = |(now, before): (&Rotation, &Rotation)| (wide(*now) * wide(*before).conjugate()).as_quat();

@@ -32,7 +32,7 @@ impl DeformMethod for Arap {
         &DECLARATION
     }
 
-    /// A neck is so short that stretching it costs less than the twist around it.
+    /// A neck can be so short that stretching it costs less than the twist around it.
     fn follows_turns(&self) -> Option<Followed> {
         Some(Followed::by_necks(140.0))
     }

@@ -18,20 +18,20 @@ const NOTHING: f64 = 3.6e-15;
 /// A decrease by less than this share of the energy may be rounding of rotations and gradients in single precision.
 const ROUNDED: f64 = 1e-6;
 
-/// What is known where the last step ended.
+/// The knowledge at the end of the last step.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) enum End {
     /// The gradient.
     #[default]
     Known,
-    /// Not the gradient, but how far the step went against `direction`; `trial` is then the shape before the step.
+    /// The length of the step against `direction`, without the gradient; `trial` is the shape before the step.
     Stepped(f64),
-    /// Not even that.
+    /// Nothing.
     Unknown,
 }
 
 impl ArapSolver {
-    /// Takes one step that lowers the energy, or finds that there is none to take.
+    /// Takes one step that lowers the energy, or finds that there is none.
     ///
     /// A shape has converged if the quadratic model promises a decrease below the tolerance's share of the energy and
     /// the last step gained less than that too. In exact arithmetic a plain local/global step always descends: if even
@@ -179,7 +179,7 @@ mod tests {
             let motions = [handles[0].motion(&target)];
             let mut displacements = vec![DVec3::ZERO; roles.len()];
             assert!(!solver.step(&motions, &mut displacements).0);
-            // No trial comes below this.
+            // No trial has a lower energy.
             solver.current.energy *= 1e-3;
             solver.history.clear();
             let (converged, _) = solver.step(&motions, &mut displacements);

@@ -11,13 +11,13 @@ use pliant_mesh::{Surface, SurfaceVertex, Topology};
 pub(crate) struct Domain {
     /// The surface vertex of each local one.
     pub vertices: Vec<u32>,
-    /// How many of them are solved for.
+    /// The number of solved vertices.
     pub solved_count: usize,
-    /// How many have a cell: the solved ones and their neighbours.
+    /// The number of vertices with a cell: the solved ones and their neighbours.
     pub cell_count: usize,
     /// The surface's triangles around the cells, nearest in the numbering first.
     pub faces: Vec<u32>,
-    /// The local vertex of each surface vertex, [`ABSENT`] where there is none.
+    /// The local vertex of each surface vertex, [`ABSENT`] if it has none.
     pub local_of: Vec<u32>,
 }
 
@@ -25,7 +25,7 @@ pub(crate) struct Domain {
 pub(crate) const ABSENT: u32 = u32::MAX;
 
 impl Domain {
-    /// Around the solved surface vertices `order`.
+    /// The domain around the solved surface vertices `order`.
     pub fn of(surface: &Surface, topology: &Topology, order: &[u32]) -> Self {
         let mut domain = Self {
             vertices: Vec::with_capacity(order.len()),

@@ -1,5 +1,5 @@
 //! The first pass over the cells: gathers each cell's displaced ring into its matrix S, fits eight cells' rotations at
-//! once, and sums the energy. It runs on the machine's vectors (see [`crate::numerical::lanes`]).
+//! once, and sums the energy. It uses the machine's vectors (see [`crate::numerical::lanes`]).
 
 use std::hint::black_box;
 
@@ -12,15 +12,15 @@ use crate::numerical::lane_fits::Fits;
 use crate::numerical::lanes::LANES;
 use crate::numerical::prefetch::Prefetch;
 
-/// How far ahead entries are prefetched: about eight cells.
+/// The prefetch distance in entries: about eight cells.
 const AHEAD: usize = 48;
 
-/// Which rotations cells get.
+/// The choice of the cells' rotations.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum Turning {
-    /// The best ones.
+    /// The best rotations.
     Best,
-    /// Those where a fit would start.
+    /// The rotations at which a fit would start.
     Given,
 }
 
@@ -43,7 +43,7 @@ impl WithSimd for FitPass<'_> {
     }
 }
 
-/// Where a chunk's results go.
+/// The destination of a chunk's results.
 pub(super) struct Out<'a> {
     pub rotations: &'a mut [Rotation],
     pub turns: &'a mut [Turn],

@@ -7,18 +7,18 @@ use super::cells::{Cells, Quad, minus};
 use super::rotation::Rotation;
 use crate::numerical::prefetch::Prefetch;
 
-/// How far ahead entries are prefetched: some cells.
+/// The prefetch distance in entries: some cells.
 const AHEAD: usize = 24;
 
-/// R − 1, or Z where cells bend, column by column.
+/// R − 1, or Z if cells bend, column by column.
 pub(super) type Turn = [[f32; 4]; 3];
 
-/// Where a gradient has the cells' Σ_v w_iv D_v − (R_i − 1) Σ_v (G_iv − G_vi) from.
+/// The source of the gradient's term Σ_v w_iv D_v − (R_i − 1) Σ_v (G_iv − G_vi) of the cells.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Laplacians<'a> {
-    /// From the measure.
+    /// The last measurement.
     Known(&'a [[f32; 4]]),
-    /// From these displacements.
+    /// These displacements.
     Of(&'a [Quad]),
 }
 
@@ -120,7 +120,7 @@ pub(super) fn turn_of([x, y, z, w]: Rotation) -> Turn {
     ]
 }
 
-/// (R − 1) v; the fourth number is nothing.
+/// (R − 1) v; the fourth number is 0.
 #[inline(always)]
 pub(super) fn times_turn([a, b, c]: &[Quad; 3], v: &DVec3) -> Quad {
     let mut product = [0.0; 4];

@@ -1,7 +1,7 @@
 //! The limited-memory quasi-Newton direction [NW06, algorithm 7.4] in inner products alone.
 //!
 //! The preconditioner P majorises the energy's Hessian, so the first inverse is its inverse, unscaled, and the last
-//! steps' curvature corrects it: with no memory the direction is exactly a global step of the plain local/global
+//! steps' curvature corrects it: without history the direction is exactly a global step of the plain local/global
 //! method.
 //!
 //! With mapped gradients z = P⁻¹ g known at both ends of a step, P⁻¹ y is their difference, and the direction is a sum
@@ -18,26 +18,26 @@ use rayon::prelude::*;
 use crate::numerical::sums::CHUNKS_A_TASK;
 use crate::operators::CHUNK;
 
-/// Steps that are remembered. On the bar, cylinder and cactus of [BS08] and a 43k scan 5, 8, 14 and 24 took the same
-/// iterations within 4%, and 3 a fifth to two fifths more.
+/// The number of remembered steps. On the bar, cylinder and cactus of [BS08] and a 43k scan, 5, 8, 14 and 24 took the
+/// same iterations within 4%, and 3 a fifth to two fifths more.
 const MEMORY: usize = 5;
 
-/// A pair whose curvature is below this share of its lengths says nothing.
+/// A pair whose curvature is below this share of its lengths is ignored.
 const FLAT: f64 = 1e-12;
 
 /// A field of the solved vertices.
 pub(crate) type Field = Vec<[f32; 3]>;
 
-/// The last steps and what is known of them at the present point.
+/// The last steps and their products at the present point.
 #[derive(Debug, Default)]
 pub(crate) struct History {
-    /// The oldest first.
+    /// The pairs, the oldest first.
     pairs: Vec<Pair>,
     /// A step whose end is not mapped yet.
     pending: Option<Pair>,
     /// Forgotten pairs' fields, to be used again.
     spare: Vec<Pair>,
-    /// For each pair: s · g and P⁻¹ y · g at the last point asked for.
+    /// For each pair: s · g and P⁻¹ y · g at the last requested point.
     step_gradient: Vec<f64>,
     change_mapped: Vec<f64>,
     /// The present point's mapped gradient, and the last one's.
@@ -75,22 +75,23 @@ impl History {
         self.spare.extend(self.pending.take());
     }
 
-    /// Remembers the step −`length` · `direction`, whose end is to be mapped next; `direction` is room for another.
+    /// Remembers the step −`length` · `direction`, whose end is to be mapped next; `direction` becomes free space for
+    /// another.
     pub fn stepped(&mut self, length: f64, direction: &mut Field) {
         let mut pair = self.spare.pop().unwrap_or_default();
         std::mem::swap(&mut pair.direction, direction);
         pair.length = length;
-        // The last point's mapped gradient is needed once more.
+        // The last point's mapped gradient is needed a last time.
         std::mem::swap(&mut self.mapped, &mut self.last_mapped);
         self.spare.extend(self.pending.replace(pair));
     }
 
-    /// Adds the present point's `gradient` and its mapped one; `before` was the gradient where the last remembered step
-    /// began. Returns the factors of the direction.
+    /// Adds the present point's `gradient` and its mapped one; `before` was the gradient at the beginning of the last
+    /// remembered step. Returns the factors of the direction.
     pub fn factors(&mut self, before: &Field, gradient: &Field) -> Factors {
         let mut pending = self.pending.take();
         let own = pending.as_mut().map(|pair| self.map_change(pair, before, gradient));
-        // A pair without curvature says nothing.
+        // A pair without curvature is ignored.
         let is_enough = |own: &Products| own.curvature > FLAT * (own.steps * own.changes).sqrt();
         if !own.as_ref().is_some_and(is_enough) {
             self.spare.extend(pending.take());
@@ -251,7 +252,7 @@ impl WithSimd for AddPair<'_> {
     }
 }
 
-/// By what the memory's fields enter a direction.
+/// The factors of the memory's fields in a direction.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Factors {
     steps: [f64; MEMORY],
@@ -275,7 +276,7 @@ fn difference(to: &mut [[f32; 3]], a: &[[f32; 3]], b: &[[f32; 3]]) {
     }
 }
 
-/// a · b. **f32**: products and the sums of eight of them, like the fields themselves; all else is summed in double
+/// a · b. **f32**: products and the sums of eight of them, like the fields themselves; the rest is summed in double
 /// precision.
 fn dot(a: &[[f32; 3]], b: &[[f32; 3]]) -> f64 {
     vectors().dispatch(Dot {
@@ -289,7 +290,7 @@ struct Dot<'a> {
     b: &'a [f32],
 }
 
-/// Numbers side by side in a sum of products, and how many products a single-precision sum has.
+/// The number of adjacent numbers in a sum of products, and of products in a single-precision sum.
 const WIDTH: usize = 16;
 const DEPTH: usize = 8;
 

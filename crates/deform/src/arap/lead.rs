@@ -3,7 +3,7 @@
 //! For new targets the coarse level steps first and its rotations are prolongated, in less time than the fine level's
 //! own start and step take. For unchanged targets, corrections by the coarse level alternate with the fine level's
 //! steps as long as they gain enough. An accepted correction is a step like any other: the energy falls, and the
-//! history learns how soft the surface is along it, which the clusters, being too stiff against bending, can't tell.
+//! history learns how soft the surface is along it, which the clusters, too stiff against bending, don't show.
 
 use rayon::prelude::*;
 
@@ -22,17 +22,17 @@ const STEPS: u32 = 3;
 /// Coarse steps of a correction.
 const CORRECTING_STEPS: u32 = 10;
 
-/// Fine steps between two corrections at most.
+/// The most fine steps between two corrections.
 const RAREST: u32 = 64;
 
-/// When the next correction is due.
+/// The schedule of corrections.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Corrections {
-    /// Fine steps from one to the next.
+    /// Fine steps from one correction to the next.
     every: u32,
     /// Fine steps before the next one.
     left: u32,
-    /// What the last fine step gained.
+    /// The decrease by the last fine step.
     gained: f64,
 }
 
@@ -63,7 +63,7 @@ impl ArapSolver {
 
     /// Makes the shape for new motions that the coarse level predicts.
     ///
-    /// From the rest shape only the blend is used: it is exact where everything moves rigidly, and the coarse level
+    /// From the rest shape only the blend is used: it is exact if everything moves rigidly, and the coarse level
     /// corrects it next.
     fn start_led(&mut self, coarse: &mut Coarse, motions: &[Motion]) {
         self.corrections = Corrections::default();
@@ -102,7 +102,7 @@ impl ArapSolver {
     /// Accepts the coarse level's correction if it lowers the energy.
     fn correct(&mut self, coarse: &mut Coarse) {
         self.finish_step();
-        // The history adds the step before, and has the mapped gradient where this one begins.
+        // The history adds the step before, and has the mapped gradient at the beginning of this one.
         self.map_gradient();
         self.history.factors(&self.trial.gradient, &self.current.gradient);
         coarse.restrict(&self.current, self.unit, &self.motions);
@@ -149,7 +149,7 @@ impl ArapSolver {
         springs.add_energy(trial);
     }
 
-    /// Takes the trial shape to the minimum of the energy with its rotations as they are: one global step.
+    /// Takes the trial shape to the minimum of the energy for its present rotations: one global step.
     pub(super) fn relax_trial(&mut self) {
         let Self {
             trial,
@@ -176,7 +176,7 @@ impl ArapSolver {
             });
     }
 
-    /// Ends the present descent and begins one for `motions`, with the shape as it is.
+    /// Ends the present descent and begins one for `motions`, with the present shape.
     pub(super) fn leave(&mut self, motions: &[Motion]) {
         self.motions.copy_from_slice(motions);
         self.springs.aim(motions);

@@ -48,7 +48,7 @@ struct MatrixRow {
 /// Assembles the bending matrix of cells that bend: their weights' Laplacian less Σ_i Z_i β_i K_i Z_iᵀ, Z_i's rows
 /// being G_iv for the ring's vertices and minus their sum for the cell's own.
 ///
-/// The part that a hub's cell subtracts would couple all its neighbours with each other and is left out. The quadratic
+/// The subtracted part of a hub's cell would couple all its neighbours with each other and is left out. The quadratic
 /// is larger then and still majorises the energy, so the minimum is the same, and only steps differ, at hubs.
 ///
 /// # Errors
@@ -71,7 +71,7 @@ pub(crate) fn assemble_bending(cells: &Cells, domain: &Domain, springs: &[Spring
     assembled(&rows, domain, springs)
 }
 
-/// Cells with more than `most` neighbours belong to hubs. `slots` are all zero before and after.
+/// Cells with more than `most` neighbours belong to hubs. `slots` are all zero before and after the call.
 fn bending_row(cells: &Cells, column: u32, most: usize, slots: &mut [u32]) -> MatrixRow {
     let mut others: Vec<(u32, f64)> = Vec::new();
     let mut add = |others: &mut Vec<(u32, f64)>, end: u32, value: f64| {

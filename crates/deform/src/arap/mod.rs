@@ -8,9 +8,9 @@
 //!
 //! Parts: `domain` numbers the vertices, `rims` and `spokes` make the two energies' `cells` and `bending` adds the
 //! smooth one's term, `shape` evaluates them in a `fit_pass` and a `gradient_pass`, `matrix` and `precondition` make
-//! the global step and the handles' weights, `start` chooses where to begin, `springs` are the soft handles, `history`
-//! gives the direction and `descent` takes the step. Of a large surface `clusters` make a small one, whose solver is
-//! its `coarse` level and takes the `lead`.
+//! the global step and the handles' weights, `start` chooses the first shape, `springs` are the soft handles, `history`
+//! gives the direction and `descent` takes the step. For a large surface `clusters` make a small one, whose solver is
+//! the `coarse` level and takes the `lead`.
 
 mod bend;
 mod bending;
@@ -60,7 +60,7 @@ use crate::region::partition::Partition;
 use crate::sparse::Elimination;
 use crate::{BindError, Laplacian, Ordering, Problem, Role};
 
-/// The bound method, with the shape it is at.
+/// The bound method, with its present shape.
 #[derive(Debug)]
 pub(crate) struct ArapSolver {
     options: Arap,
@@ -72,7 +72,7 @@ pub(crate) struct ArapSolver {
     weights: Vec<f64>,
     /// The handles in coordinates relative to `world_origin`.
     handles: Vec<HandleFrame>,
-    /// Of each hard handle: its surface vertices with their coordinates, and the local ones among them.
+    /// The surface vertices of each hard handle with their coordinates, and the local ones among them.
     prescribed: Vec<Vec<Prescribed>>,
     /// Rest positions of the local vertices relative to the first handle's centre.
     rest: Vec<DVec3>,
@@ -81,58 +81,58 @@ pub(crate) struct ArapSolver {
     scratch: Scratch,
     map_room: MapRoom,
     history: History,
-    /// Uphill, in units of `unit`.
+    /// The direction uphill, in units of `unit`.
     direction: Field,
     end: End,
-    /// The length that single-precision fields are measured in: about the model's.
+    /// The unit of length of single-precision fields: about the model's size.
     unit: f64,
-    /// The motions that `current` is a shape for.
+    /// The motions of the `current` shape.
     motions: Vec<Motion>,
-    /// Whether vertices of handles go elsewhere than the motions take them.
+    /// Whether vertices of handles have offsets from the motions.
     has_offsets: bool,
-    /// Whether other offsets were set since the last step.
+    /// Whether the offsets changed since the last step.
     has_other_offsets: bool,
     state: State,
-    /// For how many more targets the blend from the rest shape is not tried, and for how many it is skipped after it
-    /// loses.
+    /// The number of further targets without a try of the blend from the rest shape, and the number of targets to skip
+    /// after the blend loses.
     until_blend: u32,
     patience: u32,
-    /// What leads a large surface.
+    /// The coarse level that leads a large surface.
     coarse: Option<Box<Coarse>>,
     corrections: Corrections,
     mollified_faces: usize,
 }
 
-/// How far the present targets are.
+/// The progress towards the present targets.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 enum State {
-    /// On its way.
+    /// Not finished.
     Descending,
-    /// At a minimum, to the tolerance.
+    /// Converged: at a minimum, to the tolerance.
     Converged,
-    /// No step was found that lowers the energy, though the quadratic model promises one.
+    /// Stalled: no step was found that lowers the energy, though the quadratic model promises one.
     Stalled,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Prescribed {
     surface_vertex: u32,
-    /// [`domain::ABSENT`] where no cell sees it.
+    /// The local vertex of each surface vertex; [`domain::ABSENT`] if no cell sees it.
     local: u32,
     coordinates: [f64; 4],
-    /// Where it goes beside its handle's motion.
+    /// The offset of its target from its handle's motion.
     offset: DVec3,
 }
 
 impl Prescribed {
-    /// Where it goes, as a displacement.
+    /// The displacement to its target.
     fn goes(&self, motion: &Motion) -> DVec3 {
         motion.displace(self.coordinates) + self.offset
     }
 }
 
 impl ArapSolver {
-    /// Numbers, factors, and solves for the weights of `handles`.
+    /// Numbers the vertices, factors, and solves for the weights of `handles`.
     pub fn bind(
         problem: &Problem,
         options: &Arap,
@@ -213,7 +213,7 @@ impl ArapSolver {
         })
     }
 
-    /// How many numbers the factor stores.
+    /// The number of entries that the factor stores.
     pub fn factor_len(&self) -> usize {
         self.preconditioner.stored() + self.coarse.as_ref().map_or(0, |coarse| coarse.factor_len())
     }
@@ -237,7 +237,7 @@ impl ArapSolver {
         self.relative(shape.energy)
     }
 
-    /// Sets by how much vertices of handles go elsewhere than the motions take them.
+    /// Sets the offsets of handles' vertices from their handles' motions.
     pub fn set_offsets(&mut self, offsets: &Offsets) {
         for vertex in self.prescribed.iter_mut().flatten() {
             vertex.offset = offsets.at(vertex.surface_vertex);
@@ -250,12 +250,12 @@ impl ArapSolver {
         }
     }
 
-    /// Whether these motions, or the offsets, are others than those of the last step.
+    /// Whether these motions or the offsets differ from the last step's.
     fn takes_other(&mut self, motions: &[Motion]) -> bool {
         std::mem::take(&mut self.has_other_offsets) || self.motions != motions
     }
 
-    /// Back to the rest shape.
+    /// Returns to the rest shape.
     pub fn rest(&mut self) {
         self.motions.fill(Motion::default());
         self.springs.aim(&self.motions);
@@ -274,7 +274,7 @@ impl ArapSolver {
         }
     }
 
-    /// Whether no step lowers the energy although the shape has not converged.
+    /// Whether the descent has stalled: no step lowers the energy although the shape has not converged.
     pub fn has_stalled(&self) -> bool {
         self.state == State::Stalled
     }
@@ -359,7 +359,7 @@ fn cells_of(problem: &Problem, options: &Arap, laplacian: &Laplacian, domain: &D
     }
 }
 
-/// Each handle's vertices that go exactly where it goes; none of a soft handle.
+/// Each handle's vertices that move exactly with it; none for a soft handle.
 fn prescribed(problem: &Problem, partition: &Partition, handles: &[Handle], domain: &Domain) -> Vec<Vec<Prescribed>> {
     let one = |(handle, soft): (&Handle, &Option<f64>)| {
         if soft.is_some() {

@@ -6,7 +6,7 @@ use crate::method::option::{Choice, Number, named_choices, options};
 options! {
     /// Options of the as-rigid-as-possible method.
     pub struct Arap {
-        /// Which edges a vertex's cell consists of.
+        /// The edges of a vertex's cell.
         energy: ArapEnergy = Choice {
             default: ArapEnergy::SpokesAndRims,
             help: "what a neighbourhood keeps: its vertex's edges (\"spokes\"), its triangles (\"spokes-and-rims\", quick, \
@@ -14,8 +14,8 @@ options! {
                    handles of single points)",
         }; advanced,
         /// κ of the smooth energy (see [`ArapEnergy::Smooth`]), which bends like ½ κ A ∫ |Hess p'|², A being the area
-        /// of what can move: without unit and independent of the mesh's size and density. Other energies have no use
-        /// for it.
+        /// of the surface that can move: it has no unit and is independent of the mesh's size and density. Other
+        /// energies ignore it.
         smoothness: f64 = Number {
             default: 0.003,
             // From hardly smoother than the rims alone to nearly a thin plate that keeps its curvature.
@@ -37,22 +37,22 @@ options! {
 }
 
 named_choices! {
-    /// Which edges an ARAP cell consists of.
+    /// The edges of an ARAP cell.
     #[non_exhaustive]
     pub enum ArapEnergy {
-        /// Those from its vertex to the neighbours \[SA07\], negative weights floored.
+        /// The edges from its vertex to the neighbours \[SA07\], negative weights floored.
         Spokes = "spokes",
         /// All edges of its vertex's triangles \[CPSS10\], with plain cotangents; never negative.
         SpokesAndRims = "spokes-and-rims",
-        /// Spokes and rims, with every cell tied to an affine map of its own: a thin plate that bumps and free borders
-        /// do not disturb, with the aim of \[LG15\] and \[OHS25\]. Handles of a single vertex make no spikes; twists
-        /// spread evenly.
+        /// Spokes and rims, with every cell tied to its own affine map: a thin plate that bumps and free borders do not
+        /// disturb, with the aim of \[LG15\] and \[OHS25\]. Handles of a single vertex make no spikes; twists spread
+        /// evenly.
         Smooth = "smooth",
     }
 }
 
 impl Arap {
-    /// What the window begins with: the smooth energy, which bends and twists evenly.
+    /// The window's initial method: the smooth energy, which bends and twists evenly.
     pub fn first_choice() -> Self {
         Self {
             energy: ArapEnergy::Smooth,

@@ -17,7 +17,7 @@ use crate::sparse::solve::substitution::{Room, Substitution};
 
 /// An approximate inverse of the system on the solved vertices.
 ///
-/// It is kept in single precision if that is accurate enough for a descent direction: that halves the bytes to read,
+/// It is kept in single precision if that is accurate enough for a descent direction, which halves the bytes to read,
 /// and the next step corrects its rounding. Gradients and positions stay double.
 #[derive(Debug)]
 pub(crate) struct Preconditioner {
@@ -31,19 +31,19 @@ enum Solver {
     Double(Substitution<f64>),
 }
 
-/// Room for applying it, kept from one step to the next.
+/// Scratch memory for applying it, kept from one step to the next.
 #[derive(Debug, Default)]
 pub(crate) struct MapRoom {
     single: (Vec<Rhs<f32>>, Room<f32>),
     double: (Vec<Rhs<f64>>, Room<f64>),
 }
 
-/// Why there is none.
+/// The reason why there is none.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum PreconditionError {
-    /// The pivot of this solved vertex is not above zero.
+    /// The pivot of this solved vertex is not positive.
     Pivot(usize),
-    /// The solution of a constant is off by this much at this solved vertex.
+    /// The solution of a constant has this error at this solved vertex.
     Inaccurate(usize, f64),
     Memory,
     Budget(Limit),
@@ -82,7 +82,7 @@ impl PreconditionError {
     }
 }
 
-/// How far off the solution of a constant may be: accurate enough for a descent direction.
+/// The largest allowed error of a constant's solution: accurate enough for a descent direction.
 const TOLERANCE: f64 = 1e-2;
 
 impl Preconditioner {
@@ -95,7 +95,7 @@ impl Preconditioner {
         budget: Budget,
         cancel: &Cancel,
     ) -> Result<(Self, Vec<f64>), PreconditionError> {
-        // It is copied twice, once in half the bytes.
+        // The factor is copied twice, once in half the bytes.
         let factor = Factor::to_descend_by(&system.matrix, ends, budget.shared_by(2.5), cancel)?;
         Self::checked(&factor, system, weights, cancel)
     }
@@ -125,7 +125,7 @@ impl Preconditioner {
         Ok((if error > TOLERANCE { double } else { single }, weights))
     }
 
-    /// By how much a constant is missed, and where most.
+    /// The largest error of a constant, and its vertex.
     fn miss(&self, system: &System) -> (usize, f64) {
         let ones = self.extended(system, [|_: u32| 1.0; 1]);
         let error = |row: &Quad| {
@@ -136,7 +136,7 @@ impl Preconditioner {
         errors.fold((0, 0.0), |worst, next| if next.1 > worst.1 { next } else { worst })
     }
 
-    /// How many numbers the factor stores.
+    /// The number of entries that the factor stores.
     pub fn stored(&self) -> usize {
         match &self.solver {
             Solver::Single(solver) => solver.stored(),
@@ -214,7 +214,7 @@ impl Preconditioner {
     }
 
     /// Each handle's weight on each cell, row-major: 1 on its own vertices, 0 on other constrained ones, harmonic in
-    /// the system's sense between. Where nothing is fixed around a vertex they sum to 1.
+    /// the system's sense between. Around a vertex without a fixed one they sum to 1.
     fn weights(&self, system: &System, input: &WeightInput<'_>) -> Result<Vec<f64>, FactorError> {
         let WeightInput {
             domain,
@@ -233,7 +233,7 @@ impl Preconditioner {
             let values = self.extended(system, [of(0), of(1), of(2), of(3)]);
             for (vertex, values) in values.iter().enumerate() {
                 for (&handle, value) in group.iter().zip(values) {
-                    // Negative cotangents and bending may carry it outside.
+                    // Negative cotangents and bending may move it outside.
                     weights[vertex * handle_count + handle] = value.clamp(0.0, 1.0);
                 }
             }
@@ -255,12 +255,12 @@ impl Preconditioner {
     }
 }
 
-/// What the handles' weights depend on besides the system.
+/// The inputs of the handles' weights besides the system.
 #[derive(Clone, Copy)]
 pub(crate) struct WeightInput<'a> {
     pub domain: &'a Domain,
     pub handle_count: usize,
-    /// Which handle a local vertex belongs to.
+    /// The handle of a local vertex.
     pub handle_of: &'a dyn Fn(u32) -> Option<usize>,
     /// Whether nothing is fixed around a local vertex.
     pub unheld: &'a dyn Fn(u32) -> bool,

@@ -21,7 +21,7 @@ struct Face {
     /// w_fe of the edge opposite each corner.
     weights: [f64; 3],
     edges: [DVec3; 3],
-    /// The mean over its corners of 1 and the cell's tie; nothing where a corner has no cell.
+    /// The mean over its corners of 1 and the cell's tie; 0 for a corner without a cell.
     factor: f64,
 }
 
@@ -115,7 +115,7 @@ fn firmness(ties: &[f64], cell: usize) -> f64 {
     1.0 + ties.get(cell).copied().unwrap_or(0.0)
 }
 
-/// Adds a triangle's part to a cell's entries, the one of a local vertex being at `place`, and to its rest matrix.
+/// Adds a triangle's part to a cell's entries (that of a local vertex is at `place`) and to its rest matrix.
 fn add(face: &Face, cell: u32, entries: &mut [Entry], rest: &mut [f64; 6], place: impl Fn(u32) -> Option<usize>) {
     for own in (0..3).filter(|&own| face.corners[own] == cell) {
         for other in (0..3).filter(|&other| face.corners[other] != cell) {
@@ -132,8 +132,8 @@ fn add(face: &Face, cell: u32, entries: &mut [Entry], rest: &mut [f64; 6], place
     }
 }
 
-/// What the cells' quarter sums leave out or count twice: each triangle's edges should count half, a third of it for
-/// each corner that has a cell.
+/// The correction of the cells' quarter sums, which leave out or count twice some edges: each triangle's edges should
+/// count half, a third of it for each corner that has a cell.
 fn constant(faces: &[Face], domain: &Domain) -> Vec<(u32, u32, f64)> {
     let mut pairs = Vec::new();
     let has_cell = |corner: u32| f64::from(u8::from((corner as usize) < domain.cell_count));

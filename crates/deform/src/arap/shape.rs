@@ -18,7 +18,7 @@ use crate::operators::CHUNK;
 /// computed.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Shape {
-    /// Of each local vertex, in world units; the fourth number is zero.
+    /// The displacement of each local vertex, in world units; the fourth number is zero.
     pub displacements: Vec<Quad>,
     /// For each cell the best rotation for the displacements, as a quaternion x, y, z, w. **f32**: the next fit only
     /// starts from it.
@@ -30,23 +30,23 @@ pub(crate) struct Shape {
     pub energy: f64,
 }
 
-/// Room for an evaluation, kept from one to the next.
+/// Scratch memory for an evaluation, kept from one to the next.
 #[derive(Debug, Default)]
 pub(crate) struct Scratch {
-    /// R − 1 of each cell, or Z of one that bends, column by column. **f32**: each is read by all its neighbours, and
-    /// for the gradient alone.
+    /// R − 1 of each cell, or Z if the cell bends, column by column. **f32**: all neighbours read each, and for the
+    /// gradient alone.
     turns: Vec<Turn>,
-    /// Σ_v w_iv D_v − (R_i − 1) Σ_v (G_iv − G_vi) of each solved cell: what is left of two large sums. **f32**
+    /// Σ_v w_iv D_v − (R_i − 1) Σ_v (G_iv − G_vi) of each solved cell: the difference of two large sums. **f32**
     /// likewise.
     laplacians: Vec<[f32; 4]>,
 }
 
-/// Where a fit starts.
+/// The start of a fit.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Guesses<'a> {
-    /// At the shape's own rotations.
+    /// The shape's own rotations.
     Own,
-    /// At these.
+    /// These rotations.
     Given(&'a [Rotation]),
 }
 
@@ -74,7 +74,7 @@ impl Cells {
         self.gather_all(shape, guesses, Turning::Best, scratch);
     }
 
-    /// Finds the gradient of the shape with its rotations as they are, best or not.
+    /// Finds the gradient of the shape with its present rotations, best or not.
     pub fn find_pull(&self, shape: &mut Shape, scratch: &mut Scratch) {
         if !self.bending.is_empty() {
             // The affine maps contribute too, which needs their rings.
@@ -149,7 +149,7 @@ impl Cells {
         *energy = if sum < 0.0 { 0.0 } else { sum };
     }
 
-    /// Finds the gradient of the shape that was measured with this scratch last.
+    /// Finds the gradient of the shape that was last measured with this scratch.
     pub fn find_gradient(&self, shape: &mut Shape, scratch: &Scratch) {
         let Scratch { turns, laplacians } = scratch;
         self.gradient_pass(&mut shape.gradient, turns, Laplacians::Known(laplacians));
@@ -260,7 +260,7 @@ mod tests {
         });
     }
 
-    /// ½ Σ_i Σ_f∋i ⅓ Σ_e w |e' − R_i e|², edge by edge as it is defined.
+    /// ½ Σ_i Σ_f∋i ⅓ Σ_e w |e' − R_i e|², edge by edge, by its definition.
     #[test]
     fn the_energy_over_rims_is_the_sum_of_its_definition() {
         each(|surface, topology, stiffness, domain, cells, name| {
@@ -269,7 +269,7 @@ mod tests {
             }
             let displacements = shaken(domain, edge(surface));
             let mut shape = evaluated(domain, cells, &displacements);
-            // The best rotations to the last bit: their rounding to single precision then enters squared.
+            // The rotations are the best to the last bit, so their rounding to single precision enters squared.
             for _ in 0..3 {
                 cells.measure(&mut shape, Guesses::Own, &mut Scratch::default());
             }

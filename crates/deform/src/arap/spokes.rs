@@ -1,7 +1,7 @@
 //! The energy over spokes [SA07]: a vertex's cell is the edges to its neighbours.
 //!
 //! E = ½ Σ_i ½ Σ_j w_ij |e'_ij − R_i e_ij|² with w_ij = ½ Σ cot, bounded below: between obtuse angles it is negative,
-//! and then the rest shape need not be a minimum, nor need there be one. The bound is a little above zero, so that the
+//! and then the rest shape need not be a minimum, and there may be none. The bound is a little above zero, so that the
 //! system stays solvable if all of a vertex's weights are negative. With the ½ the majorising quadratic's matrix is the
 //! Laplacian of these weights.
 

@@ -1,8 +1,8 @@
 //! Soft handles: a spring from each of their vertices to its target.
 //!
-//! Their vertices are solved for like free ones, and E gains ½ Σ W_i |d_i − c_i|² with the strengths W of
-//! [`crate::Constraints`]: what a membrane of stiffness 1 opposes and, where the energy is smooth, a plate of stiffness
-//! κ A. That is quadratic already, so the majorising quadratic has the same W on its diagonal.
+//! Their vertices are solved like free ones, and E gains ½ Σ W_i |d_i − c_i|² with the strengths W of
+//! [`crate::Constraints`]: the resistance of a membrane of stiffness 1 and, if the energy is smooth, of a plate of
+//! stiffness κ A. This term is already quadratic, so the majorising quadratic has the same W on its diagonal.
 
 use glam::DVec3;
 
@@ -15,15 +15,15 @@ use crate::handles::{Handle, Motion};
 use crate::region::partition::Partition;
 use crate::{Laplacian, Problem};
 
-/// The springs of all soft handles, and what else pulls.
+/// The springs of all soft handles, and the dead loads.
 #[derive(Clone, Debug)]
 pub(crate) struct Springs {
     springs: Vec<Spring>,
-    /// c of each.
+    /// The target c of each spring.
     wanted: Vec<Quad>,
-    /// A dead load at each solved vertex, or none, in units of `unit`: E loses what they give, Σ load · d.
+    /// A dead load at each solved vertex, or none, in units of `unit`: they lower E by Σ load · d.
     pub loads: Field,
-    /// The length that gradients are measured in.
+    /// The unit of length of gradients.
     unit: f64,
 }
 
@@ -36,12 +36,12 @@ pub(crate) struct Spring {
     pub strength: f64,
     handle: usize,
     coordinates: [f64; 4],
-    /// What it aims at beside the handle's motion.
+    /// The offset of its target from the handle's motion.
     offset: DVec3,
 }
 
 impl Springs {
-    /// Those of the handles that `partition` has soft; `laplacian` has rows for their vertices, and the energy bends
+    /// The springs of the soft handles of `partition`; `laplacian` has rows for their vertices, and the energy bends
     /// with the stiffness `bending`; gradients are measured in `unit`.
     pub fn of(
         problem: &Problem,
@@ -79,26 +79,26 @@ impl Springs {
         }
     }
 
-    /// All of them.
+    /// All springs.
     pub fn all(&self) -> &[Spring] {
         &self.springs
     }
 
-    /// Sets what they aim at beside the handles' motions, from the next aim on.
+    /// Sets the targets' offsets from the handles' motions, for the next aim.
     pub fn set_offsets(&mut self, domain: &Domain, offsets: &Offsets) {
         for spring in &mut self.springs {
             spring.offset = offsets.at(domain.vertices[spring.local as usize]);
         }
     }
 
-    /// The handles are to go so.
+    /// Sets the targets to the handles' motions.
     pub fn aim(&mut self, motions: &[Motion]) {
         for (wanted, spring) in self.wanted.iter_mut().zip(&self.springs) {
             *wanted = quad(motions[spring.handle].displace(spring.coordinates) + spring.offset, 0.0);
         }
     }
 
-    /// Adds what they hold to a shape's energy.
+    /// Adds the energy of springs and loads to a shape's.
     pub fn add_energy(&self, shape: &mut Shape) {
         for (spring, wanted) in self.springs.iter().zip(&self.wanted) {
             let [x, y, z, _] = minus(shape.displacements[spring.local as usize], *wanted);
@@ -116,7 +116,7 @@ impl Springs {
         -self.unit * self.loads.iter().zip(&shape.displacements).map(given).sum::<f64>()
     }
 
-    /// Adds how they pull to a shape's gradient.
+    /// Adds the forces of springs and loads to a shape's gradient.
     pub fn add_gradient(&self, shape: &mut Shape) {
         for (spring, wanted) in self.springs.iter().zip(&self.wanted) {
             let beyond = minus(shape.displacements[spring.local as usize], *wanted);

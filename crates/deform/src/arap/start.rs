@@ -11,8 +11,8 @@ use crate::handles::Motion;
 use crate::handles::blend::{Origin, Screw, Screws, carried};
 use crate::operators::CHUNK;
 
-/// The blend from the rest shape is skipped for this many targets at most: it costs as much as a step and hardly ever
-/// wins along a drag, but a drag may turn back.
+/// The blend from the rest shape is skipped for at most this many targets: it costs as much as a step and rarely wins
+/// along a drag, but a drag may turn back.
 const PATIENCE: u32 = 8;
 
 impl ArapSolver {
@@ -56,7 +56,7 @@ impl ArapSolver {
         origin
     }
 
-    /// Makes the trial shape the rest shape or the current one, carried by `screws`, with the handles where they go,
+    /// Makes the trial shape the rest shape or the current one, carried by `screws`, with the handles at their targets,
     /// and evaluates it.
     fn carry(&mut self, screws: &[Screw], origin: Origin) {
         self.carry_unmeasured(screws, origin);
@@ -68,7 +68,7 @@ impl ArapSolver {
         self.springs.add_gradient(&mut self.trial);
     }
 
-    /// As [`ArapSolver::carry`], without an evaluation.
+    /// Like [`ArapSolver::carry`], without an evaluation.
     pub(super) fn carry_unmeasured(&mut self, screws: &[Screw], origin: Origin) {
         let Self {
             current,

@@ -1,8 +1,8 @@
 //! The bi-Laplacian's matrix A on the solved vertices, straight into compressed columns.
 //!
-//! Each column is computed by itself from its vertex's n-ring, without triplets and without sorting, and stored in the
-//! order of elimination, so the result does not depend on the number of threads. The matrix is scaled symmetrically to
-//! a unit diagonal, which removes the units and most of the spread of triangle sizes.
+//! Each column is computed independently from its vertex's n-ring, without triplets and without sorting, and stored in
+//! the order of elimination, so the result does not depend on the number of threads. The matrix is scaled symmetrically
+//! to a unit diagonal, which removes the units and most of the spread of triangle sizes.
 
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
@@ -17,7 +17,7 @@ use crate::sparse::factor_error::FactorError;
 use crate::sparse::matrix::{CONSTRAINED, ScaledMatrix};
 
 /// Assembles the matrix over the local vertices `columns`, in that order; `column_of` is the inverse table, with
-/// [`CONSTRAINED`] where a local vertex has no column. The curvature at `hubs` is left to their correction.
+/// [`CONSTRAINED`] for a local vertex without a column. The curvature at `hubs` is left to their correction.
 ///
 /// # Errors
 /// If its entries exceed the budget or the machine's memory.
@@ -28,7 +28,7 @@ pub(crate) fn assemble_bilaplacian(
     hubs: &Hubs,
     budget: Budget,
 ) -> Result<ScaledMatrix, FactorError> {
-    // Chunks and the matrix are held at once for a while. Its offsets have 32 bits.
+    // The chunks and the matrix exist at once for a while. The matrix's offsets have 32 bits.
     let most = (budget.bytes / (2 * ENTRY)).min(u64::from(u32::MAX));
     let entries = AtomicU64::new(0);
     let chunks: Vec<Chunk> = (0..columns.len().div_ceil(CHUNK))
@@ -91,15 +91,15 @@ const ENTRY: u64 = 12;
 
 #[derive(Default)]
 struct Chunk {
-    /// One over the root of the diagonal of each column.
+    /// One over the square root of each column's diagonal.
     scale: Vec<f64>,
-    /// Entries on and below the diagonal of each column.
+    /// The entries on and below the diagonal of each column.
     counts: Vec<u32>,
     lower_rows: Vec<u32>,
     lower_values: Vec<f64>,
 }
 
-/// `None` as soon as `fits` says that this many more entries don't fit.
+/// `None` as soon as `fits` refuses this many more entries.
 fn assemble_chunk(
     operator: &BilaplacianOperator,
     columns: &[u32],
@@ -113,7 +113,7 @@ fn assemble_chunk(
     let solved = |vertex: u32| column_of[vertex as usize] != CONSTRAINED;
     for column in range {
         let before = chunk.lower_rows.len();
-        // The diagonal is met first: each walk starts at the column's own vertex.
+        // The diagonal comes first: each walk starts at the column's own vertex.
         for &(far, value) in expansion.column(operator, hubs, columns[column], solved) {
             let row = column_of[far as usize];
             if row as usize >= column {
@@ -135,7 +135,7 @@ fn assemble_chunk(
     Some(chunk)
 }
 
-/// The entries of one column as they are found.
+/// The entries of one column during its assembly.
 struct Expansion {
     /// One more than a local vertex's place among `entries`; 0 if it has none.
     slots: Vec<u32>,
@@ -152,7 +152,7 @@ impl Expansion {
         }
     }
 
-    /// The entries of A's column on the vertices that are solved for, the diagonal first.
+    /// The entries of A's column on the solved vertices, the diagonal first.
     fn column(
         &mut self,
         operator: &BilaplacianOperator,
@@ -167,7 +167,7 @@ impl Expansion {
             self.add(laplacian, vertex, factor, &solved);
             return self.finished(operator, vertex);
         }
-        // M⁻¹ P, then at order 3 M⁻¹ P M⁻¹ P, of the column's unit vector, with P = −L; nothing is left out yet.
+        // M⁻¹ P, then at order 3 M⁻¹ P M⁻¹ P, of the column's unit vector, with P = −L; no entry is dropped yet.
         self.add(laplacian, vertex, operator.bending, |_| true);
         if operator.power == 3 {
             self.step(operator.middle(), hubs);
@@ -209,7 +209,7 @@ impl Expansion {
         self.spread(laplacian, hubs, |_| 1.0, |_| true);
     }
 
-    /// entries += P s M⁻¹ inner, with s what `stiffness` gives for a local vertex, and nothing through a hub.
+    /// entries += P s M⁻¹ inner, with s the local vertex's `stiffness`, and nothing through a hub.
     fn spread(
         &mut self,
         laplacian: &Laplacian,
@@ -280,7 +280,7 @@ impl Expansion {
         self.entries[*slot as usize - 1].1 += value;
     }
 
-    /// Forgets which vertices have entries.
+    /// Clears the entries.
     fn close(&mut self) {
         for &(vertex, _) in &self.entries {
             self.slots[vertex as usize] = 0;

@@ -1,4 +1,4 @@
-//! Where the bi-Laplacian has natural boundaries: see [`natural`](crate::bilaplacian::natural).
+//! The places of the bi-Laplacian's natural boundaries: see [`natural`](crate::bilaplacian::natural).
 
 use pliant_mesh::SurfaceVertex;
 
@@ -9,7 +9,7 @@ use crate::operators::hessian::{RingHessian, RingKind};
 use crate::operators::triangulation::Triangulation;
 use crate::region::partition::Partition;
 
-/// Gives the operator of order 2 its natural boundaries where it has some.
+/// Adds natural boundaries to the operator of order 2 at the surface's free borders and changes of stiffness.
 pub(crate) fn make_natural(
     operator: &mut BilaplacianOperator,
     triangulation: &Triangulation,
@@ -36,7 +36,7 @@ pub(crate) fn make_natural(
         }
     }
     if of_component.iter().any(|extent| extent.has_free_border) {
-        // The Hessian does not see linear functions: a triangle that is held tells which one it is.
+        // The Hessian does not see linear functions: a held triangle determines which one it is.
         let mut is_held = vec![false; of_component.len()];
         for corners in &problem.surface.triangles {
             if !corners.iter().any(|corner| is_solved[corner.index()]) {
@@ -71,7 +71,7 @@ pub(crate) fn make_natural(
         };
         (cells[local], weights[local]) = match kind {
             RingKind::Closed if extent.is_natural() => (0.5 * (own + least), own - least),
-            // A border that is held along with its neighbours clamps the surface by its Laplacian.
+            // A border held together with its neighbours clamps the surface by its Laplacian.
             RingKind::Fan(ends) if extent.has_free_border && ends.into_iter().any(is_free) => (0.0, own),
             RingKind::Fan(_) if extent.has_free_border && is_free(local as u32) => (0.0, own),
             _ => (own, 0.0),
@@ -87,7 +87,7 @@ pub(crate) fn make_natural(
     });
 }
 
-/// What is known of a component.
+/// The properties of a component.
 #[derive(Clone, Copy, Default)]
 struct Extent {
     least: f64,

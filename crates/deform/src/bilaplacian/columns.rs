@@ -1,4 +1,4 @@
-//! What binding solves for: the four columns of each handle's basis [BK04], and the energies between handles.
+//! The unknowns of binding: the four columns of each handle's basis [BK04], and the energies between handles.
 
 use std::collections::TryReserveError;
 
@@ -12,7 +12,7 @@ use crate::bilaplacian::system_error::SystemError;
 use crate::budget::filled;
 use crate::handles::bases::Stored;
 
-/// What columns are solved for: the handles, then the stiff parts.
+/// The owners of columns: the handles, then the stiff parts.
 #[derive(Clone, Copy)]
 struct Driven<'a> {
     prescribed: &'a [Prescribed],
@@ -20,7 +20,7 @@ struct Driven<'a> {
 }
 
 impl Driven<'_> {
-    /// Which part this number is.
+    /// The part of this number.
     fn part(&self, number: usize) -> Option<usize> {
         number.checked_sub(self.prescribed.len() - self.parts.len())
     }
@@ -28,13 +28,13 @@ impl Driven<'_> {
 
 /// One handle's four columns.
 pub(crate) struct Columns<T> {
-    /// On the solved vertices, ascending.
+    /// The columns on the solved vertices, ascending.
     pub rows: Vec<[T; 4]>,
-    /// C_hᵀ F of this handle against each handle h, F the force that it takes at h: A B, or the springs' W (C − B).
+    /// C_hᵀ F of this handle against each handle h, F the force at h: A B, or the springs' W (C − B).
     energies: Vec<[[f64; 4]; 4]>,
-    /// How far off the solution is, relative to its largest value.
+    /// The solution's error, relative to its largest value.
     pub error: f64,
-    /// A vertex of the handle, to name where the error is.
+    /// A vertex of the handle, to name the place of the error.
     pub vertex: u32,
 }
 
@@ -89,8 +89,8 @@ pub(crate) fn solve_columns<T: Stored>(
     Ok(columns)
 }
 
-/// The blocks G_hk of the energy ½ Σ_hk tr(X_hᵀ G_hk X_k) of motions X, row-major over pairs of handles and, behind
-/// `handle_count` of these, stiff parts.
+/// The blocks G_hk of the energy ½ Σ_hk tr(X_hᵀ G_hk X_k) of motions X, row-major over pairs of handles and, after the
+/// `handle_count` handles, stiff parts.
 pub(crate) fn energy_blocks<T>(
     columns: &[Columns<T>],
     handle_count: usize,
@@ -101,7 +101,7 @@ pub(crate) fn energy_blocks<T>(
             blocks[h * columns.len() + k] = *block;
         }
     }
-    // The load of a part is not among the forces at handles: what a handle does to the part says the same.
+    // The load of a part is not among the forces at handles: a handle's effect on the part is the same.
     for h in 0..handle_count.min(columns.len()) {
         for k in handle_count..columns.len() {
             let other = blocks[k * columns.len() + h];
@@ -112,7 +112,7 @@ pub(crate) fn energy_blocks<T>(
 }
 
 impl<T: Stored> Columns<T> {
-    /// Of a solution whose first four functions are the handle's.
+    /// The columns from a solution whose first four functions are the handle's.
     fn of<const K: usize>(
         system: &BilaplacianSystem,
         d: &[[f64; K]],

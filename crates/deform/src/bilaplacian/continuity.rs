@@ -1,10 +1,10 @@
 //! The continuity with which the bi-Laplacian joins constrained vertices ([BK04], section 4.2, in a symmetric form).
 //!
 //! The free surface depends on the slope at a constrained vertex only through the curvature there, u_i = (M⁻¹ L d)_i,
-//! and on the curvature only through its change across the faces beyond. So damping M⁻¹ at constrained vertices to
-//! nothing makes a hinge, C⁰ with u = 0; without damping the slope is kept, C¹. At order 3 the middle L of L M⁻¹ L M⁻¹
-//! L makes C² with the faces between constrained vertices and C¹ without them. The recursion of [BK04] damps the outer
-//! M⁻¹ only, which is not symmetric; with both damped alike the system belongs to an energy.
+//! and on the curvature only through its change across the faces beyond. So M⁻¹ damped to zero at constrained vertices
+//! makes a hinge, C⁰ with u = 0; without damping the slope is kept, C¹. At order 3 the middle L of L M⁻¹ L M⁻¹ L makes
+//! C² with the faces between constrained vertices and C¹ without them. The recursion of [BK04] damps the outer M⁻¹
+//! only, which is not symmetric; with both damped alike the system has an energy.
 //!
 //! Between two whole numbers there is a spring against the rotation (or the curvature), of stiffness t / (1 − t) per
 //! diagonal: the damping depends on the size of the cell, so that the shape does not depend on the resolution.
@@ -15,7 +15,8 @@ use crate::bilaplacian::operator::BilaplacianOperator;
 use crate::operators::triangulation::Triangulation;
 use crate::{Bilaplacian, Laplacian, Problem, Role};
 
-/// Damps the operator at constrained vertices as [`crate::Constraints::continuity`] says; `rows` are its full rows.
+/// Damps the operator at constrained vertices according to [`crate::Constraints::continuity`]; `rows` are its full
+/// rows.
 pub(crate) fn join(
     operator: &mut BilaplacianOperator,
     triangulation: &Triangulation,

@@ -88,7 +88,7 @@ impl DeformMethod for Bilaplacian {
         }
     }
 
-    /// Where details are put back the bases are kept in double precision.
+    /// If details are put back, the bases are kept in double precision.
     fn handle_row_bytes(&self) -> usize {
         match self.detail {
             Detail::None => 32,

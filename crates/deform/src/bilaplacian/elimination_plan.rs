@@ -1,4 +1,4 @@
-//! Which factor a thin plate is bound with: its own, or the Laplacian's where its own would not fit the budget.
+//! The choice of a thin plate's factor: its own, or the Laplacian's if its own would not fit the budget.
 
 use pliant_mesh::{Cancel, Topology};
 
@@ -8,17 +8,17 @@ use crate::budget::{Budget, ORDERING_ROW, bytes_of, plate_bytes};
 use crate::method::BindInput;
 use crate::sparse::{Elimination, Ordering};
 
-/// The order of elimination that the binding was given, and what another one is made from.
+/// The order of elimination given to the binding, and the source of another one.
 pub(crate) struct EliminationPlan<'a> {
     ordering: &'a Ordering,
     topology: &'a Topology,
     solved: &'a [u32],
-    /// Whether the factor of the Laplacian does in place of the method's own.
+    /// Whether the factor of the Laplacian can replace the method's own.
     takes_first_power: bool,
 }
 
 impl<'a> EliminationPlan<'a> {
-    /// Of a binding's input.
+    /// The plan of a binding's input.
     ///
     /// # Errors
     /// There is no ordering of the method's power, or of power 1 in its place, or it is another mesh's.
@@ -39,7 +39,7 @@ impl<'a> EliminationPlan<'a> {
     /// The order for the matrix of this power, if the ordering is for it and the factor can be expected to fit.
     pub fn direct(&self, power: u32, budget: Budget) -> Option<Elimination> {
         let is_its_own = self.ordering.power() >= power;
-        // Where there is another way, the choice is that of the ordering. Else it is tried unless it is sure not to fit.
+        // If there is an alternative, the ordering decides. Otherwise the factor is tried unless it cannot fit.
         let estimate = plate_bytes(self.solved.len()) / if self.takes_first_power { 1 } else { 2 };
         let is_too_large = power == 2 && estimate > budget.bytes;
         (is_its_own && !is_too_large).then(|| self.ordering.elimination(self.solved))

@@ -1,8 +1,8 @@
 //! The bound bi-Laplacian: A_ff d_f = −A_fc d_c, factored, refined and checked.
 //!
 //! That a factorisation succeeds proves nothing: condition numbers reach 1e15 on real scans. So every solve is refined
-//! (see `refine`), and every binding also solves for the constant 1, whose solution is known, and is refused if that is
-//! missed.
+//! (see `refine`), and every binding also solves for the constant 1, whose solution is known, and is refused if the
+//! result is wrong.
 
 use std::sync::Arc;
 
@@ -35,17 +35,17 @@ pub(crate) struct BilaplacianSystem {
     /// The column of each of the operator's springs.
     spring_columns: Vec<u32>,
     solution: Solution,
-    /// How slowly refinement converged at the check: see [`crate::bilaplacian::refine`].
+    /// The rate at which refinement converged at the check: see [`crate::bilaplacian::refine`].
     pub(crate) contraction: f64,
 }
 
 /// Shifts of the unit diagonal that are tried one after the other. Refinement with the unshifted operator removes their
-/// effect again; the check of the constant tells whether it did.
+/// effect again; the check of the constant proves it.
 const SHIFTS: [f64; 4] = [0.0, 1e-13, 1e-11, 1e-9];
 
 impl BilaplacianSystem {
-    /// Factors the system in which the vertices of `elimination` are solved for, eliminated in that order; the
-    /// operator's Laplacian has full rows for them and their neighbours.
+    /// Factors the system that solves for the vertices of `elimination`, eliminated in that order; the operator's
+    /// Laplacian has full rows for them and their neighbours.
     pub fn new(
         operator: BilaplacianOperator,
         elimination: Elimination,
@@ -57,7 +57,7 @@ impl BilaplacianSystem {
         Ok(Self::joined(operator, numbering, solution))
     }
 
-    /// As [`BilaplacianSystem::new`], but where A's factor does not fit the budget, solves with the Laplacian's, if the
+    /// Like [`BilaplacianSystem::new`], but solves with the Laplacian's factor if A's does not fit the budget and the
     /// operator allows that.
     pub fn planned(
         mut operator: BilaplacianOperator,
@@ -93,27 +93,27 @@ impl BilaplacianSystem {
         }
     }
 
-    /// The column of each local vertex, [`CONSTRAINED`] where it is not solved for.
+    /// The column of each local vertex, [`CONSTRAINED`] if it is not solved.
     pub fn column_of(&self) -> &[u32] {
         &self.column_of
     }
 
-    /// The local vertices that are solved for.
+    /// The solved local vertices.
     pub fn columns(&self) -> &[u32] {
         &self.columns
     }
 
-    /// How many numbers the factor stores.
+    /// The number of entries that the factor stores.
     pub fn factor_len(&self) -> usize {
         self.solution.stored()
     }
 
-    /// What the binding of a nearly equal system can reuse.
+    /// The data that the binding of a nearly equal system can reuse.
     pub fn factored(&self) -> &Arc<RenewableFactor> {
         self.solution.factored()
     }
 
-    /// What solves with A.
+    /// The solver with A.
     pub fn solution(&self) -> &Solution {
         &self.solution
     }
@@ -145,7 +145,7 @@ impl BilaplacianSystem {
         self.with_pulls(residual, d)
     }
 
-    /// As [`BilaplacianSystem::scaled_residual`], of a field that is zero on the solved vertices.
+    /// Like [`BilaplacianSystem::scaled_residual`], for a field that is zero on the solved vertices.
     pub fn scaled_residual_from_zero<const K: usize>(&self, d: &[[f64; K]]) -> Vec<[f64; K]> {
         let Some(reach) = &self.held_reach else {
             return self.scaled_residual(d);
@@ -210,7 +210,7 @@ fn direct(
     Ok(((columns, column_of), Solution::Factor(Arc::new(factored), low_rank)))
 }
 
-/// The factor of the Laplacian, and what makes it solve with A. The operator is the same again afterwards.
+/// The factor of the Laplacian, and the data that make it solve with A. The operator is unchanged afterwards.
 fn by_laplacian(
     operator: &mut BilaplacianOperator,
     elimination: Elimination,
@@ -219,7 +219,7 @@ fn by_laplacian(
     cancel: &Cancel,
 ) -> Result<(Numbering, Solution), SystemError> {
     let (columns, column_of) = numbered(operator, &elimination);
-    // The vectors of a solve, beside those that every solve takes.
+    // The vectors of a solve, besides those of every solve.
     let of_vectors = bytes_of(columns.len(), 3 * size_of::<[f64; 5]>());
     let budget = budget.without(of_vectors).map_err(SystemError::Budget)?;
     let membrane = BilaplacianOperator::membrane(std::mem::take(&mut operator.laplacian));

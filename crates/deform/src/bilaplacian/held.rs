@@ -1,7 +1,7 @@
-//! Which rows what is held reaches: the right-hand side of a field that is zero wherever it is solved for.
+//! The rows that held vertices reach: the right-hand side of a field that is zero on all solved vertices.
 //!
-//! A solve begins from zero, and its first residual −A_fc d_c is zero but near what is held or moved. On a scan that is
-//! a small part of the rows, and a frame with a load need not go over the others.
+//! A solve begins from zero, and its first residual −A_fc d_c is zero except near held or moved vertices. On a scan
+//! that is a small part of the rows, and a frame with a load can skip the others.
 
 use crate::Laplacian;
 use crate::bilaplacian::operator::BilaplacianOperator;
@@ -17,8 +17,8 @@ pub(crate) struct HeldReach {
 }
 
 impl HeldReach {
-    /// For the operator and the column of each local vertex. `None` where the reach is wider than two edges, or so much
-    /// of the surface that nothing is saved.
+    /// For the operator and the column of each local vertex. `None` if the reach is wider than two edges, or covers so
+    /// much of the surface that nothing is saved.
     pub fn of(operator: &BilaplacianOperator, columns: &[u32], column_of: &[u32]) -> Option<Self> {
         if operator.power > 2 || operator.stretched.is_some() {
             return None;
@@ -40,7 +40,7 @@ impl HeldReach {
         })
     }
 
-    /// S (−A d) on the columns, for a field that is zero where it is solved for.
+    /// S (−A d) on the columns, for a field that is zero on the solved vertices.
     pub fn scaled_force<const K: usize>(
         &self,
         operator: &BilaplacianOperator,

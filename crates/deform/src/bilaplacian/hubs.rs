@@ -1,8 +1,8 @@
-//! How the bi-Laplacian treats hubs: vertices with very many neighbours, such as the tip of a fan.
+//! The bi-Laplacian's treatment of hubs: vertices with very many neighbours, such as the tip of a fan.
 //!
 //! At order 2 and above the curvature at a hub couples all of its neighbours with each other: for a fan of d triangles
-//! the matrix would have d² / 2 entries. But together they are one square, A = B + c p pᵀ, where p is the hub's row of
-//! −L. So the matrix is assembled without the curvature at hubs, and the difference is a correction of low rank
+//! the matrix would have d² / 2 entries. But together they are one square, A = B + c p pᵀ, in which p is the hub's row
+//! of −L. So the matrix is assembled without the curvature at hubs, and the difference is a correction of low rank
 //! ([`LowRank`](crate::sparse::low_rank::LowRank)), which is exact: the shape is the same.
 //!
 //! With u_h = 0 at a hub h (order 3: A = Qᵀ P Q with Q = M⁻¹ P) B lacks
@@ -20,7 +20,7 @@ use crate::bilaplacian::operator::BilaplacianOperator;
 use crate::sparse::low_rank::SparseVector;
 use crate::sparse::matrix::CONSTRAINED;
 
-/// Neighbours that stand in for all of a hub's.
+/// The number of neighbours that represent all of a hub's.
 const SAMPLES: usize = 16;
 
 /// The hubs of a bi-Laplacian's operator.
@@ -28,7 +28,7 @@ const SAMPLES: usize = 16;
 pub(crate) struct Hubs {
     /// Local vertices, ascending.
     locals: Vec<u32>,
-    /// By local vertex; empty where there is no hub.
+    /// By local vertex; empty if there is no hub.
     is_hub: Vec<bool>,
     /// For each hub γ and t with B = A₀ + Σ γ t tᵀ, by local vertex.
     stand_ins: Vec<(f64, SparseVector)>,
@@ -169,12 +169,12 @@ impl Hubs {
     }
 }
 
-/// k_b s_h / M_hh: what the square of (L d)_h counts at order 2.
+/// k_b s_h / M_hh: the factor of the square of (L d)_h at order 2.
 fn curvature_weight(operator: &BilaplacianOperator, hub: usize) -> f64 {
     operator.bending * operator.cell_stiffness(hub) * operator.laplacian.inverse_areas()[hub]
 }
 
-/// k_b P_hh, P the middle −L of order 3: what the square of the curvature at h counts, that around it being 0.
+/// k_b P_hh, P the middle −L of order 3: the factor of the square of the curvature at h, if that around it is 0.
 fn middle_weight(operator: &BilaplacianOperator, hub: usize) -> f64 {
     let weights = operator.middle().weights(hub);
     operator.bending * weights.iter().sum::<f64>().max(0.0)
@@ -189,7 +189,7 @@ fn stand_in(operator: &BilaplacianOperator, hub: usize) -> (f64, SparseVector) {
         2 => (curvature_weight(operator, hub), 1.0),
         _ => (middle_weight(operator, hub), laplacian.inverse_areas()[hub]),
     };
-    // Evenly spread over the weights, so that a few heavy neighbours are among them.
+    // Evenly spread over the weights, so that a few heavy neighbours are included.
     let positive: f64 = weights.iter().map(|weight| weight.max(0.0)).sum();
     let step = positive / SAMPLES as f64;
     let (mut sampled, mut sum) = (Vec::with_capacity(SAMPLES), 0.0);
@@ -286,8 +286,8 @@ mod tests {
         surface
     }
 
-    /// What the handle's four functions become where vertices of more than `hub_degree` neighbours are hubs, and how
-    /// many numbers the factor has.
+    /// The handle's four functions if vertices of more than `hub_degree` neighbours are hubs, and the number of the
+    /// factor's entries.
     fn solved(surface: &Surface, options: &Bilaplacian, hub_degree: usize) -> (Vec<[f64; 4]>, usize) {
         let topology = Topology::of(surface);
         let role = |p: &DVec3| match p.y {

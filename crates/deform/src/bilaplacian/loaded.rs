@@ -1,7 +1,7 @@
 //! The bi-Laplacian with a load: A d = b, where b changes from frame to frame and A is factored once.
 //!
-//! Methods that change differential coordinates and put the surface together again solve this: at order 1 A is −L, a
-//! Poisson equation, at order 2 it is L M⁻¹ L [BS08, equations 15 and 21].
+//! Methods that change differential coordinates and reassemble the surface solve this: at order 1 A is −L, a Poisson
+//! equation, at order 2 it is L M⁻¹ L [BS08, equations 15 and 21].
 
 use std::sync::Arc;
 
@@ -23,25 +23,25 @@ use crate::region::slender;
 use crate::sparse::refactorisation::Refactorisation;
 use crate::{Bilaplacian, BindError, Problem, ReusableFactor, SolveError};
 
-/// The factored system, and what it takes to set up and to read a field of it: one row for each local vertex of its
+/// The factored system, and the data for setting up and reading its fields: one row for each local vertex of its
 /// Laplacian, then one for each spring.
 #[derive(Debug)]
 pub(crate) struct LoadedSystem {
     system: BilaplacianSystem,
-    /// Each handle's places in a field, at its vertices or, where it is soft, at their springs, and their coordinates.
+    /// Each handle's places in a field, at its vertices or, if it is soft, at their springs, and their coordinates.
     pub prescribed: Vec<Prescribed>,
-    /// Where vertices of handles go beside their handles' motions.
+    /// The offsets of handles' vertices from their handles' motions.
     offsets: Arc<Offsets>,
 }
 
-/// How far off a solution may be, relative to its largest value.
+/// The allowed error of a solution, relative to its largest value.
 pub(crate) const TOLERANCE: f64 = 1e-7;
 
 impl LoadedSystem {
     /// Assembles, factors and checks the operator of `options` under this stiffness, one number a surface vertex.
     ///
     /// # Errors
-    /// As the bi-Laplacian's.
+    /// The bi-Laplacian's errors.
     pub fn bind(
         options: &Bilaplacian,
         stiffness: &[f64],
@@ -81,7 +81,7 @@ impl LoadedSystem {
         &self.system.operator
     }
 
-    /// The local vertices that are solved for, one for each row of a load.
+    /// The solved local vertices, one for each row of a load.
     pub fn columns(&self) -> &[u32] {
         self.system.columns()
     }
@@ -94,7 +94,7 @@ impl LoadedSystem {
     /// Fills in the solved rows of K fields without a load from their other rows.
     ///
     /// # Errors
-    /// [`BindError::Inaccurate`] where the solution does not settle; [`BindError::Cancelled`].
+    /// [`BindError::Inaccurate`] if the solution does not settle; [`BindError::Cancelled`].
     pub fn extend<const K: usize>(&self, field: &mut [[f64; K]], input: &BindInput<'_>) -> Result<(), BindError> {
         let error = self.system.solve(field, input.cancel).error;
         input.cancel.check()?;
@@ -108,12 +108,12 @@ impl LoadedSystem {
         Err(refused(SystemError::Inaccurate { vertex, error }, input))
     }
 
-    /// Sets by how much vertices of handles go elsewhere than their handles' motions take them.
+    /// Sets the offsets of handles' vertices from their handles' motions.
     pub fn set_offsets(&mut self, offsets: &Arc<Offsets>) {
         self.offsets = Arc::clone(offsets);
     }
 
-    /// Sets the handles' rows of a field to where they go.
+    /// Sets the handles' rows of a field to their targets.
     pub fn prescribe(&self, motions: &[Motion], field: &mut [[f64; 3]]) {
         for (own, motion) in self.prescribed.iter().zip(motions) {
             for &(place, coordinates) in own {
@@ -122,7 +122,7 @@ impl LoadedSystem {
         }
     }
 
-    /// Where a handle's row goes.
+    /// The target of a handle's row.
     fn wanted(&self, motion: &Motion, place: u32, coordinates: [f64; 4]) -> [f64; 3] {
         let operator = self.operator();
         let vertex = self.vertices()[operator.local_of(place as usize) as usize];
@@ -143,7 +143,7 @@ impl LoadedSystem {
         write_field(field, self.vertices(), displacements);
     }
 
-    /// The rows of a field for displacements of all surface vertices; springs pull at where the motions put them.
+    /// The rows of a field for displacements of all surface vertices; the motions give the springs' targets.
     pub fn read(&self, motions: &[Motion], displacements: &[DVec3]) -> Vec<[f64; 3]> {
         let mut field = self.field();
         for (row, &vertex) in field.iter_mut().zip(self.vertices()) {
@@ -173,17 +173,17 @@ impl LoadedSystem {
         self.system.operator.laplacian.vertices()
     }
 
-    /// How many numbers the factor stores.
+    /// The number of entries that the factor stores.
     pub fn factor_len(&self) -> usize {
         self.system.factor_len()
     }
 
-    /// What the next binding can reuse.
+    /// The data that the next binding can reuse.
     pub fn reusable_factor(&self) -> ReusableFactor {
         ReusableFactor(Arc::clone(self.system.factored()))
     }
 
-    /// Sentences about what had to be repaired.
+    /// Sentences about repairs.
     pub fn warnings(&self) -> Vec<String> {
         let mut sentences: Vec<String> = repairs(self.operator().laplacian.mollified_faces())
             .into_iter()
@@ -213,14 +213,14 @@ pub(crate) fn write_field(field: &[[f64; 3]], vertices: &[u32], displacements: &
 /// # Errors
 /// If it is not.
 pub(crate) fn settled(Outcome { error, .. }: Outcome) -> Result<(), SolveError> {
-    // What is not finite is found by the check of all displacements, which names the vertex.
+    // A value that is not finite is found by the check of all displacements, which names the vertex.
     if error.is_finite() && error > TOLERANCE {
         return Err(SolveError::Inaccurate { error });
     }
     Ok(())
 }
 
-/// The refusal of a system as the caller sees it.
+/// The refusal of a system in the caller's terms.
 pub(crate) fn refused(error: SystemError, input: &BindInput<'_>) -> BindError {
     let component_of = |vertex: u32| input.problem.topology.component(SurfaceVertex(vertex));
     error.into_bind_error(component_of, input.partition.solved.len())

@@ -1,4 +1,4 @@
-//! The thin plate with natural boundaries: the squared Hessian where stiffness varies and where a border is free.
+//! The thin plate with natural boundaries: the squared Hessian where stiffness varies and at free borders.
 //!
 //! |Δd|² and |∇²d|² differ by boundary terms alone (and by K |∇d|² where the surface curves), so on a closed, evenly
 //! stiff surface they give one shape. Where stiffness jumps, or a border is free, they do not: the Laplacian does not
@@ -6,8 +6,8 @@
 //!
 //! ½ k_b ∫ s₀ |Δd|² + (s − s₀) |∇²d|²,
 //!
-//! s₀ being the least stiffness of the component, and 0 where a border of it is free. Without paint, and with all
-//! borders held, that is the operator as it is without this term, to the last bit.
+//! s₀ being the least stiffness of the component, and 0 if a border of it is free. Without paint, and with all borders
+//! held, that is the operator without this term, to the last bit.
 
 use crate::Laplacian;
 use crate::operators::hessian::RingHessian;
@@ -38,7 +38,7 @@ impl NaturalTerm {
         }
     }
 
-    /// The gradient of the term at a local vertex, given the stress at all.
+    /// The gradient of the term at a local vertex, given the stress at all local vertices.
     #[inline]
     pub fn force<const K: usize>(&self, laplacian: &Laplacian, local: usize, stress: &[[[f64; K]; 2]]) -> [f64; K] {
         let own = self.hessian.diagonal(local);

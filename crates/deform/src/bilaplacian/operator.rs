@@ -1,13 +1,13 @@
 //! The bi-Laplacian's operator A = k_s (−L) + k_b (−L)(−M⁻¹ L)ⁿ⁻¹, applied by differences along edges.
 //!
-//! One factor −L stands outermost in both terms, so A d = −L φ with φ = k_s d + k_b (−M⁻¹ L)ⁿ⁻¹ d: zero on constants
-//! to the last bit at every order.
+//! One factor −L is outermost in both terms, so A d = −L φ with φ = k_s d + k_b (−M⁻¹ L)ⁿ⁻¹ d: zero on constants to the
+//! last bit at every order.
 //!
 //! Painted stiffness s scales the density of the energy, ½ ∫ k_s s |∇d|² + k_b s |Δd|²: the faces' cotangents in
-//! stretching and in the middle L of order 3, the cells of M⁻¹ at order 2, where it varies with the natural term
-//! beside them ([`crate::bilaplacian::natural`]). A stiff part keeps its curvature, turns with
-//! its surroundings, and joins soft parts without a crease. (If the cotangents of both outer L were scaled,
-//! which is ∫ |div(s ∇d)|², stiff parts would keep their slope in space: they would not turn, and crease at their rim.)
+//! stretching and in the middle L of order 3, the cells of M⁻¹ at order 2, with the natural term where it varies
+//! ([`crate::bilaplacian::natural`]). A stiff part keeps its curvature, turns with its surroundings, and joins soft
+//! parts without a crease. (If the cotangents of both outer L were scaled, which is ∫ |div(s ∇d)|², stiff parts would
+//! keep their slope in space: they would not turn, and crease at their rim.)
 
 use std::borrow::Cow;
 
@@ -34,19 +34,19 @@ pub(crate) struct Potential<'a, const K: usize> {
 #[derive(Debug)]
 pub(crate) struct BilaplacianOperator {
     pub laplacian: Laplacian,
-    /// The L between two others at order 3, where it is not the same.
+    /// The L between two others at order 3, if it differs.
     pub middle: Option<Laplacian>,
-    /// The L of stretching, where it is not the same.
+    /// The L of stretching, if it differs.
     pub stretched: Option<Laplacian>,
-    /// s of each local vertex' cell at order 2; empty where it is 1 everywhere.
+    /// s of each local vertex' cell at order 2; empty if it is 1 everywhere.
     pub cell_stiffness: Vec<f64>,
-    /// What natural boundaries add at order 2.
+    /// The natural boundaries at order 2.
     pub natural: Option<NaturalTerm>,
     /// The soft handles' springs, W in (A + W) d = W c.
     pub springs: Springs,
     /// A vertex with more solved neighbours than this is a hub: see [`crate::bilaplacian::hubs`].
     pub hub_degree: usize,
-    /// n: how many times L stands in the second term.
+    /// n: the number of factors L in the second term.
     pub power: u32,
     /// k_s over the squared diagonal.
     pub stretching: f64,
@@ -66,7 +66,7 @@ impl<'a, const K: usize> Potential<'a, K> {
 }
 
 impl BilaplacianOperator {
-    /// With the options' coefficients for a surface of this diagonal.
+    /// The operator with the options' coefficients for a surface of this diagonal.
     pub fn new(laplacian: Laplacian, options: &Bilaplacian, diagonal: f64) -> Self {
         let square = if diagonal > 0.0 { diagonal * diagonal } else { 1.0 };
         let power = options.operator_power();
@@ -98,12 +98,12 @@ impl BilaplacianOperator {
         Self::new(laplacian, &options, 1.0)
     }
 
-    /// How many entries a field has.
+    /// The number of entries of a field.
     pub fn field_len(&self) -> usize {
         self.laplacian.vertices().len() + self.springs.len()
     }
 
-    /// The local vertex that a field's entry is for.
+    /// The local vertex of a field's entry.
     pub fn local_of(&self, place: usize) -> u32 {
         match place.checked_sub(self.laplacian.vertices().len()) {
             Some(spring) => self.springs.local(spring),
@@ -142,7 +142,7 @@ impl BilaplacianOperator {
         self.cell_stiffness.get(local).copied().unwrap_or(1.0)
     }
 
-    /// φ of K functions on the local vertices, correct wherever the neighbours' rows are full.
+    /// φ of K functions on the local vertices, correct for vertices whose neighbours' rows are full.
     pub fn potential<'a, const K: usize>(&self, d: &'a [[f64; K]]) -> Potential<'a, K> {
         if self.power == 1 {
             return Potential::of(d);
@@ -167,7 +167,7 @@ impl BilaplacianOperator {
         }
     }
 
-    /// φ at order 1 or 2 of functions for which it is zero but at these local vertices.
+    /// φ at order 1 or 2 of functions for which it is zero except at these local vertices.
     pub fn potential_at<'a, const K: usize>(&self, locals: &[u32], d: &'a [[f64; K]]) -> Potential<'a, K> {
         if self.power == 1 {
             return Potential::of(d);
@@ -276,7 +276,7 @@ impl BilaplacianOperator {
     }
 }
 
-/// This vertex' share of −fᵀ L f: half of each edge's, and all of it where the other end's row is not full.
+/// This vertex' share of −fᵀ L f: half of each edge's, or all of it if the other end's row is not full.
 fn edges<const K: usize>(laplacian: &Laplacian, local: usize, f: &[[f64; K]]) -> f64 {
     let ends = laplacian.neighbours(local).iter().zip(laplacian.weights(local));
     ends.map(|(&other, weight)| {
@@ -287,7 +287,7 @@ fn edges<const K: usize>(laplacian: &Laplacian, local: usize, f: &[[f64; K]]) ->
     .sum()
 }
 
-/// Summed in chunks of a fixed size, so that the number of threads doesn't show.
+/// Summed in chunks of a fixed size, so that the result does not depend on the number of threads.
 fn sum_of_rows(count: usize, row: impl Fn(usize) -> f64 + Sync) -> f64 {
     let partial: Vec<f64> = (0..count.div_ceil(CHUNK))
         .into_par_iter()

@@ -15,23 +15,23 @@ pub(crate) const STRETCHING: Number = Number {
 };
 
 options! {
-    /// The bi-Laplacian A d = 0 between what is held and the handles, with
+    /// The bi-Laplacian A d = 0 between the fixed vertices and the handles, with
     ///
     /// A = k_s (−L) + k_b (−L)(−M⁻¹ L)ⁿ⁻¹,
     ///
     /// which at order n = 2 is (−k_s L + k_b L M⁻¹ L) d = 0 [BS08, equation 8]. A is symmetric and positive definite on
-    /// what is solved for. Lengths are measured in sizes of what bends, so neither coefficient
-    /// depends on the model's unit. The shape depends only on their ratio; the energy ½ dᵀ A d has no unit.
+    /// the solved vertices. Lengths are measured in sizes of the bending part, so neither coefficient depends on the
+    /// model's unit. The shape depends only on their ratio; the energy ½ dᵀ A d has no unit.
     ///
     /// Painted stiffness s scales the energy's density, ½ ∫ k_s s |∇d|² + k_b s |Δd|² at order 2 and s |∇Δd|² at order
-    /// 3: a part of stiffness 10 resists bending ten times as much, and turns with what holds it.
+    /// 3: a part of stiffness 10 resists bending ten times as much, and turns with its surroundings.
     pub struct Bilaplacian {
-        /// Which derivative of the displacement is kept small.
+        /// The derivative of the displacement that is kept small.
         order: BilaplacianOrder = Choice {
             default: BilaplacianOrder::ThinPlate,
             help: "what resists: the area, the bending, or its change",
         },
-        /// k_b, the resistance to what the order names. With 0 there is only stretching, a membrane.
+        /// k_b, the resistance to the order's derivative. With 0 there is only stretching, a membrane.
         bending: f64 = Number {
             default: 1.0,
             range: [0.0, LARGEST],
@@ -41,39 +41,39 @@ options! {
         /// k_s, the resistance to stretching, in units of k_b per squared size at order 2 and per the fitting power
         /// of it at the others.
         stretching: f64 = STRETCHING,
-        /// How the Laplacian is discretised.
+        /// The discretisation of the Laplacian.
         discretisation: Discretisation = Choice {
             default: Discretisation::CotangentArea,
             help: "weights of the Laplacian",
         }; advanced,
-        /// Which triangles it is made on.
+        /// The triangles of the Laplacian.
         triangulation: TriangulationKind = Choice {
             default: TriangulationKind::AsIs,
             help: "triangles of the Laplacian: as they are, or without negative weights (\"tufted\" on non-manifold \
                    meshes, too)",
         }; advanced,
-        /// From 0, as the surface lies in space, to 1, as if it were stretched along the principal axes of the part
-        /// that may move until that varied alike along all of them, though by no more than a factor 10: stiffer along
-        /// what is long \[BK04\].
+        /// From 0, the surface as it is in space, to 1, as if it were stretched along the principal axes of the part
+        /// that may move until that varied alike along all of them, though by at most a factor of 10: stiffer along
+        /// long axes \[BK04\].
         anisotropy: f64 = Number {
             default: 0.0,
             range: [0.0, 1.0],
             unit: "",
             help: "stiffer along what is long: 0 not at all, 1 as if the part that may move were as wide as long",
         }; advanced,
-        /// How details are put back on the bent base.
+        /// The way of putting details back on the bent base.
         detail: Detail = Choice {
             default: Detail::None,
             help: "how details follow: not at all (\"none\", they shear), turned with the smooth surface below them \
                    (\"normal-displacements\"), with their volume kept over it (\"displacement-volumes\"), or bent as it \
                    is (\"deformation-transfer\")",
         },
-        /// The order k of the smooth base L^k x = 0. Only `detail` has use for it.
+        /// The order k of the smooth base L^k x = 0. Only `detail` uses it.
         base_order: BilaplacianOrder = Choice {
             default: BilaplacianOrder::ThinPlate,
             help: "for details: how smooth the surface below them is, from a membrane to the least change of curvature",
         }; advanced; only_with("detail", &["normal-displacements", "displacement-volumes", "deformation-transfer"]),
-        /// How often displacement volumes are corrected in a frame.
+        /// The number of corrections of displacement volumes in a frame.
         volume_iterations: u32 = Whole {
             default: 8,
             range: [1, 1000],
@@ -82,7 +82,7 @@ options! {
     }
 }
 
-/// The order n of the bi-Laplacian: its surfaces join what is held with continuity Cⁿ⁻¹ \[BK04\].
+/// The order n of the bi-Laplacian: its surfaces join the fixed part with continuity Cⁿ⁻¹ \[BK04\].
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum BilaplacianOrder {
     /// n = 1, −L d = 0: least area. Joins with a crease.
@@ -96,11 +96,11 @@ pub enum BilaplacianOrder {
 named_choices! {
     /// The weights w_ij and areas M_ii of the Laplacian [BS08, section 5.1].
     pub enum Discretisation {
-        /// w_ij = 1, M_ii = Σ_j w_ij: blind to the triangles' shapes. Up to one factor for the whole surface, which
-        /// makes it agree with the others where all triangles are equilateral; edges at a boundary count half, as they
-        /// do there.
+        /// w_ij = 1, M_ii = Σ_j w_ij: independent of the triangles' shapes. The weights have one factor for the whole
+        /// surface, with which they agree with the others if all triangles are equilateral; edges at a boundary count
+        /// half, as they do there.
         Uniform = "uniform",
-        /// w_ij = ½ (cot α + cot β), M_ii the same for all: blind to how dense the vertices are.
+        /// w_ij = ½ (cot α + cot β), M_ii the same for all: independent of the vertices' density.
         Cotangent = "cotangent",
         /// w_ij = ½ (cot α + cot β), M_ii the vertex' own area [BS08, equation 7].
         CotangentArea = "cotangent-area",
@@ -110,10 +110,10 @@ named_choices! {
 named_choices! {
     /// The triangles that the Laplacian is made on; their vertices are the surface's.
     pub enum TriangulationKind {
-        /// The surface's.
+        /// The surface's triangles.
         AsIs = "as-is",
-        /// The surface's, with edges flipped within it until no weight is negative, except at edges with more or less
-        /// than two triangles \[FSBS06\].
+        /// The surface's triangles, with edges flipped within it until no weight is negative, except at edges with more
+        /// or less than two triangles \[FSBS06\].
         IntrinsicDelaunay = "intrinsic-delaunay",
         /// The surface's tufted cover, flipped: no weight is negative on any triangles \[SC20\].
         Tufted = "tufted",
@@ -121,14 +121,14 @@ named_choices! {
 }
 
 named_choices! {
-    /// How geometric detail follows a bent surface: the detail is what the surface has beyond its smooth base B, the
-    /// bi-Laplacian bends B, and the detail is put back on the bent base [BS08, section 2.4].
+    /// The motion of geometric detail with a bent surface: the detail is the difference between the surface and its
+    /// smooth base B, the bi-Laplacian bends B, and the detail is put back on the bent base [BS08, section 2.4].
     pub enum Detail {
         /// The surface itself is bent; its details shear.
         None = "none",
         /// Each vertex's displacement from its point of the base turns with the base there [BS08, equation 9].
         NormalDisplacements = "normal-displacements",
-        /// As normal displacements, then the heights are corrected until the prisms between the base's triangles and
+        /// Like normal displacements, then the heights are corrected until the prisms between the base's triangles and
         /// the surface's have their volumes of rest \[BK03\].
         DisplacementVolumes = "displacement-volumes",
         /// Each triangle takes on the deformation gradient of the base's triangle, and a Poisson system joins them
@@ -146,7 +146,7 @@ impl Bilaplacian {
         }
     }
 
-    /// The power of L in the system: the order, or 1 where nothing but stretching is left.
+    /// The power of L in the system: the order, or 1 if only stretching is left.
     pub fn operator_power(&self) -> u32 {
         if self.bending == 0.0 { 1 } else { self.order.number() }
     }

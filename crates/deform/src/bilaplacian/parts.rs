@@ -1,16 +1,16 @@
-//! Stiff parts: what is painted stiffer than its surroundings keeps its shape while it turns with them.
+//! Stiff parts: a part painted stiffer than its surroundings keeps its shape while it turns with them.
 //!
 //! A linear method turns nothing: a part that resists ∇²d alone would keep its direction in space and shear. So each
-//! connected part C of stiffness above s₁, the larger of 1 and its component's least, has a motion of its own, T_C, and
-//! what exceeds s₁ resists departures from it, u = d − (T_C − I) p:
+//! connected part C of stiffness above s₁, the larger of 1 and its component's least, has its own motion T_C, and the
+//! excess over s₁ resists departures from it, u = d − (T_C − I) p:
 //!
 //! ½ k_b ∫ (s − s₁) (|∇²u|² + q⁴ |u|²), q = min(2 κ, π / r),
 //!
-//! κ being the part's mean |κ₁ + κ₂| and r its radius. (On a tube |∇²u|² does not see the shear of what a bend turns; a
-//! flat strip has none, and stays the beam that its stiffness makes it.) A part is a soft handle whose target is found: first the affine T_C of least energy, which is
-//! linear in the handles' motions and known once all columns are solved for; then, every frame, the rigid motion next
-//! to it. So a frame stays one product. A part that has vertices of one handle, or of what is fixed, goes with that;
-//! one that has both keeps to its stiffness alone.
+//! κ being the part's mean |κ₁ + κ₂| and r its radius. (On a tube |∇²u|² does not see the shear of a part that a bend
+//! turns; a flat strip has none, and stays the beam of its stiffness.) A part is a soft handle whose target is
+//! computed: first the affine T_C of least energy, which is linear in the handles' motions and known once all columns
+//! are solved for; then, every frame, the rigid motion next to it. So a frame stays one product. A part with vertices
+//! of one handle, or with fixed ones, moves with those; one that has both has only its stiffness.
 
 use faer::Mat;
 use glam::DVec3;
@@ -26,19 +26,19 @@ use crate::operators::triangulation::{Graph, Triangulation};
 use crate::{Problem, Role};
 use pliant_mesh::SurfaceVertex;
 
-/// The most parts that have a motion of their own: each takes the columns of a handle.
+/// The most parts with their own motion: each needs the columns of a handle.
 const MOST: usize = 16;
 
 /// A part that bends by less than this over its radius is flat: no motion of it bends the surface, so it needs none.
 const FLAT: f64 = 1e-6;
 
-/// What M tr H, M a and M b count for in M |H|².
+/// The factors of M tr H, M a and M b in M |H|².
 const SHARES: [f64; 3] = [0.5, 2.0, 2.0];
 
-/// Where a part's motion comes from.
+/// The source of a part's motion.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 enum Guide {
-    /// Nothing of it is held.
+    /// No vertex of it is held.
     Free,
     Fixed,
     Handle(u16),
@@ -69,14 +69,14 @@ struct Row {
 #[derive(Debug, Default)]
 pub(crate) struct StiffParts {
     parts: Vec<StiffPart>,
-    /// The handles, whose coordinates motions are in.
+    /// The handles, whose coordinates describe motions.
     handles: Vec<Handle>,
-    /// The free parts' affine motions from those of all others: four rows for each.
+    /// The free parts' affine motions from those of all other parts: four rows for each.
     response: Option<Mat<f64>>,
 }
 
 impl StiffParts {
-    /// Hangs the parts of those components that `may_turn` into the operator; gives their places and coordinates, too.
+    /// Adds the parts of the components that `may_turn` to the operator; returns their places and coordinates.
     pub fn attach(
         operator: &mut BilaplacianOperator,
         triangulation: &Triangulation,
@@ -115,12 +115,12 @@ impl StiffParts {
         (parts, prescribed)
     }
 
-    /// How many there are.
+    /// The number of parts.
     pub fn len(&self) -> usize {
         self.parts.len()
     }
 
-    /// What the coordinates of a part load each of the local vertices `columns` with.
+    /// The load of a part's coordinates on each of the local vertices `columns`.
     pub fn load(&self, part: usize, operator: &BilaplacianOperator, columns: &[u32]) -> Vec<[f64; 4]> {
         let count = operator.laplacian.vertices().len();
         let Some(natural) = &operator.natural else {
@@ -140,7 +140,7 @@ impl StiffParts {
         columns.iter().map(of).collect()
     }
 
-    /// x̂ᵀ K (δ x̂ − d) of the part's Hessians, δ being 1 where d are the part's own columns.
+    /// x̂ᵀ K (δ x̂ − d) of the part's Hessians, δ being 1 if d are the part's own columns.
     pub fn energy<const K: usize>(
         &self,
         part: usize,
@@ -167,7 +167,8 @@ impl StiffParts {
         block
     }
 
-    /// Finds how the free parts follow from the blocks G of the energy, row-major over handles and parts.
+    /// Computes the free parts' dependence on the others from the blocks G of the energy, row-major over handles and
+    /// parts.
     pub fn settle(&mut self, blocks: &[[[f64; 4]; 4]]) {
         let count = self.handles.len() + self.parts.len();
         let (known, free) = self.sorted();
@@ -178,7 +179,7 @@ impl StiffParts {
         let mut own = Mat::from_fn(4 * free.len(), 4 * free.len(), |r, c| {
             entry(free[r / 4], r % 4, free[c / 4], c % 4)
         });
-        // A flat part does not tell how its normal goes: there is nothing it would move.
+        // A flat part does not determine its normal: the normal would move nothing.
         let largest = (0..own.nrows()).map(|k| own[(k, k)]).fold(f64::MIN_POSITIVE, f64::max);
         (0..own.nrows()).for_each(|k| own[(k, k)] += 1e-13 * largest);
         let others = Mat::from_fn(4 * free.len(), 4 * known.len(), |r, c| {
@@ -189,7 +190,7 @@ impl StiffParts {
         self.response = is_finite.then_some(response);
     }
 
-    /// The places of those whose motions are known, and of the free parts, among handles and parts.
+    /// The places of the parts whose motions are known, and of the free parts, among handles and parts.
     fn sorted(&self) -> (Vec<usize>, Vec<usize>) {
         let first = self.handles.len();
         let is_free = |place: &usize| {
@@ -264,7 +265,7 @@ impl StiffParts {
         self.parts.iter().map(fit).collect()
     }
 
-    /// By how much the energy of displacements is less where the parts have moved than where all rest.
+    /// The decrease of the energy of displacements if the parts have moved, compared with parts at rest.
     pub fn relief(&self, operator: &BilaplacianOperator, d: &[[f64; 3]], of_parts: &[Motion]) -> f64 {
         let Some(natural) = &operator.natural else {
             return 0.0;
@@ -317,8 +318,8 @@ fn least_stiffness(operator: &BilaplacianOperator, problem: &Problem) -> Vec<f64
     (0..problem.stiffness.len()).map(of).collect()
 }
 
-/// The parts that are stiffer than `least` and reach what bends, the heaviest first, and what guides them; those between
-/// several guides are left out.
+/// The parts that are stiffer than `least` and reach the bending part, the heaviest first, and their guides; parts
+/// between several guides are left out.
 fn components(
     operator: &BilaplacianOperator,
     triangulation: &Triangulation,
@@ -363,7 +364,7 @@ fn components(
     parts.into_iter().map(|(_, part, guide)| (part, guide)).collect()
 }
 
-/// Springs from a part's vertices that move to the part: their places in a field and the part's coordinates there.
+/// Springs from a part's moving vertices to the part: their places in a field and the part's coordinates there.
 fn hang(
     operator: &mut BilaplacianOperator,
     problem: &Problem,
@@ -395,7 +396,7 @@ fn hang(
         .collect()
 }
 
-/// The mean of |κ₁ + κ₂| over those vertices of a part that triangles surround.
+/// The mean of |κ₁ + κ₂| over the vertices of a part inside its triangles.
 fn mean_curvature(operator: &BilaplacianOperator, problem: &Problem, part: &Handle) -> f64 {
     let (laplacian, Some(natural)) = (&operator.laplacian, &operator.natural) else {
         return 0.0;

@@ -1,4 +1,4 @@
-//! The thin plate's system with all that paint and free borders bring, or plain where that does not fit.
+//! The thin plate's system with all effects of paint and free borders, or the plain one if that does not fit.
 
 use crate::bilaplacian::elimination_plan::EliminationPlan;
 use crate::bilaplacian::factored::BilaplacianSystem;
@@ -8,10 +8,10 @@ use crate::bilaplacian::system_error::SystemError;
 use crate::method::BindInput;
 use crate::{Bilaplacian, Detail};
 
-/// The factored system, what its handles and stiff parts prescribe, and the parts.
+/// The factored system, the values that its handles and stiff parts prescribe, and the parts.
 pub(crate) struct Plate {
     pub system: BilaplacianSystem,
-    /// The handles' places, and behind them the parts'.
+    /// The handles' places, then the parts'.
     pub prescribed: Vec<Prescribed>,
     pub parts: StiffParts,
     /// Whether natural boundaries were left out, because their factor does not fit.
@@ -22,7 +22,7 @@ impl Plate {
     /// Assembles and factors it.
     ///
     /// # Errors
-    /// As the bi-Laplacian's.
+    /// The bi-Laplacian's errors.
     pub fn of(options: &Bilaplacian, plan: &EliminationPlan, input: &BindInput<'_>) -> Result<Self, SystemError> {
         let &BindInput {
             problem,
@@ -42,7 +42,7 @@ impl Plate {
             return Ok(Self::plain(system, prescribed, false));
         }
         if let Some(elimination) = plan.direct(natural.power, budget) {
-            // Details put a rigid motion of everything back by the handles' bases alone.
+            // Details restore a rigid motion of everything by the handles' bases alone.
             let may_turn = |component: u32| options.detail == Detail::None || partition.held[component as usize];
             let (parts, of_parts) =
                 StiffParts::attach(&mut natural, &partition.triangulation, problem, handles, may_turn);
@@ -75,6 +75,6 @@ impl Plate {
     }
 }
 
-/// What is said where natural boundaries were left out.
+/// The sentence about natural boundaries that were left out.
 pub(crate) const PLAIN: &str = "the plate's own factor does not fit the memory that is left, so stiff parts may shear, \
                                 soft ones swell, and free borders curl: raise the memory limit, or take arap";

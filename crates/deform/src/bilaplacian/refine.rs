@@ -1,10 +1,10 @@
 //! Solving with a factor that is only approximately the operator's.
 //!
 //! The residual is computed by the operator itself, by differences along edges, which is exact on constants, unlike the
-//! assembled matrix. Plain refinement with it reduces a factor's error of 1e-5 to 1e-10 in one step. Where the error
-//! falls slowly or not at all (a stiff patch held by soft ones, a vertex held by one neighbour, a regularised factor),
-//! the factor is wrong in a few directions only, and conjugate gradients with the factor as preconditioner need about
-//! one step for each of them.
+//! assembled matrix. Plain refinement with it reduces a factor's error of 1e-5 to 1e-10 in one step. If the error falls
+//! slowly or not at all (a stiff patch held by soft ones, a vertex held by one neighbour, a regularised factor), the
+//! factor is wrong in a few directions only, and conjugate gradients with the factor as preconditioner need about one
+//! step for each of them.
 
 use pliant_mesh::Cancel;
 use rayon::prelude::*;
@@ -17,7 +17,7 @@ use crate::sparse::matrix::CONSTRAINED;
 /// The most corrections of a solve, the first one included.
 const STEPS: usize = 8;
 
-/// When refinement ends.
+/// The end of refinement.
 #[derive(Clone, Copy, Debug)]
 struct Accuracy {
     /// The fewest corrections.
@@ -26,14 +26,14 @@ struct Accuracy {
     error: f64,
 }
 
-/// Of what is solved once: the second correction tells how good the first one was.
+/// For a single solve: the second correction shows how good the first one was.
 const FULL: Accuracy = Accuracy { steps: 2, error: 1e-10 };
 
-/// Of a frame: one correction is enough where the check found that the factor leaves so little. Positions that are saved
-/// in f32 are rounded by more.
+/// For a frame: one correction is enough if the check found that the factor leaves so little. Positions saved in f32
+/// are rounded by more.
 const FRAME: Accuracy = Accuracy { steps: 1, error: 5e-8 };
 
-/// A correction that is not smaller than this share of the one before it calls for conjugate gradients.
+/// A correction that is not smaller than this share of the last one needs conjugate gradients.
 const SLOW: f64 = 0.03;
 
 /// Steps of conjugate gradients within one correction.
@@ -42,14 +42,14 @@ const GRADIENT_STEPS: usize = 48;
 /// Conjugate gradients end when the squared norm of the error has fallen by this factor.
 const GRADIENT_DROP: f64 = 1e-18;
 
-/// The share of its right-hand side that the first correction may leave where it is found by iteration: a round more
-/// than for 1e-8 mostly saves a whole further correction, and 3e-10 saves no more.
+/// The share of its right-hand side that an iterative first correction may leave: a round more than for 1e-8 mostly
+/// saves a whole further correction, and 3e-10 saves no more.
 const FIRST: f64 = 1e-9;
 
-/// The same of further corrections, which are small.
+/// The same for further corrections, which are small.
 const FURTHER: f64 = 1e-3;
 
-/// How a solve went.
+/// The outcome of a solve.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct Outcome {
     /// An estimate of the remaining error, relative to the largest value: infinite if the result is not finite or the
@@ -60,7 +60,7 @@ pub(crate) struct Outcome {
     pub contraction: f64,
 }
 
-/// By how much the constant may be missed.
+/// The allowed error of the constant.
 pub(crate) const TOLERANCE: f64 = 1e-7;
 
 /// A factored system whose solutions are refined with its own residual.
@@ -68,28 +68,28 @@ pub(crate) trait Refined {
     /// The place in a field of each column of the factor.
     fn places(&self) -> &[u32];
 
-    /// The column of each place, [`CONSTRAINED`] where it is not solved for. The places of springs come behind.
+    /// The column of each place, [`CONSTRAINED`] if it is not solved. The places of springs come last.
     fn column_of(&self) -> &[u32];
 
-    /// How many rows a field has.
+    /// The number of rows of a field.
     fn field_len(&self) -> usize;
 
     /// S: the scale of each column.
     fn scale(&self) -> &[f64];
 
-    /// S (b − A d) on the columns, b being what the rows of `d` that are not solved for ask for.
+    /// S (b − A d) on the columns, b being prescribed by the rows of `d` that are not solved.
     fn scaled_residual<const K: usize>(&self, d: &[[f64; K]]) -> Vec<[f64; K]>;
 
-    /// As [`Refined::scaled_residual`], where `d` is zero on the columns.
+    /// Like [`Refined::scaled_residual`], for a `d` that is zero on the columns.
     fn scaled_residual_from_zero<const K: usize>(&self, d: &[[f64; K]]) -> Vec<[f64; K]> {
         self.scaled_residual(d)
     }
 
-    /// x ← (S A S)⁻¹ x, up to the error of the factor; anything once cancelled. A solution by iteration may leave the
+    /// x ← (S A S)⁻¹ x, up to the error of the factor; undefined once cancelled. A solution by iteration may leave the
     /// share `left` of the right-hand side.
     fn solve_factored<const K: usize>(&self, x: &mut [[f64; K]], left: f64, cancel: &Cancel);
 
-    /// The least share of the error that a correction is known to leave before any was made.
+    /// A lower bound, known before any correction, of the share of the error that a correction leaves.
     fn least_contraction(&self) -> f64 {
         0.0
     }
@@ -129,8 +129,8 @@ impl Refined for BilaplacianSystem {
     }
 }
 
-/// Fills in the solved rows of `d` from the others, as exactly as what is solved once needs; `contraction` is what an
-/// earlier solve found, or 0.
+/// Fills in the solved rows of `d` from the others, as exactly as a single solve needs; `contraction` is an earlier
+/// solve's result, or 0.
 pub(crate) fn solve_fully<S: Refined, const K: usize>(
     system: &S,
     d: &mut [[f64; K]],
@@ -140,7 +140,7 @@ pub(crate) fn solve_fully<S: Refined, const K: usize>(
     solve(system, None, d, (contraction, FULL), cancel)
 }
 
-/// As [`solve_fully`], as exactly as a frame needs.
+/// Like [`solve_fully`], as exactly as a frame needs.
 pub(crate) fn solve_for_frames<S: Refined, const K: usize>(
     system: &S,
     d: &mut [[f64; K]],
@@ -150,7 +150,7 @@ pub(crate) fn solve_for_frames<S: Refined, const K: usize>(
     solve(system, None, d, (contraction, FRAME), cancel)
 }
 
-/// Where a solution that is to be 1 everywhere, the last one of each row, is furthest from it: how far, and the place.
+/// The largest error of a solution that should be 1 everywhere, the last one of each row, and its place.
 pub(crate) fn missed_constant<S: Refined, const K: usize>(system: &S, d: &[[f64; K]]) -> (f64, u32) {
     let mut worst = (0.0, 0);
     for &place in system.places() {
@@ -163,25 +163,25 @@ pub(crate) fn missed_constant<S: Refined, const K: usize>(system: &S, d: &[[f64;
 }
 
 impl BilaplacianSystem {
-    /// Fills in the solved vertices of `d` from its constrained ones, with the contraction that the check found.
+    /// Fills in the solved vertices of `d` from its constrained ones, with the check's contraction.
     pub fn solve<const K: usize>(&self, d: &mut [[f64; K]], cancel: &Cancel) -> Outcome {
         solve_fully(self, d, self.contraction, cancel)
     }
 
-    /// As [`BilaplacianSystem::solve`], of A d = b with a load b for each column of the factor.
+    /// Like [`BilaplacianSystem::solve`], for A d = b with a load b for each column of the factor.
     pub fn solve_loaded<const K: usize>(&self, load: &[[f64; K]], d: &mut [[f64; K]], cancel: &Cancel) -> Outcome {
         solve(self, Some(load), d, (self.contraction, FULL), cancel)
     }
 
-    /// As [`BilaplacianSystem::solve`], of A d = b with a load b for each column of the factor, as exactly as a frame
-    /// needs.
+    /// Like [`BilaplacianSystem::solve`], for A d = b with a load b for each column of the factor, as exactly as a
+    /// frame needs.
     pub fn solve_frame<const K: usize>(&self, load: &[[f64; K]], d: &mut [[f64; K]]) -> Outcome {
         let accuracy = (self.contraction, FRAME);
         solve(self, Some(load), d, accuracy, &Cancel::new())
     }
 
-    /// Solves as [`BilaplacianSystem::solve`] and remembers how fast refinement was. The last function of `d` is 1 at
-    /// every constrained place, so its solution is known to be 1: if that is missed, the factor is unusable.
+    /// Solves like [`BilaplacianSystem::solve`] and stores the speed of refinement. The last function of `d` is 1 at
+    /// every constrained place, so its solution is known to be 1: if the result differs, the factor is unusable.
     pub fn check<const K: usize>(&mut self, d: &mut [[f64; K]], cancel: &Cancel) -> Result<f64, SystemError> {
         let outcome = solve_fully(self, d, 0.0, cancel);
         self.contraction = outcome.contraction;
@@ -200,8 +200,8 @@ impl BilaplacianSystem {
 
 /// Fills in the solved vertices of the fields `d` from their other entries and the load, if there is one.
 ///
-/// `contraction` is what an earlier solve found. A right-hand side with little in a direction in which the factor is
-/// wrong would not reveal the error by itself, and would keep a large part of it.
+/// `contraction` is an earlier solve's result. A right-hand side with little in a direction in which the factor is
+/// wrong alone would not reveal the error, and would keep a large part of it.
 fn solve<S: Refined, const K: usize>(
     system: &S,
     load: Option<&[[f64; K]]>,
@@ -219,7 +219,7 @@ fn solve<S: Refined, const K: usize>(
         contraction,
     };
     let mut last = f64::INFINITY;
-    // How many corrections, including the next, use conjugate gradients.
+    // The number of corrections, including the next, that use conjugate gradients.
     let mut gradients = 0;
     for step in 1..=STEPS {
         if cancel.is_cancelled() {
@@ -271,7 +271,7 @@ fn solve<S: Refined, const K: usize>(
     outcome
 }
 
-/// Adds S x to `d`; returns the largest change and the largest value, or `None` where one is not finite.
+/// Adds S x to `d`; returns the largest change and the largest value, or `None` if one is not finite.
 fn correct<S: Refined, const K: usize>(system: &S, d: &mut [[f64; K]], x: &[[f64; K]]) -> Option<(f64, f64)> {
     let scale = system.scale();
     let chunk = |(targets, columns): (&mut [[f64; K]], &[u32])| {
@@ -317,7 +317,7 @@ fn conjugate_gradients<S: Refined, const K: usize>(system: &S, mut r: Vec<[f64; 
         // The residual has the opposite sign: this is −S A S p.
         let minus_ap = system.scaled_residual(&scattered);
         let curvature = dots(&p, &minus_ap).map(|value| -value);
-        // A column that is solved, or whose direction has no curvature left, does not change any more.
+        // A column that is solved, or whose direction has no curvature left, no longer changes.
         let alpha: [f64; K] = std::array::from_fn(|k| if curvature[k] > 0.0 { rho[k] / curvature[k] } else { 0.0 });
         for (i, minus_ap) in minus_ap.iter().enumerate() {
             for k in 0..K {
@@ -339,7 +339,7 @@ fn conjugate_gradients<S: Refined, const K: usize>(system: &S, mut r: Vec<[f64; 
     x
 }
 
-/// One dot product a column, summed in order.
+/// One dot product per column, summed in order.
 fn dots<const K: usize>(a: &[[f64; K]], b: &[[f64; K]]) -> [f64; K] {
     let mut sums = [0.0; K];
     for (a, b) in a.iter().zip(b) {

@@ -11,15 +11,15 @@ use crate::region::partition::Partition;
 use crate::sparse::ordering::hubs::hub_degree;
 use crate::{Bilaplacian, Laplacian, Problem};
 
-/// A handle's places in a field, at its vertices or, where it is soft, at their springs, and their coordinates.
+/// A handle's places in a field, at its vertices or, if it is soft, at their springs, and their coordinates.
 pub(crate) type Prescribed = Vec<(u32, [f64; 4])>;
 
-/// How the plate ends where stiffness jumps and at free borders.
+/// The boundary condition of the plate where stiffness jumps and at free borders.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Boundaries {
-    /// As L M⁻¹ L does.
+    /// That of L M⁻¹ L.
     OfLaplacian,
-    /// As the squared Hessian does: see [`crate::bilaplacian::natural`].
+    /// That of the squared Hessian: see [`crate::bilaplacian::natural`].
     Natural,
 }
 
@@ -59,7 +59,7 @@ pub(crate) fn operator(
     (operator, prescribed)
 }
 
-/// The vertices where L d can differ from zero: solved ones, handles and their neighbours, ascending. These rows are
+/// The vertices at which L d can differ from zero: solved ones, handles and their neighbours, ascending. These rows are
 /// enough at every order, because further out all inner factors are zero.
 pub(crate) fn bent_rows(triangulation: &Triangulation, solved: &[u32], handles: &[Handle]) -> Vec<u32> {
     let mut bent = vec![false; triangulation.vertex_count()];

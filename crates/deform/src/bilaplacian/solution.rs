@@ -1,4 +1,4 @@
-//! What solves with A once it is bound: its own factor, or where that does not fit the Laplacian's.
+//! The bound solver for A: its own factor, or the Laplacian's if that does not fit.
 
 use std::sync::Arc;
 
@@ -18,7 +18,7 @@ pub(crate) enum Solution {
 }
 
 impl Solution {
-    /// The factor, of whichever matrix.
+    /// The factor of either matrix.
     pub fn factored(&self) -> &Arc<RenewableFactor> {
         match self {
             Self::Factor(factored, _) => factored,
@@ -26,7 +26,7 @@ impl Solution {
         }
     }
 
-    /// x ← (S A S)⁻¹ x, up to the error of the factor, or leaving the share `left` of what is iterated for.
+    /// x ← (S A S)⁻¹ x, up to the error of the factor, or leaving the share `left` of an iterative solution.
     pub fn solve<const K: usize>(&self, x: &mut [[f64; K]], left: f64, cancel: &Cancel) {
         match self {
             Self::Factor(factored, low_rank) => {
@@ -39,7 +39,7 @@ impl Solution {
         }
     }
 
-    /// How many numbers are stored.
+    /// The number of stored entries.
     pub fn stored(&self) -> usize {
         match self {
             Self::Factor(factored, low_rank) => factored.factor.stored() + low_rank.as_ref().map_or(0, LowRank::stored),
@@ -67,7 +67,7 @@ impl Solution {
         }
     }
 
-    /// Sentences on how the system was solved, where that was out of the ordinary.
+    /// Sentences about an unusual way of solving.
     pub fn warnings(&self) -> Vec<String> {
         let stiffened = |shift: f64| {
             format!(

@@ -28,11 +28,11 @@ use crate::{Bilaplacian, BindError, HandleBases, Problem, SolveError};
 pub(crate) struct BilaplacianSolver<T = f32> {
     system: BilaplacianSystem,
     bases: HandleBases<T>,
-    /// Each handle's places in a field, at its vertices or, where it is soft, at their springs, and their coordinates.
-    /// Behind them, the stiff parts'.
+    /// Each handle's places in a field, at its vertices or, if it is soft, at their springs, and their coordinates;
+    /// then those of stiff parts.
     prescribed: Vec<Prescribed>,
     parts: StiffParts,
-    /// Where vertices of handles go beside their handles' motions.
+    /// The offsets of handles' vertices from their handles' motions.
     offsets: Arc<Offsets>,
     /// Whether natural boundaries were left out.
     is_plain: bool,
@@ -40,7 +40,7 @@ pub(crate) struct BilaplacianSolver<T = f32> {
     energy_blocks: Vec<[[f64; 4]; 4]>,
 }
 
-/// How far off a solution may be, relative to its largest value.
+/// The allowed error of a solution, relative to its largest value.
 const TOLERANCE: f64 = 1e-7;
 
 impl<T: Stored> BilaplacianSolver<T> {
@@ -118,27 +118,27 @@ impl<T: Stored> BilaplacianSolver<T> {
         }
     }
 
-    /// Sets by how much vertices of handles go elsewhere than their handles' motions take them.
+    /// Sets the offsets of handles' vertices from their handles' motions.
     pub fn set_offsets(&mut self, offsets: &Arc<Offsets>) {
         self.offsets = Arc::clone(offsets);
     }
 
-    /// Whether the handles' motions are all that they do, so that the bases tell the frame.
+    /// Whether no vertex has an offset, so that the bases give the frame.
     pub fn is_affine(&self) -> bool {
         self.offsets.is_empty()
     }
 
-    /// What binding nearly the same problem can take over.
+    /// The data that the binding of a nearly equal problem can reuse.
     pub fn factored(&self) -> &Arc<RenewableFactor> {
         self.system.factored()
     }
 
-    /// Whether there is no stiff part that moves between the handles.
+    /// Whether no stiff part moves between the handles.
     pub fn is_driven_by_handles_alone(&self) -> bool {
         self.parts.len() == 0
     }
 
-    /// The handles' bases, behind them those of stiff parts.
+    /// The handles' bases, then those of stiff parts.
     pub fn bases(&self) -> &HandleBases<T> {
         &self.bases
     }
@@ -151,7 +151,7 @@ impl<T: Stored> BilaplacianSolver<T> {
         frame(&self.bases, of_handles, vertex, &all, displacements)
     }
 
-    /// Sentences about what had to be repaired.
+    /// Sentences about repairs.
     pub fn warnings(&self) -> Vec<String> {
         let mut sentences: Vec<String> = repairs(self.system.operator.laplacian.mollified_faces())
             .into_iter()
@@ -161,7 +161,7 @@ impl<T: Stored> BilaplacianSolver<T> {
         sentences
     }
 
-    /// How many numbers the factor stores.
+    /// The number of entries that the factor stores.
     pub fn factor_len(&self) -> usize {
         self.system.factor_len()
     }
@@ -188,7 +188,7 @@ impl<T: Stored> BilaplacianSolver<T> {
                 }
             }
         }
-        // Rigid motions leave a rounding error of either sign; what is not a number stays so.
+        // Rigid motions leave a rounding error of either sign; NaN stays NaN.
         if sum > 0.0 || sum.is_nan() { 0.5 * sum } else { 0.0 }
     }
 
@@ -217,7 +217,7 @@ impl<T: Stored> BilaplacianSolver<T> {
             .collect()
     }
 
-    /// As [`BilaplacianSolver::frame`], but solves with the factor in place of the bases.
+    /// Like [`BilaplacianSolver::frame`], but solves with the factor instead of using the bases.
     ///
     /// # Errors
     /// If the solution stays too inaccurate.
@@ -236,7 +236,7 @@ impl<T: Stored> BilaplacianSolver<T> {
         if of_parts.is_empty() || self.is_affine() {
             return self.substitute(&of_parts, displacements);
         }
-        // The bases know nothing of offsets: the parts go where the surface takes them.
+        // The bases do not contain the offsets, so the stiff parts follow the surface.
         let targets = displacements.to_vec();
         self.substitute(&of_parts, displacements)?;
         let of_parts = self.parts.fitted(displacements);
@@ -244,8 +244,8 @@ impl<T: Stored> BilaplacianSolver<T> {
         self.substitute(&of_parts, displacements)
     }
 
-    /// Solves for the solved vertices' displacements, given all others. The displacements of soft handles' vertices are
-    /// taken as the handles' targets, and stiff parts take the rigid motions that fit theirs best.
+    /// Solves for the solved vertices' displacements, given all others. The displacements of soft handles' vertices
+    /// serve as the handles' targets, and stiff parts take the rigid motions that fit theirs best.
     ///
     /// # Errors
     /// If the solution stays too inaccurate.
@@ -293,7 +293,7 @@ impl<T: Stored> BilaplacianSolver<T> {
             .map(|&(place, coordinates)| (self.vertex(place), coordinates))
     }
 
-    /// The surface vertex that a field's entry is for.
+    /// The surface vertex of a field's entry.
     fn vertex(&self, place: u32) -> u32 {
         let operator = &self.system.operator;
         operator.laplacian.vertices()[operator.local_of(place as usize) as usize]

@@ -1,8 +1,8 @@
 //! Soft constraints: a spring from each vertex of a soft handle to its target.
 //!
-//! In (A + W) d = W c a soft handle's vertices are solved for like free ones, with W on the diagonal. The targets c
-//! come after the vertices in every field, so that W (c − d) is a difference like those along edges: zero on constants
-//! to the last bit.
+//! In (A + W) d = W c a soft handle's vertices are solved like free ones, with W on the diagonal. The targets c come
+//! after the vertices in every field, so that W (c − d) is a difference like those along edges: zero on constants to
+//! the last bit.
 
 /// The springs of all soft handles, handle by handle, and of stiff parts.
 #[derive(Debug, Default)]
@@ -10,12 +10,12 @@ pub(crate) struct Springs {
     locals: Vec<u32>,
     /// W_i, by spring.
     strengths: Vec<f64>,
-    /// The sum of W by local vertex, 0 where it has none; empty where there are no springs.
+    /// The sum of W by local vertex, 0 without a spring; empty if there are no springs.
     diagonal: Vec<f64>,
 }
 
 impl Springs {
-    /// How many there are.
+    /// The number of springs.
     pub fn len(&self) -> usize {
         self.locals.len()
     }
@@ -30,12 +30,12 @@ impl Springs {
         }
     }
 
-    /// The vertex that a spring pulls at.
+    /// The vertex of a spring.
     pub fn local(&self, spring: usize) -> u32 {
         self.locals[spring]
     }
 
-    /// The vertices that springs pull at.
+    /// The vertices of all springs.
     pub fn locals(&self) -> &[u32] {
         &self.locals
     }

@@ -1,11 +1,11 @@
-//! Why a system could not be factored or solved.
+//! Reasons why a system could not be factored or solved.
 
 use crate::BindError;
 use crate::bilaplacian::operator::BilaplacianOperator;
 use crate::budget::Limit;
 use crate::sparse::factor_error::FactorError;
 
-/// Where the system could not be factored or solved, as a surface vertex.
+/// The surface vertex at which the system could not be factored or solved.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) enum SystemError {
     NotPositiveDefinite { vertex: u32 },
@@ -31,7 +31,7 @@ impl SystemError {
         }
     }
 
-    /// The error as the caller sees it.
+    /// The error in the caller's terms.
     pub fn into_bind_error(self, component_of: impl Fn(u32) -> u32, free_count: usize) -> BindError {
         match self {
             Self::NotPositiveDefinite { vertex } => BindError::NotPositiveDefinite {
@@ -49,7 +49,7 @@ impl SystemError {
         }
     }
 
-    /// Whether it is for want of memory.
+    /// Whether memory was too small.
     pub fn is_for_memory(self) -> bool {
         matches!(self, Self::Budget(Limit::Bytes(_)) | Self::OutOfMemory)
     }

@@ -32,10 +32,11 @@ pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     first_choice: || Embedded::default().into(),
 };
 
-/// Bytes of a pair of nodes: what they share, and the dense matrix of the handles' weights with its factor.
+/// Bytes of a pair of nodes: their shared sums, and the dense matrix of the handles' weights with its factor.
 const NODE_PAIR: usize = size_of::<[f64; 2]>() + 2 * size_of::<f64>();
 
-/// How far the nodes' misses are carried off, and how near what is fixed holds them, in mean distances of nodes.
+/// The reach over which the nodes' misses are blended out, and within which fixed vertices hold nodes, in mean
+/// distances of nodes.
 const REACH: f64 = 1.0;
 
 /// The bound method.
@@ -44,7 +45,7 @@ pub(super) struct BoundEmbedded {
     graph: Graph,
     pub solver: Solver,
     blend: Blend,
-    /// The nodes' motions of the last step.
+    /// The nodes' motions in the last step.
     affine: Vec<Affine>,
 }
 
@@ -69,7 +70,7 @@ impl DeformMethod for Embedded {
     }
 
     fn row_bytes(&self) -> usize {
-        // Up to as many shares of nodes, twice while the graph is made, and those of the handles nearby.
+        // Up to this many shares of nodes, twice while the graph is made, and those of the handles nearby.
         300 + (14 + 2 * NEAREST) * size_of::<Share>()
     }
 
@@ -91,7 +92,7 @@ pub(super) fn bound(options: &Embedded, input: &BindInput<'_>) -> Result<BoundEm
     let budget = budget.map_err(|limit| BindError::budget(input.partition.solved.len(), limit))?;
     let nodes = spread_alike(input.problem, &moving, most);
     input.progress.set(0.2);
-    // What is fixed holds the nodes that are about as near to it as to each other.
+    // Fixed vertices hold the nodes that are about as near to them as to each other.
     let spacing = spacing(&nodes.vertices, positions);
     let sets = constrained(input, &moving, REACH * spacing);
     let places: Vec<DVec3> = sets.iter().flat_map(|set| set.places(positions)).collect();

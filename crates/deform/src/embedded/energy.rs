@@ -12,18 +12,18 @@ use crate::space::samples::{EQUAL, farthest, thinned};
 use crate::space::shaping::shaping;
 use rayon::prelude::*;
 
-/// The weights of the terms. [SSP07, section 5] has 1 for the rigidity, but ‖AᵀA − I‖² is at most 3 however flat a map
-/// gets: inside an elbow of 120° edges shrank to a fourteenth of their length.
+/// The weights of the terms. [SSP07, section 5] has 1 for the rigidity, but ‖AᵀA − I‖² is at most 3 even for a flat
+/// map: inside an elbow of 120° edges shrank to a fourteenth of their length.
 const RIGIDITY: f64 = 30.0;
 pub(super) const REGULARITY: f64 = 10.0;
 const HARD: f64 = 100.0;
-/// Of a soft handle of weight 1.
+/// The weight of a soft handle of weight 1.
 const SOFT: f64 = 10.0;
 
-/// How far the cross at a constraint reaches.
+/// The reach of the cross at a constraint.
 const CROSS: f64 = 0.3;
 
-/// The most constraints of a handle, and of what is fixed.
+/// The most constraints of a handle, and of the fixed vertices.
 const MOST: usize = 400;
 
 /// Sets with more vertices than these are thinned on a grid before constraints are spread.
@@ -32,7 +32,7 @@ const CANDIDATES: usize = 8192;
 /// A node's unknowns: X by its rows, each followed by the shift's entry.
 pub(super) const DOF: usize = 12;
 
-/// A node's map: a point at `arm` from it is displaced by `linear arm + shift`.
+/// A node's map: it displaces a point at `arm` from the node by `linear arm + shift`.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(super) struct NodeMap {
     /// X.
@@ -66,9 +66,9 @@ pub(super) struct Joint {
 /// A constrained vertex.
 #[derive(Clone, Debug)]
 pub(super) struct Constraint {
-    /// The nodes with their weights, and where the vertex is from each.
+    /// The nodes with their weights, and the vertex's position relative to each.
     pub nodes: Vec<(u32, f64, DVec3)>,
-    /// Its handle and the coordinates there; `None` where it is fixed.
+    /// Its handle and the coordinates there; `None` if it is fixed.
     pub handle: Option<(usize, [f64; 4])>,
     pub weight: f64,
 }
@@ -80,7 +80,8 @@ pub(super) struct ConstrainedSet {
     weight: f64,
 }
 
-/// Samples of the handles, and of what is fixed within `reach` of the vertices `moving` or shares a triangle with one.
+/// Samples of the handles, and of the fixed vertices that are within `reach` of the vertices `moving` or share a
+/// triangle with one.
 pub(super) fn constrained(input: &BindInput<'_>, moving: &[u32], world_reach: f64) -> Vec<ConstrainedSet> {
     let positions = &input.problem.surface.positions;
     let samples = |vertices: &[u32]| farthest(&thinned(vertices, positions, CANDIDATES), positions, MOST);
@@ -115,7 +116,7 @@ pub(super) fn constrained(input: &BindInput<'_>, moving: &[u32], world_reach: f6
 }
 
 impl ConstrainedSet {
-    /// Where its vertices are.
+    /// The positions of its vertices.
     pub fn places<'a>(&'a self, positions: &'a [DVec3]) -> impl Iterator<Item = DVec3> + 'a {
         self.vertices.iter().map(|&vertex| positions[vertex as usize])
     }
@@ -150,7 +151,7 @@ impl Energy {
                     weight: 0.0,
                 });
             }
-            // As much for each node that the set holds, however many vertices there are.
+            // Each node that the set holds has the same weight, for any number of vertices.
             let own = &mut constraints[first..];
             let each = set.weight * met.iter().filter(|met| **met).count() as f64 / own.len().max(1) as f64;
             own.iter_mut().for_each(|constraint| constraint.weight = each);
@@ -164,12 +165,12 @@ impl Energy {
         }
     }
 
-    /// How many nodes there are.
+    /// The number of nodes.
     pub fn count(&self) -> usize {
         self.rigidity.len()
     }
 
-    /// E, and half its gradient if there is room for it.
+    /// E, and half its gradient if a buffer is given.
     pub fn evaluate(&self, maps: &[NodeMap], motions: &[Motion], mut gradient: Option<&mut [[f64; DOF]]>) -> f64 {
         let mut energy = 0.0;
         let mut add = |node: u32, linear: DMat3, shift: DVec3| {
@@ -214,7 +215,7 @@ impl Energy {
         energy
     }
 
-    /// By how much a constraint is missed, and by how much the linear map there.
+    /// The error of a constraint, and that of its linear map.
     fn missed(&self, constraint: &Constraint, maps: &[NodeMap], motions: &[Motion]) -> (DVec3, DMat3) {
         let (mut miss, mut turned) = (DVec3::ZERO, DMat3::ZERO);
         for &(node, weight, arm) in &constraint.nodes {

@@ -1,4 +1,4 @@
-//! The nodes' influence on points, and which nodes are joined.
+//! The nodes' influence on points, and the joints between nodes.
 
 use glam::DVec3;
 use pliant_mesh::{Cancelled, face_area};
@@ -18,11 +18,11 @@ use crate::sparse::ordering::graph::elimination;
 /// each other within a narrow seam, and edges across one are stretched.
 pub(super) const NEAREST: usize = 8;
 
-/// The distance that ends the influence is a little larger than the last node's, so that some weight is left where
-/// all are equally far.
+/// The distance that ends the influence is a little larger than the last node's, so that some weight is left if all are
+/// equally far.
 const BEYOND: f64 = 1.0 + 1e-5;
 
-/// Vertices whose nodes are found at once.
+/// The number of vertices whose nodes are found at once.
 const AT_ONCE: usize = 1 << 16;
 
 /// The mean over the nodes of the sum of a node's α.
@@ -31,7 +31,7 @@ const JOINED: f64 = 6.0;
 /// Nodes whose α is below this share are not counted as joined when parts are.
 const LOOSE: f64 = 1e-3;
 
-/// Nodes and what joins them, in the order of elimination.
+/// Nodes and their joints, in the order of elimination.
 #[derive(Debug)]
 pub(super) struct Graph {
     pub world_nodes: Vec<DVec3>,
@@ -41,7 +41,7 @@ pub(super) struct Graph {
     pub rigidity: Vec<f64>,
     /// The mean distance of joined nodes, in world units.
     pub world_unit: f64,
-    /// Where each supernode of nodes ends.
+    /// The end of each supernode of nodes.
     pub ends: Vec<u32>,
 }
 
@@ -55,8 +55,8 @@ pub(super) struct Edge {
 }
 
 impl Graph {
-    /// Joins nodes by the influence that they share on the vertices `moving`, weighed by area, and where triangles join
-    /// the parts of the surface that are nearest to them; `pairs` are further points, in world units, whose nodes will
+    /// Joins nodes by the influence that they share on the vertices `moving`, weighed by area, and by triangles that
+    /// join the parts of the surface nearest to them; `pairs` are further points, in world units, whose nodes will
     /// share an equation.
     pub fn of(input: &BindInput<'_>, nodes: &Nodes, moving: &[u32], pairs: &[DVec3]) -> Result<Self, BindError> {
         let positions = &input.problem.surface.positions;
@@ -176,7 +176,7 @@ impl Graph {
     }
 }
 
-/// The area around each vertex of the surface, in means of those `moving`; 1 for what has none.
+/// The area around each vertex of the surface, in means of those `moving`; 1 for a vertex without area.
 fn areas(input: &BindInput<'_>, moving: &[u32]) -> Vec<f64> {
     let surface = input.problem.surface;
     let mut areas = vec![0.0; surface.positions.len()];
@@ -191,7 +191,7 @@ fn areas(input: &BindInput<'_>, moving: &[u32]) -> Vec<f64> {
     areas
 }
 
-/// What nodes share.
+/// The sums that nodes share.
 struct Sums {
     /// Σ A w_j w_k over points of the area A, and the same with the stiffness, j not above k.
     shared: Vec<[f64; 2]>,
@@ -200,7 +200,7 @@ struct Sums {
 }
 
 impl Sums {
-    /// No links between so many nodes yet.
+    /// Empty sums for this many nodes.
     fn of(count: usize) -> Self {
         Self {
             shared: vec![[0.0; 2]; count * count],
@@ -246,7 +246,7 @@ fn influence(tree: &Neighbours, world_nodes: &[DVec3], world_point: DVec3) -> Ve
     };
     let from = |node: u32| world_point - world_nodes[node as usize];
     let end = if most > 0.0 { (most * BEYOND).powi(2) } else { 1.0 };
-    // Of the square's.
+    // The square's number.
     let end_slope = from(last) * (2.0 * BEYOND * BEYOND);
     let raw = |&(node, distance): &(u32, f64)| {
         let share = distance * distance / end;

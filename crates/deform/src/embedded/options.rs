@@ -6,13 +6,13 @@ use crate::method::option::{Whole, options};
 options! {
     /// Options of embedded deformation.
     pub struct Embedded {
-        /// How many nodes are spread over the part that moves.
+        /// The number of nodes on the moving part.
         nodes: u32 = Whole {
             default: 300,
             range: [4, 1000],
             help: "how many nodes are spread over the part that moves: more bend in more places, and take longer",
         },
-        /// Where iteration ends.
+        /// The end of iteration.
         tolerance: f64 = TOLERANCE; advanced,
         /// The most steps.
         max_iterations: u32 = MAX_ITERATIONS; advanced,

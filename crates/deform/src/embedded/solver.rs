@@ -18,7 +18,7 @@ const TRIALS: u32 = 12;
 /// Energies below this share of the number of nodes are rounding.
 const NOTHING: f64 = 1e-24;
 
-/// The nodes' maps and what moves them.
+/// The nodes' maps and their handles.
 #[derive(Debug)]
 pub(super) struct Solver {
     pub energy: Energy,
@@ -33,7 +33,7 @@ pub(super) struct Solver {
     /// E at `maps`.
     value: f64,
     has_converged: bool,
-    /// Whether no step was found that lowers the energy, though the maps have not converged.
+    /// Whether the descent has stalled: no step was found that lowers the energy, though the maps have not converged.
     has_stalled: bool,
     tolerance: f64,
 }
@@ -68,17 +68,17 @@ impl Solver {
         }
     }
 
-    /// How many numbers the factor stores.
+    /// The number of entries that the factor stores.
     pub fn stored(&self) -> usize {
         self.system.stored()
     }
 
-    /// Whether no step was found that lowers the energy, though the maps have not converged.
+    /// Whether the descent has stalled: no step was found that lowers the energy, though the maps have not converged.
     pub fn has_stalled(&self) -> bool {
         self.has_stalled
     }
 
-    /// Back to rest.
+    /// Returns to rest.
     pub fn rest(&mut self) {
         self.maps.fill(REST);
         self.motions.fill(Motion::default());
@@ -87,7 +87,7 @@ impl Solver {
         self.has_stalled = false;
     }
 
-    /// One step towards `motions`. Whether it converged, and the energy a node.
+    /// One step towards `motions`. Returns whether it converged, and the energy per node.
     pub fn step(&mut self, motions: &[Motion]) -> (bool, f64) {
         if self.motions != motions {
             self.start(motions);
@@ -96,7 +96,7 @@ impl Solver {
         }
         let value = self.value;
         if !value.is_finite() {
-            // It is refused; the next targets begin afresh.
+            // The result is refused; the next targets begin afresh.
             self.rest();
         }
         (self.has_converged, value / self.energy.count().max(1) as f64)
@@ -139,7 +139,7 @@ impl Solver {
         }
     }
 
-    /// These maps, moved on by screws.
+    /// These maps, moved by screws.
     fn carried(&self, maps: &[NodeMap], screws: &[Screw]) -> Vec<NodeMap> {
         let unit = self.energy.world_unit;
         let count = screws.len();
@@ -156,7 +156,7 @@ impl Solver {
         .collect()
     }
 
-    /// One Gauss–Newton step that lowers the energy, or none if there is none.
+    /// One Gauss–Newton step that lowers the energy, if there is one.
     fn descend(&mut self) {
         let mut gradient = vec![[0.0; DOF]; self.maps.len()];
         let before = self.energy.evaluate(&self.maps, &self.motions, Some(&mut gradient));
@@ -327,7 +327,7 @@ mod tests {
         (0..count).map(map).collect()
     }
 
-    /// E by its definition, with A in place of A − I, and the constraints' blend written out.
+    /// E by its definition, with A instead of A − I, and the constraints' blend written out.
     fn defined(solver: &Solver, maps: &[NodeMap], motions: &[Motion]) -> f64 {
         let energy = &solver.energy;
         let a = |node: u32| maps[node as usize].linear + DMat3::IDENTITY;

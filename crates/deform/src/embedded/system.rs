@@ -14,7 +14,7 @@ use crate::sparse::cholesky::Factor;
 use crate::sparse::factor_error::FactorError;
 use crate::sparse::matrix::ScaledMatrix;
 
-/// What is added to the unit diagonal, one after the other, until there is a factor.
+/// The values added to the unit diagonal, one after the other, until a factor exists.
 const SHIFTS: [f64; 3] = [1e-12, 1e-9, 1e-6];
 
 /// Bytes of a pair of nodes in the table that the matrix is made from, and of an entry of the matrix with its constant
@@ -35,7 +35,7 @@ impl System {
     /// Analyses the matrix.
     ///
     /// # Errors
-    /// It takes more than the budget, or more memory than there is.
+    /// The matrix exceeds the budget or the machine's memory.
     pub fn of(energy: &Energy, graph: &Graph, budget: Budget) -> Result<Self, FactorError> {
         // The factors' products by column and row of nodes.
         let mut blocks: BTreeMap<(u32, u32), [[f64; 4]; 4]> = BTreeMap::new();
@@ -90,7 +90,7 @@ impl System {
         })
     }
 
-    /// How many numbers the factor stores.
+    /// The number of entries that the factor stores.
     pub fn stored(&self) -> usize {
         self.factor.stored()
     }
@@ -98,7 +98,7 @@ impl System {
     /// Fills in the matrix at these maps and factors it.
     ///
     /// # Errors
-    /// It is not positive definite, whatever is added to its diagonal.
+    /// The matrix is not positive definite, even with the largest addition to its diagonal.
     pub fn factor(&mut self, energy: &Energy, maps: &[NodeMap]) -> Result<(), FactorError> {
         let matrix = &mut self.matrix;
         matrix.lower_values.copy_from_slice(&self.constant);

@@ -46,7 +46,7 @@ pub(crate) struct FramesSolver {
     is_held: bool,
     /// The motions that the shape is for.
     motions: Vec<Motion>,
-    /// Whether other offsets were set since the last step.
+    /// Whether the offsets changed since the last step.
     has_other_offsets: bool,
     shape: Shape,
     room: Room,

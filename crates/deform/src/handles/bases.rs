@@ -1,11 +1,11 @@
-//! Handle bases: a frame as one small product a vertex, with no solve in it.
+//! Handle bases: a frame as one small product per vertex, without a solve.
 //!
-//! A handle moves affinely, so what a linear method does to the solved vertices is Σ_h B_h (T_h − I), four columns a
+//! A handle moves affinely, so a linear method displaces the solved vertices by Σ_h B_h (T_h − I), four columns a
 //! handle computed once at bind [BK04]. For the bi-Laplacian B_h = −A_ff⁻¹ A_fh [q 1].
 //!
-//! Where nothing is fixed the weights of all handles sum to 1. Rounded to f32 they no longer do, and a plain
-//! translation would leave dents. So the motion of one *reference* handle's centre is subtracted first and added back
-//! exactly: the rounded weights only multiply differences between handles.
+//! If nothing is fixed, the weights of all handles sum to 1. Rounded to f32 they no longer do, and a plain translation
+//! would leave dents. So the motion of one *reference* handle's centre is subtracted first and added back exactly: the
+//! rounded weights only multiply differences between handles.
 
 use std::collections::TryReserveError;
 
@@ -36,12 +36,12 @@ impl Stored for f64 {
     }
 }
 
-/// What the handles' transforms do to each vertex that is solved for.
+/// The effect of the handles' transforms on each solved vertex.
 ///
 /// The columns of handle h are those of q = (p − centre_h) / radius_h and of the constant, so the displacement of a
 /// row's vertex is Σ_h radius_h (A_h − I) b_h.xyz + b_h.w t_h, where A_h is the linear part of the handle's transform
-/// and t_h what it does to the handle's centre. Plain bending stores them in **f32**, which costs 1e-7 of the handles'
-/// motion; where differences between neighbours matter they are f64.
+/// and t_h the displacement of the handle's centre. Plain bending stores them in **f32**, which costs 1e-7 of the
+/// handles' motion; if differences between neighbours matter, the bases are f64.
 #[derive(Clone, Debug, Default)]
 pub struct HandleBases<T = f32> {
     vertices: Vec<u32>,
@@ -58,35 +58,35 @@ struct Run {
 }
 
 impl<T> HandleBases<T> {
-    /// The surface vertices that are solved for, ascending: one per row.
+    /// The solved surface vertices, ascending: one per row.
     pub fn vertices(&self) -> &[u32] {
         &self.vertices
     }
 
-    /// How many handles a row has.
+    /// The number of a row's handles.
     pub fn handle_count(&self) -> usize {
         self.handle_count
     }
 
-    /// Row-major: `handle_count` entries (x, y, z, constant) a row.
+    /// Row-major: `handle_count` entries (x, y, z, constant) per row.
     pub fn rows(&self) -> &[[T; 4]] {
         &self.rows
     }
 }
 
 impl HandleBases {
-    /// The share that handle `handle` has in each row's vertex: about 1 beside it, 0 at what is fixed.
+    /// The weight of handle `handle` at each row's vertex: about 1 beside it, 0 at fixed vertices.
     pub fn weight(&self, row: usize, handle: usize) -> f32 {
         self.rows[row * self.handle_count + handle][3]
     }
 }
 
 impl<T> HandleBases<T> {
-    /// Bases over `vertices` (ascending) from one column block a handle; `reference` names the reference handle of a
+    /// Bases over `vertices` (ascending) from one column block per handle; `reference` names the reference handle of a
     /// vertex in a component where nothing is fixed.
     ///
     /// # Errors
-    /// Where the machine has no memory for them.
+    /// The machine has no memory for them.
     pub(crate) fn new(
         vertices: Vec<u32>,
         blocks: &[Vec<[T; 4]>],
@@ -120,7 +120,7 @@ impl<T> HandleBases<T> {
         })
     }
 
-    /// From rows of `handle_count` entries, one row for each of the vertices, ascending.
+    /// The bases from rows of `handle_count` entries, one row for each of the vertices, ascending.
     pub(crate) fn of_rows(vertices: Vec<u32>, handle_count: usize, rows: Vec<[T; 4]>) -> Self {
         let end = vertices.len();
         Self {
@@ -151,7 +151,7 @@ impl<T> HandleBases<T> {
             for (&vertex, entries) in self.vertices[row..until].iter().zip(entries) {
                 let mut sum = base;
                 for (entry, motion) in entries.iter().zip(table) {
-                    // From the stored basis on everything is f64.
+                    // All computation with the stored basis is in f64.
                     let [x, y, z, w] = entry.map(Into::into);
                     sum += motion[0] * x + motion[1] * y + motion[2] * z + motion[3] * w;
                 }
@@ -169,11 +169,11 @@ struct Tables {
     relative: Vec<Option<Relative>>,
 }
 
-/// The reference handle's shift and the motions' columns with it taken out.
+/// The reference handle's shift and the motions' columns without it.
 type Relative = (DVec3, Vec<[DVec3; 4]>);
 
 impl Tables {
-    /// Of the motions, for `bases`.
+    /// The motions, prepared for `bases`.
     pub fn of<T>(motions: &[Motion], bases: &HandleBases<T>) -> Self {
         let columns = |base: DVec3| {
             let column = |motion: &Motion| {
@@ -202,9 +202,9 @@ impl Tables {
 }
 
 /// Fills all of `displacements`: those of the handles' vertices from the motions, those of the bases' vertices from the
-/// bases, zeros elsewhere. Chunk by chunk, so that each goes through memory once.
+/// bases, zeros elsewhere. It works chunk by chunk, so that each goes through memory once.
 ///
-/// `prescribed` has each handle's places, ascending, and their coordinates; `vertex` is the vertex of a place.
+/// `prescribed` has each handle's places, ascending, and their coordinates; `vertex` gives the vertex of a place.
 pub(crate) fn frame<T: Stored>(
     bases: &HandleBases<T>,
     prescribed: &[Vec<(u32, [f64; 4])>],
@@ -239,7 +239,7 @@ pub(crate) fn frame<T: Stored>(
 
 /// A chunk of a frame: the displacements of the vertices from `first` on, and whether all are finite.
 ///
-/// A closure would be compiled without the vector instructions that its caller is compiled for.
+/// A closure would be compiled without the vector instructions of its caller.
 struct Evaluation<'a, T> {
     bases: &'a HandleBases<T>,
     tables: &'a Tables,

@@ -1,7 +1,7 @@
-//! A start that is already bent: each point carried by exp(Σ w_h log T_h), with the handles' harmonic weights w.
+//! A start that is already bent: each point moved by exp(Σ w_h log T_h), with the handles' harmonic weights w.
 //!
-//! Rigid parts are blended as screw motions about one common origin, so that handles which move alike carry everything
-//! rigidly; what they stretch is blended linearly before.
+//! Rigid parts are blended as screw motions about one common origin, so that handles that move alike move everything
+//! rigidly; stretches are blended linearly before.
 
 use glam::{DMat3, DQuat, DVec3};
 
@@ -9,7 +9,7 @@ use crate::handles::polar::Polar;
 use crate::handles::{Handle, Motion};
 use crate::numerical::rotation::fit;
 
-/// Of a map whose determinant is below this, in units of its largest entry's cube, only the rotation is used.
+/// If a map's determinant is below this, in units of its largest entry's cube, only its rotation is used.
 const SINGULAR: f64 = 1e-3;
 
 /// A handle's motion as its rigid part's logarithm and its stretch.
@@ -19,7 +19,7 @@ pub(crate) struct Screw {
     turn_rad: DVec3,
     /// The velocity at the common origin.
     slide: DVec3,
-    /// Where the stretch leaves points in place.
+    /// The fixed point of the stretch.
     centre: DVec3,
     /// The stretch less the identity.
     stretch: DMat3,
@@ -30,7 +30,7 @@ impl Screw {
     /// relative to the common origin.
     pub fn of(linear: DMat3, shift: DVec3, centre: DVec3) -> Self {
         let Polar { turn_rad, stretch } = Polar::of(&linear);
-        // The velocity at the centre whose exponential shifts it by `shift`, as seen from the origin.
+        // The velocity at the origin of the screw whose exponential shifts the centre by `shift`.
         let at_centre = if turn_rad == DVec3::ZERO {
             shift
         } else {
@@ -44,7 +44,7 @@ impl Screw {
         }
     }
 
-    /// How it turns, without the stretch.
+    /// The rotation, without the stretch.
     pub fn turn(&self) -> DQuat {
         carried(DVec3::ZERO, std::slice::from_ref(self), &[1.0])
             .turn
@@ -52,12 +52,12 @@ impl Screw {
     }
 }
 
-/// Where the screws carry a point.
+/// The image of a point under the screws.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Carried {
-    /// Where the point goes, less the point.
+    /// The displacement of the point.
     pub displacement: DVec3,
-    /// How its surroundings turn.
+    /// The rotation of its surroundings.
     pub turn: DQuat,
 }
 
@@ -116,14 +116,14 @@ fn slides(turn: DVec3) -> DMat3 {
     DMat3::IDENTITY + cross * first + cross * cross * second
 }
 
-/// Each handle's motion from rest, and from where it was.
+/// Each handle's motion from rest, and from its last place.
 pub(crate) struct Screws {
     pub from_rest: Vec<Screw>,
     pub onwards: Vec<Screw>,
 }
 
 impl Screws {
-    /// For handles that moved as `old` says and are now to move as `new` says.
+    /// The starts for handles that moved by `old` and shall now move by `new`.
     pub fn of(handles: &[HandleFrame], old: &[Motion], new: &[Motion]) -> Self {
         let frames = || handles.iter().zip(old.iter().zip(new));
         Self {
@@ -135,7 +135,7 @@ impl Screws {
     }
 }
 
-/// Which shape or pose a start is carried from.
+/// The shape or pose from which a start is made.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Origin {
     Rest,
@@ -150,7 +150,7 @@ pub(crate) struct HandleFrame {
 }
 
 impl HandleFrame {
-    /// Of each handle, relative to `world_origin`.
+    /// The centre of each handle, relative to `world_origin`.
     pub fn of_all(handles: &[Handle], world_origin: DVec3) -> Vec<Self> {
         let frame = |handle: &Handle| Self {
             centre: handle.world_centre - world_origin,

@@ -1,7 +1,7 @@
 //! A handle's vertices in the handle's own coordinates, and transforms in these coordinates.
 //!
 //! The coordinates are centred on the handle and scaled to it. Bases in f32 over world coordinates lose 3e-3 at ten
-//! thousand diagonals from the origin; over these 3e-8, wherever the scan stands.
+//! thousand diagonals from the origin; over these only 3e-8, for any position of the scan.
 
 pub(crate) mod bases;
 pub(crate) mod blend;
@@ -15,7 +15,7 @@ use rayon::prelude::*;
 
 use crate::Warning;
 
-/// Surface vertices that one task displaces.
+/// The number of surface vertices that one task displaces.
 pub(crate) const FRAME_CHUNK: usize = 4096;
 
 /// A handle's vertices and its frame.
@@ -29,7 +29,7 @@ pub(crate) struct Handle {
     pub radius: f64,
 }
 
-/// What a transform changes: the displacement of the point `world_centre + radius * q` is `linear * q + shift`.
+/// The change by a transform: the displacement of the point `world_centre + radius * q` is `linear * q + shift`.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct Motion {
     pub linear: DMat3,
@@ -37,7 +37,7 @@ pub(crate) struct Motion {
 }
 
 impl Default for Motion {
-    /// Rest: a matrix's own default is the identity.
+    /// This is rest: a matrix's own default is the identity.
     fn default() -> Self {
         Self {
             linear: DMat3::ZERO,
@@ -68,7 +68,7 @@ impl Handle {
         }
     }
 
-    /// The linear part of the map that a motion stands for.
+    /// The linear part of a motion's map.
     pub fn linear(&self, motion: &Motion) -> DMat3 {
         DMat3::IDENTITY + motion.linear * self.radius.recip()
     }
@@ -79,7 +79,7 @@ impl Handle {
         [q.x, q.y, q.z, 1.0]
     }
 
-    /// What `world_target` changes, zero to the last bit where it is the identity.
+    /// The change by `world_target`, zero to the last bit if it is the identity.
     pub fn motion(&self, world_target: &DAffine3) -> Motion {
         let change = world_target.matrix3 - DMat3::IDENTITY;
         Motion {
@@ -101,11 +101,10 @@ impl Motion {
     }
 }
 
-/// A sentence where handles are moved and none is turned or stretched, for a method that takes what happens around a
-/// handle from its turn and stretch alone. Where nothing `is_held` and all handles move alike, everything moves with
-/// them.
+/// A sentence for handles that are moved but not turned or stretched, for a method that follows only the turn and
+/// stretch around a handle. If nothing `is_held` and all handles move alike, everything moves with them.
 pub(crate) fn only_moved(method: &str, motions: &[Motion], is_held: bool) -> Option<Warning> {
-    /// A turn that moves the handle's rim by less than this share of the handle's way is none.
+    /// A turn that moves the handle's rim by less than this share of the handle's displacement is ignored.
     const NEGLIGIBLE: f64 = 1e-3;
     let first = motions.first()?.shift;
     let is_only_moved = |motion: &Motion| {

@@ -1,23 +1,23 @@
-//! Places for a handle's vertices beside one map for all of them.
+//! Offsets: a place for each vertex of a handle, instead of one map for all of them.
 //!
-//! Methods take a handle's turn from its motion, which is affine. Where every vertex has a place of its own, the motion
-//! is the rigid one that fits the places best, and an *offset* at each vertex is what is left. So a handle of a
-//! thousand places binds as any other handle, where a thousand handles of one vertex would each have bases of their
-//! own.
+//! Methods take a handle's turn from its motion, which is affine. If every vertex has its own place, the motion is the
+//! rigid motion that fits the places best, and each vertex has an *offset* from the motion to its place. So a handle of
+//! a thousand places binds like any other handle; a thousand handles of one vertex would each need their own bases.
 
 use glam::DVec3;
 
 use super::{Handle, Motion};
 use crate::numerical::rigid_fit::RigidMotion;
 
-/// What vertices are displaced by beside the motions of their handles, ascending; none where every handle has a map.
+/// Vertices' offsets from the motions of their handles, in ascending order of the vertices; empty if every handle has a
+/// map.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub(crate) struct Offsets {
     of_vertices: Vec<(u32, DVec3)>,
 }
 
 impl Offsets {
-    /// Whether every handle's motion is all that it does.
+    /// Whether no vertex has an offset.
     pub fn is_empty(&self) -> bool {
         self.of_vertices.is_empty()
     }
@@ -28,7 +28,7 @@ impl Offsets {
         found.map_or(DVec3::ZERO, |place| self.of_vertices[place].1)
     }
 
-    /// Those of other vertices, each of which stands for one of these.
+    /// The offsets of other vertices, from pairs of a vertex and the one whose offset it takes.
     pub fn of(&self, stands_for: impl Iterator<Item = (u32, u32)>) -> Self {
         let mut of_vertices: Vec<(u32, DVec3)> = stands_for.map(|(own, vertex)| (own, self.at(vertex))).collect();
         of_vertices.retain(|(_, offset)| *offset != DVec3::ZERO);
@@ -36,7 +36,7 @@ impl Offsets {
         Self { of_vertices }
     }
 
-    /// The motion of a handle whose vertices are displaced so, one displacement for each; adds what it leaves.
+    /// The motion of a handle that fits its vertices' displacements best; adds the offsets of these vertices from it.
     pub fn take(&mut self, handle: &Handle, world_rest: &[DVec3], displacements: &[DVec3]) -> Motion {
         let Some(fit) = RigidMotion::fit(world_rest, displacements) else {
             return Motion::default();
@@ -48,7 +48,7 @@ impl Offsets {
         motion
     }
 
-    /// In order, once all handles are taken.
+    /// Sorts the offsets, after all handles were taken.
     pub fn sorted(mut self) -> Self {
         self.of_vertices.sort_unstable_by_key(|(vertex, _)| *vertex);
         self

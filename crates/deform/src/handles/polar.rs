@@ -19,11 +19,11 @@ pub(crate) struct Polar {
     pub stretch: DMat3,
 }
 
-/// How much another handle's turn counts where two logarithms are equally near.
+/// The weight of another handle's turn if two logarithms are equally near.
 const BIAS: f64 = 1e-3;
 
 impl Default for Polar {
-    /// The identity's.
+    /// The parts of the identity.
     fn default() -> Self {
         Self {
             turn_rad: DVec3::ZERO,
@@ -33,8 +33,8 @@ impl Default for Polar {
 }
 
 impl Polar {
-    /// Of a linear map, with a turn by at most π. Of a singular map R is one of the best rotations, and a mirror image is
-    /// left to S.
+    /// The parts of a linear map, with a turn by at most π. For a singular map R is one of the best rotations; a mirror
+    /// image stays in S.
     pub fn of(linear: &DMat3) -> Self {
         // The first fit ends as soon as the next step would be small.
         let rotation = fit(linear, fit(linear, DQuat::IDENTITY));
@@ -45,7 +45,7 @@ impl Polar {
         }
     }
 
-    /// The same map with that logarithm of its rotation which is nearest to `turn_rad`.
+    /// The same map with the logarithm of its rotation that is nearest to `turn_rad`.
     #[must_use]
     pub fn near(self, turn_rad: DVec3) -> Self {
         let angle = self.turn_rad.length();
@@ -62,7 +62,7 @@ impl Polar {
     }
 }
 
-/// The parts of the handles' maps under these motions. Turns go on from those of the `last` step.
+/// The parts of the handles' maps under these motions. Turns continue from those of the `last` step.
 pub(crate) fn polars_of(last: &[Polar], handles: &[Handle], motions: &[Motion]) -> Vec<Polar> {
     let linears = handles
         .iter()
@@ -71,7 +71,7 @@ pub(crate) fn polars_of(last: &[Polar], handles: &[Handle], motions: &[Motion]) 
     following(last, linears)
 }
 
-/// The parts of the handles' maps that follow those of the `last` step: the logarithms nearest to them. Where two are
+/// The parts of the handles' maps that follow those of the `last` step: the logarithms nearest to them. If two are
 /// equally near (half a turn), the first handle decides for all, so that handles that move alike turn alike.
 fn following(last: &[Polar], linears: impl Iterator<Item = DMat3>) -> Vec<Polar> {
     let mut lead = DVec3::ZERO;
@@ -96,7 +96,7 @@ pub(crate) struct Blend {
 }
 
 impl Blend {
-    /// Of the handles' maps, one weight each.
+    /// The blend of the handles' maps, with one weight each.
     #[inline]
     pub fn of(polars: &[Polar], weights: impl Iterator<Item = f64>) -> Self {
         let (mut turn_rad, mut stretch) = (DVec3::ZERO, DMat3::ZERO);
@@ -122,7 +122,7 @@ impl Blend {
         }
     }
 
-    /// What the map adds to a vector, (T − I) v: zero to the last bit where all weights are.
+    /// The map's change of a vector, (T − I) v: zero to the last bit if all weights are.
     #[inline]
     pub fn change(&self, v: DVec3) -> DVec3 {
         let stretched = self.stretch * v;

@@ -1,14 +1,14 @@
-//! How far hard handles' vertices are from where their transforms take them, for methods that only fit them.
+//! The distance of hard handles' vertices from their targets, for methods that only fit them.
 
 use glam::DVec3;
 
 use super::{Handle, Motion};
 use crate::{Problem, alternatives};
 
-/// Handles that are missed by less than this share of the size of what bends look as if they were met.
+/// Handles that are missed by less than this share of the size of the bending part look met.
 const UNSEEN: f64 = 1e-3;
 
-/// The hard handles' vertices and their coordinates; empty where handles are held exactly.
+/// The hard handles' vertices and their coordinates; empty if handles are held exactly.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct HandleResidual {
     handles: Vec<Vec<(u32, [f64; 4])>>,
@@ -17,7 +17,7 @@ pub(crate) struct HandleResidual {
 }
 
 impl HandleResidual {
-    /// Of those handles that are not soft.
+    /// The residual of handles that are not soft.
     pub fn new(problem: &Problem, handles: &[Handle], soft: &[Option<f64>]) -> Self {
         let positions = &problem.surface.positions;
         let own = |(handle, soft): (&Handle, &Option<f64>)| {
@@ -42,7 +42,7 @@ impl HandleResidual {
         own.fold(0.0, f64::max)
     }
 
-    /// A sentence on a distance that can be seen.
+    /// A sentence on a visible distance.
     pub fn warning(&self, distance: f64) -> Option<String> {
         let share = distance / self.size;
         (share > UNSEEN).then(|| {

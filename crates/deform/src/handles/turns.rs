@@ -1,4 +1,4 @@
-//! Turns that are more than a method follows.
+//! Turns beyond a method's limit.
 
 use glam::DQuat;
 
@@ -6,17 +6,17 @@ use super::polar::Polar;
 use super::{Handle, Motion};
 use crate::Warning;
 
-/// The largest turn between handles, or between a handle and what is fixed, that leaves a limb at least about 0.7 of its
-/// radius everywhere, by `tests/large_turns.rs`.
+/// The largest turn between handles, or between a handle and a fixed vertex, that leaves a limb at least about 0.7 of
+/// its radius everywhere, by `tests/large_turns.rs`.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct Followed {
     most_degrees: f64,
-    /// What it does beyond.
+    /// The effect of larger turns.
     beyond: &'static str,
 }
 
 impl Followed {
-    /// Beyond, every limb narrows.
+    /// Every limb narrows.
     pub fn by_limbs(most_degrees: f64) -> Self {
         Self {
             most_degrees,
@@ -24,7 +24,7 @@ impl Followed {
         }
     }
 
-    /// Beyond, a limb narrows only where it is thinner than elsewhere.
+    /// A limb narrows only where it is thinner than elsewhere.
     pub fn by_necks(most_degrees: f64) -> Self {
         Self {
             most_degrees,
@@ -32,7 +32,7 @@ impl Followed {
         }
     }
 
-    /// Beyond, all of the turn is in one place.
+    /// All of the turn is in one place.
     pub fn by_seams(most_degrees: f64) -> Self {
         Self {
             most_degrees,
@@ -41,7 +41,7 @@ impl Followed {
     }
 }
 
-/// What a method follows, and what it is called.
+/// The limit of a method, and its name.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct TurnLimit {
     pub method: &'static str,
@@ -50,14 +50,14 @@ pub(crate) struct TurnLimit {
     pub is_held: bool,
 }
 
-/// The warning waits for this much more than the limit, so that a turn by the limit itself is none.
+/// The warning waits for this much more than the limit, so that a turn by the limit itself gives none.
 const ROOM_DEGREES: f64 = 5.0;
 
-/// Up to here ARAP follows as well.
+/// ARAP also follows turns up to this.
 const OF_ARAP_DEGREES: f64 = 140.0;
 
 impl TurnLimit {
-    /// A sentence where two turns are further apart than the method follows.
+    /// A sentence about two turns that differ by more than the method's limit.
     pub fn warning(&self, handles: &[Handle], motions: &[Motion]) -> Option<Warning> {
         let Followed { most_degrees, beyond } = self.followed;
         let turn = |(handle, motion): (&Handle, &Motion)| Polar::of(&handle.linear(motion)).turn_rad;
@@ -70,7 +70,7 @@ impl TurnLimit {
         let mut worst = (0.0, 0);
         for (number, turn) in turns.iter().enumerate() {
             for other in turns[..number].iter().chain(&fixed) {
-                // Not by the angle's cosine, which loses the small ones.
+                // The angle's cosine would lose small angles.
                 let between = (*turn * other.conjugate()).to_scaled_axis().length();
                 let degrees = between.min(std::f64::consts::TAU - between).to_degrees();
                 if degrees > worst.0 {

@@ -1,7 +1,7 @@
-//! The smallest method: handles move, and nothing else does.
+//! The smallest method: only handles move.
 //!
-//! It is here to show what a method must bring (this folder and its line in [`crate::METHODS`]), works on bare points,
-//! and is compiled for tests only (the feature `identity-method`).
+//! It shows the parts of a method (this folder and its line in [`crate::METHODS`]), works on bare points, and is
+//! compiled for tests only (the feature `identity-method`).
 
 use glam::DVec3;
 
@@ -25,7 +25,7 @@ pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
 options! {
     /// Options of the identity.
     pub struct Identity {
-        /// How far the handles go of the way that they are to go.
+        /// The share of the handles' displacements that they move by.
         share: f64 = Number {
             default: 1.0,
             range: [0.0, 1.0],

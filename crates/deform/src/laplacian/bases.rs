@@ -14,15 +14,15 @@ use crate::method::BindInput;
 use crate::operators::CHUNK;
 use crate::sparse::factor_error::FactorError;
 
-/// Solutions that are solved for at once.
+/// The number of solutions that are computed at once.
 const AT_ONCE: usize = 6;
 
-/// The displacement of a solved vertex for each number of a handle's motion: number 3 k + c is component c of what the
-/// handle's coordinate k (x, y, z, 1) is multiplied by. In double precision: differences of displacements make the
-/// transformations.
+/// The displacement of a solved vertex for each number of a handle's motion: number 3 k + c is component c of the
+/// factor of the handle's coordinate k (x, y, z, 1). They are in double precision, because transformations are made of
+/// differences of displacements.
 type Basis = [DVec3; 4 * DOF];
 
-/// The bases, one row for each solved vertex, one entry a handle.
+/// The bases, one row for each solved vertex, one entry per handle.
 #[derive(Debug)]
 pub(super) struct ImplicitBases {
     /// The solved local vertices, ascending.
@@ -53,7 +53,7 @@ impl ImplicitBases {
             ImplicitSystem::of(energy, &elimination, budget, cancel).map_err(|error| refuse(of_factor(error)))?;
         let check = |error: f64, local: u32| {
             cancel.check()?;
-            // Also where it is not a number. Where nothing is free there is no vertex to name, and no error.
+            // NaN is an error too. If nothing is free there is no vertex to name, and no error.
             if error <= TOLERANCE {
                 Ok(())
             } else {

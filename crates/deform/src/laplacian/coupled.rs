@@ -5,7 +5,7 @@
 //!
 //! E = ½ Σ_i c_i (|Σ_j G_ij (d_j − d_i)|² + ε |(L d)_i|²),  c_i = s_i / M_ii.
 //!
-//! ε is so small that it only decides what the handles leave open, such as a turn about a handle of one vertex.
+//! ε is so small that it only decides motions that the handles leave open, such as a turn about a handle of one vertex.
 
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
@@ -20,7 +20,7 @@ use crate::sparse::matrix::{CONSTRAINED, ScaledMatrix};
 /// ε.
 const FIRMNESS: f64 = 1e-6;
 
-/// Unknowns of a vertex.
+/// The unknowns of a vertex.
 pub(super) const DOF: usize = 3;
 
 /// Bytes of an entry of the matrix: its row and its value.
@@ -31,12 +31,12 @@ pub(super) struct CoupledEnergy<'a> {
     pub operator: &'a BilaplacianOperator,
     /// G of each entry of the Laplacian's full rows.
     entries: Vec<DMat3>,
-    /// Where a local vertex' entries begin.
+    /// The start of each local vertex' entries.
     offsets: Vec<usize>,
 }
 
 impl<'a> CoupledEnergy<'a> {
-    /// For the rest positions of the local vertices, their fits and their `curvature` L p.
+    /// The energy for the rest positions of the local vertices, their fits and their `curvature` L p.
     ///
     /// # Errors
     /// [`FactorError::Memory`].
@@ -67,7 +67,7 @@ impl<'a> CoupledEnergy<'a> {
         })
     }
 
-    /// c_i. It is 0 at hubs, whose residual would couple all their neighbours with each other: what is around them holds
+    /// c_i. It is 0 at hubs, whose residual would couple all their neighbours with each other: their surroundings hold
     /// them.
     pub fn density(&self, local: usize) -> f64 {
         if self.operator.laplacian.neighbours(local).len() > self.operator.hub_degree {
@@ -76,13 +76,13 @@ impl<'a> CoupledEnergy<'a> {
         self.operator.cell_stiffness(local) * self.operator.laplacian.inverse_areas()[local]
     }
 
-    /// G of a local vertex' neighbours.
+    /// G for a local vertex' neighbours.
     pub fn around(&self, local: usize) -> &[DMat3] {
         &self.entries[self.offsets[local]..self.offsets[local + 1]]
     }
 
-    /// The coefficients of the residual at `local`: of its neighbours' displacements and, last, of its own; with w
-    /// beside, for ε.
+    /// The coefficients of the residual at `local`: for its neighbours' displacements and, last, for its own; each with
+    /// w, for ε.
     fn row(&self, local: usize) -> impl Iterator<Item = (u32, DMat3, f64)> + '_ {
         let laplacian = &self.operator.laplacian;
         let (others, weights) = (laplacian.neighbours(local), laplacian.weights(local));
@@ -98,10 +98,10 @@ impl<'a> CoupledEnergy<'a> {
     /// table.
     ///
     /// # Errors
-    /// If it exceeds the budget or the machine's memory.
+    /// The matrix exceeds the budget or the machine's memory.
     pub fn assemble(&self, locals: &[u32], column_of: &[u32], budget: Budget) -> Result<ScaledMatrix, FactorError> {
         let laplacian = &self.operator.laplacian;
-        // At most: every pair of a ring, the vertex itself included.
+        // This is the maximum: every pair of a ring, the vertex itself included.
         let ring = |local: u32| match self.density(local as usize) {
             0.0 => 0,
             _ => laplacian.neighbours(local as usize).len() + 1,
@@ -139,7 +139,7 @@ impl<'a> CoupledEnergy<'a> {
         matrix.lower_offsets.push(0);
         for (column, blocks) in columns().enumerate() {
             for k in 0..DOF {
-                // The own block comes first: its part below the diagonal.
+                // The vertex's own block comes first: its part below the diagonal.
                 let own = blocks[0].1.col(k);
                 for l in k..DOF {
                     matrix.lower_rows.push((DOF * column + l) as u32);

@@ -64,10 +64,10 @@ impl DeformMethod for LaplacianEditing {
     }
 }
 
-/// A turn by more than this is more than the estimates hold, in radians: 90° with some room.
+/// The largest turn that the estimates follow, in radians: 90° with some tolerance.
 const LARGE_RAD: f64 = 1.65;
 
-/// As much without any transformation.
+/// The same without any transformation.
 const SMALL_RAD: f64 = 0.2;
 
 impl BoundMethod for LaplacianSolver {

@@ -1,4 +1,5 @@
-//! The transformations that carry the vertices' rings best from rest to a shape [BS08, section 3.2.5], eight at a time.
+//! The transformations that best fit the motion of the vertices' rings from rest to a shape [BS08, section 3.2.5],
+//! eight at a time.
 
 use glam::{DMat3, DQuat, DVec3};
 use pliant_mesh::vectors;
@@ -14,7 +15,7 @@ use crate::numerical::lane_fits::Fits;
 use crate::numerical::lanes::LANES;
 use crate::operators::CHUNK;
 
-/// What transformations are estimated from.
+/// The data for estimating transformations.
 #[derive(Clone, Copy)]
 pub(super) struct Estimate<'a> {
     pub laplacian: &'a Laplacian,
@@ -23,14 +24,14 @@ pub(super) struct Estimate<'a> {
     /// Rest positions and displacements of the local vertices.
     pub rest: &'a [DVec3],
     pub field: &'a [[f64; 3]],
-    /// Fits of the nearest rings, whose turns the search for rotations may begin with.
+    /// Fits of the nearest rings, at whose turns the search for rotations may begin.
     pub similarities: Option<&'a [Similarity]>,
     /// L p of the local vertices.
     pub curvature: &'a [DVec3],
 }
 
 impl Estimate<'_> {
-    /// Fills `changes` with (T − I) L p: zero to the last bit where a ring keeps its place or is moved as a whole.
+    /// Fills `changes` with (T − I) L p: zero to the last bit if a ring keeps its place or is moved as a whole.
     pub fn transform(self, changes: &mut [DVec3]) {
         let arch = vectors();
         changes.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, changes)| {
@@ -42,8 +43,8 @@ impl Estimate<'_> {
         });
     }
 
-    /// A guess at the rotation around a vertex, whose ring has these moments: the better one of that which its fit tells
-    /// and the one of a vertex beside. Linear fits tell little about large turns.
+    /// A guess at the rotation around a vertex, whose ring has these moments: the better one of its fit's and a
+    /// neighbour's. Linear fits are poor for large turns.
     #[inline(always)]
     fn guess(&self, local: usize, moments: &Moments, beside: DQuat) -> DQuat {
         let own = match self.similarities {
@@ -62,7 +63,7 @@ impl Estimate<'_> {
     }
 }
 
-/// The local vertices from `first` on, compiled for the machine's vectors.
+/// Estimates for the local vertices from `first` on, compiled for the machine's vectors.
 struct Pass<'a> {
     estimate: Estimate<'a>,
     first: usize,
@@ -80,7 +81,7 @@ impl WithSimd for Pass<'_> {
             changes,
         } = self;
         let mut fits = Fits::default();
-        // Vertices that follow each other are near each other, too.
+        // Vertices with consecutive numbers are near each other.
         let mut beside = DQuat::IDENTITY;
         for start in (0..changes.len()).step_by(LANES) {
             let count = LANES.min(changes.len() - start);

@@ -1,7 +1,7 @@
 //! The factored system of implicit transformations.
 //!
-//! A vertex' three unknowns are eliminated together, so the bi-Laplacian's order serves. The system is solved at binding
-//! alone: a frame is a product with the solutions (see `bases`).
+//! A vertex' three unknowns are eliminated together, so the bi-Laplacian's order is suitable. The system is solved at
+//! binding alone: a frame is a product with the solutions (see `bases`).
 
 use glam::DVec3;
 use pliant_mesh::Cancel;
@@ -34,7 +34,7 @@ impl<'a> ImplicitSystem<'a> {
     /// Assembles and factors in this order of elimination.
     ///
     /// # Errors
-    /// As a factorisation's; a pivot is named by its local vertex.
+    /// A factorisation's errors; a pivot is named by its local vertex.
     pub fn of(
         energy: CoupledEnergy<'a>,
         elimination: &Elimination,
@@ -77,7 +77,7 @@ impl<'a> ImplicitSystem<'a> {
         })
     }
 
-    /// Solves for a translation, whose solution is known: returns by how much it is missed, and the local vertex.
+    /// Solves for a translation, whose solution is known: returns the largest error, and its local vertex.
     pub fn check(&mut self, cancel: &Cancel) -> (f64, u32) {
         let mut d = vec![[1.0]; self.field_len()];
         self.contraction = solve_fully(self, &mut d, 0.0, cancel).contraction;

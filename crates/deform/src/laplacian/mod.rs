@@ -1,10 +1,10 @@
-//! Laplacian editing [SCL+04, LSC+04; BS08, sections 3.1.2, 3.2.5 and 3.2.6]: each vertex' differential coordinate L p is
-//! transformed, and the bi-Laplacian system L M⁻¹ L d = L M⁻¹ (T − I) L p puts the surface together again.
+//! Laplacian editing [SCL+04, LSC+04; BS08, sections 3.1.2, 3.2.5 and 3.2.6]: each vertex' differential coordinate L p
+//! is transformed, and the bi-Laplacian system L M⁻¹ L d = L M⁻¹ (T − I) L p reassembles the surface.
 //!
-//! Painted stiffness s scales the density of the energy ½ ∫ s |Δp' − T Δp|², as that of a thin plate.
+//! Painted stiffness s scales the density of the energy ½ ∫ s |Δp' − T Δp|², as for a thin plate.
 //!
-//! Parts: `similarity`, `rings` and `estimate` give the transformations, `coupled`, `implicit` and `bases` the first shape of implicit
-//! ones, `shape` goes through a frame, and `bilaplacian::loaded` solves.
+//! Parts: `similarity`, `rings` and `estimate` give the transformations, `coupled`, `implicit` and `bases` the first
+//! shape of implicit ones, `shape` computes a frame, and `bilaplacian::loaded` solves.
 
 mod bases;
 mod coupled;
@@ -42,24 +42,24 @@ pub(crate) struct LaplacianSolver {
     system: LoadedSystem,
     /// Rest positions of the local vertices, relative to the first one.
     rest: Vec<DVec3>,
-    /// (L p)_i of the local vertices, 0 where the row is not full.
+    /// (L p)_i of the local vertices, 0 if the row is not full.
     curvature: Vec<DVec3>,
     rings: Option<Rings>,
     implicit: Option<Implicit>,
     handles: Vec<Handle>,
-    /// The handles' maps at the last frame: turns go on from there.
+    /// The handles' maps at the last frame, from which turns continue.
     polars: Vec<Polar>,
     room: Room,
 }
 
-/// What implicit transformations need.
+/// The data for implicit transformations.
 #[derive(Debug)]
 struct Implicit {
     similarities: Vec<Similarity>,
     bases: ImplicitBases,
 }
 
-/// What is kept from frame to frame, so that none allocates it.
+/// Buffers kept from frame to frame, so that no frame allocates them.
 #[derive(Clone, Debug, Default)]
 struct Room {
     field: Vec<[f64; 3]>,
@@ -188,7 +188,7 @@ impl LaplacianSolver {
         partial.iter().sum::<f64>() + self.system.spring_energy(field)
     }
 
-    /// As [`LaplacianSolver::energy`], of any displacements, for these motions; `None` where they can't be solved for.
+    /// Like [`LaplacianSolver::energy`], for any displacements and these motions; `None` if they can't be solved.
     fn energy_of(&self, motions: &[Motion], displacements: &[DVec3]) -> Option<f64> {
         let field = self.system.read(motions, displacements);
         let mut room = self.new_room();

@@ -1,4 +1,4 @@
-//! How a vertex' neighbours move: the sums that its transformation is fitted to.
+//! The sums over a vertex' neighbours to which its transformation is fitted.
 
 use glam::{DMat3, DQuat, DVec3};
 
@@ -14,14 +14,14 @@ pub(super) struct Moments {
 }
 
 impl Moments {
-    /// Of no edges.
+    /// The sums over no edges.
     pub const ZERO: Self = Self {
         change: DMat3::ZERO,
         shift: DVec3::ZERO,
         rest: [0.0; 6],
     };
 
-    /// Of the edges from `local` to `others` at these rest positions, displaced by `d`.
+    /// The sums over the edges from `local` to `others` at these rest positions, displaced by `d`.
     #[inline(always)]
     pub fn of(local: usize, others: &[u32], rest: &[DVec3], d: &[[f64; 3]]) -> Self {
         let (own, own_shift) = (rest[local], DVec3::from_array(d[local]));
@@ -55,7 +55,7 @@ impl Moments {
         DVec3::new(y_axis.z - z_axis.y, z_axis.x - x_axis.z, x_axis.y - y_axis.x)
     }
 
-    /// tr((R − 1)ᵀ S) of a rotation R, S = Σ (e + D) eᵀ: the greater, the better R carries the edges.
+    /// tr((R − 1)ᵀ S) of a rotation R, S = Σ (e + D) eᵀ: larger if R fits the edges' motion better.
     #[inline(always)]
     pub fn alignment(&self, rotation: DQuat) -> f64 {
         let [xx, xy, xz, yy, yz, zz] = self.rest;

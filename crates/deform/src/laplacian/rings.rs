@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use crate::Laplacian;
 use crate::operators::CHUNK;
 
-/// The rings of the vertices with full rows, in local vertices; empty where they are the Laplacian's own.
+/// The rings of the vertices with full rows, in local vertices; empty if they are the Laplacian's own.
 #[derive(Debug, Default)]
 pub(super) struct Rings {
     offsets: Vec<u32>,
@@ -57,13 +57,14 @@ impl Rings {
         }
     }
 
-    /// Whether they are the nearest ones alone.
+    /// Whether the rings have only the nearest neighbours.
     pub fn are_nearest(&self) -> bool {
         self.offsets.is_empty()
     }
 }
 
-/// A ring beyond the nearest neighbours ends at so many vertices: beside hubs it would be a large part of the surface.
+/// A ring beyond the nearest neighbours ends at this many vertices: beside hubs it would be a large part of the
+/// surface.
 const LARGEST: usize = 256;
 
 fn append_ring(laplacian: &Laplacian, local: u32, size: u32, others: &mut Vec<u32>) {

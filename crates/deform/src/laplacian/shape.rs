@@ -13,8 +13,8 @@ use crate::handles::{Handle, Motion};
 use crate::operators::CHUNK;
 
 impl LaplacianSolver {
-    /// Goes the handles' way in the options' steps: at each the transformations are estimated from a first shape, and the
-    /// shape is solved for with them.
+    /// Moves the handles in the options' steps: at each the transformations are estimated from a first shape, and the
+    /// shape is solved with them.
     pub(super) fn shape(&self, motions: &[Motion], room: &mut Room) -> Result<(), SolveError> {
         room.load.fill([0.0; 3]);
         room.changes.fill(DVec3::ZERO);
@@ -35,7 +35,7 @@ impl LaplacianSolver {
                     return Ok(());
                 }
             } else if self.rings.is_some() {
-                // With the transformations of the step before: at the first one, none.
+                // The transformations are those of the last step: at the first one, none.
                 self.system.solve(&room.load, &mut room.field)?;
             }
             if first.is_some() && self.options.scale == LocalScale::Normalised {
@@ -58,7 +58,7 @@ impl LaplacianSolver {
         Ok(())
     }
 
-    /// The motions' turns and stretches in part, as [`Blend`] scales them, and their shifts.
+    /// Shares of the motions: their turns and stretches, as [`Blend`] scales them, and their shifts.
     fn part_of_the_way(&self, motions: &[Motion], share: f64) -> Vec<Motion> {
         if share >= 1.0 {
             return motions.to_vec();
@@ -79,7 +79,7 @@ impl LaplacianSolver {
             .collect()
     }
 
-    /// Whether the bases' shape is the last one: implicit transformations that keep their scale are solved for with it.
+    /// Whether the bases' shape is the last one: it solves for implicit transformations that keep their scale.
     pub(super) fn is_settled_by_bases(&self) -> bool {
         self.implicit.is_some() && self.options.scale == LocalScale::Free && self.options.steps == 1
     }
@@ -90,7 +90,8 @@ impl LaplacianSolver {
         implicit.similarities[local].fit(&Moments::of(local, nearest, &self.rest, field))
     }
 
-    /// Fills `changes` with what makes each L p as long as at rest, in the direction that it has in the first shape p':
+    /// Fills `changes` with the differences that make each L p as long as at rest, in its direction in the first shape
+    /// p':
     /// |L p| (L p') / |L p'| − L p [SCL+04, section 3.3].
     fn rescale(&self, room: &mut Room) {
         let laplacian = self.laplacian();
@@ -111,7 +112,7 @@ impl LaplacianSolver {
             });
     }
 
-    /// Fills `changes` with (T − I) L p, by what gives T − I at a local vertex.
+    /// Fills `changes` with (T − I) L p, with a function for T − I at a local vertex.
     pub(super) fn change_by(&self, changes: &mut [DVec3], change: impl Fn(usize) -> DMat3 + Sync) {
         let laplacian = self.laplacian();
         changes

@@ -1,12 +1,12 @@
 //! Similarities that are linear in the displacements of a vertex' neighbours [SCL+04, equation 5; BS08, equation 27].
 //!
-//! T = (1 + s) I + [h]× and a translation fit vertex i and its n neighbours best in the least squares. With
-//! the edges e_j, D_j = d_j − d_i and c_j = e_j − Σ e / (n + 1), the edges from the ring's middle, i being one of it,
+//! T = (1 + s) I + [h]× and a translation fit vertex i and its n neighbours best in the least-squares sense. With the
+//! edges e_j, D_j = d_j − d_i and c_j = e_j − Σ e / (n + 1), the edges from the ring's middle, i being one of it,
 //!
 //! s = Σ c_j · D_j / Σ |c|²,  h = J⁻¹ Σ c_j × D_j,  J = Σ |c|² I − c cᵀ,
 //!
-//! since s c and h × c are orthogonal; Σ |c|² and J are over all of the ring. Where it lies on one line, the turn about
-//! it is 0.
+//! since s c and h × c are orthogonal; Σ |c|² and J are over all of the ring. If it is on one line, the turn about that
+//! line is 0.
 
 use glam::{DMat3, DQuat, DVec3};
 
@@ -34,7 +34,7 @@ pub(super) struct Fitted {
 }
 
 impl Similarity {
-    /// For the rest edges of a vertex.
+    /// The fit for the rest edges of a vertex.
     pub fn of(edges: impl Iterator<Item = DVec3>) -> Self {
         let (mut square, mut outer) = (0.0, DMat3::ZERO);
         let (mut sum, mut count) = (DVec3::ZERO, 1.0);
@@ -47,7 +47,7 @@ impl Similarity {
         let middle = sum / count;
         square -= middle.dot(sum);
         outer -= squared(middle) * count;
-        // Also where it is not a number, or so small that its inverse is not.
+        // Also if it is NaN, or so small that its inverse is not finite.
         if square.is_nan() || square < 1e-300 {
             return Self::default();
         }
@@ -61,9 +61,9 @@ impl Similarity {
 
     /// The same with s = 0.
     ///
-    /// At a free border L p also has a part within the surface, across the border. Under similarities it only asks that
-    /// the border keeps its angles, and on flat parts every conformal map would be free; without the scale it asks that
-    /// they keep their width, too.
+    /// At a free border L p also has a part within the surface, across the border. Under similarities it only requires
+    /// that the border keeps its angles, and on flat parts every conformal map would be free; without the scale the
+    /// width of flat parts is kept too.
     #[must_use]
     pub fn without_scale(self) -> Self {
         Self {
@@ -81,7 +81,7 @@ impl Similarity {
         }
     }
 
-    /// The matrix that takes D at the edge e to its part of (T − I) v.
+    /// The matrix that maps D at the edge e to its part of (T − I) v.
     pub fn effect_on(&self, v: DVec3, edge: DVec3) -> DMat3 {
         let cross = |a: DVec3| DMat3::from_cols(a.cross(DVec3::X), a.cross(DVec3::Y), a.cross(DVec3::Z));
         let edge = edge - self.middle;
@@ -97,8 +97,8 @@ fn squared(v: DVec3) -> DMat3 {
 }
 
 impl Fitted {
-    /// A guess at the rotation that carries the edges. Of a flat ring that turns by θ about an axis in its plane the fit
-    /// has |h| = sin θ and 1 + s = (1 + cos θ) / 2, which is 2 tan(θ/2) as a quotient, and less than tan θ.
+    /// A guess at the rotation of the edges. For a flat ring that turns by θ about an axis in its plane the fit has |h|
+    /// = sin θ and 1 + s = (1 + cos θ) / 2, which is 2 tan(θ/2) as a quotient, and less than tan θ.
     pub fn rotation_guess(&self) -> DQuat {
         let q = DQuat::from_xyzw(self.turn.x, self.turn.y, self.turn.z, 2.0 * (1.0 + self.scale));
         let square = q.length_squared();

@@ -13,7 +13,8 @@ pub(super) struct Axis {
     pub cells: usize,
 }
 
-/// The functions that are not zero at a point: from number `first` on `count` ones, their values and slopes along t.
+/// The functions that are not zero at a point: `count` of them from number `first` on, with their values and slopes
+/// along t.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Values {
     pub first: usize,
@@ -23,7 +24,7 @@ pub(super) struct Values {
 }
 
 impl Axis {
-    /// How many functions, and so control points, there are.
+    /// The number of functions, and so of control points.
     pub fn count(&self) -> usize {
         match self.basis {
             LatticeBasis::BSpline => self.cells + self.degree,
@@ -31,7 +32,7 @@ impl Axis {
         }
     }
 
-    /// Where a control point has to stand for the control points to reproduce t.
+    /// The place of a control point with which the control points reproduce t.
     pub fn greville(&self, number: usize) -> f64 {
         match self.basis {
             LatticeBasis::BSpline => (number as f64 - 0.5 * (self.degree as f64 - 1.0)) / self.cells as f64,
@@ -39,7 +40,7 @@ impl Axis {
         }
     }
 
-    /// The functions at t. Outside of 0 to 1 the polynomials of the outermost cell go on.
+    /// The functions at t. Outside of 0 to 1 the polynomials of the outermost cell continue.
     pub fn at(&self, t: f64) -> Values {
         let (first, t) = match self.basis {
             LatticeBasis::BSpline => {

@@ -1,5 +1,4 @@
-//! The lattice of a binding: the one that was brought, or one over the region's box with as many cells as the options
-//! say.
+//! The lattice of a binding: a person's, or one over the region's box with the options' number of cells.
 
 use glam::DVec3;
 use std::sync::Arc;
@@ -46,7 +45,7 @@ pub(super) fn grid(options: &Lattice, lattice: &ControlLattice) -> Grid {
     Grid::new(axes, lattice.low, lattice.high - lattice.low)
 }
 
-/// Where the control points rest.
+/// The rest positions of the control points.
 pub(super) fn points(options: &Lattice, lattice: &ControlLattice) -> Vec<DVec3> {
     let grid = grid(options, lattice);
     grid.places().map(|place| grid.rest(place)).collect()
@@ -92,7 +91,7 @@ pub(super) fn check(options: &Lattice, attachment: &Attachment) -> Result<(), At
     }
 }
 
-/// How many more control points than cells there are along an axis.
+/// The excess of control points over cells along an axis.
 fn beyond(options: &Lattice) -> u32 {
     match options.basis {
         LatticeBasis::BSpline => options.degree,

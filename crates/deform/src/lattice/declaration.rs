@@ -39,7 +39,7 @@ pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     first_choice: || Lattice::default().into(),
 };
 
-/// The most samples of a handle, or of what is fixed.
+/// The most samples of a handle, or of the fixed vertices.
 const SAMPLES: usize = 20_000;
 
 /// The bound method.
@@ -47,7 +47,7 @@ const SAMPLES: usize = 20_000;
 struct BoundLattice {
     field: LinearField,
     controls: Controls,
-    /// Where the lattice was brought.
+    /// The position of the control points, if a person brought the lattice.
     by_hand: Option<HandField<Grid>>,
     solved_count: usize,
     warnings: Vec<String>,
@@ -56,7 +56,7 @@ struct BoundLattice {
 /// The field of the control points' displacements.
 struct LatticeMap<'a> {
     grid: &'a Grid,
-    /// Row-major: one entry a control point and handle.
+    /// Row-major: one entry per control point and handle.
     controls: &'a [[f64; 4]],
     handle_count: usize,
 }
@@ -167,7 +167,7 @@ impl DeformMethod for Lattice {
     }
 }
 
-/// What to say of points outside of a lattice's box, where its outermost polynomials go on.
+/// A sentence about points outside of a lattice's box, where its outermost polynomials continue.
 fn outside(lattice: &ControlLattice, world_points: &[DVec3]) -> Option<String> {
     let is_in = |point: &&DVec3| point.cmpge(lattice.low).all() && point.cmple(lattice.high).all();
     let count = world_points.len() - world_points.iter().filter(is_in).count();

@@ -13,13 +13,13 @@ use crate::numerical::dense::solved;
 use crate::space::affine::AffineParts;
 use crate::space::fit_samples::Sample;
 
-/// λ. What the handles ask for comes first, and the norm decides about the rest.
+/// λ. The handles' constraints come first, and the norm decides the rest.
 const REGULARISATION: f64 = 1e-8;
 
-/// Where second differences leave a choice, least displacements decide, with this factor.
+/// If second differences leave a choice, least displacements decide, with this factor.
 const RIDGE: f64 = 1e-2;
 
-/// The weight of a soft handle of weight 1: as much as the lattice resists half a wave as long as it is.
+/// The weight of a soft handle of weight 1: the lattice's resistance to half a wave of its own length.
 pub(super) fn soft_unit(grid: &Grid, norm: LatticeNorm) -> f64 {
     let count = grid.count() as f64;
     let wave = match norm {
@@ -29,14 +29,14 @@ pub(super) fn soft_unit(grid: &Grid, norm: LatticeNorm) -> f64 {
     0.5 * REGULARISATION * count * wave
 }
 
-/// Bytes that the fit takes.
+/// Bytes of the fit.
 pub(super) fn fit_bytes(grid: &Grid, handle_count: usize) -> u64 {
     let (count, columns) = (grid.count() as u64, 4 * handle_count as u64);
     // The matrix, the factorisation's scratch of one panel, and two copies of the right-hand sides.
     8 * count * (count + 2 * columns + 64)
 }
 
-/// Each control point's displacements: row-major, one entry a control point and handle.
+/// Each control point's displacements: row-major, one entry per control point and handle.
 pub(super) fn fitted(
     grid: &Grid,
     norm: LatticeNorm,

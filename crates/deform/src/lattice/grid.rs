@@ -14,23 +14,23 @@ pub(super) struct Grid {
 }
 
 impl Grid {
-    /// Of these functions over the box from `low` over `extent`.
+    /// The lattice of these functions over the box from `low` over `extent`.
     pub fn new(axes: [Axis; 3], low: DVec3, extent: DVec3) -> Self {
         Self { low, extent, axes }
     }
 
-    /// How many control points it has along each axis.
+    /// The number of control points along each axis.
     pub fn counts(&self) -> USizeVec3 {
         let [x, y, z] = self.axes.map(|axis| axis.count());
         USizeVec3::new(x, y, z)
     }
 
-    /// How many control points it has.
+    /// The number of control points.
     pub fn count(&self) -> usize {
         self.counts().element_product()
     }
 
-    /// A control point's number by its place along each axis; x runs fastest.
+    /// A control point's number for its place along each axis; x runs fastest.
     pub fn number(&self, place: USizeVec3) -> usize {
         let counts = self.counts();
         place.x + counts.x * (place.y + counts.y * place.z)
@@ -43,7 +43,7 @@ impl Grid {
         (0..counts.z).flat_map(move |z| (0..counts.y).flat_map(move |y| row(y, z)))
     }
 
-    /// Where a control point rests.
+    /// The rest position of a control point.
     pub fn rest(&self, place: USizeVec3) -> DVec3 {
         let at: [f64; 3] = std::array::from_fn(|axis| self.axes[axis].greville(place[axis]));
         self.low + self.extent * DVec3::from_array(at)

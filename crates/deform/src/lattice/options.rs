@@ -20,13 +20,13 @@ options! {
             range: [1, 10],
             help: "cells of the lattice along each axis; more follow the handles more closely and bend more locally",
         },
-        /// Cells along x, in place of `resolution`.
+        /// Cells along x, instead of `resolution`.
         resolution_x: u32 = of_axis("cells along x, or 0 for as many as `resolution` says"),
-        /// Cells along y, in place of `resolution`.
+        /// Cells along y, instead of `resolution`.
         resolution_y: u32 = of_axis("cells along y, or 0 for as many as `resolution` says"),
-        /// Cells along z, in place of `resolution`.
+        /// Cells along z, instead of `resolution`.
         resolution_z: u32 = of_axis("cells along z, or 0 for as many as `resolution` says"),
-        /// The functions that control points are weighted by.
+        /// The functions that weight the control points.
         basis: LatticeBasis = Choice {
             default: LatticeBasis::BSpline,
             help: "b-spline: a control point moves what is near it; bernstein: it moves everything a little",
@@ -38,13 +38,13 @@ options! {
             help: "how smooth b-splines are: 1 has creases, 2 has even tangents, 3 even curvature; bernstein has the \
                    resolution for its degree",
         }; advanced,
-        /// What decides where the handles leave a choice.
+        /// The criterion if the handles leave a choice.
         norm: LatticeNorm = Choice {
             default: LatticeNorm::Bending,
             help: "what the lattice does where handles leave it a choice: bend as little as it can, or (displacement) \
                    move as little as it can, which stays close to the handles",
         }; advanced,
-        /// Where the field fades towards what is fixed.
+        /// The fading of the field towards fixed vertices.
         falloff: f64 = Number {
             default: 0.1,
             range: [0.0, 1.0],
@@ -59,17 +59,17 @@ named_choices! {
     pub enum LatticeBasis {
         /// Uniform B-splines of the option `degree`.
         BSpline = "b-spline",
-        /// Bernstein polynomials, of as high a degree as there are cells.
+        /// Bernstein polynomials, of a degree equal to the number of cells.
         Bernstein = "bernstein",
     }
 }
 
 named_choices! {
-    /// Which of the lattices that fit the handles equally well is taken.
+    /// The choice among the lattices that fit the handles equally well.
     pub enum LatticeNorm {
-        /// That of the least second differences of the control points.
+        /// The one with the least second differences of the control points.
         Bending = "bending",
-        /// That whose control points move least \[HHK92\].
+        /// The one whose control points move least \[HHK92\].
         Displacement = "displacement",
     }
 }

@@ -1,4 +1,4 @@
-//! What a method takes beside handles, and a person may bring and edit: a cage, a lattice, examples.
+//! Inputs of a method beside handles, which a person may bring and edit: a cage, a lattice, examples.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -7,20 +7,20 @@ use glam::{DVec3, USizeVec3};
 
 use super::AttachmentRefused;
 
-/// A thing that a method takes. It is a member of `method` in the edit format.
+/// An input that a method declares. It is a member of `method` in the edit format.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct AttachmentDeclaration {
     /// Its name in the edit format; none of the method's options has the same.
     pub name: &'static str,
-    /// What a person calls it, in lower case.
+    /// Its label for a person, in lower case.
     pub title: &'static str,
-    /// What it is and what happens without it, as a phrase.
+    /// A phrase on its purpose and on its replacement if it is missing.
     pub help: &'static str,
-    /// What it is made of.
+    /// Its kind.
     pub kind: AttachmentKind,
 }
 
-/// What an attachment is made of.
+/// The kind of an attachment.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum AttachmentKind {
     /// A closed triangle mesh whose vertices are moved.
@@ -31,18 +31,18 @@ pub enum AttachmentKind {
     Shapes,
 }
 
-/// An attachment. A binding depends on how it rests, a frame on where its points were moved to or on its weights.
+/// An attachment. A binding depends on its rest shape, a frame on the moved positions of its points or on its weights.
 #[derive(Clone, PartialEq, Debug)]
 pub enum Attachment {
-    /// Of [`AttachmentKind::ControlMesh`].
+    /// The attachment of [`AttachmentKind::ControlMesh`].
     Mesh(ControlMesh),
-    /// Of [`AttachmentKind::ControlLattice`].
+    /// The attachment of [`AttachmentKind::ControlLattice`].
     Lattice(ControlLattice),
-    /// Of [`AttachmentKind::Shapes`].
+    /// The attachment of [`AttachmentKind::Shapes`].
     Shapes(Examples),
 }
 
-/// Further shapes that a surface may have, and how much of each it takes.
+/// Further shapes of a surface, and their weights.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub struct Examples {
     /// The shapes.
@@ -55,9 +55,9 @@ pub struct Examples {
 /// A further shape of the same vertices and triangles.
 #[derive(Clone, PartialEq, Debug)]
 pub struct ExampleShape {
-    /// What a person calls it.
+    /// Its label for a person.
     pub name: String,
-    /// How far each surface vertex is from rest, in world units.
+    /// The displacement of each surface vertex from rest, in world units.
     pub displacements: Arc<Vec<DVec3>>,
 }
 
@@ -67,15 +67,15 @@ pub const LARGEST_WEIGHT: f64 = 10.0;
 /// A control mesh.
 #[derive(Clone, PartialEq, Debug)]
 pub struct ControlMesh {
-    /// Where its vertices rest, in world units.
+    /// The rest positions of its vertices, in world units.
     pub rest: Arc<Vec<DVec3>>,
     /// Its triangles, all of them counterclockwise or all clockwise seen from outside.
     pub triangles: Arc<Vec<[u32; 3]>>,
-    /// Where its vertices were moved to by hand: one point a vertex.
+    /// The positions to which its vertices were moved by hand: one per vertex.
     pub moved: Arc<Vec<DVec3>>,
 }
 
-/// A control lattice. Where its points rest follows from the box, the counts and the method's functions; see
+/// A control lattice. The rest positions of its points follow from the box, the counts and the method's functions; see
 /// [`crate::Method::control_rest`].
 #[derive(Clone, PartialEq, Debug)]
 pub struct ControlLattice {
@@ -85,12 +85,12 @@ pub struct ControlLattice {
     pub low: DVec3,
     /// The box's highest corner.
     pub high: DVec3,
-    /// Where its points were moved to by hand: one a control point, x running fastest, then y.
+    /// The positions to which its points were moved by hand: one per control point, x running fastest, then y.
     pub moved: Arc<Vec<DVec3>>,
 }
 
 impl Attachment {
-    /// What it is made of.
+    /// Its kind.
     pub fn kind(&self) -> AttachmentKind {
         match self {
             Self::Mesh(_) => AttachmentKind::ControlMesh,
@@ -99,7 +99,7 @@ impl Attachment {
         }
     }
 
-    /// Where its points were moved to by hand; `None` for examples, which have none.
+    /// The positions to which its points were moved by hand; `None` for examples, which have none.
     pub fn moved(&self) -> Option<&Arc<Vec<DVec3>>> {
         match self {
             Self::Mesh(mesh) => Some(&mesh.moved),
@@ -108,7 +108,7 @@ impl Attachment {
         }
     }
 
-    /// The same with its points moved to these places.
+    /// The same with its points moved to these positions.
     #[must_use]
     pub fn with_moved(&self, moved: Arc<Vec<DVec3>>) -> Self {
         match self.clone() {
@@ -118,8 +118,8 @@ impl Attachment {
         }
     }
 
-    /// Whether the two differ in nothing but where their points were moved to, or in names and weights: then nothing has
-    /// to be bound anew.
+    /// Whether the two differ only in the moved positions of their points, or in names and weights: then no new binding
+    /// is needed.
     pub fn rests_as(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Mesh(a), Self::Mesh(b)) => {
@@ -137,7 +137,7 @@ impl Attachment {
         }
     }
 
-    /// How many points it has.
+    /// The number of its points.
     pub fn point_count(&self) -> usize {
         match self {
             Self::Mesh(mesh) => mesh.rest.len(),
@@ -146,7 +146,7 @@ impl Attachment {
         }
     }
 
-    /// The lines between its points, each once: a mesh's edges, or a lattice's from each point to the next ones.
+    /// The lines between its points, each once: a mesh's edges, or a lattice's lines between neighbouring points.
     pub fn edges(&self) -> Vec<[u32; 2]> {
         match self {
             Self::Mesh(mesh) => {
@@ -159,8 +159,8 @@ impl Attachment {
         }
     }
 
-    /// Refuses another length of `moved` than there are points, points that are not finite, triangles of vertices that
-    /// do not exist, and weights that are too many, too few or too large.
+    /// Refuses a wrong length of `moved`, points that are not finite, triangles of vertices that do not exist, and
+    /// weights that are too many, too few or too large.
     pub(crate) fn check(&self) -> Result<(), AttachmentRefused> {
         if let Self::Shapes(examples) = self {
             return examples.check();
@@ -201,7 +201,7 @@ impl Examples {
         self.shapes.iter().try_for_each(|shape| finite(&shape.displacements))
     }
 
-    /// Refuses a shape that does not have so many vertices.
+    /// Refuses a shape without this many vertices.
     pub(crate) fn check_fits(&self, vertex_count: usize) -> Result<(), AttachmentRefused> {
         let fits = |shape: &&ExampleShape| shape.displacements.len() == vertex_count;
         match self.shapes.iter().find(|shape| !fits(shape)) {
@@ -215,7 +215,7 @@ impl Examples {
     }
 }
 
-/// Refuses another number of weights than of shapes, and those that are not finite or too large.
+/// Refuses a wrong number of weights, and weights that are not finite or too large.
 pub(crate) fn check_weights(weights: &[Option<f64>], expected: usize) -> Result<(), AttachmentRefused> {
     if weights.len() != expected {
         return Err(AttachmentRefused::WeightCount {

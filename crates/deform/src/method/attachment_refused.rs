@@ -1,31 +1,31 @@
-//! Why a cage, a lattice or examples can't be taken.
+//! Reasons why a cage, a lattice or examples can't be used.
 
-/// An attachment can't be taken. The sentence has no subject: "the cage", "the lattice" or "the examples" stands
-/// before it.
+/// An attachment can't be used. The sentence has no subject: "the cage", "the lattice" or "the examples" is put before
+/// it.
 #[derive(Clone, PartialEq, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum AttachmentRefused {
-    /// The method does not declare it, or as another kind.
+    /// The method does not declare it, or declares another kind.
     #[error("is nothing that this method takes: leave it out")]
     Kind,
-    /// There are too few or too many of its points.
+    /// The number of its points is too small or too large.
     #[error("has {found} points: give {least} to {most}")]
     PointCount {
-        /// How many it has.
+        /// The number of points.
         found: usize,
         /// The fewest.
         least: usize,
         /// The most.
         most: usize,
     },
-    /// `moved` has another length.
+    /// `moved` has a wrong length.
     #[error(
         "has {found} moved points where {expected} are expected: give one for each of its points, or leave `moved` out"
     )]
     MovedCount {
-        /// How many there are.
+        /// The length.
         found: usize,
-        /// How many points it has.
+        /// The number of points.
         expected: usize,
     },
     /// A point that is not finite.
@@ -41,7 +41,7 @@ pub enum AttachmentRefused {
         triangle: usize,
         /// The vertex.
         vertex: u32,
-        /// How many there are.
+        /// The number of vertices.
         count: usize,
     },
     /// A vertex without a triangle.
@@ -56,43 +56,43 @@ pub enum AttachmentRefused {
         /// The triangle.
         triangle: usize,
     },
-    /// An edge of one triangle.
+    /// An edge with one triangle.
     #[error("is open at the edge from vertex {0} to vertex {1}: close it")]
     Open(u32, u32),
-    /// An edge of more than two triangles.
+    /// An edge with more than two triangles.
     #[error("has more than two triangles at the edge from vertex {0} to vertex {1}: leave two of them")]
     NonManifold(u32, u32),
     /// Two triangles at an edge that face different sides.
     #[error("has triangles that face different sides at the edge from vertex {0} to vertex {1}: turn one of them over")]
     Turned(u32, u32),
-    /// It has no volume.
+    /// The volume is zero.
     #[error("encloses no volume: give a closed mesh around the region")]
     NoVolume,
-    /// Vertices that must lie within it do not.
+    /// Vertices that must be within it are not.
     #[error(
         "leaves {count} of the region's vertices outside, and {coordinates} coordinates are for those inside: make it \
          larger, or take mean-value coordinates"
     )]
     Outside {
-        /// How many.
+        /// The number of vertices.
         count: usize,
         /// The coordinates' name.
         coordinates: &'static str,
     },
-    /// Vertices lie where the harmonic grid has no node.
+    /// Vertices are at places without a node of the harmonic grid.
     #[error(
         "comes closer than the grid is fine to {count} of the region's vertices: move it away from them or raise `grid`"
     )]
     Close {
-        /// How many.
+        /// The number of vertices.
         count: usize,
     },
-    /// Another number of control points along an axis than the functions can have.
+    /// A number of control points along an axis that the functions can't have.
     #[error("has {found} control points along {axis}: with this `basis` and `degree` give {least} to {most}")]
     Counts {
         /// The axis.
         axis: char,
-        /// How many there are.
+        /// The number.
         found: u32,
         /// The fewest.
         least: u32,
@@ -105,22 +105,22 @@ pub enum AttachmentRefused {
         /// The axis.
         axis: char,
     },
-    /// An example has another number of vertices than the surface.
+    /// An example's number of vertices differs from the surface's.
     #[error("can't be taken: {name:?} has {found} vertices where the surface has {expected}")]
     VertexCount {
         /// The example's name.
         name: String,
-        /// How many it has.
+        /// The example's number of vertices.
         found: usize,
-        /// How many the surface has.
+        /// The surface's number of vertices.
         expected: usize,
     },
-    /// There are too few or too many weights.
+    /// The number of weights is too small or too large.
     #[error("can't be taken with {found} weights: give one for each of the {expected}")]
     WeightCount {
-        /// How many there are.
+        /// The number of weights.
         found: usize,
-        /// How many examples there are.
+        /// The number of examples.
         expected: usize,
     },
     /// A weight that is not finite or too large.

@@ -3,27 +3,26 @@
 use super::attachment::AttachmentDeclaration;
 use super::{Method, OptionDeclaration};
 
-/// A method, as it is listed and explained. Each method's folder has one, and [`super::METHODS`] has them all.
+/// The listing and explanation of a method. Each method's folder has one, and [`super::METHODS`] has them all.
 #[derive(Clone, Copy, Debug)]
 pub struct MethodDeclaration {
     /// Its name in the edit format and on the command line.
     pub name: &'static str,
-    /// What a person calls it.
+    /// Its label for a person.
     pub title: &'static str,
-    /// One sentence on when to take it.
+    /// One sentence on its use.
     pub when_to_use: &'static str,
-    /// What else it is called, in lower case.
+    /// Its other names, in lower case.
     pub keywords: &'static str,
-    /// Its options, in the order in which they are shown.
+    /// Its options, in the order of the window.
     pub options: &'static [OptionDeclaration],
-    /// What it takes beside handles, such as a cage. It makes for itself what is not brought.
+    /// Its inputs beside handles, such as a cage. The method makes those that are not brought.
     pub attachments: &'static [AttachmentDeclaration],
-    /// Which constraints it supports beyond handles and fixed vertices.
+    /// The constraints that it supports beyond handles and fixed vertices.
     pub heeds: &'static [ConstraintKind],
     /// The method with the defaults of the edit format.
     pub default: fn() -> Method,
-    /// The method as the window begins with it. It may differ from the defaults, which can't change because edits leave
-    /// them out.
+    /// The window's initial method. It may differ from the defaults, which can't change because edits leave them out.
     pub first_choice: fn() -> Method,
 }
 
@@ -32,33 +31,34 @@ pub struct MethodDeclaration {
 pub enum ConstraintKind {
     /// Handles that only pull at their vertices.
     SoftHandles,
-    /// How smoothly the free surface joins constrained vertices.
+    /// The smoothness with which the free surface joins constrained vertices.
     Continuity,
     /// Painted stiffness.
     Stiffness,
 }
 
-/// What a method works on.
+/// The domain of a method.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Needs {
-    /// Points in space, connected or not. It moves every free vertex.
+    /// Points in space, connected or not. The method moves every free vertex.
     Points,
-    /// A surface's triangles. It moves what a handle can reach.
+    /// A surface's triangles. The method moves the vertices that a handle can reach.
     Surface {
-        /// How many edges a handle's influence travels at a time, across constrained vertices too; at least 1.
+        /// The number of edges over which a handle's influence spreads at a time, across constrained vertices too; at
+        /// least 1.
         reach: u32,
-        /// The power of the Laplacian in whose graph's order its system is eliminated; `None` if it needs no
+        /// The power of the Laplacian whose graph gives its system's order of elimination; `None` if it needs no
         /// [`crate::Ordering`].
         ordering_power: Option<u32>,
     },
 }
 
-/// How a bound method comes to its shape.
+/// The way in which a bound method finds its shape.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Solve {
     /// In one step.
     Direct,
-    /// Step by step, each going on from the shape of the last one.
+    /// Step by step, each from the last one's shape.
     Iterative {
         /// The most steps towards one set of targets; at least 1.
         max_iterations: u32,
@@ -71,7 +71,7 @@ impl MethodDeclaration {
         self.attachments.iter().find(|attachment| attachment.name == name)
     }
 
-    /// Whether it heeds this.
+    /// Whether it supports this constraint.
     pub fn heeds(&self, constraint: ConstraintKind) -> bool {
         self.heeds.contains(&constraint)
     }

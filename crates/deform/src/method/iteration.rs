@@ -1,8 +1,8 @@
-//! Options that all iterative methods share.
+//! Options of all iterative methods.
 
 use super::option::{Number, Whole};
 
-/// The relative decrease of the energy below which a step was the last one.
+/// The relative decrease of the energy below which iteration ends.
 pub(crate) const TOLERANCE: Number = Number {
     default: 1e-7,
     range: [1e-12, 0.1],

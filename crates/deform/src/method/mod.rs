@@ -1,6 +1,6 @@
-//! The methods: what each declares and implements, and the list of them all.
+//! The methods: their declarations and implementations, and the list of them all.
 //!
-//! `README.md` beside the sources says how a method is added and what later ones will bring along.
+//! `README.md` beside the sources explains the addition of a method and the needs of later ones.
 
 pub(crate) mod attachment;
 mod attachment_refused;
@@ -26,7 +26,7 @@ pub(crate) use self::traits::{BindInput, BoundMethod, DeformMethod, Finite, Opti
 use crate::budget::plate_bytes;
 use crate::{BindError, Budget, Ordering};
 
-/// Every method, in the order in which they are shown. A new one adds its line here.
+/// Every method, in the order of the window. A new method adds its line here.
 pub const METHODS: &[&MethodDeclaration] = &[
     &crate::bilaplacian::DECLARATION,
     &crate::arap::DECLARATION,
@@ -46,7 +46,7 @@ pub const METHODS: &[&MethodDeclaration] = &[
     &crate::identity::DECLARATION,
 ];
 
-/// A method with its options: how a surface follows its handles.
+/// A method with its options: the law by which a surface follows its handles.
 pub struct Method(Box<dyn DeformMethod>);
 
 impl Method {
@@ -54,13 +54,13 @@ impl Method {
         Self(Box::new(options))
     }
 
-    /// The method called `name`, with its defaults.
+    /// The method `name`, with its defaults.
     pub fn from_name(name: &str) -> Option<Self> {
         let declaration = METHODS.iter().find(|declaration| declaration.name == name)?;
         Some((declaration.default)())
     }
 
-    /// What it says of itself.
+    /// Its declaration.
     pub fn declaration(&self) -> &'static MethodDeclaration {
         self.0.declaration()
     }
@@ -70,23 +70,23 @@ impl Method {
         self.declaration().name
     }
 
-    /// Whether it joins constrained vertices as smoothly as [`crate::Constraints::continuity`] says; other methods have no
+    /// Whether [`crate::Constraints::continuity`] sets the smoothness at constrained vertices; other methods have no
     /// choice, and neither has the membrane.
     pub fn has_continuity(&self) -> bool {
         self.0.has_continuity()
     }
 
-    /// As [`DeformMethod::counts_in_sizes`].
+    /// See [`DeformMethod::counts_in_sizes`].
     pub(crate) fn counts_in_sizes(&self) -> Option<(&'static str, i32)> {
         self.0.counts_in_sizes()
     }
 
-    /// What it works on, with its present options.
+    /// Its domain, with its present options.
     pub fn needs(&self) -> Needs {
         self.0.needs()
     }
 
-    /// Refuses a surface without triangles where the method needs some.
+    /// Refuses a surface without triangles if the method needs some.
     ///
     /// # Errors
     /// [`BindError::NoTriangles`].
@@ -99,13 +99,13 @@ impl Method {
         }
     }
 
-    /// The power of the Laplacian whose graph the ordering is made for, if it needs one.
+    /// The power of the Laplacian of the ordering's graph, if it needs one.
     pub fn ordering_power(&self) -> Option<u32> {
         self.needs().ordering_power()
     }
 
-    /// The power of the ordering for so many free vertices within a budget: [`Method::ordering_power`], or 1 where the
-    /// factor of the method's own system can be expected not to fit and the Laplacian's is enough. `None` if it needs no
+    /// The power of the ordering for this many free vertices within a budget: [`Method::ordering_power`], or 1 if the
+    /// factor of the method's own system is not expected to fit and the Laplacian's is enough. `None` if it needs no
     /// ordering. The factor's size is estimated from the number of vertices.
     pub fn ordering_power_within(&self, free_count: usize, budget: Budget) -> Option<u32> {
         let power = self.ordering_power()?;
@@ -133,24 +133,24 @@ impl Method {
             .transpose()
     }
 
-    /// How it comes to its shape, with its present options.
+    /// The way in which it finds its shape, with its present options.
     pub fn solve(&self) -> Solve {
         self.0.solve()
     }
 
-    /// How hard handles hold their vertices, with its present options.
+    /// The way in which hard handles hold their vertices, with its present options.
     pub fn handle_fit(&self) -> HandleFit {
         self.0.handle_fit()
     }
 
-    /// Whether examples that it takes bend the surface by their weights, 0 being rest. Otherwise they only add to what
-    /// handles do, and a weight multiplies what its example adds, 1 where there is none.
+    /// Whether its examples bend the surface by their weights, 0 being rest. Otherwise they only add to the handles'
+    /// effect, and a weight multiplies its example's addition, 1 without a weight.
     pub fn examples_bend(&self) -> bool {
         self.0.examples_bend()
     }
 
-    /// Where the points of an attachment rest, in world units; one for each. A lattice's depend on the options; examples
-    /// have none.
+    /// The rest positions of an attachment's points, in world units. A lattice's depend on the options; examples have
+    /// none.
     pub fn control_rest(&self, attachment: &Attachment) -> Vec<DVec3> {
         match attachment {
             Attachment::Mesh(mesh) => mesh.rest.to_vec(),
@@ -159,11 +159,10 @@ impl Method {
         }
     }
 
-    /// Whether a binding can take an attachment that it declares by this name, as far as that does not depend on the
-    /// surface.
+    /// Checks an attachment of this declared name, as far as that does not depend on the surface.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// The fault of the attachment.
     pub fn check_attachment(&self, name: &str, attachment: &Attachment) -> Result<(), AttachmentRefused> {
         let declared = self.declaration().attachment(name);
         if declared.is_none_or(|declared| declared.kind != attachment.kind()) {
@@ -173,7 +172,7 @@ impl Method {
         attachment.check()
     }
 
-    /// What an option is set to; `None` if the method has none of this name.
+    /// The value of an option; `None` if the method has none of this name.
     pub fn value(&self, option: &str) -> Option<OptionValue> {
         self.0.value(option)
     }
@@ -181,7 +180,8 @@ impl Method {
     /// The method with some of its options set.
     ///
     /// # Errors
-    /// An option that it does not have, or a value that it does not take, by itself or together with the other options.
+    /// An option that it does not have, or a value that the option does not allow, alone or together with the other
+    /// options.
     pub fn with<'a>(&self, values: impl IntoIterator<Item = (&'a str, OptionValue)>) -> Result<Self, OptionRefused> {
         let mut set = self.clone();
         for (name, value) in values {
@@ -214,7 +214,7 @@ impl Method {
 }
 
 impl Default for Method {
-    /// What an edit has that says nothing else.
+    /// The method of an edit that names none.
     fn default() -> Self {
         (METHODS[0].default)()
     }

@@ -2,39 +2,39 @@
 
 use std::fmt;
 
-/// One option of a method.
+/// An option of a method.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct OptionDeclaration {
     /// Its name in the edit format.
     pub name: &'static str,
-    /// What it does, as a phrase. Values, range, unit and default are not part of it: [`OptionKind`] has them.
+    /// Its effect, as a phrase. Values, range, unit and default are not part of it: [`OptionKind`] has them.
     pub help: &'static str,
-    /// Which values it takes.
+    /// Its kind of values.
     pub kind: OptionKind,
-    /// Whether it is for those who know the method: the window folds such options away.
+    /// Whether it is an expert option: the window folds such options away.
     pub is_advanced: bool,
-    /// The choice of the method and the names of it without which this option has no effect.
+    /// The choice option, and its names with which this option has an effect.
     pub only_with: Option<(&'static str, &'static [&'static str])>,
 }
 
-/// Which values an option takes.
+/// The values of an option.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub enum OptionKind {
     /// A finite number.
     Number {
-        /// The smallest and the largest.
+        /// The smallest and the largest value.
         range: [f64; 2],
-        /// What it is counted in; empty for a plain number.
+        /// Its unit; empty for a plain number.
         unit: &'static str,
     },
     /// A whole number.
     Whole {
-        /// The smallest and the largest.
+        /// The smallest and the largest value.
         range: [u32; 2],
     },
     /// One of a few whole numbers.
     Numbered {
-        /// The numbers, each with what it stands for.
+        /// The numbers, each with its meaning.
         choices: &'static [(u32, &'static str)],
     },
     /// One of a few names.
@@ -46,26 +46,26 @@ pub enum OptionKind {
     Switch,
 }
 
-/// What an option is set to.
+/// The value of an option.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub enum OptionValue {
-    /// Of [`OptionKind::Number`].
+    /// The value of [`OptionKind::Number`].
     Number(f64),
-    /// Of [`OptionKind::Whole`] and [`OptionKind::Numbered`].
+    /// The value of [`OptionKind::Whole`] and [`OptionKind::Numbered`].
     Whole(u32),
-    /// Of [`OptionKind::Named`].
+    /// The value of [`OptionKind::Named`].
     Name(&'static str),
-    /// Of [`OptionKind::Switch`].
+    /// The value of [`OptionKind::Switch`].
     Switch(bool),
 }
 
-/// An option was given a value that it does not take.
+/// An option was given a value that it does not allow.
 #[derive(Clone, PartialEq, Eq, Debug, thiserror::Error)]
 #[error("the option `{option}` takes {allowed}")]
 pub struct OptionRefused {
     /// The option's name.
     pub option: String,
-    /// What it takes, e.g. "a number from 0 to 1".
+    /// Its allowed values, e.g. "a number from 0 to 1".
     pub allowed: String,
 }
 
@@ -87,7 +87,7 @@ impl OptionKind {
         }
     }
 
-    /// What it takes, for a refusal: "a number from 0 to 1".
+    /// Its allowed values, for a refusal: "a number from 0 to 1".
     pub fn allowed(&self) -> String {
         match self {
             Self::Number {
@@ -122,12 +122,12 @@ impl OptionKind {
 }
 
 impl OptionDeclaration {
-    /// What it does, its values, unit and default, on one line.
+    /// Its effect, values, unit and default, on one line.
     pub fn sentence(&self, default: OptionValue) -> String {
         format!("{}; {}; default {default}", self.help, self.kind.values())
     }
 
-    /// The same as an option for those who know the method.
+    /// The same as an expert option.
     pub(crate) const fn advanced(self) -> Self {
         Self {
             is_advanced: true,
@@ -135,7 +135,7 @@ impl OptionDeclaration {
         }
     }
 
-    /// The same as an option that has an effect only where the choice `other` is one of `names`.
+    /// The same with an effect only if the choice `other` is one of `names`.
     pub(crate) const fn only_with(self, other: &'static str, names: &'static [&'static str]) -> Self {
         Self {
             only_with: Some((other, names)),
@@ -143,7 +143,7 @@ impl OptionDeclaration {
         }
     }
 
-    /// Why it has no effect, if it has none where `value` tells what the method's options are set to.
+    /// The reason why it has no effect, if it has none; `value` gives the values of the method's options.
     pub fn idle_because(&self, value: impl Fn(&str) -> Option<OptionValue>) -> Option<String> {
         let (other, names) = self.only_with?;
         let has_effect = matches!(value(other), Some(OptionValue::Name(name)) if names.contains(&name));
@@ -153,7 +153,7 @@ impl OptionDeclaration {
         })
     }
 
-    /// The refusal of a value that it does not take.
+    /// The refusal of a value that it does not allow.
     pub(crate) fn refused(&self) -> OptionRefused {
         OptionRefused {
             option: self.name.to_owned(),
@@ -173,7 +173,7 @@ impl fmt::Display for OptionValue {
     }
 }
 
-/// A number with an exponent where it would have many zeros: 1e-6, 0.05, 1e12.
+/// A number with an exponent if it would have many zeros: 1e-6, 0.05, 1e12.
 struct Short(f64);
 
 impl fmt::Display for Short {
@@ -195,7 +195,7 @@ pub(crate) fn joined(words: impl IntoIterator<Item = String>, last: &str) -> Str
     }
 }
 
-/// Declares a number; what [`options!`] takes.
+/// Declares a number, for [`options!`].
 pub(crate) struct Number {
     pub default: f64,
     pub range: [f64; 2],
@@ -303,7 +303,7 @@ macro_rules! named_choices {
         }
 
         impl $type {
-            /// Every choice, in the order in which they are shown.
+            /// Every choice, in the order of the window.
             pub const ALL: [Self; [$($name),+].len()] = [$(Self::$variant),+];
 
             /// Its name in the edit format.
@@ -335,9 +335,9 @@ macro_rules! named_choices {
 
 /// The options of a method: a struct with its defaults, its list of declarations, and access by name.
 ///
-/// A field `name: type = declaration` is an option; the declaration is a [`Number`], a [`Whole`] or a [`Choice`].
-/// After it, `; advanced` has the window fold it away, and `; only_with(other, names)` tells what it depends on.
-/// Fields in `beside { .. }` are no options: only tests and measurements set them.
+/// A field `name: type = declaration` is an option; the declaration is a [`Number`], a [`Whole`] or a [`Choice`]. After
+/// it, `; advanced` makes the window fold it away, and `; only_with(other, names)` declares its dependence. Fields in
+/// `beside { .. }` are no options: only tests and measurements set them.
 macro_rules! options {
     (
         $(#[$meta:meta])*

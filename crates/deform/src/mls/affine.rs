@@ -19,11 +19,11 @@ pub(super) struct AffineMap<'a> {
     pub points: &'a Points,
     pub half_falloff: f64,
     pub positions: &'a [DVec3],
-    /// Of each handle: the origin in its coordinates, and its radius.
+    /// The origin in each handle's coordinates, and its radius.
     pub handles: &'a [(DVec3, f64)],
 }
 
-/// 1 + c·q, and q; or the derivatives of both along an axis.
+/// 1 + c·q, and q; or both derivatives along an axis.
 struct Dual {
     scale: f64,
     q: DVec3,

@@ -1,4 +1,4 @@
-//! The bound forms: affine fits, whose frame is a product, and those that turn.
+//! The bound forms: affine fits, whose frame is a product, and fits with rotations.
 
 use glam::{DVec3, Mat3};
 use rayon::prelude::*;
@@ -21,18 +21,18 @@ pub(super) struct BoundTurning {
     turning: Turning,
     unit: Unit,
     moving: Moving,
-    /// Where each row's vertex is, in the unit of all points.
+    /// The position of each row's vertex, in the unit of all points.
     places: Vec<DVec3>,
-    /// One row a vertex: the sum of all sets, then each handle.
+    /// One row per vertex: the sum of all sets, then each handle.
     entries: Vec<Entry>,
-    /// Of each handle: the origin in its coordinates, and its radius.
+    /// The origin in each handle's coordinates, and its radius.
     handles: Vec<(DVec3, f64)>,
 }
 
-/// Bytes of a row of [`BoundTurning`] but for the handles' own, while it is made.
+/// Bytes of a row of [`BoundTurning`] during binding, without the handles' entries.
 pub(super) const TURNING_ROW: usize = 300 + size_of::<Entry>() + size_of::<DVec3>();
 
-/// Rows that one task makes at once.
+/// The number of rows that one task makes at once.
 const AT_ONCE: usize = 64;
 
 fn origins(input: &BindInput<'_>, unit: &Unit) -> Vec<(DVec3, f64)> {
@@ -43,7 +43,7 @@ fn origins(input: &BindInput<'_>, unit: &Unit) -> Vec<(DVec3, f64)> {
 /// Affine fits, whose frame is a product.
 ///
 /// # Errors
-/// As [`BoundLinear::bind`].
+/// Those of [`BoundLinear::bind`].
 pub(super) fn bind_affine(points: &Points, half_falloff: f64, input: &BindInput<'_>) -> Result<BoundLinear, BindError> {
     let map = AffineMap {
         points,
@@ -75,7 +75,7 @@ impl BoundTurning {
             input.cancel.check()?;
             for (&vertex, row) in vertices.iter().zip(rows.chunks_mut(width)) {
                 let moments = moments_at(points, half_falloff, positions, positions[vertex as usize]);
-                // What is fixed counts in the sum alone.
+                // Fixed vertices count in the sum alone.
                 let all = [&moments.total].into_iter().chain(&moments.sets);
                 for (entry, own) in row.iter_mut().zip(all) {
                     *entry = own.stored();

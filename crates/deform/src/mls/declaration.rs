@@ -28,7 +28,7 @@ impl DeformMethod for Mls {
         &DECLARATION
     }
 
-    /// Where several handles count alike, no rotation fits all of them.
+    /// If several handles have equal weights, no rotation fits all of them.
     fn follows_turns(&self) -> Option<Followed> {
         Some(Followed::by_seams(90.0))
     }

@@ -41,7 +41,7 @@ impl Displacing {
     }
 }
 
-/// What [`Displacing::of`] takes of a handle.
+/// The data of a handle for [`Displacing::of`].
 pub(super) fn origin(handle: &Handle, unit: &Unit) -> DVec3 {
     (unit.world_origin - handle.world_centre) / handle.radius
 }
@@ -54,14 +54,14 @@ struct Sums {
     d: DMat3,
 }
 
-/// What is fitted at each place.
+/// The map fitted at each place.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum Turning {
     Similarity,
     Rigid,
 }
 
-/// N and what its derivative needs.
+/// N and the data for its derivative.
 struct Fit {
     n: DMat3,
     rotation: DMat3,
@@ -156,7 +156,7 @@ fn n_slope(turning: Turning, fit: &Fit, slopes: &Sums) -> DMat3 {
     );
     let h = DMat3::from_diagonal(DVec3::splat(trace(&fit.p))) - fit.p;
     let turn = h.inverse() * axial;
-    // Where the rotation is not unique it has no derivative.
+    // A rotation that is not unique has no derivative.
     let turn = if turn.is_finite() { turn } else { DVec3::ZERO };
     let turned =
         *rotation * DMat3::from_cols(turn.cross(DVec3::X), turn.cross(DVec3::Y), turn.cross(DVec3::Z)) * *scale;

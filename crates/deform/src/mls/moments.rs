@@ -4,7 +4,7 @@ use glam::{DMat3, DVec3};
 
 use super::points::{Points, Set};
 
-/// η: how far the cloud around each sample reaches, in the unit of all points.
+/// η: the reach of the cloud around each sample, in the unit of all points.
 pub(super) const CLOUD: f64 = 0.02;
 
 /// Σ w [1, r, r rᵀ] over weighted points at r from the place: the weight; x, y, z; xx, yy, zz, xy, xz, yz.
@@ -20,7 +20,7 @@ pub(super) struct Entry<T = f32> {
     pub slopes: Slopes<T>,
 }
 
-/// The moments at a place: of all sets together, and of each. All weights sum to 1.
+/// The moments at a place: for all sets together, and for each. All weights sum to 1.
 pub(super) struct PlaceMoments {
     pub total: Entry<f64>,
     pub sets: Vec<Entry<f64>>,
@@ -36,7 +36,7 @@ impl<T: Copy + Default> Default for Entry<T> {
 }
 
 impl Entry<f64> {
-    /// As it is stored.
+    /// The stored form.
     pub fn stored(&self) -> Entry {
         Entry {
             moments: self.moments,

@@ -5,13 +5,13 @@ use crate::method::option::{Choice, Number, named_choices, options};
 options! {
     /// Options of moving least squares.
     pub struct Mls {
-        /// What is fitted at each place.
+        /// The map fitted at each place.
         transforms: MlsTransforms = Choice {
             default: MlsTransforms::Rigid,
             help: "what each place may do: turn (\"rigid\"), turn and grow (\"similarity\"), or also stretch and shear \
                    (\"affine\")",
         },
-        /// How fast a handle's influence falls off: its weight is one over this power of the distance.
+        /// The falloff of a handle's influence: its weight is one over this power of the distance.
         falloff: f64 = Number {
             default: 4.0,
             range: [2.0, 8.0],

@@ -1,4 +1,4 @@
-//! The points that are fitted: samples of each handle, and of what is fixed.
+//! The fitted points: samples of each handle, and of the fixed vertices.
 
 use glam::DVec3;
 
@@ -17,10 +17,10 @@ const CANDIDATES: usize = 8192;
 /// ε of a soft handle of weight 1, in the unit of all points.
 pub(super) const SOFT: f64 = 0.5;
 
-/// ε of a hard handle: nearer points count as one.
+/// ε of a hard handle: nearer points have the same weight.
 const HARD: f64 = 1e-9;
 
-/// All sets: the handles, and last what is fixed, if anything is.
+/// All sets: the handles, then the fixed vertices, if there are any.
 pub(super) struct Points {
     pub sets: Vec<Set>,
     pub unit: Unit,
@@ -28,16 +28,16 @@ pub(super) struct Points {
 
 /// Points that move by one affine map.
 pub(super) struct Set {
-    /// In the unit of all points.
+    /// The samples, in the unit of all points.
     pub samples: Vec<DVec3>,
-    /// Of all its vertices, in world units.
+    /// The mean of all its vertices, in world units.
     nearest: NearestPoints,
     /// ε².
     pub softening: f64,
 }
 
 impl Points {
-    /// Of all handles and fixed vertices.
+    /// The sets of all handles and fixed vertices.
     pub fn of(input: &BindInput<'_>) -> Self {
         let positions = &input.problem.surface.positions;
         let fixed = (0..).zip(input.problem.roles);
@@ -70,7 +70,7 @@ impl Points {
 }
 
 impl Set {
-    /// The nearest of its vertices, from the point, in the unit of all points.
+    /// The nearest of its vertices, relative to the point, in the unit of all points.
     pub fn to_nearest(&self, world_point: DVec3, positions: &[DVec3], unit: &Unit) -> DVec3 {
         let nearest = self.nearest.nearest(world_point);
         nearest.map_or(DVec3::ZERO, |(vertex, _)| {

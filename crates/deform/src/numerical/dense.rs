@@ -5,8 +5,8 @@ use faer::linalg::lu::partial_pivoting::{factor, solve};
 use faer::perm::PermRef;
 use faer::{Mat, Par};
 
-/// A square matrix, factored by Gaussian elimination with row pivoting. On one thread, so that the bits do not depend
-/// on how many there are.
+/// A square matrix, factored by Gaussian elimination with row pivoting. It runs on one thread, so that the bits do not
+/// depend on the number of threads.
 #[derive(Debug)]
 pub(crate) struct Lu {
     factors: Mat<f64>,
@@ -15,7 +15,7 @@ pub(crate) struct Lu {
 }
 
 impl Lu {
-    /// Of this matrix. What is singular gives solutions that are not finite.
+    /// The factors of this matrix. A singular one gives solutions that are not finite.
     pub fn of(mut a: Mat<f64>) -> Self {
         let size = a.nrows();
         let (mut rows, mut rows_inverse) = (vec![0_usize; size], vec![0_usize; size]);

@@ -9,11 +9,11 @@ use super::rotation::{OPEN, SMALL_RAD, STATIONARY, STEPS, fit_anew};
 /// Eight cells on their way from matrices to rotations.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Fits {
-    /// What is added to the symmetric matrix `rest` to make S, column by column.
+    /// The matrix to add to the symmetric matrix `rest` to make S, column by column.
     pub change: [[Lanes; 3]; 3],
     /// xx, xy, xz, yy, yz, zz.
     pub rest: [Lanes; 6],
-    /// The unit quaternions x, y, z, w: where to begin, and then what was found.
+    /// The unit quaternions x, y, z, w: first the guess, then the result.
     pub rotation: [Lanes; 4],
     /// R − 1, column by column: near the identity they keep their digits.
     pub turn: [[Lanes; 3]; 3],
@@ -37,7 +37,7 @@ impl Fits {
         }
     }
 
-    /// The rotations that maximise tr(Rᵀ S) of the first `count` cells, from those they have.
+    /// The rotations that maximise tr(Rᵀ S) of the first `count` cells, from their present ones.
     #[inline(always)]
     pub fn fit<S: Simd>(&mut self, simd: S, count: usize) {
         for place in 0..LANES / S::F64_LANES {
@@ -66,7 +66,8 @@ impl Fits {
             let b = self.changes(simd, place);
             let rotation = Vector::each(simd, &self.rotation, place);
             let [x, y, z, w] = rotation;
-            // ⟨R − 1, S⟩ by the quaternion: 2 w (a · v) + 2 (v · S v − |v|² tr S), a of B, whose digits S has lost.
+            // ⟨R − 1, S⟩ by the quaternion: 2 w (a · v) + 2 (v · S v − |v|² tr S), with a from B, whose digits S has
+            // lost.
             let v = [x, y, z];
             let axial = [b[1][2] - b[2][1], b[2][0] - b[0][2], b[0][1] - b[1][0]];
             let mut inner = w * (axial[0] * x + axial[1] * y + axial[2] * z);
@@ -135,7 +136,7 @@ fn turns<S: Simd>([x, y, z, w]: [Vector<S>; 4]) -> Matrices<S> {
 }
 
 /// Newton's method of [`crate::numerical::rotation`] in every lane at once: the rotations that maximise tr(Rᵀ S), from
-/// the guesses `start`, and which lanes found theirs.
+/// the guesses `start`, and the lanes that found theirs.
 #[inline(always)]
 fn newton<S: Simd>(simd: S, s: &Matrices<S>, start: [Vector<S>; 4]) -> ([Vector<S>; 4], Mask<S>) {
     let (zero, one, half) = (
@@ -186,7 +187,7 @@ fn newton<S: Simd>(simd: S, s: &Matrices<S>, start: [Vector<S>; 4]) -> ([Vector<
         let turn_x = u * i1 - lxy * turn_y - lxz * turn_z;
         let square = turn_x * turn_x + turn_y * turn_y + turn_z * turn_z;
         let residual = skew[0].abs().max(skew[1].abs()).max(skew[2].abs());
-        // H positive definite and a sound turn; also false where anything is not a number.
+        // H must be positive definite and the turn sound; this is also false for NaN.
         let definite = zero.less(trace) & zero.less(hxx) & zero.less(d2) & zero.less(d3);
         let sound = square.less(Vector::splat(simd, 4.0));
         let ends = definite & residual.less(Vector::splat(simd, STATIONARY) * trace);

@@ -1,16 +1,15 @@
-//! Numbers of eight cells side by side.
+//! Numbers of eight cells together.
 //!
-//! Matrices and quaternions lie in memory as numbers of eight cells each and are computed on in the machine's own
-//! vectors, as many at a time as those hold. The vectors are asked for by name, because the compiler splits arrays of
-//! eight into pairs and single numbers. The loops hold no closure, because a closure is compiled apart from the vectors
-//! that it is called for. No operation is fused and no lane sees another, so every machine and every grouping of cells
-//! gives the same bits.
+//! Matrices and quaternions are stored as numbers of eight cells each and computed in the machine's own vectors, as
+//! many at a time as those hold. The code names the vectors, because the compiler splits arrays of eight into pairs and
+//! single numbers. The loops have no closure, because a closure is not compiled for the caller's vectors. No operation
+//! is fused and no lane sees another, so every machine and every grouping of cells gives the same bits.
 
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 use pulp::Simd;
 
-/// How many cells there are.
+/// The number of cells.
 pub(crate) const LANES: usize = 8;
 
 /// A number of each cell.
@@ -65,7 +64,7 @@ impl<S: Simd> Vector<S> {
         }
     }
 
-    /// The vector at one of the places of each.
+    /// One entry of each matrix, as a vector.
     #[inline(always)]
     pub(crate) fn each<const N: usize>(simd: S, lanes: &[Lanes; N], place: usize) -> [Self; N] {
         let mut vectors = [Self::splat(simd, 0.0); N];
@@ -108,7 +107,7 @@ impl<S: Simd> Vector<S> {
         self.or(other.less(self), other)
     }
 
-    /// Its own numbers where `mask` is set, else the other's.
+    /// Its own numbers where `mask` is set, otherwise the other's.
     #[inline(always)]
     pub(crate) fn or(self, mask: Mask<S>, other: Self) -> Self {
         Self {
@@ -117,7 +116,7 @@ impl<S: Simd> Vector<S> {
         }
     }
 
-    /// Where it is less; false where either is not a number.
+    /// Where it is less; false if either is NaN.
     #[inline(always)]
     pub(crate) fn less(self, other: Self) -> Mask<S> {
         Mask {
@@ -127,7 +126,7 @@ impl<S: Simd> Vector<S> {
     }
 }
 
-/// Which cells of a vector.
+/// A mask of a vector's cells.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Mask<S: Simd> {
     pub(crate) simd: S,
@@ -135,7 +134,7 @@ pub(crate) struct Mask<S: Simd> {
 }
 
 impl<S: Simd> Mask<S> {
-    /// None of them.
+    /// The empty mask.
     #[inline(always)]
     pub(super) fn none(simd: S) -> Self {
         let one = Vector::splat(simd, 1.0);

@@ -1,18 +1,18 @@
 //! The limited-memory quasi-Newton direction [NW06, algorithm 7.4] on top of a preconditioner.
 //!
 //! The first inverse is the preconditioner, unscaled, and the last steps' curvature corrects it. For ARAP that is the
-//! Laplacian's factor, which majorises the energy's Hessian: with no memory the direction is exactly a global step of
+//! Laplacian's factor, which majorises the energy's Hessian: without history the direction is exactly a global step of
 //! the plain local/global method.
 
 use std::collections::VecDeque;
 
 use crate::numerical::sums::{Field, add, dot};
 
-/// How many steps are remembered. On the bar, cylinder and cactus of [BS08] and a scan of 43k vertices 5, 8, 14 and 24
+/// The number of remembered steps. On the bar, cylinder and cactus of [BS08] and a scan of 43k vertices 5, 8, 14 and 24
 /// took the same number of iterations within 4%; each costs four passes over the field.
 const MEMORY: usize = 6;
 
-/// A pair whose curvature is below this share of its lengths says nothing.
+/// A pair whose curvature is below this share of its lengths is ignored.
 const FLAT: f64 = 1e-12;
 
 /// The last steps s and the changes y of the gradient along them.
@@ -56,7 +56,7 @@ impl Memory {
         });
     }
 
-    /// H g, uphill, where `precondition` applies the first inverse in place.
+    /// H g, uphill; `precondition` applies the first inverse in place.
     pub fn direction(&self, gradient: &[[f64; 3]], precondition: impl FnOnce(&mut [[f64; 3]])) -> Field {
         let mut q = gradient.to_vec();
         let mut alphas = Vec::with_capacity(self.pairs.len());

@@ -1,22 +1,22 @@
 //! A line search that halves and interpolates ([NW06], sections 3.1 and 3.5).
 
-/// A step must lower the energy by this share of what its slope promises.
+/// A step must lower the energy by this share of its slope's prediction.
 const SUFFICIENT: f64 = 1e-4;
 
-/// One length along a direction, of which an energy was found.
+/// One length along a direction, with its energy.
 pub(crate) struct Trial {
-    /// The length, above 0.
+    /// The length, positive.
     pub length: f64,
     /// The energy at length 0.
     pub before: f64,
     /// The energy at `length`.
     pub after: f64,
-    /// The energy's slope at length 0, below 0.
+    /// The energy's slope at length 0, negative.
     pub slope: f64,
 }
 
 impl Trial {
-    /// Whether the energy falls, and by enough of what the slope promises.
+    /// Whether the energy falls, and by a large enough share of the slope's prediction.
     pub fn is_sufficient(&self) -> bool {
         let Self {
             length,

@@ -1,5 +1,5 @@
-//! Small numerical tools that several methods share: descent directions, line searches, rotations and rigid motions
-//! that fit, sums that do not depend on the number of threads.
+//! Small numerical tools of several methods: descent directions, line searches, rotations and rigid motions that fit,
+//! sums that do not depend on the number of threads.
 
 pub(crate) mod dense;
 pub(crate) mod eigen;

@@ -1,8 +1,8 @@
-//! Asking for cache lines before they are needed.
+//! Requests for cache lines before they are needed.
 //!
-//! Processors prefetch by themselves only what is read in rising order. The backward substitution reads the factor in
-//! falling order and spent half of its time waiting; the values of a ring's vertices are read in no order at all. A
-//! hint cannot fault, wherever it points.
+//! Processors prefetch by themselves only data that are read in rising order. The backward substitution reads the
+//! factor in falling order and spent half of its time waiting; the values of a ring's vertices are read in random
+//! order. A hint cannot fault, even for an invalid address.
 
 /// The machine's prefetch instruction, if it has one.
 #[derive(Clone, Copy, Debug)]
@@ -12,7 +12,7 @@ pub(crate) struct Prefetch {
 }
 
 impl Prefetch {
-    /// What this machine offers.
+    /// The machine's prefetch.
     #[inline(always)]
     pub fn new() -> Self {
         Self {
@@ -21,19 +21,19 @@ impl Prefetch {
         }
     }
 
-    /// Prefetches what lies `distance` items after `item`, for a loop in rising order.
+    /// Prefetches the data `distance` items after `item`, for a loop in rising order.
     #[inline(always)]
     pub fn above<T>(self, item: &T, distance: usize) {
         self.fetch(std::ptr::from_ref(item).wrapping_add(distance));
     }
 
-    /// Prefetches what lies `distance` items before `item`, for a loop in falling order.
+    /// Prefetches the data `distance` items before `item`, for a loop in falling order.
     #[inline(always)]
     pub fn below<T>(self, item: &T, distance: usize) {
         self.fetch(std::ptr::from_ref(item).wrapping_sub(distance));
     }
 
-    /// Prefetches an item of at most one cache line; both lines if it lies across two.
+    /// Prefetches an item of at most one cache line; both lines if it is on two.
     #[inline(always)]
     pub fn item<T>(self, item: &T) {
         let first = std::ptr::from_ref(item);

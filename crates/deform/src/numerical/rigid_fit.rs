@@ -1,6 +1,6 @@
-//! The rigid motion that carries points best onto displaced ones [Hor87].
+//! The rigid motion that best fits points to displaced ones [Hor87].
 //!
-//! The unit quaternion that maximises qᵀ N q is a proper rotation whatever the points are: unlike with a singular value
+//! The unit quaternion that maximises qᵀ N q is a proper rotation for all points: unlike with a singular value
 //! decomposition, mirrored and flat patches need no special case.
 
 use glam::{DMat3, DQuat, DVec3};
@@ -18,8 +18,8 @@ pub struct RigidMotion {
 }
 
 impl RigidMotion {
-    /// The least-squares fit to the `displacements` of the points `rest`, which are as many; `None` if none of them
-    /// moves. Points on a line get the smallest rotation that carries the line along.
+    /// The least-squares fit to the `displacements` of the points `rest`, one per point; `None` if none of them moves.
+    /// Points on a line get the smallest rotation that fits the line.
     pub fn fit(rest: &[DVec3], displacements: &[DVec3]) -> Option<Self> {
         if displacements.iter().all(|&displacement| displacement == DVec3::ZERO) {
             return None;
@@ -36,7 +36,7 @@ impl RigidMotion {
             covariance += DMat3::from_cols(from * to.x, from * to.y, from * to.z);
             inertia += from.length_squared();
         }
-        // Points on a line, or all in one place, leave a rotation undetermined: a little rest inertia selects the
+        // Points on a line, or all in one place, do not determine a rotation: a little rest inertia selects the
         // smallest one.
         covariance += DMat3::from_diagonal(DVec3::splat(1e-12 * inertia + f64::MIN_POSITIVE));
         let turn = DMat3::from_quat(best_rotation(&covariance)) - DMat3::IDENTITY;
@@ -48,7 +48,7 @@ impl RigidMotion {
         DQuat::from_mat3(&(self.turn + DMat3::IDENTITY)).normalize()
     }
 
-    /// The same of a handle's vertices.
+    /// The same for a handle's vertices.
     pub(crate) fn motion_of(&self, handle: &Handle) -> Motion {
         Motion {
             linear: self.turn * handle.radius,

@@ -1,30 +1,31 @@
 //! The rotation R that maximises tr(Rᵀ S) for a 3×3 matrix S: a cell's best rotation, S = Σ w e' eᵀ.
 //!
-//! By Newton's method on the rotations, started from the last one. With B = Rᵀ S, a the axial vector of B's skew part
-//! and H = tr(B) I − sym(B), the step is R ← R exp(H⁻¹ a), and a rotation is the maximum exactly if a = 0 and H is
+//! It uses Newton's method on the rotations, started from the last one. With B = Rᵀ S, a the axial vector of B's skew
+//! part and H = tr(B) I − sym(B), the step is R ← R exp(H⁻¹ a), and a rotation is the maximum exactly if a = 0 and H is
 //! positive semidefinite: every other critical point is a saddle or a minimum. So one or two steps from a warm start
-//! are enough, reflected and flat cells need no case of their own, and what the test of H refuses is solved anew by the
-//! largest eigenvector of Horn's 4×4 matrix (see `rigid_fit`), which is always a proper rotation.
+//! are enough, reflected and flat cells need no special case, and cells that the test of H refuses are solved anew by
+//! the largest eigenvector of Horn's 4×4 matrix (see `rigid_fit`), which is always a proper rotation.
 
 use glam::{DMat3, DQuat, DVec3};
 
 use crate::numerical::rigid_fit::best_rotation;
 
-/// Newton steps before a start is given up.
+/// The number of Newton steps before a start is given up.
 pub(crate) const STEPS: u32 = 6;
 
 /// A skew part below this, in units of tr(B), counts as zero.
 pub(crate) const STATIONARY: f64 = 1e-14;
 
 /// After a rotation by less than this, in radians, no further step is needed: convergence is at least quadratic, and
-/// the error enters the energy squared once more. As a descent settles, its steps get smaller and the rotations exact.
+/// the error enters the energy squared once more. Near the end of a descent its steps get smaller and the rotations
+/// exact.
 pub(crate) const SMALL_RAD: f64 = 3e-3;
 
-/// What is added to H, in units of its trace: a cell whose edges lie on one line leaves the turn about it open, and
-/// keeps the one it had.
+/// The addition to H, in units of its trace: a cell with edges on one line does not determine the turn about it, and
+/// keeps its present one.
 pub(crate) const OPEN: f64 = 1e-12;
 
-/// The best rotation for `s`, from the guess `start`; `start` itself where `s` is zero or not finite.
+/// The best rotation for `s`, from the guess `start`; `start` itself if `s` is zero or not finite.
 #[inline]
 pub(crate) fn fit(s: &DMat3, start: DQuat) -> DQuat {
     if let Some(rotation) = newton(s, start) {
@@ -33,7 +34,7 @@ pub(crate) fn fit(s: &DMat3, start: DQuat) -> DQuat {
     fit_anew(s, start)
 }
 
-/// As [`fit`], where Newton's method from `start` did not get there.
+/// Like [`fit`], if Newton's method from `start` did not converge.
 #[cold]
 pub(crate) fn fit_anew(s: &DMat3, start: DQuat) -> DQuat {
     let size = s.to_cols_array().into_iter().fold(0.0, |a: f64, b| a.max(b.abs()));
@@ -64,7 +65,7 @@ fn newton(s: &DMat3, start: DQuat) -> Option<DQuat> {
         let m = hyz - lxy * hxz;
         let lyz = m / d2;
         let d3 = hzz - lxz * hxz - lyz * m;
-        // Also false where anything is not a number.
+        // This is also false for NaN.
         if !(trace > 0.0 && hxx > 0.0 && d2 > 0.0 && d3 > 0.0) {
             return None;
         }
@@ -105,7 +106,7 @@ mod tests {
         .normalize()
     }
 
-    /// R diag(σ) Vᵀ for rotations R and V: its best rotation is R Vᵀ while σ's sum of each pair is positive.
+    /// R diag(σ) Vᵀ for rotations R and V: its best rotation is R Vᵀ while each pair of σ has a positive sum.
     #[test]
     fn the_rotation_is_found_from_any_start_also_in_flat_and_reflected_cells() {
         for stretches in [
@@ -134,7 +135,7 @@ mod tests {
         let line = DMat3::from_cols(DVec3::X, DVec3::ZERO, DVec3::ZERO);
         let twist = DQuat::from_rotation_x(0.7);
         assert!(fit(&line, twist).dot(twist).abs() > 1.0 - 1e-12);
-        // A mirrored isotropic cell has no unique best rotation; any proper one will do.
+        // A mirrored isotropic cell has no unique best rotation; any proper one is correct.
         assert!(fit(&(-DMat3::IDENTITY), start).is_normalized());
     }
 }

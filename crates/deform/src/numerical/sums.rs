@@ -5,10 +5,10 @@ use rayon::prelude::*;
 
 use crate::operators::CHUNK;
 
-/// A field of vectors, one per column of the factor.
+/// A vector field, one vector per column of the factor.
 pub(crate) type Field = Vec<[f64; 3]>;
 
-/// The fewest chunks of a task: shorter fields are not worth waking a thread.
+/// The fewest chunks of a task: for shorter fields, waking a thread costs more than it saves.
 pub(crate) const CHUNKS_A_TASK: usize = 8;
 
 /// a · b.

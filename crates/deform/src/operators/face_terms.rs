@@ -17,7 +17,7 @@ pub(crate) struct FaceTerms {
     pub half_cotangents: [f64; 3],
     /// By corner: its share of the area.
     pub areas: [f64; 3],
-    /// Whether the triangle was too flat for cotangents of its own.
+    /// Whether the triangle was too flat for its own cotangents.
     pub mollified: bool,
 }
 
@@ -44,7 +44,7 @@ impl Metric {
             return Self::cotangent_area();
         }
         let total = total_area(triangulation);
-        // A surface of no area at all still has a shape to solve on.
+        // A surface without any area still has a shape to solve on.
         let mean = |count: usize| if total > 0.0 { total / count as f64 } else { 1.0 };
         Self {
             discretisation,
@@ -83,7 +83,8 @@ impl Metric {
     }
 }
 
-/// Over all triangles, summed in chunks of a fixed size, so that the result does not depend on the number of threads.
+/// The mean over all triangles, summed in chunks of a fixed size, so that the result does not depend on the number of
+/// threads.
 fn total_area(triangulation: &Triangulation) -> f64 {
     let count = triangulation.face_count();
     let partial: Vec<f64> = (0..count.div_ceil(CHUNK))

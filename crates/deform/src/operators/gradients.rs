@@ -20,9 +20,9 @@ use super::{ABSENT, CHUNK, Laplacian};
 #[derive(Debug)]
 pub(crate) struct Gradients {
     faces: Vec<Face>,
-    /// For each solved vertex where its entries of `corners` begin; one more at the end.
+    /// The start of each solved vertex' entries of `corners`; one more at the end.
     offsets: Vec<u32>,
-    /// Three times a face's place, plus the corner at which the solved vertex is.
+    /// Three times a face's place, plus the solved vertex' corner.
     corners: Vec<u32>,
     /// ½ Σ w |e|² of the rest shape.
     pub scale: f64,
@@ -41,11 +41,11 @@ pub(crate) struct Face {
     pub edges: [DVec3; 2],
 }
 
-/// How a face's two edges change: (T − I) e.
+/// The change of a face's two edges: (T − I) e.
 pub(crate) type EdgeChanges = [DVec3; 2];
 
 impl Gradients {
-    /// Around the local vertices `columns` of the Laplacian, which has full rows there.
+    /// The faces around the local vertices `columns` of the Laplacian, which has full rows there.
     pub fn of(
         surface: &Surface,
         topology: &Topology,
@@ -108,12 +108,12 @@ impl Gradients {
         }
     }
 
-    /// The faces: every one with a corner that is solved for.
+    /// The faces with a solved corner.
     pub fn faces(&self) -> &[Face] {
         &self.faces
     }
 
-    /// Fills `changes` with every face's, by `change` of the face and an edge of it.
+    /// Fills `changes` for every face, by `change` of the face and one of its edges.
     pub fn change<F: Fn(DVec3) -> DVec3>(&self, of: impl Fn(&Face) -> F + Sync, changes: &mut Vec<EdgeChanges>) {
         changes.resize(self.faces.len(), EdgeChanges::default());
         let chunks = changes.par_chunks_mut(CHUNK).zip(self.faces.par_chunks(CHUNK));
@@ -155,7 +155,7 @@ impl Gradients {
         self.corners[own].iter().map(|&entry| entry as usize / 3)
     }
 
-    /// E of displacements, one row for each local vertex, in units of `scale`.
+    /// E for displacements, one row for each local vertex, in units of `scale`.
     pub fn energy(&self, changes: &[EdgeChanges], d: &[[f64; 3]]) -> f64 {
         self.total(|place, face| {
             let ([u, v], [own_u, own_v]) = (face.moved(d), changes[place]);
@@ -163,11 +163,11 @@ impl Gradients {
         })
     }
 
-    /// ½ Σ_f of what `of` gives for a face's place and the face, in units of `scale`.
+    /// ½ Σ_f of `of`'s value for a face's place and the face, in units of `scale`.
     pub fn total(&self, of: impl Fn(usize, &Face) -> f64 + Sync) -> f64 {
         let chunk = |(chunk, faces): (usize, &[Face])| (chunk * CHUNK..).zip(faces).map(|(p, f)| of(p, f)).sum();
         let partial: Vec<f64> = self.faces.par_chunks(CHUNK).enumerate().map(chunk).collect();
-        // Negative cotangents leave a rounding error of either sign where nothing is strained.
+        // Negative cotangents leave a rounding error of either sign if nothing is strained.
         let sum = 0.5 * partial.iter().sum::<f64>();
         let sum = if sum > 0.0 || sum.is_nan() { sum } else { 0.0 };
         if self.scale > 0.0 { sum / self.scale } else { sum }
@@ -175,20 +175,20 @@ impl Gradients {
 }
 
 impl Face {
-    /// How far the two edges that span it are moved by displacements, one row for each local vertex.
+    /// The change of its two spanning edges by displacements, one row for each local vertex.
     #[inline]
     pub fn moved(&self, d: &[[f64; 3]]) -> EdgeChanges {
         let [a, b, c] = self.locals.map(|local| DVec3::from_array(d[local as usize]));
         [b - a, c - a]
     }
 
-    /// The two edges that span it under a linear map.
+    /// Its two spanning edges under a linear map.
     #[inline]
     pub fn mapped(&self, map: DMat3) -> EdgeChanges {
         self.edges.map(|edge| map * edge)
     }
 
-    /// Σ w e' eᵀ over its edges, e' being the rest edge e moved by displacements.
+    /// Σ w e' eᵀ over its edges, e' being the rest edge e with displacements.
     #[inline]
     pub fn covariance(&self, d: &[[f64; 3]]) -> DMat3 {
         let ([w0, w1, w2], [a, b]) = (self.weights, self.edges);
@@ -197,7 +197,7 @@ impl Face {
         outer(a + u, a * w2) + outer(b + v, b * w1) + outer(b + v - a - u, (b - a) * w0)
     }
 
-    /// Σ w |x|² over its edges, given the two that span it: not negative but for rounding.
+    /// Σ w |x|² over its edges, given its two spanning edges: not negative except for rounding.
     #[inline]
     pub fn square(&self, [u, v]: [DVec3; 2]) -> f64 {
         let [w0, w1, w2] = self.weights;

@@ -18,10 +18,10 @@ use super::mollification::lack;
 use super::triangulation::Triangulation;
 use super::{CHUNK, Laplacian, place_in};
 
-/// What surrounds a vertex.
+/// The surroundings of a vertex.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub(crate) enum RingKind {
-    /// No single fan: its Hessian is not known.
+    /// No single fan: its Hessian is unknown.
     #[default]
     Unknown,
     /// Triangles all around.
@@ -44,7 +44,7 @@ pub(crate) struct RingHessian {
     diagonal: Vec<[f64; 2]>,
 }
 
-/// A triangle around a vertex: the two neighbours and the lengths to them and between them.
+/// A triangle around a vertex: the two neighbours, the lengths to them, and the length between them.
 #[derive(Clone, Copy)]
 struct Spoke {
     ends: [u32; 2],
@@ -54,7 +54,7 @@ struct Spoke {
 }
 
 impl RingHessian {
-    /// Beside the full rows of `laplacian`, which stands on the same triangulation.
+    /// The Hessian for the full rows of `laplacian`, which has the same triangulation.
     pub fn of(triangulation: &Triangulation, laplacian: &Laplacian) -> Self {
         let count = laplacian.vertices().len();
         let mut offsets = vec![0];
@@ -97,7 +97,7 @@ impl RingHessian {
         }
     }
 
-    /// What surrounds each local vertex.
+    /// The surroundings of each local vertex.
     pub fn kinds(&self) -> &[RingKind] {
         &self.kinds
     }
@@ -117,7 +117,7 @@ impl RingHessian {
         self.diagonal[local]
     }
 
-    /// M a and M b of f at a local vertex.
+    /// M a and M b for f at a local vertex.
     #[inline]
     pub fn row<const K: usize>(&self, laplacian: &Laplacian, local: usize, f: &[[f64; K]]) -> [[f64; K]; 2] {
         let own = f[local];
@@ -195,7 +195,7 @@ struct Unrolled {
 }
 
 impl Unrolled {
-    /// With its bisector in the direction `middle`.
+    /// The triangle with its bisector in the direction `middle`.
     fn of(spoke: &Spoke, middle: f64) -> Self {
         let end = |length: f64, angle: f64| [length * angle.cos(), length * angle.sin()];
         let [p, q] = [
@@ -220,7 +220,7 @@ impl Unrolled {
     }
 }
 
-/// The triangles around a vertex; `None` where one has a vertex twice, or a neighbour has more than two of them.
+/// The triangles around a vertex; `None` if one has a vertex twice, or a neighbour has more than two of them.
 fn spokes(triangulation: &Triangulation, laplacian: &Laplacian, local: usize) -> Option<Vec<Spoke>> {
     let vertex = SurfaceVertex(laplacian.vertices()[local]);
     let neighbours = laplacian.neighbours(local);
@@ -263,8 +263,8 @@ fn spokes(triangulation: &Triangulation, laplacian: &Laplacian, local: usize) ->
     (is_sound && !spokes.is_empty()).then_some(spokes)
 }
 
-/// Puts the triangles into the order in which they follow each other, each turned so that its second neighbour is the
-/// next one's first; returns whether they go all around, `None` where they are not one fan.
+/// Sorts the triangles around the vertex, each turned so that its second neighbour is the next one's first; returns
+/// whether they go all around, `None` if they are not one fan.
 fn chain(spokes: &mut [Spoke]) -> Option<bool> {
     let uses = |vertex: u32, spokes: &[Spoke]| spokes.iter().filter(|spoke| spoke.ends.contains(&vertex)).count();
     let mut ends: Vec<(usize, usize)> = Vec::new();

@@ -5,13 +5,12 @@
 //! semidefinite. It is applied by differences along edges, which gives zero on constants to the last bit, however far
 //! from the origin; a product with an assembled matrix does not.
 //!
-//! Robustness: a triangle's cotangents come from its three edge lengths, *mollified* where they hardly or don't satisfy
-//! the triangle inequality ([SC20], section 4.5, here triangle by triangle and relative to its own longest
-//! edge, so that sound triangles keep their shape and units don't matter). Other weights are for comparison: see
-//! [`Discretisation`]. Each triangle's part of L is then negative
-//! semidefinite whatever its shape, and so is L: edges with a negative weight are no harm. Areas are bounded below by a
-//! millionth of their component's mean. Stiffness scales each *face* by the mean of its corners, which keeps that law;
-//! scaling edges would break it.
+//! Robustness: a triangle's cotangents come from its three edge lengths, *mollified* if they hardly or don't satisfy
+//! the triangle inequality ([SC20], section 4.5, here triangle by triangle and relative to its own longest edge, so
+//! that sound triangles keep their shape and units don't matter). Other weights are for comparison: see
+//! [`Discretisation`]. Each triangle's part of L is then negative semidefinite for any shape, and so is L: edges with a
+//! negative weight do no harm. Areas are bounded below by a millionth of their component's mean. Stiffness scales each
+//! *face* by the mean of its corners, which keeps that property; scaling edges would break it.
 
 pub(crate) mod face_terms;
 pub(crate) mod gradients;
@@ -28,7 +27,7 @@ use crate::Discretisation;
 use crate::operators::face_terms::{FaceTerms, Metric};
 use crate::operators::triangulation::{Graph, Triangulation};
 
-/// Rows or faces that one task takes: fixed, so that results don't depend on the number of threads.
+/// The rows or faces of one task: fixed, so that results don't depend on the number of threads.
 pub(crate) const CHUNK: usize = 1024;
 
 /// The least area of a vertex, in units of the mean over its component.
@@ -87,7 +86,7 @@ impl Laplacian {
         Self::discretised(surface, topology, stiffness, rows, Discretisation::CotangentArea)
     }
 
-    /// As [`Laplacian::with_rows`], with other weights and areas than the default.
+    /// Like [`Laplacian::with_rows`], with given weights and areas instead of the default.
     pub fn discretised(
         surface: &Surface,
         topology: &Topology,
@@ -211,8 +210,8 @@ impl Laplacian {
                     let corners = triangulation.corners(face);
                     for own in (0..3).filter(|&corner| corners[corner] == vertex) {
                         *area += terms.areas[own];
-                        // The edge from here to another corner lies opposite the third one. An intrinsic triangle may
-                        // have this vertex twice, and an edge from it to itself is none.
+                        // The edge from here to another corner is opposite the third one. An intrinsic triangle may
+                        // have this vertex twice, and an edge from it to itself does not count.
                         for other in (0..3).filter(|&corner| corners[corner] != vertex) {
                             let number = local_of[corners[other].index()];
                             if let Some(place) = place_in(neighbours, &number) {
@@ -243,7 +242,7 @@ impl Laplacian {
         }
         for local in (0..areas.len()).filter(|&local| self.is_full(local)) {
             let (area, count) = sums[component(local)];
-            // A component without any area can still be solved on: then only its lengths matter.
+            // A solve is also possible on a component without any area: then only its lengths matter.
             let mean = if area > 0.0 { area / count } else { 1.0 };
             areas[local] = areas[local].max(AREA_FLOOR * mean);
         }
@@ -266,7 +265,7 @@ impl Laplacian {
         self.vertices.binary_search(&surface_vertex).ok()
     }
 
-    /// The local numbers of those of these surface vertices that have one.
+    /// The local numbers of these surface vertices, without those that have none.
     pub(crate) fn locals(&self, surface_vertices: &[u32]) -> Vec<u32> {
         let local = |&vertex: &u32| self.local(vertex).map(|local| local as u32);
         surface_vertices
@@ -276,7 +275,7 @@ impl Laplacian {
             .collect()
     }
 
-    /// The local neighbours of `local`, ascending; none where the row is not full.
+    /// The local neighbours of `local`, ascending; none if the row is not full.
     pub fn neighbours(&self, local: usize) -> &[u32] {
         &self.neighbours[self.offsets[local] as usize..self.offsets[local + 1] as usize]
     }
@@ -291,17 +290,17 @@ impl Laplacian {
         self.offsets[local] < self.offsets[local + 1]
     }
 
-    /// 1 / M_ii, the mixed Voronoi area's inverse \[MDSB03\]; 0 where the row is not full.
+    /// 1 / M_ii, the mixed Voronoi area's inverse \[MDSB03\]; 0 if the row is not full.
     pub fn inverse_areas(&self) -> &[f64] {
         &self.inverse_areas
     }
 
-    /// How many triangles were too flat for cotangents of their own.
+    /// The number of triangles too flat for their own cotangents.
     pub fn mollified_faces(&self) -> usize {
         self.mollified_faces
     }
 
-    /// (L f)_i of `local`: Σ_j w_ij (f_j − f_i), 0 where the row is not full.
+    /// (L f)_i at `local`: Σ_j w_ij (f_j − f_i), 0 if the row is not full.
     #[inline]
     pub fn row<const K: usize>(&self, local: usize, f: &[[f64; K]]) -> [f64; K] {
         let own = f[local];

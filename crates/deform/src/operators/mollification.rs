@@ -1,20 +1,19 @@
-//! Intrinsic mollification [SC20, section 4.5]: edges made longer where a triangle is too flat for
-//! cotangents.
+//! Intrinsic mollification [SC20, section 4.5]: edges made longer if a triangle is too flat for cotangents.
 
 use crate::alternatives;
 
-/// By how much two edges of a triangle are made to exceed the third, in units of the longest.
+/// The excess of two edges of a triangle over the third after mollification, in units of the longest.
 const MOLLIFICATION: f64 = 1e-5;
 
-/// How much longer each edge of a triangle must be for any two to exceed the third by 1e-5 of the longest; below zero
-/// if they do already.
+/// The increase of each edge of a triangle with which any two exceed the third by 1e-5 of the longest; negative if they
+/// already do.
 pub(crate) fn lack(lengths: [f64; 3]) -> f64 {
     let sum = lengths[0] + lengths[1] + lengths[2];
     let longest = lengths[0].max(lengths[1]).max(lengths[2]);
     MOLLIFICATION * longest - (sum - 2.0 * longest)
 }
 
-/// What is said of triangles too flat for cotangents.
+/// The sentence about triangles too flat for cotangents.
 pub(crate) fn repairs(mollified_faces: usize) -> Option<String> {
     let space = alternatives::of_space();
     let done = match mollified_faces {

@@ -1,5 +1,5 @@
 //! Gradient-based editing [YZX+04, ZRKS05; BS08, sections 3.1.1 and 3.2.1 to 3.2.3]: the handles' rotations and
-//! stretches are spread over the surface, each face's edges follow, and a Poisson system joins the faces again.
+//! stretches are spread over the surface, each face's edges follow, and a Poisson system rejoins the faces.
 //!
 //! Parts: `propagation` gives each handle's weight at each vertex, `handles::polar` blends the handles' maps,
 //! `operators::gradients` makes the right-hand side, and `bilaplacian::loaded` solves.
@@ -29,14 +29,14 @@ pub(crate) struct PoissonSolver {
     /// Each handle's weight, from 0 to 1: one row for each local vertex.
     weights: Vec<f64>,
     handles: Vec<Handle>,
-    /// The handles' maps at the last step. Turns go on from there, so that one beyond half a turn stays what it is.
+    /// The handles' maps at the last step. Turns continue from them, so that one beyond half a turn is kept.
     polars: Vec<Polar>,
     /// Whether something is fixed.
     is_held: bool,
     room: Room,
 }
 
-/// What is kept from frame to frame, so that none allocates it.
+/// Buffers kept from frame to frame, so that no frame allocates them.
 #[derive(Clone, Debug, Default)]
 struct Room {
     changes: Vec<EdgeChanges>,
@@ -104,14 +104,14 @@ impl PoissonSolver {
         self.gradients.change(|face| of_face(&face.locals), changes);
     }
 
-    /// Of a field: the faces' energy and the springs', in units of the rest shape's.
+    /// The energy of a field: the faces' and the springs', in units of the rest shape's.
     fn energy(&self, changes: &[EdgeChanges], field: &[[f64; 3]]) -> f64 {
         let scale = stiffness_of(&self.system) * self.gradients.scale;
         let springs = self.system.spring_energy(field);
         self.gradients.energy(changes, field) + if scale > 0.0 { springs / scale } else { 0.0 }
     }
 
-    /// As [`PoissonSolver::energy`], of any displacements, for these motions.
+    /// Like [`PoissonSolver::energy`], for any displacements and these motions.
     fn energy_of(&self, motions: &[Motion], displacements: &[DVec3]) -> f64 {
         let mut changes = Vec::new();
         self.change(&polars_of(&self.polars, &self.handles, motions), &mut changes);
@@ -135,7 +135,7 @@ pub(crate) fn membrane() -> Bilaplacian {
     }
 }
 
-/// k in A = −k L, which loads are multiplied by too.
+/// k in A = −k L, also a factor of loads.
 pub(crate) fn stiffness_of(system: &LoadedSystem) -> f64 {
     system.operator().stretching + system.operator().bending
 }

@@ -5,7 +5,7 @@ use crate::method::option::{Choice, named_choices, options};
 options! {
     /// Options of gradient-based editing.
     pub struct Poisson {
-        /// How the handles' rotations and stretches spread.
+        /// The spreading of the handles' rotations and stretches.
         propagation: Propagation = Choice {
             default: Propagation::Harmonic,
             help: "how turns and stretches spread from the handles: evenly (\"harmonic\"), by distance along the surface \
@@ -15,13 +15,13 @@ options! {
 }
 
 named_choices! {
-    /// The weights with which the handles' rotations and stretches spread: 1 on a handle, 0 on what is fixed and on other
-    /// handles. With nothing fixed they sum to 1.
+    /// The weights with which the handles' rotations and stretches spread: 1 on a handle, 0 on fixed vertices and on
+    /// other handles. If nothing is fixed they sum to 1.
     pub enum Propagation {
-        /// L w = 0, whatever the painted stiffness [ZRKS05; BS08, section 3.2.2].
+        /// L w = 0, independent of the painted stiffness [ZRKS05; BS08, section 3.2.2].
         Harmonic = "harmonic",
-        /// By the distances D along the surface, w_h = D_h⁻¹ / (D_fixed⁻¹ + Σ_k D_k⁻¹): of one handle
-        /// D_fixed / (D_fixed + D_h) [YZX+04; BS08, section 3.2.1].
+        /// By the distances D along the surface, w_h = D_h⁻¹ / (D_fixed⁻¹ + Σ_k D_k⁻¹): for one handle D_fixed /
+        /// (D_fixed + D_h) [YZX+04; BS08, section 3.2.1].
         Geodesic = "geodesic",
         /// L_s w = 0 with the painted stiffness s as conductance, so that w hardly changes on stiff parts
         /// [PJS06; BS08, section 3.2.3].

@@ -10,11 +10,11 @@ use crate::method::BindInput;
 use crate::sparse::refactorisation::Refactorisation;
 use crate::{BindError, Role};
 
-/// Handles whose weights are solved for at once.
+/// The number of handles whose weights are solved for at once.
 const AT_ONCE: usize = 4;
 
-/// One row for each local vertex of the system, one weight from 0 to 1 a handle. The weights of the system itself are
-/// `material`: the same factor serves both. `harmonic` has the same factor where nothing is painted.
+/// One row for each local vertex of the system, one weight from 0 to 1 per handle. The weights of the system itself are
+/// `material`: the same factor is used for both. `harmonic` has the same factor if nothing is painted.
 pub(crate) fn weights(
     propagation: Propagation,
     system: &LoadedSystem,
@@ -34,7 +34,7 @@ pub(crate) fn weights(
     };
     let count = input.handles.len();
     for (&vertex, row) in system.vertices().iter().zip(weights.chunks_exact_mut(count.max(1))) {
-        // Negative cotangents may carry a weight outside.
+        // Negative cotangents may move a weight outside.
         row.iter_mut().for_each(|weight| *weight = weight.clamp(0.0, 1.0));
         let component = input.problem.topology.component(SurfaceVertex(vertex));
         let sum: f64 = row.iter().sum();
@@ -45,7 +45,7 @@ pub(crate) fn weights(
     Ok(weights)
 }
 
-/// L w = 0 with w = 1 on the handle, or pulled there by its springs, and 0 on all else that is constrained.
+/// L w = 0 with w = 1 on the handle, or pulled there by its springs, and 0 on all other constrained vertices.
 fn harmonic(system: &LoadedSystem, input: &BindInput<'_>) -> Result<Vec<f64>, BindError> {
     let count = input.handles.len();
     let mut weights = room(system, input)?;
@@ -65,7 +65,7 @@ fn harmonic(system: &LoadedSystem, input: &BindInput<'_>) -> Result<Vec<f64>, Bi
     Ok(weights)
 }
 
-/// Inverse distances along the surface, in proportion.
+/// The inverse distances along the surface, normalised.
 fn by_distance(system: &LoadedSystem, input: &BindInput<'_>) -> Result<Vec<f64>, BindError> {
     let &BindInput { problem, handles, .. } = input;
     let count = handles.len();
@@ -77,7 +77,7 @@ fn by_distance(system: &LoadedSystem, input: &BindInput<'_>) -> Result<Vec<f64>,
     sources.push(fixed.map(|(vertex, _)| SurfaceVertex(vertex)).collect());
     let mut weights = room(system, input)?;
     let mut sums = vec![0.0; system.vertices().len()];
-    // Few at a time: a handle's distances are as many as the surface has vertices.
+    // There are few at a time: a handle has one distance per vertex of the surface.
     for (group, own) in sources.chunks(AT_ONCE).enumerate() {
         input.cancel.check()?;
         let search = |sources: &Vec<SurfaceVertex>| {
@@ -87,7 +87,7 @@ fn by_distance(system: &LoadedSystem, input: &BindInput<'_>) -> Result<Vec<f64>,
         for (place, distances) in distances.iter().enumerate() {
             let handle = group * AT_ONCE + place;
             for (local, &vertex) in system.vertices().iter().enumerate() {
-                // Where no way leads from a source, it does not count.
+                // A source that no path reaches does not count.
                 let nearness = distances[vertex as usize].max(f64::MIN_POSITIVE.sqrt()).recip();
                 sums[local] += nearness;
                 if handle < count {

@@ -1,4 +1,4 @@
-//! Rigid bodies that joints couple, and how they come to rest: prisms of a surface, or cells of space.
+//! Rigid bodies that joints couple, and their descent to rest: prisms of a surface, or cells of space.
 
 use glam::DVec3;
 use pliant_mesh::Cancel;
@@ -14,41 +14,41 @@ use crate::handles::{Handle, Motion};
 use crate::numerical::lbfgs::Memory;
 use crate::sparse::factor_error::FactorError;
 
-/// The bodies, with the pose they are in.
+/// The bodies, with their present pose.
 #[derive(Debug)]
 pub(crate) struct Bodies {
     pub joints: Joints,
     pub(super) colours: Colours,
     pub(super) springs: Springs,
     pub(super) preconditioner: Preconditioner,
-    /// Handles' harmonic weights, one row a solved body.
+    /// Handles' harmonic weights, one row per solved body.
     pub(super) weights: Vec<f64>,
     /// The handles in coordinates relative to the origin.
     pub(super) handles: Vec<HandleFrame>,
     pub current: Pose,
     pub(super) trial: Pose,
     pub(super) memory: Memory,
-    /// The motions that `current` is a pose for.
+    /// The motions of the `current` pose.
     pub(super) motions: Vec<Motion>,
     pub(super) state: State,
     /// Steps towards the present targets since the matrix was last factored.
     pub(super) age: u32,
     /// Whether the matrix was factored at another pose than the rest pose.
     pub(super) is_renewed: bool,
-    /// The relative decrease of the energy below which a step was the last one.
+    /// The relative decrease of the energy below which iteration ends.
     pub(super) tolerance: f64,
 }
 
-/// How far the present targets are.
+/// The progress towards the present targets.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum State {
-    /// Prisms are folded onto their neighbours: local sweeps first.
+    /// Prisms are folded onto their neighbours: local sweeps come first.
     Folded(u32),
-    /// On its way.
+    /// Not finished.
     Descending,
-    /// At a minimum, to the tolerance.
+    /// Converged: at a minimum, to the tolerance.
     Converged,
-    /// No step was found that lowers the energy, though the quadratic model promises one.
+    /// Stalled: no step was found that lowers the energy, though the quadratic model promises one.
     Stalled,
 }
 
@@ -57,7 +57,7 @@ impl Bodies {
     /// fixed around the bodies that are `unheld`.
     ///
     /// # Errors
-    /// As [`crate::sparse::cholesky::Factor::to_descend_by`]; a pivot is named by its body.
+    /// Those of [`crate::sparse::cholesky::Factor::to_descend_by`]; a pivot is named by its body.
     pub fn of(
         joints: Joints,
         handles: &[Handle],
@@ -90,7 +90,7 @@ impl Bodies {
         })
     }
 
-    /// How many numbers the factor stores.
+    /// The number of entries that the factor stores.
     pub fn factor_len(&self) -> usize {
         self.preconditioner.stored()
     }
@@ -104,13 +104,13 @@ impl Bodies {
         }
     }
 
-    /// Back to the rest pose.
+    /// Returns to the rest pose.
     pub fn rest(&mut self) {
         self.motions.fill(Motion::default());
         self.current = Pose::at_rest(self.joints.count(), 1 + self.handles.len());
         self.memory.clear();
         self.state = State::Converged;
-        // What comes next is to be the same as after binding.
+        // The following steps must be the same as after binding.
         if std::mem::take(&mut self.is_renewed)
             && let Preconditioner::Direct(factored) = &mut self.preconditioner
         {
@@ -135,7 +135,7 @@ impl Bodies {
         self.state == State::Stalled
     }
 
-    /// Whether the last step converged, and its energy. If it is not finite the next targets begin afresh.
+    /// Returns whether the last step converged, and its energy. If it is not finite the next targets begin afresh.
     pub fn outcome(&mut self) -> (bool, f64) {
         let energy = self.current.energy;
         if !energy.is_finite() {

@@ -31,7 +31,7 @@ impl DeformMethod for Primo {
         Some(("thickness", 1))
     }
 
-    /// As ARAP does, where the surface twists most it gives way.
+    /// Like ARAP, it gives way where the surface twists most.
     fn follows_turns(&self) -> Option<Followed> {
         Some(Followed::by_necks(140.0))
     }
@@ -40,7 +40,7 @@ impl DeformMethod for Primo {
         Needs::Surface {
             // A prism may have free vertices and vertices of a handle, and is coupled with all its neighbours.
             reach: 2,
-            // The prisms are eliminated in an order of their own.
+            // The prisms have their own order of elimination.
             ordering_power: None,
         }
     }

@@ -24,10 +24,10 @@ const NOTHING: f64 = 1e-26;
 const ROUNDED: f64 = 1e-10;
 
 impl Bodies {
-    /// Takes one step that lowers the energy, or finds that there is none to take.
+    /// Takes one step that lowers the energy, or finds that there is none.
     ///
     /// A pose has converged if the quadratic model promises a decrease below the tolerance's share of the energy and
-    /// the last step gained less than that too. Where no length of the step lowers the energy it has converged only if
+    /// the last step gained less than that too. If no length of the step lowers the energy, it has converged only if
     /// the model promises little.
     pub(super) fn descend(&mut self) {
         if self.age == RENEWAL {

@@ -1,20 +1,20 @@
-//! Which triangles an edge joins.
+//! The triangles that an edge joins.
 //!
-//! Two triangles on an edge are joined. More than two are joined each with each, with couplings that are weaker in
-//! proportion, so that a prism is held at such an edge as firmly as at any other. The number of pairs grows with the
+//! Two triangles on an edge are joined. Among more than two, each is joined with each, with couplings that are weaker
+//! in proportion, so that a prism is held at such an edge as firmly as at any other. The number of pairs grows with the
 //! square of the triangles, so at an edge with very many, a *crowded* one, each is joined only with the largest, as
-//! firmly as with all others together. If the triangles are alike that is the same energy, except that the largest goes
-//! with the mean of the others.
+//! firmly as with all others together. If the triangles are alike that is the same energy, except that the largest
+//! follows the mean of the others.
 
 use std::collections::BTreeMap;
 
 use pliant_mesh::{Surface, SurfaceVertex, Topology, area_of_lengths, edge_lengths};
 
-/// A triangle's area counts as at least this share of its longest edge's square, so that one without an area is
-/// coupled firmly, but not beyond what can be computed.
+/// A triangle's area counts as at least this share of its longest edge's square, so that one without an area is coupled
+/// firmly, but not too firmly for the computation.
 const AREA_FLOOR: f64 = 1e-3;
 
-/// Edges of more triangles are crowded.
+/// Edges with more triangles than this are crowded.
 pub(crate) const CROWD: usize = 32;
 
 /// The triangles on a surface's edges.
@@ -26,7 +26,7 @@ pub(crate) struct Edges<'a> {
     crowded: BTreeMap<[SurfaceVertex; 2], Crowd>,
 }
 
-/// The triangles on a crowded edge, ascending, and the one that all others are joined with.
+/// The triangles on a crowded edge, ascending, and the one that is joined with all others.
 #[derive(Debug, Default)]
 struct Crowd {
     faces: Vec<u32>,
@@ -35,7 +35,7 @@ struct Crowd {
 }
 
 impl<'a> Edges<'a> {
-    /// Finds the crowded ones.
+    /// Finds the crowded edges.
     pub fn of(surface: &'a Surface, topology: &'a Topology) -> Self {
         let is_crowded = |v: &SurfaceVertex| topology.neighbours(*v).len() > CROWD;
         let mut crowded: BTreeMap<[SurfaceVertex; 2], Crowd> = BTreeMap::new();
@@ -67,7 +67,7 @@ impl<'a> Edges<'a> {
         }
     }
 
-    /// The triangles on the edge from `a` to `b` that `face` is joined with there, ascending.
+    /// The triangles on the edge from `a` to `b` that are joined with `face` there, ascending.
     pub fn across(&self, face: u32, [a, b]: [SurfaceVertex; 2]) -> impl Iterator<Item = u32> + Clone + '_ {
         let crowd = self.crowd([a, b]);
         let (all, middle) = match crowd {
@@ -75,7 +75,7 @@ impl<'a> Edges<'a> {
             Some(crowd) if crowd.middle == face => (&crowd.faces[..], None),
             Some(crowd) => (&[][..], Some(crowd.middle)),
         };
-        // The same triangles, found from the end with fewer.
+        // The triangles are the same, found from the end with fewer.
         let count = |v: SurfaceVertex| self.topology.neighbours(v).len();
         let (from, to) = if count(b) < count(a) { (b, a) } else { (a, b) };
         let around = crowd
@@ -89,8 +89,8 @@ impl<'a> Edges<'a> {
         others.filter(move |&other| other != face)
     }
 
-    /// The areas that a joint's weight is taken over, of `face` and what it meets at the edge, where that is crowded:
-    /// the same for both of the joint's triangles.
+    /// The area for the weight of a joint between two triangles at an edge, in either order; `None` if the edge is not
+    /// crowded.
     pub fn crowded_areas(&self, [one, two]: [u32; 2], edge: [SurfaceVertex; 2]) -> Option<f64> {
         let crowd = self.crowd(edge)?;
         let outer = if one == crowd.middle { two } else { one };
@@ -102,7 +102,7 @@ impl<'a> Edges<'a> {
     }
 }
 
-/// A triangle's area, as far as it counts for couplings.
+/// A triangle's area for couplings.
 pub(crate) fn area(surface: &Surface, face: u32) -> f64 {
     let lengths = edge_lengths(surface.corners(face as usize));
     let longest = lengths[0].max(lengths[1]).max(lengths[2]);
@@ -120,7 +120,7 @@ mod tests {
 
     use super::{CROWD, Edges, sides};
 
-    /// Of a fan of so many triangles around one edge: how many joints its triangles see.
+    /// The number of joints that the triangles of a fan of this many around one edge see.
     fn joints(count: usize) -> usize {
         let model = shapes::model(shapes::non_manifold_fan(count));
         let topology = Topology::of(&model.surface);

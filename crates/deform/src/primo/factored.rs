@@ -9,7 +9,7 @@ use crate::budget::Budget;
 use crate::sparse::cholesky::Factor;
 use crate::sparse::factor_error::FactorError;
 
-/// H⁻¹, or nearly so.
+/// H⁻¹, approximately.
 #[derive(Debug)]
 pub(crate) struct Factored {
     factor: Factor,
@@ -20,7 +20,7 @@ impl Factored {
     /// Factors the matrix at `pose`.
     ///
     /// # Errors
-    /// As [`Factor::to_descend_by`]; a pivot is named by its prism.
+    /// Those of [`Factor::to_descend_by`]; a pivot is named by its prism.
     pub fn at(joints: &Joints, pose: &Pose, budget: Budget, cancel: &Cancel) -> Result<Self, FactorError> {
         let matrix = gauss_newton(joints, pose)?;
         let factor = Factor::to_descend_by(&matrix, &joints.column_ends(DOF), budget, cancel);
@@ -34,14 +34,14 @@ impl Factored {
         })
     }
 
-    /// Factors the matrix at another pose; the old factor stays where that fails.
+    /// Factors the matrix at another pose; the old factor stays if that fails.
     pub fn renew(&mut self, joints: &Joints, pose: &Pose) {
         if let Ok(factored) = Self::at(joints, pose, Budget::default(), &Cancel::new()) {
             *self = factored;
         }
     }
 
-    /// How many numbers the factor stores.
+    /// The number of entries that the factor stores.
     pub fn stored(&self) -> usize {
         self.factor.stored()
     }

@@ -1,9 +1,9 @@
 //! An approximate inverse of the Gauss–Newton matrix: a factorisation for few prisms, cells of prisms for many.
 //!
-//! A cell moves its prisms as one rigid body, so that cells are coupled by the same joints as prisms are, and so are
-//! cells of cells. One cycle relaxes the fine bodies (each to its own minimum, one colour after the other), solves the
+//! A cell moves its prisms as one rigid body, so that cells are coupled by the same joints as prisms, and so are cells
+//! of cells. One cycle relaxes the fine bodies (each to its own minimum, one colour after the other), solves the
 //! remainder on the cells, and relaxes again in the opposite order, which makes it a symmetric positive definite
-//! preconditioner. The minimum is that of the full resolution; it is only reached sooner.
+//! preconditioner. The minimum is that of the full resolution, reached sooner.
 
 use glam::{DMat3, DVec3};
 use pliant_mesh::Cancel;
@@ -19,30 +19,30 @@ use crate::operators::CHUNK;
 use crate::sparse::factor_error::FactorError;
 use crate::sparse::ordering::graph::elimination;
 
-/// Up to so many bodies are solved for directly.
+/// Up to this many bodies are solved directly.
 pub(crate) const DIRECT: usize = 16_000;
 
-/// Bodies in a cell.
+/// The number of bodies in a cell.
 const CELL: usize = 8;
 
-/// By how much a cell's motion is lengthened: rigid cells bend only at their borders and so resist too much.
+/// The factor on a cell's motion: rigid cells bend only at their borders and so resist too much.
 const OVERCORRECTION: f64 = 1.4;
 
 /// Velocity or force of a body: (ω, v) or (torque, force).
 pub(crate) type Wrench = [f64; 6];
 
-/// H⁻¹ at rest, or nearly so.
+/// H⁻¹ at rest, approximately.
 #[derive(Debug)]
 pub(crate) enum Preconditioner {
     Direct(Box<Factored>),
     Cells(Box<Cells>),
 }
 
-/// One level and what is below it.
+/// One level and those below it.
 #[derive(Debug)]
 pub(crate) struct Cells {
     cell_of: Vec<u32>,
-    /// From the cell's centre to the body's.
+    /// The vector from the cell's centre to the body's.
     arms: Vec<DVec3>,
     /// H_ii⁻¹.
     inverses: Vec<Block>,
@@ -52,10 +52,10 @@ pub(crate) struct Cells {
 }
 
 impl Preconditioner {
-    /// For the bodies of `joints` at rest; up to `direct` bodies the matrix is factored.
+    /// The hierarchy for the bodies of `joints` at rest; up to `direct` bodies the matrix is factored.
     ///
     /// # Errors
-    /// As [`Factored::at`]; a pivot is named by one of its prisms.
+    /// Those of [`Factored::at`]; a pivot is named by one of its prisms.
     pub fn of(joints: &Joints, direct: usize, budget: Budget, cancel: &Cancel) -> Result<Self, FactorError> {
         if joints.count() <= direct {
             let at_rest = Pose::at_rest(joints.count(), joints.centres.len() - joints.count());
@@ -96,7 +96,7 @@ impl Preconditioner {
         })))
     }
 
-    /// How many numbers are stored.
+    /// The number of stored entries.
     pub fn stored(&self) -> usize {
         match self {
             Self::Direct(factored) => factored.stored(),
@@ -184,7 +184,7 @@ fn joined(first: DVec3, second: DVec3) -> Wrench {
     [first.x, first.y, first.z, second.x, second.y, second.z]
 }
 
-/// b − H x at rest, of one body.
+/// b − H x at rest, for one body.
 fn residual(joints: &Joints, body: usize, b: &[Wrench], x: &[Wrench]) -> Wrench {
     let (mut torque, mut force) = halves(&b[body]);
     let (turn, slide) = halves(&x[body]);
@@ -204,7 +204,7 @@ fn residual(joints: &Joints, body: usize, b: &[Wrench], x: &[Wrench]) -> Wrench 
     joined(torque, force)
 }
 
-/// H_ii⁻¹, with what has no stiffness left as it is.
+/// H_ii⁻¹; directions without stiffness stay unchanged.
 fn inverse_block(joints: &Joints, body: usize) -> Block {
     let mut sum = [[0.0; 6]; 6];
     for side in joints.sides(body) {
@@ -217,7 +217,7 @@ fn inverse_block(joints: &Joints, body: usize) -> Block {
             std::array::from_fn(|r| sum[row + r][column + c])
         }))
     };
-    // By blocks: turning A, mixed B, sliding D = d I.
+    // The blocks are turning A, mixed B, and sliding D = d I.
     let (a, b, d) = (part(0, 0), part(0, 3), sum[3][3]);
     let mut inverse = [[0.0; 6]; 6];
     if d <= 0.0 {

@@ -12,17 +12,17 @@ use super::prisms::{NONE, Prisms};
 use super::quad::Quad;
 use crate::operators::CHUNK;
 
-/// The least weight of a coupling: an edge without length still holds its prisms together.
+/// The least weight of a coupling: even an edge without length holds its prisms together.
 const WEIGHT_FLOOR: f64 = 1e-9;
 
-/// The weight of a pin, a multiple of what an edge of an equilateral triangle has: with 1 a handle of one vertex would
-/// leave its surroundings behind by a tenth of its way.
+/// The weight of a pin, as a multiple of that of an equilateral triangle's edge: with 1 the surroundings of a handle of
+/// one vertex would lag behind by a tenth of its displacement.
 const PIN_WEIGHT: f64 = 1e3;
 
 /// The joints of the solved prisms.
 #[derive(Debug)]
 pub(crate) struct Joints {
-    /// Where each solved prism's `sides` start.
+    /// The start of each solved prism's `sides`.
     offsets: Vec<u32>,
     sides: Vec<Side>,
     /// The rest centre of each body, relative to the origin: prisms', then the fixed ground's and the handles'.
@@ -31,7 +31,7 @@ pub(crate) struct Joints {
     pub order: Vec<u32>,
     /// The sum of the solved prisms' areas.
     pub area: f64,
-    /// The ends of the supernodes of prisms; empty: each prism by itself.
+    /// The ends of the supernodes of prisms; empty if each prism is its own.
     pub block_ends: Vec<u32>,
 }
 
@@ -42,18 +42,18 @@ pub(crate) struct Side {
     pub other: u32,
     /// w.
     pub weight: f64,
-    /// The quad's middle from the own centre.
+    /// The quad's middle relative to this prism's centre.
     pub own_arm: DVec3,
-    /// The quad's middle from the other's centre.
+    /// The quad's middle relative to the other's centre.
     pub other_arm: DVec3,
     /// C.
     pub spread: DMat3,
 }
 
-/// What joints are made of.
+/// The data for making joints.
 pub(crate) struct Material<'a> {
     pub edges: &'a Edges<'a>,
-    /// One a surface vertex.
+    /// One normal per surface vertex.
     pub stiffness: &'a [f64],
     /// The prisms' height, in world units.
     pub thickness: f64,
@@ -114,8 +114,8 @@ impl Joints {
         joints
     }
 
-    /// Of bodies around these centres, which those of the grounds follow: the joints of each, in an order to eliminate
-    /// them whose supernodes end at `block_ends`. `size` is what the energy is measured by.
+    /// The joints of bodies around these centres, which are followed by those of the grounds, in an order of
+    /// elimination whose supernodes end at `block_ends`. `size` is the energy's unit.
     pub fn of_rows(rows: Vec<Vec<Side>>, centres: Vec<DVec3>, size: f64, block_ends: Vec<u32>) -> Self {
         let mut joints = Self {
             offsets: vec![0],
@@ -132,7 +132,7 @@ impl Joints {
         joints
     }
 
-    /// How many prisms are solved for.
+    /// The number of solved prisms.
     pub fn count(&self) -> usize {
         self.offsets.len() - 1
     }
@@ -142,7 +142,7 @@ impl Joints {
         &self.sides[self.offsets[prism] as usize..self.offsets[prism + 1] as usize]
     }
 
-    /// The same joints between cells of bodies, each of which moves as one: those within a cell are none.
+    /// The same joints between cells of bodies, each of which moves as one; those within a cell are dropped.
     pub fn of_cells(&self, cell_of: &[u32]) -> Self {
         let count = self.count();
         let cell_count = cell_of.iter().max().map_or(0, |&last| last as usize + 1);
@@ -190,7 +190,7 @@ impl Joints {
         coarse
     }
 
-    /// The other solved bodies that each is joined to, each once, as compressed rows.
+    /// The other solved bodies joined to each, each once, as compressed rows.
     pub fn graph(&self) -> (Vec<u32>, Vec<u32>) {
         let (mut offsets, mut list) = (vec![0], Vec::new());
         let mut seen = vec![NONE; self.count()];
@@ -206,7 +206,7 @@ impl Joints {
         (offsets, list)
     }
 
-    /// The bodies in an order in which those near each other are near.
+    /// The bodies in an order that keeps neighbours close.
     pub fn walk(&self) -> &[u32] {
         &self.order
     }

@@ -2,12 +2,12 @@
 //! they share at rest.
 //!
 //! The prisms' rotations are the unknowns. Given the rotations, the best translations solve a linear problem with one
-//! constant matrix, so they are always solved for exactly (variable projection). The remaining problem has no long
-//! valleys: with the translations among the unknowns, turning a chain of prisms would stretch it to second order, and
-//! steps would stay short. The rotations descend by a quasi-Newton method on top of the factored Gauss–Newton matrix of
-//! *all* velocities; the angular part of its inverse is that of the reduced problem. In the prisms' own frames this
-//! matrix hardly changes while they turn together, so the rest pose's serves for many steps, and is factored again only
-//! if the minimum is far. The line search uses the true energy, which never rises.
+//! constant matrix, so they are always solved exactly (variable projection). The remaining problem has no long valleys:
+//! with the translations among the unknowns, turning a chain of prisms would stretch it to second order, and steps
+//! would stay short. The rotations descend by a quasi-Newton method on top of the factored Gauss–Newton matrix of *all*
+//! velocities; the angular part of its inverse is that of the reduced problem. In the prisms' own frames this matrix
+//! hardly changes while they turn together, so the rest pose's is good for many steps, and is factored again only if
+//! the minimum is far. The line search uses the true energy, which never rises.
 //!
 //! Measured on the bar of [BS08] (12,106 faces), iterations to within 1% of the least energy at a thickness of 0.02:
 //! with translations among the unknowns and the rest pose's matrix over 1000, or 10 plain Gauss–Newton steps that each
@@ -17,10 +17,10 @@
 //! descent direction: on a scan of 86,482 faces binding took 0.75 instead of more than 3 s, a step 0.13 instead of 0.3
 //! s, and the number of steps was the same.
 //!
-//! Parts: `bodies` are rigid bodies on joints, here the prisms, and their descent. `edges` finds which triangles meet, `prisms` sorts them, `quad` is the integral over a shared quad, `joints`
-//! are the couplings, `pose` is where the prisms are and their energy, `system` and `factored` make the matrices,
-//! `hierarchy` the cells, `start` chooses where to begin, `sweep` unfolds, `descent` takes a step, and `vertices` takes
-//! the prisms' mean.
+//! Parts: `bodies` are rigid bodies on joints, here the prisms, and their descent. `edges` finds triangles with a
+//! common edge, `prisms` sorts them, `quad` is the integral over a shared quad, `joints` are the couplings, `pose` has
+//! the prisms' positions and energy, `system` and `factored` make the matrices, `hierarchy` the cells, `start` chooses
+//! the first pose, `sweep` unfolds, `descent` takes a step, and `vertices` takes the prisms' mean.
 
 pub(crate) mod bodies;
 mod colours;
@@ -59,12 +59,12 @@ use crate::sparse::factor_error::FactorError;
 use crate::sparse::ordering::graph::elimination;
 use crate::{BindError, Problem};
 
-/// The bound method, with the pose it is at.
+/// The bound method, with its present pose.
 #[derive(Debug)]
 pub(crate) struct PrimoSolver {
     bodies: Bodies,
     vertices: Vertices,
-    /// Of each handle: its surface vertices with their coordinates.
+    /// The surface vertices of each handle, with their coordinates.
     prescribed: Vec<Vec<(u32, [f64; 4])>>,
 }
 
@@ -158,7 +158,7 @@ impl PrimoSolver {
     }
 }
 
-/// What a factorisation's error means for a problem with `free_count` free vertices. `component` gives a prism's
+/// The meaning of a factorisation's error for a problem with `free_count` free vertices. `component` gives a prism's
 /// component and a vertex of it.
 fn bind_error(error: FactorError, free_count: usize, component: impl Fn(usize) -> (u32, SurfaceVertex)) -> BindError {
     match error {
@@ -243,7 +243,7 @@ mod tests {
         let mut displacements = vec![DVec3::ZERO; count];
         let (converged, energy) = solver.step(&motions, &mut displacements);
         assert!(!converged && energy > 0.0);
-        // No trial comes below this.
+        // No trial has a lower energy.
         solver.bodies.current.energy *= 1e-6;
         solver.bodies.memory.clear();
         let (converged, _) = solver.step(&motions, &mut displacements);
@@ -255,7 +255,7 @@ mod tests {
         for drawn in [shapes::tube(16, 24, 6.0), shapes::torus(24, 12), shapes::icosphere(3)] {
             let (mut solver, motions, count) = solver(drawn);
             let expected = least(&mut solver, &motions, count);
-            // By triangle, so that the order of elimination doesn't matter.
+            // Sorted by triangle, so that the order of elimination doesn't matter.
             for (place, &prism) in solver.bodies.joints.order.iter().enumerate() {
                 let prism = prism as usize;
                 let random = |k: usize| noise(3 * place + k);

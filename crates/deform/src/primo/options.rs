@@ -6,8 +6,8 @@ use crate::method::option::{Number, options};
 options! {
     /// Options of the coupled prisms.
     pub struct Primo {
-        /// The prisms' height, in sizes of what bends. A thick surface resists bending most, a thin
-        /// one stretching. The same value means the same material whatever the mesh's density.
+        /// The prisms' height, in sizes of the bending part. A thick surface resists bending most, a thin one
+        /// stretching. The same value means the same material for any density of the mesh.
         thickness: f64 = Number {
             default: 0.1,
             range: [0.001, 1.0],

@@ -1,9 +1,9 @@
-//! Where the prisms are, and the energy and its gradient there.
+//! The prisms' positions, and the energy and its gradient there.
 //!
-//! A body's motion takes its rest centre c to c + shift and what lies around by a linear map: a rotation for a prism,
-//! any map for a ground, since a handle moves affinely. Velocities are those of the body's own frame: (ω, v) takes a
-//! prism with the rotation R to R exp(ω), its shift further by R v. A joint's gradient is then a function of how its
-//! two prisms lie to each other, and the Gauss–Newton matrix is the same wherever a rigid motion carries both.
+//! A body's motion takes its rest centre c to c + shift and transforms its surroundings by a linear map: a rotation for
+//! a prism, any map for a ground, since a handle moves affinely. Velocities are in the body's own frame: (ω, v) takes a
+//! prism with the rotation R to R exp(ω), its shift further by R v. A joint's gradient is then a function of the
+//! relative position of its two prisms, and the Gauss–Newton matrix does not change if a rigid motion moves both.
 
 use glam::{DMat3, DQuat, DVec3};
 use rayon::prelude::*;
@@ -16,7 +16,7 @@ use crate::operators::CHUNK;
 /// The bodies' motions from rest.
 #[derive(Clone, Debug)]
 pub(crate) struct Pose {
-    /// Of each solved prism.
+    /// The rotation of each solved prism.
     pub rotations: Vec<DQuat>,
     /// The linear part of each body's motion: the rotations again, then the grounds'.
     pub turns: Vec<DMat3>,
@@ -87,11 +87,11 @@ impl Pose {
         }
     }
 
-    /// A prism's part of the energy, half of it where a joint is another's as well, and of the gradient.
+    /// A prism's part of the energy and of the gradient; joints that two prisms share count half in the energy.
     fn prism(&self, joints: &Joints, prism: usize) -> (f64, DVec3) {
         let turn = self.turns[prism];
         let mut energy = 0.0;
-        // In world axes; turned into the prism's at the end.
+        // The sum is in world axes; it is turned into the prism's at the end.
         let mut moment = DMat3::ZERO;
         for side in joints.sides(prism) {
             let apart = self.apart(prism, side);
@@ -126,7 +126,7 @@ impl Pose {
         self.displacement(prism, side.own_arm) - self.displacement(side.other as usize, side.other_arm)
     }
 
-    /// Makes `self` the pose `length` along `direction` from `from`, still to be evaluated.
+    /// Makes `self` the pose at `length` along `direction` from `from`, still to be evaluated.
     pub fn moved(&mut self, from: &Self, direction: &Field, length: f64) {
         let count = self.rotations.len();
         self.turns[count..].copy_from_slice(&from.turns[count..]);

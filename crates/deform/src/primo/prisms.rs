@@ -1,10 +1,10 @@
-//! Which triangles are solved prisms, which ones move with a handle, and how they are joined.
+//! The sorting of triangles: solved prisms, prisms that move with a handle, and their joints.
 //!
 //! A triangle whose three vertices are all fixed, or all one handle's, is *prescribed*: it moves with its *ground*, the
-//! fixed world or the handle. The others are free, and *solved* where a handle reaches them from triangle to triangle.
-//! A constrained vertex whose ground holds no triangle around it (a handle of one vertex, or of a line of them) *pins*
-//! the free prisms there instead, as if the ground held a small stiff ball around the vertex; so it turns with its
-//! handle, too.
+//! fixed world or the handle. The others are free, and *solved* if a handle reaches them from triangle to triangle. A
+//! constrained vertex whose ground holds no triangle around it (a handle of one vertex, or of a line of vertices)
+//! *pins* the free prisms there instead, as if the ground held a small stiff ball around the vertex; so it turns with
+//! its handle, too.
 
 use std::collections::VecDeque;
 
@@ -14,16 +14,16 @@ use super::edges::{Edges, sides};
 use crate::Role;
 use crate::operators::place_in;
 
-/// Nobody's.
+/// No body.
 pub(crate) const NONE: u32 = u32::MAX;
 
-/// The solved prisms and who holds them.
+/// The solved prisms and their holders.
 #[derive(Debug)]
 pub(crate) struct Prisms {
-    /// The triangle of each solved prism, in the order of elimination once [`Prisms::reorder`] has given one.
+    /// The triangle of each solved prism, in the order of elimination after [`Prisms::reorder`].
     pub faces: Vec<u32>,
-    /// The body of each triangle: a solved prism's number, or `faces.len()` plus its ground's. What no handle reaches
-    /// stands on the fixed ground.
+    /// The body of each triangle: a solved prism's number, or `faces.len()` plus its ground's. Triangles that no handle
+    /// reaches belong to the fixed ground.
     pub body_of: Vec<u32>,
     /// Triangle, corner (0 to 2) and ground of each pin, by triangle.
     pub pins: Vec<Pin>,
@@ -37,10 +37,10 @@ pub(crate) struct Pin {
     pub ground: u32,
 }
 
-/// The ground of what is fixed; handle h's is h + 1.
+/// The ground of fixed vertices; handle h's is h + 1.
 pub(crate) const FIXED: u32 = 0;
 
-/// The ground that a role stands on, [`NONE`] where free.
+/// The ground of a role, [`NONE`] if free.
 pub(crate) fn ground_of(role: Role) -> u32 {
     match role {
         Role::Fixed => FIXED,
@@ -50,7 +50,7 @@ pub(crate) fn ground_of(role: Role) -> u32 {
 }
 
 impl Prisms {
-    /// Sorts the triangles; solved prisms stand by rising triangle.
+    /// Sorts the triangles; solved prisms are in the order of their triangles.
     pub fn of(edges: &Edges, roles: &[Role]) -> Self {
         let surface = edges.surface;
         let grounds: Vec<u32> = surface
@@ -96,7 +96,7 @@ impl Prisms {
         prisms
     }
 
-    /// How many are solved for.
+    /// The number of solved prisms.
     pub fn count(&self) -> usize {
         self.faces.len()
     }
@@ -133,7 +133,7 @@ impl Prisms {
     }
 }
 
-/// The pins: constrained vertices of free triangles such that no triangle joined to it around the vertex stands on the
+/// The pins: constrained vertices of free triangles such that no triangle joined to it around the vertex belongs to the
 /// vertex's ground.
 fn pins(edges: &Edges, roles: &[Role], grounds: &[u32]) -> Vec<Pin> {
     let mut pins = Vec::new();
@@ -164,7 +164,7 @@ fn pins(edges: &Edges, roles: &[Role], grounds: &[u32]) -> Vec<Pin> {
     pins
 }
 
-/// The triangles that are met walking from the first one around the vertex, from triangle to triangle.
+/// The triangles on a walk around the vertex from the first one, from triangle to triangle.
 fn fan(edges: &Edges, vertex: SurfaceVertex, around: &[u32], first: usize, is_met: &mut [bool]) -> Vec<u32> {
     let mut fan = vec![around[first]];
     is_met[first] = true;

@@ -23,12 +23,13 @@ pub(crate) struct Quad {
     pub spread: DMat3,
 }
 
-/// An extrusion whose angle to its edge has a smaller sine than this spans no patch.
+/// An extrusion whose angle to its edge has a sine below this spans no patch.
 const UPRIGHT: f64 = 0.1;
 
 impl Quad {
-    /// Over the edge from `a` to `b`, extruded along the unit `normals` there, `thickness` in all. `face_normal` stands
-    /// in where they vanish, cancel or lie along the edge; it need not be a unit vector nor be there at all.
+    /// The patch over the edge from `a` to `b`, extruded along the unit `normals` there, by `thickness` in all.
+    /// `face_normal` replaces them if they vanish, cancel or are parallel to the edge; it need not be a unit vector,
+    /// and may be zero.
     pub fn over(a: DVec3, b: DVec3, normals: [DVec3; 2], face_normal: DVec3, thickness: f64) -> Self {
         let edge = b - a;
         let [first, second] = upright(edge, normals, face_normal);
@@ -40,7 +41,7 @@ impl Quad {
         }
     }
 
-    /// A small ball about `point` whose moments are those of a cube `thickness` wide.
+    /// A small ball about `point` with the moments of a cube of width `thickness`.
     pub fn around(point: DVec3, thickness: f64) -> Self {
         Self {
             middle: point,
@@ -56,7 +57,7 @@ fn square(v: DVec3) -> DMat3 {
 
 /// Unit directions that span a patch with the edge, on one side of the surface.
 fn upright(edge: DVec3, [first, second]: [DVec3; 2], face_normal: DVec3) -> [DVec3; 2] {
-    // Where triangles disagree about outside so may normals.
+    // Where triangles disagree about outside, normals may too.
     let second = if first.dot(second) < 0.0 { -second } else { second };
     let along = edge.normalize_or_zero();
     let stands = |n: DVec3| n.cross(along).length() > UPRIGHT || (along == DVec3::ZERO && n != DVec3::ZERO);
@@ -70,7 +71,7 @@ fn upright(edge: DVec3, [first, second]: [DVec3; 2], face_normal: DVec3) -> [DVe
     if stands(face) {
         return [face; 2];
     }
-    // For a needle without area any direction will do.
+    // For a needle without area any direction is correct.
     [along
         .try_normalize()
         .map_or(DVec3::Z, |along| along.any_orthonormal_vector()); 2]
@@ -82,7 +83,7 @@ mod tests {
 
     use super::Quad;
 
-    /// Gauss's rule of three points, exact to the fifth degree; ours has the fourth.
+    /// Gauss's rule of three points, exact to the fifth degree; this integrand has the fourth.
     const GAUSS: [(f64, f64); 3] = [
         (-0.387_298_334_620_741_7, 5.0 / 18.0),
         (0.0, 8.0 / 18.0),

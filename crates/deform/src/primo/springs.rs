@@ -24,7 +24,7 @@ impl Springs {
         })
     }
 
-    /// How many numbers the factor stores.
+    /// The number of entries that the factor stores.
     pub fn stored(&self) -> usize {
         self.factor.stored()
     }
@@ -41,8 +41,8 @@ impl Springs {
         rescale(x);
     }
 
-    /// Each handle's harmonic weight on each solved prism, row-major: 1 on its own prisms, 0 on other grounds. Where
-    /// `unheld` says that nothing is fixed around a prism its weights sum to 1.
+    /// Each handle's harmonic weight on each solved prism, row-major: 1 on its own prisms, 0 on other grounds. If
+    /// `unheld` says that nothing is fixed around a prism, its weights sum to 1.
     pub fn weights(&self, joints: &Joints, handle_count: usize, unheld: impl Fn(usize) -> bool) -> Vec<f64> {
         let count = joints.count();
         let mut weights = vec![0.0; count * handle_count];
@@ -71,7 +71,7 @@ impl Springs {
     }
 }
 
-/// The matrix of Σ w_ij (u_i − u_j)², scaled to a unit diagonal: harmonic weights are solved for with it.
+/// The matrix of Σ w_ij (u_i − u_j)², scaled to a unit diagonal, for solving for harmonic weights.
 fn laplacian(joints: &Joints) -> Result<ScaledMatrix, FactorError> {
     let sides: usize = (0..joints.count()).map(|prism| joints.sides(prism).len()).sum();
     let most = joints.count() + sides;
@@ -82,7 +82,7 @@ fn laplacian(joints: &Joints) -> Result<ScaledMatrix, FactorError> {
         lower_values: reserved(most)?,
     };
     matrix.lower_offsets.push(0);
-    // One more than where a row stands in the present column, as far as it does.
+    // One more than the place of a row in the present column, for the rows in it.
     let mut places = filled(0, joints.count())?;
     for prism in 0..joints.count() {
         let start = matrix.lower_rows.len();

@@ -1,5 +1,5 @@
 //! Local shape matching: each prism takes its best rotation between its fixed neighbours ([BPGK06], section 4.2), which
-//! unfolds what Newton's method can't.
+//! unfolds prisms that Newton's method can't.
 //!
 //! Prisms of one colour share no joint and are updated in parallel; each update minimises the energy over one rotation,
 //! so a sweep never raises it. The translations are then solved for together.
@@ -14,7 +14,7 @@ use super::pose::Pose;
 use crate::numerical::rotation::fit;
 use crate::operators::CHUNK;
 
-/// The most sweeps before Newton's method goes on with what there is.
+/// The most sweeps before Newton's method continues with the present pose.
 const SWEEPS: u32 = 200;
 
 impl Pose {
@@ -33,8 +33,8 @@ impl Pose {
         }
     }
 
-    /// The best rotation while everything else stays: it maximises tr(Rᵀ S) with S = Σ w (x m_iᵀ + R_j C), x pointing
-    /// from the prism's centre to the quad's middle under the other prism.
+    /// The best rotation if nothing else moves: it maximises tr(Rᵀ S) with S = Σ w (x m_iᵀ + R_j C), x pointing from
+    /// the prism's centre to the quad's middle under the other prism.
     fn best_turn(&self, joints: &Joints, prism: usize) -> DQuat {
         let mut sum = DMat3::ZERO;
         for side in joints.sides(prism) {
@@ -58,7 +58,7 @@ impl Pose {
 }
 
 impl Bodies {
-    /// What the present pose needs.
+    /// The kind of step that the present pose needs.
     pub(super) fn how_folded(&self) -> State {
         if self.current.is_folded(&self.joints) {
             State::Folded(SWEEPS)
@@ -67,7 +67,7 @@ impl Bodies {
         }
     }
 
-    /// One sweep; sweeping ends when nothing is folded any more or a sweep gains nothing.
+    /// One sweep; sweeping ends when nothing is folded or a sweep gains nothing.
     pub(super) fn unfold(&mut self, left: u32) {
         self.trial.clone_from(&self.current);
         self.trial.sweep(&self.joints, &self.colours);

@@ -1,13 +1,13 @@
 //! The Gauss–Newton matrix of the prisms' velocities.
 //!
-//! At f = c + arm + δ a prism's velocity (ω, v) moves the patch by v − [arm + δ]× ω in its own frame, where δ has the
-//! second moment C. With Q = R_iᵀ R_j a joint of weight w adds to the 6×6 blocks
+//! At f = c + arm + δ a prism's velocity (ω, v) moves the patch by v − [arm + δ]× ω in its own frame; δ has the second
+//! moment C. With Q = R_iᵀ R_j a joint of weight w adds to the 6×6 blocks
 //!
 //! - H_ii: w ((|m|² I − m mᵀ) + (tr C I − C), [m]×; [m]×ᵀ, I),
 //! - H_ij: −w ([m_i]×ᵀ Q [m_j]× + E([δ]×ᵀ Q [δ]×), [m_i]× Q; −Q [m_j]×, Q),
 //!
-//! rows and columns (ω, v). The matrix is positive semidefinite whatever the pose: it leaves the residual's own
-//! curvature out.
+//! rows and columns (ω, v). The matrix is positive semidefinite for every pose, because it omits the residual's own
+//! curvature.
 
 use std::collections::BTreeMap;
 
@@ -27,7 +27,7 @@ pub(crate) type Block = [[f64; 6]; 6];
 /// Columns of each prism.
 pub(crate) const DOF: usize = 6;
 
-/// One prism's blocks: its own, and those beside its solved neighbours, which are listed once each.
+/// One prism's blocks: its own, and those with its solved neighbours, which are listed once each.
 struct BlockRow {
     own: Block,
     others: Vec<(u32, Block)>,
@@ -90,7 +90,7 @@ fn row(joints: &Joints, pose: &Pose, prism: usize) -> BlockRow {
         own: [[0.0; 6]; 6],
         others: Vec::with_capacity(3),
     };
-    // A long row is searched by this.
+    // This searches a long row.
     let mut places = BTreeMap::new();
     let is_long = joints.sides(prism).len() > 32;
     let turned_back = pose.turns[prism].transpose();

@@ -15,7 +15,7 @@ pub(crate) struct Vertices {
     /// Surface vertices, ascending.
     pub vertices: Vec<u32>,
     offsets: Vec<u32>,
-    /// The bodies around each vertex and where it lies from their rest centres.
+    /// The bodies around each vertex and its position relative to their rest centres.
     around: Vec<(u32, DVec3)>,
 }
 

@@ -1,5 +1,5 @@
-//! Centres, chosen greedily [BK05]: first a few that are far from each other, then those constraints that the field
-//! misses most, until it misses none by more than the tolerance.
+//! Centres, chosen greedily [BK05]: first a few that are far from each other, then the constraints with the largest
+//! errors of the field, until no error exceeds the tolerance.
 
 use glam::DVec3;
 use pliant_mesh::Cancel;
@@ -11,20 +11,20 @@ use super::kernel::{Sum, Weights};
 use super::system::weights;
 use crate::BindError;
 
-/// How many centres there are to begin with.
+/// The initial number of centres.
 const FIRST: usize = 16;
 
-/// Each round adds this share of the centres there are.
+/// Each round adds this share of the present centres.
 const ROUND: f64 = 0.5;
 
 /// Constraints that are nearer to each other, in the unit of all, can't both be centres: the system
 /// would be singular.
 const APART: f64 = 1e-6;
 
-/// Points that one task evaluates.
+/// The number of points that one task evaluates.
 const CHUNK: usize = 512;
 
-/// A field, and by how much it misses the constraints at most, as a share of how far the handles move.
+/// A field, and its largest error at the constraints, as a share of the handles' displacement.
 pub(super) struct Fitted {
     pub weights: Weights,
     pub error: f64,
@@ -43,7 +43,7 @@ pub(super) fn fitted(
     let most = options.centres as usize;
     let mut chooser = Chooser::new(constraints);
     for _ in 0..FIRST.min(most) {
-        // Far from all centres counts, whatever the field.
+        // A constraint far from all centres counts, whatever the field's error.
         chooser.choose(&vec![1.0; constraints.len()]);
     }
     loop {
@@ -67,7 +67,7 @@ pub(super) fn fitted(
     }
 }
 
-/// By how much a field misses each constraint: the largest of its handles' columns' errors.
+/// A field's error at each constraint: the largest error of its handles' columns.
 fn misses(weights: &Weights, constraints: &[Constraint], cancel: &Cancel) -> Result<Vec<f64>, BindError> {
     let mut misses = vec![0.0; constraints.len()];
     constraints
@@ -85,7 +85,7 @@ fn misses(weights: &Weights, constraints: &[Constraint], cancel: &Cancel) -> Res
                         _ => [0.0; 4],
                     };
                     let off = (0..4).map(|k| (sum[0][k] - expected[k]).abs());
-                    // What is not a number is as wrong as can be.
+                    // NaN counts as the largest error.
                     *miss = off.fold(
                         *miss,
                         |worst: f64, off| if off.is_nan() { f64::INFINITY } else { worst.max(off) },
@@ -125,18 +125,18 @@ impl<'a> Chooser<'a> {
             .map(|(value, _)| *value)
     }
 
-    /// Takes the constraint with the largest product of this number and the distance to the nearest centre.
+    /// Chooses the constraint with the largest product of this number and the distance to the nearest centre.
     fn choose(&mut self, values: &[f64]) -> bool {
         self.choose_above(values, 0.0)
     }
 
-    /// As [`Chooser::choose`], among the constraints with a number above `least`. The distance keeps the centres of a
-    /// round apart, since each of them mends what is around it.
+    /// Like [`Chooser::choose`], among the constraints with a number above `least`. The distance keeps the centres of a
+    /// round apart, since each of them corrects its surroundings.
     fn choose_above(&mut self, values: &[f64], least: f64) -> bool {
         let candidates =
             (0..self.constraints.len()).filter(|&number| self.distances[number] > APART && values[number] > least);
         let score = |number: usize| values[number] * self.distances[number].min(2.0);
-        // Of equal ones the first.
+        // The first of equal ones.
         let best = candidates.reduce(|best, other| if score(other) > score(best) { other } else { best });
         let Some(best) = best else { return false };
         self.chosen.push(best);

@@ -1,4 +1,4 @@
-//! The points through which the field goes.
+//! The points that the field interpolates.
 
 use glam::DVec3;
 
@@ -10,11 +10,11 @@ use crate::space::samples::thinned;
 /// More constraints than these are thinned out to about as many, evenly in space.
 const MOST: usize = 40_000;
 
-/// Constraints that lie in one plane do not say what a turn of a handle does beside it. They get copies so far to
-/// both sides, in the unit of all points, which move as their handles do.
+/// Constraints in one plane do not determine the effect of a handle's turn beside the plane. They get copies at this
+/// distance to both sides, in the unit of all points, which move with their handles.
 const SLAB: f64 = 0.05;
 
-/// Points in a unit of their own, so that nothing depends on where a scan stands and how large it is.
+/// Points in their own unit, so that nothing depends on a scan's position and size.
 #[derive(Clone, Debug)]
 pub(super) struct Constraints {
     pub points: Vec<Constraint>,
@@ -24,17 +24,17 @@ pub(super) struct Constraints {
     pub unit: f64,
 }
 
-/// A point, and what happens there.
+/// A point, and its constraint.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Constraint {
     /// (p − origin) / unit.
     pub point: DVec3,
-    /// The handle whose motion it has, with its coordinates there; `None` where it is fixed.
+    /// The handle that it moves with, and its coordinates there; `None` if it is fixed.
     pub handle: Option<(usize, [f64; 4])>,
 }
 
 impl Constraints {
-    /// Of all handles and fixed vertices.
+    /// The constraints of all handles and fixed vertices.
     pub fn of(input: &BindInput<'_>) -> Self {
         let positions = &input.problem.surface.positions;
         let handles = input.handles.iter().map(|handle| handle.vertices.clone());
@@ -43,7 +43,7 @@ impl Constraints {
         let mut sets: Vec<Vec<u32>> = handles.collect();
         sets.push(fixed.collect());
         let everything = || sets.iter().flatten().map(|&vertex| positions[vertex as usize]);
-        // Neither depends on how the axes lie.
+        // Neither depends on the axes' directions.
         let world_origin = everything().sum::<DVec3>() / everything().count().max(1) as f64;
         let radius = everything()
             .map(|point| point.distance(world_origin))

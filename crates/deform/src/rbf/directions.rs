@@ -1,19 +1,19 @@
-//! The principal directions of points, and those in which they do not extend.
+//! The principal directions of points, divided into those with extent and those without.
 
 use glam::{DMat3, DVec3};
 
 use crate::numerical::eigen::eigenvectors;
 
-/// Points that reach less far than this across a direction are flat in it: a linear function there says nothing, or is
-/// nothing but noise.
+/// Points with less extent than this along a direction are flat in it: a linear function along it is undetermined, or
+/// only noise.
 const FLAT: f64 = 1e-7;
 
-/// Where points extend.
+/// The extent of points.
 pub(super) struct Directions {
     pub mean: DVec3,
-    /// The unit directions in which they extend.
+    /// The unit directions with extent.
     pub extended: Vec<DVec3>,
-    /// Those in which they do not.
+    /// The unit directions without extent.
     pub flat: Vec<DVec3>,
 }
 

@@ -6,11 +6,11 @@ use pulp::{Simd, WithSimd};
 
 use crate::numerical::lanes::{LANES, Lanes, Vector};
 
-/// The coefficients of a field: four columns a handle.
+/// The coefficients of a field: four columns per handle.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Weights {
     pub centres: Vec<DVec3>,
-    /// Row-major: one entry a centre and handle.
+    /// Row-major: one entry per centre and handle.
     pub of_centres: Vec<[f64; 4]>,
     pub handle_count: usize,
     /// The linear part: for each handle the constant, and the factors of x, y and z.

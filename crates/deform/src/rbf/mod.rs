@@ -1,8 +1,8 @@
 //! Triharmonic radial basis functions [BK05]: d(p) = Σ_k c_k |p − x_k|³ + a + B p, through the displacements of the
-//! handles and of what is fixed. Of all fields through these it has the least ∫ |∇³ d|².
+//! handles and of the fixed vertices. Of all fields through these it has the least ∫ |∇³ d|².
 //!
-//! Parts: `centres` chooses the x_k among the constraints, `system` solves for what each handle's affine motions do to
-//! the coefficients, and `kernel` evaluates sums of the kernel and their gradients. Frames are those of
+//! Parts: `centres` chooses the x_k among the constraints, `system` solves for the effect of each handle's affine
+//! motions on the coefficients, and `kernel` evaluates sums of the kernel and their gradients. Frames are those of
 //! `space::field`.
 
 mod centres;

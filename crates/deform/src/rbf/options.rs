@@ -5,7 +5,7 @@ use crate::method::option::{Number, Whole, options};
 options! {
     /// Options of radial basis functions.
     pub struct Rbf {
-        /// How closely the field meets handles and what is fixed.
+        /// The tolerance with which the field meets handles and fixed vertices.
         tolerance: f64 = Number {
             default: 1e-4,
             range: [1e-9, 0.1],

@@ -1,5 +1,5 @@
-//! The weights of centres: [Φ P; Pᵀ 0] [c; a] = [b; 0], Φ the kernel between the centres and P the linear functions
-//! there.
+//! The weights of centres: [Φ P; Pᵀ 0] [c; a] = [b; 0], with Φ the kernel between the centres and P the linear
+//! functions there.
 
 use faer::Mat;
 use glam::DVec3;
@@ -9,7 +9,7 @@ use super::directions::{Directions, directions};
 use super::kernel::Weights;
 use crate::numerical::dense::solved;
 
-/// The field through the displacements at the centres, four columns a handle.
+/// The field through the displacements at the centres, four columns per handle.
 pub(super) fn weights(centres: &[Constraint], handle_count: usize) -> Weights {
     let points: Vec<DVec3> = centres.iter().map(|centre| centre.point).collect();
     let Directions {

@@ -1,4 +1,5 @@
-//! A coarse level's problem: the same constraints on clusters of vertices, and how fine vertices share its cells.
+//! A coarse level's problem: the same constraints on clusters of vertices, and the shares of its cells at fine
+//! vertices.
 
 use pliant_mesh::SurfaceVertex;
 
@@ -7,17 +8,17 @@ use crate::handles::Handle;
 use crate::region::partition::Partition;
 use crate::{Attachment, Constraints, Loose, Method, Problem};
 
-/// Coarse cells that a fine one turns along with.
+/// The number of coarse cells with which a fine cell turns.
 const NEAREST: usize = 4;
 
-/// A coarse cell, and how much of its turn a fine cell takes.
+/// A coarse cell, and its share in a fine cell's turn.
 pub(crate) type Share = (u32, f32);
 
-/// Those of one fine cell, the largest first; they sum to 1, or are 0 if no coarse cell is near.
+/// The shares of one fine cell, the largest first; they sum to 1, or are 0 if no coarse cell is near.
 pub(crate) type Shares = [Share; NEAREST];
 
 /// Binds `method` with `bind` to the problem on the clusters. Handles keep the fine ones' frames, so that the same
-/// motions hold.
+/// motions apply.
 pub(crate) fn on_clusters<T>(
     problem: &Problem,
     clusters: &Clusters,
@@ -54,7 +55,7 @@ pub(crate) fn on_clusters<T>(
 }
 
 /// For a surface vertex, the nearest coarse cells of its cluster's ring, with shares that fall to 0 towards the next
-/// one; `cell` gives a cluster's, if it has one.
+/// one; `cell` gives a cluster's cell, if it has one.
 pub(crate) fn shares(
     problem: &Problem,
     clusters: &Clusters,
@@ -76,7 +77,7 @@ pub(crate) fn shares(
     let limit = near.get(NEAREST).map_or(farthest, |&(distance, _)| distance);
     let mut shares = [(0, 0.0); NEAREST];
     for (share, &(distance, cell)) in shares.iter_mut().zip(&near) {
-        // The nearest one always counts for something.
+        // The nearest one always has a share.
         *share = (cell, (1.0 - distance / limit).max(0.0).powi(2).max(1e-6) as f32);
     }
     let sum: f32 = shares.iter().map(|share| share.1).sum();

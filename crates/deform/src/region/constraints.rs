@@ -1,33 +1,34 @@
-//! How firmly handles pull, and how smoothly the free surface joins constrained vertices.
+//! The strength of the handles' pull, and the smoothness with which the free surface joins constrained vertices.
 
 use std::ops::RangeInclusive;
 
 use crate::{BindError, Loose, Problem};
 
-/// What constrained vertices do beyond their roles. The default is hard handles, joined as smoothly as the method can.
+/// The properties of constrained vertices beyond their roles. The default is hard handles, joined as smoothly as the
+/// method can.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct Constraints<'a> {
-    /// For each handle: `None` if its vertices go exactly where it goes; for a *soft* one its weight, a number above 0
-    /// without unit. Empty: all are hard.
+    /// For each handle: `None` if its vertices move exactly with it; for a *soft* one its weight, a positive number
+    /// without unit. Empty if all are hard.
     ///
     /// A soft handle pulls at each of its vertices i by a spring of strength
     ///
     /// W_i = w M_ii (k_s q + k_b qⁿ), q = π² / Σ M_ii,
     ///
     /// where n is the bi-Laplacian's order and the sum goes over the handle. That is w times the resistance of the
-    /// bi-Laplacian to a half wave as long as the handle is wide, so that at 1 neither dominates. It depends neither on
-    /// the mesh's resolution nor on its unit. The larger w, the closer to a hard handle.
+    /// bi-Laplacian to a half wave as long as the handle's width, so that at 1 neither dominates. It depends neither on
+    /// the mesh's resolution nor on its unit. A larger w is closer to a hard handle.
     pub soft: &'a [Option<f64>],
     /// For each surface vertex that is constrained: the continuity Cᵏ with which the free surface joins it, from 0 to 2
     /// \[BK04\] and at most Cⁿ⁻¹, n the bi-Laplacian's order. 0 is a hinge, 1 keeps the tangents, 2 the curvature; a
-    /// number between is a hinge with a spring, equally stiff at every resolution. Empty: 2 everywhere.
+    /// number between is a hinge with a spring, equally stiff at every resolution. Empty if it is 2 everywhere.
     pub continuity: &'a [f64],
-    /// What single components that nothing holds do, by their number in the topology, in place of [`Problem::loose`].
-    /// The last entry for a component counts.
+    /// The behaviour of single components that nothing holds, by their number in the topology, instead of
+    /// [`Problem::loose`]. The last entry for a component counts.
     pub parts: &'a [(u32, Loose)],
 }
 
-/// What a continuity may be.
+/// The range of a continuity.
 pub const CONTINUITY_RANGE: RangeInclusive<f64> = 0.0..=2.0;
 
 impl Constraints<'_> {

@@ -1,9 +1,9 @@
-//! Loose components travel rigidly with the nearest part of the surface that is being deformed.
+//! Loose components move rigidly with the nearest part of the deformed surface.
 //!
 //! Real models have many pieces: a helmet has 55 components, and moving its hull alone would tear it apart. A loose
-//! component is tied to a *patch*: the part of a driven component around the point that it touches or comes nearest to,
-//! about as large as itself. It takes the rigid motion that fits the patch's displacements best. A component that
-//! touches a larger loose component more than any driven one (a rivet on a strap) moves with that one.
+//! component is tied to a *patch*: the part of a driven component around the touched or nearest point, about as large
+//! as the loose component. It takes the rigid motion that fits the patch's displacements best. A component that touches
+//! a larger loose component more than any driven one (a rivet on a strap) moves with that one.
 //!
 //! A component that bends along has ties at several of its vertices, evenly spread. Between them the motions are
 //! blended as in an embedded deformation [SSP07]: at each vertex the four nearest, with weights (1 − d/d₅)², d₅ being
@@ -19,12 +19,12 @@ use super::owners::{CRUMBS, Owner, end_of_chain, hierarchy, owners};
 use crate::Loose;
 use crate::numerical::rigid_fit::RigidMotion;
 
-/// All components that follow, and what.
+/// All components that follow, and their ties.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Followers {
-    /// The places that something is tied to, each once.
+    /// The places of ties, each once.
     ties: Vec<Tie>,
-    /// From this one on they are on components that bend along.
+    /// From this place on they are on components that bend along.
     first_on_bending: usize,
     rigid: Vec<Rigid>,
     bending: Vec<Bending>,
@@ -59,26 +59,27 @@ struct Tie {
     world_rest: Vec<DVec3>,
 }
 
-/// Where a tie is, and how far its patch reaches.
+/// The place of a tie, and the radius of its patch.
 #[derive(Clone, Copy, Debug)]
 struct Place {
     middle: SurfaceVertex,
     radius: f64,
 }
 
-/// How many ties move a vertex of a component that bends along.
+/// The number of ties that move a vertex of a component that bends along.
 const BLENDED: usize = 4;
 
 /// The most ties of a component that bends along.
 const MOST_TIES: usize = 64;
 
-/// Of a patch with more vertices only this many, evenly chosen, are used: a fit needs no more.
+/// If a patch has more vertices, only this many, evenly chosen, are used: a fit needs no more.
 const PATCH_SAMPLES: usize = 256;
 
 /// A patch reaches at least this many mean edge lengths at its middle.
 const PATCH_EDGES: f64 = 3.0;
 
-/// Ties each of the components `following` to what it touches, or else to the nearest of the components `driven`.
+/// Ties each of the components `following` to the part that it touches, or else to the nearest of the components
+/// `driven`.
 ///
 /// # Errors
 /// It was cancelled.
@@ -98,7 +99,7 @@ pub(crate) fn followers(
     let place = |component: u32, middle: SurfaceVertex, radius: f64| Place {
         middle,
         radius: match topology.vertices_of(component).len() {
-            // A bare point has no extent, so it moves with the one-ring beside it.
+            // A bare point has no extent, so it moves with the nearest one-ring.
             1 => longest_edge(surface, topology, middle),
             _ => (reach * radius).max(PATCH_EDGES * mean_edge(surface, topology, middle)),
         },
@@ -171,7 +172,7 @@ struct Places {
 }
 
 impl Places {
-    /// The number of a place, which is added where it is new.
+    /// The number of a place, which is added if it is new.
     fn number(&mut self, place: Place) -> u32 {
         let key = (place.middle, place.radius.to_bits());
         *self.numbers.entry(key).or_insert_with(|| {
@@ -188,7 +189,7 @@ fn positions_of(surface: &Surface, vertices: &[SurfaceVertex]) -> Vec<DVec3> {
         .collect()
 }
 
-/// The vertex of the driven surface that the component of these vertices comes nearest to.
+/// The vertex of the driven surface nearest to the component of these vertices.
 fn nearest(surface: &Surface, vertices: impl Iterator<Item = SurfaceVertex>, nearby: &Bvh) -> Option<SurfaceVertex> {
     let mut nearest: Option<(SurfaceVertex, f64)> = None;
     for point in vertices.map(|vertex| surface.positions[vertex.index()]) {
@@ -236,7 +237,7 @@ fn bending(
     Some((bending, places))
 }
 
-/// At most [`MOST_TIES`] of the points, each as far as possible from those before it, and the smallest distance between
+/// At most [`MOST_TIES`] of the points, each as far as possible from earlier ones, and the smallest distance between
 /// them.
 fn spread(points: &[DVec3]) -> (Vec<usize>, f64) {
     let mut distances = vec![f64::INFINITY; points.len()];
@@ -275,7 +276,7 @@ fn shares_at(point: DVec3, ties: impl Iterator<Item = DVec3>) -> [(u16, f64); BL
     for (share, (number, distance)) in shares.iter_mut().zip(nearest) {
         let weight = match distance {
             _ if distance.is_infinite() => 0.0,
-            // As few ties as are blended: there is no fifth.
+            // All of the few ties are blended: there is no fifth.
             _ if beyond.is_infinite() => 1.0 / (1e-12 + distance),
             _ => (1.0 - distance / beyond.max(f64::MIN_POSITIVE)).max(0.0).powi(2),
         };

@@ -1,4 +1,4 @@
-//! The mirror images of vertices, where a part of a surface is its own image.
+//! The mirror images of vertices if a part of a surface is its own image.
 
 use glam::DVec3;
 use pliant_mesh::{MirrorPlane, mirror_planes};
@@ -8,10 +8,11 @@ use crate::space::nearest::NearestPoints;
 /// The share of a part's vertices that must have their image across a plane.
 const MOST: f64 = 0.95;
 
-/// A vertex is the image of another if it is so near to it, as a share of the part's size.
+/// A vertex is the image of another if it is this near to it, as a share of the part's size.
 const NEAR: f64 = 1e-4;
 
-/// The plane across which a part is its own image: of several the likeliest, because nodes in fours or eights crowd.
+/// The plane across which a part is its own image: the likeliest if there are several, because nodes in fours or eights
+/// crowd.
 pub(super) struct Images<'a> {
     positions: &'a [DVec3],
     plane: Option<MirrorPlane>,
@@ -20,12 +21,12 @@ pub(super) struct Images<'a> {
 }
 
 impl<'a> Images<'a> {
-    /// Of these vertices.
+    /// The images of these vertices.
     pub fn of(positions: &'a [DVec3], part: &[u32]) -> Self {
         let own: Vec<DVec3> = part.iter().map(|&vertex| positions[vertex as usize]).collect();
         let far = own.iter().map(|p| p.distance(own[0])).fold(0.0, f64::max);
         let near = NEAR * far;
-        // A flat part is its own image across the plane that it lies in, vertex by vertex.
+        // A flat part is its own image across its own plane, vertex by vertex.
         let has_sides = |plane: &MirrorPlane| own.iter().any(|p| plane.height(*p).abs() > near);
         let planes = mirror_planes(&own).into_iter();
         let mut planes = planes.filter(|(share, plane)| *share > MOST && has_sides(plane));
@@ -40,7 +41,7 @@ impl<'a> Images<'a> {
         }
     }
 
-    /// The vertex and its image, if it has another one. Where these would lie closer together than `apart`, the vertex
+    /// The vertex and its image, if it has another one. If these would be closer together than `apart`: the vertex
     /// between them, if it has none and may be taken.
     pub fn pair(&self, vertex: u32, apart: f64, may_be: impl Fn(u32) -> bool) -> Vec<u32> {
         let at = |vertex: u32| self.positions[vertex as usize];

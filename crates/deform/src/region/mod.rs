@@ -1,4 +1,4 @@
-//! The roles applied to a surface: what is solved for, what is held and how firmly, what follows.
+//! The roles applied to a surface: solved vertices, held vertices with the strength of the hold, and followers.
 
 pub(crate) mod clustered;
 pub(crate) mod constraints;

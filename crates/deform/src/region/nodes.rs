@@ -1,4 +1,4 @@
-//! Nodes spread over a part of the surface: each new one the farthest along the surface from those before.
+//! Nodes spread over a part of the surface: each new one is the farthest along the surface from earlier ones.
 
 use std::cmp::Reverse;
 use std::collections::{BTreeSet, BinaryHeap};
@@ -10,11 +10,11 @@ use super::images::Images;
 use crate::Problem;
 use crate::space::samples::{EQUAL, farthest, thinned};
 
-/// Nodes, and the part of the surface that is nearest to each.
+/// Nodes, and the part of the surface nearest to each.
 pub(crate) struct Nodes {
-    /// Their surface vertices, in the order in which they were chosen.
+    /// Their surface vertices, in the order of their choice.
     pub vertices: Vec<u32>,
-    /// Of each surface vertex: the number of the node that is nearest along the surface, or [`NO_NODE`].
+    /// For each surface vertex: the number of the nearest node along the surface, or [`NO_NODE`].
     pub cells: Vec<u32>,
 }
 
@@ -24,22 +24,22 @@ pub(crate) const NO_NODE: u32 = u32::MAX;
 /// If more than this share of the nodes were needed for one in each component, they are spread in space.
 const PIECES: f64 = 0.25;
 
-/// Images that are closer together than so many ways to the nearest node crowd each other.
+/// Images closer together than this many distances to the nearest node crowd each other.
 const APART: f64 = 1.2;
 
-/// Fewer nodes are not paired: that they lie evenly counts for more then.
+/// Fewer nodes than this are not paired: an even distribution matters more then.
 const FEWEST_PAIRED: usize = 200;
 
-/// Sets with more vertices than so many a node are thinned before nodes are spread in space.
+/// Sets with more vertices per node than this are thinned before nodes are spread in space.
 const CANDIDATES: usize = 100;
 
-/// As [`spread`]; where the part is its own mirror image and there are enough of them, so are the nodes.
+/// Like [`spread`]; if the part is its own mirror image and there are enough nodes, they are too.
 pub(crate) fn spread_alike(problem: &Problem, part: &[u32], most: usize) -> Nodes {
     let images = (most >= FEWEST_PAIRED).then(|| Images::of(&problem.surface.positions, part));
     spread_with(problem, part, most, images.as_ref())
 }
 
-/// At most so many nodes among the vertices `part`, which are ascending.
+/// At most this many nodes among the vertices `part`, which are ascending.
 pub(crate) fn spread(problem: &Problem, part: &[u32], most: usize) -> Nodes {
     spread_with(problem, part, most, None)
 }
@@ -76,7 +76,7 @@ fn spread_with(problem: &Problem, part: &[u32], most: usize, images: Option<&Ima
         let is_free = |vertex: u32| search.distances[vertex as usize] > 0.0;
         let next = images.map_or_else(|| vec![next], |images| images.pair(next, apart, is_free));
         if search.nodes.vertices.len() + next.len() > most && !is_first {
-            // One of them alone would lean to its side.
+            // A single one would lean to its side.
             break;
         }
         next.into_iter().for_each(|vertex| search.add(vertex));
@@ -84,7 +84,7 @@ fn spread_with(problem: &Problem, part: &[u32], most: usize, images: Option<&Ima
     search.nodes
 }
 
-/// Dijkstra's search from one node after another, each as far as it is the nearest.
+/// Dijkstra's search from one node after another, each within the part to which it is the nearest.
 struct Search<'a> {
     positions: &'a [DVec3],
     topology: &'a Topology,
@@ -124,7 +124,7 @@ impl<'a> Search<'a> {
             let at = self.positions[vertex as usize];
             for &SurfaceVertex(other) in self.topology.neighbours(SurfaceVertex(vertex)) {
                 let way = distance + at.distance(self.positions[other as usize]);
-                // Of nodes that are equally near the first one has a vertex, also where rounding makes a difference.
+                // The first of equally near nodes gets a vertex, even if rounding makes a difference.
                 let is_nearer = way < self.distances[other as usize] * (1.0 - EQUAL);
                 if self.is_in_part[other as usize] && is_nearer {
                     self.distances[other as usize] = way;
@@ -136,7 +136,7 @@ impl<'a> Search<'a> {
     }
 }
 
-/// A distance in the order of numbers.
+/// A distance with a total order.
 #[derive(Clone, Copy, PartialEq, Debug)]
 struct Key(f64);
 

@@ -1,4 +1,4 @@
-//! Which component a following one belongs to: the one that it touches most.
+//! The owner of each following component: the component that it touches most.
 
 use std::collections::BTreeMap;
 
@@ -10,16 +10,16 @@ use crate::Loose;
 /// neighbours share. Patches as large as each of very many components would take much more memory than the mesh.
 pub(crate) const CRUMBS: usize = 10_000;
 
-/// What a component that follows touches most.
+/// The component that a following one touches most.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Owner {
-    /// A vertex of a driven component, or of one that bends along.
+    /// A vertex on a driven component, or of one that bends along.
     Surface(SurfaceVertex),
     /// A component that follows as a whole, by its index among the followers: both move as one.
     Follower(usize),
 }
 
-/// What each of the components `following` touches most: a driven component, or a larger follower; `None` if it touches
+/// The owner of each of the components `following`: a driven component, or a larger follower; `None` if it touches
 /// neither. Crumbs are left out.
 pub(crate) fn owners(
     surface: &Surface,
@@ -34,7 +34,7 @@ pub(crate) fn owners(
     let is_driven = |component: u32| driven.binary_search(&component).is_ok();
     let index_of = |component: u32| following.binary_search_by_key(&component, |&(other, _)| other).ok();
     let areas = component_areas(surface, topology);
-    // By area, so that no chain comes back to where it began.
+    // The order is by area, so that no chain returns to its beginning.
     let is_larger = |other: u32, than: u32| {
         let area = |component: u32| areas[component as usize];
         area(other) > area(than) || area(other) == area(than) && other < than
@@ -68,7 +68,7 @@ pub(crate) fn owners(
     Ok(contacts.iter().map(owner).collect())
 }
 
-/// The end of a chain of touching components: the one that is tied itself.
+/// The end of a chain of touching components: the one with its own tie.
 pub(crate) fn end_of_chain(owners: &[Option<Owner>], mut index: usize) -> usize {
     while let Some(Owner::Follower(next)) = owners[index] {
         index = next;

@@ -1,9 +1,9 @@
-//! Which vertices are solved for, which are prescribed and which follow: the roles applied to this surface.
+//! The roles applied to this surface: solved vertices, prescribed vertices and followers.
 //!
-//! Only vertices that a handle can reach are solved for. The system's graph is that of Lⁿ, n the bi-Laplacian's order,
-//! so influence travels n edges at a time, across constrained vertices too, and ends where a band of constrained
-//! vertices is n rings wide. Free vertices out of its reach have the solution zero and stay out of the factor, so that
-//! the cost of binding depends on what is deformed, not on what is loaded.
+//! Only vertices that a handle can reach are solved. The system's graph is that of Lⁿ, n the bi-Laplacian's order, so
+//! influence travels n edges at a time, across constrained vertices too, and ends at a band of constrained vertices
+//! that is n rings wide. Free vertices out of its reach have the solution zero and stay out of the factor, so that the
+//! cost of binding depends on the deformed part, not on the loaded mesh.
 
 use glam::DVec3;
 use pliant_mesh::SurfaceVertex;
@@ -13,28 +13,28 @@ use crate::budget::bytes_of;
 use crate::operators::triangulation::{Graph, Triangulation};
 use crate::{BindError, Budget, CONTINUITY_RANGE, ConstraintKind, Loose, Needs, Problem, Role, Warning, alternatives};
 
-/// The vertices by what happens to them, all lists ascending.
+/// The vertices by role, all lists ascending.
 #[derive(Debug)]
 pub(crate) struct Partition<'a> {
-    /// The triangles that the method's operator is made on.
+    /// The triangles of the method's operator.
     pub triangulation: Triangulation<'a>,
     /// Free vertices that some handle influences, and those of soft handles.
     pub solved: Vec<u32>,
-    /// Of a method of space the vertices that are neither fixed nor of a part that follows, ascending.
+    /// For a method of space: the vertices that are neither fixed nor on a part that follows, ascending.
     pub moving: Vec<u32>,
     /// The vertices of each handle.
     pub handles: Vec<Vec<u32>>,
-    /// Each handle's weight, `None` where it is hard.
+    /// Each handle's weight, `None` if it is hard.
     pub soft: Vec<Option<f64>>,
-    /// Components that hold a handle, ascending.
+    /// Components with a handle, ascending.
     pub driven: Vec<u32>,
-    /// Components without a handle and without a fixed vertex that are to follow, ascending, and how.
+    /// Components without a handle and without a fixed vertex that follow, ascending, and the way in which they do.
     pub following: Vec<(u32, Loose)>,
-    /// Of each component: whether it holds a fixed vertex.
+    /// For each component: whether it has a fixed vertex.
     pub held: Vec<bool>,
-    /// How many vertices have the role [`Role::Free`].
+    /// The number of vertices with the role [`Role::Free`].
     pub free_count: usize,
-    /// How much memory may be taken for them.
+    /// The budget of memory.
     pub budget: Budget,
     /// Sentences for a person about components.
     pub warnings: Vec<Warning>,
@@ -44,7 +44,7 @@ impl<'a> Partition<'a> {
     /// Checks the problem's tables and sorts its vertices.
     pub fn of(problem: &Problem<'a>) -> Result<Self, BindError> {
         check(problem)?;
-        // Where there is nothing at all there is nothing to refuse.
+        // An empty surface needs no refusal.
         if !problem.surface.positions.is_empty() {
             problem.method.check_bends(problem.surface)?;
         }
@@ -61,7 +61,7 @@ impl<'a> Partition<'a> {
             match role {
                 Role::Fixed => held[component] = true,
                 Role::Free => free_count += 1,
-                // A spring on a bare point would pull at nothing: the point follows like others.
+                // A spring on a bare point would have no effect: the point follows like others.
                 Role::Handle(handle) if soft[usize::from(handle)].is_some() && is_bare(problem, vertex) => {}
                 Role::Handle(handle) => {
                     handles[usize::from(handle)].push(vertex as u32);
@@ -80,7 +80,7 @@ impl<'a> Partition<'a> {
         };
         let loose_of = problem.loose_by_component();
         let (loose, mut warnings): (_, Vec<Warning>) = match method.needs() {
-            // Where nothing needs to be connected, only what lies far away is loose.
+            // If nothing needs to be connected, only distant components are loose.
             Needs::Points => {
                 let loose = strays(problem, &driven, &held);
                 let warnings = warnings(problem, &loose, &loose_of);
@@ -134,11 +134,11 @@ impl<'a> Partition<'a> {
 }
 
 impl Partition<'_> {
-    /// Sets the budget, less the tables that grow as the mesh does, what is kept for every handle at every solved
-    /// vertex, and what is kept for every pair of handles.
+    /// Sets the budget, less the tables that grow with the mesh, the data of every handle at every solved vertex, and
+    /// the data of every pair of handles.
     ///
     /// # Errors
-    /// [`BindError::Budget`] or [`BindError::Handles`] where these alone exceed it.
+    /// [`BindError::Budget`] or [`BindError::Handles`] if these alone exceed it.
     pub fn take_budget(&mut self, problem: &Problem, budget: Budget) -> Result<(), BindError> {
         let (handles, solved) = (self.handles.len(), self.solved.len());
         let row = problem.method.implementation().handle_row_bytes();
@@ -156,7 +156,8 @@ impl Partition<'_> {
     }
 }
 
-/// Bytes of a surface vertex in all tables of a binding but the solver's: as allocated, measured by `tests/memory.rs`.
+/// Bytes of a surface vertex in all tables of a binding except the solver's: as allocated, measured by
+/// `tests/memory.rs`.
 const SURFACE_ROW: usize = 190;
 
 /// Bytes of the energy's block of a pair of handles: 4 × 4 numbers.
@@ -214,8 +215,8 @@ fn check(problem: &Problem) -> Result<(), BindError> {
     }
 }
 
-/// Each handle's weight, `None` where it is hard. A surface method holds a handle of bare points alone hard, because
-/// there is nothing that its springs could pull at.
+/// Each handle's weight, `None` if it is hard. A surface method holds a handle with only bare points hard, because its
+/// springs would have no effect.
 fn soft_weights(problem: &Problem) -> Vec<Option<f64>> {
     let heeds_soft = problem.method.declaration().heeds(ConstraintKind::SoftHandles);
     let mut pulls = vec![false; problem.handle_count];
@@ -230,7 +231,7 @@ fn soft_weights(problem: &Problem) -> Vec<Option<f64>> {
         .collect()
 }
 
-/// The vertices that are neither fixed nor of these components, ascending.
+/// The vertices that are neither fixed nor on these components, ascending.
 fn moving(problem: &Problem, strays: &[u32]) -> Vec<u32> {
     let is_stray = |vertex: u32| {
         let component = problem.topology.component(SurfaceVertex(vertex));
@@ -243,14 +244,14 @@ fn moving(problem: &Problem, strays: &[u32]) -> Vec<u32> {
         .collect()
 }
 
-/// Whether a surface method has nothing to solve for at a vertex, because no triangle uses it.
+/// Whether a surface method does not solve for a vertex, because no triangle uses it.
 fn is_bare(problem: &Problem, vertex: usize) -> bool {
     let is_alone = || problem.topology.neighbours(SurfaceVertex(vertex as u32)).is_empty();
     problem.method.needs() != Needs::Points && is_alone()
 }
 
-/// Of each component: whether its free vertices are solved for because an example moves it. Where there are handles, a
-/// component that nothing holds follows the others all the same.
+/// For each component: whether its free vertices are solved because an example moves it. If there are handles, a
+/// component that nothing holds still follows the others.
 fn led_by_examples(problem: &Problem, held: &[bool], driven: &[bool]) -> Vec<bool> {
     let mut led = vec![false; held.len()];
     if !problem.method.examples_bend() {
@@ -268,9 +269,9 @@ fn led_by_examples(problem: &Problem, held: &[bool], driven: &[bool]) -> Vec<boo
     led
 }
 
-/// The vertices that are solved for, ascending. On a surface these are the free vertices that handles reach by walks
-/// without `reach` successive constrained vertices, and those of the components `led` by examples; of points all free
-/// ones. A soft handle's vertices count as free.
+/// The solved vertices, ascending. On a surface these are the free vertices that handles reach by walks without `reach`
+/// successive constrained vertices, and those of the components `led` by examples; for points, all free ones. A soft
+/// handle's vertices count as free.
 fn solved(
     problem: &Problem,
     triangulation: &Triangulation,
@@ -297,7 +298,7 @@ fn solved(
         }
         Needs::Surface { reach, .. } => reach,
     };
-    // How many more edges a walk may take from here before it must meet a free vertex; at a reached one, `reach`.
+    // The number of further edges on a walk from here before it must meet a free vertex; `reach` at a reached one.
     let mut left = vec![0; problem.roles.len()];
     let mut queue: Vec<u32> = handles.iter().flatten().copied().collect();
     for &vertex in &queue {
@@ -368,7 +369,7 @@ fn warning_of_points(problem: &Problem, points: &[u32], loose_of: &[Loose]) -> O
     ))
 }
 
-/// How many components are named; more are only counted.
+/// The number of components to name; more are only counted.
 const NAMED: usize = 4;
 
 /// Sentences on components without a handle and a fixed vertex.

@@ -1,4 +1,4 @@
-//! The part of a surface that is solved for, with the vertices around it.
+//! The solved part of a surface, with the vertices around it.
 
 use glam::DVec3;
 use pliant_mesh::SurfaceVertex;
@@ -15,14 +15,14 @@ pub(crate) struct Patch {
     pub vertices: Vec<u32>,
     /// The local vertex of each row.
     pub rows: Vec<u32>,
-    /// Where the local vertices rest.
+    /// The rest positions of the local vertices.
     pub rest: Vec<DVec3>,
-    /// The size of what bends.
+    /// The size of the bending part.
     pub size: f64,
 }
 
 impl Patch {
-    /// Around the `solved` vertices, which are ascending; `rest` tells where a surface vertex rests.
+    /// The patch around the `solved` vertices, which are ascending; `rest` gives a surface vertex's rest position.
     pub fn of(problem: &Problem, solved: &[u32], rest: impl Fn(usize) -> DVec3) -> Self {
         let mut is_local = vec![false; problem.surface.positions.len()];
         for &vertex in solved {
@@ -46,7 +46,7 @@ impl Patch {
         }
     }
 
-    /// Fills `posed` with where the local vertices go by the surface's `displacements`.
+    /// Fills `posed` with the local vertices' positions under the surface's `displacements`.
     pub fn pose(&self, displacements: &[DVec3], posed: &mut Vec<DVec3>) {
         posed.resize(self.rest.len(), DVec3::ZERO);
         posed
@@ -59,7 +59,7 @@ impl Patch {
             });
     }
 
-    /// Replaces the solved vertices' displacements by what `displacement` gives for a row and its local vertex.
+    /// Replaces the solved vertices' displacements by `displacement` of a row and its local vertex.
     pub fn write(&self, displacements: &mut [DVec3], displacement: impl Fn(usize, usize) -> DVec3 + Sync) {
         let place = |vertex: usize| {
             self.rows

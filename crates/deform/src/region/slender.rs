@@ -1,15 +1,15 @@
-//! Refuses surfaces that are too long for a method before anything is computed on them.
+//! Refuses surfaces that are too long for a method before any computation.
 //!
 //! The least eigenvalue of the n-th power of the Laplacian falls with the 2n-th power of the number of edges between a
-//! vertex and the nearest constrained one. On strips of a million triangles no digit is left, and refinement would take
-//! a minute to find that out.
+//! vertex and the nearest constrained one. On strips of a million triangles no digit is left, and refinement would need
+//! a minute to find that.
 
 use pliant_mesh::SurfaceVertex;
 
 use crate::BindError;
 use crate::operators::triangulation::{Graph, Triangulation};
 
-/// The farthest that a vertex may lie from all constrained ones at this order of the bi-Laplacian, in edges.
+/// The largest allowed distance of a vertex from all constrained ones at this order of the bi-Laplacian, in edges.
 ///
 /// If the number of edges, to the 2n-th power, exceeds 10²⁰ (10²⁴ at order 3), no digit is left. Strips at order 2 were
 /// solved to three digits at 1.5·10¹⁸ and to none at 2.4·10¹⁹; at order 3 to seven digits at 4·10¹⁸, to three at
@@ -19,15 +19,15 @@ pub(crate) fn most_edges(order: u32) -> f64 {
     hopeless.powf(0.5 / f64::from(order))
 }
 
-/// The same for coupled prisms, which bend as order 2 does but are not refined: strips two quads wide converged in 23
-/// to 27 steps at 3·10¹⁵ and 2.4·10¹⁶ (7,500 and 12,500 edges) and not in a minute at 9.4·10¹⁶.
+/// The same for coupled prisms, which bend like order 2 but are not refined: strips two quads wide converged in 23 to
+/// 27 steps at 3·10¹⁵ and 2.4·10¹⁶ (7,500 and 12,500 edges) and not in a minute at 9.4·10¹⁶.
 pub(crate) const MOST_EDGES_OF_PRISMS: f64 = 15_000.0;
 
-/// Refuses a surface with a vertex that is `most` edges or more from every vertex that is not in `solved` (ascending).
-/// `order` is for the message.
+/// Refuses a surface with a vertex that is `most` edges or more from every vertex outside `solved` (ascending). `order`
+/// is for the message.
 ///
 /// # Errors
-/// [`BindError::Slender`] with the vertex that is farthest.
+/// [`BindError::Slender`] with the farthest vertex.
 pub(crate) fn check(
     triangulation: &Triangulation,
     solved: &[u32],

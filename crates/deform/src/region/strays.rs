@@ -1,18 +1,18 @@
-//! Which parts a method of space does not bend with the space, because they lie far from it: the specks of a scan.
+//! Parts too far away for a method of space to bend with the space: the specks of a scan.
 //!
-//! Where all is free to bend, a speck would stretch the box, the grid or the nodes of such a method, and its field is
-//! worth nothing where nothing holds it. So a speck follows the nearest surface, as loose parts do by methods of the
+//! If everything may bend, a speck would stretch the box, the grid or the nodes of such a method, and its field is
+//! useless far from everything held. So a speck follows the nearest surface, like loose parts in methods of the
 //! surface.
 
 use pliant_mesh::{Bounds, SurfaceVertex};
 
 use crate::Problem;
 
-/// A part may be so large, as a share of the diagonal of what handles move and hold, and be a speck.
+/// The largest size of a speck, as a share of the diagonal of the parts that handles move and hold.
 const MOST: f64 = 0.5;
 
-/// The components, ascending, that hold no handle and nothing fixed, and are further from those that do than these are
-/// large. Bare points are none: they may be a cloud.
+/// The components, ascending, without a handle or a fixed vertex, whose distance from those with one exceeds the size
+/// of those. Bare points are not included: they may be a cloud.
 pub(super) fn strays(problem: &Problem, driven: &[bool], held: &[bool]) -> Vec<u32> {
     let components = problem.topology.components();
     let has_faces = |component: usize| components[component].face_count > 0;

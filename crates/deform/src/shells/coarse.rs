@@ -45,7 +45,7 @@ pub(super) struct Coarse {
     members: Vec<Share>,
     /// Of each solved coarse vertex: the fine local vertex that it is.
     fine_of: Vec<u32>,
-    /// The surface vertex that each coarse one is.
+    /// Each coarse vertex's surface vertex.
     centres: Vec<u32>,
     next_offsets: Option<Offsets>,
     /// The coarse positions that were last followed.
@@ -121,7 +121,7 @@ impl Coarse {
         self.solver.stored()
     }
 
-    /// Sets by how much vertices of handles go elsewhere than the motions take them; the next start heeds it.
+    /// Sets the offsets of handles' vertices from the motions; the next start uses them.
     pub fn set_offsets(&mut self, offsets: &Offsets) {
         self.next_offsets = Some(offsets.of((0..).zip(self.centres.iter().copied())));
     }

@@ -107,7 +107,7 @@ pub(crate) struct ShellsSolver {
     has_stalled: bool,
     /// Whether other weights of examples were set since the last step.
     has_other_weights: bool,
-    /// Whether other offsets of handles' vertices were set since the last step.
+    /// Whether the offsets of handles' vertices changed since the last step.
     has_other_offsets: bool,
     tolerance: f64,
     warnings: Vec<String>,
@@ -138,12 +138,12 @@ struct Prescribed {
     /// [`elements::ABSENT`] where nothing of the energy sees it.
     local: u32,
     coordinates: [f64; 4],
-    /// Where it goes beside its handle's motion.
+    /// The offset of its target from its handle's motion.
     offset: DVec3,
 }
 
 impl Prescribed {
-    /// Where it goes, as a displacement.
+    /// The displacement to its target.
     fn goes(&self, motion: &Motion) -> DVec3 {
         motion.displace(self.coordinates) + self.offset
     }
@@ -277,7 +277,7 @@ impl ShellsSolver {
         }
     }
 
-    /// Sets by how much vertices of handles go elsewhere than the motions take them; the next step heads for that.
+    /// Sets the offsets of handles' vertices from the motions; the next step has new targets then.
     pub fn set_offsets(&mut self, offsets: &Offsets) {
         for vertex in self.prescribed.iter_mut().flatten() {
             vertex.offset = offsets.at(vertex.surface_vertex);

@@ -34,7 +34,7 @@ pub(super) struct Spring {
     /// W_i.
     pub strength: f64,
     coordinates: [f64; 4],
-    /// What it aims at beside the handle's motion.
+    /// The offset of its target from the handle's motion.
     offset: DVec3,
 }
 
@@ -93,14 +93,15 @@ impl Springs {
         each.map(|(spring, wanted)| (spring.local as usize, *wanted))
     }
 
-    /// Sets what they aim at beside the handles' motions, from the next aim on; `vertices` are the local ones'.
+    /// Sets the targets' offsets from the handles' motions, for the next aim; `vertices` has the surface vertex of each
+    /// local vertex.
     pub fn set_offsets(&mut self, vertices: &[u32], offsets: &Offsets) {
         for spring in &mut self.springs {
             spring.offset = offsets.at(vertices[spring.local as usize]);
         }
     }
 
-    /// The handles are to go so.
+    /// Sets the targets to the handles' motions.
     pub fn aim(&mut self, motions: &[Motion]) {
         for (wanted, spring) in self.wanted.iter_mut().zip(&self.springs) {
             *wanted = motions[spring.handle].displace(spring.coordinates) + spring.offset;

@@ -1,6 +1,6 @@
-//! The affine map that fits the samples best where nothing is fixed. Methods whose own field would rather not move solve
-//! for it first, so that what moves affinely as a whole does so exactly. Where something is fixed it would take along
-//! what is far from the handles, so there is none.
+//! The affine map that fits the samples best if nothing is fixed. Methods whose own field resists motion solve for it
+//! first, so that an affine motion of the whole is exact. If something is fixed the map would move places far from the
+//! handles, so there is none.
 
 use faer::Mat;
 use glam::DVec3;
@@ -9,11 +9,11 @@ use super::fit_samples::Sample;
 use crate::handles::Handle;
 use crate::numerical::dense::solved;
 
-/// How much the linear parts of the handles' motions count beside the displacements of their samples. They decide where
-/// the samples lie in a plane, on a line or in one point.
+/// The weight of the linear parts of the handles' motions relative to the displacements of their samples. They decide
+/// if the samples are in a plane, on a line or in one point.
 const LINEAR_PART: f64 = 0.01;
 
-/// An affine map a handle and column: a(p) = constant + slope · (p − origin).
+/// An affine map per handle and column: a(p) = constant + slope · (p − origin).
 #[derive(Clone, Debug)]
 pub(crate) struct AffineParts {
     world_origin: DVec3,
@@ -22,10 +22,10 @@ pub(crate) struct AffineParts {
 }
 
 impl AffineParts {
-    /// For each handle h and column k the affine function a that minimises
-    /// Σ w (a(p) − b(p))² + ε Σ w u² |∇a − ∇b|², where b is the handle's coordinate k at its own samples and 0 at all
-    /// others, and u is `world_unit`, about the size of the region. If all handles have the same affine motion, the sum
-    /// over the handles is just that motion. It is zero where a sample is fixed.
+    /// For each handle h and column k the affine function a that minimises Σ w (a(p) − b(p))² + ε Σ w u² |∇a − ∇b|²,
+    /// where b is the handle's coordinate k at its own samples and 0 at all others, and u is `world_unit`, about the
+    /// size of the region. If all handles have the same affine motion, the sum over the handles is that motion. It is
+    /// zero if a sample is fixed.
     pub fn fitted(samples: &[Sample], handles: &[Handle], world_origin: DVec3, world_unit: f64) -> Self {
         if samples.iter().any(|sample| sample.handle.is_none()) {
             return Self {

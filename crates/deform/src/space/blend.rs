@@ -1,10 +1,10 @@
-//! Displacements blended from a few affine motions, which give way to handles and to what is fixed where these begin.
+//! Displacements blended from a few affine motions, which give way to handles and to fixed vertices.
 //!
-//! d(p) = b(p) + Σ_h u_h(p) (H_h p − b(p)), b(p) = Σ_k w_k(p) (M_k (p − c_k) + t_k): the motions k of nodes or cells with
-//! weights that sum to 1, and the affine motions H_h of hard handles; of what is fixed H is zero. The weight u_h is 1 at
-//! the vertices of h, with slope 0, and fades with the distance to the nearest of them; where several are near their
-//! weights are those of Shepard's interpolation [She68]. So handles are met exactly, what is fixed rests, and what lies
-//! beside either goes along with it to the second order of the distance, whether triangles join them or not.
+//! d(p) = b(p) + Σ_h u_h(p) (H_h p − b(p)), b(p) = Σ_k w_k(p) (M_k (p − c_k) + t_k): the motions k of nodes or cells
+//! with weights that sum to 1, and the affine motions H_h of hard handles; for fixed vertices H is zero. The weight u_h
+//! is 1 at the vertices of h, with slope 0, and fades with the distance to the nearest of them; if several are near,
+//! their weights are those of Shepard's interpolation [She68]. So handles are met exactly, fixed vertices rest, and
+//! their surroundings move with them to the second order of the distance, with or without triangles between them.
 
 use glam::{DMat3, DVec3, Mat3, Vec3};
 use rayon::prelude::*;
@@ -42,15 +42,15 @@ pub(crate) struct Shares {
     list: Vec<Share>,
 }
 
-/// Every vertex of a frame.
+/// The blend at every vertex of a frame.
 #[derive(Debug)]
 pub(crate) struct Blend {
     moving: Moving,
     /// The rest positions of the rows.
     world_places: Vec<DVec3>,
-    /// Of the motions at each row.
+    /// The shares of the motions at each row.
     shares: Shares,
-    /// Of the handles' motions at each row, by their numbers; the next number is what is fixed.
+    /// The shares of the handles' motions at each row, by their numbers; the next number is that of the fixed vertices.
     holds: Shares,
     /// Each handle's centre and unit of length.
     frames: Vec<(DVec3, f64)>,
@@ -65,12 +65,12 @@ struct Hold {
     world_high: DVec3,
 }
 
-/// Points that one task weighs.
+/// The number of points that one task weighs.
 const AT_ONCE: usize = 256;
 
 impl Blend {
-    /// `weigh` gives the shares of the motions at a point, whose weights sum to 1. Handles and what is fixed reach as far
-    /// as `width`, in world units.
+    /// `weigh` gives the shares of the motions at a point, whose weights sum to 1. `width` is the reach of handles and
+    /// fixed vertices, in world units.
     ///
     /// # Errors
     /// It was cancelled.
@@ -109,7 +109,7 @@ impl Blend {
         })
     }
 
-    /// How many vertices are blended.
+    /// The number of blended vertices.
     pub fn row_count(&self) -> usize {
         self.moving.vertices.len()
     }
@@ -143,7 +143,7 @@ impl Blend {
         });
     }
 
-    /// The motions of the handles, and that of what is fixed.
+    /// The motions of the handles, and that of the fixed vertices.
     fn hold_motions(&self, motions: &[Motion]) -> Vec<Affine> {
         let of_handles = self.frames.iter().zip(motions);
         let of_handles = of_handles.map(|(&(world_centre, radius), motion)| Affine {
@@ -175,7 +175,7 @@ impl Hold {
         }
     }
 
-    /// From its nearest vertex to a point that is less than `width` away.
+    /// The vector from its nearest vertex to a point that is less than `width` away.
     fn away(&self, place: DVec3, width: f64) -> Option<DVec3> {
         let beside = place.clamp(self.world_low, self.world_high);
         if self.world_places.is_empty() || beside.distance_squared(place) >= width * width {
@@ -233,8 +233,8 @@ fn blended(shares: &[Share], affine: &[Affine], world_place: DVec3) -> DVec3 {
         .sum()
 }
 
-/// The Jacobian of [`blended`], which is `reached` there. The weights' gradients sum to zero but for their single
-/// precision: taken of the differences they leave nothing where all motions agree.
+/// The Jacobian of [`blended`], whose displacement there is `reached`. The weights' gradients sum to zero except for
+/// their single precision: applied to differences they give zero if all motions agree.
 fn blended_jacobian(shares: &[Share], affine: &[Affine], world_place: DVec3, reached: DVec3) -> DMat3 {
     let mut sum = DMat3::ZERO;
     for share in shares {
@@ -256,9 +256,9 @@ pub(crate) fn normalised(raw: &[(u32, f64, DVec3)]) -> Vec<Share> {
     raw.iter().map(share).collect()
 }
 
-/// Which of these hold a point, in part: with the distances d_h the weights are (1/d_h − 1/width)² over their sum, times
-/// s(d_min/width), s(u) = (1 − u)⁴ (1 + 4 u) [Wen95]. The handle's motion and b may differ in their slopes by G; then
-/// u s(u) adds at most 0.44 G on the way back to b, where the smoothstep adds 0.67 G.
+/// The shares with which these hold a point: with the distances d_h the weights are (1/d_h − 1/width)² over their sum,
+/// times s(d_min/width), s(u) = (1 − u)⁴ (1 + 4 u) [Wen95]. The handle's motion and b may differ in their slopes by G;
+/// then u s(u) adds at most 0.44 G on the way back to b, where the smoothstep adds 0.67 G.
 fn held_by(place: DVec3, all: &[Hold], width: f64) -> Vec<Share> {
     let near = (0..)
         .zip(all)
@@ -275,7 +275,7 @@ fn held_by(place: DVec3, all: &[Hold], width: f64) -> Vec<Share> {
         }];
     }
     let raw = |&(number, away, distance): &(u32, DVec3, f64)| {
-        // Times the least distance, so that no square overflows.
+        // Everything is multiplied by the least distance, so that no square overflows.
         let difference = least / distance - least / width;
         let slope = away * (-least / distance.powi(3));
         (number, difference * difference, slope * (2.0 * difference))

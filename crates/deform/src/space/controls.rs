@@ -1,10 +1,10 @@
-//! Control points that handles drive and that a person moves by hand: where they rest, and where they are.
+//! Control points that handles drive and that a person moves by hand: their rest positions and present positions.
 //!
-//! The hand's displacements H are applied to the control points as they are. With d(p) = Σ_i λ_i(p) D_i the handles then
-//! solve for what is left: to the displacements that they ask for without the hand comes the smallest correction C that
-//! takes the hand's share away at the handles, min Σ_handles w |Σ λ_i (H_i + C_i)|² + Σ_fixed w |Σ λ_i C_i|² + ε |C|².
-//! So handles are met as well as without the hand, what is fixed stays, and without handles every point is where the
-//! hand has put it.
+//! The hand's displacements H are applied to the control points unchanged. With d(p) = Σ_i λ_i(p) D_i the handles then
+//! solve for the rest: to the displacements that they require without the hand the method adds the smallest correction
+//! C that removes the hand's share at the handles, min Σ_handles w |Σ λ_i (H_i + C_i)|² + Σ_fixed w |Σ λ_i C_i|² + ε
+//! |C|². So handles are met as well as without the hand, fixed vertices stay, and without handles every point is where
+//! the hand has put it.
 
 use std::sync::Arc;
 
@@ -18,17 +18,17 @@ use crate::numerical::dense::Lu;
 /// The control points of a bound method.
 #[derive(Debug)]
 pub(crate) struct Controls {
-    /// How they rest, and where the hand has moved them.
+    /// Their rest shape, and the positions to which the hand has moved them.
     pub attachment: Attachment,
-    /// Where they rest, in world units.
+    /// Their rest positions, in world units.
     pub rest: Vec<DVec3>,
-    /// Row-major: the coefficients of one control point and handle, as [`crate::HandleBases`] has them.
+    /// Row-major: the coefficients of one control point and handle, as in [`crate::HandleBases`].
     pub driven: Vec<[f64; 4]>,
-    /// What the hand does, where the attachment was brought.
+    /// The hand's effect, if the attachment was brought.
     pub hand: Option<Hand>,
 }
 
-/// What the hand does to control points.
+/// The hand's effect on control points.
 #[derive(Debug)]
 pub(crate) struct Hand {
     correction: Option<Correction>,
@@ -38,7 +38,7 @@ pub(crate) struct Hand {
     corrected: Vec<DVec3>,
 }
 
-/// What makes C of H.
+/// The map from H to C.
 #[derive(Debug)]
 struct Correction {
     matrix: Lu,
@@ -46,14 +46,14 @@ struct Correction {
     pull: Mat<f64>,
 }
 
-/// A point at which the hand's share is looked at.
+/// A point at which the hand's share is measured.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Hold {
     pub weight: f64,
     pub by: Holder,
 }
 
-/// What holds it.
+/// Its holder.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Holder {
     Handle,
@@ -64,14 +64,14 @@ pub(crate) enum Holder {
 const LEAST: f64 = 1e-8;
 
 impl Controls {
-    /// Where the points are while the handles have these motions.
+    /// The positions of the points for these motions of the handles.
     pub fn positions(&self, motions: &[Motion]) -> Vec<DVec3> {
         let rest = self.rest.iter().enumerate();
         let positions = rest.map(|(point, rest)| *rest + self.driven(point, motions) + self.by_hand(point));
         positions.collect()
     }
 
-    /// How far the handles take a control point.
+    /// The displacement of a control point by the handles.
     pub fn driven(&self, point: usize, motions: &[Motion]) -> DVec3 {
         let own = &self.driven[point * motions.len()..][..motions.len()];
         let terms = own.iter().zip(motions).map(|(coefficients, motion)| {
@@ -86,7 +86,7 @@ impl Controls {
         terms.sum()
     }
 
-    /// Sets where the hand has moved the points: one place for each.
+    /// Sets the positions to which the hand has moved the points: one for each.
     pub fn move_to(&mut self, moved: Arc<Vec<DVec3>>) {
         if let Some(hand) = &mut self.hand {
             let displacements = self.rest.iter().zip(moved.iter()).map(|(rest, moved)| *moved - *rest);
@@ -126,7 +126,7 @@ impl Controls {
 }
 
 impl Hand {
-    /// For so many control points; `weights` visits those with a weight at a hold, by its number.
+    /// The effect for this many control points; `weights` visits those with a weight at a hold, by its number.
     pub fn new(count: usize, holds: &[Hold], weights: impl Fn(usize, &mut dyn FnMut(usize, f64))) -> Self {
         Self {
             correction: Correction::new(count, holds, weights),
@@ -185,7 +185,7 @@ impl Correction {
     }
 }
 
-/// Bytes that the hand takes at so many control points: the factored matrix and the handles' pull.
+/// Bytes of the hand's data for this many control points: the factored matrix and the handles' pull.
 pub(crate) fn hand_bytes(count: usize) -> u64 {
     16 * (count as u64) * (count as u64 + 64)
 }

@@ -1,5 +1,5 @@
-//! How a deformation fades towards what is fixed: by the straight distance to it, smoothly, so that nothing tears at the
-//! region's border.
+//! The fading of a deformation towards fixed vertices: by the straight distance to them, smoothly, so that nothing
+//! tears at the region's border.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -11,13 +11,13 @@ use crate::{Problem, Role};
 /// A factor from 0 to 1 for each of some vertices, and its gradient per world unit.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Falloff {
-    /// Empty where nothing is fixed: 1 everywhere.
+    /// Empty if nothing is fixed: 1 everywhere.
     factors: Vec<(f64, DVec3)>,
 }
 
 impl Falloff {
     /// s(t) = t² (3 − 2 t) with t the distance to the nearest fixed vertex over `width`, in world units, of each of
-    /// these vertices. With a width of 0 only what is fixed has the factor 0.
+    /// these vertices. With a width of 0 only fixed vertices have the factor 0.
     pub fn of(problem: &Problem, vertices: &[u32], width: f64) -> Self {
         let positions = &problem.surface.positions;
         let fixed = (0..)

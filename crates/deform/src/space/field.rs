@@ -12,7 +12,7 @@ use crate::handles::{FRAME_CHUNK, Motion, clear};
 use crate::method::{BindInput, Finite, HandleFit};
 use crate::{BindError, HandleBases};
 
-/// A handle's coefficients at a point, as [`HandleBases`] has them, and their gradients per world unit.
+/// A handle's coefficients at a point, as in [`HandleBases`], and their gradients per world unit.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub(crate) struct Coefficients {
     pub value: [f64; 4],
@@ -21,7 +21,7 @@ pub(crate) struct Coefficients {
 
 /// A map of space that is linear in the handles' motions.
 pub(crate) trait SpaceMap: Sync {
-    /// Fills in the coefficients at a few points: for each point those of all handles. `out` holds zeros.
+    /// Fills in the coefficients at a few points: for each point those of all handles. `out` contains zeros.
     fn coefficients(&self, world_points: &[DVec3], out: &mut [Coefficients]);
 }
 
@@ -31,7 +31,7 @@ pub(crate) struct LinearField {
     bases: HandleBases<f64>,
     /// Gradients of the bases' entries, in single precision, because only normals are made of them.
     gradients: Vec<[Vec3; 4]>,
-    /// The vertices that hard handles take along exactly, and their coordinates.
+    /// The vertices that move exactly with hard handles, and their coordinates.
     prescribed: Vec<Vec<(u32, [f64; 4])>>,
     /// Each handle's unit of length.
     radii: Vec<f64>,
@@ -40,7 +40,7 @@ pub(crate) struct LinearField {
 /// Bytes of a handle's coefficients at a vertex.
 pub(crate) const FIELD_ROW: usize = size_of::<[f64; 4]>() + size_of::<[Vec3; 4]>();
 
-/// Points whose coefficients are computed at once.
+/// The number of points whose coefficients are computed at once.
 const AT_ONCE: usize = 256;
 
 impl LinearField {
@@ -106,7 +106,7 @@ impl LinearField {
         frame(&self.bases, &self.prescribed, vertex, motions, displacements)
     }
 
-    /// The Jacobian of the displacements at each surface vertex, zero where nothing moves.
+    /// The Jacobian of the displacements at each surface vertex, zero for a vertex that does not move.
     pub fn jacobians(&self, motions: &[Motion], out: &mut [Mat3]) {
         let columns: Vec<[Vec3; 4]> = motions
             .iter()
@@ -142,8 +142,7 @@ impl LinearField {
     }
 }
 
-/// The vertices that a map is evaluated at, ascending: those that are solved for and, where handles are only fitted,
-/// theirs.
+/// The vertices at which a map is evaluated, ascending: the solved ones and, if handles are only fitted, theirs.
 pub(crate) fn moving(fit: HandleFit, input: &BindInput<'_>) -> Vec<u32> {
     match fit {
         HandleFit::Exact => input.partition.solved.clone(),

@@ -1,4 +1,4 @@
-//! The points at which a space method fits the handles and what is fixed, and the box around what moves.
+//! The points at which a space method fits the handles and the fixed vertices, and the box around the moving part.
 
 use glam::DVec3;
 
@@ -9,37 +9,36 @@ use super::shaping::shaping;
 use crate::Role;
 use crate::method::{BindInput, HandleFit};
 
-/// What is fixed counts as near the region up to this share of the diagonal of what moves beside its box.
+/// Fixed vertices are near the region up to this share of the moving part's diagonal outside its box.
 const NEAR: f64 = 0.25;
 
-/// The box reaches beyond what it holds by this share of the same diagonal, so that it has some thickness around flat
-/// shapes.
+/// The box exceeds its contents by this share of the same diagonal, so that it has some thickness around flat shapes.
 const MARGIN: f64 = 0.05;
 
-/// The box around everything that moves and what is fixed near it, along the axes of space.
+/// The box around everything that moves and the fixed vertices near it, along the axes of space.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RegionBox {
     /// Its lowest corner.
     pub low: DVec3,
-    /// Its sides, all above 0.
+    /// Its sides, all positive.
     pub extent: DVec3,
-    /// The diagonal of what moves, in world units; 1 if it has none.
+    /// The diagonal of the moving part, in world units; 1 if it has none.
     pub diagonal: f64,
 }
 
-/// A point where the field is to have a displacement.
+/// A point with a prescribed displacement of the field.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sample {
     pub world_point: DVec3,
-    /// The handle whose motion it has, with its coordinates there; `None` where it is fixed.
+    /// The handle that it moves with, and its coordinates there; `None` if it is fixed.
     pub handle: Option<(usize, [f64; 4])>,
     /// Its weight in a least-squares fit. The weights of each hard handle and of the fixed part sum to 1, so that each
-    /// counts alike, however densely it was sampled.
+    /// has equal weight for any density of its samples.
     pub weight: f64,
 }
 
 impl RegionBox {
-    /// Of the problem's vertices.
+    /// The box of the problem's vertices.
     pub fn of(input: &BindInput<'_>) -> Self {
         let positions = &input.problem.surface.positions;
         let moving = moving(HandleFit::LeastSquares, input).into_iter();
@@ -77,15 +76,15 @@ impl RegionBox {
         self.low + 0.5 * self.extent
     }
 
-    /// Whether a point lies in it.
+    /// Whether a point is in it.
     pub fn contains(&self, point: DVec3) -> bool {
         point.cmpge(self.low).all() && point.cmple(self.low + self.extent).all()
     }
 }
 
-/// The samples of all handles, and of what is fixed in the box. Those of a soft handle of weight w weigh `soft_unit` w
-/// together. A handle, or the fixed part, with more than `most` vertices is thinned out to about as many, evenly in
-/// space.
+/// The samples of all handles, and of the fixed vertices in the box. Those of a soft handle of weight w have the total
+/// weight `soft_unit` w. A handle, or the fixed part, with more than `most` vertices is thinned out to about as many,
+/// evenly in space.
 pub(crate) fn samples(input: &BindInput<'_>, within: &RegionBox, soft_unit: f64, most: usize) -> Vec<Sample> {
     let positions = &input.problem.surface.positions;
     let mut samples = Vec::new();
@@ -120,7 +119,7 @@ pub(crate) fn samples(input: &BindInput<'_>, within: &RegionBox, soft_unit: f64,
     samples
 }
 
-/// The samples as what holds control points beside the hand.
+/// The samples as holds of control points against the hand.
 pub(crate) fn holds(samples: &[Sample]) -> Vec<Hold> {
     let hold = |sample: &Sample| Hold {
         weight: sample.weight,

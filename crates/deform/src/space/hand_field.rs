@@ -1,4 +1,4 @@
-//! The displacements of what control points move by hand: d(p) = Σ_i λ_i(p) D_i, faded towards what is fixed.
+//! The displacements by control points moved by hand: d(p) = Σ_i λ_i(p) D_i, faded towards fixed vertices.
 
 use std::fmt::Debug;
 
@@ -10,13 +10,13 @@ use crate::handles::FRAME_CHUNK;
 
 /// A field that is linear in the control points' displacements.
 pub(crate) trait ControlMap: Debug + Send + Sync {
-    /// What the weights multiply, of the control points' displacements.
+    /// The factors of the weights, from the control points' displacements.
     fn coefficients(&self, displacements: &[DVec3]) -> Vec<DVec3> {
         displacements.to_vec()
     }
 
-    /// Visits what has a weight at the vertex of this place in [`HandField::vertices`]: number, weight, and the weight's
-    /// gradient per world unit.
+    /// Visits the factors with a weight at the vertex of this place in [`HandField::vertices`]: number, weight, and the
+    /// weight's gradient per world unit.
     fn weights(&self, place: usize, world_point: DVec3, visit: impl FnMut(usize, f64, DVec3));
 }
 
@@ -24,14 +24,14 @@ pub(crate) trait ControlMap: Debug + Send + Sync {
 #[derive(Debug)]
 pub(crate) struct HandField<M> {
     map: M,
-    /// Ascending, and where they rest.
+    /// The vertices, ascending, and their rest positions.
     vertices: Vec<u32>,
     world_points: Vec<DVec3>,
     falloff: Falloff,
 }
 
 impl<M: ControlMap> HandField<M> {
-    /// At these vertices, ascending, which rest at these points and fade so.
+    /// The field at these vertices, ascending, with these rest positions and this fading.
     pub fn new(map: M, vertices: Vec<u32>, world_points: Vec<DVec3>, falloff: Falloff) -> Self {
         Self {
             map,

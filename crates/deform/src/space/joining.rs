@@ -1,11 +1,11 @@
-//! What joins loose parts: the nearest points of two, until all are one, and what braces the joints.
+//! Links that join loose parts: the nearest points of two, until all are one, and braces of the joints.
 
 use glam::DVec3;
 
 /// Further links at each end of a brace.
 const BRACES: usize = 2;
 
-/// Pairs of points, the nearest first, that join all parts which the pairs `firm` do not join.
+/// Pairs of points, the nearest first, that join all parts that the pairs `firm` do not join.
 ///
 /// They are the shortest spanning tree of the parts, which grows from the first point (Prim), in memory that grows with
 /// the points alone.
@@ -35,7 +35,7 @@ pub(crate) fn joins(points: &[DVec3], firm: &[[u32; 2]]) -> Vec<[u32; 2]> {
     };
     // The best pair of each point outside with one inside.
     let mut best = vec![(u64::MAX, [u32::MAX; 2]); points.len()];
-    // A little more than its squared distance: most pairs are passed over by it.
+    // A little more than its squared distance: it excludes most pairs.
     let mut bound = vec![f64::INFINITY; points.len()];
     let mut outside: Vec<usize> = (0..points.len()).collect();
     let mut joins = Vec::with_capacity(parts - 1);
@@ -61,8 +61,8 @@ pub(crate) fn joins(points: &[DVec3], firm: &[[u32; 2]]) -> Vec<[u32; 2]> {
     joins.into_iter().map(|(_, pair)| pair).collect()
 }
 
-/// Further pairs beside each of the `links` that alone holds two parts together, which could turn about it: its ends are
-/// joined to what lies around the other one, off its axis where there is such. `links` are ascending within each pair.
+/// Further pairs beside each of the `links` that alone holds two parts together, which could turn about it: each end is
+/// joined to points around the other one, off its axis if there are any. `links` are ascending within each pair.
 pub(crate) fn braces(points: &[DVec3], links: &[[u32; 2]]) -> Vec<[u32; 2]> {
     let mut around = vec![Vec::new(); points.len()];
     for &[one, other] in links {
@@ -85,7 +85,7 @@ pub(crate) fn braces(points: &[DVec3], links: &[[u32; 2]]) -> Vec<[u32; 2]> {
     braces
 }
 
-/// The links without which a graph falls apart, by a search in depth [Tar72].
+/// The links without which a graph falls apart, by a depth-first search [Tar72].
 fn bridges(around: &[Vec<u32>]) -> Vec<[u32; 2]> {
     const UNSEEN: u32 = u32::MAX;
     let mut found = Vec::new();
@@ -96,7 +96,7 @@ fn bridges(around: &[Vec<u32>]) -> Vec<[u32; 2]> {
         if seen[start] != UNSEEN {
             continue;
         }
-        // A node, where it was reached from, and how many of its neighbours were looked at.
+        // A node, the node before it, and the number of its neighbours visited so far.
         let mut path = vec![(start, UNSEEN, 0)];
         (seen[start], lowest[start]) = (time, time);
         time += 1;
@@ -128,7 +128,7 @@ fn bridges(around: &[Vec<u32>]) -> Vec<[u32; 2]> {
     found
 }
 
-/// The lowest point of a part, as far as it is known.
+/// The lowest known point of a part.
 fn root(part: &mut [usize], mut point: usize) -> usize {
     while part[point] != point {
         part[point] = part[part[point]];
@@ -153,7 +153,7 @@ mod tests {
             .map(|k| DVec3::new(noise(3 * k), noise(3 * k + 1), noise(3 * k + 2)))
             .collect();
         let firm: Vec<[u32; 2]> = (0..12).map(|k| [k, 39 - k]).collect();
-        // By all pairs, the shortest first.
+        // All pairs, the shortest first.
         let mut part: Vec<usize> = (0..40).collect();
         let mut join = |[one, other]: [u32; 2]| {
             let (a, b) = (part[one as usize], part[other as usize]);

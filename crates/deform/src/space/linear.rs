@@ -20,7 +20,7 @@ impl BoundLinear {
     /// Evaluates the map at every vertex that moves.
     ///
     /// # Errors
-    /// As [`LinearField::bind`].
+    /// Those of [`LinearField::bind`].
     pub fn bind(map: &impl SpaceMap, warnings: Vec<String>, input: &BindInput<'_>) -> Result<Self, BindError> {
         Ok(Self {
             field: LinearField::bind(map, &Falloff::default(), HandleFit::Exact, input)?,

@@ -1,11 +1,11 @@
-//! What the methods share that bend the space around the points, connected or not.
+//! The common code of the methods that bend the space around the points, connected or not.
 //!
 //! A method that is linear in the handles' motions is a [`field::SpaceMap`]: it gives each point's coefficients once,
 //! and [`field::LinearField`] makes its frames, by a product, and its Jacobians; [`linear::BoundLinear`] is the bound
-//! form of those that meet their handles. Methods that do not hold what is fixed by themselves fade towards it by a
+//! form of those that meet their handles. Methods that do not hold fixed vertices by themselves fade towards them by a
 //! [`falloff::Falloff`]. Those that only fit the handles do so at [`fit_samples`], and solve for an affine map first
-//! ([`affine`]). Control points that a person may move as well are [`controls`], and what the hand does to the vertices
-//! is a [`hand_field`]. Methods that are not linear evaluate each vertex of [`moving::Moving`].
+//! ([`affine`]). Control points that a person may move are [`controls`], and the hand's effect on the vertices is a
+//! [`hand_field`]. Methods that are not linear evaluate each vertex of [`moving::Moving`].
 
 pub(crate) mod affine;
 pub(crate) mod blend;

@@ -1,4 +1,4 @@
-//! Who moves: the vertices that a method evaluates one by one, and those that hard handles take along exactly.
+//! The moving vertices: those that a method evaluates one by one, and those that move exactly with hard handles.
 
 use glam::{DVec3, Mat3};
 use rayon::prelude::*;
@@ -9,7 +9,7 @@ use crate::method::{BindInput, Finite};
 /// The vertices of a frame. All others rest.
 #[derive(Debug)]
 pub(crate) struct Moving {
-    /// The vertices that are solved for, ascending: the rows.
+    /// The solved vertices, ascending: the rows.
     pub vertices: Vec<u32>,
     /// Hard handles' vertices, ascending, and their coordinates; soft handles have none.
     prescribed: Vec<Vec<(u32, [f64; 4])>>,
@@ -18,7 +18,7 @@ pub(crate) struct Moving {
 }
 
 impl Moving {
-    /// Rows for what is solved for; hard handles hold their vertices exactly.
+    /// Rows for the solved vertices; hard handles hold their vertices exactly.
     pub fn of(input: &BindInput<'_>) -> Self {
         let positions = &input.problem.surface.positions;
         let own = |(handle, soft): (&crate::handles::Handle, &Option<f64>)| {
@@ -54,7 +54,7 @@ impl Moving {
         self.fill(out, Mat3::ZERO, prescribed, row, |_| true);
     }
 
-    /// Chunk by chunk, so that each goes through memory once. Whether all chunks pass `check`.
+    /// Works chunk by chunk, so that each goes through memory once. Returns whether all chunks pass `check`.
     fn fill<T: Copy + Send + Sync>(
         &self,
         out: &mut [T],

@@ -4,18 +4,18 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-/// Points in a balanced k-d tree: in each range the middle one splits the others along the axis in which they extend
-/// most.
+/// Points in a balanced k-d tree: in each range the middle one splits the others along the axis of their largest
+/// extent.
 #[derive(Debug)]
 pub(crate) struct Neighbours {
     /// Numbers of points, in the tree's order.
     order: Vec<u32>,
     points: Vec<DVec3>,
-    /// Of each place in the order: the axis along which it splits.
+    /// The axis along which each place in the order splits.
     axes: Vec<u8>,
 }
 
-/// Ranges of so few points are not split.
+/// Ranges of this many points or fewer are not split.
 const LEAF: usize = 8;
 
 /// Ranges of more points are split in parallel.
@@ -33,13 +33,13 @@ impl Neighbours {
         }
     }
 
-    /// The nearest `count` points with their distances, nearest first, of equally near ones the lowest number; fewer if
-    /// there are not so many.
+    /// The nearest `count` points with their distances, nearest first, and by number among equally near ones; all if
+    /// there are fewer.
     pub fn nearest(&self, to: DVec3, count: usize) -> Vec<(u32, f64)> {
         self.nearest_within(to, count, f64::INFINITY)
     }
 
-    /// The same of those that are at most `limit` away.
+    /// The same for points that are at most `limit` away.
     pub fn nearest_within(&self, to: DVec3, count: usize, limit: f64) -> Vec<(u32, f64)> {
         if count == 0 {
             return Vec::new();
@@ -63,12 +63,12 @@ struct Search<'a> {
     to: DVec3,
     count: usize,
     limit_square: f64,
-    /// What was found, with the squared distances.
+    /// The results, with the squared distances.
     found: Vec<(f64, u32)>,
 }
 
 impl Search<'_> {
-    /// Goes through a range whose box is at least `away` from the point, axis by axis [AM93].
+    /// Searches a range whose box is at least `away` from the point, axis by axis [AM93].
     fn range(&mut self, range: Range<usize>, away: DVec3) {
         if range.len() <= LEAF {
             range.for_each(|place| self.offer(place));
@@ -88,7 +88,7 @@ impl Search<'_> {
         }
     }
 
-    /// The squared distance beyond which nothing is sought any more.
+    /// The squared distance beyond which the search ends.
     fn reach_square(&self) -> f64 {
         let farthest = self.found.get(self.count - 1);
         farthest.map_or(self.limit_square, |(square, _)| *square)

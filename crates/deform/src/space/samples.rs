@@ -1,11 +1,11 @@
-//! A few points that stand for many.
+//! A few points that represent many.
 
 use std::collections::HashSet;
 
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// At most about so many of the vertices: the first in each cell of the finest grid that has no more occupied cells.
+/// At most about this many of the vertices: the first in each cell of the finest grid without more occupied cells.
 pub(crate) fn thinned(vertices: &[u32], positions: &[DVec3], most: usize) -> Vec<u32> {
     if vertices.len() <= most {
         return vertices.to_vec();
@@ -29,12 +29,12 @@ pub(crate) fn thinned(vertices: &[u32], positions: &[DVec3], most: usize) -> Vec
     }
 }
 
-/// A point is farther than another only if it is so by more than this share: of equal ones the first is taken, also
-/// where rounding makes a difference.
+/// A point is farther than another only by more than this share: the first of equal ones is chosen, even if rounding
+/// makes a difference.
 pub(crate) const EQUAL: f64 = 1e-9;
 
-/// At most so many of the vertices, each new one the farthest in space from those before. It begins with the one that
-/// is farthest from the mean; of equal ones the first is taken.
+/// At most this many of the vertices, each new one the farthest in space from earlier ones. The first is the farthest
+/// from the mean; the first of equal ones is chosen.
 pub(crate) fn farthest(vertices: &[u32], positions: &[DVec3], most: usize) -> Vec<u32> {
     if vertices.len() <= most {
         return vertices.to_vec();

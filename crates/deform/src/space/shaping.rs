@@ -1,8 +1,8 @@
-//! Which vertices shape the space: those that triangles use. Bare points beside triangles go along with it.
+//! The vertices that shape the space: those of triangles. Bare points beside triangles follow.
 
 use crate::Problem;
 
-/// Those of these vertices that triangles use, or all where triangles use none of them.
+/// The vertices in these that triangles use, or all if triangles use none of them.
 pub(crate) fn shaping(problem: &Problem, vertices: impl Iterator<Item = u32> + Clone) -> Vec<u32> {
     let first_bare = problem.topology.bare_points().start;
     let used: Vec<u32> = vertices

@@ -1,8 +1,8 @@
-//! Coordinates in which a problem lies around the origin and has about the size 1.
+//! Coordinates in which a problem is around the origin with a size of about 1.
 
 use glam::DVec3;
 
-/// An origin and a unit of length, so that nothing depends on where a scan stands, how large it is and how the axes lie.
+/// An origin and a unit of length, so that nothing depends on a scan's position, its size and the axes' directions.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct Unit {
     /// The points' mean.
@@ -12,7 +12,7 @@ pub(crate) struct Unit {
 }
 
 impl Unit {
-    /// Of these points.
+    /// The unit of these points.
     pub fn of(world_points: impl Iterator<Item = DVec3> + Clone) -> Self {
         let mut rest = world_points.clone();
         let first = rest.next().unwrap_or_default();

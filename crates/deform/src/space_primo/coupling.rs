@@ -1,4 +1,4 @@
-//! The joints between cells, and the springs that tie cells to what constrained vertices do.
+//! The joints between cells, and the springs that tie cells to constrained vertices.
 
 use std::collections::BTreeMap;
 
@@ -14,7 +14,8 @@ use crate::space::shaping::shaping;
 use crate::sparse::Elimination;
 use crate::sparse::ordering::graph::elimination;
 
-/// How much firmer than a joint between two cells the spring is that ties a cell to a hard handle or to what is fixed.
+/// The stiffness of the spring between a cell and a hard handle or fixed vertices, relative to a joint between two
+/// cells.
 const TIED: f64 = 100.0;
 
 /// The same for a soft handle of weight 1.
@@ -29,7 +30,7 @@ struct Patch {
 }
 
 impl Default for Patch {
-    /// Nothing: a matrix's own default is the identity.
+    /// An empty patch: a matrix's own default is the identity.
     fn default() -> Self {
         Self {
             weight: 0.0,
@@ -57,7 +58,7 @@ impl Patch {
     }
 }
 
-/// Joins the cells, which are renumbered in an order to eliminate them. Coordinates are relative to `world_origin`.
+/// Joins the cells, which are renumbered in an order of elimination. Coordinates are relative to `world_origin`.
 ///
 /// # Errors
 /// It was cancelled.
@@ -154,7 +155,8 @@ fn patches(octree: &Octree, world_origin: DVec3) -> Vec<([u32; 2], Patch)> {
     patches.into_iter().collect()
 }
 
-/// The constrained vertices of each cell and ground, and how firmly they tie: 0 is what is fixed, then the handles.
+/// The constrained vertices of each cell and ground, and the stiffness of the tie: ground 0 is that of fixed vertices,
+/// then the handles.
 fn ties(octree: &Octree, input: &BindInput<'_>, world_origin: DVec3) -> BTreeMap<(usize, usize), (Patch, f64)> {
     let problem = input.problem;
     let mut ties: BTreeMap<(usize, usize), (Patch, f64)> = BTreeMap::new();
@@ -187,7 +189,7 @@ fn ties(octree: &Octree, input: &BindInput<'_>, world_origin: DVec3) -> BTreeMap
     ties
 }
 
-/// The mean of the painted stiffness in each cell, and of the neighbours where there is no vertex.
+/// The mean of the painted stiffness in each cell, and of the neighbours for a cell without a vertex.
 fn stiffness(octree: &Octree, input: &BindInput<'_>, neighbours: &[Vec<u32>]) -> Vec<f64> {
     let mut sums = vec![(0.0, 0.0); neighbours.len()];
     let problem = input.problem;
@@ -262,7 +264,7 @@ mod tests {
         let positions = &model.surface.positions;
         let handle = |p: &DVec3| if p.z > 0.7 { Role::Handle(0) } else { Role::Free };
         let mut roles: Vec<Role> = positions.iter().map(handle).collect();
-        // One vertex alone, so that the cells enclose the inside.
+        // A single vertex, so that the cells enclose the inside.
         let lowest = (0..roles.len()).min_by(|&a, &b| positions[a].z.total_cmp(&positions[b].z));
         roles[lowest.unwrap()] = Role::Fixed;
         let options = SpacePrimo {
@@ -319,7 +321,7 @@ mod tests {
             pose.turns[count + 1] = DMat3::from_diagonal(DVec3::new(1.1, 0.9, 0.7));
             pose.shifts[count + 1] = DVec3::new(0.1, 0.2, 0.0);
             pose.evaluate(&joints);
-            // Where a body takes a world point.
+            // The image of a world point under a body.
             let taken = |body: usize, point: DVec3| {
                 let centre = match body.checked_sub(count) {
                     None => octree.world_centre(body),

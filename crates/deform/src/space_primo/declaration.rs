@@ -31,7 +31,7 @@ pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     first_choice: || SpacePrimo::default().into(),
 };
 
-/// How far the cells' misses are carried off, in sides of the small cells.
+/// The reach over which the cells' errors are blended out, in sides of the small cells.
 const REACH: f64 = 2.0;
 
 /// The bound method.
@@ -41,7 +41,7 @@ pub(super) struct BoundCells {
     /// The cells' middles.
     world_centres: Vec<DVec3>,
     blend: Blend,
-    /// The cells' motions of the last step.
+    /// The cells' motions in the last step.
     affine: Vec<Affine>,
 }
 
@@ -50,7 +50,7 @@ impl DeformMethod for SpacePrimo {
         &DECLARATION
     }
 
-    /// Where the cells twist most they give way.
+    /// The cells give way where they twist most.
     fn follows_turns(&self) -> Option<Followed> {
         Some(Followed::by_necks(160.0))
     }
@@ -66,7 +66,7 @@ impl DeformMethod for SpacePrimo {
     }
 
     fn row_bytes(&self) -> usize {
-        // Up to some twenty shares of cells and those of the handles nearby, twice while they are collected.
+        // Up to about twenty shares of cells and those of the handles nearby, twice during their collection.
         300 + 60 * size_of::<Share>()
     }
 

@@ -1,23 +1,23 @@
-//! The grid of small cubes that the cells are made of.
+//! The grid of small cubes of which the cells consist.
 
 use glam::{DVec3, IVec3};
 
 use super::overlap::overlap;
 
-/// A cube is a little smaller for triangles, so that one that lies in its side belongs to one cube alone.
+/// A cube is a little smaller for triangles, so that one in a side of the cube belongs to only one cube.
 pub(super) const SHRUNK: f64 = 1.0 - 1e-6;
 
-/// A small cube that nothing fills.
+/// An empty small cube.
 pub(super) const EMPTY: u8 = 0;
-/// A small cube that a part of the surface fills.
+/// A small cube that contains a part of the surface.
 pub(super) const FILLED: u8 = 1;
-/// An empty small cube that is to have no cell.
+/// An empty small cube without a cell.
 pub(super) const OUTSIDE: u8 = 2;
 
 /// The steps to the cubes that share a side.
 pub(super) const SIDES: [IVec3; 6] = [IVec3::X, IVec3::NEG_X, IVec3::Y, IVec3::NEG_Y, IVec3::Z, IVec3::NEG_Z];
 
-/// Small cubes side by side, from a corner on.
+/// Adjacent small cubes, from a corner on.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Grid {
     pub world_low: DVec3,
@@ -40,14 +40,14 @@ impl Grid {
         }
     }
 
-    /// A point in small cubes from the grid's corner.
+    /// A point in units of small cubes from the grid's corner.
     pub fn in_cubes(&self, world_point: DVec3) -> DVec3 {
         (world_point - self.world_low) / self.world_side
     }
 
-    /// The small cube that holds a point; one beyond the grid, and with no neighbour in it, if none does.
+    /// The small cube that contains a point; if none does, a cube outside the grid without a neighbour in it.
     pub fn cube(&self, world_point: DVec3) -> IVec3 {
-        // Steps from the cube of a point that is very far away would overflow.
+        // Steps from the cube of a very distant point would overflow.
         let (low, high) = (IVec3::splat(-2), self.counts + 1);
         self.in_cubes(world_point).floor().as_ivec3().clamp(low, high)
     }
@@ -57,7 +57,7 @@ impl Grid {
         boxed(IVec3::ZERO, self.counts - 1)
     }
 
-    /// Whether it has this cube.
+    /// Whether the grid contains this cube.
     pub fn has(&self, cube: IVec3) -> bool {
         cube.cmpge(IVec3::ZERO).all() && cube.cmplt(self.counts).all()
     }
@@ -67,7 +67,7 @@ impl Grid {
         ((cube.z * self.counts.y + cube.y) * self.counts.x + cube.x) as usize
     }
 
-    /// How many cubes it has.
+    /// The number of cubes.
     pub fn cube_count(&self) -> usize {
         self.counts.as_usizevec3().element_product()
     }
@@ -79,7 +79,7 @@ pub(super) fn boxed(low: IVec3, high: IVec3) -> impl Iterator<Item = IVec3> {
         .flat_map(move |z| (low.y..=high.y).flat_map(move |y| (low.x..=high.x).map(move |x| IVec3::new(x, y, z))))
 }
 
-/// All steps by at most so many along each axis.
+/// All steps by at most this many along each axis.
 pub(super) fn neighbourhood(reach: i32) -> impl Iterator<Item = IVec3> {
     boxed(IVec3::splat(-reach), IVec3::splat(reach))
 }

@@ -1,9 +1,9 @@
-//! Which empty cubes are inside the shape, and which of these belong to what moves.
+//! The empty cubes inside the shape, and those of them that belong to the moving part.
 //!
-//! The region may cut a closed shape open, so the whole surface decides: a cube is inside if the surface winds around its
-//! middle. Winding numbers are counted along columns of cubes in three directions, so that a hole in the surface spoils
-//! only the columns that pass through it, and the others outvote them. Inside, what is nearer to what moves than to what
-//! is fixed belongs to it; where the two meet it is held.
+//! The region may cut a closed shape open, so the whole surface decides: a cube is inside if the surface winds around
+//! its middle. Winding numbers are counted along columns of cubes in three directions, so that a hole in the surface
+//! spoils only the columns that pass through it, and the others outvote them. Inside, cubes nearer to the moving part
+//! than to the fixed one belong to it; they are held where the two meet.
 
 use std::collections::VecDeque;
 
@@ -12,14 +12,14 @@ use pliant_mesh::Surface;
 
 use super::grid::{EMPTY, FILLED, Grid, OUTSIDE, SIDES};
 
-/// A cube of what is fixed alone.
+/// A cube with only fixed vertices.
 const WALL: u8 = 3;
 
-/// How far columns are from the middles of their cubes, so that none passes through a vertex of a regular mesh.
+/// The distance of columns from the middles of their cubes, so that none passes through a vertex of a regular mesh.
 const ASIDE: DVec2 = DVec2::new(1.618e-4, 2.718e-4);
 
-/// Marks as [`OUTSIDE`] every empty cube that is to have no cell. `filled` holds the cubes of what moves. Where the
-/// surface is not closed, what the moving cubes enclose is inside as well. Returns the cubes beside which the inside is
+/// Marks as [`OUTSIDE`] every empty cube that gets no cell. `filled` has the cubes of the moving part. If the surface
+/// is not closed, the space that the moving cubes enclose is inside too. Returns the cubes beside which the inside is
 /// fixed.
 pub(super) fn sort_out(grid: &Grid, surface: &Surface, is_closed: bool, filled: &mut [u8]) -> Vec<IVec3> {
     let mut is_inside = wound(grid, surface);
@@ -67,7 +67,7 @@ fn enclosed(grid: &Grid, filled: &[u8]) -> Vec<bool> {
     states.into_iter().map(|state| state == EMPTY).collect()
 }
 
-/// Whether each cube inside is nearer to what moves ([`FILLED`]) or to what is fixed ([`WALL`]); neither outside.
+/// Whether each cube inside is nearer to the moving part ([`FILLED`]) or to the fixed one ([`WALL`]); neither outside.
 fn owners(grid: &Grid, filled: &[u8], walls: &[usize], is_inside: &[bool]) -> Vec<u8> {
     let mut owners = vec![EMPTY; filled.len()];
     walls.iter().for_each(|&cube| owners[cube] = WALL);
@@ -94,13 +94,13 @@ fn owners(grid: &Grid, filled: &[u8], walls: &[usize], is_inside: &[bool]) -> Ve
     owners
 }
 
-/// Whether most of the three columns through each cube say that the surface winds around it.
+/// Whether the surface winds around each cube by the majority of the three columns through it.
 fn wound(grid: &Grid, surface: &Surface) -> Vec<bool> {
     let mut votes = vec![0_u8; grid.cube_count()];
     let mut winding = vec![0_i32; grid.cube_count()];
     for axis in 0..3 {
         winding.fill(0);
-        // The axis comes last; where x, y and z are passed on in a ring, left and right stay.
+        // The axis comes last; a cyclic shift of x, y and z keeps left and right.
         let turned = |v: DVec3| DVec3::new(v[(axis + 1) % 3], v[(axis + 2) % 3], v[axis]);
         let back = |cube: IVec3| {
             let mut own = IVec3::ZERO;
@@ -112,7 +112,7 @@ fn wound(grid: &Grid, surface: &Surface) -> Vec<bool> {
             let points = corners.map(|corner| turned(grid.in_cubes(surface.positions[corner.index()])));
             each_crossing(points, counts, |cube, sign| winding[grid.index(back(cube))] += sign);
         }
-        // What was entered below.
+        // The crossings below.
         for cube in grid.cubes() {
             if cube[axis] > 0 {
                 winding[grid.index(cube)] += winding[grid.index(cube - IVec3::AXES[axis])];
@@ -123,8 +123,8 @@ fn wound(grid: &Grid, surface: &Surface) -> Vec<bool> {
     votes.into_iter().map(|votes| votes > 1).collect()
 }
 
-/// Calls `visit` with the first cube above each place where a column crosses a triangle, 1 where that leads inside and
-/// −1 where it leads out. Coordinates count cubes.
+/// Calls `visit` with the first cube above each crossing of a column and a triangle, and with 1 if the column enters
+/// there and −1 if it leaves. Coordinates count cubes.
 fn each_crossing(points: [DVec3; 3], counts: IVec3, mut visit: impl FnMut(IVec3, i32)) {
     let flat = points.map(|point| point.truncate() - 0.5 - ASIDE);
     let low = flat[0].min(flat[1]).min(flat[2]).ceil().max(DVec2::ZERO);
@@ -148,7 +148,7 @@ fn each_crossing(points: [DVec3; 3], counts: IVec3, mut visit: impl FnMut(IVec3,
             let z: f64 = shares.iter().zip(points).map(|(share, point)| share * point.z).sum();
             let first = (z - 0.5).ceil().max(0.0);
             if first < f64::from(counts.z) {
-                // A triangle that faces down leads inside.
+                // A column enters at a triangle that faces down.
                 visit(IVec3::new(x, y, first as i32), if doubled < 0.0 { 1 } else { -1 });
             }
         }

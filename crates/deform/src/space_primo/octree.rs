@@ -15,10 +15,10 @@ use crate::space::shaping::shaping;
 /// The most small cubes along an axis.
 const FINEST: i32 = 128;
 
-/// Bytes of a small cube while it is decided what it is.
+/// Bytes of a small cube during its classification.
 const CUBE: usize = 32;
 
-/// Bytes of a cell with its joints and its rows of the matrix, until that is factored: as allocated, measured by
+/// Bytes of a cell with its joints and its rows of the matrix, before it is factored: as allocated, measured by
 /// `tests/memory.rs`.
 pub(super) const CELL: usize = 4500;
 
@@ -32,7 +32,7 @@ pub(super) struct Octree {
     /// The cell of each small cube.
     cell_of: Vec<u32>,
     pub cells: Vec<Cell>,
-    /// The small cubes inside that lie beside what is fixed inside.
+    /// The small cubes inside that are beside the fixed inside.
     held: Vec<IVec3>,
 }
 
@@ -44,8 +44,8 @@ pub(super) struct Cell {
 }
 
 impl Octree {
-    /// The finest one with no more than about so many cells around the vertices that move and their triangles, as far as
-    /// the budget allows.
+    /// The finest octree with at most about this many cells around the vertices that move and their triangles, as far
+    /// as the budget allows.
     ///
     /// # Errors
     /// Not even the coarsest one fits the budget.
@@ -69,7 +69,7 @@ impl Octree {
         Ok(enough)
     }
 
-    /// With so many small cubes along the longest axis.
+    /// The octree with this many small cubes along the longest axis.
     fn with(input: &BindInput<'_>, along: i32) -> Result<Self, Limit> {
         let (surface, roles) = (input.problem.surface, input.problem.roles);
         let moving = input.partition.moving.iter().copied();
@@ -78,7 +78,7 @@ impl Octree {
             is_moving[vertex as usize] = true;
         }
         let moves = |vertex: usize| is_moving[vertex];
-        // What is fixed holds the triangles that it shares with what moves, however long they are.
+        // Fixed vertices hold the triangles that they share with moving ones, however long these are.
         let mut is_held = is_moving.clone();
         for corners in surface
             .triangles
@@ -103,7 +103,7 @@ impl Octree {
         };
         let longest = extent.max_element();
         let world_side = if longest > 0.0 { longest / f64::from(along) } else { 1.0 };
-        // Two more on each side: one for what is fixed beside, and an empty one.
+        // There are two more cubes on each side: one for fixed vertices nearby, and an empty one.
         let counts = (extent / world_side * SHRUNK).ceil().as_ivec3().max(IVec3::ONE) + 4;
         let grid = Grid {
             world_low: middle - 0.5 * world_side * counts.as_dvec3(),
@@ -142,7 +142,7 @@ impl Octree {
         Ok(octree)
     }
 
-    /// The small cubes that hold fixed vertices beside one that is filled.
+    /// The small cubes with fixed vertices beside a filled one.
     fn add_fixed(&self, input: &BindInput<'_>, filled: &mut [u8]) {
         let positions = &input.problem.surface.positions;
         let beside = |cube: IVec3| {
@@ -162,7 +162,7 @@ impl Octree {
         cubes.into_iter().for_each(|cube| filled[cube] = FILLED);
     }
 
-    /// Makes cells: one of each filled cube, and of the empty ones the largest that fit.
+    /// Makes cells: one for each filled cube, and the largest that fit for the empty ones.
     fn fill(&mut self, filled: &[u8]) {
         self.cell_of = vec![NONE; self.grid.cube_count()];
         let largest = (self.grid.counts.max_element() as u32).next_power_of_two() as i32;
@@ -223,7 +223,7 @@ impl Octree {
         found
     }
 
-    /// The cell that holds a point.
+    /// The cell that contains a point.
     pub fn cell_at(&self, world_point: DVec3) -> Option<u32> {
         let cube = self.grid.cube(world_point);
         let cell = self.grid.has(cube).then(|| self.cell_of[self.grid.index(cube)])?;
@@ -253,7 +253,7 @@ impl Octree {
         }
     }
 
-    /// Where the inside is fixed beside the cells, in world units.
+    /// The places beside the cells at which the inside is fixed, in world units.
     pub fn world_held(&self) -> impl Iterator<Item = DVec3> + '_ {
         let middle = |cube: &IVec3| self.grid.world_low + self.grid.world_side * (cube.as_dvec3() + 0.5);
         self.held.iter().map(middle)

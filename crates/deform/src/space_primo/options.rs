@@ -6,14 +6,14 @@ use crate::method::option::{Whole, options};
 options! {
     /// Options of rigid cells.
     pub struct SpacePrimo {
-        /// About how many cells the space around the part that moves is cut into.
+        /// The approximate number of cells around the moving part.
         cells: u32 = Whole {
             default: 2000,
             range: [8, 20_000],
             help: "about how many cells the space around the part that moves is cut into: more follow the shape more \
                    closely, and take longer",
         },
-        /// Where iteration ends.
+        /// The end of iteration.
         tolerance: f64 = TOLERANCE; advanced,
         /// The most steps.
         max_iterations: u32 = MAX_ITERATIONS; advanced,

@@ -33,7 +33,7 @@ mod tests {
 
     use super::overlap;
 
-    /// Against points of the triangle, densely.
+    /// Against dense points of the triangle.
     #[test]
     fn a_triangle_with_a_point_inside_overlaps_and_one_far_from_all_does_not() {
         let noise = |k: usize| 3.0 * ((k as f64 * 12.9898).sin() * 43_758.545).fract();

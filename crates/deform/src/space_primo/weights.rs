@@ -6,8 +6,8 @@ use super::octree::Octree;
 use crate::space::blend::{Share, normalised};
 use crate::space::neighbours::Neighbours;
 
-/// (1 − d²/R²)³ over their sum, with gradients, R being half the cell's side and that of a small cube: what is nearer
-/// than that holds one of the small cubes around the point. Where no cell reaches the nearest one counts.
+/// (1 − d²/R²)³ over their sum, with gradients, R being half the cell's side and that of a small cube: cells nearer
+/// than that have one of the small cubes around the point. If no cell reaches the point, the nearest one counts.
 pub(super) fn weigh(octree: &Octree, centres: &Neighbours, world_point: DVec3) -> Vec<Share> {
     let raw = |cell: u32| {
         let from = world_point - octree.world_centre(cell as usize);

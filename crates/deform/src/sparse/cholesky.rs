@@ -40,8 +40,8 @@ impl Factor {
         Ok(factor)
     }
 
-    /// As [`Factor::of`], for a preconditioner: the unit diagonal is raised until the matrix can be factored. Steps get
-    /// shorter by that; the minimum stays the same. The refusal is that of the unshifted matrix.
+    /// Like [`Factor::of`], for a preconditioner: the unit diagonal is raised until the matrix can be factored. That
+    /// makes steps shorter; the minimum stays the same. The refusal is that of the unshifted matrix.
     pub fn to_descend_by(
         matrix: &ScaledMatrix,
         ends: &[u32],
@@ -65,7 +65,7 @@ impl Factor {
     /// The symbolic factorisation: everything but the numbers.
     ///
     /// # Errors
-    /// If the factorisation takes more than the budget.
+    /// The factorisation exceeds the budget.
     pub fn analysed(matrix: &ScaledMatrix, ends: &[u32], budget: Budget) -> Result<Self, FactorError> {
         let symbolic = Symbolic::of(matrix, ends, budget)?;
         let assembly_tree = AssemblyTree::of(&symbolic);
@@ -76,7 +76,7 @@ impl Factor {
         })
     }
 
-    /// Factors into what [`Factor::analysed`] left empty.
+    /// Computes the factor that [`Factor::analysed`] left empty.
     pub fn fill(&mut self, matrix: &ScaledMatrix, shift: f64, cancel: &Cancel) -> Result<(), FactorError> {
         let (symbolic, assembly_tree) = (&self.symbolic, &self.assembly_tree);
         self.numbers = numeric::factor(matrix, shift, symbolic, assembly_tree, &[], &[], cancel)?;
@@ -91,12 +91,12 @@ impl Factor {
         Substitution::new(&self.symbolic, &self.assembly_tree, &self.numbers)
     }
 
-    /// How many numbers the factor stores.
+    /// The number of stored entries.
     pub fn stored(&self) -> usize {
         self.symbolic.stored()
     }
 
-    /// How many columns it has.
+    /// The number of columns.
     pub fn column_count(&self) -> usize {
         self.symbolic.column_count()
     }
@@ -108,7 +108,7 @@ impl Factor {
             .sum()
     }
 
-    /// Those of the shifts, from the first on, whose factorisations together stay within the budget; never none.
+    /// The shifts, from the first on, whose factorisations together stay within the budget; always at least one.
     pub(super) fn affordable<'a>(&self, shifts: &'a [f64], budget: Budget) -> &'a [f64] {
         let affordable = (budget.operations_for(self.column_count()) / self.work().max(1.0)) as usize;
         &shifts[..affordable.clamp(1, shifts.len())]
@@ -124,8 +124,8 @@ impl Factor {
         self.solve_within(None, x, &mut Vec::new());
     }
 
-    /// As [`Factor::solve`], in memory that is kept from solve to solve. Where only some parts are wanted, which
-    /// [`Factor::parts_above`] gives, `x` is of no use in the columns of the others.
+    /// Like [`Factor::solve`], in memory that is kept from solve to solve. If only some parts are wanted, from
+    /// [`Factor::parts_above`], `x` is undefined in the columns of the others.
     pub fn solve_within<const K: usize>(
         &self,
         parts: Option<&[bool]>,

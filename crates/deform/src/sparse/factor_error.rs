@@ -1,19 +1,19 @@
-//! Why a factorisation failed.
+//! Reasons why a factorisation failed.
 
 use std::collections::TryReserveError;
 
 use crate::budget::Limit;
 
-/// Why there is no factor.
+/// The reason why there is no factor.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum FactorError {
-    /// The pivot of this column is not above zero.
+    /// The pivot of this column is not positive.
     Pivot(usize),
     /// Too large for the machine or for the index type.
     Memory,
-    /// It takes more than the budget has left.
+    /// The factorisation exceeds the remaining budget.
     Budget(Limit),
-    /// Somebody raised the flag.
+    /// It was cancelled.
     Cancelled,
 }
 

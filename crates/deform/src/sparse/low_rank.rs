@@ -1,7 +1,7 @@
 //! A system that is the sum of a factored sparse matrix and a correction of low rank: A = B + U C Uᵀ.
 //!
 //! A⁻¹ = B⁻¹ − Z N Uᵀ B⁻¹ with Z = B⁻¹ U and N = (1 + C Uᵀ Z)⁻¹ C (Sherman, Morrison & Woodbury), so that a solve with
-//! A is one with B and two products with tall matrices of as many columns as the correction's rank.
+//! A is one with B and two products with tall matrices whose columns number the correction's rank.
 
 use rayon::prelude::*;
 
@@ -25,10 +25,10 @@ pub(crate) struct LowRank {
 }
 
 impl LowRank {
-    /// For the factored B, the columns of U and C, row by row.
+    /// The correction for the factored B, the columns of U and C, row by row.
     ///
     /// # Errors
-    /// [`FactorError::Memory`]; [`FactorError::Pivot`] where A is singular to the last digit, with a row of U's.
+    /// [`FactorError::Memory`]; [`FactorError::Pivot`] if A is singular to the last digit, with one of U's rows.
     pub fn of(factor: &Factor, vectors: Vec<SparseVector>, c: &[f64]) -> Result<Self, FactorError> {
         let (count, rank) = (factor.column_count(), vectors.len());
         let mut solved = filled(0.0, count * rank)?;
@@ -71,19 +71,19 @@ impl LowRank {
         let first = vectors.first().and_then(|vector| vector.first());
         let singular = FactorError::Pivot(first.map_or(0, |&(row, _)| row as usize));
         let inner = solve_dense(matrix).ok_or(singular)?;
-        // Symmetric except for rounding; conjugate gradients need it to be symmetric.
+        // Symmetric except for rounding; conjugate gradients need exact symmetry.
         let inner = (0..rank * rank)
             .map(|place| 0.5 * (inner[place / rank][place % rank] + inner[place % rank][place / rank]))
             .collect();
         Ok(Self { vectors, solved, inner })
     }
 
-    /// How many numbers it stores.
+    /// The number of stored entries.
     pub fn stored(&self) -> usize {
         self.solved.len() + self.inner.len()
     }
 
-    /// How many numbers one of this rank stores over `count` columns.
+    /// The number of entries that a correction of this rank stores over `count` columns.
     pub fn stored_at_rank(count: usize, rank: usize) -> usize {
         rank.saturating_mul(count.saturating_add(rank))
     }
@@ -119,7 +119,7 @@ impl LowRank {
     }
 }
 
-/// A⁻¹ B of the rows (A B), by elimination with partial pivoting; `None` where A is singular or not finite.
+/// A⁻¹ B of the rows (A B), by elimination with partial pivoting; `None` if A is singular or not finite.
 fn solve_dense(mut rows: Vec<Vec<f64>>) -> Option<Vec<Vec<f64>>> {
     let count = rows.len();
     for step in 0..count {

@@ -7,7 +7,7 @@ use crate::operators::CHUNK;
 /// The scaled matrix S A S: the values on and below its diagonal.
 #[derive(Debug)]
 pub(crate) struct ScaledMatrix {
-    /// S: one over the root of A's diagonal, for each column.
+    /// S: one over the square root of A's diagonal, for each column.
     pub scale: Vec<f64>,
     /// Column starts of `lower_rows` and `lower_values`.
     pub lower_offsets: Vec<u32>,

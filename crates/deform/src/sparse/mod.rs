@@ -1,6 +1,6 @@
 //! Sparse symmetric systems [Dav06]: `ordering`, `symbolic` and `numeric` factorisation, and `solve`, which is forward
-//! and backward substitution. `cholesky` is the factor that joins them, `refactorisation` a factor that takes over
-//! parts of the last one.
+//! and backward substitution. `cholesky` is the factor that joins them, `refactorisation` a factor that reuses parts of
+//! the last one.
 
 pub(crate) mod cholesky;
 pub(crate) mod factor_error;

@@ -14,17 +14,17 @@ use crate::sparse::numeric::Numbers;
 use crate::sparse::numeric::reuse::{Named, equal_parts, worth_keeping};
 use crate::sparse::ordering::elimination::Elimination;
 
-/// What a factorisation keeps for the next one, and what it reuses.
+/// The data that a factorisation keeps for the next one, and those that it reuses.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Refactorisation<'a> {
-    /// Nothing is kept or reused. That takes half the memory.
+    /// Nothing is kept or reused. That needs half the memory.
     Never,
-    /// Contribution matrices are kept where that is [worth it](worth_keeping), and parts that the previous factor, if
-    /// there is one, has to the bit are reused.
+    /// Contribution matrices are kept if that is [worth it](worth_keeping), and parts that are equal to the bit in the
+    /// previous factor, if there is one, are reused.
     From(Option<&'a RenewableFactor>),
 }
 
-/// A factor with its matrix, so that the factor of a nearly equal one can reuse what is the same.
+/// A factor with its matrix, so that the factor of a nearly equal one can reuse equal parts.
 #[derive(Debug)]
 pub(crate) struct RenewableFactor {
     pub factor: Factor,
@@ -117,7 +117,7 @@ impl RenewableFactor {
         &self.matrix.scale
     }
 
-    /// How many numbers are kept beside the factor for the next one.
+    /// The number of entries kept beside the factor for the next one.
     #[cfg(test)]
     pub fn kept(&self) -> usize {
         self.factor.numbers.iter().map(Numbers::kept).sum()
@@ -142,7 +142,7 @@ mod tests {
         let model = shapes::model(shapes::grid(60, 60));
         let count = model.surface.positions.len();
         let laplacian = Laplacian::of(&model.surface, &model.topology, &vec![1.0; count]);
-        // Every other vertex first, one by one: hardly any of them neighbour each other.
+        // Every other vertex comes first, one by one: hardly any of them neighbour each other.
         let order: Vec<u32> = (0..count as u32)
             .step_by(3)
             .chain((0..count as u32).filter(|v| v % 3 != 0))
@@ -183,7 +183,7 @@ mod tests {
         assert!(all > 2 * first.factor.stored(), "all of it is {all}");
         assert!(first.kept() <= first.factor.stored());
         assert!(2 * first.kept() > first.factor.stored());
-        // Nothing changed: everything is reused, whatever was kept.
+        // Nothing changed: everything is reused, even if nothing was kept.
         assert_eq!(bind(Refactorisation::From(Some(&first))).share_of(&first), 1.0);
         assert_eq!(bind(Refactorisation::Never).kept(), 0);
     }

@@ -67,7 +67,7 @@ impl DeformMethod for Wrinkles {
         self.bending().triangulation(problem)
     }
 
-    /// Where there are examples the bases are kept in double precision.
+    /// If there are examples, the bases are kept in double precision.
     fn handle_row_bytes(&self) -> usize {
         64
     }

@@ -1,14 +1,14 @@
-//! The detail of each vertex as a function of the strain that it feels [BLB+08, section 4].
+//! The detail of each vertex as a function of its strain [BLB+08, section 4].
 //!
-//! Bickel et al. interpolate by the biharmonic function φ(r) = r. Here a constant belongs to it, with weights that sum
-//! to 0, and rest is one of the centres, with no detail. The weight of rest is then eliminated, which leaves, over the
+//! Bickel et al. interpolate by the biharmonic function φ(r) = r. Here a constant is added, with weights that sum to 0,
+//! and rest is one of the centres, without detail. The weight of rest is then eliminated, which leaves, over the
 //! examples j with the strains f_j,
 //!
 //! d(f) = Σ_j w_j K(f, f_j),   K(f, g) = ½ (|f| + |g| − |f − g|).
 //!
 //! K is positive definite, because distances are of negative type [Sch38]. With one example d grows in proportion up to
-//! the example's own strain and stays there beyond, and a strain of the opposite sign, where the skin is stretched
-//! instead of compressed, brings no wrinkle. Without the constant it would bring the same wrinkle.
+//! the example's own strain and stays there beyond, and a strain of the opposite sign, if the skin is stretched instead
+//! of compressed, makes no wrinkle. Without the constant it would make the same wrinkle.
 
 use faer::Mat;
 use glam::DVec3;
@@ -18,34 +18,35 @@ use super::strain::Strain;
 use crate::numerical::dense::solved;
 use crate::operators::CHUNK;
 
-/// The examples' details, and what interpolates them. Tables of rows have one entry an example in each row.
+/// The examples' details, and the functions that interpolate them. Tables of rows have one entry per example in each
+/// row.
 #[derive(Debug)]
 pub(super) struct Learnt {
     examples: usize,
-    /// Of each edge: the strain in each example.
+    /// The strain of each edge in each example.
     strains: Vec<f64>,
-    /// Of each row: |f_j|.
+    /// |f_j| of each row.
     lengths: Vec<f64>,
-    /// Of each row: the example's detail, in the coarse shape's frame.
+    /// The example's detail of each row, in the coarse shape's frame.
     details: Vec<DVec3>,
-    /// Of each row: w_j.
+    /// w_j of each row.
     coefficients: Vec<DVec3>,
 }
 
-/// The strain below which a vertex learns little: a detail there has another reason than the strain.
+/// The strain below which a vertex learns little: strain is not the reason for a detail there.
 const THRESHOLD: f64 = 1e-4;
 
-/// Strains that differ by less than about this are not told apart.
+/// Strains that differ by less than about this count as equal.
 const RESOLUTION: f64 = 1e-8;
 
-/// An example whose details are all smaller than this share of the diagonal has none to learn.
+/// An example whose details are all smaller than this share of the diagonal has none.
 const SMALLEST: f64 = 1e-4;
 
 impl Learnt {
     /// Bytes of a row for each example.
     pub const ROW: usize = size_of::<f64>() + 2 * size_of::<DVec3>();
 
-    /// Of so many examples without detail.
+    /// The table for this many examples without detail.
     pub fn new(examples: usize, rows: usize, strain: &Strain) -> Self {
         Self {
             examples,
@@ -68,7 +69,7 @@ impl Learnt {
         }
     }
 
-    /// Whether the strain brings back at least half of each example's details, as far as these can be seen.
+    /// Whether the strain restores at least half of each example's visible details.
     pub fn are_learnt(&self, diagonal: f64) -> Vec<bool> {
         let of = |example: usize| {
             let places = (example..self.details.len()).step_by(self.examples);
@@ -117,7 +118,7 @@ impl Learnt {
         self.coefficients = coefficients;
     }
 
-    /// d of a row: zero to the last bit where the `changes` of the edges' lengths are.
+    /// d of a row: zero to the last bit if the `changes` of the edges' lengths are.
     #[inline]
     pub fn detail(&self, row: usize, strain: &Strain, changes: &[f64]) -> DVec3 {
         let own = &self.coefficients[row * self.examples..][..self.examples];
@@ -139,7 +140,7 @@ impl Learnt {
     }
 }
 
-/// The share of an example's detail that a vertex learns where the example strains it so much.
+/// The share of an example's detail that a vertex learns at this strain.
 fn share(strain: f64) -> f64 {
     1.0 / (1.0 + (THRESHOLD / strain).powi(4))
 }

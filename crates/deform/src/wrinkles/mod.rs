@@ -1,14 +1,14 @@
-//! Wrinkles learnt from examples [BLB+08]: the bi-Laplacian bends the surface smoothly, and each vertex adds the detail
-//! that the examples have where the smooth surface is strained as in them.
+//! Wrinkles learnt from examples [BLB+08]: the bi-Laplacian bends the surface smoothly, and each vertex adds the
+//! examples' detail for the strain of the smooth surface there.
 //!
-//! 1. *Coarse shape.* The bi-Laplacian gives it from the handles. For an example, the vertices of its handles are where
-//!    the example has them, and fixed vertices rest, since they never move.
-//! 2. *Detail.* What an example has beyond its coarse shape, in local frames of the coarse shape. Bickel et al. keep the
-//!    gradients of triangles and solve a Poisson system in each frame; displacements in frames need no solve, and differ
-//!    only where a detail is large compared with the coarse shape's radius of curvature.
-//! 3. *Strain.* The coarse shape is described by the relative changes of the lengths of edges between a few samples of the
-//!    surface (`strain`). A vertex feels those of the nearest edges.
-//! 4. *Interpolation.* The detail of a vertex is a radial function of the strain that it feels (`learnt`).
+//! 1. *Coarse shape.* The bi-Laplacian gives it from the handles. For an example, the vertices of its handles are at
+//!    their positions in the example, and fixed vertices rest, because they never move.
+//! 2. *Detail.* The difference between an example and its coarse shape, in local frames of the coarse shape. Bickel et
+//!    al. keep the gradients of triangles and solve a Poisson system in each frame; displacements in frames need no
+//!    solve, and differ only where a detail is large compared with the coarse shape's radius of curvature.
+//! 3. *Strain.* The coarse shape is described by the relative changes of the lengths of edges between a few samples of
+//!    the surface (`strain`). The strain at a vertex is that of the nearest edges.
+//! 4. *Interpolation.* The detail of a vertex is a radial function of its strain (`learnt`).
 //!
 //! Without examples it is the bi-Laplacian itself.
 
@@ -35,7 +35,7 @@ use crate::operators::CHUNK;
 use crate::region::patch::Patch;
 use crate::{BindError, Examples, Role, SolveError};
 
-/// The bound method where there are examples.
+/// The bound method with examples.
 #[derive(Debug)]
 pub(crate) struct Wrinkled {
     /// Its bases are in f64, because the strain is a difference of lengths.
@@ -44,9 +44,9 @@ pub(crate) struct Wrinkled {
     frames: RingFrames,
     strain: Strain,
     learnt: Learnt,
-    /// How much of each example's detail is added.
+    /// The weight of each example's detail.
     weights: Vec<f64>,
-    /// Examples, by name, whose details nothing can bring back.
+    /// The names of examples whose details no strain can restore.
     unlearnt: Vec<String>,
     /// The strain and the local vertices of the last frame.
     changes: Vec<f64>,
@@ -57,10 +57,10 @@ pub(crate) struct Wrinkled {
 const ROW: usize = 320;
 
 impl Wrinkled {
-    /// Binds the bi-Laplacian, bends it as each example is bent, and learns what it then lacks.
+    /// Binds the bi-Laplacian, bends it like each example, and learns the difference.
     ///
     /// # Errors
-    /// As the bi-Laplacian's.
+    /// The bi-Laplacian's errors.
     pub fn bind(options: &Wrinkles, examples: &Examples, input: &BindInput<'_>) -> Result<Self, BindError> {
         let &BindInput {
             problem,
@@ -132,7 +132,7 @@ impl Wrinkled {
         Ok(wrinkled)
     }
 
-    /// Sets how much of each example's detail is added; all of it where there is no weight.
+    /// Sets the weight of each example's detail; 1 without a weight.
     pub fn give(&mut self, weights: &[Option<f64>]) {
         let weights: Vec<f64> = weights.iter().map(|weight| weight.unwrap_or(1.0)).collect();
         if self.weights != weights {
@@ -169,7 +169,7 @@ impl Wrinkled {
         self.wrinkle(displacements);
     }
 
-    /// As [`Wrinkled::frame`], with the factor in place of the bases; returns the energy of the coarse shape.
+    /// Like [`Wrinkled::frame`], with the factor instead of the bases; returns the energy of the coarse shape.
     fn frame_by_back_substitution(
         &mut self,
         motions: &[Motion],
@@ -191,7 +191,7 @@ fn frame(frames: &RingFrames, patch: &Patch, row: usize, posed: &[DVec3]) -> DMa
     frames.frame(patch, row, posed).unwrap_or(DMat3::IDENTITY)
 }
 
-/// The refusal where an example's coarse shape stays too inaccurate.
+/// The refusal if an example's coarse shape stays too inaccurate.
 fn inaccurate(error: SolveError, input: &BindInput<'_>) -> BindError {
     let vertex = input.partition.solved.first().copied().unwrap_or_default();
     let error = match error {

@@ -9,7 +9,7 @@ options! {
     pub struct Wrinkles {
         /// k_s of the bi-Laplacian, as in [`Bilaplacian::stretching`].
         stretching: f64 = STRETCHING,
-        /// How many samples of the part that bends measure its strain.
+        /// The number of samples of the bending part that measure its strain.
         samples: u32 = Whole {
             default: 200,
             range: [4, 5000],

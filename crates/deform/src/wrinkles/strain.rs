@@ -1,13 +1,14 @@
-//! How the coarse shape is strained: the relative changes of the lengths of edges between samples of the surface, and
-//! which of them a vertex feels [BLB+08, section 4].
+//! The strain of the coarse shape: the relative changes of the lengths of edges between samples of the surface, and the
+//! edges that give a vertex's strain [BLB+08, section 4].
 //!
-//! f_e = l_e / l̄_e − 1, the bar marking the rest shape. The edges join samples whose cells, the parts of the surface
-//! nearest to them, touch. A vertex i measures the distance of two strains by the edges whose middles are nearest,
+//! f_e = l_e / l̄_e − 1, the bar marking the rest shape. The edges join samples with touching cells, which are the
+//! parts of the surface nearest to them. A vertex i measures the distance of two strains by the edges whose middles are
+//! nearest,
 //!
 //! |f − g|_i² = Σ_e α_ie (f_e − g_e)²,   Σ_e α_ie = 1,
 //!
-//! with α_ie ~ (1 − d²/D²)², d being the distance of the edge's middle and D that of the first edge that is left out. So
-//! α is continuous over the surface, and a strain far away counts for nothing. Bickel et al. let it fall off
+//! with α_ie ~ (1 − d²/D²)², d being the distance of the edge's middle and D that of the first edge that is left out.
+//! So α is continuous over the surface, and a strain far away has no effect. Bickel et al. let it fall off
 //! exponentially, which never ends.
 
 use std::collections::BTreeSet;
@@ -26,7 +27,7 @@ use crate::space::neighbours::Neighbours;
 #[derive(Debug)]
 pub(super) struct Strain {
     edges: Vec<Edge>,
-    /// Of each row: its nearest edges with their shares α, `per_row` of them.
+    /// The nearest edges of each row with their shares α, `per_row` of them.
     near: Vec<(u32, f32)>,
     per_row: usize,
 }
@@ -36,19 +37,19 @@ pub(super) struct Strain {
 struct Edge {
     /// Surface vertices.
     ends: [u32; 2],
-    /// Where they rest.
+    /// Their rest positions.
     rest: [DVec3; 2],
     length: f64,
 }
 
-/// How many edges a vertex feels.
+/// The number of edges that give a vertex's strain.
 const NEAREST: usize = 16;
 
 /// Edges that are shorter than this share of the model's diagonal are left out.
 const SHORTEST: f64 = 1e-6;
 
 impl Strain {
-    /// Between at most so many samples of a patch.
+    /// The edges between at most this many samples of a patch.
     pub fn of(problem: &Problem, patch: &Patch, samples: usize) -> Self {
         let positions = &problem.surface.positions;
         let nodes = spread(problem, &patch.vertices, samples);
@@ -92,7 +93,7 @@ impl Strain {
         }
     }
 
-    /// How many edges there are.
+    /// The number of edges.
     pub fn len(&self) -> usize {
         self.edges.len()
     }
@@ -124,7 +125,7 @@ fn shares(tree: &Neighbours, at: DVec3, count: usize) -> Vec<(u32, f32)> {
         Some((_, distance)) => *distance,
         None => 1.5 * nearest.last().map_or(0.0, |(_, distance)| *distance),
     };
-    // All of them count a little, so that there is always one that does.
+    // All of them have some weight, so that at least one always counts.
     let share = |distance: f64| (1.0 - (distance / limit).powi(2)).max(1e-3).powi(2);
     let sum: f64 = nearest.iter().take(count).map(|(_, distance)| share(*distance)).sum();
     let nearest = nearest.iter().take(count);

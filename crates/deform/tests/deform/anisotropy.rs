@@ -1,4 +1,4 @@
-//! Stiffer along what is long: the bi-Laplacian of the surface stretched along its principal axes.
+//! Stiffer along long axes: the bi-Laplacian of the surface stretched along its principal axes.
 
 use glam::{DAffine3, DQuat, DVec3};
 use pliant_deform::{Bilaplacian, BilaplacianOrder, Method, Role};
@@ -61,7 +61,7 @@ fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
 
 #[test]
 fn it_is_the_bilaplacian_of_the_stretched_sheet() {
-    // What may move of this sheet varies in x and y as 4 · 0.84 to 1 · 0.68.
+    // The moving part of this sheet varies in x and y as 4 · 0.84 to 1 · 0.68.
     let turn = DQuat::from_axis_angle(DVec3::new(0.48, 0.6, 0.64), 0.7);
     for order in BilaplacianOrder::ALL {
         let isotropic = sheet(1.0, turn, order, 0.0).1;
@@ -104,7 +104,7 @@ fn the_longer_way_bends_less_the_more_anisotropic() {
 fn what_varies_alike_in_all_directions_is_not_stretched_to_the_last_bit() {
     for anisotropy in [0.3, 1.0] {
         for order in BilaplacianOrder::ALL {
-            // Caps at both ends of every axis: what is between varies alike along all of them.
+            // Caps at both ends of every axis: the part between varies alike along all of them.
             let mut scene = Scene::new(shapes::icosphere(3))
                 .with(Role::Fixed, |p| p.min_element() < -0.9)
                 .with(Role::Handle(0), |p| p.max_element() > 0.9);
@@ -117,8 +117,8 @@ fn what_varies_alike_in_all_directions_is_not_stretched_to_the_last_bit() {
     }
 }
 
-/// How far from an even twist a long bar is whose upper end is turned: the largest error of a cross-section's turn, as
-/// a share of the whole.
+/// The deviation from an even twist of a long bar whose upper end is turned: the largest error of a cross-section's
+/// turn, as a share of the whole.
 fn unevenness(anisotropy: f64) -> f64 {
     const ANGLE_RAD: f64 = 0.3;
     let mut scene = Scene::new(shapes::bar(4, 4, 32))

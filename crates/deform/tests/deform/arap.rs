@@ -65,7 +65,7 @@ fn a_coarse_level_changes_the_way_and_not_the_end() {
                 .with(Role::Handle(0), |p| p.z > 7.5);
             let bound = &mut scene.bind();
             let mut shapes = Vec::new();
-            // There and back and on, as under the hand.
+            // There, back and on, like a hand.
             for t in [0.2, 0.4, 0.6, 0.4, 0.7, 1.0] {
                 let (shape, energies) = settle(bound, &[turned(DVec3::Z * 7.5, 1.2 * t, DVec3::X * t)]);
                 shapes.push((shape, energies.last().copied().unwrap()));
@@ -142,7 +142,7 @@ fn single_vertices_are_handles() {
     }
 }
 
-/// How far a pulled vertex stands out from its neighbours' mean, in units of the pull: a sheet held at its border, its
+/// The distance of a pulled vertex from its neighbours' mean, in units of the pull: a sheet held at its border, its
 /// middle vertex the handle.
 fn spike(energy: ArapEnergy, smoothness: f64, side: usize) -> f64 {
     let mut scene = Scene::new(shapes::grid(side, side));
@@ -183,7 +183,7 @@ fn a_handle_of_one_vertex_draws_no_spike_with_smoothness() {
         assert!(smooth < last, "{smoothness}: {smooth} {last}");
         last = smooth;
     }
-    // Half the edges, and the second difference falls about as their square; a spike's hardly falls.
+    // With edges of half the length the second difference falls about as their square; a spike's hardly falls.
     let (coarse, fine) = (spike(ArapEnergy::Smooth, 0.01, 16), spike(ArapEnergy::Smooth, 0.01, 32));
     assert!(fine < 0.45 * coarse, "{coarse} {fine}");
     let (coarse, fine) = (
@@ -194,8 +194,8 @@ fn a_handle_of_one_vertex_draws_no_spike_with_smoothness() {
     assert!(spike(ArapEnergy::Smooth, 0.01, 32) < 0.3 * fine, "{fine}");
 }
 
-/// A strip that is lifted at one end, free along its sides; the cells' diagonals alternate, since where all run one way
-/// a strip that bends also twists.
+/// A strip that is lifted at one end, free along its sides; the cells' diagonals alternate, because with parallel
+/// diagonals a strip that bends also twists.
 #[test]
 fn a_free_border_bends_like_the_middle_with_smoothness() {
     let (along, across) = (60, 30);

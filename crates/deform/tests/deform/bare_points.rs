@@ -1,4 +1,4 @@
-//! Points that no triangle uses: methods of space bend them like vertices, and surface methods carry them along.
+//! Points that no triangle uses: methods of space bend them like vertices, and in surface methods they follow.
 
 use glam::{DAffine3, DVec3};
 use pliant_deform::{Loose, METHODS, Method, Needs, Role};
@@ -89,7 +89,7 @@ fn points_on_a_vertex_go_with_it_whatever_the_method() {
     }
 }
 
-/// A bar along x with a row of points above it, one of them on its own.
+/// A bar along x with a row of points above it, one of them separate.
 fn bar_with_points() -> Drawn {
     let row = (0..12).map(|x| DVec3::new(f64::from(x) + 0.4, 1.1, 2.25)).collect();
     shapes::together(&[shapes::bar(12, 2, 2), Drawn::once(row, Vec::new())])

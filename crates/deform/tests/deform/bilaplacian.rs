@@ -1,4 +1,4 @@
-//! The bi-Laplacian's options: what each order, coefficient and discretisation does to the shape.
+//! The bi-Laplacian's options: the effect of each order, coefficient and discretisation on the shape.
 
 use glam::{DAffine3, DVec3};
 use pliant_deform::{Bilaplacian, BilaplacianOrder, BindError, Discretisation, Method, Role, TriangulationKind};
@@ -71,7 +71,7 @@ fn each_order_converges_with_second_order_between_the_middles_of_what_holds_it()
 #[test]
 fn order_n_joins_what_is_held_with_continuity_n_minus_1() {
     for order in BilaplacianOrder::ALL {
-        // What is held is flat, so the k-th derivative's jump is its value at the rim, by one-sided differences.
+        // The held part is flat, so the k-th derivative's jump is its value at the rim, by one-sided differences.
         let jumps = [16, 32, 64].map(|cells| {
             let (z, pitch) = strip(cells, of_order(order));
             let slope = (z[1] - z[0]) / pitch;
@@ -95,7 +95,7 @@ fn order_n_joins_what_is_held_with_continuity_n_minus_1() {
 
 #[test]
 fn stretching_pulls_the_beam_straight_as_the_formula_says() {
-    // −k_s z″/D² + k_b z⁗ = 0 with flat ends: z = ½ + b t + c sinh λt, λ² = k_s / (k_b D²), over what is free.
+    // −k_s z″/D² + k_b z⁗ = 0 with flat ends: z = ½ + b t + c sinh λt, λ² = k_s / (k_b D²), over the free part.
     for stretching in [8.0, 200.0, 5000.0] {
         let errors = [16, 32, 64].map(|cells| {
             let (heights, pitch) = strip(
@@ -147,7 +147,7 @@ fn without_bending_it_is_a_membrane_of_any_stretching() {
     assert!(membrane.windows(2).all(|z| z[1] > z[0]));
 }
 
-/// Every combination of the options, with what makes other triangles where everything else is as usual.
+/// Every combination of the options; options that make other triangles are combined with the defaults of the others.
 fn methods() -> Vec<Method> {
     let mut methods = Vec::new();
     for order in BilaplacianOrder::ALL {
@@ -172,7 +172,7 @@ fn methods() -> Vec<Method> {
     methods
 }
 
-/// Whether a system was refused with a place, which only order 3 may be on sound shapes.
+/// Whether a system was refused with a place, which on sound shapes only order 3 may be.
 fn refused(scene: &Scene, error: &BindError, label: &str) {
     let Some(options) = scene.method.options::<Bilaplacian>() else {
         unreachable!()
@@ -304,7 +304,7 @@ fn sheared(angle_rad: f64, discretisation: Discretisation) -> Vec<DVec3> {
 
 #[test]
 fn the_discretisations_agree_on_equilateral_triangles_and_not_on_others() {
-    // The grid's diagonals all run one way: sheared by 60 degrees, every triangle is equilateral.
+    // The grid's diagonals are all parallel: sheared by 60 degrees, every triangle is equilateral.
     for (angle_rad, agree) in [(60.0_f64.to_radians(), true), (2.5, false)] {
         let [uniform, cotangent, best] = Discretisation::ALL.map(|discretisation| sheared(angle_rad, discretisation));
         assert!(best.iter().all(|d| d.z > -0.2 && d.z < 1.2));
@@ -315,7 +315,7 @@ fn the_discretisations_agree_on_equilateral_triangles_and_not_on_others() {
 
 #[test]
 fn without_areas_dense_vertices_pull_harder() {
-    // A strip whose columns stand closer and closer: only the areas tell the beam from its parameter.
+    // A strip whose columns get closer and closer: only the areas distinguish the beam from its parameter.
     let error = |discretisation| {
         let sheet = shapes::grid(48, 8);
         let positions = sheet

@@ -1,11 +1,11 @@
-//! The laws of the methods that carry points along with bodies: the embedded graph, and rigid cells of space.
+//! The laws of the methods that move points with bodies: the embedded graph, and rigid cells of space.
 
 use crate::rig::{Scene, apart, settle, turned};
 use glam::{DAffine3, DVec3};
 use pliant_deform::{Method, OptionValue, RigidMotion, Role};
 use pliant_mesh::shapes;
 
-/// An embedded graph and rigid cells, ending late.
+/// An embedded graph and rigid cells, with a strict end of iteration.
 fn methods() -> [Method; 2] {
     [("embedded", "nodes", 60), ("space-primo", "cells", 300)].map(|(name, size, count)| {
         let values = [
@@ -42,7 +42,7 @@ fn the_energy_never_rises() {
     }
 }
 
-/// How far a part's displacements are from the rigid motion that fits them.
+/// The distance of a part's displacements from the rigid motion that fits them.
 fn bent(scene: &Scene, displacements: &[DVec3], part: impl Fn(DVec3) -> bool) -> f64 {
     let own: Vec<usize> = (0..displacements.len())
         .filter(|&v| part(scene.positions()[v]))
@@ -119,7 +119,7 @@ fn a_handle_of_one_vertex_turns_what_is_around_it() {
     }
 }
 
-/// Every edge at the border of what is held stays about as long as it was.
+/// Every edge at the border of the held part keeps about its length.
 #[test]
 fn the_surface_does_not_tear_at_handles_and_at_what_is_fixed() {
     for method in methods() {

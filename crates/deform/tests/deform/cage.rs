@@ -1,4 +1,4 @@
-//! The laws of cages: how they are made and how handles drive them.
+//! The laws of cages: their making, and the handles' effect on them.
 
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -28,7 +28,7 @@ pub fn made_for(drawn: &Drawn, detail: u32) -> (Mesh, Vec<DVec3>) {
     (made(&points, &triangles, detail), points)
 }
 
-/// How often a mesh winds around a point, by its solid angles.
+/// The winding number of a mesh around a point, by its solid angles.
 fn winding((vertices, faces): &Mesh, point: DVec3) -> f64 {
     let angle = |face: &[u32; 3]| {
         let [a, b, c] = face.map(|v| (vertices[v as usize] - point).normalize());
@@ -45,7 +45,7 @@ fn a_made_cage_is_a_closed_manifold_around_all_points_and_as_fine_as_asked() {
             let (mesh, points) = made_for(&drawn, detail);
             let (vertices, faces) = &mesh;
             counts.push(faces.len());
-            // Each edge has two faces, which go along it in both directions.
+            // Each edge has two faces, which use it in both directions.
             let mut edges: BTreeMap<(u32, u32), u32> = BTreeMap::new();
             for face in faces {
                 for k in 0..3 {
@@ -107,7 +107,7 @@ fn affine_motions_of_all_handles_are_reproduced() {
         let scene = scene
             .with(Role::Handle(0), |p| p.z > 0.6)
             .with(Role::Handle(1), |p| p.z < -0.8);
-        // Green coordinates know only the similar ones.
+        // Green coordinates follow only similarities.
         let map = match coordinates {
             CageCoordinates::Green => turned(DVec3::X, 1.1, DVec3::Y) * DAffine3::from_scale(DVec3::splat(1.7)),
             _ => map,
@@ -209,7 +209,7 @@ fn a_raised_flag_and_a_small_budget_end_the_binding() {
 
 #[test]
 fn harmonic_coordinates_keep_limbs_apart_that_mean_values_join() {
-    // Two long bars beside each other, joined at one end: one tip moves.
+    // Two adjacent long bars, joined at one end: one tip moves.
     let long = |y: f64| shapes::moved(&shapes::bar(24, 2, 2), DAffine3::from_translation(DVec3::Y * y));
     let one = shapes::model(long(0.0));
     let extent = one.bounds().unwrap().extent();

@@ -14,7 +14,7 @@ fn sphere() -> Mesh {
     (drawn.positions, faces)
 }
 
-/// Places inside the sphere that lie in no plane of its faces.
+/// Places inside the sphere that are in no plane of its faces.
 fn inside() -> Vec<DVec3> {
     let along = |k: u32| (f64::from(k) * 0.618).fract() * 1.2 - 0.6;
     (1..40)

@@ -7,17 +7,17 @@ use pliant_mesh::{Cancel, Progress, shapes};
 use crate::rig::{Scene, apart, back_substitute, far, step};
 use crate::shared::same_on_any_number_of_threads;
 
-/// How far both shapes may be apart, in diagonals.
+/// The largest distance between both shapes, in diagonals.
 const SAME: f64 = 1e-6;
 
-/// Bound with an ordering of power 1, so that the plate's own factor is not even tried.
+/// A binding with an ordering of power 1, so that the plate's own factor is not even tried.
 fn by_laplacian(scene: &Scene) -> Result<Bound, BindError> {
     let (progress, cancel) = (Progress::new(), Cancel::new());
     let ordering = Ordering::of(&scene.model.topology, 1, &progress, &cancel).unwrap();
     scene.problem(&scene.method).bind(&ordering, &progress, &cancel)
 }
 
-/// Bound with the method's ordering and this much memory.
+/// A binding with the method's ordering and this much memory.
 fn within(scene: &Scene, bytes: u64) -> Result<Bound, BindError> {
     let (progress, cancel) = (Progress::new(), Cancel::new());
     let ordering = scene
@@ -32,7 +32,7 @@ fn within(scene: &Scene, bytes: u64) -> Result<Bound, BindError> {
     problem.bind_within(ordering.as_ref(), budget, &progress, &cancel)
 }
 
-/// Whether the binding says that it was solved by the Laplacian's factor.
+/// Whether the binding reports a solution by the Laplacian's factor.
 fn says_so(bound: &Bound) -> bool {
     bound
         .warnings()
@@ -40,7 +40,7 @@ fn says_so(bound: &Bound) -> bool {
         .any(|warning| warning.to_string().contains("Laplacian's factor"))
 }
 
-/// Both bindings of a scene give the same shape and energy, from the bases and solved anew.
+/// Both bindings of a scene give the same shape and energy, from the bases and from a new solve.
 fn agrees(scene: &Scene, what: &str) {
     let targets: Vec<DAffine3> = far(scene);
     let (mut factor, mut laplacian) = (scene.bind(), by_laplacian(scene).unwrap());
@@ -156,7 +156,7 @@ fn where_the_own_factor_does_not_fit_the_laplacian_s_is_taken_and_said_and_below
     assert!(taken > 0 && refused > 0, "{taken} {refused}");
 }
 
-/// The plate near the rim foresees what waves along it, so that few directions are left to be found.
+/// The plate near the rim covers waves along it, so that few directions remain to be found.
 #[test]
 fn the_directions_are_few_beside_the_rim_s_vertices() {
     let scene = Scene::new(shapes::tube(128, 400, 3.0)).with_ends(true);

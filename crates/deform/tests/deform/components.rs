@@ -1,4 +1,4 @@
-//! What components do that lack a handle, a hold, or both; and refusals.
+//! The behaviour of components without a handle, a hold, or both; and refusals.
 
 use crate::rig::{Scene, step, turned};
 use glam::{DAffine3, DVec3};
@@ -37,7 +37,7 @@ fn loose_components_move_rigidly_with_the_surface_beside_them() {
     assert_eq!(bound.warnings().len(), 2, "{:?}", bound.warnings());
     let target = turned(DVec3::new(12.0, 1.0, 1.0), 0.7, DVec3::new(1.0, 2.0, 0.5));
     let displacements = step(bound, &[target]);
-    // Beside a handle that moves rigidly, the follower makes the same motion; beside what is fixed it stays.
+    // Beside a handle that moves rigidly, the follower has the same motion; beside a fixed part it stays.
     for v in vertices_near(&scene, true, 9.0) {
         let rest = scene.positions()[v];
         assert!(displacements[v].distance(target.transform_point3(rest) - rest) < 1e-9);
@@ -52,7 +52,7 @@ fn loose_components_move_rigidly_with_the_surface_beside_them() {
 
 #[test]
 fn a_part_on_a_loose_part_moves_with_it_as_one() {
-    // A strap that lies on a bar, and a rivet on the strap's far end.
+    // A strap on a bar, and a rivet on the strap's far end.
     let strap = at(shapes::bar(40, 8, 8), DVec3::new(2.0, 0.0, 2.01), 0.25);
     let rivet = at(shapes::icosphere(1), DVec3::new(9.0, 1.0, 4.32), 0.3);
     let mut scene = Scene::new(shapes::together(&[shapes::bar(12, 2, 2), strap, rivet]))
@@ -72,7 +72,7 @@ fn a_part_on_a_loose_part_moves_with_it_as_one() {
         );
     }
     assert!(displacements[parts[0]].length() > 0.1);
-    // On a strap that bends along, the rivet goes where the strap goes beside it.
+    // On a strap that bends along, the rivet moves like the strap beside it.
     scene.loose = Loose::Bend;
     let rivet_of = |v: &usize| scene.positions()[*v].z > 4.015;
     let rivet: Vec<usize> = parts.iter().copied().filter(rivet_of).collect();
@@ -159,7 +159,7 @@ fn a_strap_that_bends_along_goes_with_each_end_as_what_lies_under_it_does() {
             }
         }
     }
-    // Everything as one moves it as one.
+    // A rigid motion of everything is followed exactly.
     let mut whole = Scene::new(bar_with_strap()).with(Role::Handle(0), |p| p.z < 2.1);
     whole.loose = Loose::Bend;
     for (v, displacement) in step(&mut whole.bind(), &[target]).iter().enumerate() {

@@ -58,7 +58,7 @@ fn the_surface_joins_with_the_continuity_that_was_asked_for_and_no_more() {
         let ends = [16, 32, 64].map(|cells| {
             let (z, pitch) = strip(cells, order, near, far);
             let turned: Vec<f64> = z.iter().rev().map(|z| 1.0 - z).collect();
-            // What is held is flat: the k-th derivative's jump is its value there, by one-sided differences.
+            // The held part is flat: the k-th derivative's jump is its value there, by one-sided differences.
             [z, turned].map(|z| {
                 [
                     z[0],
@@ -76,7 +76,7 @@ fn the_surface_joins_with_the_continuity_that_was_asked_for_and_no_more() {
                     "{order:?} {near} {far} {derivative}: {a} {b} {c}"
                 );
             }
-            // The next one jumps: a slope at a hinge, a curvature at what only keeps the tangents.
+            // The next derivative jumps: a slope at a hinge, a curvature at an end that only keeps the tangents.
             if kept < 2 {
                 let jump = ends.map(|end_jumps| end_jumps[end][kept + 1].abs());
                 assert!(

@@ -22,7 +22,7 @@ fn methods() -> Vec<(String, Method)> {
         .collect()
 }
 
-/// With the cage or lattice that the method makes for it.
+/// The scene with the cage or lattice that the method makes for it.
 fn brought(mut scene: Scene) -> Scene {
     let bound = scene.bind();
     let (name, attachment) = bound.attachment().unwrap();
@@ -46,7 +46,7 @@ fn bar(method: &Method) -> Scene {
         .with(Role::Handle(0), |p| p.x > 0.9 * high)
 }
 
-/// The control points' rest, and them with those moved that pass a test.
+/// The control points' rest positions, and the same with those moved that pass a test.
 fn moved(scene: &Scene, change: impl Fn(usize, DVec3) -> DVec3) -> Arc<Vec<DVec3>> {
     let rest = scene.method.control_rest(&scene.attachments[0].1);
     Arc::new(
@@ -73,7 +73,7 @@ fn control_points_moved_by_an_affine_map_move_everything_in_them_by_it() {
     let similar = turned(DVec3::X, 1.1, DVec3::Y) * DAffine3::from_scale(DVec3::splat(1.7));
     for (name, method) in methods() {
         let scene = brought(sphere(&method));
-        // Green coordinates know only the similar ones.
+        // Green coordinates follow only similarities.
         let (map, most) = if name == "Green" {
             (similar, 1e-6)
         } else {
@@ -166,7 +166,7 @@ fn without_handles_control_points_are_where_the_hand_put_them() {
         for (role, displacement) in scene.roles.iter().zip(&displacements) {
             assert!(*role != Role::Fixed || *displacement == DVec3::ZERO, "{name}");
         }
-        // The places may come with the binding as well.
+        // The positions may come with the binding too.
         let mut scene = scene;
         let (own, attachment) = &scene.attachments[0];
         scene.attachments = vec![(*own, attachment.with_moved(places))];
@@ -178,7 +178,7 @@ fn without_handles_control_points_are_where_the_hand_put_them() {
 fn jacobians_are_the_derivative_with_moved_controls() {
     const STEP: f64 = 1e-5;
     for (name, method) in methods() {
-        // Each vertex of the star is beside the middle one by a small step along an axis.
+        // Each vertex of the star is a small step along an axis from the middle one.
         let base = bar(&method);
         let probe = base
             .positions()
@@ -213,7 +213,7 @@ fn jacobians_are_the_derivative_with_moved_controls() {
     }
 }
 
-/// What a test does to a cage's vertices and triangles.
+/// A test's change of a cage's vertices and triangles.
 type Change<'a> = &'a dyn Fn(&mut Vec<DVec3>, &mut Vec<[u32; 3]>);
 
 fn refused(scene: &Scene) -> String {
@@ -294,7 +294,7 @@ fn the_vertices_outside_a_cage_are_counted_one_by_one() {
     let (_, Attachment::Mesh(mesh)) = &scene.attachments[0] else {
         panic!("a cage is a mesh");
     };
-    // Moved aside, the cage leaves those outside that its own winding number does not go around.
+    // Moved aside, the cage leaves outside the points with a winding number of 0.
     let rest: Vec<DVec3> = mesh.rest.iter().map(|p| *p + DVec3::new(0.9, 0.05, 0.02)).collect();
     let winding = |point: &DVec3| {
         let angle = |face: &[u32; 3]| {
@@ -353,10 +353,10 @@ fn what_is_no_lattice_and_what_does_not_fit_the_binding_is_refused_in_words() {
         }
     ));
     assert!(bound.set_controls(&Arc::new(Vec::new())).is_err());
-    // What the method made for itself is moved only once it was brought.
+    // A cage that the method made can be moved only after it was brought.
     let made = sphere(&scene.method).bind().set_controls(&moved(&scene, bent));
     assert_eq!(made, Err(SolveError::NoControls));
-    // Another method leaves it alone.
+    // Another method ignores it.
     let mut other = sphere(&Method::from_name("rbf").unwrap()).with(Role::Handle(0), |p| p.z > 0.6);
     let without = other.moved(&[turned(DVec3::ZERO, 0.3, DVec3::X)]);
     other.attachments = scene.attachments;

@@ -1,4 +1,4 @@
-//! What multiresolution details are for: bumps on a plate that is bent.
+//! The purpose of multiresolution details: bumps on a bent plate.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -7,7 +7,7 @@ use glam::{DAffine3, DVec3};
 use pliant_deform::{Bound, Method, OptionValue, Role};
 use pliant_mesh::{Bvh, Cancel, Drawn, Model, Progress, SurfaceVertex, shapes};
 
-/// Every way to put details back.
+/// Every way of putting details back.
 const DETAILS: [&str; 3] = ["normal-displacements", "displacement-volumes", "deformation-transfer"];
 
 fn method(detail: &'static str) -> Method {
@@ -15,7 +15,7 @@ fn method(detail: &'static str) -> Method {
     method.with([("detail", OptionValue::Name(detail))]).unwrap()
 }
 
-/// Where the bumps stand on the plate, and their radius.
+/// The places of the bumps on the plate, and their radius.
 const CENTRES: [f64; 3] = [0.3, 0.5, 0.7];
 const RADIUS: f64 = 0.09;
 
@@ -32,7 +32,7 @@ fn bumps(p: DVec3, height: f64) -> f64 {
     CENTRES.into_iter().map(of).sum()
 }
 
-/// A plate of so many cells with bumps, fixed at the left, its right end the handle, the sides free.
+/// A plate of this many cells with bumps, fixed at the left, its right end the handle, the sides free.
 fn plate(cells: usize, height: f64, detail: &'static str) -> Scene {
     let Drawn {
         positions, triangles, ..
@@ -45,21 +45,21 @@ fn plate(cells: usize, height: f64, detail: &'static str) -> Scene {
     scene
 }
 
-/// Bends the plate to about an arc of `angle_rad`, upwards where it is positive.
+/// Bends the plate to about an arc of `angle_rad`, upwards if it is positive.
 fn arc(angle_rad: f64) -> DAffine3 {
     let radius = 1.0 / angle_rad;
     let end = DVec3::new(radius * angle_rad.sin(), 0.0, radius * (1.0 - angle_rad.cos()));
     DAffine3::from_translation(end) * DAffine3::from_rotation_y(-angle_rad) * DAffine3::from_translation(-DVec3::X)
 }
 
-/// A bumpy plate, and it and its base under a target.
+/// A bumpy plate, and the plate and its base under a target.
 struct Bent {
     scene: Scene,
     shape: Vec<DVec3>,
     base: Vec<DVec3>,
 }
 
-/// The base is bent by what the plain bi-Laplacian does to the plate.
+/// The base is bent as the plain bi-Laplacian bends the plate.
 fn bent(height: f64, detail: &'static str, target: DAffine3) -> Bent {
     let scene = plate(CELLS, height, detail);
     let moved = |from: &[DVec3], by: &[DVec3]| from.iter().zip(by).map(|(p, d)| *p + *d).collect();
@@ -134,7 +134,7 @@ fn bumps_turn_with_the_plate_below_them_and_shear_without_details() {
     }
 }
 
-/// The displacements that take the surface to its base as the last step has bent it.
+/// The displacements that take the surface to its base in the last step.
 fn base_of(bound: &Bound) -> Vec<DVec3> {
     let mut base = vec![DVec3::ZERO; bound.vertex_count()];
     assert!(bound.base(&mut base));
@@ -241,8 +241,8 @@ fn bumps_keep_their_volume_on_a_bent_plate_but_with_normal_displacements() {
     }
 }
 
-/// By how much the plate turns between x = 0.38 and x = 0.62 under a quarter arc, in radians, with its middle so stiff:
-/// the directions of its flat flanks there are compared.
+/// The turn of the plate between x = 0.38 and x = 0.62 under a quarter arc, in radians, with its middle this stiff,
+/// from the directions of its flat flanks there.
 fn turn_of_the_middle(detail: &'static str, stiffness: f64) -> f64 {
     let mut scene = plate(CELLS, 0.12, detail);
     let rest = scene.positions().to_vec();
@@ -275,7 +275,7 @@ fn a_stiff_patch_bends_less_with_every_kind_of_detail() {
 
 #[test]
 fn transferred_gradients_keep_a_tube_whole_whose_base_shrinks_to_a_line() {
-    // In the middle the base is about e^-10 as wide as the tube.
+    // In the middle the base is about e^-10 of the tube's width.
     let mut scene = Scene::new(shapes::tube(12, 40, 20.0))
         .with(Role::Fixed, |p| p.z < 1.0)
         .with(Role::Handle(0), |p| p.z > 19.0);
@@ -302,8 +302,8 @@ fn transferred_gradients_keep_a_tube_whole_whose_base_shrinks_to_a_line() {
     );
 }
 
-/// A closed sheet of 4 × 1 and so thick, of so many cells, its lower vertices shifted by `skew` of a cell, fixed at the
-/// left, its right end the handle.
+/// A closed sheet of 4 × 1 with this thickness and number of cells, its lower vertices shifted by `skew` of a cell,
+/// fixed at the left, its right end the handle.
 fn sheet(cells: [usize; 2], thickness: f64, skew: f64, detail: &'static str) -> Scene {
     let [along, across] = cells;
     let mut drawn = shapes::bar(along, across, 1);
@@ -324,7 +324,7 @@ fn sheet(cells: [usize; 2], thickness: f64, skew: f64, detail: &'static str) -> 
 
 #[test]
 fn the_sides_of_a_thin_sheet_stay_apart() {
-    // A quarter turn whose end is drawn in, as hands do it.
+    // A quarter turn with the end drawn in, like a hand's motion.
     let bend = DAffine3::from_translation(DVec3::new(2.8, 0.0, 1.2))
         * DAffine3::from_rotation_y(-FRAC_PI_2)
         * DAffine3::from_translation(-DVec3::X * 4.0);

@@ -1,4 +1,4 @@
-//! The laws that every method obeys that changes differential coordinates and puts the surface together again.
+//! The laws of all methods that change differential coordinates and reassemble the surface.
 
 use std::f64::consts::PI;
 
@@ -40,7 +40,7 @@ fn scene(drawn: Drawn, method: &Method) -> Scene {
     scene
 }
 
-/// A tube along z, fixed below, its upper end the handle.
+/// A tube along z, fixed below, with its upper end as the handle.
 pub fn tube(method: &Method) -> Scene {
     scene(shapes::tube(12, 24, 8.0), method)
         .with(Role::Fixed, |p| p.z < 0.5)
@@ -125,7 +125,7 @@ fn turning_the_whole_problem_turns_the_result() {
 #[test]
 fn the_result_is_the_same_bit_for_bit_on_any_number_of_threads() {
     for method in methods() {
-        // Enough for more than one chunk.
+        // This is enough for more than one chunk.
         let scene = scene(shapes::torus(90, 40), &method).with_ends(true);
         let result = || {
             let bound = &mut scene.bind();

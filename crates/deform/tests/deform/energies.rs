@@ -1,4 +1,4 @@
-//! Energies against another computation of them: cotangents from angles, dense matrices, quadratic forms.
+//! Energies against a second computation: cotangents from angles, dense matrices, quadratic forms.
 
 use glam::{DAffine3, DVec3};
 use pliant_deform::{Bilaplacian, BilaplacianOrder, Method};
@@ -9,7 +9,7 @@ use crate::rig::{Scene, back_substitute, turned};
 type Dense = Vec<Vec<f64>>;
 
 /// −L and M of the survey's equations 6 and 7 with Meyer et al.'s areas, from the angles at each triangle's corners;
-/// `stiffness` has a factor a vertex, of which each triangle takes the mean.
+/// `stiffness` has a factor per vertex, and each triangle uses the mean.
 fn operators(scene: &Scene, stiffness: &[f64]) -> (Dense, Vec<f64>) {
     let count = scene.roles.len();
     let (mut minus_laplacian, mut areas) = (vec![vec![0.0; count]; count], vec![0.0; count]);
@@ -33,7 +33,7 @@ fn operators(scene: &Scene, stiffness: &[f64]) -> (Dense, Vec<f64>) {
                 Some(_) => area / 4.0,
                 None => {
                     let (at_to, at_other) = (p[to].distance_squared(p[at]), p[other].distance_squared(p[at]));
-                    // The edge to `to` lies opposite the corner `other`.
+                    // The edge to `to` is opposite the corner `other`.
                     (at_to / angle(other, at, to).tan() + at_other / angle(to, other, at).tan()) / 8.0
                 }
             };
@@ -50,7 +50,7 @@ fn product(matrix: &Dense, field: &[f64]) -> Vec<f64> {
 }
 
 /// ½ ∫ k_s s |∇d|² / D² + k_b D^(2 (n − 2)) s |∇ⁿ d|² over the three coordinates, where ∇²d is the Laplacian and s is
-/// the painted stiffness: by the three products of n that stand between d and d.
+/// the painted stiffness, by the three products of n between d and d.
 fn energy(scene: &Scene, options: &Bilaplacian, displacements: &[DVec3]) -> f64 {
     let (plain, areas) = operators(scene, &vec![1.0; scene.roles.len()]);
     let (stiff, _) = operators(scene, &scene.stiffness);
@@ -97,7 +97,7 @@ fn the_energy_of_a_step_is_the_quadratic_form_of_the_dense_matrix() {
                 let mut options = Bilaplacian::default();
                 (options.order, options.stretching, options.bending) = (order, stretching, bending);
                 let mut scene = Scene::new(drawn.clone()).with_ends(true);
-                // Where stiffness varies the thin plate is not made of Laplacians: `plate` has its energy.
+                // If stiffness varies, the thin plate does not consist of Laplacians: `plate` has its energy.
                 if order != BilaplacianOrder::ThinPlate || bending == 0.0 {
                     for (vertex, stiffness) in scene.stiffness.iter_mut().enumerate() {
                         *stiffness = 0.5 + (vertex % 4) as f64;
@@ -105,7 +105,7 @@ fn the_energy_of_a_step_is_the_quadratic_form_of_the_dense_matrix() {
                 }
                 scene.method = Method::from(options.clone());
                 if bending == 0.0 {
-                    // Nothing but stretching: the order says nothing.
+                    // There is only stretching, so the order has no effect.
                     options.order = BilaplacianOrder::Membrane;
                 }
                 let bound = &mut scene.bind();
@@ -121,7 +121,7 @@ fn the_energy_of_a_step_is_the_quadratic_form_of_the_dense_matrix() {
                     (step - dense).abs() < 1e-6 * dense + 1e-12,
                     "{number} {options:?}: {step} {dense}"
                 );
-                // Of any shape that moves what a handle reaches, too.
+                // This holds for every shape that moves the vertices in a handle's reach.
                 let shaken: Vec<DVec3> = solution
                     .iter()
                     .enumerate()

@@ -1,4 +1,4 @@
-//! The laws of shells that examples lead.
+//! The laws of shells with examples.
 
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ use pliant_deform::{
 };
 use pliant_mesh::shapes;
 
-/// Where the bar's elbow begins and ends, as shares of its length.
+/// The start and the end of the bar's elbow, as shares of its length.
 const ELBOW: [f64; 2] = [0.35, 0.65];
 
 fn method(led_above: usize) -> Method {
@@ -128,7 +128,7 @@ fn between_and_beyond_an_arm_goes_along_its_arc() {
     }
 }
 
-/// The tip is held where the example has it.
+/// The tip is held at its position in the example.
 #[test]
 fn an_examples_own_constraints_give_it_back_with_a_free_weight() {
     for led_above in [usize::MAX, 0] {
@@ -249,7 +249,7 @@ fn weights_that_are_set_later_give_what_those_brought_give() {
     assert!(apart(&later, &brought) < 1e-6 * scene.diagonal());
 }
 
-/// Also where it folds within an edge's length: at the first step.
+/// This includes a fold within an edge's length: at the first step.
 #[test]
 fn a_fold_of_an_example_is_there_at_the_first_step_with_a_coarse_level_and_without() {
     for led_above in [usize::MAX, 0] {
@@ -270,7 +270,7 @@ fn a_fold_of_an_example_is_there_at_the_first_step_with_a_coarse_level_and_witho
     }
 }
 
-/// A coarse level changes how the shape is found, not which.
+/// A coarse level changes the way to the shape, not the shape.
 #[test]
 fn a_coarse_level_leads_to_the_same_blend() {
     let [own, led] = [usize::MAX, 0].map(|led_above| {

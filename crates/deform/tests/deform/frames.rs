@@ -1,4 +1,5 @@
-//! Rotation-invariant coordinates: what the linear shape reproduces and is blind to, and what iterations add.
+//! Rotation-invariant coordinates: the motions that the linear shape reproduces and ignores, and the effect of
+//! iterations.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -84,7 +85,7 @@ fn iterations_never_raise_the_energy_and_end_at_a_minimum() {
         }
         assert!(bound.energy_of(&other).unwrap() > least);
     }
-    // A drag ends where one solve does.
+    // A drag ends at the shape of a single solve.
     let bound = &mut scene.bind();
     for share in [0.3, 0.6] {
         settle(bound, &[turned(DVec3::Z * 7.5, share, DVec3::X * share)]);

@@ -8,7 +8,7 @@ use pliant_mesh::{Cancel, Drawn, DrawnVertex, Progress, SurfaceVertex, shapes};
 
 use crate::rig::{Scene, settle};
 
-/// A cone: so many triangles around a tip.
+/// A cone: this many triangles around a tip.
 pub fn fan(count: usize) -> Drawn {
     let around = |place: usize| {
         let (sin, cos) = (TAU * place as f64 / count as f64).sin_cos();
@@ -121,7 +121,7 @@ fn what_exceeds_the_budget_is_refused_in_words_that_name_the_crowded_vertex() {
         let words = refused.unwrap().renumbered(|_| 77).to_string();
         assert!(words.contains("vertex 77, which has 800 neighbours"), "{words}");
         assert!(bind(1 << 30).is_ok(), "{method:?}");
-        // A handle at each vertex is too much for any.
+        // A handle at each vertex is too much for any method.
         let refused = bind(100).err();
         assert!(
             matches!(refused, Some(BindError::Handles { handle_count: 1, .. })),
@@ -152,7 +152,7 @@ fn operations_beyond_a_surface_s_are_refused_in_words_and_those_of_a_surface_nev
         for surface in [shapes::grid(60, 60), shapes::grid(900, 2), shapes::torus(60, 40)] {
             assert!(bound(surface, 0).is_ok(), "{method:?}");
         }
-        // Prisms are joined along edges, and these are the sheet's as before.
+        // Prisms are joined along edges, and these are still the sheet's.
         if method.options::<Primo>().is_some() {
             continue;
         }
@@ -192,7 +192,7 @@ fn an_energy_beyond_all_numbers_is_refused_by_every_method() {
             let step = bound.step(&mut displacements);
             assert!(step.is_err(), "{method:?} {far:e}: {step:?}");
             assert!(displacements.iter().all(|d| *d == DVec3::ZERO));
-            // And goes on from there.
+            // It continues from there.
             bound
                 .set_targets(&[DAffine3::from_translation(DVec3::X * 0.1)])
                 .unwrap();
@@ -204,7 +204,7 @@ fn an_energy_beyond_all_numbers_is_refused_by_every_method() {
 
 #[test]
 fn a_strip_too_long_for_its_order_is_refused_at_once_and_a_lower_order_bends_it() {
-    // Held at both ends.
+    // It is held at both ends.
     let long = |order, cells| {
         let mut scene = Scene::new(shapes::grid(cells, 1))
             .with(Role::Fixed, |p| p.x < 1e-6)
@@ -229,7 +229,7 @@ fn a_strip_too_long_for_its_order_is_refused_at_once_and_a_lower_order_bends_it(
         unreachable!("{of_two:?}")
     };
     assert!((100_000..106_000).contains(&edges), "{edges}");
-    // Coupled prisms do not converge long before.
+    // Coupled prisms fail to converge on much shorter ones.
     let prisms = |cells| {
         let mut scene = long(BilaplacianOrder::Membrane, cells);
         scene.method = Primo::default().into();

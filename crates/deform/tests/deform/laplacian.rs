@@ -1,4 +1,4 @@
-//! Laplacian editing: what its transformations follow, how far, and what they do to the size of details.
+//! Laplacian editing: the turns that its transformations follow, their limits, and the effect on the size of details.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -17,8 +17,8 @@ fn transforms(name: &'static str) -> Method {
     laplacian(&[("transforms", OptionValue::Name(name))])
 }
 
-/// By how much, in radians, a peg in the middle of a sheet leans in the sheet, and by how much the sheet there leans,
-/// when the sheet's end goes to the target.
+/// The angle, in radians, by which a peg in the middle of a sheet leans within the sheet, and that by which the sheet
+/// leans there, when the sheet's end moves to the target.
 fn leans(method: &Method, target: DAffine3) -> [f64; 2] {
     let mut sheet = shapes::grid(60, 20);
     let middle = DVec3::new(1.5, 0.5, 0.0);
@@ -49,11 +49,11 @@ fn leans(method: &Method, target: DAffine3) -> [f64; 2] {
 #[test]
 fn what_protrudes_leans_with_the_surface_for_moves_and_for_turns_up_to_a_quarter() {
     let moves = DAffine3::from_translation(DVec3::new(-0.3, 0.0, 1.2));
-    // Details that are as long as at rest, in the direction that the first shape gives them, lean a little less by a quarter.
+    // Details with their rest length, in the direction of the first shape, lean too little by about a quarter.
     for (target, most) in [(moves, 0.3), (along_an_arc(0.8), 0.3), (along_an_arc(FRAC_PI_2), 0.4)] {
         let [missed, sheet] = leans(&transforms("implicit"), target);
         assert!(missed < most * sheet && sheet > 0.35, "{missed} {sheet}");
-        // Without transformations it stays upright in space, and a first guess sees hardly more of what it should do.
+        // Without transformations it stays upright in space, and a first guess sees hardly more of its turn.
         let [missed, sheet] = leans(&transforms("none"), target);
         assert!((missed - sheet).abs() < 0.1, "{missed} {sheet}");
         let [guessed, _] = leans(&transforms("initial-guess"), target);
@@ -97,7 +97,7 @@ fn small_rigid_motions_of_all_handles_are_reproduced_to_second_order() {
                 let expected: Vec<DVec3> = scene.positions().iter().map(moved).collect();
                 apart(&found, &expected) / scene.diagonal()
             };
-            // Handles of single vertices leave turns open.
+            // Handles of single vertices do not determine turns.
             if class.starts_with("non-manifold") {
                 continue;
             }
@@ -109,7 +109,7 @@ fn small_rigid_motions_of_all_handles_are_reproduced_to_second_order() {
                     "{class}: {small:e} {larger:e}"
                 );
             } else {
-                // A first shape that turns nothing sees a little less of any turn.
+                // A first shape without turns sees a little less of any turn.
                 assert!(small < 0.1 * 1e-3, "{class}: {small:e}");
             }
         }
@@ -146,7 +146,7 @@ fn pulled_details_grow_with_free_scale_and_keep_their_size_with_normalised() {
 
 #[test]
 fn a_flat_sheet_with_free_borders_keeps_its_width() {
-    // Similarities alone would leave every conformal map of it free.
+    // Similarities alone would allow every conformal map of it.
     let mut sheet = shapes::grid(40, 40);
     sheet.positions.iter_mut().for_each(|p| p.x *= 2.0);
     let mut scene = Scene::new(sheet)

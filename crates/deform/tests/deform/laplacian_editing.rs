@@ -1,5 +1,5 @@
-//! Laplacian editing beside a second implementation, dense and written from [SCL+04], with the weights of [BS08]:
-//! cotangents over areas, and squares that count by area.
+//! Laplacian editing against a second implementation, dense and written from [SCL+04], with the weights of [BS08]:
+//! cotangents over areas, and squares weighted by area.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::PI;
@@ -10,7 +10,7 @@ use pliant_mesh::{Drawn, DrawnVertex, shapes};
 
 use crate::rig::{Scene, eliminated};
 
-/// The rows of the differential coordinates: each vertex' neighbours with their cotangents' weights, divided by a third
+/// The rows of the differential coordinates: each vertex' neighbours with their cotangent weights, divided by a third
 /// of the area around.
 fn rows(scene: &Scene) -> Vec<Vec<(usize, f64)>> {
     let p = scene.positions();
@@ -32,7 +32,7 @@ fn rows(scene: &Scene) -> Vec<Vec<(usize, f64)>> {
     weights.into_iter().zip(areas).map(divided).collect()
 }
 
-/// A third of the area around each vertex: what a squared row counts.
+/// A third of the area around each vertex: the weight of a squared row.
 fn areas(scene: &Scene) -> Vec<f64> {
     let mut areas = vec![0.0; scene.positions().len()];
     for corners in &scene.model.surface.triangles {
@@ -69,10 +69,10 @@ fn equations(v: DVec3) -> [[f64; 7]; 3] {
     ]
 }
 
-/// For each vertex of the ring the matrix that takes its new position to its part of T δ.
+/// For each vertex of the ring the matrix that maps its new position to its part of T δ.
 fn transforms(p: &[DVec3], i: usize, row: &[(usize, f64)], delta: DVec3) -> Vec<(usize, DMat3)> {
     let (normal, ring) = fit(p, i, row);
-    // T δ has no translation, since δ is a direction: its rows, as numbers that (s, h, t) are multiplied by.
+    // T δ has no translation, since δ is a direction: its rows, as factors of (s, h, t).
     let mut effect = equations(delta);
     for row in &mut effect {
         row[4..].fill(0.0);
@@ -90,7 +90,7 @@ fn transforms(p: &[DVec3], i: usize, row: &[(usize, f64)], delta: DVec3) -> Vec<
     ring.iter().map(part).collect()
 }
 
-/// Minimises Σ area |Σ_j G_ij v'_j − g_i|² over the free vertices, the others being where `shape` has them.
+/// Minimises Σ area |Σ_j G_ij v'_j − g_i|² over the free vertices, with the others at their positions in `shape`.
 fn minimised(
     shape: &mut [DVec3],
     free: &[Option<usize>],
@@ -131,7 +131,7 @@ fn minimised(
     }
 }
 
-/// Where the vertices go when the one handle goes to `target`.
+/// The vertices' positions when the single handle moves to `target`.
 fn edited(scene: &Scene, target: DAffine3) -> Vec<DVec3> {
     let (p, rows, areas) = (scene.positions(), rows(scene), areas(scene));
     let mut count = 0;
@@ -160,7 +160,7 @@ fn edited(scene: &Scene, target: DAffine3) -> Vec<DVec3> {
         let less = plain(i).into_iter().zip(turned);
         less.map(|((j, g), (_, turned))| (j, g - turned)).collect()
     };
-    // Equation 4, with T of the unknown positions, and then with each length as it was (section 3.3).
+    // Equation 4, with T of the unknown positions, and then with each length as at rest (section 3.3).
     let blocks: Vec<_> = (0..p.len()).map(implicit).collect();
     minimised(&mut shape, &free, &blocks, &vec![DVec3::ZERO; p.len()], &areas);
     let aims: Vec<DVec3> = (0..p.len())
@@ -223,7 +223,7 @@ fn cactus() -> Drawn {
     surface_of(&trunk.chain(arms).collect())
 }
 
-/// The root of the mean squared distance between the method's shape and the second implementation's, as a share of the
+/// The root mean square distance between the method's shape and the second implementation's, as a share of the
 /// diagonal.
 fn apart(mut scene: Scene, target: DAffine3) -> f64 {
     scene.method = Method::from_name("laplacian").unwrap();
@@ -236,7 +236,7 @@ fn apart(mut scene: Scene, target: DAffine3) -> f64 {
     (sum / expected.len() as f64).sqrt() / scene.diagonal()
 }
 
-/// Held below `low` and moved above `high` along z.
+/// A scene held below `low` and moved above `high` along z.
 fn held(drawn: Drawn, low: f64, high: f64) -> Scene {
     Scene::new(drawn)
         .with(Role::Fixed, |p| p.z < low)

@@ -1,4 +1,4 @@
-//! What is said where a handle turns by more than a method follows.
+//! Warnings about a handle's turn beyond a method's limit.
 
 use std::f64::consts::{PI, TAU};
 
@@ -8,7 +8,7 @@ use pliant_mesh::shapes;
 
 use crate::rig::{Scene, settle};
 
-/// What the method says of a limb whose end turns about the limb.
+/// The method's warning about a limb whose end turns about the limb.
 fn said(name: &str, degrees: f64, fixed: bool) -> Vec<String> {
     let mut scene = Scene::new(shapes::tube(10, 16, 5.0)).with(Role::Handle(0), |p| p.z > 4.5);
     scene = match fixed {
@@ -18,14 +18,14 @@ fn said(name: &str, degrees: f64, fixed: bool) -> Vec<String> {
     scene.method = Method::from_name(name).unwrap();
     let mut bound = scene.bind();
     let turn = DAffine3::from_rotation_z(degrees * PI / 180.0);
-    // Where nothing is fixed both ends turn alike.
+    // If nothing is fixed, both ends turn alike.
     bound.set_targets(&vec![turn; scene.handle_count]).unwrap();
     let about = |said: &&pliant_deform::Warning| said.contains("turns by");
     bound.warnings().iter().filter(about).map(ToString::to_string).collect()
 }
 
-/// What a limb with a neck keeps of its radius at its narrowest ring where its end is turned, and the largest turn of an
-/// edge along it, in radians.
+/// The share of its radius that a limb with a neck keeps at its narrowest ring when its end is turned, and the largest
+/// turn of an edge along it, in radians.
 fn twisted(name: &str, degrees: f64, neck: f64) -> (f64, f64) {
     let mut drawn = shapes::tube(16, 40, 5.0);
     let radius = |z: f64| 0.5 * (1.0 - (1.0 - neck) * (-(3.0 * (z - 2.5)).powi(2)).exp());
@@ -54,12 +54,12 @@ fn twisted(name: &str, degrees: f64, neck: f64) -> (f64, f64) {
     )
 }
 
-/// Whether two points are at one place around the limb.
+/// Whether two points are at the same place around the limb.
 fn on_one_line(p: DVec3, q: DVec3) -> bool {
     p.truncate().angle_to(q.truncate()).abs() < 1e-6
 }
 
-/// What a method does to a limb at half a turn.
+/// A method's effect on a limb at half a turn.
 #[derive(Clone, Copy, PartialEq)]
 enum Beyond {
     Narrows,
@@ -67,7 +67,7 @@ enum Beyond {
     TwistsInOnePlace,
 }
 
-/// Methods that don't follow half a turn, the largest turn that they follow, and what they do beyond.
+/// Methods that don't follow half a turn, the largest turn that they follow, and their effect beyond.
 const LIMITED: [(&str, f64, Beyond); 12] = [
     ("bilaplacian", 90.0, Beyond::Narrows),
     ("wrinkles", 90.0, Beyond::Narrows),
@@ -102,7 +102,7 @@ fn methods_that_fail_between_large_turns_say_so_and_name_others() {
 fn methods_follow_turns_up_to_where_their_sentence_says_and_poisson_follows_half_a_turn() {
     /// The least share of its radius that a limb keeps.
     const KEPT: f64 = 0.7;
-    /// The largest turn from ring to ring where 180° are spread over 32 rings or most of them, in radians.
+    /// The largest turn from ring to ring if 180° are spread over all or most of 32 rings, in radians.
     const SPREAD: f64 = 0.6;
     for (name, follows, beyond) in LIMITED {
         if beyond != Beyond::TwistsInOnePlace {
@@ -118,7 +118,7 @@ fn methods_follow_turns_up_to_where_their_sentence_says_and_poisson_follows_half
         assert!(is_as_said, "{name} {plain} {neck} {step}");
     }
     for neck in [1.0, 0.6, 0.3, 0.2] {
-        // In a neck the turn is concentrated by right.
+        // In a neck the turn is rightly concentrated.
         let (kept, step) = twisted("poisson", 180.0, neck);
         assert!(kept > KEPT && (step < SPREAD || neck < 0.5), "{neck} {kept} {step}");
     }

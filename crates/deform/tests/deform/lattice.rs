@@ -38,7 +38,7 @@ fn linear_functions_are_reproduced() {
         for (handles, flat) in [(2, false), (1, true)] {
             let mut scene = Scene::new(shapes::icosphere(3));
             scene.method = method.clone();
-            // Of the flat one the samples alone don't tell what happens beside them.
+            // The samples of a flat one do not determine its surroundings.
             let mut scene = scene.with(Role::Handle(0), |p| if flat { p.z == 1.0 } else { p.z > 0.6 });
             if !flat {
                 scene = scene.with(Role::Handle(1), |p| p.z < -0.8);
@@ -113,8 +113,8 @@ fn it_is_the_dense_definition() {
     }
 }
 
-/// The field of the textbook: where nothing is fixed an affine map, then a lattice by normal equations, all dense. The
-/// second handle rests.
+/// The textbook's field: an affine map if nothing is fixed, then a lattice by normal equations, all dense. The second
+/// handle rests.
 fn by_definition(scene: &Scene, target: &DAffine3, cells: usize, bending: bool) -> Vec<DVec3> {
     let method = &scene.method;
     let moving = scene.roles.iter().zip(scene.positions());
@@ -125,7 +125,7 @@ fn by_definition(scene: &Scene, target: &DAffine3, cells: usize, bending: bool) 
     let low = moving.iter().copied().reduce(DVec3::min).unwrap();
     let high = moving.iter().copied().reduce(DVec3::max).unwrap();
     let diagonal = low.distance(high);
-    // All that is fixed is near.
+    // All fixed vertices are near.
     let (low, high) = scene
         .positions()
         .iter()
@@ -307,7 +307,7 @@ fn the_field_fades_in_from_what_is_fixed() {
 fn soft_handles_yield_and_follow_their_weight() {
     let reached = |weight: f64| {
         let mut scene = bar(lattice(&[]));
-        // The middle is to move away from between two ends that hold.
+        // The middle moves away between two held ends.
         for role in &mut scene.roles {
             if matches!(role, Role::Handle(_)) {
                 *role = Role::Fixed;

@@ -1,4 +1,4 @@
-//! What holds for every bound problem, on every class of mesh.
+//! Laws of every bound problem, on every class of mesh.
 
 use crate::rig::{Scene, apart, back_substitute, step, turned};
 use glam::{DAffine3, DMat3, DVec3};
@@ -135,7 +135,7 @@ fn any_other_shape_with_the_same_constraints_has_more_energy() {
 
 #[test]
 fn weights_and_what_is_fixed_make_up_one() {
-    // Where one handle holds each end, the second end's weight is what would be fixed.
+    // If one handle holds each end, the second end's weight is that of a fixed end.
     let free_ends = Scene::new(shapes::tube(16, 24, 6.0))
         .with(Role::Handle(0), |p| p.z > 5.5)
         .with(Role::Handle(1), |p| p.z < 0.5);
@@ -160,7 +160,7 @@ fn units_and_place_do_not_matter() {
         let place = DAffine3::from_translation(offset * scale) * DAffine3::from_scale(DVec3::splat(scale));
         let mut scene = Scene::new(shapes::moved(&shapes::icosphere(3), place));
         assert_eq!(scene.roles.len(), reference.roles.len());
-        // Rounding in the offset may reorder vertices: find each one's partner by where it came from.
+        // Rounding in the offset may reorder vertices: find each one's partner by its position.
         let back: Vec<DVec3> = scene.positions().iter().map(|p| *p / scale - offset).collect();
         let partner: Vec<usize> = back
             .iter()

@@ -22,10 +22,10 @@ fn ball(method: Method) -> Scene {
         .with(Role::Handle(1), |p| p.x > 0.9)
 }
 
-/// A point, its weight, and where it goes.
+/// A point, its weight, and its target.
 type Point = (DVec3, f64, DVec3);
 
-/// Every sample's six points: all vertices of the handles and of what is fixed, each as a cloud.
+/// Every sample's six points: all vertices of the handles and all fixed ones, each as a cloud.
 fn points(scene: &Scene, targets: &[DAffine3], falloff: f64, place: DVec3) -> Vec<Point> {
     let held = || (0..scene.roles.len()).filter(|&v| scene.roles[v] != Role::Free);
     let mean = held().map(|v| scene.positions()[v]).sum::<DVec3>() / held().count() as f64;
@@ -56,7 +56,7 @@ fn points(scene: &Scene, targets: &[DAffine3], falloff: f64, place: DVec3) -> Ve
     points
 }
 
-/// The largest eigenvector of Horn's matrix, by powers of it.
+/// The largest eigenvector of Horn's matrix, by power iteration.
 fn best_rotation(s: &DMat3) -> DMat3 {
     let s = |row: usize, column: usize| s.col(column)[row];
     let trace = s(0, 0) + s(1, 1) + s(2, 2);
@@ -90,7 +90,7 @@ fn best_rotation(s: &DMat3) -> DMat3 {
     DMat3::from_quat(q.normalize())
 }
 
-/// Where the definition takes a place, by sums over all points.
+/// The image of a point by the definition, with sums over all points.
 fn defined(transforms: MlsTransforms, place: DVec3, points: &[Point]) -> DVec3 {
     let total: f64 = points.iter().map(|(_, w, _)| w).sum();
     let mean = |of: &dyn Fn(&Point) -> DVec3| points.iter().map(|p| of(p) * p.1).sum::<DVec3>() / total;
@@ -148,7 +148,7 @@ fn maps_of_the_kind_that_is_fitted_are_reproduced() {
         (MlsTransforms::Similarity, rigid * scaled(DVec3::Y, DVec3::splat(1.7))),
         (MlsTransforms::Rigid, rigid),
     ] {
-        // On a ball, a plane, and with a handle of one vertex.
+        // The scenes are a ball, a plane, and one with a handle of one vertex.
         let shapes = [
             (shapes::icosphere(3), 0.8),
             (shapes::grid(9, 11), 0.8),
@@ -173,7 +173,7 @@ fn maps_of_the_kind_that_is_fitted_are_reproduced() {
     }
 }
 
-/// Free vertices that nearly touch a handle's vertices, also where the handle has far more of them than samples.
+/// Free vertices that nearly touch a handle's vertices, including handles with far more vertices than samples.
 #[test]
 fn the_surface_meets_every_vertex_of_a_hard_handle() {
     for (size, targets) in [

@@ -1,4 +1,4 @@
-//! The laws that every method that iterates obeys.
+//! The laws of all iterative methods.
 
 use crate::rig::{Scene, apart, far, mirrored, settle, turned};
 use crate::shared;
@@ -6,15 +6,15 @@ use glam::{DAffine3, DVec3};
 use pliant_deform::{Arap, ArapEnergy, Method, Primo, Role, Shells};
 use pliant_mesh::{Drawn, SurfaceVertex, shapes};
 
-/// A method that iterates.
+/// An iterative method.
 #[derive(Clone, Copy, Debug)]
 pub enum Iterative {
     Arap(ArapEnergy),
-    /// With a coarse level, however small the surface.
+    /// With a coarse level, for a surface of any size.
     Led(ArapEnergy),
     Primo,
     Shells,
-    /// With a coarse level, however small the surface.
+    /// With a coarse level, for a surface of any size.
     LedShells,
 }
 
@@ -110,7 +110,7 @@ fn a_mirrored_scene_gives_the_mirrored_shape() {
 #[test]
 fn the_result_is_the_same_bit_for_bit_on_any_number_of_threads() {
     for method in ITERATIVE {
-        // Enough for more than one chunk of either's cells.
+        // This is enough for more than one chunk of either's cells.
         let [around, across] = match method {
             Iterative::Arap(_) | Iterative::Led(_) => [90, 40],
             Iterative::Primo | Iterative::Shells | Iterative::LedShells => [40, 30],
@@ -192,7 +192,7 @@ fn a_rigid_motion_of_all_handles_moves_everything_rigidly() {
                     .collect();
                 let error = apart(&displacements, &expected) / scene.diagonal();
                 assert!(error < 1e-6, "{name} {method:?} {angle}: {error:e}");
-                // Where a coarse level leads, a global step in single precision goes before.
+                // If a coarse level leads, a global step in single precision comes first.
                 let most = if matches!(method, Iterative::Led(_) | Iterative::LedShells) {
                     20
                 } else {
@@ -215,7 +215,7 @@ fn a_drag_ends_where_one_solve_does() {
         let (once, _) = settle(&mut scene.bind(), &[target(1.0)]);
         let bound = &mut scene.bind();
         for frame in 1..20 {
-            // As under the hand: a few steps a frame.
+            // Like a hand: a few steps per frame.
             let mut out = vec![DVec3::ZERO; scene.roles.len()];
             for iteration in 1..=3 {
                 bound.set_targets(&[target(f64::from(frame) / 20.0)]).unwrap();

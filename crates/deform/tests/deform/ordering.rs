@@ -29,7 +29,7 @@ fn a_restricted_order_is_the_solved_vertices_each_once() {
 
 #[test]
 fn it_does_not_depend_on_the_number_of_threads() {
-    // Large enough for parts that are cut beside each other.
+    // This is large enough for parts that are cut in parallel.
     let scene = Scene::new(shapes::icosphere(5));
     for power in 1..=3 {
         let order = |threads: usize| {
@@ -45,7 +45,7 @@ fn it_does_not_depend_on_the_number_of_threads() {
 fn it_keeps_the_factor_sparse() {
     let scene = Scene::new(shapes::icosphere(5)).with_ends(true);
     let bound = scene.bind();
-    // A band of two rings across the sphere would fill some 500 numbers per row.
+    // A band of two rings across the sphere would have a fill of about 500 numbers per row.
     let per_row = bound.factor_len() / bound.solved_count();
     assert!(per_row < 200, "{per_row}");
 }

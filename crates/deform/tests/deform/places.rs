@@ -1,4 +1,4 @@
-//! Places for each vertex of a handle, beside maps.
+//! A place for each vertex of a handle, instead of a map.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -8,7 +8,7 @@ use pliant_mesh::shapes;
 
 use crate::rig::{Scene, apart};
 
-/// A bar whose one end is fixed, or not, and whose other is the handle.
+/// A bar with a handle at one end; the other end is fixed on request.
 fn bar(method: &str, is_fixed: bool) -> Scene {
     let mut scene = Scene::new(shapes::tube(16, 40, 8.0));
     let bounds = scene.model.bounds().unwrap();
@@ -58,7 +58,7 @@ fn every_vertex_of_a_handle_goes_to_its_place_and_rigid_places_are_a_map() {
             declaration.name,
             apart(&by_places, &by_map)
         );
-        // Each pulled its own way.
+        // Each vertex goes its own way.
         let wild = places(&scene, &bound, |p| {
             map.transform_point3(p) + 0.05 * DVec3::new((9.0 * p.x).sin(), 0.0, p.y)
         });
@@ -67,7 +67,7 @@ fn every_vertex_of_a_handle_goes_to_its_place_and_rigid_places_are_a_map() {
             let found = scene.positions()[vertex as usize] + shape[vertex as usize];
             assert!(found.distance(*place) < 1e-12, "{}", declaration.name);
         }
-        // And back.
+        // The places of rest give the rest shape again.
         let rest = places(&scene, &bound, |p| p);
         assert!(
             bent(&mut bound, Target::Places(rest))
@@ -86,22 +86,22 @@ fn every_vertex_of_a_handle_goes_to_its_place_and_rigid_places_are_a_map() {
 fn places_hold_a_component_and_a_map_does_not() {
     let scene = bar("arap", false);
     let mut bound = scene.bind();
-    let is_told = |bound: &Bound| {
+    let has_warned = |bound: &Bound| {
         bound
             .warnings()
             .iter()
             .any(|warning| warning.contains("nothing holds it back"))
     };
-    assert!(is_told(&bound));
+    assert!(has_warned(&bound));
     let lifted = places(&scene, &bound, |p| p + DVec3::X);
     bound.set_places(&[Target::Places(lifted)]).unwrap();
-    assert!(!is_told(&bound));
+    assert!(!has_warned(&bound));
     bound.set_targets(&[DAffine3::from_translation(DVec3::X)]).unwrap();
-    assert!(is_told(&bound));
+    assert!(has_warned(&bound));
 }
 
 #[test]
-fn places_that_are_none_are_refused() {
+fn a_wrong_count_and_a_place_that_is_not_finite_are_refused() {
     let scene = bar("arap", true);
     let mut bound = scene.bind();
     let mut lifted = places(&scene, &bound, |p| p + DVec3::X);

@@ -1,14 +1,15 @@
-//! The thin plate as a material: deflections known by formula, and what stiffness does.
+//! The thin plate as a material: deflections known by formula, and the effect of stiffness.
 
 use crate::rig::Scene;
 use glam::{DAffine3, DMat4, DVec3, DVec4};
 use pliant_deform::Role;
 use pliant_mesh::{Drawn, shapes};
 
-/// Where a plate that is held over rows of vertices is taken to be clamped.
+/// The assumed clamp of a plate that is held over rows of vertices.
 ///
-/// A row's vertex sees the slope through half of its cell only, so two rows clamp midway between them: against that
-/// plate the error is of second order. A person takes what was selected, the innermost row: of first order.
+/// A row's vertex sees the slope only through half of its cell, so two rows clamp midway between them: against that
+/// plate the error is of second order. For a person the clamp is the selected innermost row, which gives an error of
+/// first order.
 #[derive(Clone, Copy, Debug)]
 enum Clamp {
     Innermost,
@@ -16,7 +17,7 @@ enum Clamp {
 }
 
 impl Clamp {
-    /// From the innermost row, in rows.
+    /// The distance from the innermost row, in rows.
     fn offset(self) -> f64 {
         match self {
             Self::Innermost => 0.0,
@@ -24,7 +25,7 @@ impl Clamp {
         }
     }
 
-    /// Whether the errors on meshes twice as fine each fall as they should.
+    /// Whether the errors on meshes of twice the resolution fall at the expected rate.
     fn falls(self, errors: [f64; 3]) -> bool {
         let (most, least) = match self {
             Self::Innermost => (0.65, 0.35),
@@ -49,7 +50,7 @@ fn strip_error(cells: usize, clamp: Clamp) -> f64 {
     let (from, to) = ((1.0 - clamp.offset()) * step, 1.0 - (1.0 - clamp.offset()) * step);
     let mut worst = 0.0_f64;
     for (displacement, p) in displacements.iter().zip(scene.positions()) {
-        // What is held is no solution.
+        // The held part is no solution.
         if p.x < 0.5 * step || p.x > 1.0 - 0.5 * step {
             continue;
         }
@@ -69,13 +70,13 @@ fn a_lifted_strip_converges_to_the_beam() {
 }
 
 /// The largest error of a ring plate of radii 1 and 3, clamped over two rows at both rims, its inner rim lifted by 1,
-/// against w = a + b r² + c ln r + d r² ln r with w and w' given at both ends of what is free.
+/// against w = a + b r² + c ln r + d r² ln r with w and w' given at both ends of the free part.
 fn ring_error(cells: usize, clamp: Clamp) -> f64 {
     let step = 2.0 / cells as f64;
     let around = 3 * cells;
     let sheet = shapes::grid(around, cells);
     let positions = sheet.positions.iter().map(|p| {
-        // The seam's two sides are welded where they fall on each other to the last bit.
+        // The seam's two sides are welded if they coincide to the last bit.
         let turn = (p.x * around as f64).round() as usize % around;
         let (sin, cos) = (std::f64::consts::TAU * turn as f64 / around as f64).sin_cos();
         let radius = 1.0 + 2.0 * p.y;
@@ -135,7 +136,7 @@ fn the_surface_is_smooth_where_it_meets_what_is_held() {
 }
 
 /// A strip of length 1, clamped at its ends, one of which is moved and turned; a band of it has another stiffness.
-/// Gives x and the height along the middle.
+/// Returns x and the height along the middle.
 fn strip_with_band(cells: usize, stiffness: f64, target: DAffine3) -> Vec<(f64, f64)> {
     let mut scene = Scene::new(shapes::grid(cells, 6))
         .with(Role::Fixed, |p| p.x < CLAMPS.start)
@@ -157,7 +158,7 @@ fn strip_with_band(cells: usize, stiffness: f64, target: DAffine3) -> Vec<(f64, 
     row
 }
 
-/// Between what holds the strip, and where its band lies: no vertex of those tried stands at an end.
+/// The range between the clamps, and that of the band: no vertex in the tests is at an end.
 const CLAMPS: std::ops::Range<f64> = 0.113..0.887;
 const BAND: std::ops::Range<f64> = 0.253..0.447;
 
@@ -166,7 +167,7 @@ fn between_vertices(x: f64, cells: usize) -> f64 {
     ((x * cells as f64).floor() + 0.5) / cells as f64
 }
 
-/// How much the band bends, its rim included: Σ |second difference| over every vertex whose neighbours reach it.
+/// The bending of the band, its rim included: Σ |second difference| over every vertex whose neighbours reach it.
 fn bend_of_band(row: &[(f64, f64)]) -> f64 {
     let reaches = |w: &[(f64, f64)]| w.iter().any(|(x, _)| BAND.contains(x));
     let windows = row.windows(3).filter(|w| reaches(w));
@@ -185,13 +186,13 @@ fn a_stiffer_band_bends_less_with_its_rim() {
         for pair in bends.windows(2) {
             assert!(pair[1] < pair[0], "{bends:?}");
         }
-        // What is left of the stiffest is the soft half of the rim's cells.
+        // The remaining bending of the stiffest band is in the soft half of the rim's cells.
         assert!(bends[4] < 0.5 * bends[2] && bends[2] < 0.5 * bends[0], "{bends:?}");
     }
 }
 
-/// The deflection of a beam between clamps `from` and `to`, lifted by 1, with EI as `stiffness` says: EI w'' = a + b x,
-/// by sums over `steps` pieces.
+/// The deflection of a beam between clamps `from` and `to`, lifted by 1, with EI from `stiffness`: EI w'' = a + b x, by
+/// sums over `steps` pieces.
 fn beam(from: f64, to: f64, stiffness: impl Fn(f64) -> f64, steps: usize) -> impl Fn(f64) -> f64 {
     let h = (to - from) / steps as f64;
     let middle = move |i: usize| from + (i as f64 + 0.5) * h;
@@ -219,7 +220,7 @@ fn a_band_bends_as_a_beam_of_its_stiffness() {
     for stiffness in [0.02, 1.0, 50.0] {
         let error = |cells: usize| {
             let row = strip_with_band(cells, stiffness, DAffine3::from_translation(DVec3::Z));
-            // A vertex' cell is as stiff as the vertex, and reaches half way to the next.
+            // A vertex' cell has the vertex' stiffness, and reaches half way to the next.
             let [from, to] = [CLAMPS.start, CLAMPS.end].map(|x| between_vertices(x, cells));
             let band = between_vertices(BAND.start, cells)..between_vertices(BAND.end, cells);
             let at = beam(from, to, |x| if band.contains(&x) { stiffness } else { 1.0 }, 20_000);

@@ -1,4 +1,4 @@
-//! Gradient editing: what it reproduces, what it is blind to, and how its weights spread.
+//! Gradient editing: the motions that it reproduces, those that it ignores, and the spread of its weights.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -28,7 +28,7 @@ pub fn bumpy(method: &Method) -> Scene {
     scene
 }
 
-/// Where the end of [`bumpy`] goes if the sheet becomes an arc of a circle by this angle.
+/// The target of the end of [`bumpy`] if the sheet becomes an arc of a circle by this angle.
 pub fn along_an_arc(angle_rad: f64) -> DAffine3 {
     let (from, length) = (DVec3::X * 0.1, 2.8);
     let radius = length / angle_rad;
@@ -37,7 +37,7 @@ pub fn along_an_arc(angle_rad: f64) -> DAffine3 {
     DAffine3::from_translation(centre) * turn * DAffine3::from_translation(-centre - DVec3::X * length)
 }
 
-/// By how much the worst edge between free vertices changes its length, relative to it.
+/// The largest relative change of length of an edge between free vertices.
 pub fn worst_strain(scene: &Scene, displacements: &[DVec3]) -> f64 {
     let mut worst = 0.0_f64;
     for (vertex, &p) in scene.positions().iter().enumerate() {
@@ -76,7 +76,7 @@ fn it_is_blind_to_moves_and_says_so() {
         let target = [DAffine3::from_translation(DVec3::new(-0.2, 0.1, 1.0))];
         let moved = step(bound, &target);
         assert!(bound.warnings().iter().any(|said| said.contains("blind to moves")));
-        // Each face keeps its direction: the shape is that of a membrane, which knows no turns.
+        // Each face keeps its direction: the shape is that of a membrane, which has no turns.
         let mut membrane = Bilaplacian::default();
         membrane.order = BilaplacianOrder::Membrane;
         scene.method = membrane.into();
@@ -91,7 +91,7 @@ fn a_drag_beyond_half_a_turn_goes_on_and_one_step_takes_the_short_way() {
     let scene = tube(&poisson("harmonic"));
     let bound = &mut scene.bind();
     let twist = |angle: f64| [DAffine3::from_rotation_z(angle)];
-    // How far the middle of the tube is turned about its axis.
+    // The turn of the tube's middle about its axis.
     let middle = |displacements: &[DVec3]| {
         let at = |p: &DVec3| p.truncate().to_angle();
         let (vertex, p) = (0..)

@@ -45,7 +45,7 @@ fn the_energy_never_rises_and_what_is_constrained_goes_where_it_must() {
 
 #[test]
 fn a_thicker_sheet_bends_more_evenly() {
-    // A cantilever whose end is turned: the thicker, the less any single joint bends.
+    // A cantilever whose end is turned: a thicker one bends less at any single joint.
     let mut last = f64::INFINITY;
     for thickness in [0.01, 0.05, 0.25] {
         let mut scene = scene(shapes::tube(12, 24, 8.0))

@@ -102,7 +102,7 @@ fn fewer_centres_than_constraints_meet_the_tolerance() {
         "{:?}",
         bound.warnings()
     );
-    // With so few it can't, and says so.
+    // With so few centres it fails, and reports that.
     let mut few = scene;
     few.method = rbf(1e-9, 8);
     assert!(

@@ -6,7 +6,7 @@ use pliant_mesh::{Cancel, Progress, shapes};
 
 use crate::rig::{Scene, back_substitute, turned};
 
-/// Everything that a bound bi-Laplacian gives, as bits.
+/// All results of a bound bi-Laplacian, as bits.
 fn bits(bound: &mut Bound) -> Vec<u64> {
     let bases = bound.handle_bases().unwrap().rows().to_vec();
     let turn = turned(DVec3::X, 0.4, DVec3::new(0.1, 0.2, -0.3));
@@ -17,7 +17,7 @@ fn bits(bound: &mut Bound) -> Vec<u64> {
     bases.chain(solved).collect()
 }
 
-/// A name, what it changes, and the least share of the factor that stays.
+/// A name, a change, and the least share of the factor that is reused.
 type Stroke = (&'static str, fn(&mut Scene), f64);
 
 fn scene() -> Scene {
@@ -57,7 +57,7 @@ fn binding_again_gives_what_binding_gives_to_the_bit() {
             .unwrap()
             .share_of(reusable_factor.as_ref().unwrap());
         assert!(kept >= least && (kept < 1.0 || least == 1.0), "{name}: {kept}");
-        // Once more, from what was made with what was left.
+        // This binds again from the factor of a partial reuse.
         let mut third = problem
             .rebind(&ordering, again.reusable_factor().as_ref(), &progress, &cancel)
             .unwrap();

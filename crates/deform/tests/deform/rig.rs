@@ -50,8 +50,8 @@ impl Scene {
         self
     }
 
-    /// In every component: its first vertices in x, y or z fixed if `fixed`, its last ones the handles 0 and 1 by
-    /// turns.
+    /// In every component, fixes the first vertices in x, y or z if `fixed`, and makes the last ones the handles 0 and
+    /// 1 by turns.
     pub fn with_ends(mut self, fixed: bool) -> Self {
         for number in 0..self.model.topology.components().len() {
             let mut vertices: Vec<_> = self.model.topology.vertices_of(number as u32).collect();
@@ -112,7 +112,8 @@ impl Scene {
         &self.model.surface.positions
     }
 
-    /// The size of what bends: √12 radii of gyration of the components with handles, by the middles of triangles' edges.
+    /// The size of the bending part: √12 radii of gyration of the components with handles, by the middles of triangles'
+    /// edges.
     pub fn size(&self) -> f64 {
         let topology = &self.model.topology;
         let mut bends = vec![false; topology.components().len()];

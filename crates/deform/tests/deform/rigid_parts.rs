@@ -1,4 +1,4 @@
-//! The laws of infinite stiffness: a part moves as one body, by every method, and the rest as it would without.
+//! The laws of infinite stiffness: a part moves as one body, by every method, and the rest moves as without it.
 
 use crate::rig::{Scene, apart, turned};
 use glam::{DAffine3, DVec3};
@@ -7,7 +7,7 @@ use pliant_mesh::{Drawn, SurfaceVertex, shapes};
 
 const RIGID: f64 = f64::INFINITY;
 
-/// A long shape whose one end is fixed and whose other end is the handle, rigid where the share of its length `is_rigid`.
+/// A long shape with one end fixed and the other as the handle, rigid where its share of the length `is_rigid`.
 fn scene(drawn: Drawn, method: &str, is_rigid: impl Fn(f64) -> bool) -> Scene {
     let mut scene = Scene::new(drawn);
     scene.method = Method::from_name(method).unwrap();
@@ -33,7 +33,7 @@ fn names() -> impl Iterator<Item = &'static str> {
     all.filter(|name| *name != "identity")
 }
 
-/// Steps until finished, which every method is some time.
+/// Steps until finished; every method finishes.
 fn settled(scene: &Scene, target: DAffine3) -> Vec<DVec3> {
     let mut bound = scene.bind();
     bound.set_targets(&[target]).unwrap();
@@ -41,13 +41,13 @@ fn settled(scene: &Scene, target: DAffine3) -> Vec<DVec3> {
     let mut steps = 1;
     while !bound.step(&mut displacements).unwrap().finished {
         steps += 1;
-        // The most that a method takes by itself.
+        // This is the most that a method takes by default.
         assert!(steps <= 1000, "{:?}", scene.method.declaration().name);
     }
     displacements
 }
 
-/// How far the rigid vertices are from the rigid motion that fits them, in diagonals.
+/// The distance of the rigid vertices from the rigid motion that fits them, in diagonals.
 fn bent(scene: &Scene, displacements: &[DVec3]) -> f64 {
     let own: Vec<usize> = (0..displacements.len())
         .filter(|&v| scene.stiffness[v] == RIGID)
@@ -76,7 +76,7 @@ fn a_rigid_part_moves_as_one_body_by_every_method() {
         };
         assert!(furthest(Role::Free) > 0.01 * bar.diagonal(), "{name}");
         assert_eq!(furthest(Role::Fixed), 0.0, "{name}");
-        // Without the paint the same part bends, but where it lies in one rigid cell of space.
+        // Without the paint the same part bends, except inside one rigid cell of space.
         if name != "space-primo" {
             let mut plain = scene(shapes::bar(24, 4, 4), name, middle);
             plain.stiffness.fill(1.0);

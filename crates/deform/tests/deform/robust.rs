@@ -1,4 +1,4 @@
-//! Systems that factor badly: vast contrasts of stiffness, flattened shapes, almost nothing that holds.
+//! Systems that factor badly: vast contrasts of stiffness, flattened shapes, almost no hold.
 
 use glam::{DAffine3, DVec3};
 use pliant_deform::{Bilaplacian, BilaplacianOrder, Method, Role};
@@ -6,7 +6,7 @@ use pliant_mesh::{Drawn, shapes};
 
 use crate::rig::{Scene, apart, back_substitute, step, turned};
 
-/// Bases and solve agree, and a translation of everything is exact where nothing is fixed.
+/// Bases and solve agree, and a translation of everything is exact if nothing is fixed.
 fn holds(name: &str, scene: &Scene) {
     let bound = &mut scene.try_bind().map_err(|error| format!("{name}: {error}")).unwrap();
     let targets = vec![turned(scene.positions()[0], 0.8, DVec3::X); scene.handle_count];
@@ -118,8 +118,8 @@ fn slivers_and_needles_are_solved() {
     }
 }
 
-/// A shape that nothing but one soft handle holds, by springs of next to nothing: beside the bi-Laplacian they are lost
-/// in rounding, and without them every translation is free.
+/// A shape that only one soft handle holds, by extremely weak springs: beside the bi-Laplacian they are lost in
+/// rounding, and without them every translation is free.
 fn adrift(drawn: &Drawn, order: BilaplacianOrder, weight: f64) -> Scene {
     let mut scene = Scene::new(drawn.clone()).with_ends(false);
     for role in &mut scene.roles {

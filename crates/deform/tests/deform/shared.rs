@@ -1,5 +1,5 @@
-//! Laws that several families of methods share. Each family calls them with its own scenes, and with `run`, which moves
-//! the handles and returns the displacements.
+//! Laws of several families of methods. Each family calls them with its own scenes, and with `run`, which moves the
+//! handles and returns the displacements.
 
 use std::f64::consts::PI;
 
@@ -8,7 +8,7 @@ use glam::{DAffine3, DMat3, DVec3};
 use pliant_deform::Bound;
 use pliant_mesh::Drawn;
 
-/// Targets that no one would ask for on purpose.
+/// Extreme targets, unlikely in use.
 pub fn extreme(scene: &Scene) -> [DAffine3; 8] {
     let (centre, size) = (scene.model.bounds().unwrap().centre(), scene.diagonal());
     [
@@ -23,7 +23,7 @@ pub fn extreme(scene: &Scene) -> [DAffine3; 8] {
     ]
 }
 
-/// A target beyond what numbers hold is refused, or met; what the step writes is finite, and zero where it refuses.
+/// A target beyond the range of numbers is refused, or met; the step's output is finite, and zero if it refuses.
 pub fn finite_beyond_all_bounds(bound: &mut Bound, target: DAffine3, handle_count: usize) {
     bound.set_targets(&vec![target; handle_count]).unwrap();
     let mut out = vec![DVec3::NAN; bound.vertex_count()];
@@ -31,7 +31,7 @@ pub fn finite_beyond_all_bounds(bound: &mut Bound, target: DAffine3, handle_coun
     assert!(out.iter().all(|d| d.is_finite()) && (!refused || out.iter().all(|d| *d == DVec3::ZERO)));
 }
 
-/// Extreme targets give finite shapes. After them and a step at rest, a drag gives the bits that it gave before.
+/// Extreme targets give finite shapes. After them and a step at rest, a drag gives the same bits as before.
 pub fn extremes_leave_no_trace(scene: &Scene, run: impl Fn(&mut Bound, &[DAffine3]) -> Vec<DVec3>, what: &str) {
     let expected = run(&mut scene.bind(), &far(scene));
     let bound = &mut scene.bind();

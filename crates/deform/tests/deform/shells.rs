@@ -16,7 +16,7 @@ fn shells(stiffnesses: [f64; 3]) -> Method {
         .unwrap()
 }
 
-/// A bar along x whose ends are fixed and the handle.
+/// A bar along x with one end fixed and the other as the handle.
 fn bar(stiffnesses: [f64; 3]) -> Scene {
     let mut scene = Scene::new(shapes::bar(24, 4, 4));
     scene.method = shells(stiffnesses);
@@ -27,7 +27,7 @@ fn bar(stiffnesses: [f64; 3]) -> Scene {
         .with(Role::Handle(0), |p| share(p) > 0.9)
 }
 
-/// Where the bar's handle goes when the bar bends along an arc of this angle.
+/// The target of the bar's handle when the bar bends along an arc of this angle.
 fn arc(scene: &Scene, angle: f64) -> DAffine3 {
     let bounds = scene.model.bounds().unwrap();
     let (from, to) = (
@@ -120,7 +120,7 @@ fn the_volume_of_a_bar_is_kept_at_135_degrees() {
     assert!((kept[0] - 1.0).abs() > 0.01 && (kept[1] - 1.0).abs() < 0.01, "{kept:?}");
 }
 
-/// Lengths alone let a triangle whose edges are pressed together give way within its plane.
+/// With lengths alone a compressed triangle gives way within its plane.
 #[test]
 fn triangles_at_the_inside_of_a_bend_keep_an_area() {
     let tube = || {
@@ -163,7 +163,7 @@ fn what_resists_bending_more_bends_less_sharply() {
         let scene = bar([1.0, bending, 0.0]);
         let (displacements, _) = settle(&mut scene.bind(), &[arc(&scene, 2.4)]);
         let at = |v: usize| scene.positions()[v] + displacements[v];
-        // Along the bar's edges at the inner side, where it creases.
+        // These are the bar's edges at the inner side, where it creases.
         let lengths = scene.model.topology.edges().map(|edge| edge.map(|v| v.index()));
         let ratios = lengths.map(|[a, b]| at(a).distance(at(b)) / scene.positions()[a].distance(scene.positions()[b]));
         ratios.fold(0.0, |most: f64, ratio| most.max((ratio - 1.0).abs()))
@@ -235,7 +235,7 @@ fn residuals(scene: &Scene, [stretching, bending, stiff_volume]: [f64; 3], displ
                 let [n, m] = [one, other].map(|face| normal(face, at).normalize());
                 let apex = other.iter().copied().find(|&v| v != a && v != b).unwrap();
                 let angle = n.dot(m).clamp(-1.0, 1.0).acos();
-                // Convex where the other triangle's apex lies below the first one's plane.
+                // Convex if the other triangle's apex is below the first one's plane.
                 if n.dot(at(apex) - at(a)) < 0.0 { angle } else { -angle }
             };
             let scale = (bending * stiffness / area).sqrt() * scene.size() * length;
@@ -252,7 +252,7 @@ fn residuals(scene: &Scene, [stretching, bending, stiff_volume]: [f64; 3], displ
     for face in &faces {
         let [now, before] = [normal(face, &moved), normal(face, &rest)].map(|normal| 0.5 * normal.length());
         let stiffness = face.iter().map(|&v| scene.stiffness[v]).sum::<f64>() / 3.0;
-        // Compressed, x² − 1 − 2 log x over 2 in place of (x − 1)².
+        // Compressed, x² − 1 − 2 log x over 2 instead of (x − 1)².
         let x = now / before;
         let grown = match x < 1.0 {
             true => -(0.5 * (x * x - 1.0 - 2.0 * x.ln())).max(0.0).sqrt(),
@@ -285,7 +285,7 @@ fn a_dense_gauss_newton_finds_the_same_shape_and_energy() {
         let all = residuals(&scene, stiffnesses, displacements);
         0.5 * all.iter().map(|r| r * r).sum::<f64>()
     };
-    // From a start that is not the method's: everything but the handle at rest.
+    // The start is not the method's: everything except the handle is at rest.
     let mut dense: Vec<DVec3> = scene
         .positions()
         .iter()
@@ -357,7 +357,7 @@ fn a_drag_through_more_than_half_a_turn_comes_back_to_rest() {
     assert!(displacements.iter().all(|d| *d == DVec3::ZERO));
 }
 
-/// Drawn shapes of all kinds whose handles ask for nothing impossible end in few steps.
+/// Drawn shapes of all kinds with possible targets end in few steps.
 #[test]
 fn plain_bends_take_few_steps() {
     let tube: Drawn = shapes::tube(16, 30, 8.0);

@@ -1,4 +1,4 @@
-//! Soft handles: weights that mean the same on every mesh, hard handles at one end and none at the other.
+//! Soft handles: weights with the same meaning on every mesh, hard handles at one end and none at the other.
 
 use glam::{DAffine3, DVec3};
 use pliant_deform::{ArapEnergy, BilaplacianOrder, BindError, Constraints, Role};
@@ -8,7 +8,7 @@ use crate::bilaplacian::of_order;
 use crate::nonlinear::{Iterative, scene};
 use crate::rig::{Scene, apart, back_substitute, settle, step, turned};
 
-/// A square plate held at its rim, a square in it the handle.
+/// A square plate held at its rim, with a square in it as the handle.
 fn plate(cells: usize, order: BilaplacianOrder, weight: Option<f64>) -> Scene {
     let inside = |v: f64, from: f64, to: f64| v > from - 1e-9 && v < to + 1e-9;
     let mut scene = Scene::new(shapes::grid(cells, cells))
@@ -21,7 +21,7 @@ fn plate(cells: usize, order: BilaplacianOrder, weight: Option<f64>) -> Scene {
     scene
 }
 
-/// How far the handle comes on average when it wants to be at 1.
+/// The handle's mean displacement for a target of 1.
 fn height(scene: &Scene) -> f64 {
     let displacements = scene.moved(&[DAffine3::from_translation(DVec3::Z)]);
     let own = scene
@@ -99,7 +99,7 @@ fn a_weight_means_the_same_at_every_resolution_and_in_every_unit() {
     for order in BilaplacianOrder::ALL {
         for weight in [0.3, 3.0, 30.0] {
             let heights = [20, 40, 80].map(|cells| height(&plate(cells, order, Some(weight))));
-            // What is held and what is the handle ends half a cell further out: of first order.
+            // The held part and the handle end half a cell further out, an error of first order.
             let [coarse, fine] = [heights[1] / heights[0] - 1.0, heights[2] / heights[1] - 1.0];
             assert!(
                 fine.abs() < 0.06 && fine.abs() < 0.6 * coarse.abs() + 1e-3,
@@ -150,7 +150,7 @@ fn the_laws_of_hard_handles_hold_for_soft_ones_on_every_class() {
                 let by_bases = step(bound, &targets);
                 let solution = back_substitute(bound, &targets);
                 let size = solution.iter().map(|d| d.length()).fold(0.0, f64::max);
-                // Bare points follow by a rigid fit, which magnifies what differs.
+                // Bare points follow by a rigid fit, which magnifies differences.
                 let first_bare = scene.model.topology.bare_points().start;
                 let off = apart(&by_bases[..first_bare], &solution[..first_bare]);
                 assert!(off < 1e-6 * size, "{label} {off:e}");

@@ -17,7 +17,7 @@ fn random(state: &mut u64) -> f64 {
     (*state >> 11) as f64 / (1_u64 << 53) as f64
 }
 
-/// The soup of a shape, and for each of its vertices the corners that lay there.
+/// The soup of a shape, and for each of its vertices the corners at it.
 fn soup(shape: &Drawn) -> (Drawn, Vec<Vec<u32>>) {
     let bounds = pliant_mesh::bounding_box(&shape.positions).unwrap();
     let size = JITTER * bounds.diagonal() / 3_f64.sqrt();
@@ -49,7 +49,7 @@ fn stretch(jacobian: DMat3) -> f64 {
     (jacobian * direction).length()
 }
 
-/// Each corner gap after bending, beside what the map's stretch at its ends makes of the gap at rest.
+/// Each corner gap after bending, and the rest gap times the map's stretch at its ends.
 fn gaps(scene: &Scene, corners: &[Vec<u32>], targets: &[glam::DAffine3]) -> Vec<[f64; 2]> {
     let bound = &mut scene.bind();
     let (displacements, _) = settle(bound, targets);
@@ -80,7 +80,7 @@ fn a_jittered_soup_bends_without_a_crack_wider_than_the_map_stretches_the_jitter
     let is_smooth = |method: &Method| method.value("falloff") != Some(OptionValue::Number(0.0));
     for method in space::methods().into_iter().filter(is_smooth) {
         let scene = bent(&drawn, &method);
-        // But for a few corners that fall upon each other.
+        // A few corners coincide.
         let loose = scene.model.topology.components().len();
         assert!(loose > 5100, "every triangle is loose: {loose}");
         let targets = [

@@ -1,4 +1,4 @@
-//! The laws that every method obeys that bends the space around the points.
+//! The laws of all methods that bend the space around the points.
 
 use std::collections::HashMap;
 use std::f64::consts::PI;
@@ -43,7 +43,7 @@ pub fn methods() -> Vec<Method> {
     methods
 }
 
-/// Those that hold handles exactly.
+/// The methods that hold handles exactly.
 fn interpolating() -> impl Iterator<Item = Method> {
     methods()
         .into_iter()
@@ -56,7 +56,7 @@ fn scene(drawn: Drawn, method: &Method) -> Scene {
     scene
 }
 
-/// Moves the handles until nothing changes any more, and returns the displacements.
+/// Moves the handles, takes steps until nothing changes, and returns the displacements.
 fn settled(bound: &mut Bound, targets: &[DAffine3]) -> Vec<DVec3> {
     settle(bound, targets).0
 }
@@ -141,14 +141,14 @@ fn handles_are_met_or_the_distance_is_told() {
 
 #[test]
 fn turning_the_whole_problem_turns_the_result() {
-    // A lattice's box, the voxels that a cage is made of, and rigid cells lie along the axes of space.
+    // A lattice's box, a cage's voxels, and rigid cells are along the axes of space.
     let is_free = |method: &&Method| !["lattice", "cage", "space-primo"].contains(&method.name());
     for method in methods().iter().filter(is_free) {
-        // Of centres that are equally good, rounding chooses: only where all are taken does that not matter.
+        // Rounding chooses among equally good centres: that does not matter only if all are used.
         let exact = method.with([("tolerance", OptionValue::Number(1e-9))]);
         let method = &exact.unwrap_or_else(|_| method.clone());
         for (name, mut drawn) in shapes::classes() {
-            // Of nodes that are equally far apart, too: symmetric shapes are made uneven.
+            // Rounding also chooses among nodes at equal distances: symmetric shapes are made uneven.
             let (centre, size) = (shapes::model(drawn.clone()).bounds().unwrap().centre(), 0.3);
             for p in &mut drawn.positions {
                 let q = (*p - centre) / size;
@@ -161,7 +161,7 @@ fn turning_the_whole_problem_turns_the_result() {
                     );
             }
             let with_ends = |drawn| scene(drawn, method).with_ends(true);
-            // Two points do not say how space turns about the line through them.
+            // Two points do not determine the turn of space about the line through them.
             let here = with_ends(drawn.clone());
             if here.roles.iter().filter(|role| **role != Role::Free).count() < 3 {
                 continue;
@@ -174,7 +174,7 @@ fn turning_the_whole_problem_turns_the_result() {
 #[test]
 fn the_result_is_the_same_bit_for_bit_on_any_number_of_threads() {
     for method in methods() {
-        // Enough for more than one chunk.
+        // This is enough for more than one chunk.
         let scene = scene(shapes::torus(90, 50), &method).with_ends(true);
         let result = || {
             let bound = &mut scene.bind();
@@ -200,13 +200,13 @@ fn handles_and_what_is_fixed_may_be_anything() {
         let single = |v: usize| move |p: DVec3| p == shapes::icosphere(1).positions[v];
         let sphere = || scene(shapes::icosphere(1), &method);
         for scene in [
-            // A handle of one vertex, with nothing fixed, and with one vertex fixed.
+            // The handle has one vertex, first with nothing fixed, then with one vertex fixed.
             sphere().with(Role::Handle(0), single(3)),
             sphere().with(Role::Handle(0), single(3)).with(Role::Fixed, single(7)),
             // Nothing free.
             sphere().with(Role::Handle(0), |_| true),
             sphere().with(Role::Fixed, |_| true).with(Role::Handle(0), single(3)),
-            // Handles beside each other.
+            // Adjacent handles.
             sphere()
                 .with(Role::Fixed, |p| p.z < 0.0)
                 .with(Role::Handle(0), |p| p.z > 0.0 && p.x < 0.0)
@@ -245,7 +245,8 @@ fn crumbs(shape: &Drawn, size: f64) -> Drawn {
 fn jacobians_are_the_derivatives_of_the_displacements() {
     let size = 1e-5;
     for method in methods() {
-        // In a symmetric shape two points are often equally far from a third: there some methods' maps have a crease.
+        // In a symmetric shape two points often have the same distance from a third: there some methods' maps have a
+        // crease.
         let mut uneven = shapes::icosphere(2);
         for (number, p) in (0..).zip(&mut uneven.positions) {
             let noise = |k: f64| (f64::from(number) * k).sin();
@@ -289,7 +290,8 @@ fn jacobians_are_the_derivatives_of_the_displacements() {
                 .to_cols_array()
                 .into_iter()
                 .fold(0.0, |a: f64, b| a.max(b.abs()));
-            // The mean over a crumb that a crease crosses is off by the crease's share, as small as the crumb is.
+            // The mean over a crumb that a crease crosses has an error of the crease's share, which is small like the
+            // crumb.
             assert!(error < 1e-2, "{method:?} {tested}: {error:e}\n{found}\n{expected}");
             creased += usize::from(error > 1e-5);
         }

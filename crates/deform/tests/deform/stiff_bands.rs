@@ -1,4 +1,4 @@
-//! Bands of painted stiffness: stiff ones hold their shape as they turn, soft ones do not swell.
+//! Bands of painted stiffness: stiff ones keep their shape in a turn, soft ones do not swell.
 
 use std::f64::consts::PI;
 
@@ -57,7 +57,7 @@ impl Bent {
         Self { scene, band, shape }
     }
 
-    /// How far the band is from rigid, root mean square, in diagonals.
+    /// The deviation of the band from a rigid motion, root mean square, in diagonals.
     fn departure(&self) -> f64 {
         let rest: Vec<DVec3> = self.band.iter().map(|&v| self.scene.positions()[v]).collect();
         let moved: Vec<DVec3> = self.band.iter().map(|&v| self.shape[v]).collect();
@@ -81,8 +81,8 @@ impl Bent {
     }
 }
 
-/// The methods, and by how much a soft band may swell what they bend: deformation transfer, whose base shrinks at necks,
-/// by a little more.
+/// The methods, and the largest swelling by a soft band: a little more for deformation transfer, whose base shrinks at
+/// necks.
 fn methods() -> Vec<(&'static str, Method, f64)> {
     let with = |detail| {
         let mut options = Bilaplacian::default();
@@ -117,7 +117,7 @@ fn a_soft_band_hardly_swells() {
             for axis in [DVec3::X, DVec3::Z] {
                 let volumes = [1.0, 0.1, 0.01].map(|s| Bent::of(&drawn, &method, axis, s).volume());
                 assert!(
-                    // A turn costs volume, and where a band takes more of it the rest loses less.
+                    // A turn costs volume, and if a band takes more of the turn, the rest loses less.
                     volumes.iter().all(|volume| *volume < volumes[0].max(1.0) + most),
                     "{method_name} {name} {axis}: {volumes:?}"
                 );

@@ -7,7 +7,7 @@ use pliant_mesh::shapes;
 use crate::rig::Scene;
 
 /// Heights at the middle of a unit strip of `cells` rows, held over n rows at both ends, of which one is lifted by 1:
-/// at 0, h, .., 1 between the innermost held rows, with h. `change` is made to the scene before it is bound.
+/// at 0, h, .., 1 between the innermost held rows, with h. `change` edits the scene before it is bound.
 pub fn heights(cells: usize, method: Method, change: impl FnOnce(&mut Scene)) -> (Vec<f64>, f64) {
     let Some(options) = method.options::<Bilaplacian>() else {
         unreachable!()
@@ -34,7 +34,7 @@ pub fn heights(cells: usize, method: Method, change: impl FnOnce(&mut Scene)) ->
     (heights, pitch)
 }
 
-/// How far the heights are from `exact` at most.
+/// The largest distance of the heights from `exact`.
 pub fn largest_error(heights: &[f64], pitch: f64, exact: impl Fn(f64) -> f64) -> f64 {
     let errors = heights
         .iter()

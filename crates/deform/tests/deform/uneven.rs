@@ -1,4 +1,4 @@
-//! Meshes that are coarse, uneven or not alone: bends stay whole, and other parts change nothing.
+//! Meshes that are coarse, uneven or beside other parts: bends stay whole, and other parts change nothing.
 
 use glam::{DAffine3, DQuat, DVec3};
 use pliant_deform::{
@@ -25,7 +25,7 @@ fn bent(length: f64, degrees: f64) -> DAffine3 {
         * DAffine3::from_translation(-middle)
 }
 
-/// What bending the scene's upper end by 60° does to it.
+/// The effect of bending the scene's upper end by 60°.
 fn distorted_by_a_bend(scene: &Scene, length: f64) -> Distortion {
     let (displacements, _) = settle(&mut scene.bind(), &[bent(length, 60.0)]);
     let positions = scene.positions().iter().zip(&displacements);
@@ -35,7 +35,7 @@ fn distorted_by_a_bend(scene: &Scene, length: f64) -> Distortion {
 
 #[test]
 fn methods_of_space_bend_coarse_tubes_and_long_triangles_without_tearing_them() {
-    // Rings closer within than between; long triangles as lathes make them; both at once.
+    // Vertices closer within rings than between; long triangles like those of a lathe; both at once.
     let tubes = [(8, 6, 12.0), (64, 10, 8.0), (100, 12, 20.0), (6, 24, 12.0)];
     for (around, along, length) in tubes {
         for method in [Method::from(Embedded::default()), SpacePrimo::default().into()] {
@@ -54,7 +54,7 @@ fn methods_of_space_bend_coarse_tubes_and_long_triangles_without_tearing_them() 
 fn rigid_cells_fill_a_shape_that_the_region_cuts_open_however_many_they_are() {
     let length = 10.0;
     let bar = shapes::moved(&shapes::bar(4, 4, 20), DAffine3::from_scale(DVec3::splat(0.5)));
-    // Cut open where the fixed part begins, and open by itself.
+    // Cut open at the border of the fixed part, and open by itself.
     let mut open = bar.clone();
     let is_lid = |t: &[DrawnVertex; 3]| t.iter().all(|v| bar.positions[v.index()].z < 1e-9);
     open.triangles.retain(|t| !is_lid(t));
@@ -72,14 +72,14 @@ fn rigid_cells_fill_a_shape_that_the_region_cuts_open_however_many_they_are() {
     }
 }
 
-/// Methods that count in the size of what bends.
+/// Methods with options in sizes of the bending part.
 fn measured() -> [Method; 3] {
     let mut stretching = Bilaplacian::default();
     stretching.stretching = 50.0;
     [Shells::default().into(), Primo::default().into(), stretching.into()]
 }
 
-/// The displacements of the tube's vertices as drawn, turned back by `motion`.
+/// The displacements of the tube's drawn vertices, turned back by `motion`.
 fn of_tube(drawn: Drawn, count: usize, motion: DAffine3, method: &Method) -> Vec<DVec3> {
     let back = motion.inverse();
     let length = 6.0;
@@ -128,7 +128,7 @@ fn neither_a_speck_nor_a_turn_of_the_scan_changes_a_bend() {
     }
 }
 
-/// Methods of space whose box, grid or nodes lie over what bends, and those that bend all of it.
+/// Methods of space whose box, grid or nodes cover the bending part, and those that bend all of it.
 fn of_space() -> Vec<Method> {
     METHODS
         .iter()

@@ -1,4 +1,4 @@
-//! The laws of wrinkles that are learnt from examples.
+//! The laws of wrinkles learnt from examples.
 
 use std::sync::Arc;
 
@@ -35,7 +35,7 @@ fn handle_centre(scene: &Scene) -> DVec3 {
     own.iter().sum::<DVec3>() / own.len() as f64
 }
 
-/// Pushes the handle towards what is fixed, or lifts and turns it.
+/// Pushes the handle towards the fixed end, or lifts and turns it.
 fn poses(scene: &Scene) -> [DAffine3; 2] {
     let size = scene.diagonal();
     [
@@ -44,7 +44,7 @@ fn poses(scene: &Scene) -> [DAffine3; 2] {
     ]
 }
 
-/// The handle is where `pose` takes it, what is fixed rests, and between them is what is sculpted: no bi-Laplacian, with
+/// The handle is where `pose` takes it, fixed vertices rest, and the part between is sculpted: no bi-Laplacian, with
 /// folds.
 fn sculpted(scene: &Scene, pose: DAffine3, folds: f64) -> ExampleShape {
     let bounds = scene.model.bounds().unwrap();
@@ -90,7 +90,7 @@ fn examples(scene: &Scene) -> &[ExampleShape] {
     &examples.shapes
 }
 
-/// What the bi-Laplacian alone does.
+/// The displacements by the bi-Laplacian alone.
 fn coarse(scene: &Scene, pose: DAffine3) -> Vec<DVec3> {
     let plain = Method::from_name("bilaplacian").unwrap();
     let (topology, progress, cancel) = (&scene.model.topology, Progress::new(), Cancel::new());
@@ -99,7 +99,7 @@ fn coarse(scene: &Scene, pose: DAffine3) -> Vec<DVec3> {
     step(&mut bound.unwrap(), &[pose])
 }
 
-/// How far each vertex is from the coarse shape.
+/// The distance of each vertex from the coarse shape.
 fn details(scene: &Scene, shape: &[DVec3], pose: DAffine3) -> Vec<f64> {
     let coarse = coarse(scene, pose);
     shape.iter().zip(&coarse).map(|(a, b)| a.distance(*b)).collect()
@@ -118,7 +118,7 @@ fn an_examples_own_handle_transforms_give_it_back() {
                 let error = apart(&shape, &example.displacements) / scene.diagonal();
                 assert!(error < 1e-6, "{error:e}");
             }
-            // It would not be there without what was learnt.
+            // The bi-Laplacian alone would not make it.
             assert!(largest(&details(&scene, &example.displacements, pose)) > 0.02 * scene.diagonal());
         }
     }
@@ -133,7 +133,7 @@ fn rest_is_rest_to_the_bit_whatever_the_weights() {
             step(bound, &[poses(&scene)[0]]);
             let shape = step(bound, &[DAffine3::IDENTITY]);
             assert!(shape.iter().all(|displacement| *displacement == DVec3::ZERO));
-            // And next to rest there is nearly nothing: no wrinkle jumps in.
+            // Next to rest there is almost none: no wrinkle appears suddenly.
             let shape = step(bound, &[DAffine3::from_translation(DVec3::X * 1e-9)]);
             assert!(shape.iter().all(|displacement| displacement.length() < 1e-6));
         }
@@ -159,7 +159,7 @@ fn without_examples_it_is_the_bilaplacian_to_the_bit() {
     }
 }
 
-/// Its details are also nothing at a weight of 0, and in proportion to the weight.
+/// Its details are also zero at a weight of 0, and in proportion to the weight.
 #[test]
 fn a_weight_multiplies_what_an_example_adds() {
     for scene in scenes() {
@@ -184,7 +184,8 @@ fn a_weight_multiplies_what_an_example_adds() {
     }
 }
 
-/// Half the way there are about half the wrinkles, beyond they stay, and a pull in place of a push brings none.
+/// At half the displacement there are about half the wrinkles, beyond the full one they stay, and a pull instead of a
+/// push makes none.
 #[test]
 fn wrinkles_grow_with_the_strain_and_only_in_its_direction() {
     let scene = held(shapes::grid(40, 24));
@@ -201,7 +202,7 @@ fn wrinkles_grow_with_the_strain_and_only_in_its_direction() {
     assert!(pulled < 0.1, "{pulled}");
 }
 
-/// The example pushes from both sides; one side alone wrinkles itself alone.
+/// The example pushes from both sides; a push from one side wrinkles only that side.
 #[test]
 fn one_side_does_not_wrinkle_the_other() {
     let scene = Scene::new(shapes::grid(60, 20))
@@ -294,7 +295,7 @@ fn extreme_targets_leave_no_trace_in_wrinkles() {
     }
 }
 
-/// A bump where the handle moves nothing: no pose of the handle tells that it should be there.
+/// A bump at a place that the handle does not move: no pose of the handle explains it.
 #[test]
 fn what_no_strain_brings_back_is_told_by_name() {
     let scene = held(shapes::grid(40, 24));

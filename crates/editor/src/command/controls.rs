@@ -1,11 +1,11 @@
-//! What is done with the method's cage or lattice and its control points.
+//! Commands on the method's cage or lattice and its control points.
 
 use pliant_deform::{Attachment, AttachmentKind};
 
 use super::entry::{Action, Entry, Reason, Scope, State, item, unless, when_open};
 use crate::workspace::{bring_attachment, make_controls, reset_controls};
 
-/// Has the method make its cage or lattice, in place of the document's own.
+/// Makes the method's own cage or lattice replace the document's.
 pub(super) const MAKE_CONTROLS: Entry<()> = Entry {
     listed: &[item(
         (),
@@ -27,7 +27,7 @@ pub(super) const MAKE_CONTROLS: Entry<()> = Entry {
     action: Action::Do(|context, ()| make_controls(context.workspace)),
 };
 
-/// Takes the control points back to where they rest.
+/// Takes the control points back to their rest positions.
 pub(super) const RESET_CONTROLS: Entry<()> = Entry {
     listed: &[item(
         (),
@@ -64,7 +64,7 @@ pub(super) const SELECT_CONTROLS: Entry<()> = Entry {
     }),
 };
 
-/// Lets go of all control points.
+/// Deselects all control points.
 pub(super) const DESELECT_CONTROLS: Entry<()> = Entry {
     listed: &[item(
         (),
@@ -81,7 +81,7 @@ pub(super) const DESELECT_CONTROLS: Entry<()> = Entry {
     action: Action::Do(|context, ()| context.workspace.controls.put([])),
 };
 
-/// Takes a cage or lattice in place of the one there is.
+/// Replaces the present cage or lattice.
 pub(super) const BRING_ATTACHMENT: Entry<Attachment> = Entry {
     listed: &[],
     scope: Scope::Document,
@@ -89,7 +89,7 @@ pub(super) const BRING_ATTACHMENT: Entry<Attachment> = Entry {
     action: Action::Do(|context, attachment| bring_attachment(context.workspace, attachment)),
 };
 
-/// The reason where the method has no control points.
+/// The reason if the method has no control points.
 fn without_controls(state: &State<'_>) -> Option<Reason> {
     state.unopened().or_else(|| {
         let mut attachments = state.workspace.document.method().declaration().attachments.iter();

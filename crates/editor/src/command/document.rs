@@ -1,4 +1,4 @@
-//! What is done to the document as a whole.
+//! Commands on the document as a whole.
 
 use super::entry::{Action, Entry, Scope, ctrl, item, unless, when_open};
 use super::shortcut::Shortcut;
@@ -18,7 +18,7 @@ pub(super) const UNDO: Entry<()> = Entry {
     action: Action::Do(|context, ()| context.workspace.undo()),
 };
 
-/// Does the last taken-back step again.
+/// Redoes the last undone step.
 pub(super) const REDO: Entry<()> = Entry {
     listed: &[item(
         (),
@@ -35,7 +35,7 @@ pub(super) const REDO: Entry<()> = Entry {
     action: Action::Do(|context, ()| context.workspace.redo()),
 };
 
-/// Goes back or forth to the state after so many steps of the history.
+/// Goes back or forth to the state after this many steps of the history.
 pub(super) const GO_TO_STEP: Entry<usize> = Entry {
     listed: &[],
     scope: Scope::History,
@@ -81,7 +81,7 @@ pub(super) const RESET_SHAPE: Entry<()> = Entry {
     action: Action::Do(|context, ()| reset_shape(context.workspace)),
 };
 
-/// Shows a share (0 to 1) of the whole edit: everything that was moved, at that share of its way from rest.
+/// Shows a share (0 to 1) of the whole edit: everything that was moved, at that share of its displacement from rest.
 pub(super) const SET_STRENGTH: Entry<f64> = Entry {
     listed: &[
         item(
@@ -116,7 +116,7 @@ pub(super) const SET_STRENGTH: Entry<f64> = Entry {
     action: Action::Do(|context, share| set_strength(context.workspace, share)),
 };
 
-/// Holds everything still again: no handle, no region.
+/// Fixes everything again: no handle, no region.
 pub(super) const CLEAR_REGIONS: Entry<()> = Entry {
     listed: &[item(
         (),
@@ -138,7 +138,7 @@ pub(super) const SET_METHOD: Entry<Method> = Entry {
     action: Action::Do(|context, method| set_method(context.workspace, method)),
 };
 
-/// Chooses what components that nothing holds do, all of them.
+/// Chooses the behaviour of all components that nothing holds.
 pub(super) const SET_LOOSE: Entry<Loose> = Entry {
     listed: &[],
     scope: Scope::Document,
@@ -146,7 +146,7 @@ pub(super) const SET_LOOSE: Entry<Loose> = Entry {
     action: Action::Do(|context, loose| set_loose(context.workspace, loose)),
 };
 
-/// Chooses what one of them does, by its component's number; `None` is what all do.
+/// Chooses the behaviour of one of them, by its component's number; `None` is the behaviour of all.
 pub(super) const SET_LOOSE_PART: Entry<(u32, Option<Loose>)> = Entry {
     listed: &[],
     scope: Scope::Document,
@@ -154,7 +154,7 @@ pub(super) const SET_LOOSE_PART: Entry<(u32, Option<Loose>)> = Entry {
     action: Action::Do(|context, (part, loose)| set_loose_part(context.workspace, part, loose)),
 };
 
-/// Begins to compare what the methods make of the edit, or ends it.
+/// Begins or ends a comparison of the methods on the edit.
 pub(super) const COMPARE_METHODS: Entry<()> = Entry {
     listed: &[item(
         (),
@@ -179,7 +179,7 @@ pub(super) const COMPARE_METHODS: Entry<()> = Entry {
     }),
 };
 
-/// Stops the jobs that run; what needs them starts them again.
+/// Stops the running jobs; anything that needs them starts them again.
 pub(super) const CANCEL_JOBS: Entry<()> = Entry {
     listed: &[item((), "Stop", "Stops the computation.", "cancel abort", &[])],
     scope: Scope::View,

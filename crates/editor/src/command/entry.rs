@@ -1,4 +1,4 @@
-//! What the table says of a command: everything, in one place.
+//! A command's entry in the table: everything about it, in one place.
 
 use std::borrow::Cow;
 
@@ -10,57 +10,57 @@ use crate::workspace::Workspace;
 
 use super::shortcut::Shortcut;
 
-/// Why a command can't be done now, as a sentence with the remedy where there is one.
+/// The reason why a command can't be executed now, as a sentence with the remedy if there is one.
 pub(super) type Reason = Cow<'static, str>;
 
-/// A command of the table. `V` are the values that it carries: `()` for none, one, or a tuple.
+/// A command of the table. `V` are its values: `()` for none, one, or a tuple.
 pub(super) struct Entry<V: 'static> {
-    /// How menus, the palette and the list of keys show it, once for each value that they offer.
+    /// Its forms in menus, the palette and the list of keys, one for each value that they offer.
     pub(super) listed: &'static [Item<V>],
     pub(super) scope: Scope,
-    /// Why it can't be done now; `None` where it can.
+    /// The reason why it can't be executed now; `None` if it can.
     pub(super) unavailable: fn(&State<'_>, &V) -> Option<Reason>,
     pub(super) action: Action<V>,
 }
 
-/// A command with its values, as a menu or the palette shows it.
+/// A command with its values, in a menu or the palette.
 #[derive(Debug)]
 pub(super) struct Item<V> {
     pub(super) values: V,
     /// Its name in a menu.
     pub(super) name: &'static str,
-    /// One sentence that says what it does.
+    /// One sentence on its effect.
     pub(super) tooltip: &'static str,
-    /// What else people call it, in lower case.
+    /// Its other names, in lower case.
     pub(super) keywords: &'static str,
     /// Its own keys; the first is shown.
     pub(super) shortcuts: &'static [Shortcut],
 }
 
-/// What a command concerns, and so what becomes of the gesture that goes on.
+/// The part of the program that a command changes, which decides the fate of the active gesture.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Scope {
-    /// View, look or brush: the gesture goes on.
+    /// View, look or brush: the gesture continues.
     View,
     /// The tool: the gesture is aborted.
     Tool,
     /// The document or the selection: the gesture is aborted, and the last refusal is forgotten.
     Document,
-    /// The history: a gesture that goes on is taken back, and nothing before it.
+    /// The history: an active gesture is undone, and nothing before it.
     History,
-    /// As the document, with a gesture of its own.
+    /// Like the document, with its own gesture.
     Gesture,
 }
 
-/// What a command does.
+/// The effect of a command.
 pub(super) enum Action<V> {
-    /// Something at once.
+    /// An immediate effect.
     Do(fn(&mut Context<'_>, V)),
-    /// It begins a gesture, if it can.
+    /// The beginning of a gesture, if it can begin.
     Begin(fn(&mut Context<'_>, V) -> Option<Box<dyn Gesture>>),
 }
 
-/// What commands look at to tell whether they can be done.
+/// The state by which commands decide whether they can be executed.
 #[derive(Clone, Copy)]
 pub(crate) struct State<'a> {
     pub(crate) workspace: &'a Workspace,
@@ -69,7 +69,7 @@ pub(crate) struct State<'a> {
 }
 
 impl State<'_> {
-    /// The reason where no file is open.
+    /// The reason if no file is open.
     pub(super) fn unopened(&self) -> Option<Reason> {
         unless(self.workspace.model().is_some(), "Nothing is open: open a file first.")
     }
@@ -85,7 +85,7 @@ impl State<'_> {
         self.selected().and_then(unlocked)
     }
 
-    /// The reason where a handle is gone.
+    /// The reason if a handle no longer exists.
     pub(super) fn gone(&self, id: HandleId) -> Option<Reason> {
         let handle = self.workspace.document.handle(id);
         unless(handle.is_some(), "That handle is not there any more.")
@@ -100,33 +100,33 @@ pub(super) fn unlocked(handle: &Handle) -> Result<&Handle, Reason> {
     Ok(handle)
 }
 
-/// The reason, unless it can be done.
+/// The reason, unless the command can be executed.
 pub(super) fn unless(can_be_done: bool, reason: &'static str) -> Option<Reason> {
     (!can_be_done).then_some(Cow::Borrowed(reason))
 }
 
-/// What can be done always.
+/// For commands that can always be executed.
 pub(super) fn always<V>(_: &State<'_>, _: &V) -> Option<Reason> {
     None
 }
 
-/// What can be done once a file is open.
+/// For commands that need an open file.
 pub(super) fn when_open<V>(state: &State<'_>, _: &V) -> Option<Reason> {
     state.unopened()
 }
 
-/// What needs a handle, whether selected or not.
+/// For commands that need a handle, selected or not.
 pub(super) fn with_handles<V>(state: &State<'_>, _: &V) -> Option<Reason> {
     let is_any = !state.workspace.document.handles().is_empty();
     unless(is_any, "There is no handle yet: paint one on the surface.")
 }
 
-/// What can be done with a selected handle that is not locked.
+/// For commands that need a selected handle that is not locked.
 pub(super) fn with_unlocked<V>(state: &State<'_>, _: &V) -> Option<Reason> {
     state.unlocked().err()
 }
 
-/// What can be done with a selected handle.
+/// For commands that need a selected handle.
 pub(super) fn with_selected<V>(state: &State<'_>, _: &V) -> Option<Reason> {
     state.selected().err()
 }

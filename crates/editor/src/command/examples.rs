@@ -1,11 +1,11 @@
-//! What is done with the examples that lead the method.
+//! Commands on the method's examples.
 
 use pliant_deform::ExampleShape;
 
 use super::entry::{Action, Entry, Reason, Scope, State, item, unless};
 use crate::workspace::{add_example, examples_name, keep_example, remove_example, rename_example, set_example_weight};
 
-/// Keeps the present shape as one more example.
+/// Keeps the present shape as a further example.
 pub(super) const KEEP_EXAMPLE: Entry<()> = Entry {
     listed: &[item(
         (),
@@ -25,7 +25,7 @@ pub(super) const KEEP_EXAMPLE: Entry<()> = Entry {
     action: Action::Do(|context, ()| keep_example(context.workspace)),
 };
 
-/// Takes a shape as one more example.
+/// Adds a shape as a further example.
 pub(super) const ADD_EXAMPLE: Entry<ExampleShape> = Entry {
     listed: &[],
     scope: Scope::Document,
@@ -38,7 +38,7 @@ pub(super) const ADD_EXAMPLE: Entry<ExampleShape> = Entry {
     action: Action::Do(|context, shape| add_example(context.workspace, shape)),
 };
 
-/// Sets the weight of an example, by its place in the list; `None` has the solver find it.
+/// Sets the weight of an example, by its place in the list; with `None` the solver finds it.
 pub(super) const SET_EXAMPLE_WEIGHT: Entry<(usize, Option<f64>)> = Entry {
     listed: &[],
     scope: Scope::Document,
@@ -46,7 +46,7 @@ pub(super) const SET_EXAMPLE_WEIGHT: Entry<(usize, Option<f64>)> = Entry {
     action: Action::Do(|context, (place, weight)| set_example_weight(context.workspace, place, weight)),
 };
 
-/// Gives an example another name.
+/// Renames an example.
 pub(super) const RENAME_EXAMPLE: Entry<(usize, String)> = Entry {
     listed: &[],
     scope: Scope::Document,
@@ -62,10 +62,10 @@ pub(super) const REMOVE_EXAMPLE: Entry<usize> = Entry {
     action: Action::Do(|context, place| remove_example(context.workspace, place)),
 };
 
-/// Said where the method takes no examples.
+/// The message if the method takes no examples.
 pub const WITHOUT_EXAMPLES: &str = "The method takes no examples: choose Discrete shells or Wrinkles from examples.";
 
-/// The reason where the method takes no examples.
+/// The reason if the method takes no examples.
 fn without_examples(state: &State<'_>) -> Option<Reason> {
     state.unopened().or_else(|| {
         let are_taken = examples_name(&state.workspace.document).is_some();

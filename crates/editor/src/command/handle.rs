@@ -1,4 +1,4 @@
-//! Making and choosing handles, and how they hold.
+//! Commands that make and choose handles, and set the way in which they hold.
 
 use super::entry::{
     Action, Entry, Scope, alt, character, item, plain, shift, when_open, with_handles, with_selected, with_unlocked,
@@ -28,7 +28,7 @@ pub(super) const WIDEN: Entry<()> = Entry {
     }),
 };
 
-/// Splits the selected handle in two across its longest side: a vertex can only be in one.
+/// Splits the selected handle in two across its longest side; a vertex can only be in one handle.
 pub(super) const DUPLICATE_HANDLE: Entry<()> = Entry {
     listed: &[item(
         (),
@@ -42,7 +42,7 @@ pub(super) const DUPLICATE_HANDLE: Entry<()> = Entry {
     action: Action::Do(|context, ()| split_selected(context.workspace)),
 };
 
-/// Makes the selected handle's mirror image a handle that does the same, across axis 0, 1, 2 for x, y, z.
+/// Makes the selected handle's mirror image a handle with the mirrored motion, across axis 0, 1, 2 for x, y, z.
 pub(super) const MAKE_TWIN: Entry<usize> = Entry {
     listed: &[
         item(
@@ -143,7 +143,7 @@ pub(super) const SELECT_HANDLE: Entry<HandleId> = Entry {
     }),
 };
 
-/// Adds a handle to those that are selected, or takes it from them.
+/// Adds a handle to the selected ones, or removes it from them.
 pub(super) const TOGGLE_SELECTED: Entry<HandleId> = Entry {
     listed: &[],
     scope: Scope::Document,
@@ -198,7 +198,7 @@ pub(super) const DESELECT: Entry<()> = Entry {
     action: Action::Do(|context, ()| context.workspace.selection.put_alone(None)),
 };
 
-/// Deletes the selected handle; its vertices are held still.
+/// Deletes the selected handle; its vertices become fixed.
 pub(super) const DELETE_HANDLE: Entry<()> = Entry {
     listed: &[item(
         (),
@@ -212,7 +212,7 @@ pub(super) const DELETE_HANDLE: Entry<()> = Entry {
     action: Action::Do(|context, ()| delete_selected(context.workspace)),
 };
 
-/// Makes the selected handle a pin, which stays where it is, or a pin a handle again.
+/// Pins the selected handle, or unpins it.
 pub(super) const PIN: Entry<()> = Entry {
     listed: &[item(
         (),
@@ -258,7 +258,7 @@ pub(super) const TOGGLE_HANDLE_VISIBLE: Entry<HandleId> = Entry {
     }),
 };
 
-/// Keeps a handle from being moved, painted and deleted, or lets it.
+/// Locks a handle against being moved, painted and deleted, or unlocks it.
 pub(super) const TOGGLE_HANDLE_LOCKED: Entry<HandleId> = Entry {
     listed: &[],
     scope: Scope::Document,
@@ -270,7 +270,7 @@ pub(super) const TOGGLE_HANDLE_LOCKED: Entry<HandleId> = Entry {
     }),
 };
 
-/// How far along the surface a handle takes the surface along.
+/// The distance along the surface within which a handle moves the surface.
 pub(super) const SET_REACH: Entry<(HandleId, Reach)> = Entry {
     listed: &[],
     scope: Scope::Document,
@@ -286,7 +286,7 @@ pub(super) const SET_SOFT: Entry<(HandleId, Option<f64>)> = Entry {
     action: Action::Do(|context, (id, soft)| set_soft(context.workspace, id, soft)),
 };
 
-/// With which continuity ([`pliant_deform::CONTINUITY_RANGE`]) the surface joins a handle; `None` is the smoothest.
+/// The continuity ([`pliant_deform::CONTINUITY_RANGE`]) with which the surface joins a handle; `None` is the smoothest.
 pub(super) const SET_CONTINUITY: Entry<(HandleId, Option<f64>)> = Entry {
     listed: &[],
     scope: Scope::Document,

@@ -1,4 +1,4 @@
-//! Which key sends which command: the program's own, where a person has not chosen others.
+//! The keys of commands: the program's own, unless a person has chosen others.
 
 use std::collections::BTreeMap;
 
@@ -13,8 +13,8 @@ pub struct KeyMap {
 }
 
 impl KeyMap {
-    /// The keys by the commands' names, as "Ctrl+Shift+Z"; what can't be understood is left out and told in a sentence
-    /// each.
+    /// The keys by the commands' names, as "Ctrl+Shift+Z"; each unknown command or key is left out and reported in a
+    /// sentence.
     pub fn of_names(names: &BTreeMap<String, Vec<String>>) -> (Self, Vec<String>) {
         let (mut map, mut problems) = (Self::default(), Vec::new());
         for (name, keys) in names {
@@ -34,7 +34,7 @@ impl KeyMap {
         (map, problems)
     }
 
-    /// The command that a key sends: a person's choice comes before the program's.
+    /// The command that a key sends: a person's choice has priority over the program's.
     pub fn command(&self, key: Key, modifiers: Modifiers) -> Option<Command> {
         let pressed = Shortcut { modifiers, key };
         let chosen = self.chosen.iter().find(|(_, shortcuts)| shortcuts.contains(&pressed));

@@ -1,4 +1,4 @@
-//! How the surface is shown.
+//! Commands on the display of the surface.
 
 use super::entry::{Action, Entry, Reason, Scope, State, alt, always, character, item, shift, when_open};
 use crate::jobs::Inspectable;
@@ -58,7 +58,7 @@ pub(super) const SET_CLAY: Entry<Clay> = Entry {
     }),
 };
 
-/// How the surface is shaded.
+/// The shading of the surface.
 pub(super) const SET_SHADING: Entry<Shading> = Entry {
     listed: &[
         item(
@@ -133,7 +133,7 @@ pub(super) const SET_SHADING: Entry<Shading> = Entry {
     action: Action::Do(|context, shading| context.view.look.shading = shading),
 };
 
-/// Why no handle's weights can be shown.
+/// The reason why no handle's weights can be shown.
 fn no_weights(state: &State<'_>) -> Option<Reason> {
     let why = |title: &str| format!("{title} uses no weights: take a method that does, such as Gradient editing.");
     let inspectable = |inspectable: Inspectable| inspectable.weights;
@@ -143,7 +143,7 @@ fn no_weights(state: &State<'_>) -> Option<Reason> {
         .or_else(|| not_in_binding(state, inspectable, why))
 }
 
-/// Why something of the binding can't be shown: nothing is bound, or `why` for the method of this title.
+/// The reason why a part of the binding can't be shown: nothing is bound, or `why` for the method of this title.
 fn not_in_binding(
     state: &State<'_>,
     is_there: impl Fn(Inspectable) -> bool,
@@ -157,7 +157,7 @@ fn not_in_binding(
     (!is_there(workspace.computed().inspectable)).then(|| why(title).into())
 }
 
-/// Shows the smooth base in place of the surface, or the surface again.
+/// Shows the smooth base instead of the surface, or the surface again.
 pub(super) const TOGGLE_BASE: Entry<()> = Entry {
     listed: &[item(
         (),
@@ -171,13 +171,13 @@ pub(super) const TOGGLE_BASE: Entry<()> = Entry {
         let why =
             |title: &str| format!("{title} has no smooth base here: take Thin plate, and choose its option detail.");
         let reason = || not_in_binding(state, |inspectable| inspectable.base, why);
-        // What is on can always be turned off.
+        // An active display can always be turned off.
         (!state.view.look.base).then(reason).flatten()
     },
     action: Action::Do(|context, ()| context.view.look.base = !context.view.look.base),
 };
 
-/// Shows the file's own shape in place of the present one, or the present one again.
+/// Shows the file's own shape instead of the present one, or the present one again.
 pub(super) const TOGGLE_ORIGINAL: Entry<()> = Entry {
     listed: &[item(
         (),
@@ -191,7 +191,7 @@ pub(super) const TOGGLE_ORIGINAL: Entry<()> = Entry {
     action: Action::Do(|context, ()| context.view.look.original = !context.view.look.original),
 };
 
-/// Shows the file's own shape along with the present one, or no longer.
+/// Shows the file's own shape together with the present one, or stops showing it.
 pub(super) const TOGGLE_BEFORE: Entry<Before> = Entry {
     listed: &[
         item(
@@ -217,7 +217,7 @@ pub(super) const TOGGLE_BEFORE: Entry<Before> = Entry {
     }),
 };
 
-/// Shows each triangle flat, or normals interpolated.
+/// Shades each triangle flat, or with interpolated normals.
 pub(super) const TOGGLE_FLAT: Entry<()> = Entry {
     listed: &[item(
         (),
@@ -231,7 +231,7 @@ pub(super) const TOGGLE_FLAT: Entry<()> = Entry {
     action: Action::Do(|context, ()| context.view.look.flat = !context.view.look.flat),
 };
 
-/// Marks edges that a closed surface lacks, or not.
+/// Marks edges that a closed surface does not have, or stops marking them.
 pub(super) const TOGGLE_BORDERS: Entry<()> = Entry {
     listed: &[item(
         (),
@@ -245,7 +245,7 @@ pub(super) const TOGGLE_BORDERS: Entry<()> = Entry {
     action: Action::Do(|context, ()| context.view.look.borders = !context.view.look.borders),
 };
 
-/// Shows or hides the handles' outlines and the border of what is held.
+/// Shows or hides the handles' outlines and the border of the fixed part.
 pub(super) const TOGGLE_OUTLINES: Entry<()> = Entry {
     listed: &[item(
         (),

@@ -1,7 +1,8 @@
-//! What menus, buttons, keys and the command palette can ask for: commands are data.
+//! The commands of menus, buttons, keys and the command palette. Commands are data.
 //!
-//! Everything about a command stands in one entry of its room's file: how menus list it, what it concerns, when it can
-//! be done and why not, what it does. Here each command is bound to its entry; one without an entry does not compile.
+//! One entry in a group's file has everything about a command: its form in menus, its scope, the condition for
+//! executing it with the reason if it fails, and its effect. Here each command is bound to its entry; a command without
+//! an entry does not compile.
 
 mod controls;
 mod document;

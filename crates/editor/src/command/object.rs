@@ -1,4 +1,4 @@
-//! What of the file is shown and may be painted.
+//! Commands that show parts of the file and allow painting on them.
 
 use super::entry::{Action, Entry, Scope, alt, character, item, shift, unless, when_open};
 use crate::document::{ObjectAction, SmallParts};
@@ -47,7 +47,7 @@ pub(super) const OBJECTS: Entry<(ObjectAction, Vec<u32>)> = Entry {
     action: Action::Do(|context, (action, objects)| act_on_objects(context.workspace, action, &objects)),
 };
 
-/// Says which connected parts are small, and whether they are shown and held still.
+/// Sets the size below which connected parts are small, and whether they are shown and fixed.
 pub(super) const SET_SMALL_PARTS: Entry<SmallParts> = Entry {
     listed: &[],
     scope: Scope::Document,
@@ -73,7 +73,7 @@ pub(super) const TOGGLE_SMALL_SHOWN: Entry<()> = Entry {
     }),
 };
 
-/// Holds small parts still, or lets them bend.
+/// Fixes small parts, or lets them bend.
 pub(super) const TOGGLE_SMALL_LOCKED: Entry<()> = Entry {
     listed: &[item(
         (),
@@ -91,7 +91,7 @@ pub(super) const TOGGLE_SMALL_LOCKED: Entry<()> = Entry {
     }),
 };
 
-/// Hides all connected parts but the one under the pointer. Again: shows the others.
+/// Hides all connected parts except the one under the pointer, or shows the others again.
 pub(super) const ISOLATE: Entry<()> = Entry {
     listed: &[item(
         (),
@@ -122,7 +122,7 @@ pub(super) const TURN_INSIDE_OUT: Entry<()> = Entry {
     action: Action::Do(|context, ()| turn_inside_out(context.workspace)),
 };
 
-/// Shows everything that is hidden.
+/// Shows everything hidden.
 pub(super) const SHOW_EVERYTHING: Entry<()> = Entry {
     listed: &[item(
         (),

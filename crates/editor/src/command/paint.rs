@@ -1,4 +1,4 @@
-//! What the left button does on the surface, and with what.
+//! Commands on the left button's tool and its brush.
 
 use super::entry::{Action, Entry, Scope, alt, always, character, item, shift, unless, when_open};
 use crate::jobs::Symmetry;
@@ -8,7 +8,7 @@ use crate::workspace::set_symmetry;
 /// The factor by which a key sizes the brush.
 const BRUSH_STEP: f64 = 1.2;
 
-/// Chooses what the left button does on the surface.
+/// Chooses the left button's tool on the surface.
 pub(super) const SET_TOOL: Entry<ToolMode> = Entry {
     listed: &[
         item(
@@ -73,7 +73,7 @@ pub(super) const SET_TOOL: Entry<ToolMode> = Entry {
     action: Action::Do(|context, mode| context.settings.mode = mode),
 };
 
-/// How the left button takes vertices.
+/// The shape in which the left button selects vertices.
 pub(super) const SET_STROKE_SHAPE: Entry<StrokeShape> = Entry {
     listed: &[
         item(
@@ -115,7 +115,7 @@ pub(super) const SET_STROKE_SHAPE: Entry<StrokeShape> = Entry {
     }),
 };
 
-/// How the brush measures its radius.
+/// The measure of the brush's radius.
 pub(super) const SET_BRUSH_METRIC: Entry<BrushMetric> = Entry {
     listed: &[
         item(
@@ -145,7 +145,7 @@ pub(super) const SET_BRUSH_METRIC: Entry<BrushMetric> = Entry {
     action: Action::Do(|context, metric| context.settings.brush.metric = metric),
 };
 
-/// How deep a lasso or a box goes.
+/// The depth of a lasso or a box.
 pub(super) const SET_DEPTH: Entry<Depth> = Entry {
     listed: &[
         item(
@@ -168,7 +168,7 @@ pub(super) const SET_DEPTH: Entry<Depth> = Entry {
     action: Action::Do(|context, depth| context.settings.depth = depth),
 };
 
-/// Across which plane both sides are painted at once.
+/// The plane across which both sides are painted at once.
 pub(super) const SET_SYMMETRY: Entry<Symmetry> = Entry {
     listed: &[
         item(
@@ -212,7 +212,7 @@ pub(super) const SET_SYMMETRY: Entry<Symmetry> = Entry {
     action: Action::Do(|context, symmetry| set_symmetry(context.workspace, symmetry)),
 };
 
-/// Sets the brush's radius in points, clamped to what the brush allows.
+/// Sets the brush's radius in points, clamped to the brush's range.
 pub(super) const SET_BRUSH_RADIUS: Entry<f64> = Entry {
     listed: &[],
     scope: Scope::View,
@@ -277,7 +277,7 @@ pub(super) const SIZE_BRUSH: Entry<()> = Entry {
     }),
 };
 
-/// What the correcting brush does, and how far, clamped to what it may be.
+/// The action and the numbers of the correcting brush, clamped to their ranges.
 pub(super) const SET_CORRECTION: Entry<CorrectionBrush> = Entry {
     listed: &[],
     scope: Scope::View,
@@ -289,7 +289,7 @@ pub(super) const SET_CORRECTION: Entry<CorrectionBrush> = Entry {
     }),
 };
 
-/// The stiffness brush's action and numbers, clamped to what they may be.
+/// The stiffness brush's action and numbers, clamped to their ranges.
 pub(super) const SET_STIFFNESS_BRUSH: Entry<StiffnessBrush> = Entry {
     listed: &[],
     scope: Scope::View,

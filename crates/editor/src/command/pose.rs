@@ -1,9 +1,9 @@
-//! What is done with the poses that a person keeps.
+//! Commands on kept poses.
 
 use super::entry::{Action, Entry, Reason, Scope, State, item, unless};
 use crate::workspace::{keep_pose, remove_pose, rename_pose, renew_pose, take_pose};
 
-/// Keeps what is shown as a pose.
+/// Keeps the shown state as a pose.
 pub(super) const KEEP_POSE: Entry<()> = Entry {
     listed: &[item(
         (),
@@ -22,7 +22,7 @@ pub(super) const KEEP_POSE: Entry<()> = Entry {
     action: Action::Do(|context, ()| keep_pose(context.workspace)),
 };
 
-/// Puts everything where a pose has it, by its place in the list.
+/// Moves everything to a pose, by its place in the list.
 pub(super) const TAKE_POSE: Entry<usize> = Entry {
     listed: &[],
     scope: Scope::Document,
@@ -30,7 +30,7 @@ pub(super) const TAKE_POSE: Entry<usize> = Entry {
     action: Action::Do(|context, place| take_pose(context.workspace, place)),
 };
 
-/// Has a pose be what is shown now.
+/// Replaces a pose by the shown state.
 pub(super) const RENEW_POSE: Entry<usize> = Entry {
     listed: &[],
     scope: Scope::Document,
@@ -38,7 +38,7 @@ pub(super) const RENEW_POSE: Entry<usize> = Entry {
     action: Action::Do(|context, place| renew_pose(context.workspace, place)),
 };
 
-/// Gives a pose another name.
+/// Renames a pose.
 pub(super) const RENAME_POSE: Entry<(usize, String)> = Entry {
     listed: &[],
     scope: Scope::Document,

@@ -1,4 +1,4 @@
-//! What is done to the region in hand as a whole, and to stiffness.
+//! Commands on the whole selected region, and on stiffness.
 
 use super::entry::{Action, Entry, Reason, Scope, State, ctrl, item, unless, unlocked, when_open};
 use crate::document::{Paint, Tips};
@@ -8,7 +8,7 @@ use crate::workspace::{
 
 const NO_HANDLE: &str = "No handle is selected: select one in the list, or paint one.";
 
-/// Changes the region in hand as a whole.
+/// Changes the selected region as a whole.
 pub(super) const REGION: Entry<RegionAction> = Entry {
     listed: &[
         item(
@@ -113,7 +113,7 @@ pub(super) const REGION: Entry<RegionAction> = Entry {
     }),
 };
 
-/// Chooses whether the parts that a reach cuts off from the body come along or are held still.
+/// Chooses whether the parts that a reach cuts off from the body are free or fixed.
 pub(super) const SET_TIPS: Entry<Tips> = Entry {
     listed: &[
         item(
@@ -144,7 +144,7 @@ pub(super) const SET_TIPS: Entry<Tips> = Entry {
     action: Action::Do(|context, tips| set_tips(context.workspace, tips)),
 };
 
-/// Changes what is painted of stiffness as a whole.
+/// Changes the painted stiffness as a whole.
 pub(super) const CHANGE_STIFFNESS: Entry<StiffnessChange> = Entry {
     listed: &[
         item(
@@ -186,7 +186,7 @@ fn is_stiffness_painted(state: &State<'_>) -> Option<Reason> {
     unless(is_any, "No stiffness is painted.")
 }
 
-/// Makes the whole surface equally stiff.
+/// Makes the stiffness of the whole surface even.
 pub(super) const CLEAR_STIFFNESS: Entry<()> = Entry {
     listed: &[item(
         (),
@@ -200,7 +200,7 @@ pub(super) const CLEAR_STIFFNESS: Entry<()> = Entry {
     action: Action::Do(|context, ()| clear_stiffness(context.workspace)),
 };
 
-/// Sets the stiffness (0.001 to 1000; 1 is a vertex left alone) of every vertex.
+/// Sets the stiffness (0.001 to 1000; 1 is that of an unpainted vertex) of every vertex.
 pub(super) const SET_STIFFNESS: Entry<Vec<f64>> = Entry {
     listed: &[],
     scope: Scope::Document,

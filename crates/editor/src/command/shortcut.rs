@@ -2,10 +2,10 @@
 
 use crate::input::{Key, Modifiers};
 
-/// A key with the modifiers that must be held.
+/// A key with its modifiers.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Shortcut {
-    /// Exactly these modifiers.
+    /// Exactly these modifiers are held.
     pub modifiers: Modifiers,
     /// The key.
     pub key: Key,
@@ -16,7 +16,7 @@ impl Shortcut {
         Self { modifiers, key }
     }
 
-    /// As a menu writes it: "Ctrl+Shift+Z".
+    /// Its form in menus: "Ctrl+Shift+Z".
     pub fn label(&self) -> String {
         let mut label = String::new();
         for (held, name) in [
@@ -41,7 +41,7 @@ impl Shortcut {
         label
     }
 
-    /// Reads what [`Shortcut::label`] writes.
+    /// Reads the text of [`Shortcut::label`].
     pub fn parse(text: &str) -> Option<Self> {
         let mut modifiers = Modifiers::NONE;
         let mut rest = text.trim();

@@ -15,39 +15,39 @@ use crate::tool::{BrushMetric, Context, CorrectionBrush, Depth, Gesture, Stiffne
 use crate::view::{Before, Clay, GizmoMode, GizmoOrientation, NamedView, Orbit, Shading, UpAxis};
 use crate::workspace::{RegionAction, StiffnessChange};
 
-/// A command as a menu or the palette lists it.
+/// A command in the list of a menu or the palette.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Listed {
-    /// What is sent.
+    /// The command to send.
     pub command: Command,
     /// Its name in a menu.
     pub name: &'static str,
-    /// One sentence that says what it does.
+    /// One sentence on its effect.
     pub tooltip: &'static str,
-    /// What else people call it, in lower case: the palette finds it by these words too.
+    /// Its other names, in lower case, by which the palette also finds it.
     pub keywords: &'static str,
     /// Keys that send it; the first is shown.
     pub shortcuts: &'static [Shortcut],
 }
 
-/// What is asked of the entry of whichever command is at hand, given its values.
+/// A question to the entry of any command, with the command's values.
 trait Asked {
     type Answer;
 
     fn ask<V: 'static>(self, entry: &Entry<V>, values: V) -> Self::Answer;
 }
 
-/// The values that a command carries, as its entry takes them: none, one, or a tuple.
+/// The values of a command, as its entry takes them: none, one, or a tuple.
 macro_rules! values {
     () => { () };
     ($one:ident) => { $one };
     ($($several:ident)+) => { ($($several),+) };
 }
 
-/// Makes the enum of all commands, and the ways from each to its entry and back.
+/// Makes the enum of all commands, and the mapping from each to its entry and back.
 macro_rules! commands {
     ($($(#[$doc:meta])* $variant:ident $(($($value:ident: $kind:ty),+))? = $entry:path;)+) => {
-        /// Something to be done, with all it needs to know.
+        /// A command with all its values.
         #[derive(Clone, PartialEq, Debug)]
         pub enum Command {
             $($(#[$doc])* $variant $(($($kind),+))?,)+
@@ -61,7 +61,7 @@ macro_rules! commands {
                 }
             }
 
-            /// Every command as menus list it, in the order of the table.
+            /// Every command in menus, in the order of the table.
             fn list() -> Vec<Listed> {
                 let mut list = Vec::new();
                 $(for item in $entry.listed {
@@ -83,69 +83,70 @@ macro_rules! commands {
 commands! {
     /// Undoes the last step.
     Undo = document::UNDO;
-    /// Does the last taken-back step again.
+    /// Redoes the last undone step.
     Redo = document::REDO;
-    /// Goes back or forth to the state after so many steps of the history.
+    /// Goes back or forth to the state after this many steps of the history.
     GoToStep(steps: usize) = document::GO_TO_STEP;
     /// Makes the present shape the new rest shape: every handle's transform returns to the identity.
     Apply = document::APPLY;
     /// Takes the rest shape and every handle back to the file's shape.
     ResetShape = document::RESET_SHAPE;
-    /// Shows a share (0 to 1) of the whole edit: everything that was moved, at that share of its way from rest.
+    /// Shows a share (0 to 1) of the whole edit: everything that was moved, at that share of its displacement from
+    /// rest.
     SetStrength(share: f64) = document::SET_STRENGTH;
-    /// Holds everything still again: no handle, no region.
+    /// Fixes everything again: no handle, no region.
     ClearRegions = document::CLEAR_REGIONS;
     /// Chooses the method and its options.
     SetMethod(method: Method) = document::SET_METHOD;
-    /// Chooses what components that nothing holds do, all of them.
+    /// Chooses the behaviour of all components that nothing holds.
     SetLoose(loose: Loose) = document::SET_LOOSE;
-    /// Chooses what one of them does, by its component's number; `None` is what all do.
+    /// Chooses the behaviour of one of them, by its component's number; `None` is the behaviour of all.
     SetLoosePart(part: u32, loose: Option<Loose>) = document::SET_LOOSE_PART;
-    /// Takes a cage or lattice in place of the one there is.
+    /// Replaces the present cage or lattice.
     BringAttachment(attachment: Attachment) = controls::BRING_ATTACHMENT;
-    /// Has the method make its cage or lattice, in place of the document's own.
+    /// Makes the method's own cage or lattice replace the document's.
     MakeControls = controls::MAKE_CONTROLS;
-    /// Takes the control points back to where they rest.
+    /// Takes the control points back to their rest positions.
     ResetControls = controls::RESET_CONTROLS;
     /// Selects all control points.
     SelectControls = controls::SELECT_CONTROLS;
-    /// Lets go of all control points.
+    /// Deselects all control points.
     DeselectControls = controls::DESELECT_CONTROLS;
-    /// Keeps the present shape as one more example.
+    /// Keeps the present shape as a further example.
     KeepExample = examples::KEEP_EXAMPLE;
-    /// Takes a shape as one more example: displacements from the file's shape, per surface vertex.
+    /// Adds a shape as a further example: displacements from the file's shape, per surface vertex.
     AddExample(shape: ExampleShape) = examples::ADD_EXAMPLE;
-    /// Sets the weight of an example, by its place in the list; `None` has the solver find it.
+    /// Sets the weight of an example, by its place in the list; with `None` the solver finds it.
     SetExampleWeight(place: usize, weight: Option<f64>) = examples::SET_EXAMPLE_WEIGHT;
-    /// Gives an example another name.
+    /// Renames an example.
     RenameExample(place: usize, name: String) = examples::RENAME_EXAMPLE;
     /// Removes an example.
     RemoveExample(place: usize) = examples::REMOVE_EXAMPLE;
-    /// Keeps where handles and control points stand under a name.
+    /// Keeps the positions of handles and control points under a name.
     KeepPose = pose::KEEP_POSE;
-    /// Puts everything where a pose has it, by its place in the list; locked handles and pins stay.
+    /// Moves everything to a pose, by its place in the list; locked handles and pins stay.
     TakePose(place: usize) = pose::TAKE_POSE;
-    /// Has a pose be what is shown now.
+    /// Replaces a pose by the shown state.
     RenewPose(place: usize) = pose::RENEW_POSE;
-    /// Gives a pose another name.
+    /// Renames a pose.
     RenamePose(place: usize, name: String) = pose::RENAME_POSE;
     /// Removes a pose.
     RemovePose(place: usize) = pose::REMOVE_POSE;
-    /// Begins to compare what the methods make of the edit, or ends it.
+    /// Begins or ends a comparison of the methods on the edit.
     CompareMethods = document::COMPARE_METHODS;
-    /// Stops the jobs that run; what needs them starts them again.
+    /// Stops the running jobs; anything that needs them starts them again.
     CancelJobs = document::CANCEL_JOBS;
-    /// Chooses what the left button does on the surface.
+    /// Chooses the left button's tool on the surface.
     SetTool(mode: ToolMode) = paint::SET_TOOL;
-    /// How the left button takes vertices.
+    /// The shape in which the left button selects vertices.
     SetStrokeShape(shape: StrokeShape) = paint::SET_STROKE_SHAPE;
-    /// How the brush measures its radius.
+    /// The measure of the brush's radius.
     SetBrushMetric(metric: BrushMetric) = paint::SET_BRUSH_METRIC;
-    /// How deep a lasso or a box goes.
+    /// The depth of a lasso or a box.
     SetDepth(depth: Depth) = paint::SET_DEPTH;
-    /// Across which plane both sides are painted at once.
+    /// The plane across which both sides are painted at once.
     SetSymmetry(symmetry: Symmetry) = paint::SET_SYMMETRY;
-    /// Sets the brush's radius in points, clamped to what the brush allows.
+    /// Sets the brush's radius in points, clamped to the brush's range.
     SetBrushRadius(radius_px: f64) = paint::SET_BRUSH_RADIUS;
     /// Sizes the brush with the pointer.
     SizeBrush = paint::SIZE_BRUSH;
@@ -153,25 +154,25 @@ commands! {
     GrowBrush = paint::GROW_BRUSH;
     /// A smaller brush.
     ShrinkBrush = paint::SHRINK_BRUSH;
-    /// What the correcting brush does, and how far, clamped to what it may be.
+    /// The action and the numbers of the correcting brush, clamped to their ranges.
     SetCorrection(brush: CorrectionBrush) = paint::SET_CORRECTION;
-    /// The stiffness brush's action and numbers, clamped to what they may be.
+    /// The stiffness brush's action and numbers, clamped to their ranges.
     SetStiffnessBrush(brush: StiffnessBrush) = paint::SET_STIFFNESS_BRUSH;
     /// Widens the selected handle's reach with the pointer.
     Widen = handle::WIDEN;
-    /// What the gizmo offers.
+    /// The gizmo's mode.
     SetGizmo(mode: GizmoMode) = transform::SET_GIZMO;
-    /// Along which axes the gizmo stands.
+    /// The axes of the gizmo.
     SetOrientation(orientation: GizmoOrientation) = transform::SET_ORIENTATION;
-    /// The next click on the surface puts the selected handle's pivot there.
+    /// The next click on the surface moves the selected handle's pivot there.
     PickPivot = transform::PICK_PIVOT;
-    /// Puts a handle's pivot at a point of the present shape. The surface stays as it is.
+    /// Moves a handle's pivot to a point of the present shape. The surface does not change.
     SetPivot(id: HandleId, point: DVec3) = transform::SET_PIVOT;
-    /// Chooses where a handle's pivot stands. The surface stays as it is.
+    /// Chooses the place of a handle's pivot. The surface does not change.
     SetPivotPlace(id: HandleId, place: PivotPlace) = transform::SET_PIVOT_PLACE;
-    /// Splits the selected handle in two across its longest side: a vertex can only be in one.
+    /// Splits the selected handle in two across its longest side; a vertex can only be in one handle.
     DuplicateHandle = handle::DUPLICATE_HANDLE;
-    /// Makes the selected handle's mirror image a handle that does the same, across axis 0, 1, 2 for x, y, z.
+    /// Makes the selected handle's mirror image a handle with the mirrored motion, across axis 0, 1, 2 for x, y, z.
     MakeTwin(axis: usize) = handle::MAKE_TWIN;
     /// Lets the selected handle and its mirrored twin move separately again.
     Untwin = handle::UNTWIN;
@@ -181,7 +182,7 @@ commands! {
     NewHandle = handle::NEW_HANDLE;
     /// Selects a handle; its gizmo is shown.
     SelectHandle(id: HandleId) = handle::SELECT_HANDLE;
-    /// Adds a handle to those that are selected, or takes it from them.
+    /// Adds a handle to the selected ones, or removes it from them.
     ToggleSelected(id: HandleId) = handle::TOGGLE_SELECTED;
     /// Selects all handles.
     SelectAll = handle::SELECT_ALL;
@@ -189,7 +190,7 @@ commands! {
     NextHandle = handle::NEXT_HANDLE;
     /// Selects no handle.
     Deselect = handle::DESELECT;
-    /// Deletes the selected handle; its vertices are held still.
+    /// Deletes the selected handle; its vertices become fixed.
     DeleteHandle = handle::DELETE_HANDLE;
     /// Starts moving the selected handle with the pointer.
     Move = transform::MOVE;
@@ -197,9 +198,9 @@ commands! {
     Turn = transform::TURN;
     /// Starts scaling the selected handle with the pointer.
     Scale = transform::SCALE;
-    /// Takes the selected handle back to where it rests.
+    /// Takes the selected handle back to its rest position.
     ResetHandle = transform::RESET_HANDLE;
-    /// Makes the selected handle a pin, which stays where it is, or a pin a handle again.
+    /// Pins the selected handle, or unpins it.
     PinOrUnpin = handle::PIN;
     /// Names a handle.
     RenameHandle(id: HandleId, name: String) = handle::RENAME_HANDLE;
@@ -207,92 +208,93 @@ commands! {
     SetHandleColour(id: HandleId, colour: [u8; 4]) = handle::SET_HANDLE_COLOUR;
     /// Shows or hides a handle's colour and gizmo.
     ToggleHandleVisible(id: HandleId) = handle::TOGGLE_HANDLE_VISIBLE;
-    /// Keeps a handle from being moved, painted and deleted, or lets it.
+    /// Locks a handle against being moved, painted and deleted, or unlocks it.
     ToggleHandleLocked(id: HandleId) = handle::TOGGLE_HANDLE_LOCKED;
-    /// Puts a handle where the transform says, about the handle's own pivot.
+    /// Sets a handle's transform, about its own pivot.
     SetHandleTransform(id: HandleId, transform: HandleTransform) = transform::SET_HANDLE_TRANSFORM;
     /// Turns a handle to these angles about x, y and z in degrees, full turns included.
     SetTurn(id: HandleId, turn_deg: DVec3) = transform::SET_TURN;
-    /// How far along the surface a handle takes the surface along.
+    /// The distance along the surface within which a handle moves the surface.
     SetReach(id: HandleId, reach: Reach) = handle::SET_REACH;
     /// Gives a handle a weight ([`SOFT_RANGE`](crate::SOFT_RANGE)), so that it only pulls; `None` makes it hard.
     SetSoft(id: HandleId, soft: Option<f64>) = handle::SET_SOFT;
-    /// With which continuity ([`pliant_deform::CONTINUITY_RANGE`]) the surface joins a handle; `None` is the smoothest.
+    /// The continuity ([`pliant_deform::CONTINUITY_RANGE`]) with which the surface joins a handle; `None` is the
+    /// smoothest.
     SetContinuity(id: HandleId, continuity: Option<f64>) = handle::SET_CONTINUITY;
-    /// Changes the region in hand as a whole.
+    /// Changes the selected region as a whole.
     Region(action: RegionAction) = region::REGION;
-    /// Chooses whether the parts that a reach cuts off from the body come along.
+    /// Chooses whether the parts that a reach cuts off from the body are free.
     SetTips(tips: Tips) = region::SET_TIPS;
-    /// Blurs, sharpens, grows or shrinks what is painted of stiffness.
+    /// Blurs, sharpens, grows or shrinks the painted stiffness.
     ChangeStiffness(change: StiffnessChange) = region::CHANGE_STIFFNESS;
-    /// Makes the whole surface equally stiff.
+    /// Makes the stiffness of the whole surface even.
     ClearStiffness = region::CLEAR_STIFFNESS;
-    /// Sets the stiffness (0.001 to 1000; 1 is a vertex left alone) of every vertex.
+    /// Sets the stiffness (0.001 to 1000; 1 is that of an unpainted vertex) of every vertex.
     SetStiffness(field: Vec<f64>) = region::SET_STIFFNESS;
     /// The same with the object under the pointer.
     ObjectHere(action: ObjectAction) = object::OBJECT_HERE;
     /// Hides, shows or locks objects, by their numbers in [`pliant_mesh::Model::all_objects`].
     Objects(action: ObjectAction, objects: Vec<u32>) = object::OBJECTS;
-    /// Says which connected parts are small, and whether they are shown and held still.
+    /// Sets the size below which connected parts are small, and whether they are shown and fixed.
     SetSmallParts(small: SmallParts) = object::SET_SMALL_PARTS;
     /// Hides small parts, or shows them.
     ToggleSmallShown = object::TOGGLE_SMALL_SHOWN;
-    /// Holds small parts still, or lets them bend.
+    /// Fixes small parts, or lets them bend.
     ToggleSmallLocked = object::TOGGLE_SMALL_LOCKED;
-    /// Hides all connected parts but the one under the pointer. Again: shows the others.
+    /// Hides all connected parts except the one under the pointer, or shows the others again.
     Isolate = object::ISOLATE;
-    /// Swaps outside and inside of the parts that face inwards, or of all that is shown.
+    /// Swaps outside and inside of the parts that face inwards, or of all shown parts.
     TurnInsideOut = object::TURN_INSIDE_OUT;
-    /// Shows everything that is hidden.
+    /// Shows everything hidden.
     ShowEverything = object::SHOW_EVERYTHING;
     /// Frames everything.
     FrameAll = view::FRAME_ALL;
     /// Frames the selected handle and its region.
     FrameSelected = view::FRAME_SELECTED;
-    /// Comes close to a connected part, by its component's number.
+    /// Frames a connected part, by its component's number.
     FramePart(part: u32) = view::FRAME_PART;
-    /// Lights up a connected part, by its component's number, or none.
+    /// Highlights a connected part, by its component's number, or none.
     LightPart(part: Option<u32>) = view::LIGHT_PART;
-    /// Comes close to a place where the shape passes through itself, by its number in
+    /// Frames a place where the shape passes through itself, by its number in
     /// [`Intersections::places`](crate::Intersections::places).
     FrameIntersection(place: usize) = view::FRAME_INTERSECTION;
-    /// Comes close to a vertex, by the file's number.
+    /// Frames a vertex, by the file's number.
     FrameFileVertex(vertex: u32) = view::FRAME_FILE_VERTEX;
-    /// Looks from where one looked before.
+    /// Goes back to the last view.
     CameraBack = view::CAMERA_BACK;
-    /// Looks from where one looked before going back.
+    /// Goes forth to the view before going back.
     CameraForth = view::CAMERA_FORTH;
-    /// Which axis points up on the screen.
+    /// The axis that points up on the screen.
     SetUp(up: UpAxis) = view::SET_UP;
     /// Changes between perspective and orthographic.
     ToggleProjection = view::TOGGLE_PROJECTION;
-    /// What dragging the view does.
+    /// The effect of dragging the view.
     SetOrbit(orbit: Orbit) = view::SET_ORBIT;
     /// Turns the view by steps of 15 degrees, to the right and down.
     StepView(steps: [i8; 2]) = view::STEP_VIEW;
-    /// Looks from the other side.
+    /// Looks from the opposite side.
     TurnAround = view::TURN_AROUND;
     /// Looks from a named side.
     View(side: NamedView) = view::VIEW;
     /// Shades the surface like this clay.
     SetClay(clay: Clay) = look::SET_CLAY;
-    /// How the surface is shaded.
+    /// The shading of the surface.
     SetShading(shading: Shading) = look::SET_SHADING;
-    /// Shows each triangle flat, or normals interpolated.
+    /// Shades each triangle flat, or with interpolated normals.
     ToggleFlat = look::TOGGLE_FLAT;
-    /// Marks edges that a closed surface lacks, or not.
+    /// Marks edges that a closed surface does not have, or stops marking them.
     ToggleBorders = look::TOGGLE_BORDERS;
-    /// Shows or hides the handles' outlines and the border of what is held.
+    /// Shows or hides the handles' outlines and the border of the fixed part.
     ToggleOutlines = look::TOGGLE_OUTLINES;
     /// Shows or hides the ground's grid.
     ToggleGrid = look::TOGGLE_GRID;
     /// Shows or hides the surface's shadow on the ground.
     ToggleShadow = look::TOGGLE_SHADOW;
-    /// Shows the file's own shape in place of the present one, or the present one again.
+    /// Shows the file's own shape instead of the present one, or the present one again.
     ToggleOriginal = look::TOGGLE_ORIGINAL;
-    /// Shows the file's own shape along with the present one in this way, or no longer.
+    /// Shows the file's own shape together with the present one in this way, or stops showing it.
     ToggleBefore(before: Before) = look::TOGGLE_BEFORE;
-    /// Shows the smooth base in place of the surface, or the surface again.
+    /// Shows the smooth base instead of the surface, or the surface again.
     ToggleBase = look::TOGGLE_BASE;
     /// Shows or hides the regions' colours over clay and material.
     ToggleRegions = look::TOGGLE_REGIONS;
@@ -301,18 +303,18 @@ commands! {
 }
 
 impl Command {
-    /// Every command that menus list, room by room.
+    /// Every command in menus, group by group.
     pub fn all_listed() -> impl Iterator<Item = &'static Listed> {
         static LIST: LazyLock<Vec<Listed>> = LazyLock::new(Command::list);
         LIST.iter()
     }
 
-    /// How this command is listed, if it is.
+    /// Its form in menus, if it has one.
     pub fn listed(&self) -> Option<&'static Listed> {
         Self::all_listed().find(|listed| listed.command == *self)
     }
 
-    /// What it concerns.
+    /// Its scope.
     pub(crate) fn scope(&self) -> Scope {
         struct Ask;
         impl Asked for Ask {
@@ -325,7 +327,7 @@ impl Command {
         self.clone().ask(Ask)
     }
 
-    /// Why it can't be done now; `None` where it can.
+    /// The reason why it can't be executed now; `None` if it can.
     pub(crate) fn unavailable(&self, state: &State<'_>) -> Option<Cow<'static, str>> {
         struct Ask<'a>(&'a State<'a>);
         impl Asked for Ask<'_> {
@@ -338,7 +340,7 @@ impl Command {
         self.clone().ask(Ask(state))
     }
 
-    /// Does it; the gesture that it begins, if it does.
+    /// Executes it; returns the gesture that it begins, if it does.
     pub(crate) fn act(self, context: &mut Context<'_>) -> Option<Box<dyn Gesture>> {
         struct Ask<'a, 'b>(&'a mut Context<'b>);
         impl Asked for Ask<'_, '_> {

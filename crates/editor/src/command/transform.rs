@@ -1,4 +1,4 @@
-//! Moving handles: the gizmo, the gestures and what is typed.
+//! Commands that move handles: the gizmo, the gestures and typed values.
 
 use glam::{DVec2, DVec3};
 
@@ -11,7 +11,7 @@ use crate::tool::{Constraint, Context, Gesture, TransformDrag, TransformKind};
 use crate::view::{GizmoMode, GizmoOrientation};
 use crate::workspace::{set_pivot, set_pivot_place, set_turn, transform_handle};
 
-/// What the gizmo offers.
+/// The gizmo's mode.
 pub(super) const SET_GIZMO: Entry<GizmoMode> = Entry {
     listed: &[],
     scope: Scope::View,
@@ -19,7 +19,7 @@ pub(super) const SET_GIZMO: Entry<GizmoMode> = Entry {
     action: Action::Do(|context, mode| context.settings.gizmo_mode = mode),
 };
 
-/// Along which axes the gizmo stands.
+/// The axes of the gizmo.
 pub(super) const SET_ORIENTATION: Entry<GizmoOrientation> = Entry {
     listed: &[
         item(
@@ -49,7 +49,7 @@ pub(super) const SET_ORIENTATION: Entry<GizmoOrientation> = Entry {
     action: Action::Do(|context, orientation| context.settings.orientation = orientation),
 };
 
-/// The next click on the surface puts the selected handle's pivot there.
+/// The next click on the surface moves the selected handle's pivot there.
 pub(super) const PICK_PIVOT: Entry<()> = Entry {
     listed: &[item(
         (),
@@ -63,7 +63,7 @@ pub(super) const PICK_PIVOT: Entry<()> = Entry {
     action: Action::Do(|context, ()| context.settings.wants_pivot = true),
 };
 
-/// Puts a handle's pivot at a point of the present shape. The surface stays as it is.
+/// Moves a handle's pivot to a point of the present shape. The surface does not change.
 pub(super) const SET_PIVOT: Entry<(HandleId, DVec3)> = Entry {
     listed: &[],
     scope: Scope::Document,
@@ -71,7 +71,7 @@ pub(super) const SET_PIVOT: Entry<(HandleId, DVec3)> = Entry {
     action: Action::Do(|context, (id, point)| set_pivot(context.workspace, id, point)),
 };
 
-/// Chooses where a handle's pivot stands. The surface stays as it is.
+/// Chooses the place of a handle's pivot. The surface does not change.
 pub(super) const SET_PIVOT_PLACE: Entry<(HandleId, PivotPlace)> = Entry {
     listed: &[],
     scope: Scope::Document,
@@ -121,7 +121,7 @@ pub(super) const SCALE: Entry<()> = Entry {
     action: Action::Begin(|context, ()| transform(context, TransformKind::Scale)),
 };
 
-/// Takes the selected handle back to where it rests.
+/// Takes the selected handle back to its rest position.
 pub(super) const RESET_HANDLE: Entry<()> = Entry {
     listed: &[item(
         (),
@@ -143,7 +143,7 @@ pub(super) const RESET_HANDLE: Entry<()> = Entry {
     }),
 };
 
-/// Puts a handle where the transform says, about the handle's own pivot.
+/// Sets a handle's transform, about its own pivot.
 pub(super) const SET_HANDLE_TRANSFORM: Entry<(HandleId, HandleTransform)> = Entry {
     listed: &[],
     scope: Scope::Document,
@@ -166,7 +166,7 @@ pub(super) const SET_TURN: Entry<(HandleId, DVec3)> = Entry {
     action: Action::Do(|context, (id, turn_deg)| set_turn(context.workspace, id, turn_deg)),
 };
 
-/// What can be done with selected control points or a selected handle.
+/// For commands that need selected control points or a selected handle.
 fn with_something(state: &State<'_>, values: &()) -> Option<Reason> {
     if state.workspace.controls.is_empty() {
         with_selected(state, values)

@@ -1,4 +1,4 @@
-//! Where one looks from.
+//! Commands on the view.
 
 use glam::{DVec2, DVec3};
 use pliant_mesh::DrawnVertex;
@@ -8,7 +8,7 @@ use crate::input::Key;
 use crate::view::{Camera, CameraStep, NamedView, Orbit, Projection, UpAxis, View};
 use crate::workspace::{Workspace, light_part, members};
 
-/// How far a key turns the view: 15 degrees.
+/// The angle by which a key turns the view: 15 degrees.
 const VIEW_STEP_RAD: f64 = std::f64::consts::PI / 12.0;
 
 /// Frames everything.
@@ -39,7 +39,7 @@ pub(super) const FRAME_SELECTED: Entry<()> = Entry {
     action: Action::Do(|context, ()| frame_selected(context.workspace, context.view)),
 };
 
-/// Comes close to a connected part, by its component's number.
+/// Frames a connected part, by its component's number.
 pub(super) const FRAME_PART: Entry<u32> = Entry {
     listed: &[],
     scope: Scope::View,
@@ -47,7 +47,7 @@ pub(super) const FRAME_PART: Entry<u32> = Entry {
     action: Action::Do(|context, part| frame_part(context.workspace, context.view, part)),
 };
 
-/// Lights up a connected part, by its component's number, or none.
+/// Highlights a connected part, by its component's number, or none.
 pub(super) const LIGHT_PART: Entry<Option<u32>> = Entry {
     listed: &[],
     scope: Scope::View,
@@ -55,7 +55,7 @@ pub(super) const LIGHT_PART: Entry<Option<u32>> = Entry {
     action: Action::Do(|context, part| light_part(context.workspace, part)),
 };
 
-/// Comes close to a vertex, by the file's number.
+/// Frames a vertex, by the file's number.
 pub(super) const FRAME_FILE_VERTEX: Entry<u32> = Entry {
     listed: &[],
     scope: Scope::View,
@@ -63,7 +63,7 @@ pub(super) const FRAME_FILE_VERTEX: Entry<u32> = Entry {
     action: Action::Do(|context, vertex| frame_file_vertex(context.workspace, context.view, vertex)),
 };
 
-/// Comes close to a place where the shape passes through itself, by its number.
+/// Frames a place where the shape passes through itself, by its number.
 pub(super) const FRAME_INTERSECTION: Entry<usize> = Entry {
     listed: &[item(
         0,
@@ -86,7 +86,7 @@ pub(super) const FRAME_INTERSECTION: Entry<usize> = Entry {
     }),
 };
 
-/// Looks from where one looked before.
+/// Goes back to the last view.
 pub(super) const CAMERA_BACK: Entry<()> = Entry {
     listed: &[item(
         (),
@@ -103,7 +103,7 @@ pub(super) const CAMERA_BACK: Entry<()> = Entry {
     action: Action::Do(|context, ()| context.view.step(CameraStep::Back)),
 };
 
-/// Looks from where one looked before going back.
+/// Goes forth to the view before going back.
 pub(super) const CAMERA_FORTH: Entry<()> = Entry {
     listed: &[item(
         (),
@@ -120,7 +120,7 @@ pub(super) const CAMERA_FORTH: Entry<()> = Entry {
     action: Action::Do(|context, ()| context.view.step(CameraStep::Forth)),
 };
 
-/// Which axis points up on the screen. The model is framed anew, because another axis shows another side of it.
+/// The axis that points up on the screen. The model is framed anew, because another axis shows another side of it.
 pub(super) const SET_UP: Entry<UpAxis> = Entry {
     listed: &[
         item(
@@ -167,7 +167,7 @@ pub(super) const TOGGLE_PROJECTION: Entry<()> = Entry {
     }),
 };
 
-/// What dragging the view does.
+/// The effect of dragging the view.
 pub(super) const SET_ORBIT: Entry<Orbit> = Entry {
     listed: &[
         item(
@@ -206,7 +206,7 @@ pub(super) const STEP_VIEW: Entry<[i8; 2]> = Entry {
     }),
 };
 
-/// Looks from the other side.
+/// Looks from the opposite side.
 pub(super) const TURN_AROUND: Entry<()> = Entry {
     listed: &[item(
         (),
@@ -305,7 +305,7 @@ fn frame_part(workspace: &Workspace, view: &mut View, part: u32) {
     }
 }
 
-/// Comes close to a vertex, by the file's number.
+/// Frames a vertex, by the file's number.
 fn frame_file_vertex(workspace: &Workspace, view: &mut View, file_vertex: u32) {
     let Some(model) = workspace.model() else { return };
     let drawn = model.drawn.file_vertices().position(|vertex| vertex.0 == file_vertex);

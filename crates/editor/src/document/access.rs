@@ -1,34 +1,33 @@
-//! What of the file may be seen and touched: objects and small parts that are hidden or locked, and the part that is
-//! isolated.
+//! The accessible part of the file: hidden or locked objects and small parts, and the isolated part.
 //!
-//! What is hidden is neither drawn nor picked nor painted, but moves along; what is locked is held still, whatever was
-//! painted on it, and its paint stays. Both belong to the document.
+//! A hidden part is neither drawn nor picked nor painted, but still moves; a locked part is fixed, independent of its
+//! paint, which stays. Both belong to the document.
 
 use std::collections::BTreeSet;
 
 use pliant_mesh::{LOOSE_BIT, Model, SurfaceVertex};
 
-/// Objects by their number in [`Model::all_objects`], parts by their component's.
+/// Objects by their number in [`Model::all_objects`], parts by their component's number.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub struct Access {
-    /// Objects that are not shown.
+    /// Hidden objects.
     pub hidden: BTreeSet<u32>,
-    /// Objects that are held still.
+    /// Fixed objects.
     pub locked: BTreeSet<u32>,
-    /// The one connected part that is shown, if only one is.
+    /// The only shown connected part, if one is isolated.
     pub isolated: Option<u32>,
-    /// Parts that count as small, and what is done with them.
+    /// Parts that count as small, and their treatment.
     pub small: SmallParts,
 }
 
-/// Connected parts with few vertices, as the debris of a scan has.
+/// Connected parts with few vertices, like the debris of a scan.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct SmallParts {
     /// Parts with less than this share (0 to 1) of the largest part's vertices are small.
     pub share: f64,
-    /// Whether they are not shown.
+    /// Whether they are hidden.
     pub hidden: bool,
-    /// Whether they are held still.
+    /// Whether they are fixed.
     pub locked: bool,
 }
 
@@ -42,16 +41,16 @@ impl Default for SmallParts {
     }
 }
 
-/// What is done with objects.
+/// An action on objects.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Hash)]
 pub enum ObjectAction {
     /// Hides them.
     Hide,
     /// Shows them.
     Show,
-    /// Hides all others; once more shows everything.
+    /// Hides all others; a second time shows everything.
     Solo,
-    /// Holds them still.
+    /// Fixes them.
     Lock,
     /// Lets them bend again.
     Unlock,
@@ -70,7 +69,7 @@ impl ObjectAction {
 }
 
 impl Access {
-    /// The same after an action on some of `count` objects.
+    /// The access after an action on some of `count` objects.
     pub(crate) fn after(&self, action: ObjectAction, objects: &[u32], count: u32) -> Self {
         let mut access = self.clone();
         let own = || objects.iter().copied();
@@ -97,17 +96,17 @@ impl Access {
         self.hidden.is_empty() && self.isolated.is_none() && !self.small.hidden
     }
 
-    /// Whether anything is held still.
+    /// Whether anything is fixed.
     pub(crate) fn locks_any(&self) -> bool {
         self.small.locked || !self.locked.is_empty()
     }
 
-    /// What is held still: the same in two of these if both hold the same.
+    /// The fixed objects and parts: equal for two that fix the same.
     pub(crate) fn locks(&self) -> (&BTreeSet<u32>, Option<f64>) {
         (&self.locked, self.small.locked.then_some(self.small.share))
     }
 
-    /// Which of [`pliant_mesh::Drawn::triangles`] are shown; `None` is all of them.
+    /// The shown ones among [`pliant_mesh::Drawn::triangles`]; `None` is all of them.
     pub(crate) fn shown_triangles(&self, model: &Model) -> Option<Vec<bool>> {
         if self.shows_all() {
             return None;
@@ -129,7 +128,7 @@ impl Access {
         Some(shown)
     }
 
-    /// Which surface vertices are held still by a lock; `None` is none.
+    /// The surface vertices that a lock fixes; `None` is none.
     pub(crate) fn locked_vertices(&self, model: &Model) -> Option<Vec<bool>> {
         if !self.locks_any() {
             return None;
@@ -146,7 +145,7 @@ impl Access {
     }
 }
 
-/// What an object is called where the file has no name for it.
+/// The name of an object to which the file gives none.
 pub fn object_name(name: &str, number: u32) -> String {
     if name.is_empty() {
         format!("object {}", number + 1)

@@ -1,4 +1,4 @@
-//! What a document holds, to be read by all and changed by the document alone.
+//! The content of a document, which all may read and only the document changes.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -12,13 +12,13 @@ use super::kept_shape::KeptShape;
 use super::pose::Pose;
 use super::strength::Strength;
 
-/// What was painted on a vertex.
+/// The paint of a vertex.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug, Default, Hash)]
 pub enum Paint {
-    /// Nothing: free where a handle reaches, held still elsewhere.
+    /// None: free where a handle reaches, fixed elsewhere.
     #[default]
     Bare,
-    /// Held still, whatever reaches it.
+    /// Fixed, even in a handle's reach.
     Fixed,
     /// Free to bend.
     Free,
@@ -26,17 +26,17 @@ pub enum Paint {
     Handle(HandleId),
 }
 
-/// What happens to the parts of a surface that a handle's reach cuts off from the body.
+/// The treatment of the parts of a surface that a handle's reach cuts off from the body.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub enum Tips {
-    /// They are free, too.
+    /// They are free too.
     #[default]
     ComeAlong,
-    /// They are held still, as everything beyond the reach.
+    /// They are fixed, like everything beyond the reach.
     Held,
 }
 
-/// What a document holds. Every vector has one element per surface vertex.
+/// The content of a document. Every vector has one element per surface vertex.
 #[derive(Clone, Debug)]
 pub struct Content {
     pub(crate) paint: Arc<Vec<Paint>>,
@@ -45,43 +45,43 @@ pub struct Content {
     pub(crate) next_handle: u16,
     /// Painted stiffness; `None` is 1 everywhere.
     pub(crate) stiffness: Option<Arc<Vec<f64>>>,
-    /// With which continuity the surface joins what holds it; `None` is the highest everywhere.
+    /// The continuity with which the surface joins constrained vertices; `None` is the highest everywhere.
     pub(crate) continuity: Option<Arc<Vec<f64>>>,
     pub(crate) method: Method,
-    /// What methods take beside handles, by the names that they declare: that of other methods than the present one is
-    /// kept for when they are chosen again.
+    /// The methods' inputs beside handles, by declared name: those of other methods than the present one are kept until
+    /// these are chosen again.
     pub(crate) attachments: Arc<BTreeMap<&'static str, Attachment>>,
     pub(crate) tips: Tips,
     pub(crate) loose: Loose,
-    /// What single parts do that nothing holds, by their component's number, in place of `loose`.
+    /// The behaviour of single parts that nothing holds, by their component's number, instead of `loose`.
     pub(crate) loose_parts: Arc<BTreeMap<u32, Loose>>,
-    /// The connected parts that are turned inside out when the file is shown and saved, by their numbers. What bends stays
-    /// wound as in the file.
+    /// The connected parts that are turned inside out when the file is shown and saved, by their numbers. The bending
+    /// surface keeps the file's winding.
     pub(crate) inside_out: Arc<BTreeSet<u32>>,
-    /// What is hidden and locked.
+    /// The hidden and locked parts.
     pub(crate) access: Arc<Access>,
     /// The rest shape's displacements from the file's.
     pub(crate) rest: Arc<Vec<DVec3>>,
-    /// Whether a shape was applied: without, `rest` is zero.
+    /// Whether a shape was applied; if not, `rest` is zero.
     pub(crate) applied: bool,
     /// The present shape's displacements from the rest shape.
     pub(crate) from_rest: Arc<Vec<DVec3>>,
-    /// The sum of both, what is drawn: follows from them.
+    /// The sum of both, which is drawn.
     pub(crate) from_file: Arc<Vec<DVec3>>,
-    /// What was seen when what holds the surface changed last; `None` where the shape is the one that the handles mean.
+    /// The shape at the last change of the constraints; `None` if the shape is the solution for the handles.
     pub(crate) kept: Option<Arc<KeptShape>>,
-    /// What of the present shape was corrected by hand, as far as that is still seen; `None` where nothing was.
+    /// The present shape's corrections by hand, as far as they are still visible; `None` without any.
     pub(crate) corrections: Option<Arc<Vec<DVec3>>>,
     /// Whether `from_rest` is final for the handles' transforms.
     pub(crate) settled: bool,
-    /// What handles and attachments are a share of; `None` where they are shown in full.
+    /// The full values of which handles and attachments are a share; `None` if they are shown in full.
     pub(crate) strength: Option<Arc<Strength>>,
-    /// Poses that a person keeps.
+    /// The kept poses.
     pub(crate) poses: Arc<Vec<Pose>>,
 }
 
 impl Content {
-    /// What a fresh document holds: everything is held still. It bends by ARAP, which turns and moves at once.
+    /// The content of a fresh document: everything is fixed. It bends by ARAP, which turns and moves at once.
     pub(crate) fn new(vertex_count: usize) -> Self {
         let zero = Arc::new(vec![DVec3::ZERO; vertex_count]);
         Self {
@@ -109,15 +109,15 @@ impl Content {
         }
     }
 
-    /// Computes what is drawn from the rest shape and the displacements from it.
+    /// Computes the drawn shape from the rest shape and the displacements from it.
     pub(super) fn sum_shapes(&mut self) {
         self.from_file = sum_of_shapes(self.applied.then_some(&self.rest), &self.from_rest);
     }
 }
 
-/// What is drawn: the rest shape's displacements, if there are any, plus those from it.
+/// The drawn shape: the rest shape's displacements, if there are any, plus those from it.
 ///
-/// Where nothing is added the bits of the rest shape stay, so that applying a shape moves nothing.
+/// If nothing is added, the bits of the rest shape stay, so that applying a shape moves nothing.
 pub(crate) fn sum_of_shapes(rest: Option<&Arc<Vec<DVec3>>>, from_rest: &Arc<Vec<DVec3>>) -> Arc<Vec<DVec3>> {
     match rest {
         None => Arc::clone(from_rest),

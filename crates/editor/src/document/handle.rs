@@ -1,4 +1,4 @@
-//! A handle: a part of the surface that is moved as a whole, with all that a person chose for it.
+//! A handle: a part of the surface that is moved as a whole, with all its settings.
 
 use glam::{DAffine3, DVec3};
 use pliant_mesh::MirrorPlane;
@@ -20,33 +20,32 @@ pub struct Handle {
     pub name: String,
     /// Its colour, sRGB with alpha.
     pub colour: [u8; 4],
-    /// Where it was put, from the rest shape, about its pivot.
+    /// Its transform from the rest shape, about its pivot.
     pub transform: HandleTransform,
-    /// Its turn as a person counts it, in degrees about x, y and z: full turns included. It means the rotation of the
-    /// transform.
+    /// Its turn in degrees about x, y and z, full turns included. It is equal to the transform's rotation.
     pub turn_deg: DVec3,
-    /// The point that its turns and scales leave alone, on the rest shape, in world space.
+    /// The fixed point of its turns and scales, on the rest shape, in world space.
     pub pivot: DVec3,
-    /// Where the pivot stands when the handle's vertices change.
+    /// The place of the pivot when the handle's vertices change.
     pub pivot_place: PivotPlace,
-    /// How far along the surface it takes the surface along.
+    /// The distance along the surface within which it moves the surface.
     pub reach: Reach,
     /// Its weight, in [`crate::SOFT_RANGE`], if it only pulls at its vertices.
     pub soft: Option<f64>,
     /// Whether its colour and its gizmo are shown.
     pub visible: bool,
-    /// Whether it is kept from being moved, painted and deleted.
+    /// Whether it is locked against being moved, painted and deleted.
     pub locked: bool,
-    /// Whether it is a pin: it holds its vertices where they were seen, and nobody moves it.
+    /// Whether it is a pin: it holds its vertices at their visible positions and can't be moved.
     pub is_pin: bool,
-    /// With which continuity the surface joins it, in [`pliant_deform::CONTINUITY_RANGE`]; `None` is what the document
-    /// says of its vertices.
+    /// The continuity with which the surface joins it, in [`pliant_deform::CONTINUITY_RANGE`]; `None` is the document's
+    /// continuity at its vertices.
     pub continuity: Option<f64>,
-    /// The handle that does the same on the other side of a plane.
+    /// The handle with the mirrored motion on the other side of a plane.
     pub twin: Option<Twin>,
 }
 
-/// Where a handle's pivot stands.
+/// The place of a handle's pivot.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
 pub enum PivotPlace {
     /// At the mean of its vertices.
@@ -54,7 +53,7 @@ pub enum PivotPlace {
     Centroid,
     /// At the middle of its border with the rest of the surface: an arm turns about its shoulder.
     Border,
-    /// Where a person put it.
+    /// At a place that a person chose.
     Picked,
 }
 
@@ -67,12 +66,12 @@ pub struct Twin {
     pub plane: MirrorPlane,
 }
 
-/// How far along the surface a handle takes the surface along.
+/// The distance along the surface within which a handle moves the surface.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub enum Reach {
     /// This many of the handle's own radii (above 0).
     Radii(f64),
-    /// This far in world units (0: only what is painted).
+    /// This distance in world units (0: only the painted vertices).
     Length(f64),
 }
 
@@ -83,7 +82,7 @@ impl Default for Reach {
 }
 
 impl Handle {
-    /// A handle without vertices yet, at rest.
+    /// A handle without vertices, at rest.
     pub(crate) fn new(id: HandleId, name: String) -> Self {
         Self {
             id,
@@ -108,10 +107,10 @@ impl Handle {
         self.transform.affine(self.pivot)
     }
 
-    /// Puts it somewhere, and counts its turn on from where it was.
+    /// Sets its transform, and continues to count its turn.
     pub(crate) fn put(&mut self, transform: HandleTransform) {
         self.turn_deg = match transform {
-            // Back at rest it has not turned at all.
+            // At rest its turn is zero.
             _ if transform.is_identity() => DVec3::ZERO,
             HandleTransform::Trs { rotation, .. } => followed(self.turn_deg, rotation),
             HandleTransform::Matrix(_) => DVec3::ZERO,
@@ -119,7 +118,7 @@ impl Handle {
         self.transform = transform;
     }
 
-    /// Makes it a pin. It takes nothing along, and moves with no twin.
+    /// Makes it a pin. It moves nothing around it, and has no twin.
     pub(crate) fn pin(&mut self) {
         self.is_pin = true;
         self.name = format!("pin {}", u32::from(self.id.0) + 1);
@@ -127,7 +126,7 @@ impl Handle {
         self.twin = None;
     }
 
-    /// Puts the pivot at a point of the rest shape; the map of positions stays the same.
+    /// Moves the pivot to a point of the rest shape; the map of positions stays the same.
     pub(crate) fn move_pivot(&mut self, pivot: DVec3) {
         let affine = self.affine();
         if let HandleTransform::Trs { translation, .. } = &mut self.transform
@@ -138,12 +137,12 @@ impl Handle {
         self.pivot = pivot;
     }
 
-    /// Whether it is anywhere else than where it rests.
+    /// Whether it is away from its rest position.
     pub fn is_displaced(&self) -> bool {
         !self.transform.is_identity()
     }
 
-    /// Where its pivot is now, in world space.
+    /// The present position of its pivot, in world space.
     pub fn centre(&self) -> DVec3 {
         self.affine().transform_point3(self.pivot)
     }

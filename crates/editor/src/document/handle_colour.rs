@@ -1,7 +1,7 @@
-//! Colours to tell handles apart by.
+//! Colours that distinguish handles.
 
-/// The colours that handles get in turn: gold first, as in the survey's figures. They are told apart from each other and
-/// from the regions under every common colour blindness, by a test of the regions' colours.
+/// The colours that handles get in turn: gold first, as in the survey's figures. A test of the regions' colours checks
+/// that they are distinct from each other and from the regions under every common colour blindness.
 pub const HANDLE_COLOURS: [[u8; 4]; 8] = [
     [232, 184, 48, 255],
     [219, 84, 32, 255],
@@ -13,7 +13,7 @@ pub const HANDLE_COLOURS: [[u8; 4]; 8] = [
     [203, 248, 164, 255],
 ];
 
-/// The colour that the handle of this number gets when it is made.
+/// The initial colour of the handle of this number.
 pub(crate) fn handle_colour(number: u16) -> [u8; 4] {
     HANDLE_COLOURS[usize::from(number) % HANDLE_COLOURS.len()]
 }

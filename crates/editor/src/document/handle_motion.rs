@@ -1,11 +1,11 @@
-//! What dragging does to a handle's transform: moves it, turns it about its pivot, scales it along its own axes.
+//! The effect of dragging on a handle's transform: a move, a turn about its pivot, a scale along its own axes.
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
 use super::handle_transform::HandleTransform;
 
 impl HandleTransform {
-    /// Further by `translation`, in world units.
+    /// A further move by `translation`, in world units.
     pub(crate) fn moved_by(self, way: DVec3) -> Self {
         match self {
             Self::Trs {
@@ -26,7 +26,7 @@ impl HandleTransform {
         }
     }
 
-    /// Further by a rotation about where `pivot` of the rest shape is now.
+    /// A further rotation about the present position of the rest shape's `pivot`.
     pub(crate) fn turned_by(self, turn: DQuat, pivot: DVec3) -> Self {
         match self {
             Self::Trs { .. } if turn == DQuat::IDENTITY => self,
@@ -45,7 +45,7 @@ impl HandleTransform {
         }
     }
 
-    /// Further by a factor for each of the handle's own axes, about where `pivot` of the rest shape is now.
+    /// A further factor for each of the handle's own axes, about the present position of the rest shape's `pivot`.
     pub(crate) fn scaled_by(self, factors: DVec3, pivot: DVec3) -> Self {
         match self {
             Self::Trs {
@@ -68,7 +68,7 @@ impl HandleTransform {
     }
 }
 
-/// The map with another linear part that takes `pivot` where the map took it.
+/// The map with another linear part and the same image of `pivot`.
 fn with_linear(map: DAffine3, linear: DMat3, pivot: DVec3) -> DAffine3 {
     DAffine3 {
         matrix3: linear,

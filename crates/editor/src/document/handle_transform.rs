@@ -1,4 +1,4 @@
-//! How a handle is moved: a translation, rotation and scale about a pivot, or a matrix.
+//! The motion of a handle: a translation, rotation and scale about a pivot, or a matrix.
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
@@ -13,7 +13,7 @@ pub enum HandleTransform {
         translation: DVec3,
         /// A unit quaternion.
         rotation: DQuat,
-        /// One factor an axis; a negative one mirrors.
+        /// One factor per axis; a negative one mirrors.
         scale: DVec3,
         /// In world space; `None` is the mean of the handle's welded rest positions.
         pivot: Option<DVec3>,
@@ -44,7 +44,7 @@ impl HandleTransform {
         }
     }
 
-    /// Whether no direction is flattened: what the formats read, too. A tiny scale is none the worse for that.
+    /// Whether no direction is flattened; the formats require this too. A tiny scale is allowed.
     pub fn can_be_undone(&self) -> bool {
         match self {
             Self::Trs { scale, .. } => scale.is_finite() && !scale.cmpeq(DVec3::ZERO).any(),
@@ -52,7 +52,7 @@ impl HandleTransform {
         }
     }
 
-    /// The pivot that the transform names, or else `default`.
+    /// The pivot of the transform, or else `default`.
     pub fn pivot_or(&self, default: DVec3) -> DVec3 {
         match *self {
             Self::Trs { pivot, .. } => pivot.unwrap_or(default),
@@ -60,9 +60,9 @@ impl HandleTransform {
         }
     }
 
-    /// The map of world positions; `default_pivot` stands in for a pivot that the transform does not name.
+    /// The map of world positions; `default_pivot` replaces a missing pivot of the transform.
     ///
-    /// A transform that only translates has no rounding of the pivot in it, and the identity is the exact identity.
+    /// A pure translation has no rounding of the pivot, and the identity is the exact identity.
     pub fn affine(&self, default_pivot: DVec3) -> DAffine3 {
         match *self {
             Self::Trs {
@@ -82,7 +82,7 @@ impl HandleTransform {
         }
     }
 
-    /// The map of world positions at the share `t` of a drag, 0 at rest and 1 at the target: that of
+    /// The map of world positions at the share `t` of a drag, 0 at rest and 1 at the target: the map of
     /// [`HandleTransform::part`].
     pub fn at(&self, t: f64, default_pivot: DVec3) -> DAffine3 {
         self.part(t, default_pivot).affine(default_pivot)
@@ -90,9 +90,9 @@ impl HandleTransform {
 
     /// The transform at the share `t` of a drag, 0 at rest and 1 at the target.
     ///
-    /// Translation and scale go linearly and the rotation by slerp about the pivot, the short way round. A matrix is
-    /// split by its polar decomposition about `default_pivot`: its rotation goes by slerp, its stretch and the
-    /// pivot's way linearly.
+    /// Translation and scale are interpolated linearly and the rotation by slerp about the pivot, the short way round.
+    /// A matrix is split by its polar decomposition about `default_pivot`: its rotation is interpolated by slerp, its
+    /// stretch and the pivot's displacement linearly.
     #[must_use]
     pub fn part(&self, t: f64, default_pivot: DVec3) -> Self {
         self.part_turned(t, default_pivot, |rotation| {
@@ -100,7 +100,7 @@ impl HandleTransform {
         })
     }
 
-    /// The same with another way of turning: `part_of` tells the share of a rotation.
+    /// The same with another interpolation of the turn: `part_of` gives the share of a rotation.
     pub(crate) fn part_turned(&self, t: f64, default_pivot: DVec3, part_of: impl FnOnce(DQuat) -> DQuat) -> Self {
         if t == 1.0 {
             return *self;
@@ -144,8 +144,8 @@ impl Default for HandleTransform {
     }
 }
 
-/// Whether a column is zero or lies in the plane of the other two, as far as f64 can tell. A scale says nothing of it,
-/// however small or uneven.
+/// Whether a column is zero or in the plane of the other two, to the precision of f64. A small or uneven scale does not
+/// matter.
 fn is_singular(linear: &DMat3) -> bool {
     let unit = |column: DVec3| {
         // Scaled first, so that the length of a tiny column is not zero.
@@ -153,7 +153,7 @@ fn is_singular(linear: &DMat3) -> bool {
         (column / largest).normalize()
     };
     let directions = DMat3::from_cols(unit(linear.x_axis), unit(linear.y_axis), unit(linear.z_axis));
-    // A NaN, of a zero column, is singular, too.
+    // NaN, for a zero column, is singular too.
     directions.determinant().abs().partial_cmp(&(8.0 * f64::EPSILON)) != Some(std::cmp::Ordering::Greater)
 }
 

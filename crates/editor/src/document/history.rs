@@ -1,11 +1,11 @@
-//! Undo and redo by deltas: each step holds the other side of what it changed, and swaps it with the document.
+//! Undo and redo by deltas: each step has the other state of its changes, and swaps it with the document.
 //!
-//! A step holds one copy of each changed value: the old ones while it is done, the new ones while it is undone. So
-//! undo and redo are the same exchange, and bits come back as they were.
+//! A step has one copy of each changed value: the old ones while it is done, the new ones while it is undone. So undo
+//! and redo are the same exchange, and restore every bit.
 //!
-//! The shape is special: it may arrive after the step that asked for it was committed (a drag whose last solve is
-//! still running, a surface that catches up with an early drag). The history therefore remembers the shape that its
-//! deltas are relative to, and [`History::sync`] re-bases the two neighbouring steps onto the one that is shown.
+//! The shape is special: it may arrive after the commit of the step that requested it (a drag whose last solve is still
+//! running, a surface that catches up with an early drag). The history therefore remembers the shape to which its
+//! deltas are relative, and [`History::sync`] re-bases the two neighbouring steps onto the shown one.
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::sync::Arc;
@@ -24,39 +24,39 @@ use super::state::Document;
 use super::strength::{Stance, Strength};
 use super::version::{Aspect, Version};
 
-/// How many bytes of deltas are kept before the oldest steps are forgotten.
+/// The bytes of deltas that are kept before the oldest steps are forgotten.
 pub const HISTORY_BYTES: usize = 256 << 20;
 
-/// A changed part of the document: the values that it does not have at present.
+/// A changed part of the document: the values of its other state.
 #[derive(Clone, Debug)]
 pub(crate) enum Change {
     /// Painted vertices.
     Paint(Sparse<Paint>),
     /// The list of handles and the next one's number.
     Handles(Vec<Handle>, u16),
-    /// The stiffness at some vertices, and whether there is a field at all: without, it is 1 everywhere.
+    /// The stiffness at some vertices, and whether there is a field at all: without one, it is 1 everywhere.
     Stiffness(Sparse<f64>, bool),
     /// The continuity field.
     Continuity(Option<Arc<Vec<f64>>>),
     /// Method and loose components.
     Options(Method, Loose, Arc<BTreeMap<u32, Loose>>),
-    /// What methods take beside handles.
+    /// The methods' inputs beside handles.
     Attachments(Arc<BTreeMap<&'static str, Attachment>>),
-    /// The rest shape, and whether there is another than the file's.
+    /// The rest shape, and whether it differs from the file's.
     Rest(Sparse<DVec3>, bool),
-    /// Whether tips come along.
+    /// Whether tips are free.
     Tips(Tips),
-    /// Which parts are turned inside out.
+    /// The parts that are turned inside out.
     InsideOut(Arc<BTreeSet<u32>>),
-    /// What is hidden and locked.
+    /// The hidden and locked parts.
     Access(Arc<Access>),
-    /// What was seen when what holds the surface changed last.
+    /// The shape at the last change of the constraints.
     Kept(Option<Arc<KeptShape>>),
     /// Whether the shape is final for the handles' transforms.
     Settled(bool),
-    /// What handles and attachments are a share of.
+    /// The full values of which handles and attachments are a share.
     Strength(Option<Arc<Strength>>),
-    /// The poses that are kept.
+    /// The kept poses.
     Poses(Arc<Vec<Pose>>),
 }
 
@@ -114,7 +114,7 @@ impl Step {
     }
 }
 
-/// What an attachment takes. Examples share their shapes from step to step, so each holder counts its share of them.
+/// The memory of an attachment. Examples share their shapes from step to step, so each holder counts its share of them.
 fn attachment_bytes(attachment: &Attachment) -> usize {
     let of_shape = |shape: &ExampleShape| {
         shape.name.len() + shape.displacements.len() * size_of::<DVec3>() / Arc::strong_count(&shape.displacements)
@@ -128,23 +128,23 @@ fn attachment_bytes(attachment: &Attachment) -> usize {
     }
 }
 
-/// The steps behind and ahead of the present.
+/// The steps before and after the present.
 #[derive(Clone, Debug)]
 pub struct History {
     done: VecDeque<Step>,
     undone: Vec<Step>,
-    /// The shape that the neighbouring steps' deltas are relative to.
+    /// The shape to which the neighbouring steps' deltas are relative.
     shape: Arc<Vec<DVec3>>,
-    /// Which version of the document's shape that is.
+    /// That shape's version of the document's shape.
     shape_version: Version,
     cap_bytes: usize,
     /// The state before the oldest step.
     oldest: u64,
-    /// How many states there were so far: each has a number of its own.
+    /// The number of states so far: each has its own number.
     states: u64,
-    /// Which of them files have.
+    /// The states that files have.
     saved: Saved,
-    /// Grows with every step that is made, taken back or done again.
+    /// Grows with every step that is made, undone or redone.
     revision: u64,
 }
 
@@ -164,17 +164,17 @@ impl History {
         }
     }
 
-    /// The name of the step that undo would take back.
+    /// The name of the step that undo takes back.
     pub fn undo_name(&self) -> Option<&str> {
         self.done.back().map(|step| step.name.as_str())
     }
 
-    /// The name of the step that redo would do again.
+    /// The name of the step that redo makes again.
     pub fn redo_name(&self) -> Option<&str> {
         self.undone.last().map(|step| step.name.as_str())
     }
 
-    /// The names of all steps, oldest first, and how many of them are done.
+    /// The names of all steps, oldest first, and the number of those that are done.
     pub fn names(&self) -> (Vec<&str>, usize) {
         let undone = self.undone.iter().rev();
         (
@@ -183,12 +183,12 @@ impl History {
         )
     }
 
-    /// The bytes that the deltas take.
+    /// The bytes of the deltas.
     pub fn bytes(&self) -> usize {
         self.done.iter().chain(&self.undone).map(Step::bytes).sum()
     }
 
-    /// Whether the document differs from what was saved: in the project, where there is one, else as a model.
+    /// Whether the document differs from the saved one: the project, if there is one, else the model.
     pub fn is_unsaved(&self) -> bool {
         !self.saved.has(self.state())
     }
@@ -208,12 +208,12 @@ impl History {
         self.saved.written(what, mark, now);
     }
 
-    /// Notes that the document comes from such a file, without which work on it is lost.
+    /// Notes that the document comes from such a file, without which its changes are lost.
     pub(crate) fn needs(&mut self, file: SavedAs) {
         self.saved.need(file);
     }
 
-    /// Notes that no state of this history was saved, and which file is needed.
+    /// Notes that no state of this history was saved, and the file that is needed.
     pub(crate) fn mark_unsaved(&mut self, needed: SavedAs) {
         self.saved.forget(needed);
     }
@@ -245,9 +245,9 @@ impl History {
         self.shape_version = document.versions().of(Aspect::Shape);
     }
 
-    /// Adds a step with what the document had before it; `before` is the document as it was.
+    /// Adds a step with the document's earlier values; `before` is the earlier document.
     ///
-    /// What was undone can't be done again after this.
+    /// Undone steps can't be redone after this.
     pub(crate) fn push(&mut self, name: String, changes: Vec<Change>, before: &Document) {
         self.revision += 1;
         self.undone.clear();
@@ -258,12 +258,12 @@ impl History {
             shape: Sparse::default(),
         });
         self.states += 1;
-        // The step's own shape delta is empty relative to what was shown when it began: `sync` makes it the
-        // difference to what came of it.
+        // The step's own shape delta is empty relative to the shape at its beginning: `sync` makes it the difference to
+        // the resulting shape.
         self.keep_shape_of(before);
     }
 
-    /// Takes back the last step; its name, or `None` if there is none.
+    /// Undoes the last step; returns its name, or `None` if there is none.
     pub(crate) fn undo(&mut self, document: &mut Document) -> Option<String> {
         self.sync(document);
         let mut step = self.done.pop_back()?;
@@ -273,7 +273,7 @@ impl History {
         Some(name)
     }
 
-    /// Does the last undone step again; its name, or `None` if there is none.
+    /// Redoes the last undone step; returns its name, or `None` if there is none.
     pub(crate) fn redo(&mut self, document: &mut Document) -> Option<String> {
         self.sync(document);
         let mut step = self.undone.pop()?;
@@ -283,14 +283,14 @@ impl History {
         Some(name)
     }
 
-    /// Grows with every step that is made, taken back or done again.
+    /// Grows with every step that is made, undone or redone.
     pub(crate) fn revision(&self) -> u64 {
         self.revision
     }
 
     fn exchange(&mut self, step: &mut Step, document: &mut Document) {
         self.revision += 1;
-        // Apart from the document, which forgets it when a handle moves.
+        // It is apart from the document, which forgets it when a handle moves.
         let mut strength = document.take_strength();
         for change in &mut step.changes {
             swap(change, document, &mut strength);
@@ -313,7 +313,7 @@ impl History {
     }
 }
 
-/// Exchanges what the change holds with what the document has, or with its strength.
+/// Exchanges the change's values with the document's, or with its strength.
 fn swap(change: &mut Change, document: &mut Document, strength: &mut Option<Arc<Strength>>) {
     match change {
         Change::Paint(sparse) => document.swap_paint(sparse),

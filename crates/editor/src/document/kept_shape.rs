@@ -1,16 +1,16 @@
-//! The shape that was seen when what holds the surface changed, from which the next drag begins.
+//! The shape at a change of the constraints, from which the next drag begins.
 //!
-//! Handles keep their transforms, relative to one rest shape, for as long as the document lives. A stroke that changes
-//! roles or stiffness changes the shape S(T) that the handles' transforms T mean; what is seen must not jump. With x the
-//! shape seen and T₀ the transforms at that moment, a solve for T shows
+//! Handles keep their transforms, relative to one rest shape, for the document's lifetime. A stroke that changes roles
+//! or stiffness changes the solution S(T) for the handles' transforms T, but the visible shape must not jump. With x
+//! the visible shape and T₀ the transforms at that moment, a solve for T shows
 //!
 //! x(T) = S(T) + f·(x − S(T₀)),
 //!
-//! which is x at T₀. The residual x − S(T₀) fades at each vertex (f falls from 1 to 0) as S moves the vertex
-//! away from S(T₀): what is dragged freely ends at S(T) alone, and what nobody moves stays where it was seen.
+//! which is x at T₀. The residual x − S(T₀) fades at each vertex (f falls from 1 to 0) as S moves the vertex away from
+//! S(T₀): freely dragged vertices end at S(T) alone, and unmoved vertices keep their visible positions.
 //!
-//! Another method or other options make another S, from which x differs by more than what a person has made. Then the
-//! residual is what was corrected by hand alone ([`Carries::Corrections`]).
+//! Another method or other options make another S, from which x differs by more than a person's work. Then the residual
+//! is only the correction by hand ([`Carries::Corrections`]).
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -21,38 +21,38 @@ use rayon::prelude::*;
 use super::handle::{Handle, HandleId};
 
 /// The residual of a vertex is gone when the vertex has moved this many times the residual's length. The fading itself
-/// moves a vertex by at most a quarter of what the drag moves it, so that nothing is seen to run back.
+/// moves a vertex by at most a quarter of its displacement by the drag, so that no vertex visibly runs back.
 const FADES_WITHIN: f64 = 6.0;
 
-/// A shape that was seen, and where the handles stood.
+/// A visible shape, and the handles' maps with it.
 #[derive(Clone, PartialEq, Debug)]
 pub struct KeptShape {
     /// Each handle's map of rest positions.
     pub targets: BTreeMap<HandleId, DAffine3>,
-    /// Where the control points of the method's attachment were moved to; `None` where all rested.
+    /// The moved positions of the control points of the method's attachment; `None` if all rested.
     pub controls: Option<Arc<Vec<DVec3>>>,
-    /// The weights of the method's examples, `None` where one was found.
+    /// The weights of the method's examples, `None` for one that was found.
     pub weights: Vec<Option<f64>>,
     /// Displacements from the rest shape, per surface vertex.
     pub shape: Arc<Vec<DVec3>>,
-    /// What of these was corrected by hand; `None` where nothing was.
+    /// The part of these that was corrected by hand; `None` without any.
     pub corrections: Option<Arc<Vec<DVec3>>>,
-    /// What the next drags carry along.
+    /// The residual that the next drags keep.
     pub carries: Carries,
 }
 
-/// What is carried along beside the solution.
+/// The residual beside the solution.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub enum Carries {
-    /// All by which the kept shape differs from the solution at its transforms.
+    /// All differences between the kept shape and the solution at its transforms.
     #[default]
     Difference,
-    /// What was corrected by hand.
+    /// Only the corrections by hand.
     Corrections,
 }
 
 impl KeptShape {
-    /// What is seen with the handles, control points and examples as they stand.
+    /// The visible shape with the present handles, control points and examples.
     pub(crate) fn of(
         handles: &[Handle],
         controls: Option<Arc<Vec<DVec3>>>,
@@ -70,8 +70,8 @@ impl KeptShape {
         }
     }
 
-    /// What is left of it where the solution becomes another one, by another method or other options; `None` where nothing
-    /// was corrected by hand.
+    /// The rest of it when another method or other options make another solution; `None` if nothing was corrected by
+    /// hand.
     pub(crate) fn for_another_solution(&self) -> Option<Self> {
         self.corrections.as_ref()?;
         Some(Self {
@@ -80,7 +80,7 @@ impl KeptShape {
         })
     }
 
-    /// Whether the same shape is seen with the same transforms and corrections.
+    /// Whether both have the same shape with the same transforms and corrections.
     pub(crate) fn is_of(
         &self,
         handles: &[Handle],
@@ -109,7 +109,7 @@ impl KeptShape {
                 let residual = self.residual(vertex, first);
                 match fading(residual, now.distance(first)) {
                     0.0 => now,
-                    // To the bit, which a sum would round.
+                    // This is exact to the bit; a sum would be rounded.
                     1.0 if self.carries == Carries::Difference => self.shape[vertex],
                     share => now + residual * share,
                 }
@@ -117,7 +117,7 @@ impl KeptShape {
             .collect()
     }
 
-    /// What is left of the corrections in x(T), given the same; `None` where nothing was corrected by hand.
+    /// The remaining corrections in x(T), given the same; `None` if nothing was corrected by hand.
     pub(crate) fn corrections_left(&self, at_first: &[DVec3], now: &[DVec3]) -> Option<Arc<Vec<DVec3>>> {
         let corrections = self.corrections.as_ref()?.par_iter().enumerate();
         let left = corrections.map(|(vertex, correction)| {
@@ -127,7 +127,7 @@ impl KeptShape {
         Some(Arc::new(left.collect()))
     }
 
-    /// What is carried along at a vertex, given its S(T₀).
+    /// The residual at a vertex, given its S(T₀).
     fn residual(&self, vertex: usize, first: DVec3) -> DVec3 {
         match (&self.corrections, self.carries) {
             (Some(corrections), Carries::Corrections) => corrections[vertex],
@@ -136,7 +136,7 @@ impl KeptShape {
     }
 }
 
-/// The share f of a residual that is left once the solution has moved so far.
+/// The share f of a residual that remains when the solution has moved this far.
 fn fading(residual: DVec3, way: f64) -> f64 {
     let length = FADES_WITHIN * residual.length();
     if residual == DVec3::ZERO || way >= length {

@@ -1,28 +1,28 @@
-//! Which vertices of a mesh that was read again correspond to those of the mesh that a document was made on.
+//! The vertices of a mesh that was read again, matched to those of the mesh on which a document was made.
 
 use std::collections::HashMap;
 
 use glam::DVec3;
 use pliant_mesh::{Model, SurfaceVertex};
 
-/// Vertices in the same place are no further apart than this share of the mesh's size and place, which is what storing
-/// positions as f32 takes.
+/// Vertices in the same place are no further apart than this share of the mesh's size and place, which is the error of
+/// positions stored as f32.
 const SAME_PLACE: f64 = 1e-6;
 
-/// The vertices of one mesh as another has them.
+/// The vertices of one mesh matched to those of another.
 #[derive(Clone, Debug)]
 pub struct Matching {
     /// For each surface vertex of the new mesh that of the old one.
     pub(super) of_new: Vec<Option<u32>>,
-    /// For each connected part of the new mesh that of the old one which its first matched vertex belongs to.
+    /// For each connected part of the new mesh, the old part of its first matched vertex.
     pub(super) of_new_part: Vec<Option<u32>>,
-    /// Whether both files draw the same triangles, however their vertices are joined.
+    /// Whether both files draw the same triangles, for any joining of their vertices.
     pub(super) draws_the_same: bool,
 }
 
 impl Matching {
-    /// By the numbers of the file's vertices where both files draw the same triangles, else by their places. The new mesh
-    /// has the old one's shape, moved by `moved` (an entry per surface vertex) where that is given.
+    /// Matches by the numbers of the file's vertices if both files draw the same triangles, else by their places. The
+    /// new mesh has the old one's shape, moved by `moved` (an entry per surface vertex) if that is given.
     pub fn of(old: &Model, new: &Model, moved: Option<&[DVec3]>) -> Self {
         let counts = |model: &Model| (model.drawn.vertex_count(), model.drawn.triangle_count());
         let draws_the_same = counts(old) == counts(new) && old.drawn_triangles() == new.drawn_triangles();
@@ -48,13 +48,13 @@ impl Matching {
         }
     }
 
-    /// How many vertices of the new mesh have no counterpart in the old one.
+    /// The number of vertices of the new mesh without a counterpart in the old one.
     pub fn unmatched(&self) -> usize {
         self.of_new.iter().filter(|old| old.is_none()).count()
     }
 }
 
-/// Where a new vertex stands for several old ones, it has the first that triangles use.
+/// A new vertex that replaces several old ones gets the first that triangles use.
 fn by_number(old: &Model, new: &Model) -> Vec<Option<u32>> {
     let mut of_new: Vec<Option<u32>> = vec![None; new.surface.positions.len()];
     let first_bare = old.topology.bare_points().start as u32;

@@ -1,14 +1,14 @@
-//! What a mirrored handle does.
+//! The motion of a mirrored handle.
 
 use glam::{DAffine3, DQuat, DVec3};
 use pliant_mesh::MirrorPlane;
 
 use super::handle_transform::HandleTransform;
 
-/// What a handle on the other side of a plane does when one on this side, with this pivot, does `transform`.
+/// The transform of a handle on the other side of a plane if one on this side, with this pivot, has `transform`.
 pub(crate) fn mirrored_transform(plane: &MirrorPlane, transform: HandleTransform, pivot: DVec3) -> HandleTransform {
     match transform {
-        // Lengths along the world's axes stay such in a mirror across one of them.
+        // Scales along the world's axes stay along them in a mirror across one of them.
         HandleTransform::Trs {
             translation,
             rotation,

@@ -1,4 +1,4 @@
-//! What a person edits, and how it is undone: paint, handles, options, the shape they have brought about.
+//! The document and its undo: paint, handles, options, and the resulting shape.
 
 mod access;
 mod content;

@@ -4,9 +4,9 @@ use glam::{DMat3, DQuat, DVec3};
 
 /// A = R·S with a proper rotation R and a symmetric S.
 ///
-/// S is positive semidefinite where det A ≥ 0. A mirroring A gets a negative eigenvalue in S, the smallest in size
-/// and among equal ones that which leaves R the smallest turn. Singular matrices have a rotation too: the directions
-/// that they flatten are turned along.
+/// S is positive semidefinite if det A ≥ 0. A mirroring A gets a negative eigenvalue in S, the smallest in size and
+/// among equal ones the one that gives R the smallest turn. Singular matrices have a rotation too: the directions that
+/// they flatten turn with the others.
 pub(crate) fn polar_decomposition(a: DMat3) -> (DQuat, DMat3) {
     let scale = a
         .to_cols_array()
@@ -45,7 +45,7 @@ fn trace(m: DMat3) -> f64 {
 }
 
 /// A = U·diag(σ)·Vᵀ with orthonormal U and V and σ ≥ 0, by one-sided Jacobi rotations: columns of A·V are turned
-/// against each other until they are orthogonal, which is accurate for small σ as well.
+/// against each other until they are orthogonal, which is accurate even for small σ.
 fn singular_values(a: DMat3) -> (DMat3, DVec3, DMat3) {
     let (mut b, mut v) = (a, DMat3::IDENTITY);
     // Convergence is quadratic: five sweeps reach rounding, the rest is a bound.
@@ -82,12 +82,12 @@ fn singular_values(a: DMat3) -> (DMat3, DVec3, DMat3) {
         *u.col_mut(axis) = if sigma[axis] > 1e-12 * sigma.max_element() {
             along
         } else if rank == 2 {
-            // Of the two directions left, the one that makes the rotation proper.
+            // This is the one of the two remaining directions that makes the rotation proper.
             let direction = known[0].cross(known[1]);
             let chirality = v.col(order[0]).cross(v.col(order[1])).dot(v.col(axis));
             direction * chirality.signum()
         } else {
-            // A line: any direction across it, as near as may be to where V has it.
+            // For a line: any direction across it, as near as possible to V's.
             let wanted = v.col(axis);
             let across = wanted - known[0] * wanted.dot(known[0]);
             if across.length() > 0.1 {

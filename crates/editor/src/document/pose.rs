@@ -1,4 +1,4 @@
-//! A pose by its name: where handles, control points and weights of examples stood when it was kept.
+//! A pose by its name: the kept positions of handles and control points, and weights of examples.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -11,22 +11,22 @@ use super::handle_transform::HandleTransform;
 use super::strength::Stance;
 use super::turn::followed;
 
-/// How far from a rotation a matrix may be to count as one.
+/// The largest deviation of a matrix that counts as a rotation.
 const RIGID: f64 = 1e-12;
 
-/// A pose that a person keeps. Handles that it does not name are no part of it.
+/// A kept pose. Handles that it does not name are not part of it.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Pose {
     /// Its name, for a person.
     pub name: String,
     pub(crate) handles: BTreeMap<HandleId, Placed>,
-    /// Where the points of attachments were moved to, by the attachments' names.
+    /// The moved positions of the attachments' points, by the attachments' names.
     pub(crate) controls: BTreeMap<&'static str, Arc<Vec<DVec3>>>,
     /// The weights of examples that bend the surface.
     pub(crate) weights: BTreeMap<&'static str, Vec<Option<f64>>>,
 }
 
-/// Where a handle stood, about the pivot that it had.
+/// The stance of a handle, about its pivot at that time.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct Placed {
     pub(crate) stance: Stance,
@@ -34,7 +34,7 @@ pub(crate) struct Placed {
 }
 
 impl Pose {
-    /// What handles and the method's attachments show.
+    /// The present state of handles and the method's attachments.
     pub(crate) fn of(
         name: String,
         handles: &[Handle],
@@ -61,7 +61,8 @@ impl Pose {
         }
     }
 
-    /// The attachments with their points and weights as the pose has them: of those that still have as many.
+    /// The attachments with the pose's points and weights, for attachments whose number of points or weights is the
+    /// same.
     pub(crate) fn attachments(
         &self,
         present: &Arc<BTreeMap<&'static str, Attachment>>,
@@ -94,8 +95,8 @@ impl Pose {
         attachments
     }
 
-    /// Has handles stay where the pose puts them though each handle's map of the rest shape becomes the new rest shape,
-    /// with the handle's pivot where that has taken it.
+    /// Keeps the pose's positions of handles when each handle's map of the rest shape becomes the new rest shape, with
+    /// the handle's pivot at its image.
     pub(crate) fn rebase(&mut self, handles: &[Handle]) {
         for handle in handles {
             if let Some(placed) = self.handles.get_mut(&handle.id) {
@@ -113,7 +114,7 @@ impl Placed {
         }
     }
 
-    /// The stance of a handle that has this pivot: the map of positions stays the same.
+    /// The stance of a handle with this pivot: the map of positions stays the same.
     pub(crate) fn about(&self, pivot: DVec3) -> Stance {
         let mut stance = self.stance;
         if let HandleTransform::Trs { translation, .. } = &mut stance.transform
@@ -124,7 +125,7 @@ impl Placed {
         stance
     }
 
-    /// The same place from the rest shape that `made` has made of the former one.
+    /// The same position relative to the rest shape that `made` has made of the former one.
     fn rebased(self, made: DAffine3, pivot: DVec3) -> Self {
         let map = self.stance.transform.affine(self.pivot) * made.inverse();
         if !map.is_finite() {

@@ -1,17 +1,17 @@
-//! Which state of the document is in which file.
+//! The state of the document in each file.
 //!
-//! A save takes time, and the person goes on meanwhile. So it takes a [`SaveMark`] along from the moment at which it
-//! began, and when it has ended the state of that moment counts as saved, whatever has come since. A shape that arrives
-//! later, because the descent went on or the save did not wait for it, is another one than the file's.
+//! A save takes time, while the person continues to work. So it has a [`SaveMark`] from the moment at which it began,
+//! and when it has ended the state of that moment counts as saved, even after later changes. A shape that arrives
+//! later, because the descent continued or the save did not wait for it, differs from the file's.
 
 use super::version::Version;
 
-/// What a file holds of the document.
+/// The part of the document in a file.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum SavedAs {
-    /// The bent mesh alone.
+    /// Only the bent mesh.
     Model,
-    /// All of it.
+    /// The whole document.
     Project,
 }
 
@@ -26,19 +26,19 @@ pub struct SaveMark {
     pub(super) is_final: bool,
 }
 
-/// Which states the files have.
+/// The states that the files have.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Saved {
     model: InFile,
     project: InFile,
-    /// The file without which work is lost.
+    /// The file without which changes are lost.
     needed: SavedAs,
 }
 
-/// What a file has.
+/// The state in a file.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 enum InFile {
-    /// No state that can be told.
+    /// No known state.
     Nothing,
     /// The state that the document was opened with.
     Opened(u64),
@@ -56,7 +56,7 @@ impl Saved {
         }
     }
 
-    /// Work is lost unless this file has it.
+    /// Changes are lost unless this file has them.
     pub(super) fn need(&mut self, needed: SavedAs) {
         self.needed = needed;
     }
@@ -70,7 +70,7 @@ impl Saved {
         };
     }
 
-    /// Whether the file without which work is lost has this state.
+    /// Whether the file without which changes are lost has this state.
     pub(super) fn has(&self, state: u64) -> bool {
         let file = match self.needed {
             SavedAs::Model => self.model,
@@ -79,9 +79,9 @@ impl Saved {
         file == InFile::Opened(state) || file == InFile::Written(state)
     }
 
-    /// A file was written with the state of the mark; a project has the model's work, too.
+    /// A file was written with the state of the mark; a project also saves the model's changes.
     pub(super) fn written(&mut self, what: SavedAs, mark: SaveMark, now: (u64, Version)) {
-        // Without a final shape only the present state can be told to be the file's.
+        // Without a final shape only the present state is known to be the file's.
         let is_as_written = mark.is_final || now == (mark.state, mark.shape);
         let file = if is_as_written {
             InFile::Written(mark.state)

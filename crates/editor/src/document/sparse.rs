@@ -1,4 +1,4 @@
-//! A few elements of a long vector: what a step of the history keeps of it.
+//! A few elements of a long vector, which a step of the history keeps.
 
 use glam::DVec3;
 
@@ -17,7 +17,7 @@ impl<T: Copy> Sparse<T> {
         }
     }
 
-    /// The memory that it takes.
+    /// Its memory.
     pub(super) fn bytes(&self) -> usize {
         self.indices.len() * size_of::<u32>() + self.values.len() * size_of::<T>()
     }
@@ -27,7 +27,7 @@ impl<T: Copy> Sparse<T> {
         self.indices.is_empty()
     }
 
-    /// Adds an element behind the others.
+    /// Appends an element.
     pub(super) fn push(&mut self, index: usize, value: T) {
         self.indices.push(index as u32);
         self.values.push(value);
@@ -46,7 +46,7 @@ impl Sparse<DVec3> {
         difference
     }
 
-    /// `present` with the elements put in.
+    /// `present` with the elements inserted.
     pub(super) fn applied(&self, present: &[DVec3]) -> Vec<DVec3> {
         let mut whole = present.to_vec();
         for (&index, &value) in self.indices.iter().zip(&self.values) {
@@ -56,7 +56,7 @@ impl Sparse<DVec3> {
     }
 }
 
-/// Whether two vectors are the same bits: −0 is not 0 here, since undo gives back what was there.
+/// Whether two vectors are the same bits: −0 is not 0 here, because undo restores the exact value.
 pub(crate) fn bits_equal(a: DVec3, b: DVec3) -> bool {
     a.to_array().map(f64::to_bits) == b.to_array().map(f64::to_bits)
 }

@@ -1,9 +1,9 @@
-//! How much of an edit is shown: everything that a person has moved, at a share of its way from rest.
+//! The shown share of an edit: everything that a person has moved, at a share of its displacement from rest.
 //!
-//! What is scaled is what was *asked for* (handles, control points, weights of examples), and the method solves for that
-//! anew. To blend the displacements instead would be cheaper, but a vertex that turns by 90 degrees would go along the
-//! chord, and the surface would shrink in between: half of a bent arm would be a thin arm. A share of each handle's turn
-//! is a turn, so every share is a pose that a drag could have stopped at: the one that `--frames` passes there.
+//! The *input* is scaled (handles, control points, weights of examples), and the method solves for it anew. Blending
+//! the displacements instead would be cheaper, but a vertex that turns by 90 degrees would move along the chord, and
+//! the surface would shrink in between: half of a bent arm would be a thin arm. A share of each handle's turn is a
+//! turn, so every share is a pose at which a drag could have stopped: the one that `--frames` passes there.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -15,11 +15,11 @@ use super::handle::{Handle, HandleId};
 use super::handle_transform::HandleTransform;
 use super::turn::{followed, is_short, part_of};
 
-/// Where a handle stands.
+/// The stance of a handle.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct Stance {
     pub(crate) transform: HandleTransform,
-    /// Its turn as it is counted.
+    /// Its counted turn.
     pub(crate) turn_deg: DVec3,
 }
 
@@ -31,7 +31,7 @@ impl Stance {
         }
     }
 
-    /// The stance at the share `t` of the way from rest. Full turns count.
+    /// The stance at the share `t` of the displacement from rest. Full turns count.
     pub(crate) fn part(&self, t: f64, pivot: DVec3) -> Self {
         if t == 1.0 {
             return *self;
@@ -47,7 +47,7 @@ impl Stance {
         }
     }
 
-    /// Whether its way is that of the transform alone, which knows no full turns.
+    /// Whether its path is that of the transform alone, which has no full turns.
     pub(crate) fn goes_the_short_way(&self) -> bool {
         match self.transform {
             HandleTransform::Trs { rotation, .. } => is_short(rotation, self.turn_deg),
@@ -56,19 +56,19 @@ impl Stance {
     }
 }
 
-/// What is shown is a share of this.
+/// The full values; the shown ones are a share of them.
 #[derive(Clone, PartialEq, Debug)]
 pub(crate) struct Strength {
-    /// How much is shown, from 0 to below 1.
+    /// The shown share, from 0 to below 1.
     pub(crate) share: f64,
-    /// Where the handles go in full.
+    /// The handles' full transforms.
     pub(crate) handles: BTreeMap<HandleId, Stance>,
-    /// With the control points and weights in full.
+    /// The attachments with full control points and weights.
     pub(crate) attachments: Arc<BTreeMap<&'static str, Attachment>>,
 }
 
 impl Strength {
-    /// What there is, in full.
+    /// The present values, as the full ones.
     pub(crate) fn whole(handles: &[Handle], attachments: &Arc<BTreeMap<&'static str, Attachment>>) -> Self {
         Self {
             share: 1.0,
@@ -77,7 +77,7 @@ impl Strength {
         }
     }
 
-    /// The attachments with the points and weights that the method takes at a share.
+    /// The attachments with the points and weights for a share.
     pub(crate) fn attachments_at(&self, share: f64, method: &Method) -> Arc<BTreeMap<&'static str, Attachment>> {
         let mut attachments = Arc::clone(&self.attachments);
         for declared in method.declaration().attachments {
@@ -90,9 +90,9 @@ impl Strength {
     }
 }
 
-/// An attachment of the method at the share `t` of the way from rest: its control points go straight, and weights that
-/// bend the surface are multiplied by it. Those that only add to what handles do stay, because what they add to grows
-/// with the handles already.
+/// An attachment of the method at the share `t` of the displacement from rest: its control points move on straight
+/// lines, and weights that bend the surface are multiplied by `t`. Weights that only add to the handles' effect stay,
+/// because that effect already grows with the handles.
 pub(crate) fn attachment_part(method: &Method, attachment: &Attachment, t: f64) -> Attachment {
     if t == 1.0 {
         return attachment.clone();

@@ -1,8 +1,8 @@
-//! Begin, preview, commit or abort: how the document changes.
+//! Begin, preview, commit or abort: the way in which the document changes.
 //!
-//! A transaction remembers the document as it was when it began (cheap: the long vectors are shared until they change).
-//! Abort puts that back, commit writes the differences into the history as one named step. A transaction without
-//! differences leaves nothing.
+//! A transaction stores the document at its beginning (which is cheap, because the long vectors are shared until they
+//! change). Abort restores that, commit writes the differences into the history as one named step. A transaction
+//! without differences leaves nothing.
 
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ use super::sparse::Sparse;
 use super::state::Document;
 use super::version::Aspect;
 
-/// A change of the document that is under way.
+/// A change of the document in progress.
 #[derive(Debug)]
 pub(crate) struct Transaction {
     name: String,
@@ -31,17 +31,17 @@ impl Transaction {
         }
     }
 
-    /// The document as it was.
+    /// The earlier document.
     pub(crate) fn before(&self) -> &Document {
         &self.before
     }
 
-    /// Gives the step another name.
+    /// Renames the step.
     pub(crate) fn rename(&mut self, name: impl Into<String>) {
         self.name = name.into();
     }
 
-    /// Leaves everything as it was.
+    /// Restores the earlier document.
     pub(crate) fn abort(&self, document: &mut Document) {
         document.go_back_to(self.before.clone());
     }
@@ -64,7 +64,7 @@ impl Transaction {
     }
 }
 
-/// What `before` has that `after` has not.
+/// The values of `before` that differ in `after`.
 fn differences(before: &Document, after: &Document) -> Vec<Change> {
     let differ = |aspect| before.versions().differ(after.versions(), aspect);
     let mut changes = Vec::new();
@@ -129,7 +129,7 @@ fn differences(before: &Document, after: &Document) -> Vec<Change> {
     changes
 }
 
-/// Where the stiffness was another, and what it was; none is 1 everywhere.
+/// The places with another stiffness before, and that stiffness; without a field it is 1 everywhere.
 fn stiffened(before: &Document, after: &Document) -> Sparse<f64> {
     let at = |document: &Document, vertex: usize| document.stiffness.as_ref().map_or(1.0, |field| field[vertex]);
     let mut sparse = Sparse::default();

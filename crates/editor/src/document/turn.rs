@@ -1,16 +1,16 @@
-//! A handle's turn as three angles that go on counting: 270° stays 270°, and a second full turn is 720°.
+//! A handle's turn as three angles that continue to count: 270° stays 270°, and a second full turn is 720°.
 //!
-//! The rotation itself is a quaternion, which knows no full turns. Of all triples of angles about x, y and z that mean
-//! the same rotation the one that is nearest to what was shown before is shown.
+//! The rotation itself is a quaternion, which has no full turns. Among all triples of angles about x, y and z for the
+//! same rotation, the window shows the one nearest to the last.
 
 use std::f64::consts::TAU;
 
 use glam::{DQuat, DVec3, EulerRot};
 
-/// No step of a turn that is followed is longer: a third of what would be ambiguous.
+/// The longest step of a tracked turn: a third of an ambiguous one.
 const STEP_RAD: f64 = std::f64::consts::FRAC_PI_3;
 
-/// Below this sine of half its angle a rotation has no axis of its own.
+/// Below this sine of half its angle a rotation has no defined axis.
 const NO_TURN: f64 = 1e-9;
 
 /// The rotation of angles about x, y and z in degrees.
@@ -19,12 +19,12 @@ pub(crate) fn rotation_of(turn_deg: DVec3) -> DQuat {
     DQuat::from_euler(EulerRot::XYZ, x, y, z)
 }
 
-/// Whether angles in degrees mean a rotation, as well as numbers of that size can.
+/// Whether angles in degrees are a rotation, to the precision of numbers of that size.
 pub(crate) fn means(turn_deg: DVec3, rotation: DQuat) -> bool {
     turn_deg.is_finite() && rotation_of(turn_deg).dot(rotation).abs() > 1.0 - 1e-9
 }
 
-/// The angles in degrees that mean `rotation`, as near as can be to `before_deg`.
+/// The angles in degrees of `rotation` that are nearest to `before_deg`.
 pub(crate) fn followed(before_deg: DVec3, rotation: DQuat) -> DVec3 {
     if rotation.xyz() == DVec3::ZERO {
         return nearest_of(before_deg, DVec3::ZERO);
@@ -46,7 +46,7 @@ fn nearest_of(to_deg: DVec3, angles_deg: DVec3) -> DVec3 {
     angles_deg + ((to_deg - angles_deg) / 360.0).round() * 360.0 + 0.0
 }
 
-/// The angles after a turn by any angle about an axis, from a start that `start_deg` shows.
+/// The angles after a turn by any angle about an axis, from the start `start_deg`.
 pub(crate) fn accumulated(start_deg: DVec3, start: DQuat, axis: DVec3, angle_rad: f64) -> DVec3 {
     let steps = (angle_rad.abs() / STEP_RAD).ceil().clamp(1.0, 1e4);
     (1..=steps as u32).fold(start_deg, |shown, step| {
@@ -55,8 +55,8 @@ pub(crate) fn accumulated(start_deg: DVec3, start: DQuat, axis: DVec3, angle_rad
     })
 }
 
-/// The share `t` of a rotation that is counted as `turn_deg`: about its own axis, the short way round unless more than
-/// half a turn is counted about x, y or z.
+/// The share `t` of a rotation with the counted turn `turn_deg`: about its own axis, the short way round unless the
+/// count is more than half a turn about x, y or z.
 pub(crate) fn part_of(rotation: DQuat, turn_deg: DVec3, t: f64) -> DQuat {
     let short = if rotation.w < 0.0 { -rotation } else { rotation };
     let turns = full_turns(short, turn_deg);
@@ -72,7 +72,7 @@ pub(crate) fn is_short(rotation: DQuat, turn_deg: DVec3) -> bool {
     full_turns(if rotation.w < 0.0 { -rotation } else { rotation }, turn_deg) == 0.0
 }
 
-/// How many full turns are counted beyond the short way of a rotation with w ≥ 0.
+/// The number of counted full turns beyond the short way of a rotation with w ≥ 0.
 fn full_turns(short: DQuat, turn_deg: DVec3) -> f64 {
     if turn_deg.abs().max_element() <= 180.0 {
         return 0.0;
@@ -81,7 +81,8 @@ fn full_turns(short: DQuat, turn_deg: DVec3) -> f64 {
     ((turn_deg.map(f64::to_radians).dot(axis) - angle) / TAU).round()
 }
 
-/// The axis and the angle in radians of a rotation with w ≥ 0. One of full turns alone has the axis that is counted.
+/// The axis and the angle in radians of a rotation with w ≥ 0. If there are only full turns, the axis is that of the
+/// count.
 fn axis_and_angle(short: DQuat, turn_deg: DVec3) -> (DVec3, f64) {
     let (sine, axis) = (short.xyz().length(), short.xyz());
     if sine < NO_TURN {

@@ -6,8 +6,8 @@ use super::handle::{HandleId, PivotPlace, Twin};
 use super::mirror_plane::mirrored_transform;
 use super::state::Document;
 
-/// Makes `other`, which has its vertices, the twin of `id` across a plane: it is called after it, has its mirrored pivot, its
-/// reach and softness, and goes where its other half has gone.
+/// Makes `other`, which has its vertices, the twin of `id` across a plane: it gets its name, its mirrored pivot, its
+/// reach and softness, and its mirrored transform.
 pub(crate) fn link_twins(document: &mut Document, id: HandleId, other: HandleId, plane: MirrorPlane) {
     let first = document.change_handle(id, |first| {
         first.twin = Some(Twin { handle: other, plane });
@@ -23,7 +23,7 @@ pub(crate) fn link_twins(document: &mut Document, id: HandleId, other: HandleId,
         second.soft = first.soft;
         second.twin = Some(Twin { handle: id, plane });
     });
-    // The twin is known to stand at rest; from there it goes where its other half has gone.
+    // The twin is known to be at rest; from there it gets its other half's mirrored transform.
     document.keep_shape();
     if first.is_displaced() {
         let mirrored = mirrored_transform(&plane, first.transform, first.pivot);

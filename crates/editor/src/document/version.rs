@@ -1,13 +1,13 @@
-//! Which state of the document this is, aspect by aspect: what follows from an aspect is up to date as long as it was
+//! The version of the document, aspect by aspect: data that follow from an aspect are up to date as long as they were
 //! made from the same version of it.
 //!
-//! Within a document's life equal versions mean equal content. Every change gives what it changes a new version; a
-//! change that is taken back as a whole gives back the old one, and what was made from that is good again.
+//! Within a document's life equal versions mean equal content. Every change gives the changed aspect a new version; a
+//! change that is undone as a whole restores the old version, and data made from that are valid again.
 
-/// What about a document something else can follow from.
+/// An aspect of a document from which other data can follow.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Aspect {
-    /// What is painted on the vertices.
+    /// The paint of the vertices.
     Paint,
     /// The painted stiffness.
     Stiffness,
@@ -15,31 +15,31 @@ pub(crate) enum Aspect {
     Continuity,
     /// The method and its options.
     Method,
-    /// How what methods take beside handles rests.
+    /// The rest state of the methods' inputs beside handles.
     Attachments,
-    /// Whether tips come along.
+    /// Whether tips are free.
     Tips,
-    /// What loose parts do.
+    /// The behaviour of loose parts.
     Loose,
     /// The rest shape.
     Rest,
     /// The present shape, as displacements from the rest shape.
     Shape,
-    /// What is drawn: the present shape, as displacements from the file's.
+    /// The drawn shape, as displacements from the file's.
     Drawn,
-    /// Which parts are turned inside out.
+    /// The parts that are turned inside out.
     InsideOut,
-    /// What is hidden and locked.
+    /// The hidden and locked parts.
     Access,
-    /// What of that is locked.
+    /// The locked ones of these.
     Locks,
     /// Anything about handles.
     Handles,
-    /// Which handles there are, how far they reach and how they hold.
+    /// The list of handles, their reach and the way in which they hold.
     Constraints,
-    /// Where the handles want the surface, and where control points are moved to by hand.
+    /// The handles' targets, and the positions to which control points are moved by hand.
     Targets,
-    /// How handles look: colours, what is shown.
+    /// The look of handles: colours, visibility.
     Appearance,
 }
 
@@ -64,7 +64,7 @@ impl Aspect {
         Self::Appearance,
     ];
 
-    /// What the region and the factorisation follow from.
+    /// The aspects from which the region and the factorisation follow.
     const OF_PROBLEM: [Self; 10] = [
         Self::Paint,
         Self::Stiffness,
@@ -79,7 +79,7 @@ impl Aspect {
     ];
 }
 
-/// The number of a state of one aspect.
+/// The number of an aspect's state.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
 pub(crate) struct Version(u64);
 
@@ -93,17 +93,17 @@ impl Versions {
         self.0[aspect as usize]
     }
 
-    /// Whether an aspect is another than in `other`.
+    /// Whether an aspect differs from that in `other`.
     pub(crate) fn differ(&self, other: &Self, aspect: Aspect) -> bool {
         self.of(aspect) != other.of(aspect)
     }
 
-    /// Whether region and factorisation of one are no good for the other.
+    /// Whether region and factorisation of one are invalid for the other.
     pub(crate) fn are_other_problem(&self, other: &Self) -> bool {
         Aspect::OF_PROBLEM.iter().any(|&aspect| self.differ(other, aspect))
     }
 
-    /// Whether they differ in something that region and factorisation of every method follow from.
+    /// Whether they differ in an aspect from which region and factorisation of every method follow.
     pub(crate) fn are_other_edit(&self, other: &Self) -> bool {
         let mut aspects = Aspect::OF_PROBLEM.iter().filter(|&&aspect| aspect != Aspect::Method);
         aspects.any(|&aspect| self.differ(other, aspect))
@@ -115,7 +115,7 @@ impl Versions {
     }
 }
 
-/// Hands out versions. None is given twice, whatever is taken back.
+/// Hands out versions. None is used twice, even after undo.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Marks {
     last: u64,
@@ -128,7 +128,7 @@ impl Marks {
         &self.versions
     }
 
-    /// These aspects have changed.
+    /// Gives these aspects new versions.
     pub(super) fn mark(&mut self, aspects: &[Aspect]) {
         self.last += 1;
         for &aspect in aspects {
@@ -136,17 +136,17 @@ impl Marks {
         }
     }
 
-    /// Everything is as it was at `versions` again.
+    /// Restores `versions`.
     pub(super) fn go_back_to(&mut self, versions: &Versions) {
         self.versions = *versions;
     }
 
-    /// One aspect is as it was at `versions` again.
+    /// Restores one aspect of `versions`.
     pub(super) fn go_back(&mut self, versions: &Versions, aspect: Aspect) {
         self.versions.take(versions, aspect);
     }
 
-    /// Goes on counting where another left off.
+    /// Continues the count of another.
     pub(super) fn count_on_from(&mut self, other: &Self) {
         self.last = self.last.max(other.last);
     }

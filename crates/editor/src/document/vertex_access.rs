@@ -1,4 +1,4 @@
-//! Which triangles and vertices may be seen and painted, as it follows from what is hidden and locked.
+//! The triangles and vertices that may be seen and painted, computed from the hidden and locked parts.
 
 use std::sync::Arc;
 
@@ -6,16 +6,16 @@ use pliant_mesh::Model;
 
 use super::access::Access;
 
-/// What follows from an [`Access`] on a model; `None` where it changes nothing.
+/// The effect of an [`Access`] on a model; `None` if it changes nothing.
 #[derive(Debug, Default)]
 pub(crate) struct VertexAccess {
-    /// Of each drawn triangle, whether it is shown.
+    /// Whether each drawn triangle is shown.
     pub(crate) drawn: Option<Arc<Vec<bool>>>,
-    /// The surface's triangles that are shown, ascending.
+    /// The shown triangles of the surface, ascending.
     pub(crate) triangles: Option<Arc<Vec<u32>>>,
-    /// Of each surface vertex, whether some triangle shows it.
+    /// Whether some triangle shows each surface vertex.
     shown: Option<Vec<bool>>,
-    /// Of each surface vertex, whether a lock holds it.
+    /// Whether a lock holds each surface vertex.
     locked: Option<Vec<bool>>,
 }
 
@@ -41,7 +41,7 @@ impl VertexAccess {
         shown.is_none_or(|shown| shown.binary_search(&surface_triangle).is_ok())
     }
 
-    /// Whether a vertex is to be seen.
+    /// Whether a vertex is visible.
     pub(crate) fn is_shown(&self, vertex: usize) -> bool {
         self.shown.as_ref().is_none_or(|shown| shown[vertex])
     }
@@ -61,7 +61,7 @@ impl VertexAccess {
         self.is_shown(vertex) && !self.is_locked(vertex)
     }
 
-    /// Whether every vertex may be.
+    /// Whether every vertex may be painted.
     pub(crate) fn opens_all(&self) -> bool {
         self.shown.is_none() && self.locked.is_none()
     }

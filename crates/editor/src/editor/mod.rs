@@ -20,9 +20,9 @@ use crate::tool::{Adjust, Brush, Context, Gesture, Lit, Next, Overlay, ToolMode,
 use crate::view::{Shading, View};
 use crate::workspace::{ColouredBy, Workspace, take_mirrored};
 
-/// By which factor a notch of the wheel sizes the brush.
+/// The factor by which a notch of the wheel changes the brush's size.
 const WHEEL_STEP: f64 = 1.15;
-/// How much softer a notch of the wheel makes the brush for stiffness.
+/// The softening of the stiffness brush by a notch of the wheel.
 const WHEEL_FALLOFF: f64 = 0.1;
 
 /// The program without a window.
@@ -32,7 +32,7 @@ pub struct Editor {
     settings: ToolSettings,
     brush: Brush,
     overlay: Overlay,
-    /// What the pointer is doing.
+    /// The state of the pointer.
     gesture: Option<Box<dyn Gesture>>,
     pointer: Option<Pointer>,
     key_map: KeyMap,
@@ -147,7 +147,7 @@ impl Editor {
         }
     }
 
-    /// Follows from what an event changed: jobs, colours, the camera's history.
+    /// Applies the consequences of an event's changes: jobs, colours, the camera's history.
     fn conclude(&mut self) {
         let gesture = self.gesture.as_deref();
         let activity = gesture.map_or(Activity::Still, Gesture::activity);
@@ -173,7 +173,7 @@ impl Editor {
         }
     }
 
-    /// The active gesture, and separately everything that it may touch.
+    /// The active gesture, and separately everything that it may change.
     fn parts(&mut self) -> (&mut Option<Box<dyn Gesture>>, Context<'_>) {
         let context = Context {
             workspace: &mut self.workspace,
@@ -224,7 +224,7 @@ impl Editor {
             return;
         }
         if key == Key::Escape {
-            // The nearest thing first: what waits for a click, then the comparison.
+            // The most recent mode ends first: one that waits for a click, then the comparison.
             let waits = self.settings.wants_pivot || self.workspace.selection.wants_new_handle;
             if !waits {
                 self.workspace.jobs.end_comparing();
@@ -234,7 +234,7 @@ impl Editor {
             self.workspace.controls.put([]);
             self.settings.wants_pivot = false;
         } else if let Some(command) = self.key_map.command(key, modifiers) {
-            // A held key repeats: what it shows stays until it goes up.
+            // A held key repeats: its display stays until it goes up.
             let is_held = command == Command::ToggleOriginal && self.showing_original == Some(key);
             if !is_held {
                 self.showing_original = (command == Command::ToggleOriginal).then_some(key);
@@ -243,7 +243,7 @@ impl Editor {
         }
     }
 
-    /// What a held key has shown ends.
+    /// Ends the display of a held key.
     fn key_released(&mut self, key: Key) {
         if self.showing_original == Some(key) {
             self.showing_original = None;
@@ -269,7 +269,7 @@ impl Editor {
             self.workspace
                 .refuse("The drag that was under way has been taken back: drag once more.");
         }
-        // Undo during a drag takes back the drag, and nothing before it.
+        // Undo during a drag aborts the drag, and nothing before it.
         if !(had_gesture && scope == Scope::History) {
             self.act(command);
         }
@@ -282,7 +282,7 @@ impl Editor {
         }
     }
 
-    /// Adds a command to the step of the widget that is being adjusted; the first begins the step.
+    /// Adds a command to the step of the adjusted widget; the first command begins the step.
     fn adjust(&mut self, command: Command) {
         // Commands that make their own steps or gestures can't be part of a step.
         if matches!(command.scope(), Scope::History | Scope::Gesture) {
@@ -367,7 +367,7 @@ impl Editor {
         }
     }
 
-    /// Takes another file into the workspace, and shows all of it.
+    /// Opens another file in the workspace, and frames all of it.
     fn begin_file(&mut self, size: Option<f64>, open: impl FnOnce(&mut Workspace)) {
         self.abort_gesture();
         self.showing_original = None;
@@ -392,8 +392,8 @@ impl Editor {
         self.gesture.as_ref().is_some_and(|gesture| gesture.is_looking())
     }
 
-    /// Whether the event must wait: for the hierarchy of the drawn shape, for the result of an outline, or behind
-    /// events that wait already.
+    /// Whether the event must wait: for the hierarchy of the drawn shape, for the result of an outline, or for events
+    /// that wait already.
     fn must_wait(&mut self, event: &Event) -> bool {
         let waits = !self.waiting.is_empty() || self.is_looking();
         match event {

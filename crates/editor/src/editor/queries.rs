@@ -1,4 +1,4 @@
-//! Queries: what is to be shown, and what can be done.
+//! Queries: the state to show, and the available commands.
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -22,7 +22,7 @@ use crate::workspace::{SnapshotKey, Workspace, WorkspaceSnapshot, region_colour,
 use crate::{MeshReference, geometry_hash};
 
 impl Editor {
-    /// What the window must show now.
+    /// The present content of the window.
     pub fn view(&self) -> SceneView<'_> {
         let (workspace, view, settings) = (&self.workspace, &self.view, &self.settings);
         let gesture = self.gesture.as_deref();
@@ -105,12 +105,12 @@ impl Editor {
         }
     }
 
-    /// The weights of the method's examples that the last solve took or found; empty where nothing was solved yet.
+    /// The weights of the method's examples that the last solve used or found; empty before the first solve.
     pub fn example_weights(&self) -> &[f64] {
         &self.workspace.computed().example_weights
     }
 
-    /// The most memory in bytes that bindings may take, where a person has said so.
+    /// The most memory in bytes that bindings may take, if a person has set it.
     pub fn most_memory(&self) -> Option<u64> {
         self.workspace.jobs.most_memory()
     }
@@ -130,51 +130,51 @@ impl Editor {
         &self.workspace.file_name
     }
 
-    /// What each surface vertex does, as of the last measured region.
+    /// The role of each surface vertex in the last measured region.
     pub fn roles(&self) -> &[Role] {
         &self.workspace.computed().region.roles
     }
 
-    /// The connected part that is lit up, by its component's number.
+    /// The highlighted connected part, by its component's number.
     pub fn lit_part(&self) -> Option<u32> {
         self.workspace.colours().lit()
     }
 
-    /// The connected parts without paint that follow what they touch, and those with a setting of their own, by their
-    /// component's number, as of the last measured region.
+    /// The connected parts without paint that follow the part that they touch, and those with their own setting, by
+    /// their component's number, in the last measured region.
     pub fn loose_components(&self) -> &[u32] {
         &self.workspace.computed().region.loose
     }
 
-    /// Sentences about the present binding and shape: what loose parts do, what was repaired, and what the method can't
-    /// follow of where the handles are.
+    /// Sentences about the present binding and shape: the behaviour of loose parts, repairs, and motions of the handles
+    /// that the method can't follow.
     pub fn warnings(&self) -> Vec<String> {
         let computed = self.workspace.computed();
         let warnings = computed.warnings.iter().chain(&computed.blind_to);
         warnings.map(|warning| warning.worded(self.document())).collect()
     }
 
-    /// Where the shape at rest passes through itself and the file's did not; `None` where nothing is bent, until it was
-    /// looked for, and while the shape changes.
+    /// The places where the final shape passes through itself and the file's did not; `None` if nothing is bent, before
+    /// the search, and while the shape changes.
     pub fn intersections(&self) -> Option<&Intersections> {
         self.workspace.intersections()
     }
 
-    /// What the methods make of the present edit, while they are compared.
+    /// The methods' solutions for the present edit, during a comparison.
     pub fn comparison(&self) -> Option<&Comparison> {
         self.workspace.jobs.comparison.as_ref()
     }
 
-    /// Which of [`pliant_mesh::Drawn::triangles`] are shown; `None` is all of them. Another allocation when it changed.
+    /// The shown ones among [`pliant_mesh::Drawn::triangles`]; `None` is all of them. A change makes a new allocation.
     pub fn shown_triangles(&self) -> Option<&Arc<Vec<bool>>> {
         self.workspace.vertex_access.drawn.as_ref()
     }
 
-    /// The colour of each surface vertex by what it does, sRGB with alpha, replacing `out`: handles in their own
-    /// colours, the free region blue, what was painted to be held still dark grey, and nothing (alpha 0) on what rests
-    /// by itself.
+    /// Replaces `out` by the colour of each surface vertex for its role, sRGB with alpha: handles in their own colours,
+    /// the free region blue, vertices painted as fixed dark grey, and no colour (alpha 0) for vertices that rest by
+    /// themselves.
     ///
-    /// To be fetched again when [`SceneView::regions_revision`] has grown.
+    /// A change of [`SceneView::regions_revision`] means that they changed.
     pub fn region_colours(&self, out: &mut Vec<[u8; 4]>) {
         out.clear();
         let colour = self.region_colour();
@@ -186,23 +186,23 @@ impl Editor {
         self.workspace.colours().since(regions_revision)
     }
 
-    /// What determines the colour of a vertex: see [`Editor::region_colours`].
+    /// The data that determine the colour of a vertex: see [`Editor::region_colours`].
     pub fn region_colour(&self) -> impl Fn(SurfaceVertex) -> [u8; 4] {
         region_colour(&self.workspace)
     }
 
-    /// The lines between the regions as they were last measured, each with what it bounds; those of hidden handles are
-    /// left out. To be fetched again when [`SceneView::rims_revision`] has grown.
+    /// The lines between the last measured regions, each with the region that it bounds; those of hidden handles are
+    /// left out. A change of [`SceneView::rims_revision`] means that they changed.
     pub fn rims(&self) -> impl Iterator<Item = (&ContourLine, Rim)> {
         rims(&self.workspace)
     }
 
-    /// What is under a point of the view, in points, on the last shape that the hierarchy for rays has.
+    /// The hit under a point of the view, in points, on the last shape of the hierarchy for rays.
     pub fn pick(&self, position_px: DVec2) -> Option<Pick> {
         self.workspace.pick(&self.view, position_px)
     }
 
-    /// The document as it stands, with what is being dragged; `None` before the first file.
+    /// The present document, with an active drag; `None` before the first file.
     pub fn snapshot(&self) -> Option<Snapshot> {
         Some(Snapshot {
             work: WorkspaceSnapshot::of(&self.workspace)?,
@@ -212,18 +212,18 @@ impl Editor {
         })
     }
 
-    /// The state that a save which begins now writes.
+    /// The state that a save beginning now writes.
     pub fn save_mark(&self) -> SaveMark {
         let Workspace { history, document, .. } = &self.workspace;
         history.mark(document, self.is_settled() && document.is_settled())
     }
 
-    /// Another value for every other state of the document.
+    /// A value that differs for every other state of the document.
     pub fn snapshot_key(&self) -> SnapshotKey {
         SnapshotKey::of(&self.workspace)
     }
 
-    /// A digest of the document, to tell whether two are the same to the bit; `None` before the first file.
+    /// A digest of the document, to compare two to the bit; `None` before the first file.
     pub fn document_hash(&self) -> Option<String> {
         let snapshot = self.snapshot()?;
         let geometry = geometry_hash(snapshot.model());
@@ -238,7 +238,7 @@ impl Editor {
         )
     }
 
-    /// The document as an edit of the open file: `pliant apply` makes the same positions of it.
+    /// The document as an edit of the open file, from which `pliant apply` makes the same positions.
     ///
     /// # Errors
     /// No file is open, a shape was applied, or a vertex that two nodes show has two roles.
@@ -252,12 +252,12 @@ impl Editor {
         self.key_map.shortcuts(command)
     }
 
-    /// Whether the command would do anything now.
+    /// Whether the command has an effect now.
     pub fn is_enabled(&self, command: &Command) -> bool {
         self.unavailable_because(command).is_none()
     }
 
-    /// Why a command can't be done now, as a sentence with the remedy where there is one; `None` where it can.
+    /// The reason why a command can't be executed now, as a sentence with the remedy if there is one; `None` if it can.
     pub fn unavailable_because(&self, command: &Command) -> Option<Cow<'static, str>> {
         command.unavailable(&State {
             workspace: &self.workspace,
@@ -271,8 +271,8 @@ impl Editor {
         self.gesture.is_some() || self.settings.wants_pivot
     }
 
-    /// Whether shape and regions are final: nothing is being dragged or painted, and no job runs except those that
-    /// prepare for the pointer or the first drag.
+    /// Whether shape and regions are final: no drag or stroke is active, and no job runs except those that prepare for
+    /// the pointer or the first drag.
     pub fn is_settled(&self) -> bool {
         let awaited = |kind| match kind {
             JobKind::Pick | JobKind::Compare | JobKind::Joint | JobKind::Intersect => false,

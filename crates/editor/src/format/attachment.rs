@@ -1,5 +1,5 @@
-//! What a method takes beside handles, in both formats: a cage as its numbers or a file's name, a lattice as its
-//! numbers, examples as a list.
+//! A method's inputs beside handles, in both formats: a cage as its numbers or a file's name, a lattice as its numbers,
+//! examples as a list.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -18,26 +18,26 @@ use super::examples::{ExampleEntry, examples_to_value, read_examples, resolved};
 use super::reader::read;
 use super::transform::Numbers;
 
-/// An attachment as an edit has it.
+/// An attachment in an edit.
 #[derive(Clone, PartialEq, Debug)]
 pub enum AttachmentEntry {
-    /// A mesh in a file, which is still to be read; its name is relative to the edit's folder.
+    /// A mesh in a file that must still be read; its name is relative to the edit's folder.
     File {
         /// The name.
         file: String,
-        /// Where its points are moved to, if they are.
+        /// The moved positions of its points, if they are moved.
         moved: Option<Vec<DVec3>>,
     },
     /// Its numbers.
     Given(Attachment),
-    /// Examples, whose files are still to be read and which depend on the model.
+    /// Examples, whose files must still be read and which depend on the model.
     Examples(Vec<ExampleEntry>),
 }
 
 /// The attachments of a method, by their declared names.
 pub(crate) type AttachmentEntries = BTreeMap<&'static str, AttachmentEntry>;
 
-/// The members of a control mesh as they stand.
+/// The members of a control mesh in the file.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct StoredMesh {
@@ -68,7 +68,7 @@ struct StoredBox {
     max: Numbers<3>,
 }
 
-/// Reads an attachment of a method; refusals name its place within the value.
+/// Reads an attachment of a method; refusals name their place within the value.
 pub(super) fn read_attachment(
     declared: &AttachmentDeclaration,
     method: &Method,
@@ -87,7 +87,7 @@ pub(super) fn read_attachment(
     Ok(AttachmentEntry::Given(attachment))
 }
 
-/// An attachment as both formats have it; what is not moved is left out.
+/// An attachment in both formats; unmoved points are left out.
 pub(crate) fn attachment_to_value(method: &Method, entry: &AttachmentEntry) -> Value {
     let numbers = |points: &[DVec3]| points.iter().map(|point| Numbers(point.to_array())).collect();
     match entry {
@@ -124,8 +124,8 @@ pub(crate) fn attachment_to_value(method: &Method, entry: &AttachmentEntry) -> V
     }
 }
 
-/// The attachments of a document, of whatever methods: all that a project stores but examples. Lattices rest as the document's own
-/// method has them, or as another does by its defaults.
+/// The attachments of a document, for any methods: all that a project stores except examples. The rest positions of
+/// lattices are those of the document's own method, or of another one with its defaults.
 pub(crate) fn stored_attachments(
     method: &Method,
     attachments: &BTreeMap<&'static str, Attachment>,
@@ -141,7 +141,7 @@ pub(crate) fn stored_attachments(
     stored.collect()
 }
 
-/// Reads what [`stored_attachments`] has written.
+/// Reads the value of [`stored_attachments`].
 pub(crate) fn read_stored_attachments(
     method: &Method,
     stored: &BTreeMap<String, Value>,
@@ -179,7 +179,7 @@ fn given(name: &'static str, entry: AttachmentEntry) -> Result<Attachment, EditE
 
 /// The attachment on a model.
 ///
-/// # Errors
+/// One of its files was not read, or an example does not fit the model.
 /// A file of it was not read, or an example does not fit the model.
 pub(super) fn on_model(name: &'static str, entry: &AttachmentEntry, model: &Model) -> Result<Attachment, EditError> {
     match entry {
@@ -191,7 +191,7 @@ pub(super) fn on_model(name: &'static str, entry: &AttachmentEntry, model: &Mode
     }
 }
 
-/// A control mesh that a file brings in place of its name.
+/// A control mesh from a file, which replaces the file's name.
 pub(super) fn of_file(
     method: &Method,
     name: &'static str,
@@ -259,7 +259,7 @@ fn read_lattice(method: &Method, name: &str, value: &Value) -> Result<Attachment
     if moved.is_some() {
         return Ok(attachment);
     }
-    // Only what can be a lattice has a place where it rests.
+    // Only a valid lattice has rest positions.
     match method.check_attachment(name, &attachment) {
         Err(AttachmentRefused::MovedCount { .. }) => {}
         checked => checked.map_err(|refused| sentence(&refused))?,

@@ -1,4 +1,4 @@
-//! What a file is opened with: an edit, or a project that was saved.
+//! The setup of an opened file: an edit, or a saved project.
 
 use glam::DVec3;
 use pliant_mesh::{Model, WeldOptions};
@@ -8,20 +8,20 @@ use super::project::StoredKept;
 use crate::document::Document;
 use crate::{Camera, EditError, EditFile, ExampleEntry, Project, Setup};
 
-/// Regions, handles and options to begin with.
+/// The regions, handles and options of the beginning.
 #[derive(Clone, PartialEq, Debug)]
 pub enum Beginning {
     /// An edit, which fits any mesh.
     Edit(Box<EditFile>),
-    /// A project, which belongs to one.
+    /// A project, which belongs to one mesh.
     Project(Box<Project>),
 }
 
 impl Beginning {
-    /// Reads either from its JSON text: a project names its mesh, an edit has none.
+    /// Reads either from its JSON text: a project names its mesh, an edit names none.
     ///
     /// # Errors
-    /// Whatever the formats don't have is refused by its name.
+    /// Members that the formats don't have are refused by name.
     pub fn parse(text: &str) -> Result<Self, EditError> {
         let value = parse(text).map_err(|error| error.at("the file"))?;
         match value.get("mesh") {
@@ -30,10 +30,10 @@ impl Beginning {
         }
     }
 
-    /// What the solver needs, on a model.
+    /// The solver's input, on a model.
     ///
     /// # Errors
-    /// As [`EditFile::resolve`]; a project on another mesh than its own.
+    /// Those of [`EditFile::resolve`]; a project on another mesh than its own.
     pub fn resolve(&self, model: &Model) -> Result<Setup, EditError> {
         match self {
             Self::Edit(edit) => edit.resolve(model),
@@ -57,7 +57,7 @@ impl Beginning {
         }
     }
 
-    /// How the mesh's vertices are joined before this is resolved on it.
+    /// The joining of the mesh's vertices before this is resolved on it.
     pub fn weld_options(&self) -> WeldOptions {
         match self {
             Self::Edit(edit) => WeldOptions { distance: edit.weld },
@@ -65,8 +65,8 @@ impl Beginning {
         }
     }
 
-    /// The files that are to be read before this is resolved: what they are attached as, and their names, relative to
-    /// the folder that this was read from. A project has all in itself.
+    /// The files to read before this is resolved: the names of their attachments, and their own names, relative to this
+    /// file's folder. A project contains everything.
     pub fn attachment_files(&self) -> Vec<(&'static str, String)> {
         match self {
             Self::Edit(edit) => edit.attachment_files(),
@@ -74,7 +74,7 @@ impl Beginning {
         }
     }
 
-    /// The examples whose files and morph targets are to be read before this is resolved. A project has all in itself.
+    /// The examples with files and morph targets to read before this is resolved. A project contains everything.
     pub fn examples_mut(&mut self) -> impl Iterator<Item = &mut ExampleEntry> {
         let edit = match self {
             Self::Edit(edit) => Some(edit),
@@ -83,10 +83,10 @@ impl Beginning {
         edit.into_iter().flat_map(|edit| edit.examples_mut())
     }
 
-    /// As [`EditFile::bring`].
+    /// See [`EditFile::bring`].
     ///
     /// # Errors
-    /// As [`EditFile::bring`].
+    /// Those of [`EditFile::bring`].
     pub fn bring(&mut self, name: &'static str, mesh: (Vec<DVec3>, Vec<[u32; 3]>)) -> Result<(), EditError> {
         match self {
             Self::Edit(edit) => edit.bring(name, mesh),
@@ -97,7 +97,7 @@ impl Beginning {
     /// Chooses another method.
     pub fn set_method(&mut self, method: pliant_deform::Method) {
         match self {
-            // What the other method takes stays: it is left alone by this one, and not written with it.
+            // The other method's inputs stay: this one ignores them, and they are not written with it.
             Self::Edit(edit) => {
                 edit.method = method;
                 edit.kept = edit.kept.take().and_then(StoredKept::for_another_method);

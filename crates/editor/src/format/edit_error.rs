@@ -1,18 +1,18 @@
-//! Why an edit was refused: one sentence that names the culprit and the remedy.
+//! The refusal of an edit: one sentence that names the culprit and the remedy.
 
-/// Why an edit can't be read, or can't be applied to a model.
+/// The reason why an edit can't be read, or can't be applied to a model.
 #[derive(Clone, PartialEq, Debug, thiserror::Error)]
 pub enum EditError {
-    /// The text is no JSON.
+    /// The text is not JSON.
     #[error("the edit is not valid JSON: {0}")]
     Json(String),
     /// The edit's `version` is one that this program does not know.
     #[error("the edit's `version` is {found}, and this program reads version 1: set it to 1 or use a newer Pliant")]
     Version {
-        /// What stands there.
+        /// The value there.
         found: String,
     },
-    /// The text is no project.
+    /// The text is not a project.
     #[error("the project can't be read: {0}")]
     Project(String),
     /// The project's `version` is one that this program does not know.
@@ -24,7 +24,7 @@ pub enum EditError {
          it was made on"
     )]
     OtherMesh {
-        /// The mesh at hand.
+        /// The open mesh.
         name: String,
         /// Its hash.
         found: String,
@@ -36,7 +36,7 @@ pub enum EditError {
     UnknownMember {
         /// The member's name.
         member: String,
-        /// Where it stands, e.g. `handles[0].transform`.
+        /// Its place, e.g. `handles[0].transform`.
         place: String,
         /// The nearest known name, or all of them.
         remedy: String,
@@ -44,85 +44,85 @@ pub enum EditError {
     /// A name (of a method, an axis, ..) that the format does not have.
     #[error("unknown name `{name}` at {place}: {remedy}")]
     UnknownName {
-        /// The name that stands there.
+        /// The name.
         name: String,
-        /// Where it stands.
+        /// Its place.
         place: String,
         /// The nearest known name, or all of them.
         remedy: String,
     },
-    /// A member that must be there and is not.
+    /// A missing member that is required.
     #[error("{place} lacks its member `{member}`: add it")]
     Missing {
         /// The member's name.
         member: &'static str,
-        /// Where it should stand.
+        /// Its expected place.
         place: String,
     },
     /// A value of the wrong kind.
     #[error("{place} must be {expected}, not {found}")]
     WrongKind {
-        /// Where it stands.
+        /// Its place.
         place: String,
-        /// What is asked for, with its article.
+        /// The expected kind, with its article.
         expected: String,
-        /// What stands there.
+        /// The value there.
         found: String,
     },
-    /// A value outside of its range.
+    /// A value outside its range.
     #[error("{place} is {found}, which is out of range: give {allowed}")]
     OutOfRange {
-        /// Where it stands.
+        /// Its place.
         place: String,
-        /// What stands there.
+        /// The value there.
         found: String,
         /// The range in words.
         allowed: String,
     },
-    /// A member that stands twice in the same object.
+    /// A member that occurs twice in the same object.
     #[error("`{member}` stands twice in {place}: keep one of them")]
     Duplicate {
         /// The member's name.
         member: String,
-        /// Where it stands.
+        /// Its place.
         place: String,
     },
-    /// Something else about a value.
+    /// Another fault of a value.
     #[error("{place} {sentence}")]
     Other {
-        /// Where it stands.
+        /// Its place.
         place: String,
-        /// What is wrong with it and what would be right, without its subject.
+        /// The fault and the correction, without its subject.
         sentence: String,
     },
     /// A vertex number that the file does not have.
     #[error("{place} names vertex {vertex}, but the file has {count} vertices: use numbers from 0 to {}", .count.saturating_sub(1))]
     NoSuchVertex {
-        /// Where it is named.
+        /// The place that names it.
         place: String,
         /// The number.
         vertex: u64,
-        /// How many vertices the file has.
+        /// The number of the file's vertices.
         count: usize,
     },
     /// A component number that the surface does not have.
     #[error("{place} names component {component}, but the surface has {count}: use numbers from 0 to {}", .count.saturating_sub(1))]
     NoSuchComponent {
-        /// Where it is named.
+        /// The place that names it.
         place: String,
         /// The number.
         component: u32,
-        /// How many components the surface has.
+        /// The number of the surface's components.
         count: usize,
     },
     /// A per-vertex field whose length is not the file's vertex count.
     #[error("{place} has {found} values, but the file has {count} vertices: give one value for each")]
     FieldLength {
-        /// Where it stands.
+        /// Its place.
         place: String,
-        /// How many values there are.
+        /// The number of values.
         found: usize,
-        /// How many vertices the file has.
+        /// The number of the file's vertices.
         count: usize,
     },
     /// A handle without vertices.
@@ -143,18 +143,18 @@ pub enum EditError {
         first: String,
         /// The other.
         second: String,
-        /// How many surface vertices both hold.
+        /// The number of surface vertices in both.
         shared: usize,
         /// One of them, by the file's number.
         file_vertex: u32,
     },
-    /// More handles than there are numbers for.
+    /// More handles than there are numbers.
     #[error("the edit has {0} handles, more than the 65535 that an edit may have: join some of them")]
     TooManyHandles(usize),
 }
 
 impl EditError {
-    /// The refusal seen from the outer value: its place is in this member (`transform`) or element (`[3]`).
+    /// The refusal for the outer value: its place is in this member (`transform`) or element (`[3]`).
     pub(crate) fn under(mut self, step: &str) -> Self {
         if let Some(place) = self.place_mut() {
             *place = match place.chars().next() {
@@ -166,7 +166,7 @@ impl EditError {
         self
     }
 
-    /// The refusal of something in `whole`, "the edit" or so.
+    /// The refusal of a part of `whole`, "the edit" or so.
     pub(crate) fn at(mut self, whole: &str) -> Self {
         if let Some(place) = self.place_mut()
             && place.is_empty()
@@ -190,7 +190,7 @@ impl EditError {
     }
 }
 
-/// "did you mean `scale`?" where a known name is near, else the list of them.
+/// "did you mean `scale`?" if a known name is near, else the list of them.
 pub(crate) fn remedy(name: &str, known: &[&str]) -> String {
     let near = known.iter().map(|known| (edit_distance(name, known), known)).min();
     match near {
@@ -214,7 +214,7 @@ pub(crate) fn listed(names: &[&str]) -> String {
 fn edit_distance(a: &str, b: &str) -> usize {
     let b: Vec<char> = b.chars().collect();
     let mut row: Vec<usize> = (0..=b.len()).collect();
-    // The distance of a name that is far longer than all known ones is not computed, to save time.
+    // The distance of a name far longer than all known ones is not computed, to save time.
     for (i, ca) in a.chars().take(64).enumerate() {
         let mut diagonal = row[0];
         row[0] = i + 1;

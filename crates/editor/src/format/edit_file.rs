@@ -1,4 +1,4 @@
-//! An edit as it stands in `EDIT.json`: regions, handles, stiffness and method, described so that they fit any mesh.
+//! An edit in `EDIT.json`: regions, handles, stiffness and method, described so that they fit any mesh.
 
 use std::collections::BTreeMap;
 
@@ -20,13 +20,13 @@ use super::refusal::shortened;
 use super::selector::Selector;
 use crate::HandleTransform;
 
-/// The version of the edit format that is read and written.
+/// The version of the edit format for reading and writing.
 pub const EDIT_VERSION: u64 = 1;
 
-/// The smallest and the largest stiffness that an edit may give.
+/// The smallest and the largest stiffness of an edit.
 pub const STIFFNESS_RANGE: std::ops::RangeInclusive<f64> = 0.001..=1000.0;
 
-/// The least and the most of an edit that is shown.
+/// The smallest and the largest shown share of an edit.
 pub const STRENGTH_RANGE: std::ops::RangeInclusive<f64> = 0.0..=1.0;
 
 /// The smallest and the largest weight of a soft handle.
@@ -37,58 +37,58 @@ pub const SOFT_RANGE: std::ops::RangeInclusive<f64> = 1e-6..=1e6;
 pub struct EditFile {
     /// The method and its options.
     pub method: Method,
-    /// What the method takes beside handles, by the names that it declares; it makes for itself what is not here.
+    /// The method's inputs beside handles, by declared name; the method makes those that are missing.
     pub attachments: BTreeMap<&'static str, AttachmentEntry>,
     /// The vertices that may move; those outside are fixed.
     pub region: Selector,
-    /// The vertices that are held still; they win over `region`.
+    /// The fixed vertices; they have priority over `region`.
     pub fixed: Selector,
-    /// The handles; they win over both.
+    /// The handles; they have priority over both.
     pub handles: Vec<HandleEntry>,
-    /// Painted stiffness; the later entry wins, and it is 1 where there is no entry.
+    /// Painted stiffness; the later entry has priority, and it is 1 without an entry.
     pub stiffness: Vec<FieldEntry>,
-    /// The continuity with which the free surface joins fixed vertices and handles (0 to 2); the later entry wins, and
-    /// it is 2 where there is no entry.
+    /// The continuity with which the free surface joins fixed vertices and handles (0 to 2); the later entry has
+    /// priority, and it is 2 without an entry.
     pub continuity: Vec<FieldEntry>,
-    /// What components that nothing holds do.
+    /// The behaviour of components that nothing holds.
     pub loose: Loose,
-    /// What single ones do instead: those with a selected vertex; the later entry wins.
+    /// The behaviour of single ones instead: those with a selected vertex; the later entry has priority.
     pub loose_parts: Vec<(Selector, Loose)>,
-    /// The connected parts with a selected vertex are inside out and are saved the other way round: their faces' corners
-    /// in reverse order, their normals pointing the other way. It bends nothing.
+    /// The connected parts with a selected vertex are inside out and are saved the other way round: their faces'
+    /// corners in reverse order, their normals pointing the other way. This bends nothing.
     pub inside_out: Selector,
-    /// The shape that was seen when what holds the surface changed or it was corrected by hand, with the handles, by
-    /// their place in the list, as they stood then: it is carried along from there.
+    /// The visible shape at the last change of the constraints or correction by hand, with the handles' positions at
+    /// that time, by their place in the list: later shapes begin from it.
     pub kept: Option<StoredKept>,
-    /// How much of the edit is made, in 0 to 1: handles, control points and weights that bend the surface
-    /// go this share of their way ([`HandleTransform::part`]).
+    /// The share of the edit that is made, in 0 to 1: handles, control points and weights that bend the surface move by
+    /// this share ([`HandleTransform::part`]).
     pub strength: f64,
-    /// The distance within which the mesh's vertices are joined before it is bent, in world units, at least 0;
-    /// `None` takes it from the mesh ([`pliant_mesh::WeldOptions`]).
+    /// The distance within which the mesh's vertices are joined before it is bent, in world units, at least 0; with
+    /// `None` it follows from the mesh ([`pliant_mesh::WeldOptions`]).
     pub weld: Option<f64>,
 }
 
-/// A handle: which vertices move, and how.
+/// A handle: its vertices and their motion.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HandleEntry {
-    /// Its name, for a person. An edit that gives none gets "handle 1", "handle 2", ..
+    /// Its name, for a person. Without names they are "handle 1", "handle 2", ..
     #[serde(default)]
     pub name: String,
     /// Its vertices.
     pub select: Selector,
-    /// How they move.
+    /// Their motion.
     #[serde(default)]
     pub transform: HandleTransform,
     /// Its weight, in [`SOFT_RANGE`], if it only pulls at its vertices.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub soft: Option<f64>,
-    /// The continuity of its own border, in place of [`EditFile::continuity`].
+    /// The continuity of its own border, instead of [`EditFile::continuity`].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub continuity: Option<f64>,
 }
 
-/// The members as they stand.
+/// The members in the file.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct StoredEdit {
@@ -116,7 +116,7 @@ struct StoredEdit {
     weld: Option<f64>,
 }
 
-/// What the loose parts of a selection do.
+/// The behaviour of the loose parts of a selection.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct LooseEntry {
@@ -150,7 +150,7 @@ fn is_all(strength: &f64) -> bool {
 }
 
 impl Default for EditFile {
-    /// The edit with nothing but a version and a method.
+    /// The edit with only a version and a method.
     fn default() -> Self {
         Self {
             method: Method::default(),
@@ -174,7 +174,7 @@ impl EditFile {
     /// Reads an edit's JSON text.
     ///
     /// # Errors
-    /// Whatever the format does not have is refused by its name and place.
+    /// Members that the format does not have are refused by name and place.
     pub fn parse(text: &str) -> Result<Self, EditError> {
         let value = parse(text).map_err(|error| error.at("the edit"))?;
         Self::from_value(&value)
@@ -183,9 +183,9 @@ impl EditFile {
     /// Reads an edit from a JSON value.
     ///
     /// # Errors
-    /// As [`EditFile::parse`].
+    /// Those of [`EditFile::parse`].
     pub fn from_value(value: &Value) -> Result<Self, EditError> {
-        // The version first: another one may have members that this one lacks.
+        // The version comes first: another one may have members that this one lacks.
         if let Some(found) = value.get("version")
             && found.as_u64() != Some(EDIT_VERSION)
         {
@@ -198,7 +198,7 @@ impl EditFile {
             .map_err(|error| error.at("the edit"))
     }
 
-    /// What serde can't check: options of the method, and values that are out of range or exclude each other.
+    /// Checks beyond serde's: options of the method, and values that are out of range or exclude each other.
     fn of_stored(stored: StoredEdit) -> Result<Self, EditError> {
         let (method, attachments) = read_method(&stored.method).map_err(|error| error.under("method"))?;
         stored.region.check().map_err(|error| error.under("region"))?;
@@ -251,7 +251,7 @@ impl EditFile {
                         .check()
                         .map_err(|error| error.under(&format!("loose[{index}].select")))?;
                     if select == Selector::All {
-                        // What was said of some before is said anew.
+                        // Some checks repeat earlier ones.
                         loose = value.into();
                         loose_parts.clear();
                     } else {
@@ -315,10 +315,10 @@ impl EditFile {
         format!("{:#}\n", self.to_value())
     }
 
-    /// Whether neither a handle of the edit, nor a control point that was moved by hand, nor an example's weight moves
-    /// anything, or nothing of that is made.
+    /// Whether no handle of the edit, no control point moved by hand and no example's weight moves anything, or the
+    /// share is 0.
     pub fn changes_nothing(&self) -> bool {
-        // Without handles nothing is solved: the shape that was kept is the shape.
+        // Without handles nothing is solved: the kept shape is the result.
         if self.kept.is_some() && !self.handles.is_empty() {
             return false;
         }
@@ -351,7 +351,7 @@ impl EditFile {
         files.collect()
     }
 
-    /// Its examples, where the files and the morph targets that they name are put.
+    /// Its examples, into which the files and the morph targets that they name are put.
     pub fn examples_mut(&mut self) -> impl Iterator<Item = &mut ExampleEntry> {
         let entries = self.attachments.values_mut();
         let examples = entries.filter_map(|entry| match entry {
@@ -361,10 +361,10 @@ impl EditFile {
         examples.flatten()
     }
 
-    /// Puts a mesh, its vertices and triangles, in the place of the file that an attachment names.
+    /// Puts a mesh, its vertices and triangles, in place of the file that an attachment names.
     ///
     /// # Errors
-    /// What is wrong with the mesh, or with the moved points that stand beside the file's name.
+    /// The fault of the mesh, or of the moved points beside the file's name.
     pub fn bring(&mut self, name: &'static str, mesh: (Vec<DVec3>, Vec<[u32; 3]>)) -> Result<(), EditError> {
         if let Some(AttachmentEntry::File { moved, .. }) = self.attachments.get(name) {
             let attachment = of_file(&self.method, name, mesh, moved.clone());
@@ -395,7 +395,7 @@ impl HandleEntry {
     }
 }
 
-/// What a strength may be.
+/// The range of a strength.
 pub(crate) fn strength_kind() -> FieldKind {
     FieldKind {
         name: "a strength",
@@ -404,7 +404,7 @@ pub(crate) fn strength_kind() -> FieldKind {
     }
 }
 
-/// What a weld distance may be.
+/// The range of a weld distance.
 const WELD: FieldKind = FieldKind {
     name: "a distance",
     range: 0.0..=1e9,

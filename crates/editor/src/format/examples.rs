@@ -13,31 +13,32 @@ use super::field::lowest_file_vertices;
 use super::reader::read;
 use super::transform::Numbers;
 
-/// An example as an edit has it.
+/// An example in an edit.
 #[derive(Clone, PartialEq, Debug)]
 pub struct ExampleEntry {
     /// Its name, for a person.
     pub name: String,
-    /// Where its shape comes from.
+    /// The source of its shape.
     pub source: ExampleSource,
     /// Its weight, from −[`LARGEST_WEIGHT`] to it; `None` if it is found.
     pub weight: Option<f64>,
-    /// How far each surface vertex is from rest, once the file or the target was read.
+    /// The displacement of each surface vertex from rest, once the file or the target was read.
     pub displacements: Option<Arc<Vec<DVec3>>>,
 }
 
-/// Where an example's shape comes from.
+/// The source of its shape.
 #[derive(Clone, PartialEq, Debug)]
 pub enum ExampleSource {
     /// A mesh of the same vertices and triangles; the name is relative to the edit's folder.
     File(String),
     /// A morph target of the file itself.
     MorphTarget(String),
-    /// How far each of the file's vertices is from rest. Twins that were welded move as the one with the lowest number.
+    /// The displacement of each of the file's vertices from rest. Welded twins move like the one with the lowest
+    /// number.
     PerVertex(Vec<DVec3>),
 }
 
-/// The members as they stand.
+/// The members in the file.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct StoredExample {
@@ -109,7 +110,7 @@ pub(super) fn check_weight(weight: Option<f64>) -> Result<(), EditError> {
     }
 }
 
-/// The list as the edit format has it.
+/// The list in the edit format.
 pub(super) fn examples_to_value(entries: &[ExampleEntry]) -> Value {
     let stored = entries.iter().map(|entry| {
         let mut stored = StoredExample {
@@ -131,7 +132,7 @@ pub(super) fn examples_to_value(entries: &[ExampleEntry]) -> Value {
     json!(stored.collect::<Vec<_>>())
 }
 
-/// A document's examples as an edit has them.
+/// A document's examples in an edit.
 pub(super) fn entries_of(examples: &Examples, model: &Model) -> Vec<ExampleEntry> {
     let entry = |(shape, weight): (&ExampleShape, &Option<f64>)| {
         let mut points = vec![DVec3::ZERO; model.drawn.file_vertex_count()];
@@ -153,7 +154,7 @@ pub(super) fn entries_of(examples: &Examples, model: &Model) -> Vec<ExampleEntry
 /// The examples on a model, whose list is the method's member `name`.
 ///
 /// # Errors
-/// A file or a target that was not read, or numbers of another count than the file's vertices.
+/// A file or a target that was not read, or a count of numbers that differs from that of the file's vertices.
 pub(super) fn resolved(name: &str, entries: &[ExampleEntry], model: &Model) -> Result<Examples, EditError> {
     let mut shapes = Vec::new();
     for (place, entry) in entries.iter().enumerate() {

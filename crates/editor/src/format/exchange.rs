@@ -1,4 +1,4 @@
-//! Between the document and the edit file that the command line reads.
+//! The conversion between the document and the edit file that the command line reads.
 
 use std::sync::Arc;
 
@@ -15,25 +15,25 @@ use crate::document::{Content, Document, Handle, HandleId, Paint, PivotPlace, Re
 use crate::jobs::{FileContacts, Region, region_input};
 use crate::{EditError, EditFile, FieldEntry, HandleEntry, HandleTransform, Selector};
 
-/// Why a document can't be said as an edit.
+/// The reason why a document can't be written as an edit.
 #[derive(Clone, PartialEq, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ExportError {
-    /// There is no file.
+    /// No file is open.
     #[error("no file is open: open one before saving an edit")]
     NoFile,
-    /// The rest shape is not the file's.
+    /// The rest shape differs from the file's.
     #[error(
         "a shape was applied, and an edit starts from the file's shape: save the mesh, open it and go on from there"
     )]
     Applied,
-    /// A file vertex is drawn twice, and its two places do different things.
+    /// A file vertex is drawn twice, and its two places have different roles.
     #[error("{count} vertices are shown through two nodes and were painted differently there: paint both places alike")]
     SharedVertices {
-        /// How many surface vertices come out differently.
+        /// The number of surface vertices that come out differently.
         count: usize,
     },
-    /// What was written can't be read.
+    /// The written edit can't be read.
     #[error(transparent)]
     Edit(#[from] EditError),
 }
@@ -44,7 +44,7 @@ pub(crate) fn export(document: &Document, model: &Arc<Model>) -> Result<EditFile
         return Err(ExportError::Applied);
     }
     let kept = document.to_go_on_from();
-    // An edit counts no full turns: what depends on them is said as it is shown.
+    // An edit counts no full turns: values that depend on them are written as shown.
     let in_full = Some(document.in_full()).filter(Document::goes_the_short_way);
     let strength = if in_full.is_some() { document.strength() } else { 1.0 };
     let document = in_full.as_ref().unwrap_or(document);
@@ -129,7 +129,7 @@ pub(crate) fn export(document: &Document, model: &Arc<Model>) -> Result<EditFile
     Ok(edit)
 }
 
-/// A document that an edit describes: every vertex's role is painted as the edit says it.
+/// A document from an edit: every vertex's role in the edit is painted.
 pub(crate) fn import(edit: &EditFile, model: &Model) -> Result<Document, EditError> {
     let in_full = EditFile {
         strength: 1.0,
@@ -189,7 +189,7 @@ pub(crate) fn import(edit: &EditFile, model: &Model) -> Result<Document, EditErr
     Ok(document)
 }
 
-/// The transform without a pivot of its own: within a document the handle has it.
+/// The transform without its own pivot, which the handle has within a document.
 pub(crate) fn without_pivot(transform: HandleTransform) -> HandleTransform {
     pivoted(transform, None)
 }
@@ -199,7 +199,7 @@ pub(crate) fn with_pivot(handle: &Handle) -> HandleTransform {
     pivoted(handle.transform, Some(handle.pivot))
 }
 
-/// A matrix has no pivot and stays as it is.
+/// A matrix has no pivot and does not change.
 fn pivoted(transform: HandleTransform, pivot: Option<DVec3>) -> HandleTransform {
     match transform {
         HandleTransform::Trs {

@@ -1,5 +1,5 @@
-//! A number painted on the surface, as an edit has it: selections with a value each, the later one winning. A stiffness
-//! may be "rigid" in place of a number, which is infinity here: JSON has none.
+//! A number painted on the surface, in an edit: selections with a value each, the later one having priority. A
+//! stiffness may be "rigid" instead of a number, which is infinity here: JSON has none.
 
 use std::ops::RangeInclusive;
 
@@ -14,13 +14,13 @@ use super::selector::Selector;
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
 #[serde(try_from = "StoredEntry", rename_all = "snake_case")]
 pub enum FieldEntry {
-    /// The whole field: one value for each of the file's vertices. Twins that were welded take the value of the one
-    /// with the lowest number.
+    /// The whole field: one value for each of the file's vertices. Welded twins take the value of the one with the
+    /// lowest number.
     PerVertex(#[serde(serialize_with = "write_all")] Vec<f64>),
     /// One value on a selection.
     #[serde(untagged)]
     Select {
-        /// Where.
+        /// The selection.
         select: Selector,
         /// The value there; infinity is written "rigid".
         #[serde(serialize_with = "write")]
@@ -28,7 +28,7 @@ pub enum FieldEntry {
     },
 }
 
-/// The members as they stand.
+/// The members in the file.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct StoredEntry {
@@ -98,18 +98,18 @@ impl TryFrom<StoredEntry> for FieldEntry {
     }
 }
 
-/// What a field is of, and what its values may be.
+/// The quantity of a field, and the range of its values.
 #[derive(Clone, Debug)]
 pub(crate) struct FieldKind {
     /// With its article: "a stiffness".
     pub name: &'static str,
     pub range: RangeInclusive<f64>,
-    /// Whether it may be "rigid", too.
+    /// Whether it may also be "rigid".
     pub may_be_rigid: bool,
 }
 
 impl FieldKind {
-    /// Refuses a value that is not of this kind.
+    /// Refuses a value outside this kind.
     pub(crate) fn check(&self, value: f64) -> Result<(), EditError> {
         if self.range.contains(&value) || (self.may_be_rigid && value == f64::INFINITY) {
             return Ok(());
@@ -129,7 +129,7 @@ impl FieldKind {
         })
     }
 
-    /// Refuses an entry with such a value, or with a selector that can't be.
+    /// Refuses an entry with such a value, or with an invalid selector.
     pub(crate) fn check_all(&self, entries: &[FieldEntry]) -> Result<(), EditError> {
         for (index, entry) in entries.iter().enumerate() {
             let checked = match entry {
@@ -152,8 +152,8 @@ impl FieldKind {
 }
 
 impl FieldEntry {
-    /// The entry as it comes from a document: the values of the surface's vertices at the file's, `default` where a
-    /// vertex of the file is no vertex of the surface.
+    /// A document's entry: the surface vertices' values at the file's vertices, `default` for a file vertex that is not
+    /// on the surface.
     pub(crate) fn of_surface(field: &[f64], default: f64, model: &Model) -> Self {
         let mut values = vec![default; model.drawn.file_vertex_count()];
         for (surface_vertex, file_vertex) in model.drawn.surface_vertices().zip(model.drawn.file_vertices()) {

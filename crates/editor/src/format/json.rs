@@ -1,4 +1,4 @@
-//! JSON text as a value. A member that an object has twice is refused: it is not clear which one was meant.
+//! JSON text as a value. An object with a member that occurs twice is refused, because its meaning is unclear.
 
 use std::cell::RefCell;
 use std::fmt;
@@ -9,10 +9,10 @@ use serde_json::{Map, Value};
 use super::edit_error::EditError;
 use super::refusal::shortened;
 
-/// Reads a text, with or without a byte order mark in front, as some editors put it.
+/// Reads a text, with or without a byte order mark in front, which some editors write.
 ///
 /// # Errors
-/// Text that is no JSON, by line and column; a member that stands twice, by its place.
+/// Text that is not JSON, by line and column; a member that occurs twice, by its place.
 pub(crate) fn parse(text: &str) -> Result<Value, EditError> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let duplicate = RefCell::new(None);
@@ -31,7 +31,7 @@ pub(crate) fn parse(text: &str) -> Result<Value, EditError> {
     }
 }
 
-/// The place of a value, which is only put into words if it has to be named.
+/// The place of a value, which becomes words only if it must be named.
 #[derive(Clone, Copy)]
 enum Place<'a> {
     Whole,
@@ -50,7 +50,7 @@ impl Place<'_> {
     }
 }
 
-/// Reads a value that stands at a place.
+/// Reads a value at a place.
 #[derive(Clone, Copy)]
 struct Unique<'a> {
     place: Place<'a>,

@@ -1,4 +1,4 @@
-//! What loose parts do, in both formats: one word for all, or a list of selections with one each.
+//! The behaviour of loose parts, in both formats: one word for all, or a list of selections with one each.
 
 use std::fmt;
 use std::marker::PhantomData;
@@ -37,7 +37,7 @@ impl From<StoredLoose> for Loose {
     }
 }
 
-/// One value for all, or a list of entries. Serde's `untagged` would say of neither why it did not fit.
+/// One value for all, or a list of entries. Serde's `untagged` would give no reason for either.
 #[derive(Clone, PartialEq, Debug, Serialize)]
 #[serde(untagged)]
 pub(crate) enum OneOrList<T, E> {
@@ -45,7 +45,7 @@ pub(crate) enum OneOrList<T, E> {
     List(Vec<E>),
 }
 
-/// What stands where one value or a list may stand.
+/// The description of a place for one value or a list.
 pub(crate) trait One {
     const EXPECTED: &str;
 }

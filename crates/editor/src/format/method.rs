@@ -1,7 +1,7 @@
-//! A method and its options in an edit: `{"name": .., <options>, <attachments>}`, where what is left out has its
-//! default.
+//! A method and its options in an edit: `{"name": .., <options>, <attachments>}`, in which missing members have their
+//! defaults.
 //!
-//! The members follow from the method's name, by its declaration, so there is no type that could derive them.
+//! The declaration of the method's name gives the members, so no type could derive them.
 
 use pliant_deform::{METHODS, Method, MethodDeclaration, OptionDeclaration, OptionKind, OptionValue};
 use serde_json::{Map, Value, json};
@@ -10,7 +10,7 @@ use super::attachment::{AttachmentEntries, attachment_to_value, read_attachment}
 use super::edit_error::EditError;
 use super::reader::{read, require};
 
-/// Reads a method, and what it takes beside handles.
+/// Reads a method, and its inputs beside handles.
 pub(crate) fn read_method(value: &Value) -> Result<(Method, AttachmentEntries), EditError> {
     let Some(members) = value.as_object() else {
         return Err(EditError::wrong_kind(
@@ -18,7 +18,7 @@ pub(crate) fn read_method(value: &Value) -> Result<(Method, AttachmentEntries), 
             "an object with the method's `name` and options",
         ));
     };
-    // The name first: it decides which options there are.
+    // The name comes first: it determines the options.
     let name: &str = read(require(members, "name")?).map_err(|error| error.under("name"))?;
     let method = Method::from_name(name).ok_or_else(|| {
         let names: Vec<&str> = METHODS.iter().map(|declaration| declaration.name).collect();
@@ -48,7 +48,7 @@ pub(crate) fn read_method(value: &Value) -> Result<(Method, AttachmentEntries), 
         let value = members.get(&refused.option).unwrap_or(value);
         EditError::out_of_range(value, &refused.allowed).under(&refused.option)
     })?;
-    // After the options: how a lattice rests depends on them.
+    // This follows the options, on which a lattice's rest positions depend.
     let attached = attached.into_iter().map(|(attachment, value)| {
         let entry = read_attachment(attachment, &method, value);
         Ok((attachment.name, entry.map_err(|error| error.under(attachment.name))?))
@@ -57,7 +57,7 @@ pub(crate) fn read_method(value: &Value) -> Result<(Method, AttachmentEntries), 
     Ok((method, attached))
 }
 
-/// The options that say along x, y and z what this one says for all axes, if there are such.
+/// The options along x, y and z that correspond to this one for all axes, if they exist.
 fn axes_of<'a>(option: &OptionDeclaration, options: &'a [OptionDeclaration]) -> Option<[&'a OptionDeclaration; 3]> {
     let axis = |axis| {
         let name = format!("{}_{axis}", option.name);
@@ -66,7 +66,7 @@ fn axes_of<'a>(option: &OptionDeclaration, options: &'a [OptionDeclaration]) -> 
     Some([axis('x')?, axis('y')?, axis('z')?])
 }
 
-/// Reads an option as a list of what it is along each axis.
+/// Reads an option as a list of its values along each axis.
 fn read_axes(
     option: &OptionDeclaration,
     axes: [&OptionDeclaration; 3],
@@ -106,7 +106,7 @@ fn read_option(option: &OptionDeclaration, value: &Value) -> Result<OptionValue,
     }
 }
 
-/// The method as the edit format has it: its name, what differs from its defaults, and what it takes beside handles.
+/// The method in the edit format: its name, the values that differ from its defaults, and its inputs beside handles.
 pub(crate) fn method_to_value(method: &Method, attachments: &AttachmentEntries) -> Value {
     let declaration = method.declaration();
     let default = (declaration.default)();

@@ -1,10 +1,9 @@
-//! The edit format and the project format: what a document and an edit are as JSON, and an edit resolved on a model.
+//! The edit format and the project format: a document and an edit as JSON, and an edit resolved on a model.
 //!
-//! `json` reads text, `reader` gives its values to what serde derives and names the place of whatever is refused
+//! `json` reads text, `reader` gives its values to serde's derived code and names the place of every refusal
 //! (`refusal`); `edit_file` and `project` are the two formats, of `selector`s, `field`s, `transform`s and a `method`
-//! with its `attachment`s.
-//! `setup` is an edit or a document on a model, as the solver takes it, and `exchange` goes between documents and
-//! edits.
+//! with its `attachment`s. `setup` is an edit or a document on a model, ready for the solver, and `exchange` converts
+//! between documents and edits.
 
 mod attachment;
 mod beginning;

@@ -3,7 +3,7 @@
 //!
 //! Code that serde derives calls the constructors in `refusal`, which keep names and values apart: a refusal can
 //! propose the nearest known name. (`serde_path_to_error` over `serde_json` gives the place too, but the rest only as
-//! text.) The place is put together only while a refusal travels outwards, so reading without one costs nothing.
+//! text.) The place is assembled only while a refusal is passed outwards, so reading without one costs nothing.
 
 use serde::de::{self, DeserializeSeed, Deserializer, EnumAccess, Expected, MapAccess, SeqAccess, Unexpected, Visitor};
 use serde::{Deserialize, forward_to_deserialize_any};
@@ -15,12 +15,12 @@ use super::refusal::unexpected;
 /// Reads a value.
 ///
 /// # Errors
-/// Whatever `T` does not have, by its name and its place within the value.
+/// Members that `T` does not have, by name and place within the value.
 pub(crate) fn read<'de, T: Deserialize<'de>>(value: &'de Value) -> Result<T, EditError> {
     T::deserialize(Reader(value))
 }
 
-/// Reads a member of an object, which must be there.
+/// Reads a member of an object, which is required.
 pub(crate) fn require<'a>(object: &'a Map<String, Value>, member: &'static str) -> Result<&'a Value, EditError> {
     object.get(member).ok_or_else(|| de::Error::missing_field(member))
 }
@@ -123,12 +123,12 @@ impl<'de> Deserializer<'de> for Reader<'de> {
         }
     }
 
-    /// A member that is there has a value: `null` is none.
+    /// An existing member has a value: `null` is not allowed.
     fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, EditError> {
         visitor.visit_some(self)
     }
 
-    /// Only an object: a list would need no names.
+    /// Only an object is allowed: a list would not use names.
     fn deserialize_struct<V: Visitor<'de>>(
         self,
         _: &'static str,

@@ -1,13 +1,13 @@
-//! What derived code refuses, as an [`EditError`] that keeps names and values apart.
+//! The refusals of derived code, as an [`EditError`] that keeps names and values apart.
 //!
-//! The place is the value at hand: [`EditError::under`] completes it on the way out.
+//! The place is the present value: [`EditError::under`] completes it on the way out.
 
 use serde::de::{self, Expected, Unexpected};
 use serde_json::Value;
 
 use super::edit_error::{EditError, remedy};
 
-/// A value as serde speaks of it.
+/// A value in serde's terms.
 pub(super) fn unexpected(value: &Value) -> Unexpected<'_> {
     match value {
         Value::Null => Unexpected::Unit,
@@ -103,12 +103,12 @@ impl EditError {
         }
     }
 
-    /// The refusal of a value that lies outside of what is `allowed`.
+    /// The refusal of a value outside `allowed`.
     pub(crate) fn out_of_range(value: &Value, allowed: &str) -> Self {
         de::Error::invalid_value(unexpected(value), &allowed)
     }
 
-    /// The refusal of a value of another kind than is `expected`.
+    /// The refusal of a value that is not of the `expected` kind.
     pub(crate) fn wrong_kind(value: &Value, expected: &str) -> Self {
         de::Error::invalid_type(unexpected(value), &expected)
     }
@@ -134,7 +134,7 @@ fn kind(found: Unexpected<'_>) -> String {
     }
 }
 
-/// Keeps a refusal to one readable line, whatever the file holds.
+/// Keeps a refusal to one readable line, for any content of the file.
 pub(crate) fn shortened(text: &str) -> String {
     let clean: String = text
         .chars()

@@ -25,11 +25,11 @@ pub enum Selector {
     Ranges(Vec<[u32; 2]>),
     /// The vertices between two planes across an axis, both included.
     Slab {
-        /// Along which axis.
+        /// The axis.
         axis: Axis,
-        /// A fraction of the bounding box, 0 at its lower end.
+        /// The start as a fraction of the bounding box, 0 at its lower end.
         from: f64,
-        /// A fraction of the bounding box, not less than `from`.
+        /// The end as a fraction of the bounding box, not less than `from`.
         to: f64,
     },
     /// The vertices in a box in world units, its faces included.
@@ -37,7 +37,7 @@ pub enum Selector {
         /// The lower corner.
         #[serde(with = "vector")]
         min: DVec3,
-        /// The upper corner, nowhere below `min`.
+        /// The upper corner, not below `min` on any axis.
         #[serde(with = "vector")]
         max: DVec3,
     },
@@ -49,13 +49,14 @@ pub enum Selector {
         /// Its radius, not negative.
         radius: f64,
     },
-    /// A connected component: 0 is the one with the most vertices, equal ones stand by their first file vertex.
+    /// A connected component: 0 is the one with the most vertices, equal ones are in the order of their first file
+    /// vertex.
     Component(u32),
-    /// What any of them selects; of none of them, nothing.
+    /// The union of these; nothing if there are none.
     Union(Vec<Selector>),
-    /// What all of them select; of none of them, everything.
+    /// The intersection of these; everything if there are none.
     Intersection(Vec<Selector>),
-    /// What it does not select.
+    /// The complement of this one.
     Not(Box<Selector>),
 }
 
@@ -69,12 +70,12 @@ pub enum Axis {
     Y,
     /// The world's z axis.
     Z,
-    /// The axis along which the bounding box is longest; x before y before z where they agree to 1e-6.
+    /// The axis along which the bounding box is longest; x before y before z if they agree to 1e-6.
     Longest,
 }
 
 impl Selector {
-    /// Refuses values that exclude each other; whether the model has the vertices shows when it is evaluated.
+    /// Refuses values that exclude each other; the evaluation checks whether the model has the vertices.
     pub(crate) fn check(&self) -> Result<(), EditError> {
         match self {
             Self::Ranges(ranges) => match ranges.iter().position(|[first, last]| first > last) {

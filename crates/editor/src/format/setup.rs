@@ -1,4 +1,4 @@
-//! An edit resolved on a model: what every surface vertex does, how stiff it is and how each handle moves.
+//! An edit resolved on a model: the role and the stiffness of every surface vertex, and the motion of each handle.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -17,10 +17,10 @@ use crate::document::{Document, HandleId, KeptShape, attachment_part};
 use crate::jobs::Region;
 use crate::warning::worded;
 
-/// What [`pliant_deform::Problem`] needs of an edit, and the handles' transforms.
+/// The input of [`pliant_deform::Problem`] from an edit, and the handles' transforms.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Setup {
-    /// What each surface vertex does.
+    /// The role of each surface vertex.
     pub roles: Vec<Role>,
     /// The handles; [`Role::Handle`] is the index.
     pub handles: Vec<HandleSetup>,
@@ -30,33 +30,33 @@ pub struct Setup {
     pub soft: Vec<Option<f64>>,
     /// The continuity of each surface vertex; empty for the highest everywhere.
     pub continuity: Vec<f64>,
-    /// What components that nothing holds do.
+    /// The behaviour of components that nothing holds.
     pub loose: Loose,
-    /// What single components do in place of that.
+    /// The behaviour of single components instead of that.
     pub loose_parts: Vec<(u32, Loose)>,
-    /// The connected parts that are turned inside out in what is saved, by their numbers.
+    /// The connected parts that are turned inside out in the saved file, by their numbers.
     pub inside_out: BTreeSet<u32>,
     /// The method and its options.
     pub method: Method,
-    /// What was brought beside the handles, by its declared name.
+    /// The attachments that were brought, by declared name.
     pub attachments: Vec<(&'static str, Attachment)>,
-    /// The shape that is bent, where it is another than the file's.
+    /// The rest shape of bending, if it differs from the file's.
     pub rest: Option<Rest>,
-    /// The shape that was seen and is carried along, where it is another than the handles' transforms mean.
+    /// The kept visible shape, if it differs from the solution for the handles' transforms.
     pub kept: Option<Kept>,
 }
 
-/// A shape that was seen when what holds the surface changed or it was corrected by hand.
+/// The visible shape at the last change of the constraints or correction by hand.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Kept {
     /// The shape, as displacements from the rest shape.
     pub shape: Arc<KeptShape>,
-    /// Where the handles stood then.
+    /// The handles' maps at that time.
     pub targets: Vec<DAffine3>,
 }
 
 impl Kept {
-    /// `None` where a handle was not there yet.
+    /// `None` for a handle that did not exist yet.
     fn of(shape: &Arc<KeptShape>, handles: impl Iterator<Item = HandleId>) -> Option<Self> {
         let targets: Option<Vec<DAffine3>> = handles.map(|id| shape.targets.get(&id).copied()).collect();
         Some(Self {
@@ -88,17 +88,17 @@ pub struct HandleSetup {
     pub name: String,
     /// Its target.
     pub transform: HandleTransform,
-    /// The pivot that its transform names, or else the mean of its rest positions.
+    /// The pivot of its transform, or else the mean of its rest positions.
     pub pivot: DVec3,
 }
 
 impl Setup {
-    /// How many vertices are solved for.
+    /// The number of solved vertices.
     pub fn free_count(&self) -> usize {
         self.roles.iter().filter(|&&role| role == Role::Free).count()
     }
 
-    /// The problem on `model`, the one that it was resolved on. The command line and the window both bind this.
+    /// The problem on `model`, on which it was resolved. The command line and the window both bind this.
     pub fn problem<'a>(&'a self, model: &'a Model) -> Problem<'a> {
         Problem {
             surface: self.rest.as_ref().map_or(&model.surface, |rest| &rest.surface),
@@ -118,7 +118,7 @@ impl Setup {
         }
     }
 
-    /// What a document asks for, with the regions that follow from it.
+    /// The setup of a document, with the regions that follow from it.
     pub(crate) fn of_document(document: &Document, region: &Region) -> Self {
         let handles = || region.handles.iter().filter_map(|&id| document.handle(id));
         let stiffness = document.stiffness();
@@ -164,15 +164,15 @@ impl Setup {
         warnings.iter().map(sentence).collect()
     }
 
-    /// Where the control points of the method's attachment are moved to at the share `t` of the way, 0 at rest and 1 at
-    /// their places; `None` where none was brought.
+    /// The positions of the control points of the method's attachment at the share `t` of their motion, 0 at rest and 1
+    /// at the end; `None` if none was brought.
     pub fn controls(&self, t: f64) -> Option<Arc<Vec<DVec3>>> {
         let attachment = self.attachment()?;
         attachment.moved()?;
         attachment_part(&self.method, attachment, t).moved().cloned()
     }
 
-    /// The examples of the method, where some were brought.
+    /// The examples of the method, if some were brought.
     pub fn examples(&self) -> Option<&Examples> {
         match self.attachment()? {
             Attachment::Shapes(examples) => Some(examples),
@@ -180,7 +180,7 @@ impl Setup {
         }
     }
 
-    /// The weights of the examples at the share `t` of the way: those that are set and bend the surface, times it.
+    /// The weights of the examples at the share `t` of the motion: those that are set and bend the surface, times `t`.
     pub fn weights(&self, t: f64) -> Option<Vec<Option<f64>>> {
         match attachment_part(&self.method, self.attachment()?, t) {
             Attachment::Shapes(examples) => Some(examples.weights),
@@ -188,7 +188,7 @@ impl Setup {
         }
     }
 
-    /// What was brought of what the method takes.
+    /// The brought attachments of the method.
     fn attachment(&self) -> Option<&Attachment> {
         let declared = self.method.declaration();
         let mut own = self.attachments.iter();
@@ -196,7 +196,7 @@ impl Setup {
         Some(attachment)
     }
 
-    /// Where the handles are at the share `t` of the way, 0 at rest and 1 at their targets.
+    /// The handles' maps at the share `t` of the motion, 0 at rest and 1 at their targets.
     pub fn targets(&self, t: f64) -> Vec<DAffine3> {
         self.handles
             .iter()
@@ -208,11 +208,11 @@ impl Setup {
 impl EditFile {
     /// Resolves the edit on a model.
     ///
-    /// Vertices outside of `region` and those in `fixed` are fixed, and a handle wins over both.
+    /// Vertices outside `region` and those in `fixed` are fixed, and a handle has priority over both.
     ///
     /// # Errors
     /// A vertex or component that the model does not have, a handle that selects nothing, a vertex in two handles, a
-    /// stiffness field of another length.
+    /// stiffness field of a wrong length.
     pub fn resolve(&self, model: &Model) -> Result<Setup, EditError> {
         if self.handles.len() > usize::from(u16::MAX) {
             return Err(EditError::TooManyHandles(self.handles.len()));
@@ -322,17 +322,17 @@ impl EditFile {
         ))
     }
 
-    /// The components with a vertex that is selected as inside out.
+    /// The components with a vertex selected as inside out.
     fn inside_out_on(&self, model: &Model) -> Result<BTreeSet<u32>, EditError> {
         let selected = self.inside_out.evaluate_at(model, "inside_out")?;
         Ok(selected.iter().map(|vertex| model.topology.component(vertex)).collect())
     }
 
-    /// What single components do, the later entry winning.
+    /// The behaviour of single components, the later entry having priority.
     pub(crate) fn loose_parts_on(&self, model: &Model) -> Result<Vec<(u32, Loose)>, EditError> {
         let mut does = std::collections::BTreeMap::new();
         for (index, (select, loose)) in self.loose_parts.iter().enumerate() {
-            // The first entry stands for all and is kept apart.
+            // The first entry applies to all and is kept apart.
             for vertex in select
                 .evaluate_at(model, &format!("loose[{}].select", index + 1))?
                 .iter()
@@ -343,7 +343,7 @@ impl EditFile {
         Ok(does.into_iter().collect())
     }
 
-    /// The continuity of each surface vertex; empty where everything joins as smoothly as the method can.
+    /// The continuity of each surface vertex; empty if everything joins as smoothly as the method allows.
     fn continuity_on(&self, model: &Model, roles: &[Role]) -> Result<Vec<f64>, EditError> {
         let mut continuity = self.painted_continuity(model)?;
         if self.handles.iter().all(|handle| handle.continuity.is_none()) {

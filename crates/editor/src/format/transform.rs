@@ -9,11 +9,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::HandleTransform;
 
-/// `N` numbers. A tuple would be refused as one.
+/// `N` numbers. A tuple would be refused as a tuple.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct Numbers<const N: usize>(pub [f64; N]);
 
-/// The members as they stand, by name.
+/// The members in the file, by name.
 #[derive(Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 struct StoredTransform {
@@ -29,17 +29,17 @@ struct StoredTransform {
     translation: Option<Numbers<3>>,
 }
 
-/// A unit quaternion; read, any but zero.
+/// A unit quaternion; any nonzero one is read.
 struct Rotation(DQuat);
 
-/// Factors; read, none of them zero, which would flatten the handle for good.
+/// Factors; zero is refused, because it would flatten the handle for good.
 struct Scale(DVec3);
 
-/// An affine map of 16 numbers, column by column; read, one that can be undone.
+/// An affine map of 16 numbers, column by column; a singular one is refused.
 struct Matrix(DAffine3);
 
 impl Serialize for HandleTransform {
-    /// What is at its default is left out.
+    /// Default values are left out.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let stored = match *self {
             Self::Matrix(matrix) => StoredTransform {
@@ -199,8 +199,7 @@ impl<'de, const N: usize> Deserialize<'de> for Numbers<N> {
     }
 }
 
-/// A point or a direction, as three numbers, for `#[serde(with)]`: glam's own serde feature would be on for every
-/// crate.
+/// A point or a direction, as three numbers, for `#[serde(with)]`: glam's own serde feature would affect every crate.
 pub(crate) mod vector {
     use super::{DVec3, Deserialize, Deserializer, Numbers, Serialize, Serializer};
 

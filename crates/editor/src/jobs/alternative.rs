@@ -1,4 +1,4 @@
-//! What one method makes of the present edit: its binding, its shape, and what they took.
+//! One method's result for the present edit: its binding, its shape, and their costs.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -14,29 +14,29 @@ use super::solving::Wanted;
 use crate::Setup;
 use crate::document::Document;
 
-/// What is said of a method whose job a person has stopped.
+/// The message about a method whose job a person has stopped.
 const STOPPED: &str = "it was stopped: compare again to go on";
 
-/// What one method makes of the present edit.
+/// One method's result for the present edit.
 #[derive(Debug)]
 pub struct Alternative {
-    /// The method: the document's own with its options, every other with what a person begins with.
+    /// The method: the document's own with its options, every other with its initial options.
     pub method: Method,
-    /// Per surface vertex, from the file's shape. Another allocation for every other shape.
+    /// Displacements per surface vertex, from the file's shape. Every other shape has another allocation.
     pub shape: Arc<Vec<DVec3>>,
-    /// About the last shape that was solved to its end; `None` before that.
+    /// Figures of the last shape that was solved to its end; `None` before that.
     pub figures: Option<Figures>,
-    /// Why there is no shape for the present edit, in one sentence.
+    /// The reason why there is no shape for the present edit, in one sentence.
     pub refusal: Option<String>,
     /// Whether shape or refusal belong to the present edit.
     pub is_current: bool,
     binding: Option<Binding>,
-    /// Which edit the shape or the refusal belongs to, once it is final.
+    /// The edit of the shape or the refusal, once it is final.
     answers: Option<Edit>,
 }
 
 impl Alternative {
-    /// A method of which nothing is bound; it shows what the document shows.
+    /// An unbound method, which shows the document's shape.
     pub(super) fn new(method: Method, document: &Document) -> Self {
         Self {
             method,
@@ -49,8 +49,8 @@ impl Alternative {
         }
     }
 
-    /// Follows the document: what belongs to another edit is dropped, and everything where the method is the document's
-    /// own and has other options by now. Whether it is that.
+    /// Follows the document: data of another edit are dropped, and everything if the method is the document's own and
+    /// has other options now. Returns whether that is so.
     pub(super) fn follow(&mut self, document: &Document, present: &Edit) -> bool {
         let own = &document.method;
         let has_other_options = self.method.name() == own.name() && self.method != *own;
@@ -60,14 +60,14 @@ impl Alternative {
         let is_stale = |of: &Edit| has_other_options || of.is_other_problem(present);
         self.binding.take_if(|binding| is_stale(&binding.of));
         self.answers.take_if(|of| is_stale(of));
-        // What can't be bound can't be bound for other transforms either.
+        // A method that can't be bound can't be bound for other transforms either.
         let is_unbound = self.binding.is_none();
         let is_answer = |of: &Edit| is_unbound || of.has_targets_of(present);
         self.is_current = self.answers.as_ref().is_some_and(is_answer);
         has_other_options
     }
 
-    /// Binds the method where it is not, and takes the next steps; `None` where the ordering is missing.
+    /// Binds the method if it is unbound, and takes the next steps; `None` if the ordering is missing.
     pub(super) fn work(
         &self,
         document: &Document,
@@ -137,7 +137,7 @@ impl Alternative {
         }))
     }
 
-    /// Takes what a job for this edit has brought.
+    /// Stores the result of a job for this edit.
     pub(super) fn take(&mut self, outcome: JobOutcome, of: Edit) {
         match outcome {
             JobOutcome::Compared(compared) => {
@@ -155,12 +155,12 @@ impl Alternative {
                 }
             }
             JobOutcome::Failed(sentence) => self.refuse(sentence, of),
-            // Somebody else stopped it: beginning again at once would go on for ever.
+            // Something else stopped it: beginning again at once could go on for ever.
             _ => self.refuse(STOPPED.to_owned(), of),
         }
     }
 
-    /// Leaves it as it is until the edit changes.
+    /// Leaves it unchanged until the edit changes.
     pub(super) fn stop(&mut self, document: &Document) {
         self.refuse(STOPPED.to_owned(), Edit::of(document));
     }

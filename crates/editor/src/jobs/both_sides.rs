@@ -1,14 +1,14 @@
-//! Both sides of a plane of symmetry: which vertices go with which.
+//! Both sides of a plane of symmetry: pairs of vertices.
 
 use pliant_mesh::{Bvh, Cancel, Cancelled, Counterparts, MirrorPlane, Model, Progress, SurfaceVertex, symmetry_plane};
 
-/// Across which plane both sides are painted at once.
+/// The plane across which both sides are painted at once.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
 pub enum Symmetry {
-    /// Across none: each side by itself.
+    /// No plane: each side by itself.
     #[default]
     None,
-    /// The plane that the shape has.
+    /// The shape's own plane.
     Found,
     /// Across an axis of the world (0, 1, 2 for x, y, z), through the model's middle.
     Axis(usize),
@@ -22,8 +22,8 @@ pub struct BothSides {
 }
 
 impl BothSides {
-    /// Looks for them across the given plane, or across that which the shape has; `None` where it has none. `bvh` is that
-    /// of the file's shape, if it is at hand.
+    /// Searches for them across the given plane, or across the shape's own; `None` if it has none. `bvh` is that of the
+    /// file's shape, if it exists.
     pub(crate) fn find(
         model: &Model,
         bvh: Option<Bvh>,
@@ -42,7 +42,7 @@ impl BothSides {
         Ok(Some(Self { plane, counterparts }))
     }
 
-    /// The vertices that go with these on the other side, in no order, some more than once.
+    /// The partners of these vertices on the other side, in any order, some more than once.
     pub(crate) fn opposite<'a>(
         &'a self,
         vertices: impl IntoIterator<Item = SurfaceVertex> + 'a,
@@ -51,7 +51,7 @@ impl BothSides {
         vertices.into_iter().flat_map(of)
     }
 
-    /// The same with what goes along with each vertex.
+    /// The same with data for each vertex.
     pub(crate) fn opposite_with<T: Copy>(&self, vertices: &[(SurfaceVertex, T)]) -> Vec<(SurfaceVertex, T)> {
         let of = |&(vertex, value): &(SurfaceVertex, T)| {
             let counterparts = self.counterparts.of(vertex).iter();
@@ -60,7 +60,8 @@ impl BothSides {
         vertices.iter().flat_map(of).collect()
     }
 
-    /// Whether some of these vertices, which ascend, go with others of them: they lie across the plane.
+    /// Whether some of these vertices, which are ascending, are partners of others of them: then the set is on both
+    /// sides of the plane.
     pub(crate) fn are_crossed_by(&self, vertices: &[SurfaceVertex]) -> bool {
         let mut opposite = self.opposite(vertices.iter().copied());
         opposite.any(|vertex| vertices.binary_search(&vertex).is_ok())

@@ -1,4 +1,4 @@
-//! The control points of the present binding: the cage or lattice in force, and where its points are seen.
+//! The control points of the present binding: the cage or lattice in force, and the visible positions of its points.
 
 use std::sync::Arc;
 
@@ -10,16 +10,16 @@ use pliant_deform::{Attachment, Bound};
 pub(crate) struct BoundControls {
     /// Its declared name.
     pub(crate) name: &'static str,
-    /// What was brought, or what the method has made for itself.
+    /// The brought one, or the one that the method has made.
     pub(crate) attachment: Attachment,
     /// The lines between its points.
     pub(crate) edges: Arc<Vec<[u32; 2]>>,
-    /// Where its points are, in world units, moved by handles and by hand.
+    /// The positions of its points, in world units, moved by handles and by hand.
     pub(crate) positions: Arc<Vec<DVec3>>,
 }
 
 impl BoundControls {
-    /// Of a binding; `None` for a method without control points.
+    /// The control points of a binding; `None` for a method without them.
     pub(super) fn of(bound: &Bound) -> Option<Self> {
         let (name, attachment) = bound.attachment()?;
         Some(Self {

@@ -1,4 +1,4 @@
-//! What a solve from a kept shape goes on from.
+//! The state from which a solve with a kept shape continues.
 
 use std::sync::Arc;
 
@@ -6,17 +6,17 @@ use glam::DVec3;
 
 use crate::document::KeptShape;
 
-/// What a solve from a kept shape goes on from.
+/// The state from which a solve with a kept shape continues.
 #[derive(Clone, Debug)]
 pub(crate) struct Carried {
-    /// The shape that was kept.
+    /// The kept shape.
     pub(crate) kept: Arc<KeptShape>,
-    /// The solution for the transforms at which it was kept.
+    /// The solution for the transforms of the kept shape.
     pub(crate) at_first: Arc<Vec<DVec3>>,
-    /// The solution for the present transforms, without what is carried along.
+    /// The solution for the present transforms, without the residual.
     pub(crate) solution: Arc<Vec<DVec3>>,
-    /// What is shown of it.
+    /// The shown shape.
     pub(crate) shown: Arc<Vec<DVec3>>,
-    /// What of that was corrected by hand.
+    /// The part of it that was corrected by hand.
     pub(crate) corrections: Option<Arc<Vec<DVec3>>>,
 }

@@ -1,4 +1,4 @@
-//! What a job of the comparison brings: a binding, a shape, and what they took.
+//! The result of a comparison's job: a binding, a shape, and their costs.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex};
@@ -10,17 +10,17 @@ use pliant_mesh::Bounds;
 use super::carried::Carried;
 use crate::document::{Document, HandleId, KeptShape, Versions};
 
-/// What a job of the comparison brings.
+/// The result of a comparison's job.
 #[derive(Debug)]
 pub struct Compared {
     pub(super) binding: Binding,
-    /// The shape, or why there is none.
+    /// The shape, or the reason why there is none.
     pub(super) shape: Result<Arc<Vec<DVec3>>, String>,
-    /// Once the shape is solved to its end.
+    /// The figures, once the shape is solved to its end.
     pub(super) figures: Option<Figures>,
 }
 
-/// What a method took and how much its shape is stretched.
+/// The costs of a method and the stretch of its shape.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Figures {
     /// The time of binding in milliseconds.
@@ -29,27 +29,27 @@ pub struct Figures {
     pub frame_ms: f64,
     /// The mean over the edges of the larger of new by old length and old by new.
     pub edge_stretch_mean: f64,
-    /// The largest.
+    /// The largest such ratio.
     pub edge_stretch_max: f64,
-    /// The box around the shape; `None` of an empty surface.
+    /// The box around the shape; `None` for an empty surface.
     pub bounds: Option<Bounds>,
 }
 
-/// A bound method and where its steps are.
+/// A bound method and the state of its steps.
 #[derive(Clone, Debug)]
 pub(super) struct Binding {
     pub(super) bound: Arc<Mutex<Bound>>,
-    /// The edit that it was last used for.
+    /// The edit for which it was last used.
     pub(super) of: Edit,
     pub(super) bind_ms: f64,
-    /// The last shape, from the rest shape.
+    /// The last shape, as displacements from the rest shape.
     pub(super) from_rest: Arc<Vec<DVec3>>,
     pub(super) carried: Option<Carried>,
     /// The time spent on the present transforms so far.
     pub(super) frame_ms: f64,
 }
 
-/// The edit that something was made for, its method apart.
+/// The edit behind a result, without its method.
 #[derive(Clone, Debug)]
 pub(super) struct Edit {
     versions: Versions,
@@ -69,12 +69,12 @@ impl Edit {
         }
     }
 
-    /// Whether a binding for one is no good for the other.
+    /// Whether a binding for one is invalid for the other.
     pub(super) fn is_other_problem(&self, other: &Self) -> bool {
         self.versions.are_other_edit(&other.versions)
     }
 
-    /// Whether the same is to be solved for.
+    /// Whether both need the same solve.
     pub(super) fn has_targets_of(&self, other: &Self) -> bool {
         let addresses = [self, other].map(|edit| edit.kept.as_ref().map(Arc::as_ptr));
         let same_controls = Arc::ptr_eq(&self.attachments, &other.attachments) || self.attachments == other.attachments;

@@ -1,7 +1,7 @@
-//! The present edit bent by every method, to choose one by looking.
+//! The present edit bent by every method, for a choice by eye.
 //!
-//! One job runs at a time: it binds a method, or takes the next steps with what is bound. The methods take turns, so
-//! that all of them follow a drag.
+//! One job runs at a time: it binds a method, or takes the next steps with a bound one. The methods take turns, so that
+//! all of them follow a drag.
 
 use pliant_deform::METHODS;
 
@@ -12,18 +12,18 @@ use super::computed::Computed;
 use super::job::{JobOutcome, Work};
 use crate::document::Document;
 
-/// What each method makes of the present edit.
+/// Each method's result for the present edit.
 #[derive(Debug)]
 pub struct Comparison {
     alternatives: Vec<Alternative>,
-    /// Which of them a job works on, and for which edit.
+    /// The method and the edit of the running job.
     under_way: Option<(usize, Edit)>,
-    /// Whose turn it is.
+    /// The method whose turn it is.
     next: usize,
 }
 
 impl Comparison {
-    /// Every method, of which nothing is bound; each shows what the document shows.
+    /// Every method, unbound; each shows the document's shape.
     pub(super) fn new(document: &Document) -> Self {
         let alternatives = METHODS.iter().map(|declaration| {
             let own = Some(&document.method).filter(|method| method.name() == declaration.name);
@@ -37,18 +37,18 @@ impl Comparison {
         }
     }
 
-    /// One for each method, in the order in which methods are shown.
+    /// One for each method, in the order of the window.
     pub fn alternatives(&self) -> &[Alternative] {
         &self.alternatives
     }
 
-    /// Whether every shape belongs to the present edit, or is refused for it.
+    /// Whether every shape is for the present edit, or refused for it.
     pub fn is_current(&self) -> bool {
         self.alternatives.iter().all(|alternative| alternative.is_current)
     }
 
     /// Follows the document: bindings of another edit are dropped, and so is that of the document's own method when it
-    /// gets other options. Whether what a job works on is not wanted any more.
+    /// gets other options. Returns whether the running job is no longer wanted.
     pub(super) fn follow(&mut self, document: &Document) -> bool {
         let present = Edit::of(document);
         let mut is_unwanted = matches!(&self.under_way, Some((_, of)) if of.is_other_problem(&present));
@@ -63,7 +63,7 @@ impl Comparison {
         is_unwanted
     }
 
-    /// The power of the ordering that the method whose turn it is lacks.
+    /// The power of the ordering that the method whose turn it is still needs.
     pub(super) fn missing_ordering(&self, computed: &Computed) -> Option<u32> {
         let power = self.alternatives[self.turn()?].method.ordering_power()?;
         computed.ordering(power).is_none().then_some(power)
@@ -83,7 +83,7 @@ impl Comparison {
         Some(work)
     }
 
-    /// Takes what a job has brought.
+    /// Stores the result of a job.
     pub(super) fn take(&mut self, outcome: JobOutcome) {
         let Some((number, of)) = self.under_way.take() else {
             return;
@@ -91,7 +91,7 @@ impl Comparison {
         self.alternatives[number].take(outcome, of);
     }
 
-    /// Leaves everything that is not done as it is, until the edit changes.
+    /// Leaves all unfinished methods unchanged until the edit changes.
     pub(super) fn stop(&mut self, document: &Document) {
         self.under_way = None;
         let alternatives = self.alternatives.iter_mut();
@@ -100,7 +100,7 @@ impl Comparison {
             .for_each(|alternative| alternative.stop(document));
     }
 
-    /// The next that is not current, after the one that had its turn last.
+    /// The next method that is not current, after the last one that had its turn.
     fn turn(&self) -> Option<usize> {
         let count = self.alternatives.len();
         let mut numbers = (0..count).map(|step| (self.next + step) % count);

@@ -1,4 +1,4 @@
-//! What jobs have made so far: their last results, and the model that they work on.
+//! The last results of jobs, and their model.
 
 use std::sync::{Arc, Mutex};
 
@@ -17,33 +17,33 @@ use crate::warning::HandleWarning;
 pub(crate) struct Computed {
     pub(crate) model: Option<Arc<Model>>,
     pub(crate) pickable: Option<Pickable>,
-    /// The triangles that rays are to meet.
+    /// The triangles for rays.
     pub(super) shown: ShownTriangles,
-    /// One a power of the Laplacian that a method has asked for.
+    /// One ordering per power of the Laplacian that a method has asked for.
     pub(super) orderings: Vec<Arc<Ordering>>,
     pub(crate) region: Region,
-    /// What the model's components touch.
+    /// The contacts of the model's components.
     pub(super) contacts: FileContacts,
     pub(super) bound: Option<Arc<Mutex<Bound>>>,
     /// The binding's control points.
     pub(crate) controls: Option<BoundControls>,
-    /// What a solve from a kept shape goes on from, with this factorisation.
+    /// The state from which a solve with a kept shape continues, with this factorisation.
     pub(super) carried: Option<Carried>,
-    /// What of the binding can be looked at.
+    /// The parts of the binding that can be shown.
     pub(crate) inspectable: Inspectable,
-    /// What of it is looked at.
+    /// The shown parts of it.
     pub(crate) inspected: Inspected,
-    /// What the next binding can take over of the last one.
+    /// The parts of the last binding that the next one can reuse.
     pub(super) reusable_factor: Option<ReusableFactor>,
-    /// Of the limb under the pointer.
+    /// The joint of the limb under the pointer.
     pub(super) joint: Option<Arc<Joint>>,
-    /// Where a shape passes through itself, and the shape's revision.
+    /// The places where a shape passes through itself, and the shape's revision.
     pub(super) intersections: Option<(Revision, Intersections)>,
-    /// About the last binding.
+    /// Warnings about the last binding.
     pub(crate) warnings: Vec<HandleWarning>,
-    /// About the targets of the last solve.
+    /// Warnings about the targets of the last solve.
     pub(crate) blind_to: Vec<HandleWarning>,
-    /// The examples' weights that the last solve took or found.
+    /// The examples' weights that the last solve used or found.
     pub(crate) example_weights: Vec<f64>,
 }
 

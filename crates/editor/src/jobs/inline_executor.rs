@@ -1,7 +1,7 @@
-//! An executor without threads: jobs wait in a list until somebody runs them, here and now.
+//! An executor without threads: jobs wait in a list until the caller runs them on its own thread.
 //!
-//! For tests and scripts. The order and the moment are the caller's, so lateness, cancellation and stale results can
-//! be played through without a clock.
+//! It is for tests and scripts. The caller chooses order and moment, so lateness, cancellation and stale results can be
+//! tested without a clock.
 
 use std::cell::RefCell;
 use std::collections::VecDeque;
@@ -9,7 +9,7 @@ use std::rc::Rc;
 
 use super::job::{Executor, Job, JobDone, JobKind};
 
-/// A list of jobs that wait. Clones share the list: one goes to the editor, one stays with the caller.
+/// A list of waiting jobs. Clones share the list: one goes to the editor, one stays with the caller.
 #[derive(Clone, Debug, Default)]
 pub struct InlineExecutor {
     waiting: Rc<RefCell<VecDeque<Job>>>,
@@ -21,23 +21,23 @@ impl InlineExecutor {
         Self::default()
     }
 
-    /// The kinds of the jobs that wait, in the order in which they came.
+    /// The kinds of the waiting jobs, in the order of their arrival.
     pub fn waiting(&self) -> Vec<JobKind> {
         self.waiting.borrow().iter().map(|job| job.kind).collect()
     }
 
-    /// Runs the job that has waited longest.
+    /// Runs the job with the longest wait.
     pub fn run_next(&self) -> Option<JobDone> {
         let job = self.waiting.borrow_mut().pop_front()?;
         Some(job.run())
     }
 
-    /// Runs the job of this kind that has waited longest.
+    /// Runs the job of this kind with the longest wait.
     pub fn run(&self, kind: JobKind) -> Option<JobDone> {
         self.take(kind).map(Job::run)
     }
 
-    /// Takes the job of this kind that has waited longest out of the list.
+    /// Removes the job of this kind with the longest wait from the list.
     pub fn take(&self, kind: JobKind) -> Option<Job> {
         let mut waiting = self.waiting.borrow_mut();
         let index = waiting.iter().position(|job| job.kind == kind)?;

@@ -1,4 +1,4 @@
-//! What a person can look at of a binding, and what was found there.
+//! The parts of a binding that a person can show, and their values.
 
 use std::sync::Arc;
 
@@ -7,16 +7,16 @@ use pliant_deform::Bound;
 
 use crate::document::HandleId;
 
-/// What of a binding can be looked at.
+/// The parts of a binding that can be shown.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub struct Inspectable {
-    /// Whether the method spreads what handles do by weights.
+    /// Whether the method spreads the handles' effect by weights.
     pub weights: bool,
     /// Whether it bends a smooth base and puts the details back.
     pub base: bool,
 }
 
-/// What of a binding is looked at.
+/// The shown parts of a binding.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub(crate) struct Asked {
     /// The handle whose weights are shown.
@@ -25,17 +25,17 @@ pub(crate) struct Asked {
     pub(crate) base: bool,
 }
 
-/// What was found in a binding.
+/// The values from a binding.
 #[derive(Clone, Debug, Default)]
 pub struct Inspected {
     /// The handle's weight at each surface vertex, from 0 to 1.
     pub(crate) weights: Option<Arc<Vec<f64>>>,
-    /// The smooth base as the handles bend it, as displacements of the surface's vertices from the file's shape.
+    /// The smooth base bent by the handles, as displacements of the surface's vertices from the file's shape.
     pub(crate) base: Option<Arc<Vec<DVec3>>>,
 }
 
 impl Inspectable {
-    /// Asks a binding. It costs a pass over the surface.
+    /// Queries a binding. This costs a pass over the surface.
     pub(super) fn of(bound: &Bound) -> Self {
         Self {
             weights: bound.handle_weights(0).is_some(),

@@ -1,5 +1,4 @@
-//! Looks up what a person looks at of the present binding: the weights of a handle, and the smooth base as the handles
-//! bend it.
+//! Queries the shown parts of the present binding: the weights of a handle, and the smooth base bent by the handles.
 
 use std::sync::{Arc, PoisonError};
 
@@ -12,7 +11,7 @@ use super::job::{JobOutcome, Work};
 use super::solving::targets;
 use crate::document::{Document, HandleId, sum_of_shapes};
 
-/// Looks into the present binding; `None` while there is none.
+/// Queries the present binding; `None` while there is none.
 pub(super) fn inspect_work(computed: &Computed, document: &Document, asked: Asked) -> Option<Work> {
     let bound = computed.bound.clone()?;
     let handles = computed.region.handles.clone();
@@ -34,11 +33,11 @@ pub(super) fn inspect_work(computed: &Computed, document: &Document, asked: Aske
     }))
 }
 
-/// The smooth base as the handles bend it with these targets, from the rest shape; `None` where that can't be solved,
-/// which the solve itself reports.
+/// The smooth base bent by the handles with these targets, from the rest shape; `None` if that can't be solved, which
+/// the solve itself reports.
 ///
-/// The last solve may have been for other targets than the document's, after an undo for one, so it is solved here: only
-/// linear methods have a base, so nothing hangs on where they began.
+/// The last solve may have been for other targets than the document's, for example after undo, so this solves again:
+/// only linear methods have a base, and their result does not depend on the start.
 fn bent_base(bound: &mut Bound, targets: &[DAffine3]) -> Option<Vec<DVec3>> {
     let mut base = vec![DVec3::ZERO; bound.vertex_count()];
     bound.set_targets(targets).ok()?;

@@ -1,17 +1,17 @@
-//! What came out badly of a shape: where it passes through itself and the file's did not, place by place, and which
-//! triangles and edges are spoilt.
+//! The faults of a shape: the places where it passes through itself and the file's did not, and damaged triangles and
+//! edges.
 
 use glam::DVec3;
 use pliant_mesh::{Damage, SelfIntersections, point_in_words};
 
-/// Where the present shape passes through itself and the file's did not, and what else came out badly.
+/// The places where the present shape passes through itself and the file's did not, and its other faults.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Intersections {
     /// The places, those with the most triangles first.
     pub places: Vec<IntersectionPlace>,
-    /// Whether these are all that there are.
+    /// Whether these are all places.
     pub are_all: bool,
-    /// Triangles and edges that are spoilt.
+    /// Damaged triangles and edges.
     pub damage: Damage,
 }
 
@@ -23,7 +23,7 @@ pub struct IntersectionPlace {
 }
 
 impl Intersections {
-    /// The pairs that were found, as places, and what else came out badly.
+    /// The found pairs, grouped by place, and the other faults.
     pub fn of(found: &SelfIntersections, damage: Damage) -> Self {
         let segment = |pair: usize| found.pairs[pair].segment;
         let place = |pairs: Vec<usize>| IntersectionPlace {
@@ -38,17 +38,17 @@ impl Intersections {
         }
     }
 
-    /// Whether the shape passes through itself nowhere.
+    /// Whether the shape does not pass through itself.
     pub fn is_empty(&self) -> bool {
         self.places.is_empty()
     }
 
-    /// All that came out badly, in words.
+    /// All faults, in words.
     pub fn sentences(&self) -> Vec<String> {
         self.sentence().into_iter().chain(self.damage.sentences()).collect()
     }
 
-    /// Where the shape passes through itself, and what helps, in words; `None` if it does nowhere.
+    /// The places where the shape passes through itself, and the remedies, in words; `None` if there are none.
     pub fn sentence(&self) -> Option<String> {
         let remedy = "lower the strength, or move the handle back";
         let [first, _] = *self.places.first()?.segments.first()?;

@@ -1,8 +1,8 @@
-//! Work that must not hold up the window: what it is, how it is handed out and how its results come back.
+//! Work that must not block the window: its kinds, its start and its results.
 //!
 //! The app gives the editor an [`Executor`]. The editor starts at most one job of each [`JobKind`] at a time and keeps
-//! at most one more pending, the newest ([`JobQueue`](crate::JobQueue)); every job is stamped with the revision it was
-//! made for, and a result whose revision is no longer wanted is dropped.
+//! at most one more pending, the newest ([`JobQueue`](crate::JobQueue)); every job is stamped with its revision, and a
+//! result whose revision is no longer wanted is dropped.
 
 use std::sync::Arc;
 
@@ -18,14 +18,14 @@ use super::intersections::Intersections;
 use super::region::Region;
 use crate::warning::HandleWarning;
 
-/// The jobs the editor hands out, by what they make.
+/// The jobs that the editor starts, by result.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 pub enum JobKind {
-    /// The structure that answers "what is under the pointer", built or refitted to the present shape.
+    /// The hierarchy for picking under the pointer, built or refitted to the present shape.
     Pick,
     /// The mesh's fill-reducing ordering, made once per mesh and operator power.
     Order,
-    /// Which vertices each handle's reach sets free.
+    /// The vertices that each handle's reach sets free.
     Region,
     /// The factorisation for the present regions.
     Bind,
@@ -33,22 +33,22 @@ pub enum JobKind {
     Solve,
     /// The mirror image of a region.
     Mirror,
-    /// The plane across which the shape is its own mirror image, and what goes with what.
+    /// The plane across which the shape is its own mirror image, and the pairs of vertices.
     Symmetry,
-    /// The vertices that an outline on the screen holds.
+    /// The vertices inside an outline on the screen.
     Enclose,
-    /// What another method makes of the edit.
+    /// Another method's result for the edit.
     Compare,
-    /// Weights or base of the present binding, to be looked at.
+    /// Weights or base of the present binding, for display.
     Inspect,
     /// The joint of the limb under the pointer.
     Joint,
-    /// Where the present shape passes through itself.
+    /// The places where the present shape passes through itself.
     Intersect,
 }
 
 impl JobKind {
-    /// Every kind, in the order in which their results build on one another.
+    /// Every kind, in the order of their dependence.
     pub const ALL: [Self; 12] = [
         Self::Pick,
         Self::Order,
@@ -64,7 +64,7 @@ impl JobKind {
         Self::Intersect,
     ];
 
-    /// What the job does, for the status line: "binding".
+    /// The job's activity, for the status line: "binding".
     pub fn doing(self) -> &'static str {
         match self {
             Self::Pick => "getting the surface ready for the pointer",
@@ -83,21 +83,21 @@ impl JobKind {
     }
 }
 
-/// The number of the state that a job was made for. Numbers only grow; none is used twice.
+/// The number of the state for which a job was made. Numbers only grow; none is used twice.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug, Default)]
 pub struct Revision(pub u64);
 
-/// What a job does, given where to tell its way and what stops it.
+/// A job's work, given a progress to report to and a flag that cancels it.
 pub(crate) type Work = Box<dyn FnOnce(&Progress, &Cancel) -> JobOutcome + Send>;
 
-/// A piece of work for the executor. `work` is to be called once, off the window's thread, and its outcome sent back
-/// as [`Event::JobDone`](crate::Event::JobDone) with the same kind and stamp, whatever the outcome.
+/// A piece of work for the executor. The executor calls `work` once, off the window's thread, and sends every outcome
+/// back as [`Event::JobDone`](crate::Event::JobDone) with the same kind and stamp.
 pub struct Job {
-    /// What the job makes.
+    /// The kind of the result.
     pub kind: JobKind,
-    /// The revision it was made for.
+    /// The revision for which it was made.
     pub stamp: Revision,
-    /// How far it is; shared with the work.
+    /// Its progress; shared with the work.
     pub progress: Progress,
     /// Raised by the editor when the result is no longer wanted; shared with the work.
     pub cancel: Cancel,
@@ -106,7 +106,7 @@ pub struct Job {
 }
 
 impl Job {
-    /// Does the work here and now.
+    /// Does the work on the caller's thread.
     pub fn run(self) -> JobDone {
         let Self { kind, stamp, work, .. } = self;
         JobDone {
@@ -126,39 +126,39 @@ impl std::fmt::Debug for Job {
     }
 }
 
-/// Where jobs run. The app's executor has threads; a test's has a list.
+/// The place where jobs run. The app's executor has threads; a test's has a list.
 pub trait Executor {
     /// Takes a job and returns at once (or, for a tiny program, does the work first). The result comes back as
-    /// [`Event::JobDone`](crate::Event::JobDone), never by calling the editor from here. A job that panics is to be
-    /// answered with [`JobOutcome::Failed`].
+    /// [`Event::JobDone`](crate::Event::JobDone), never by calling the editor from here. The answer to a job that
+    /// panics must be [`JobOutcome::Failed`].
     fn start(&mut self, job: Job);
 
-    /// Tells how much memory a binding may take, given the most bytes that a person allows, if one has said so; a job
-    /// asks it when it begins, on the thread that it runs on.
+    /// The memory that a binding may use, given a person's limit in bytes, if there is one; a job asks for it at its
+    /// beginning, on its own thread.
     fn budget(&self) -> fn(Option<u64>) -> Budget {
         Budget::of_most
     }
 
-    /// Tells the time in milliseconds since some moment, for figures that a person reads and for nothing else. It stands
-    /// still where nobody measures.
+    /// The time in milliseconds since some moment, only for figures that a person reads. It is constant in an executor
+    /// that does not measure.
     fn clock_ms(&self) -> fn() -> f64 {
         || 0.0
     }
 }
 
-/// What rays are answered from.
+/// The data that answer rays.
 #[derive(Clone)]
 pub struct Pickable {
-    /// The hierarchy over the triangles that are shown, in their shape.
+    /// The hierarchy over the shown triangles, in their shape.
     pub(crate) bvh: Bvh,
-    /// Which of the surface's triangles it is over.
+    /// Its triangles of the surface.
     pub(crate) shown: ShownTriangles,
 }
 
 /// Triangles of the surface that rays may meet.
 #[derive(Clone, Default)]
 pub(crate) struct ShownTriangles {
-    /// Another one for every other set of triangles.
+    /// A different number for every other set of triangles.
     pub(super) revision: Revision,
     /// Their numbers, ascending; `None` is all of them.
     pub(crate) triangles: Option<Arc<Vec<u32>>>,
@@ -167,15 +167,15 @@ pub(crate) struct ShownTriangles {
 /// The end of a job.
 #[derive(Debug)]
 pub struct JobDone {
-    /// What the job made.
+    /// The kind of the job.
     pub kind: JobKind,
-    /// The revision it was made for.
+    /// The revision for which it was made.
     pub stamp: Revision,
-    /// What came of it.
+    /// Its outcome.
     pub outcome: JobOutcome,
 }
 
-/// What came of a job.
+/// The outcome of a job.
 pub enum JobOutcome {
     /// The picking structure of a shape.
     Pick(Pickable),
@@ -183,29 +183,29 @@ pub enum JobOutcome {
     Ordered(Arc<Ordering>),
     /// The region that the handles reach.
     Region(Region),
-    /// A factorisation, ready to be stepped, and what of it can be looked at.
+    /// A factorisation, ready for steps, and its parts that can be shown.
     Bound(Box<Bound>, Inspectable),
     /// A new shape.
     Solved(Solved),
-    /// Where the control points are.
+    /// The positions of the control points.
     Controls(ControlPlaces),
     /// The vertices of a region's mirror image, ascending.
     Mirrored(Vec<usize>),
-    /// Both sides of the plane of symmetry; `None` where the shape has none.
+    /// Both sides of the plane of symmetry; `None` if the shape has none.
     Symmetry(Option<Arc<BothSides>>),
-    /// The vertices that an outline holds, ascending.
+    /// The vertices inside an outline, ascending.
     Enclosed(Vec<SurfaceVertex>),
-    /// What a method makes of the edit.
+    /// A method's result for the edit.
     Compared(Box<Compared>),
-    /// What was found in the binding.
+    /// The values from the binding.
     Inspected(Inspected),
-    /// The joint of a limb; `None` where there is none.
+    /// The joint of a limb; `None` if there is none.
     Joint(Option<Arc<Joint>>),
-    /// Where the shape passes through itself.
+    /// The places where the shape passes through itself.
     Intersections(Intersections),
-    /// It was cancelled, and nothing is owed.
+    /// It was cancelled and has no result.
     Cancelled,
-    /// It failed; one sentence that names the culprit and the remedy.
+    /// It failed, with one sentence that names the culprit and the remedy.
     Failed(String),
 }
 
@@ -234,38 +234,38 @@ impl std::fmt::Debug for JobOutcome {
 /// A solve's result, after as many steps as a frame has time for: displacements per surface vertex.
 #[derive(Clone, Debug)]
 pub struct Solved {
-    /// From the present rest shape.
+    /// Displacements from the present rest shape.
     pub from_rest: Arc<Vec<DVec3>>,
-    /// From the file's shape: what is drawn. The same allocation while nothing was applied.
+    /// Displacements from the file's shape, which are drawn. This is the same allocation if no shape was applied.
     pub from_file: Arc<Vec<DVec3>>,
-    /// The Jacobian of the displacements at each surface vertex, where the method knows it and `from_file` is what it has
-    /// made: normals turn by it, whatever the triangles are.
+    /// The Jacobian of the displacements at each surface vertex, if the method knows it and has made `from_file`:
+    /// normals turn by it, independent of the triangles.
     pub jacobians: Option<Vec<Mat3>>,
-    /// Where the method's control points are; `None` if it has none.
+    /// The positions of the method's control points; `None` if it has none.
     pub(crate) controls: Option<ControlPlaces>,
-    /// The solution behind it, where it carries what was seen before along.
+    /// The solution behind it, if it continues a kept shape.
     pub(crate) carried: Option<Carried>,
-    /// What the method can't follow of these targets.
+    /// The motions in these targets that the method can't follow.
     pub(crate) blind_to: Vec<HandleWarning>,
-    /// The examples' weights that were taken or found.
+    /// The examples' weights that were used or found.
     pub(crate) example_weights: Vec<f64>,
-    /// Whether further steps would leave it as it is.
+    /// Whether further steps would not change it.
     pub finished: bool,
-    /// How far an iterative method's descent is; `None` for a method that is done in one step.
+    /// The progress of an iterative method's descent; `None` for a method with a single step.
     pub descent: Option<Descent>,
 }
 
-/// Where control points are.
+/// The positions of control points.
 #[derive(Clone, Debug)]
 pub struct ControlPlaces {
     /// Moved by handles and by hand.
     pub(super) positions: Arc<Vec<DVec3>>,
-    /// Where the hand alone has moved them.
+    /// Moved by hand alone.
     pub(super) moved: Arc<Vec<DVec3>>,
 }
 
 impl ControlPlaces {
-    /// With the present targets of a binding; `None` for a method without control points.
+    /// The positions for the present targets of a binding; `None` for a method without control points.
     pub(super) fn of(bound: &Bound) -> Option<Self> {
         let (_, attachment) = bound.attachment()?;
         Some(Self {
@@ -275,13 +275,13 @@ impl ControlPlaces {
     }
 }
 
-/// How far a descent is.
+/// The progress of a descent.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Descent {
     /// The present shape's energy, without unit (see [`pliant_deform::Step::energy`]).
     pub energy: f64,
-    /// Whether that is the least, to the method's tolerance.
+    /// Whether that is the minimum, to the method's tolerance.
     pub converged: bool,
-    /// Whether no further step is taken: it converged, or met the method's limit.
+    /// Whether no further step follows: it converged, or met the method's limit.
     pub finished: bool,
 }

@@ -4,22 +4,22 @@ use pliant_mesh::{Cancel, Progress};
 
 use super::job::Revision;
 
-/// One kind's queue. `W` is what is needed to start the work; the queue starts nothing itself, its owner starts what
-/// [`JobQueue::start_next`] hands out.
+/// One kind's queue. `W` is the data for starting the work; the queue starts nothing itself, its owner starts the work
+/// that [`JobQueue::start_next`] returns.
 #[derive(Debug)]
 pub struct JobQueue<W> {
     running: Option<Running>,
     pending: Option<(Revision, W)>,
 }
 
-/// What is known of a job that was started.
+/// A started job.
 #[derive(Clone, Debug)]
 pub struct Running {
-    /// The revision it was made for.
+    /// The revision for which it was made.
     pub stamp: Revision,
-    /// How far it is.
+    /// Its progress.
     pub progress: Progress,
-    /// To stop it.
+    /// The flag that stops it.
     pub cancel: Cancel,
 }
 
@@ -33,12 +33,12 @@ impl<W> Default for JobQueue<W> {
 }
 
 impl<W> JobQueue<W> {
-    /// Asks for work. It replaces what is pending; what runs is left alone.
+    /// Asks for work. It replaces pending work; running work continues.
     pub fn request(&mut self, stamp: Revision, work: W) {
         self.pending = Some((stamp, work));
     }
 
-    /// The pending work, if nothing runs: it counts as running from now on and must be started.
+    /// The pending work, if nothing runs: from now on it counts as running, and the caller must start it.
     pub fn start_next(&mut self) -> Option<(Running, W)> {
         if self.running.is_some() {
             return None;
@@ -53,7 +53,7 @@ impl<W> JobQueue<W> {
         Some((running, work))
     }
 
-    /// Notes that the job with `stamp` has ended, and says how it ran; `None` if no such job was running.
+    /// Notes that the job with `stamp` has ended, and returns its record; `None` if no such job was running.
     pub fn finish(&mut self, stamp: Revision) -> Option<Running> {
         self.running.take_if(|running| running.stamp == stamp)
     }

@@ -1,4 +1,4 @@
-//! What follows from the document and is computed beside the window: the jobs, their queues and their last results.
+//! Background computation from the document: the jobs, their queues and their last results.
 
 mod allowance;
 mod alternative;

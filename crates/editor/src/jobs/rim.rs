@@ -1,16 +1,16 @@
-//! The lines that are drawn between regions: around each handle, and where the free region meets what is held.
+//! The lines between regions: around each handle, and between the free region and the fixed part.
 
 use pliant_deform::Role;
 use pliant_mesh::{ContourLine, Surface, contours};
 
 use crate::document::HandleId;
 
-/// What a line on the surface bounds.
+/// The region that a line on the surface bounds.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Hash)]
 pub enum Rim {
     /// A handle's region.
     Handle(HandleId),
-    /// What is held still, where the free region begins.
+    /// The fixed part, at the border of the free region.
     Held,
 }
 
@@ -18,7 +18,8 @@ const FREE: u16 = 0;
 const HELD: u16 = 1;
 const FIRST_HANDLE: u16 = 2;
 
-/// What a line of this label bounds, given the handles in the roles' order; `None` for one that is gone.
+/// The region that a line of this label bounds, given the handles in the roles' order; `None` for one that no longer
+/// exists.
 pub(crate) fn bounded(label: u16, handles: &[HandleId]) -> Option<Rim> {
     match label.checked_sub(FIRST_HANDLE) {
         None => Some(Rim::Held),
@@ -26,7 +27,7 @@ pub(crate) fn bounded(label: u16, handles: &[HandleId]) -> Option<Rim> {
     }
 }
 
-/// The lines between roles; where a handle meets anything else the line is the handle's.
+/// The lines between roles; between a handle and another region the line is the handle's.
 pub(crate) fn rims(surface: &Surface, roles: &[Role]) -> Vec<ContourLine> {
     let label = |role: &Role| match *role {
         Role::Free => FREE,

@@ -1,10 +1,10 @@
-//! Which jobs are asked for, and their last results: the picking structure, the ordering, the region, the
-//! factorisation, the shape.
+//! The requested jobs, and their last results: the picking structure, the ordering, the region, the factorisation, the
+//! shape.
 //!
-//! [`Jobs::pump`] compares what there is with what the present revisions need and asks for what is missing; it is
-//! called after every event, so no event has to know which jobs it makes necessary. Revisions come from one counter:
-//! *model* (another file), *problem* (paint, reach, rest shape, stiffness, options), *targets* (handles' transforms)
-//! and *shape* (what is drawn).
+//! [`Jobs::pump`] compares the existing results with the needs of the present revisions and requests the missing ones;
+//! it is called after every event, so no event needs to know its jobs. Revisions come from one counter: *model*
+//! (another file), *problem* (paint, reach, rest shape, stiffness, options), *targets* (handles' transforms) and
+//! *shape* (the drawn shape).
 
 use std::sync::{Arc, Mutex};
 
@@ -27,10 +27,10 @@ use super::work::{bind_work, intersect_work, order_work, pick_work, region_work}
 use crate::document::Document;
 use crate::warning::HandleWarning;
 
-/// What the person is doing, as far as jobs care.
+/// The person's activity, as far as it affects jobs.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Activity {
-    /// Nothing that changes the document.
+    /// No change of the document.
     Still,
     /// A stroke: the regions change at every event.
     Painting,
@@ -43,24 +43,24 @@ pub(crate) struct Jobs {
     executor: Box<dyn Executor>,
     allowance: Allowance,
     queues: [JobQueue<Work>; JobKind::ALL.len()],
-    /// For each kind the revision that failed or was stopped by the person: it is not tried again.
+    /// For each kind the revision that failed or was stopped by the person, which is not tried again.
     given_up: [Option<Revision>; JobKind::ALL.len()],
     counter: u64,
     pub(crate) computed: Computed,
-    /// What other methods make of the edit, while they are compared.
+    /// The other methods' results for the edit, during a comparison.
     pub(crate) comparison: Option<Comparison>,
     pub(crate) model_revision: Revision,
     problem_revision: Revision,
     target_revision: Revision,
     pub(crate) shape_revision: Revision,
-    /// Solves that were asked for before this are dropped.
+    /// Requests before this are dropped.
     solve_floor: Revision,
     bvh_revision: Revision,
     region_revision: Revision,
-    /// Another one for every region that was measured.
+    /// A different number for every measured region.
     pub(crate) roles_revision: Revision,
     bound_revision: Revision,
-    /// The targets with which the control points are where [`Computed::controls`] has them.
+    /// The targets for which [`Computed::controls`] has the control points' positions.
     controls_revision: Revision,
     mirror_revision: Revision,
     enclose_revision: Revision,
@@ -68,19 +68,19 @@ pub(crate) struct Jobs {
     compare_revision: Revision,
     inspect_revision: Revision,
     joint_revision: Revision,
-    /// Joints that were asked for before this are dropped.
+    /// Requests before this are dropped.
     joint_floor: Revision,
-    /// Of which shape and under which triangle a joint was asked for last.
+    /// The shape and the triangle of the last request for a joint.
     joint_asked: Option<(Revision, u32)>,
-    /// What is looked at of which binding, and with which targets, where it depends on them, from when it was asked for.
+    /// The inspection job: its binding, and its targets if it depends on them, from its request on.
     inspection: (Revision, Asked, Revision),
-    /// What was asked for before this is dropped.
+    /// Requests before this are dropped.
     inspect_floor: Revision,
 }
 
-/// What a job's result means for the editor.
+/// The effect of a job's result on the editor.
 pub(crate) enum Arrival {
-    /// Nothing to see.
+    /// No visible effect.
     Nothing,
     /// Rays can be answered from a newer shape.
     Picking,
@@ -90,20 +90,20 @@ pub(crate) enum Arrival {
     Symmetry(Option<Arc<BothSides>>),
     /// The joint of the limb under the pointer, or that it has none.
     Joint,
-    /// The vertices that an outline holds.
+    /// The vertices inside an outline.
     Enclosed(Vec<SurfaceVertex>),
     /// A new shape; the flag says whether it is the final one.
     Shape(Solved, Finality),
-    /// Something went wrong; one sentence.
+    /// A failure, in one sentence.
     Problem(String),
 }
 
 /// Whether a shape is the last one for its targets.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Finality {
-    /// Better ones will come.
+    /// Better ones will follow.
     Preview,
-    /// It is what the transforms mean.
+    /// It is the solution for the transforms.
     Final,
 }
 
@@ -146,7 +146,7 @@ impl Jobs {
         Revision(self.counter)
     }
 
-    /// Another file: everything that was computed is forgotten, what runs is stopped.
+    /// Another file: all results are dropped, running jobs are stopped.
     pub(crate) fn open(&mut self, model: Arc<Model>) {
         for kind in JobKind::ALL {
             self.queues[kind as usize].cancel();
@@ -165,7 +165,7 @@ impl Jobs {
         self.shape_changed();
     }
 
-    /// Paint, reach, rest shape, stiffness or options are no longer what they were.
+    /// Paint, reach, rest shape, stiffness or options have changed.
     pub(crate) fn problem_changed(&mut self) {
         self.problem_revision = self.next_revision();
         self.queues[JobKind::Region as usize].cancel();
@@ -174,8 +174,8 @@ impl Jobs {
         self.targets_changed();
     }
 
-    /// Bindings may take so many bytes at most, or what there is, from now on. Where that chooses another factor than the
-    /// one that is bound, it is bound anew, and what was refused is tried again. Whether it is.
+    /// Sets the most bytes for bindings, or all available memory. If that selects another factor than the bound one,
+    /// the problem is bound anew, and refused bindings are tried again. Returns whether it does.
     pub(crate) fn allow_memory(&mut self, most: Option<u64>, document: &Document) -> bool {
         let free_count = self.computed.region.counts.free;
         let before = self.allowance;
@@ -192,53 +192,53 @@ impl Jobs {
         binds_anew
     }
 
-    /// The most bytes that bindings may take, where somebody has said so.
+    /// The most bytes for bindings, if a person has set it.
     pub(crate) fn most_memory(&self) -> Option<u64> {
         self.allowance.most()
     }
 
-    /// The handles' transforms are no longer what they were.
+    /// The handles' transforms have changed.
     pub(crate) fn targets_changed(&mut self) {
         self.target_revision = self.next_revision();
     }
 
-    /// Has a mirror image looked for, in place of one that is not found yet.
+    /// Requests a mirror image, in place of an earlier request.
     pub(crate) fn mirror(&mut self, work: Work) {
         self.queues[JobKind::Mirror as usize].cancel();
         self.mirror_revision = self.next_revision();
         self.queues[JobKind::Mirror as usize].request(self.mirror_revision, work);
     }
 
-    /// Has the plane of symmetry looked for.
+    /// Requests the plane of symmetry.
     pub(crate) fn look_for_symmetry(&mut self, work: Work) {
         self.queues[JobKind::Symmetry as usize].request(self.symmetry_revision, work);
     }
 
-    /// No plane of symmetry is wanted any more, or another one.
+    /// No plane of symmetry is wanted now, or another one.
     pub(crate) fn stop_looking_for_symmetry(&mut self) {
         self.queues[JobKind::Symmetry as usize].cancel();
         self.symmetry_revision = self.next_revision();
     }
 
-    /// Has an outline's vertices looked for.
+    /// Requests an outline's vertices.
     pub(crate) fn enclose(&mut self, work: Work) {
         self.stop_enclosing();
         self.queues[JobKind::Enclose as usize].request(self.enclose_revision, work);
     }
 
-    /// An outline's vertices are not wanted any more.
+    /// An outline's vertices are no longer wanted.
     pub(crate) fn stop_enclosing(&mut self) {
         self.queues[JobKind::Enclose as usize].cancel();
         self.enclose_revision = self.next_revision();
     }
 
-    /// Whether the joint under a triangle of the present shape has not been asked for.
+    /// Whether the joint under a triangle of the present shape has not been requested yet.
     pub(crate) fn asks_for_joint(&self, triangle: u32) -> bool {
         self.joint_asked != Some((self.shape_revision, triangle))
     }
 
-    /// Has the joint under a triangle of the present shape looked for. What runs goes on, so that a pointer that keeps
-    /// moving sees joints; the newest waits.
+    /// Requests the joint under a triangle of the present shape. The running search continues, so that a steadily
+    /// moving pointer still shows joints; the newest request waits.
     pub(crate) fn look_for_joint(&mut self, triangle: u32, work: Work) {
         if self.joint_asked.is_some_and(|(shape, _)| shape != self.shape_revision) {
             self.forget_joint();
@@ -248,7 +248,7 @@ impl Jobs {
         self.queues[JobKind::Joint as usize].request(self.joint_revision, work);
     }
 
-    /// No joint is wanted any more.
+    /// A joint is no longer wanted.
     pub(crate) fn forget_joint(&mut self) {
         if self.joint_asked.take().is_some() {
             self.queues[JobKind::Joint as usize].cancel();
@@ -257,15 +257,15 @@ impl Jobs {
         }
     }
 
-    /// The joint that was found last.
+    /// The last joint that was found.
     pub(crate) fn joint(&self) -> Option<&Arc<Joint>> {
         self.computed.joint.as_ref()
     }
 
-    /// Begins to compare what the methods make of the edit.
+    /// Begins a comparison of the methods on the edit.
     pub(crate) fn begin_comparing(&mut self, document: &Document) {
         self.comparison = Some(Comparison::new(document));
-        // A person who asks again wants the ordering that was stopped before.
+        // A new request also needs the ordering that was stopped before.
         self.given_up[JobKind::Order as usize] = None;
     }
 
@@ -275,8 +275,8 @@ impl Jobs {
         self.queues[JobKind::Compare as usize].cancel();
     }
 
-    /// Has looked up what is asked of the present binding, unless it is known or under way. Where only the targets are
-    /// others, what runs goes on, so that the base is seen to bend along a drag; the newest waits.
+    /// Requests the shown parts of the present binding, unless they are known or under way. If only the targets differ,
+    /// the running job continues, so that the base visibly bends during a drag; the newest request waits.
     pub(crate) fn inspect(&mut self, asked: Asked, document: &Document) {
         let has_binding = self.binds_something(document) && !self.has_given_up(JobKind::Bind);
         let asked = if has_binding { asked } else { Asked::default() };
@@ -298,7 +298,7 @@ impl Jobs {
         }
     }
 
-    /// Rays are to meet these triangles alone.
+    /// Restricts rays to these triangles.
     pub(crate) fn show_triangles(&mut self, shown: Option<Arc<Vec<u32>>>) {
         self.computed.shown = ShownTriangles {
             revision: self.next_revision(),
@@ -307,14 +307,14 @@ impl Jobs {
         self.shape_changed();
     }
 
-    /// What is drawn is no longer what it was.
+    /// The drawn shape has changed.
     pub(crate) fn shape_changed(&mut self) {
         self.shape_revision = self.next_revision();
         self.queues[JobKind::Intersect as usize].cancel();
     }
 
-    /// Has looked for where the present shape, `displacements` away from the file's, passes through itself, once rays are
-    /// answered from it.
+    /// Requests the places where the present shape, `displacements` away from the file's, passes through itself, once
+    /// its hierarchy exists.
     pub(crate) fn intersect(&mut self, displacements: &Arc<Vec<DVec3>>) {
         let Some(model) = self.computed.model.clone() else {
             return;
@@ -327,13 +327,13 @@ impl Jobs {
         }
     }
 
-    /// Where the present shape passes through itself; `None` until that was looked for.
+    /// The places where the present shape passes through itself; `None` before the search.
     pub(crate) fn intersections(&self) -> Option<&Intersections> {
         let (of, found) = self.computed.intersections.as_ref()?;
         (*of == self.shape_revision).then_some(found)
     }
 
-    /// Solves that run or are done but have not arrived must not change the shape any more.
+    /// Solves that run or are done but have not arrived must no longer change the shape.
     pub(crate) fn drop_solves(&mut self) {
         self.queues[JobKind::Solve as usize].cancel();
         self.computed.blind_to.clear();
@@ -341,13 +341,13 @@ impl Jobs {
         self.targets_changed();
     }
 
-    /// A stroke begins: what is being bound is not wanted any more.
+    /// A stroke begins: the running binding is no longer wanted.
     pub(crate) fn stop_binding(&mut self) {
         self.queues[JobKind::Region as usize].cancel();
         self.queues[JobKind::Bind as usize].cancel();
     }
 
-    /// Stops every job for good: each is tried again only when what it is made for has changed.
+    /// Stops every job for good: each is tried again only after its input has changed.
     pub(crate) fn give_up(&mut self, document: &Document) {
         if let Some(comparison) = &mut self.comparison {
             comparison.stop(document);
@@ -372,7 +372,7 @@ impl Jobs {
         }
     }
 
-    /// Whether rays are answered from what is drawn.
+    /// Whether the hierarchy for rays is that of the drawn shape.
     pub(crate) fn is_picking_current(&self) -> bool {
         self.computed.pickable.is_some() && self.bvh_revision == self.shape_revision
     }
@@ -392,18 +392,18 @@ impl Jobs {
         self.queues[kind as usize].is_busy()
     }
 
-    /// Whether a job of this kind failed or was stopped for what there is at present.
+    /// Whether a job of this kind failed or was stopped for the present state.
     pub(crate) fn has_given_up(&self, kind: JobKind) -> bool {
         self.given_up[kind as usize] == Some(self.stamp(kind))
     }
 
-    /// The jobs that run, with their progress.
+    /// The running jobs, with their progress.
     pub(crate) fn running(&self) -> Vec<(JobKind, f32)> {
         let progress = |kind: JobKind| Some((kind, self.queues[kind as usize].running()?.progress.get()));
         JobKind::ALL.into_iter().filter_map(progress).collect()
     }
 
-    /// Asks for whatever is missing, and starts what can start.
+    /// Requests all missing results, and starts the jobs that can start.
     pub(crate) fn pump(&mut self, document: &Document, activity: Activity) {
         let Some(model) = self.computed.model.clone() else {
             return;
@@ -452,8 +452,7 @@ impl Jobs {
         !self.computed.region.handles.is_empty() || document.bends_without_handles()
     }
 
-    /// Asks for the next shape of the comparison once the document's own binding is not waited for: what it needs of
-    /// memory comes first.
+    /// Requests the next shape of the comparison if the document's own binding is not pending: its memory has priority.
     fn compare(&mut self, document: &Document, model: &Arc<Model>) {
         let Some(comparison) = &mut self.comparison else { return };
         if comparison.follow(document) {
@@ -480,7 +479,7 @@ impl Jobs {
         }
     }
 
-    /// Takes a job's result; what was made for a state that is gone is dropped.
+    /// Stores a job's result; results for past states are dropped.
     pub(crate) fn accept(&mut self, done: JobDone) -> Arrival {
         let JobDone { kind, stamp, outcome } = done;
         let Some(running) = self.queues[kind as usize].finish(stamp) else {
@@ -496,7 +495,7 @@ impl Jobs {
             return Arrival::Nothing;
         }
         match outcome {
-            // Somebody else stopped it: asking again at once would go on for ever.
+            // Something else stopped it: requesting it again at once could go on for ever.
             JobOutcome::Cancelled if !running.cancel.is_cancelled() => self.given_up[kind as usize] = Some(stamp),
             JobOutcome::Failed(sentence) if wanted && !running.cancel.is_cancelled() => {
                 self.given_up[kind as usize] = Some(stamp);
@@ -560,7 +559,7 @@ impl Jobs {
         Arrival::Nothing
     }
 
-    /// The control points are here with the targets of this revision.
+    /// The control points have arrived, with the targets of this revision.
     fn put_controls(&mut self, places: &ControlPlaces, stamp: Revision) {
         if let Some(controls) = &mut self.computed.controls
             && controls.positions.len() == places.positions.len()
@@ -571,7 +570,7 @@ impl Jobs {
         }
     }
 
-    /// The revision that a job of this kind would be made for now.
+    /// The revision for which a job of this kind would be made now.
     fn stamp(&self, kind: JobKind) -> Revision {
         match kind {
             JobKind::Pick | JobKind::Intersect => self.shape_revision,

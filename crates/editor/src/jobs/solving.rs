@@ -1,4 +1,4 @@
-//! Bending: steps towards the handles' targets, from what is shown or from what is carried along beside it.
+//! Bending: steps towards the handles' targets, from the shown shape or from a kept one.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, PoisonError};
@@ -13,15 +13,15 @@ use super::job::{ControlPlaces, Descent, JobOutcome, Solved, Work};
 use crate::document::{Document, HandleId, KeptShape, sum_of_shapes};
 use crate::warning::HandleWarning;
 
-/// A solve takes so many vertices' worth of steps before it shows its shape: about what a window's frame has time for.
-/// There is no clock here.
+/// A solve takes steps for this many vertices before it shows its shape: about as many as fit into a frame. The editor
+/// has no clock.
 const VERTEX_STEPS: usize = 100_000;
 
-/// The most steps of one solve, however few its vertices are.
+/// The most steps of one solve, even with few vertices.
 const MOST_STEPS: usize = 16;
 
-/// So many times the steps of one solve are taken for the solution at a kept shape: close enough to where the descent
-/// ends that what is left of it hides in the drag.
+/// The solution at a kept shape gets this many times the steps of one solve: it is so close to the end of the descent
+/// that the drag hides the rest.
 const MOST_FIRST_ROUNDS: usize = 8;
 
 /// Takes steps towards the handles' targets; `None` while nothing is bound.
@@ -51,7 +51,8 @@ pub(super) fn solve_work(computed: &Computed, document: &Document) -> Option<Wor
     }))
 }
 
-/// Asks where the control points are with the document's targets, whose shape is known; `None` while nothing is bound.
+/// Computes the control points' positions for the document's targets, whose shape is known; `None` while nothing is
+/// bound.
 pub(super) fn controls_work(computed: &Computed, document: &Document) -> Option<Work> {
     let bound = computed.bound.clone()?;
     let handles = targets(document, &computed.region.handles)?;
@@ -74,23 +75,23 @@ pub(super) fn controls_work(computed: &Computed, document: &Document) -> Option<
     }))
 }
 
-/// What a solve is to find, and from where it goes on.
+/// The task of a solve, and its start.
 pub(super) struct Wanted {
     handles: Vec<HandleId>,
     targets: Vec<DAffine3>,
     beginning: Beginning,
     attachments: Arc<BTreeMap<&'static str, Attachment>>,
-    /// Of the examples.
+    /// The weights of the examples.
     weights: Vec<Option<f64>>,
-    /// What is shown.
+    /// The shown shape.
     from_rest: Arc<Vec<DVec3>>,
-    /// The rest shape, where it is not the file's.
+    /// The rest shape, if it is not the file's.
     rest: Option<Arc<Vec<DVec3>>>,
 }
 
 impl Wanted {
-    /// The document's targets for `handles`, from what is shown and from the last solution, where that carries a kept
-    /// shape along; `None` if a handle is gone.
+    /// The document's targets for `handles`, from the shown shape and from the last solution, if that continues a kept
+    /// shape; `None` if a handle no longer exists.
     pub(super) fn of(
         document: &Document,
         handles: &[HandleId],
@@ -136,12 +137,12 @@ impl Wanted {
     }
 }
 
-/// Where handles and control points are to go, and how much of each example is wanted.
+/// The targets of handles and control points, and the weights of the examples.
 struct Targets<'a> {
     handles: &'a [DAffine3],
-    /// What was brought to the binding and moved by hand.
+    /// The brought points, moved by hand.
     controls: Option<&'a Arc<Vec<DVec3>>>,
-    /// `None` where one is to be found.
+    /// The weights, `None` for one to be found.
     weights: &'a [Option<f64>],
 }
 
@@ -156,23 +157,23 @@ impl Targets<'_> {
     }
 }
 
-/// What a solve has brought.
+/// The result of a solve.
 struct Bent {
-    /// What is shown, as displacements from the rest shape.
+    /// The shown shape, as displacements from the rest shape.
     shown: Arc<Vec<DVec3>>,
-    /// What the next solve goes on from, where a shape was kept.
+    /// The start of the next solve, if a shape was kept.
     carried: Option<Carried>,
-    /// How the descent stands.
+    /// The progress of the descent.
     step: Step,
 }
 
-/// From where a solve goes on.
+/// The start of a solve.
 enum Beginning {
-    /// From what is shown.
+    /// The shown shape.
     Shown,
-    /// From a kept shape for the first time: the solution there is to be found, with the targets at which it was kept.
+    /// A kept shape for the first time: its solution must be found, with its own targets.
     Kept(Arc<KeptShape>, Vec<DAffine3>),
-    /// From the last solution, with what is carried along beside it.
+    /// The last solution, with the residual.
     Carried(Carried),
 }
 
@@ -189,7 +190,7 @@ impl Beginning {
         if let Some(carried) = carried.filter(|carried| Arc::ptr_eq(&carried.kept, kept)) {
             let mut carried = carried.clone();
             if !Arc::ptr_eq(&carried.shown, from_rest) {
-                // Undo has brought another shape: the way to it is found again from where all began.
+                // Undo has brought another shape: its path is computed again from the beginning.
                 carried.solution = Arc::clone(&carried.at_first);
             }
             return Some(Self::Carried(carried));
@@ -199,7 +200,7 @@ impl Beginning {
         first.map(|first| Self::Kept(Arc::clone(kept), first))
     }
 
-    /// What is shown next, and what the solve after it goes on from.
+    /// The next shown shape, and the start of the following solve.
     fn solve(
         self,
         bound: &mut Bound,
@@ -219,7 +220,7 @@ impl Beginning {
             }
             Self::Kept(kept, first) => {
                 let mut at_first = kept.shape.to_vec();
-                // Points of another attachment than the one in force say nothing of it.
+                // Points of another attachment do not apply to the one in force.
                 let is_same = |kept: &&Arc<Vec<DVec3>>| targets.controls.is_some_and(|own| own.len() == kept.len());
                 let first_controls = kept.controls.as_ref().filter(is_same).or(targets.controls);
                 let first = Targets {
@@ -253,7 +254,7 @@ impl Beginning {
     }
 }
 
-/// Takes steps towards the targets until the shape is worth showing; it goes on from where the last solve ended.
+/// Takes steps towards the targets until the shape is worth showing; it continues from the end of the last solve.
 fn steps(
     bound: &mut Bound,
     targets: &Targets<'_>,
@@ -271,7 +272,7 @@ fn steps(
     Ok(step)
 }
 
-/// The maps of the handles in the region's order; `None` if one of them is gone.
+/// The maps of the handles in the region's order; `None` if one of them no longer exists.
 pub(super) fn targets(document: &Document, handles: &[HandleId]) -> Option<Vec<DAffine3>> {
     handles
         .iter()

@@ -1,4 +1,4 @@
-//! What each job does, as a closure that owns all it needs. `solving` has the one that bends.
+//! The work of each job, as a closure that owns its data. `solving` has the one that bends.
 
 use std::sync::Arc;
 
@@ -15,7 +15,7 @@ use super::region::{Region, RegionInput};
 use crate::Setup;
 use crate::document::Document;
 
-/// So many pairs of triangles are enough to show where.
+/// This many pairs of triangles are enough to show the places.
 const MOST_PAIRS: usize = 20_000;
 
 /// Makes the ordering for a power of the Laplacian.
@@ -37,7 +37,7 @@ pub(super) fn region_work(input: RegionInput) -> Option<Work> {
     }))
 }
 
-/// Builds or refits what rays are answered from.
+/// Builds or refits the hierarchy for rays.
 pub(super) fn pick_work(computed: &Computed, model: &Arc<Model>, document: &Document) -> Option<Work> {
     let (model, displacements, shown) = (
         Arc::clone(model),
@@ -103,7 +103,7 @@ pub(super) fn bind_work(
     }))
 }
 
-/// Looks through the hierarchy that rays are answered from, so among what is shown, and at all triangles and edges.
+/// Searches the hierarchy for rays, which has the shown triangles, and checks all triangles and edges.
 pub(super) fn intersect_work(computed: &Computed, model: &Arc<Model>, displacements: &Arc<Vec<DVec3>>) -> Option<Work> {
     let (bvh, model) = (computed.pickable.as_ref()?.bvh.clone(), Arc::clone(model));
     let displacements = Arc::clone(displacements);

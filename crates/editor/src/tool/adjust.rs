@@ -1,5 +1,5 @@
-//! A widget that is being dragged: the changes of its commands are shown at once and become one step at the end. The
-//! step itself belongs to the workspace, because commands add to it.
+//! The drag of a widget: the changes of its commands are shown at once and become one step at the end. The step itself
+//! belongs to the workspace, because commands add to it.
 
 use super::context::Context;
 use super::gesture::{Gesture, Next};

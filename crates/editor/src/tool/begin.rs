@@ -20,7 +20,7 @@ use crate::input::{Button, Pointer};
 use crate::view::{GizmoPart, Pick};
 use crate::workspace::set_pivot;
 
-/// What has begun, if anything.
+/// The beginning of a gesture.
 type Begun = Option<Box<dyn Gesture>>;
 
 /// A button went down.
@@ -61,7 +61,7 @@ pub(crate) fn begin(context: &mut Context<'_>, pointer: Pointer, button: Button)
     };
     context.workspace.refusal = None;
     if mode != ToolMode::Select {
-        // The gizmo of what is painted is wanted next.
+        // The gizmo of the painted handle is wanted next.
         context.workspace.controls.put([]);
     }
     if std::mem::take(&mut context.settings.wants_pivot) {
@@ -90,15 +90,15 @@ pub(crate) fn begin(context: &mut Context<'_>, pointer: Pointer, button: Button)
     }
 }
 
-/// Whether the tool does something else on the surface with Shift: a brush smooths, a limb grows.
+/// Whether Shift changes the tool's effect on the surface: a brush smooths, a limb grows.
 fn heeds_shift(context: &Context<'_>) -> bool {
     let settings = &*context.settings;
     let is_brush = settings.mode.has_brush() && settings.stroke_shape == StrokeShape::Brush;
     settings.mode == ToolMode::Pose || is_brush
 }
 
-/// The control point under the pointer, if a press takes it: the gizmo lies before the points, and a brush paints what is
-/// behind them.
+/// The control point under the pointer, if a press takes it: the gizmo is in front of the points, and a brush paints
+/// the surface behind them.
 fn control_under(context: &Context<'_>, pointer: Pointer) -> Option<u32> {
     let point = context.overlay.pointed_control?;
     let at_px = pointer.position_px;
@@ -111,7 +111,7 @@ fn boxes_controls(context: &Context<'_>) -> bool {
     context.settings.mode == ToolMode::Select && !context.overlay.control_points.is_empty()
 }
 
-/// Selects a control point, and begins to drag it with those that are selected along with it.
+/// Selects a control point, and begins to drag it with the other selected ones.
 fn take_control(context: &mut Context<'_>, pointer: Pointer, point: u32) -> Begun {
     context.workspace.refusal = None;
     if pointer.modifiers.shift || pointer.modifiers.ctrl {
@@ -156,7 +156,7 @@ fn outline(context: &mut Context<'_>, pointer: Pointer, shape: StrokeShape) -> B
     Some(Box::new(OutlineStroke::begin(context, pointer, shape)?))
 }
 
-/// Selects the handle that was clicked, and begins to drag it; beside handles the camera moves.
+/// Selects the clicked handle, and begins to drag it; outside handles the camera moves.
 fn select(context: &mut Context<'_>, pointer: Pointer, button: Button, pick: Pick) -> Begun {
     let Some(Paint::Handle(handle)) = context.workspace.document.paint().get(pick.vertex.index()).copied() else {
         return navigate(context, pointer, button);

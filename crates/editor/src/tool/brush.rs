@@ -1,8 +1,8 @@
-//! The brush: a disc of constant size on the screen that lies on the surface.
+//! The brush: a disc of constant size on the screen, on the surface.
 //!
-//! Between two pointer events there are enough dabs to leave no gap. A dab takes every vertex within its radius that is
-//! connected, within that radius, with the point under the pointer and that faces the eye: the back of a thin part and
-//! a neighbouring finger stay clean.
+//! Between two pointer events there are enough dabs to leave no gap. A dab paints every vertex within its radius that
+//! is connected, within that radius, with the point under the pointer and that faces the eye: it does not paint the
+//! back of a thin part and a neighbouring finger.
 
 use std::f64::consts::TAU;
 
@@ -17,19 +17,19 @@ pub const BRUSH_RADIUS_PX: std::ops::RangeInclusive<f64> = 2.0..=400.0;
 const SPACING: f64 = 0.25;
 const RING_SEGMENTS: usize = 48;
 
-/// How the brush measures what lies within its radius.
+/// The measure of the brush's radius.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
 pub enum BrushMetric {
-    /// What the disc on the screen covers, if it is connected and faces the eye.
+    /// The vertices under the disc on the screen, if they are connected and face the eye.
     #[default]
     Screen,
-    /// What is within the radius along the surface: into folds and around edges, visible or not.
+    /// The vertices within the radius along the surface: into folds and around edges, visible or not.
     Surface,
     /// Everything under the disc, through to the back of the model.
     Through,
 }
 
-/// How large the brush is, and how that is meant.
+/// The size of the brush, and its measure.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct BrushSize {
     pub(crate) radius_px: f64,
@@ -48,7 +48,7 @@ impl Default for BrushSize {
 /// Finds the vertices under the brush; keeps its memory between dabs.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Brush {
-    /// The number of the dab in which a vertex was seen last.
+    /// The number of the last dab that visited a vertex.
     seen: Vec<u32>,
     dab: u32,
     stack: Vec<(SurfaceVertex, f64)>,
@@ -56,7 +56,7 @@ pub(crate) struct Brush {
 }
 
 impl Brush {
-    /// Calls `visit` for every vertex under the brush as it goes from one point of the viewport to another, with its
+    /// Calls `visit` for every vertex under the brush as it moves from one point of the viewport to another, with its
     /// distance from the brush's middle as a share of the radius; vertices may be visited more than once.
     pub(crate) fn stroke(
         &mut self,
@@ -66,7 +66,7 @@ impl Brush {
         size: &BrushSize,
         mut visit: impl FnMut(SurfaceVertex, f64),
     ) {
-        // Points have no surface that the pointer could meet.
+        // A pick needs a surface, which points don't have.
         let is_of_points = picking.model.surface.triangles.is_empty();
         if is_of_points || size.metric == BrushMetric::Through {
             return sweep(picking, [from_px, to_px], size.radius_px, visit);
@@ -106,7 +106,7 @@ impl Brush {
         }
     }
 
-    /// The same around all points of a movement at once, along the surface: one search, however many they are.
+    /// The same around all points of a movement at once, along the surface, in one search for any number of points.
     fn along_surface(
         &mut self,
         picking: &Picking<'_>,
@@ -154,8 +154,8 @@ impl Brush {
     }
 }
 
-/// Calls `visit` once for every vertex that appears within `radius_px` of the way from one point of the viewport to
-/// the other, whatever hides it.
+/// Calls `visit` once for every vertex that appears within `radius_px` of the path from one point of the viewport to
+/// the other, even if it is hidden.
 fn sweep(
     picking: &Picking<'_>,
     [from_px, to_px]: [DVec2; 2],
@@ -178,7 +178,7 @@ fn sweep(
             visit(vertex, off_px / radius_px);
         }
     };
-    // The hierarchy of an earlier shape would miss what has moved under the brush.
+    // The hierarchy of an earlier shape would miss vertices that have moved under the brush.
     if picking.is_current {
         let planes = tube(picking, from_px, to_px, radius_px);
         picking.bvh.vertices_within(&planes, meet);
@@ -188,7 +188,7 @@ fn sweep(
     }
 }
 
-/// The planes of what appears in the rectangle around the way of a disc, their normals inwards.
+/// The planes around the vertices that appear in the rectangle around the path of a disc, their normals inwards.
 fn tube(picking: &Picking<'_>, from_px: DVec2, to_px: DVec2, radius_px: f64) -> [DVec4; 4] {
     let along = (to_px - from_px).normalize_or(DVec2::X) * radius_px;
     let across = along.perp();
@@ -211,8 +211,8 @@ fn tube(picking: &Picking<'_>, from_px: DVec2, to_px: DVec2, radius_px: f64) -> 
 }
 
 /// The brush's outline around a pick, a closed line. A brush that reaches through is a circle on the screen; any other
-/// lies on the surface, in the mean plane of what it covers. Where the surface ends the line continues in the brush's
-/// own plane.
+/// is on the surface, in the mean plane of the covered part. Beyond the end of the surface the line continues in the
+/// brush's own plane.
 pub(crate) fn ring(picking: &Picking<'_>, position_px: DVec2, pick: &Pick, size: &BrushSize) -> Vec<DVec3> {
     let px = picking.camera.world_per_px(pick.point, picking.viewport_px);
     let radius = size.radius_px * px;
@@ -222,7 +222,7 @@ pub(crate) fn ring(picking: &Picking<'_>, position_px: DVec2, pick: &Pick, size:
         BrushMetric::Screen | BrushMetric::Surface => leaning(picking, position_px, pick, size.radius_px, radius),
     };
     let (right, up) = normal.any_orthonormal_pair();
-    // Moved towards the eye, so that the surface does not hide it.
+    // It is moved towards the eye, so that the surface does not hide it.
     let lifted = |point: DVec3| point + picking.camera.towards_eye(point) * px;
     (0..RING_SEGMENTS)
         .map(|step| {

@@ -6,20 +6,20 @@ use glam::{DQuat, DVec2, DVec3};
 
 use crate::view::Ray;
 
-/// What a transform is held to.
+/// The constraint of a transform.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
 pub enum Constraint {
-    /// Nothing: the plane of the screen, the axis of sight, all axes at once.
+    /// None: the plane of the screen, the axis of sight, all axes at once.
     #[default]
     Free,
     /// Along or about one axis: 0, 1, 2 for x, y, z.
     Axis(usize),
-    /// Every axis but this one.
+    /// Every axis except this one.
     Plane(usize),
 }
 
 impl Constraint {
-    /// As a status line says it: "x", "y and z".
+    /// Its form in the status line: "x", "y and z".
     pub(crate) fn label(self) -> &'static str {
         match self {
             Self::Free | Self::Axis(3..) | Self::Plane(3..) => "",
@@ -33,9 +33,10 @@ impl Constraint {
     }
 }
 
-/// Where on the line through `origin` along the unit vector `axis` the ray passes closest, as a length from `origin`.
+/// The point of the ray's closest approach on the line through `origin` along the unit vector `axis`, as a length from
+/// `origin`.
 ///
-/// `None` if the ray is nearly parallel to the line, where a small movement would mean a huge one.
+/// `None` if the ray is nearly parallel to the line, so that a small movement would become a huge one.
 pub(crate) fn along_axis(ray: Ray, origin: DVec3, axis: DVec3) -> Option<f64> {
     let cosine = ray.direction.dot(axis);
     let sine_squared = 1.0 - cosine * cosine;
@@ -46,8 +47,8 @@ pub(crate) fn along_axis(ray: Ray, origin: DVec3, axis: DVec3) -> Option<f64> {
     Some((cosine * ray.direction.dot(between) - axis.dot(between)) / sine_squared)
 }
 
-/// Where the ray meets the plane through `origin` with the unit normal `normal`; `None` if it is nearly parallel to the
-/// plane or leads away from it.
+/// The intersection of the ray with the plane through `origin` with the unit normal `normal`; `None` if it is nearly
+/// parallel to the plane or leads away from it.
 pub(crate) fn on_plane(ray: Ray, origin: DVec3, normal: DVec3) -> Option<DVec3> {
     let slope = ray.direction.dot(normal);
     if slope.abs() < 1e-3 {
@@ -57,7 +58,7 @@ pub(crate) fn on_plane(ray: Ray, origin: DVec3, normal: DVec3) -> Option<DVec3> 
     (distance > 0.0).then(|| ray.origin + ray.direction * distance)
 }
 
-/// The angle of a point of the screen about a centre, counter-clockwise for the viewer; `None` at the centre.
+/// The angle of a point of the screen about a centre, counterclockwise for the viewer; `None` at the centre.
 pub(crate) fn screen_angle_rad(position_px: DVec2, centre_px: DVec2) -> Option<f64> {
     let arm = position_px - centre_px;
     (arm.length_squared() > 1.0).then(|| (-arm.y).atan2(arm.x))

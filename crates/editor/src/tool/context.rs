@@ -7,25 +7,25 @@ use crate::input::Pointer;
 use crate::view::{Pick, View};
 use crate::workspace::Workspace;
 
-/// The parts of the program, lent to a tool or a command for one call. The active gesture is not among them, nor are
-/// waiting events, keys or the overlay.
+/// The parts of the program, lent to a tool or a command for one call. They do not include the active gesture, waiting
+/// events, keys or the overlay.
 pub(crate) struct Context<'a> {
-    /// The document and what follows from it.
+    /// The document and its consequences.
     pub(crate) workspace: &'a mut Workspace,
-    /// Camera and look.
+    /// The camera and the look.
     pub(crate) view: &'a mut View,
-    /// Which tool, and how it is set.
+    /// The chosen tool and its settings.
     pub(crate) settings: &'a mut ToolSettings,
-    /// What the brush remembers between dabs.
+    /// The brush's memory between dabs.
     pub(crate) brush: &'a mut Brush,
-    /// What was drawn over the surface last.
+    /// The last overlay over the surface.
     pub(crate) overlay: &'a Overlay,
-    /// Where the pointer is, if it is over the view.
+    /// The position of the pointer, if it is over the view.
     pub(crate) pointer: Option<Pointer>,
 }
 
 impl Context<'_> {
-    /// What lies under the pointer.
+    /// The hit under the pointer.
     pub(crate) fn pointed_at(&self) -> Option<Pick> {
         self.workspace.pick(self.view, self.pointer?.position_px)
     }

@@ -11,13 +11,13 @@ use crate::scene_view::Cursor;
 use crate::view::View;
 use crate::workspace::Workspace;
 
-/// An outline that is being drawn.
+/// An outline during its drawing.
 #[derive(Debug)]
 pub(crate) struct ControlBox {
     shape: StrokeShape,
     /// Corners in points of the view.
     points_px: Vec<DVec2>,
-    /// Whether what is inside is selected beside what is selected already.
+    /// Whether the points inside are added to the present selection.
     adds: bool,
 }
 
@@ -85,7 +85,7 @@ impl Gesture for ControlBox {
     fn abort(&mut self, _: &mut Context<'_>) {}
 }
 
-/// Whether a closed line goes around a point, by how often a ray to the right crosses it.
+/// Whether a closed line goes around a point, by the number of its crossings with a ray to the right.
 fn encloses(outline: &[DVec2], point: DVec2) -> bool {
     let next = outline.iter().cycle().skip(1);
     let crossings = outline.iter().zip(next).filter(|(a, b)| {

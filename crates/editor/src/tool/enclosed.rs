@@ -1,4 +1,4 @@
-//! The vertices inside of a closed line on the screen, found by a job, because visibility takes one ray per vertex.
+//! The vertices inside a closed line on the screen, found by a job, because visibility takes one ray per vertex.
 
 use std::sync::Arc;
 
@@ -11,12 +11,12 @@ use crate::jobs::Pickable;
 use crate::view::{Camera, Picking, View};
 use crate::workspace::Workspace;
 
-/// How many vertices are tested between two updates of the progress.
+/// The number of vertices tested between two updates of the progress.
 const BATCH: usize = 16_384;
-/// The closed line's edges lie in bands of this height, so that a point is compared with a few of them.
+/// The closed line's edges are sorted into bands of this height, so that a point is compared with a few of them.
 const BAND_PX: f64 = 4.0;
 
-/// All that the search needs to know, of its own.
+/// The search with all its data.
 pub(super) struct Search {
     model: Arc<Model>,
     displacements: Arc<Vec<DVec3>>,
@@ -29,7 +29,7 @@ pub(super) struct Search {
 }
 
 impl Search {
-    /// A search in the drawn shape; `None` while its hierarchy is not ready, or for a line without inside.
+    /// A search in the drawn shape; `None` while its hierarchy is not ready, or for a line without an inside.
     pub(super) fn of(workspace: &Workspace, view: &View, corners_px: &[DVec2], depth: Depth) -> Option<Self> {
         Some(Self {
             model: Arc::clone(workspace.model()?),
@@ -43,10 +43,10 @@ impl Search {
         })
     }
 
-    /// The vertices whose picture lies in the closed line, ascending.
+    /// The vertices whose image is in the closed line, ascending.
     ///
     /// # Errors
-    /// When it was cancelled.
+    /// It was cancelled.
     pub(super) fn run(&self, progress: &Progress, cancel: &Cancel) -> Result<Vec<SurfaceVertex>, Cancelled> {
         let picking = Picking::of(
             &self.model,
@@ -76,7 +76,7 @@ impl Search {
         let Some(px) = picking.sight.project(position).filter(|&px| self.line.holds(px)) else {
             return false;
         };
-        // Where the line of sight through the vertex begins: the eye itself, but for an orthographic view.
+        // The start of the line of sight through the vertex: the eye itself, except for an orthographic view.
         self.depth == Depth::Through
             || picking.is_seen(vertex, position, picking.camera.ray(px, picking.viewport_px).origin)
     }
@@ -92,7 +92,7 @@ struct ClosedLine {
 }
 
 impl ClosedLine {
-    /// `None` of fewer than three corners.
+    /// The line; `None` for fewer than three corners.
     fn of(corners: &[DVec2]) -> Option<Self> {
         if corners.len() < 3 {
             return None;
@@ -109,7 +109,7 @@ impl ClosedLine {
         Some(Self { low, high, bands })
     }
 
-    /// Whether a point lies within, by the number of edges to its right.
+    /// Whether a point is inside, by the number of edges to its right.
     fn holds(&self, p: DVec2) -> bool {
         if !(p.cmpge(self.low).all() && p.cmple(self.high).all()) {
             return false;

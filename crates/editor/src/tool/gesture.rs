@@ -1,7 +1,7 @@
-//! What the pointer is doing: a stroke, a drag, an orbit; each is a state machine in a file of its own.
+//! The pointer's gestures: a stroke, a drag, an orbit; each is a state machine in its own file.
 //!
-//! A gesture is begun by a button, a key or a command ([`super::begin`]). It gets every event until it ends, and is
-//! aborted if something else interrupts it; an aborted gesture leaves no trace.
+//! A button, a key or a command begins a gesture ([`super::begin`]). It gets every event until it ends, and is aborted
+//! if something else interrupts it; an aborted gesture leaves no trace.
 
 use glam::DVec2;
 use pliant_mesh::SurfaceVertex;
@@ -14,59 +14,59 @@ use crate::scene_view::{Cursor, Readout};
 use crate::view::{ControlShape, View};
 use crate::workspace::Workspace;
 
-/// What comes after an event that a gesture was told of.
+/// The state of a gesture after an event.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Next {
-    /// It goes on.
+    /// It continues.
     Stay,
     /// It has ended.
     End,
-    /// It has ended, and the event may begin something else.
+    /// It has ended, and the event may begin another gesture.
     EndBefore,
 }
 
-/// A gesture that goes on.
+/// An active gesture.
 pub(crate) trait Gesture: std::fmt::Debug {
-    /// What it means for jobs.
+    /// Its effect on jobs.
     fn activity(&self) -> Activity {
         Activity::Still
     }
 
-    /// What the pointer looks like.
+    /// The look of the pointer.
     fn cursor(&self) -> Cursor;
 
-    /// What is shown over the surface meanwhile.
+    /// The overlay on the surface during it.
     fn lit(&self) -> Lit;
 
-    /// A sentence for the status line, if there is something to tell.
+    /// A sentence for the status line, if it has one.
     fn status(&self, workspace: &Workspace, view: &View) -> Option<String>;
 
-    /// The number to show beside what is dragged.
+    /// The number to show beside the dragged object.
     fn readout(&self, _workspace: &Workspace, _view: &View) -> Option<Readout> {
         None
     }
 
-    /// The closed line that is being drawn over the view; empty where none is.
+    /// The closed line during its drawing over the view; empty if there is none.
     fn outline_px(&self) -> Vec<DVec2> {
         Vec::new()
     }
 
-    /// What is shown over the surface beside what [`Gesture::lit`] says, in world space.
+    /// The shapes shown over the surface besides [`Gesture::lit`], in world space.
     fn shapes(&self, _view: &View) -> Vec<ControlShape> {
         Vec::new()
     }
 
-    /// Whether it moves the camera: then the views on its way do not enter the camera's history.
+    /// Whether it moves the camera: then intermediate views do not enter the camera's history.
     fn moves_camera(&self) -> bool {
         false
     }
 
-    /// Whether it measures with the camera that it began with: then nothing else may zoom.
+    /// Whether it measures with the camera of its beginning: then nothing else may zoom.
     fn holds_camera(&self) -> bool {
         false
     }
 
-    /// Whether it waits for a job: the one that finds the vertices inside of an outline, or a joint.
+    /// Whether it waits for a job: a search for the vertices inside an outline, or for a joint.
     fn is_looking(&self) -> bool {
         false
     }
@@ -90,7 +90,7 @@ pub(crate) trait Gesture: std::fmt::Debug {
         Next::Stay
     }
 
-    /// A key went down; `None` if it is not the gesture's own. Escape aborts.
+    /// A key went down; `None` if the gesture does not use it. Escape aborts.
     fn key(&mut self, context: &mut Context<'_>, key: Key, _modifiers: Modifiers) -> Option<Next> {
         (key == Key::Escape).then(|| {
             self.abort(context);
@@ -98,16 +98,16 @@ pub(crate) trait Gesture: std::fmt::Debug {
         })
     }
 
-    /// A job has found what the outline holds.
+    /// A job has found the vertices inside the outline.
     fn found(&mut self, _context: &mut Context<'_>, _inside: Vec<SurfaceVertex>) -> Next {
         Next::Stay
     }
 
-    /// A job has looked for a joint.
+    /// A job has ended its search for a joint.
     fn found_joint(&mut self, _context: &mut Context<'_>) -> Next {
         Next::Stay
     }
 
-    /// Puts everything back to how it was before.
+    /// Restores the earlier state.
     fn abort(&mut self, context: &mut Context<'_>);
 }

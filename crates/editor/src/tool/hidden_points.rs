@@ -1,11 +1,11 @@
-//! Which control points the surface hides: of two near the pointer the one that is seen is taken.
+//! The control points that the surface hides: of two near the pointer the visible one is taken.
 
 use glam::DVec3;
 
 use crate::view::View;
 use crate::workspace::Workspace;
 
-/// Which control points the surface hides, kept because each takes a ray.
+/// The control points that the surface hides, stored because each takes a ray.
 #[derive(Debug, Default)]
 pub(super) struct HiddenPoints {
     seen_from: Option<(u64, u64, bool)>,
@@ -14,12 +14,12 @@ pub(super) struct HiddenPoints {
 }
 
 impl HiddenPoints {
-    /// Of each point, whether it is hidden.
+    /// Whether each point is hidden.
     pub(super) fn are_hidden(&self) -> &[bool] {
         &self.are_hidden
     }
 
-    /// Looks anew where positions, view or surface have changed.
+    /// Tests again if positions, view or surface have changed.
     pub(super) fn look(&mut self, positions: &[DVec3], workspace: &Workspace, view: &View) {
         let is_current = workspace.jobs.is_picking_current();
         let seen_from = Some((view.revision(), workspace.shape_revision(), is_current));

@@ -1,8 +1,8 @@
-//! What the left button does: tools, the gestures that they begin, brushes, and what is drawn over the surface.
+//! The left button: tools, their gestures, brushes, and the overlay on the surface.
 //!
-//! A tool is what a person has chosen ([`ToolMode`], [`ToolSettings`]); a gesture is active while a button is held or
-//! after a key has begun it ([`Gesture`]). A new gesture is a file of its own and a line in `begin.rs` or in the
-//! command that begins it.
+//! A tool is a person's choice ([`ToolMode`], [`ToolSettings`]); a gesture is active while a button is held or after a
+//! key has begun it ([`Gesture`]). A new gesture needs its own file and a line in `begin.rs` or in the command that
+//! begins it.
 
 mod adjust;
 mod begin;

@@ -1,6 +1,6 @@
-//! What the left button does on the surface, and how it takes vertices.
+//! The left button's tools on the surface, and the shapes in which they select vertices.
 
-/// What the left button does on the surface.
+/// The left button's tool on the surface.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
 pub enum ToolMode {
     /// Paints the selected handle, or a new one.
@@ -8,11 +8,11 @@ pub enum ToolMode {
     PaintHandle,
     /// Paints the free region.
     PaintFree,
-    /// Paints the part that is held still.
+    /// Paints the fixed part.
     PaintFixed,
-    /// Takes paint away.
+    /// Removes paint.
     Erase,
-    /// Paints how stiff the surface is.
+    /// Paints the surface's stiffness.
     PaintStiffness,
     /// Selects a handle and drags it.
     Select,
@@ -28,7 +28,7 @@ impl ToolMode {
         !matches!(self, Self::Select | Self::Pose)
     }
 
-    /// Whether it paints what vertices do.
+    /// Whether it paints vertices' roles.
     pub(crate) fn paints_roles(self) -> bool {
         matches!(
             self,
@@ -37,7 +37,7 @@ impl ToolMode {
     }
 }
 
-/// How the left button takes vertices.
+/// The shape in which the left button selects vertices.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
 pub enum StrokeShape {
     /// With the brush.
@@ -47,14 +47,14 @@ pub enum StrokeShape {
     Lasso,
     /// Within a box.
     Box,
-    /// All that hang together with the one under the pointer.
+    /// All vertices connected to the one under the pointer.
     Component,
 }
 
-/// How deep a lasso or a box goes.
+/// The depth of a lasso or a box.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
 pub enum Depth {
-    /// Only what is seen.
+    /// Only the visible surface.
     #[default]
     Visible,
     /// Through the surface to its back.

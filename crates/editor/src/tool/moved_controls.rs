@@ -1,4 +1,4 @@
-//! Control points that a transform moves: where they were when it began, and how they are put.
+//! Control points that a transform moves: their positions at its beginning, and their new positions.
 
 use std::sync::Arc;
 
@@ -11,14 +11,14 @@ use crate::workspace::{Workspace, middle, put_attachment};
 #[derive(Debug)]
 pub(super) struct MovedControls {
     name: &'static str,
-    /// As it was when the transform began; the first move makes it the document's.
+    /// The attachment at the beginning of the transform; the first move makes it the document's.
     attachment: Attachment,
-    /// The points, and where they were seen.
+    /// The points, and their visible positions.
     points: Vec<(u32, DVec3)>,
 }
 
 impl MovedControls {
-    /// `None` if no point is selected.
+    /// The selected points; `None` if there are none.
     pub(super) fn of_selected(workspace: &Workspace) -> Option<Self> {
         if workspace.controls.is_empty() {
             return None;
@@ -38,7 +38,7 @@ impl MovedControls {
         })
     }
 
-    /// As the history calls them.
+    /// Their name in the history.
     pub(super) fn designation(&self) -> String {
         match self.points.as_slice() {
             [(point, _)] => format!("point {point} of the {}", self.name),
@@ -46,12 +46,12 @@ impl MovedControls {
         }
     }
 
-    /// The middle of where they were seen.
+    /// The middle of their visible positions at the beginning.
     pub(super) fn centre(&self) -> DVec3 {
         middle(self.points.iter().map(|(_, seen)| *seen))
     }
 
-    /// The middle of where they are seen now.
+    /// The middle of their present visible positions.
     pub(super) fn centre_now(&self, workspace: &Workspace) -> Option<DVec3> {
         let shown = workspace.shown_controls()?;
         let seen: Option<Vec<DVec3>> = self
@@ -62,7 +62,7 @@ impl MovedControls {
         Some(middle(seen?.into_iter()))
     }
 
-    /// Puts each point beside where it was by the way of where it was seen.
+    /// Moves each point by the displacement of its visible position.
     pub(super) fn put(&self, workspace: &mut Workspace, way: impl Fn(DVec3) -> DVec3) {
         let mut moved = self.attachment.moved().map_or_else(Vec::new, |moved| moved.to_vec());
         for (point, seen) in &self.points {

@@ -22,7 +22,7 @@ pub(crate) struct Navigate {
 #[derive(Clone, Copy, PartialEq, Debug)]
 enum Way {
     Orbit,
-    /// What is at this point's depth stays under the pointer.
+    /// Points at this one's depth stay under the pointer.
     Pan(DVec3),
 }
 

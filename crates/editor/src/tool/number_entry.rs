@@ -2,7 +2,7 @@
 
 use crate::input::Key;
 
-/// What was typed so far.
+/// The typed text.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
 pub(crate) struct NumberEntry {
     digits: String,
@@ -10,7 +10,7 @@ pub(crate) struct NumberEntry {
 }
 
 impl NumberEntry {
-    /// Takes a key; false if it types no number.
+    /// Takes a key; false if it is not part of a number.
     pub(crate) fn take(&mut self, key: Key) -> bool {
         let key = match key {
             Key::Numpad(digit) => Key::Character(char::from(b'0' + digit.min(9))),
@@ -29,13 +29,13 @@ impl NumberEntry {
         true
     }
 
-    /// The number, once a digit was typed.
+    /// The number, after at least one digit.
     pub(crate) fn value(&self) -> Option<f64> {
         let value: f64 = self.digits.parse().ok()?;
         Some(if self.negative { -value } else { value })
     }
 
-    /// As it was typed; empty if nothing was.
+    /// The text as typed; empty if nothing was typed.
     pub(crate) fn text(&self) -> String {
         format!("{}{}", if self.negative { "-" } else { "" }, self.digits)
     }

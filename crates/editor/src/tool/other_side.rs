@@ -1,7 +1,7 @@
-//! What a stroke paints on the other side of the plane of symmetry.
+//! A stroke's paint on the other side of the plane of symmetry.
 //!
-//! Roles are painted alike on both sides. A handle has a twin there, which does in a mirror what the handle does, unless
-//! it lies across the plane: then both sides are one handle.
+//! Roles are painted alike on both sides. A handle has a twin there with the mirrored motion, unless it is on both
+//! sides of the plane: then both sides are one handle.
 
 use std::sync::Arc;
 
@@ -11,18 +11,18 @@ use crate::document::{HandleId, Paint, link_twins};
 use crate::jobs::BothSides;
 use crate::workspace::{Workspace, members, twin_across};
 
-/// The other side of a stroke that goes on.
+/// The other side of an active stroke.
 #[derive(Debug)]
 pub(super) struct OtherSide {
     sides: Arc<BothSides>,
-    /// What is painted there; decided by the first vertices that the stroke meets.
+    /// The paint there; decided by the first vertices of the stroke.
     paint: Option<Paint>,
     /// The twin that this stroke has made.
     made: Option<HandleId>,
 }
 
 impl OtherSide {
-    /// Of a stroke that begins; `None` without symmetry.
+    /// The other side of a stroke that begins; `None` without symmetry.
     pub(super) fn of(workspace: &Workspace) -> Option<Self> {
         let sides = Arc::clone(workspace.both_sides()?);
         Some(Self {
@@ -32,7 +32,7 @@ impl OtherSide {
         })
     }
 
-    /// The vertices to paint on the other side when `vertices` are painted with `own`, and with what.
+    /// The vertices to paint on the other side when `vertices` are painted with `own`, and their paint.
     pub(super) fn of_painted(
         &mut self,
         workspace: &mut Workspace,
@@ -62,13 +62,13 @@ impl OtherSide {
         opposite.extend(self.sides.opposite(vertices.iter().copied()));
         opposite.sort_unstable();
         opposite.dedup();
-        // The brush decides where both would paint.
+        // The brush decides if both would paint.
         let document = &workspace.document;
         opposite.retain(|vertex| document.paint()[vertex.index()] != own && vertices.binary_search(vertex).is_err());
         (opposite, paint)
     }
 
-    /// A stroke that reaches the twin which it has made itself goes across the plane: both become one handle.
+    /// A stroke that reaches the twin that it has made itself crosses the plane: both become one handle.
     fn join_where_they_meet(&mut self, workspace: &mut Workspace, own: Paint, vertices: &[SurfaceVertex]) {
         let Some(twin) = self.made else { return };
         let document = &mut workspace.document;

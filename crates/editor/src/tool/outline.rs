@@ -1,4 +1,4 @@
-//! A lasso or a box over the view: when the button goes up, what is inside is painted as by a stroke.
+//! A lasso or a box over the view: when the button goes up, the vertices inside are painted like those of a stroke.
 
 use glam::DVec2;
 use pliant_mesh::SurfaceVertex;
@@ -16,13 +16,13 @@ use crate::scene_view::Cursor;
 use crate::view::View;
 use crate::workspace::Workspace;
 
-/// An outline that is being drawn.
+/// An outline during its drawing.
 #[derive(Debug)]
 pub(crate) struct OutlineStroke {
     shape: StrokeShape,
     /// Corners in points of the view.
     points_px: Vec<DVec2>,
-    /// What takes the vertices in the end.
+    /// The stroke that finally paints the vertices.
     stroke: StrokeGesture<PaintStroke>,
     phase: Phase,
 }
@@ -31,7 +31,7 @@ pub(crate) struct OutlineStroke {
 enum Phase {
     /// The button is held.
     Drawing,
-    /// It was let go, and a job looks for the vertices inside.
+    /// It was let go, and a job searches for the vertices inside.
     Looking,
 }
 

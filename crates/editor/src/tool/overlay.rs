@@ -1,6 +1,6 @@
 //! The overlay: the brush's ring, the gizmo, and the method's cage or lattice.
 //!
-//! While a brush is active the gizmo is faded and strokes go through it: only the part that the pointer rests on is
+//! While a brush is active the gizmo is faded and strokes pass through it: only the part under a resting pointer is
 //! highlighted, and a press grabs it.
 
 use glam::{DVec2, DVec3};
@@ -19,12 +19,12 @@ use crate::view::{
 };
 use crate::workspace::{Workspace, middle};
 
-/// What of the overlay is shown, by what goes on.
+/// The shown part of the overlay, by the active gesture.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Lit {
     /// Without a gesture: the gizmo, with the part under the pointer highlighted, or else the brush's ring.
     Pointed,
-    /// The gizmo, with this part lit.
+    /// The gizmo, with this part highlighted.
     Gizmo(Option<GizmoPart>),
     /// The brush's ring.
     Ring,
@@ -32,7 +32,7 @@ pub(crate) enum Lit {
     Pivot,
 }
 
-/// The overlay as it is shown.
+/// The shown overlay.
 #[derive(Debug, Default)]
 pub(crate) struct Overlay {
     pub(crate) ring: Vec<DVec3>,
@@ -46,15 +46,15 @@ pub(crate) struct Overlay {
     pub(crate) control_points: Vec<ShownPoint>,
     /// The control point that a press takes.
     pub(crate) pointed_control: Option<u32>,
-    /// The joint of the limb under the pointer, and what a gesture shows.
+    /// The joint of the limb under the pointer, and the shapes of a gesture.
     pub(crate) shapes: Vec<ControlShape>,
-    /// What hides control points was looked at for these positions and this view.
+    /// The positions and the view of the last test of hidden control points.
     hidden: HiddenPoints,
-    /// The part that the pointer rests on.
+    /// The part under a resting pointer.
     rested: Option<GizmoPart>,
 }
 
-/// How much of its colour the gizmo keeps while a brush is active.
+/// The share of its colour that the gizmo keeps while a brush is active.
 const FADED: f64 = 0.4;
 
 impl Overlay {
@@ -64,14 +64,14 @@ impl Overlay {
         part.filter(|part| settings.mode == ToolMode::Select || self.rested == Some(*part))
     }
 
-    /// The pointer rests at a point of the viewport. Squares and the centre lie over what the next stroke paints, so only
-    /// lines can be rested on.
+    /// The pointer rests at a point of the viewport. Squares and the centre cover vertices of the next stroke, so a
+    /// rest counts only on lines.
     pub(crate) fn rest(&mut self, pointer_px: Option<DVec2>, view: &View) {
         let part = pointer_px.and_then(|px| hit_gizmo(&self.gizmo, px, view.camera(), view.viewport_px()));
         self.rested = part.filter(|part| !matches!(part, GizmoPart::Centre | GizmoPart::Square(_)));
     }
 
-    /// Computes the overlay anew, with what a gesture shows; its revision grows if it looks different.
+    /// Computes the overlay anew, with the shapes of a gesture; its revision grows if it looks different.
     pub(crate) fn renew(
         &mut self,
         (lit, mut shapes): (Lit, Vec<ControlShape>),
@@ -133,7 +133,7 @@ impl Overlay {
         }
     }
 
-    /// The control points as they are seen, and their shapes; `pointer_px` is where the pointer may take one.
+    /// The visible control points, and their shapes; `pointer_px` is the pointer's place if it may take one.
     fn renew_controls(&mut self, workspace: &Workspace, view: &View, pointer_px: Option<DVec2>) -> Vec<ControlShape> {
         self.pointed_control = None;
         self.control_points.clear();
@@ -159,7 +159,7 @@ impl Overlay {
     }
 }
 
-/// The joint that the pose brush takes, or turns about.
+/// The joint that the pose brush takes, or about which it turns.
 fn joint(
     lit: Lit,
     workspace: &Workspace,
@@ -186,7 +186,7 @@ fn joint(
     }
 }
 
-/// The gizmo of the selected control points, or else of the selected handle, if it is to be shown.
+/// The gizmo of the selected control points, or else of the selected handle, if it is shown.
 fn gizmo(
     lit: Lit,
     workspace: &Workspace,

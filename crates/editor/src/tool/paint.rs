@@ -15,10 +15,10 @@ use crate::document::{Document, HandleId, Paint};
 use crate::input::Pointer;
 use crate::workspace::{Workspace, tidy_handles};
 
-/// What is said where paint does not take.
+/// The message if paint has no effect.
 const LOCKED_OBJECT: &str = "This object is locked: unlock it in the list of objects to paint on it.";
 
-/// What the stroke does.
+/// The stroke's action.
 #[derive(Debug)]
 pub(super) struct PaintStroke {
     paint: Paint,
@@ -26,8 +26,8 @@ pub(super) struct PaintStroke {
 }
 
 impl PaintStroke {
-    /// Begins a stroke, without a dab, and cancels the binding that is under way. `None`, with a sentence, if the handle
-    /// is locked.
+    /// Begins a stroke, without a dab, and cancels the running binding. `None`, with a sentence, if the handle is
+    /// locked.
     pub fn begin(workspace: &mut Workspace, settings: &ToolSettings, pointer: Pointer) -> Option<StrokeGesture<Self>> {
         let is_erasing = pointer.modifiers.ctrl || matches!(settings.mode, ToolMode::Erase | ToolMode::Select);
         if !is_erasing
@@ -61,7 +61,7 @@ impl PaintStroke {
         Some(StrokeGesture::new(transaction, stroke, pointer))
     }
 
-    /// Paints vertices, and those that go with them on the other side.
+    /// Paints vertices, and their partners on the other side.
     pub fn take(&mut self, workspace: &mut Workspace, mut vertices: Vec<SurfaceVertex>) {
         if let Some(other_side) = &mut self.other_side {
             vertices.sort_unstable();
@@ -108,7 +108,7 @@ impl Stroke for PaintStroke {
     }
 }
 
-/// Paints vertices; those of locked handles and those that are hidden or locked keep their paint.
+/// Paints vertices; vertices of locked handles and hidden or locked ones keep their paint.
 pub(super) fn lay(workspace: &mut Workspace, mut vertices: Vec<SurfaceVertex>, laid: Paint) {
     let document = &workspace.document;
     vertices.retain(|vertex| document.paint[vertex.index()] != laid);
@@ -135,7 +135,7 @@ pub(super) fn lay(workspace: &mut Workspace, mut vertices: Vec<SurfaceVertex>, l
     }
 }
 
-/// The selected handle, or a new one where a new one is wanted or none is selected.
+/// The selected handle, or a new one if a new one is wanted or none is selected.
 fn handle_to_paint(workspace: &mut Workspace) -> HandleId {
     match workspace.selected() {
         Some(handle) if !workspace.selection.wants_new_handle => handle.id,

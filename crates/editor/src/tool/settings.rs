@@ -1,4 +1,4 @@
-//! The settings of tools: which one is chosen, how it selects vertices, how the gizmo is oriented.
+//! The settings of tools: the chosen one, its selection of vertices, the gizmo's orientation.
 
 use super::brush::{BRUSH_RADIUS_PX, BrushSize};
 use super::correct::CorrectionBrush;
@@ -16,16 +16,16 @@ pub(crate) struct ToolSettings {
     pub(crate) brush: BrushSize,
     pub(crate) stiffness_brush: StiffnessBrush,
     pub(crate) correction_brush: CorrectionBrush,
-    /// How hard a pen presses, 0 to 1; `None` until the system reports it.
+    /// The pressure of a pen, 0 to 1; `None` until the system reports it.
     pub(crate) pressure: Option<f64>,
     pub(crate) gizmo_mode: GizmoMode,
     pub(crate) orientation: GizmoOrientation,
-    /// Whether the next click puts the selected handle's pivot.
+    /// Whether the next click moves the selected handle's pivot.
     pub(crate) wants_pivot: bool,
 }
 
 impl ToolSettings {
-    /// The role that region commands apply to: the tool's, else the selected handle's.
+    /// The role for region commands: the tool's, else the selected handle's.
     pub(crate) fn role_in_hand(&self, selected: Option<HandleId>) -> Option<Paint> {
         match self.mode {
             ToolMode::PaintFree => Some(Paint::Free),
@@ -34,14 +34,14 @@ impl ToolSettings {
         }
     }
 
-    /// Chooses the brush's radius, within what it may be.
+    /// Chooses the brush's radius, clamped to its range.
     pub(crate) fn set_brush_radius(&mut self, radius_px: f64) {
         if radius_px.is_finite() {
             self.brush.radius_px = radius_px.clamp(*BRUSH_RADIUS_PX.start(), *BRUSH_RADIUS_PX.end());
         }
     }
 
-    /// How hard the pen presses; 1 for a device that reports no force.
+    /// The pressure of the pen; 1 for a device that reports no force.
     pub(crate) fn set_pressure(&mut self, pressure: Option<f64>) {
         let usable = pressure.filter(|pressure| pressure.is_finite());
         if pressure.is_some() || self.pressure.is_some() {

@@ -1,4 +1,4 @@
-//! A stroke with Shift: the borders between regions are smoothed where the brush goes.
+//! A stroke with Shift: it smooths the borders between regions under the brush.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ use crate::document::{Document, Paint};
 use crate::input::Pointer;
 use crate::workspace::{Workspace, tidy_handles};
 
-/// What the stroke does.
+/// The stroke's action.
 #[derive(Debug)]
 pub(super) struct SmoothStroke;
 
@@ -56,7 +56,7 @@ impl Stroke for SmoothStroke {
     }
 }
 
-/// What more than half of a vertex' neighbours are painted with, if the vertex is not.
+/// The paint of more than half of a vertex' neighbours, if the vertex differs.
 fn outvoted(vertex: SurfaceVertex, paint: &[Paint], topology: &Topology) -> Option<Paint> {
     let own = paint[vertex.index()];
     let neighbours = topology.neighbours(vertex);

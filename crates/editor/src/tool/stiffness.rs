@@ -1,8 +1,8 @@
 //! A stroke of the stiffness brush: towards a value, towards the neighbours, rigid, or back to 1.
 //!
-//! Stiffness spans six decades, so everything is blended in its logarithm. Within one stroke a vertex is changed as far
-//! as by its firmest dab: going over the same place again without letting go adds nothing, and a stroke does not depend
-//! on how many events the pointer sent. Only smoothing accumulates.
+//! Stiffness spans six decades, so everything is blended in its logarithm. Within one stroke only the firmest dab
+//! changes a vertex: a second pass over the same place without letting go adds nothing, and a stroke does not depend on
+//! the number of the pointer's events. Only smoothing accumulates.
 
 use glam::DVec2;
 use pliant_mesh::{SurfaceVertex, Topology};
@@ -15,11 +15,11 @@ use crate::document::Document;
 use crate::input::Pointer;
 use crate::workspace::Workspace;
 
-/// What the stroke does.
+/// The stroke's action.
 #[derive(Debug)]
 pub(super) struct StiffnessStroke {
     brush: StiffnessBrush,
-    /// The firmest that met each vertex in this stroke.
+    /// The firmest dab on each vertex in this stroke.
     firmest: Vec<f32>,
 }
 
@@ -32,7 +32,7 @@ impl StiffnessStroke {
             brush.action = StiffnessAction::Smooth;
         }
         if brush.action == StiffnessAction::Rigid {
-            // Rigid or not: there is nothing between.
+            // A vertex is rigid or not: there is nothing between.
             (brush.strength, brush.falloff) = (1.0, 0.0);
         }
         let transaction = context.workspace.begin_stroke(match brush.action {
@@ -68,7 +68,7 @@ impl Stroke for StiffnessStroke {
             return;
         }
         let workspace = &mut *context.workspace;
-        // The present shape was made with another stiffness; it is kept, as with every stroke.
+        // The present shape was made with another stiffness; it is kept, like in every stroke.
         workspace.document.keep_shape();
         if self.brush.action == StiffnessAction::Smooth {
             if let Some(model) = workspace.model().cloned() {
@@ -110,7 +110,7 @@ impl Stroke for StiffnessStroke {
 
 /// Moves vertices' values towards the mean of their neighbours, by their firmness in the dab; returns them.
 fn smooth(met: Vec<(SurfaceVertex, f64)>, field: &mut [f64], topology: &Topology) -> Vec<SurfaceVertex> {
-    // Every new value comes from old ones, whatever the order of the vertices.
+    // Every new value comes from old ones, independent of the order of the vertices.
     let smoothed = met.iter().map(|&(vertex, firmness)| {
         if field[vertex.index()] == f64::INFINITY {
             return f64::INFINITY;
@@ -132,7 +132,7 @@ fn smooth(met: Vec<(SurfaceVertex, f64)>, field: &mut [f64], topology: &Topology
     met.into_iter().map(|(vertex, _)| vertex).collect()
 }
 
-/// What a stiffness counts as where it is blended: rigid as the stiffest.
+/// The value of a stiffness in a blend: rigid counts as the stiffest.
 fn finite(value: f64) -> f64 {
     value.min(*STIFFNESS_RANGE.end())
 }

@@ -1,8 +1,8 @@
-//! The stiffness brush: what it does, how far, and how softly it ends.
+//! The stiffness brush: its action, its strength, and its softness at the rim.
 
 use crate::STIFFNESS_RANGE;
 
-/// What the stiffness brush does.
+/// The stiffness brush's action.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
 pub enum StiffnessAction {
     /// Takes the surface towards the brush's value.
@@ -10,7 +10,7 @@ pub enum StiffnessAction {
     Paint,
     /// Takes each vertex towards its neighbours.
     Smooth,
-    /// Makes the surface rigid: each part that hangs together moves as one body.
+    /// Makes the surface rigid: each connected part moves as one body.
     Rigid,
     /// Takes the surface back to 1.
     Erase,
@@ -19,13 +19,13 @@ pub enum StiffnessAction {
 /// The stiffness brush.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct StiffnessBrush {
-    /// What it does.
+    /// Its action.
     pub action: StiffnessAction,
-    /// What it paints, in [`STIFFNESS_RANGE`].
+    /// Its value, in [`STIFFNESS_RANGE`].
     pub value: f64,
-    /// How far one stroke goes, 0 to 1.
+    /// The strength of one stroke, 0 to 1.
     pub strength: f64,
-    /// How softly it ends at its rim: 0 is a hard rim, 1 falls off from the middle.
+    /// Its softness: 0 is a hard rim, 1 falls off from the middle.
     pub falloff: f64,
 }
 
@@ -41,7 +41,7 @@ impl Default for StiffnessBrush {
 }
 
 impl StiffnessBrush {
-    /// The brush with every number within its range; `None` where one is no number.
+    /// The brush with every number clamped to its range; `None` if one is NaN.
     pub(crate) fn clamped(self) -> Option<Self> {
         let is_usable = [self.value, self.strength, self.falloff]
             .iter()
@@ -54,7 +54,7 @@ impl StiffnessBrush {
         })
     }
 
-    /// How firm the brush is at a share of its radius: 1 inside, 0 at the rim, a smooth step between.
+    /// The firmness of the brush at a share of its radius: 1 inside, 0 at the rim, a smooth step between.
     pub(super) fn firmness(&self, share: f64) -> f64 {
         let inner = 1.0 - self.falloff;
         if share <= inner || self.falloff == 0.0 {

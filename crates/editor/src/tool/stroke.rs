@@ -1,6 +1,6 @@
-//! Strokes of the brush, from button down to button up: each is one step, and Escape takes it back.
+//! Strokes of the brush, from button down to button up: each is one step, and Escape aborts it.
 //!
-//! What a stroke does to the vertices that it meets is a [`Stroke`]; when it does so is the same for all of them.
+//! A [`Stroke`] is the effect on the vertices under the brush; its timing is the same for all strokes.
 
 use glam::DVec2;
 use pliant_mesh::SurfaceVertex;
@@ -15,29 +15,30 @@ use crate::scene_view::Cursor;
 use crate::view::View;
 use crate::workspace::Workspace;
 
-/// What a stroke does.
+/// The stroke's action.
 pub(crate) trait Stroke: std::fmt::Debug {
-    /// The pointer went from one point of the viewport to another; `before` is the document as the stroke began.
+    /// The pointer moved from one point of the viewport to another; `before` is the document at the beginning of the
+    /// stroke.
     fn dab(&mut self, context: &mut Context<'_>, before: &Document, way_px: [DVec2; 2]);
 
-    /// What the status line says that it does.
+    /// Its text in the status line.
     fn doing(&self, workspace: &Workspace) -> String;
 
-    /// The button went up: what is left to do before the step is done.
+    /// The button went up: the rest of the work before the end of the step.
     fn finish(&mut self, _workspace: &mut Workspace, _before: &Document) {}
 
-    /// What the pointer looks like.
+    /// The look of the pointer.
     fn cursor(&self) -> Cursor {
         Cursor::Brush
     }
 
-    /// Whether it measures with the camera that it began with.
+    /// Whether it measures with the camera of its beginning.
     fn holds_camera(&self) -> bool {
         false
     }
 }
 
-/// A stroke that goes on.
+/// An active stroke.
 #[derive(Debug)]
 pub(super) struct StrokeGesture<S> {
     transaction: Transaction,
@@ -62,13 +63,13 @@ impl<S: Stroke> StrokeGesture<S> {
         gesture
     }
 
-    /// Takes the brush to a point of the viewport.
+    /// Moves the brush to a point of the viewport.
     pub fn dab(&mut self, context: &mut Context<'_>, to_px: DVec2) {
         let from_px = std::mem::replace(&mut self.last_px, to_px);
         self.stroke.dab(context, self.transaction.before(), [from_px, to_px]);
     }
 
-    /// Changes vertices that the brush has not met, and ends.
+    /// Changes further vertices, and ends.
     pub fn finish_with(&mut self, workspace: &mut Workspace, change: impl FnOnce(&mut S, &mut Workspace)) {
         change(&mut self.stroke, workspace);
         self.stroke.finish(workspace, self.transaction.before());
@@ -118,8 +119,8 @@ impl<S: Stroke> Gesture for StrokeGesture<S> {
     }
 }
 
-/// Calls `visit` for every vertex under the brush as it goes from one point of the viewport to another, with its distance
-/// from the brush's middle as a share of the radius; vertices may be visited more than once.
+/// Calls `visit` for every vertex under the brush as it moves from one point of the viewport to another, with its
+/// distance from the brush's middle as a share of the radius; vertices may be visited more than once.
 pub(super) fn meet(context: &mut Context<'_>, [from_px, to_px]: [DVec2; 2], visit: impl FnMut(SurfaceVertex, f64)) {
     if let Some(picking) = context.workspace.picking(context.view) {
         let size = &context.settings.brush;
@@ -127,8 +128,8 @@ pub(super) fn meet(context: &mut Context<'_>, [from_px, to_px]: [DVec2; 2], visi
     }
 }
 
-/// The vertices that may be changed under the brush and, with symmetry, opposite it: in order, each once, with the firmest
-/// that it was met with. `firmness` takes the distance from the brush's middle as a share of the radius.
+/// The vertices that may be changed under the brush and, with symmetry, opposite it: in order, each once, with its
+/// largest firmness. `firmness` takes the distance from the brush's middle as a share of the radius.
 pub(super) fn firmest(
     context: &mut Context<'_>,
     way_px: [DVec2; 2],

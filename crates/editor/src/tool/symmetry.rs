@@ -1,4 +1,5 @@
-//! How the plane of symmetry is shown, as a frame that hides and tints nothing, and the brush's ring on its other side.
+//! The display of the plane of symmetry, as a frame that hides and tints nothing, and of the brush's ring on its other
+//! side.
 
 use glam::DVec3;
 use pliant_mesh::{Bounds, MirrorPlane};
@@ -6,14 +7,14 @@ use pliant_mesh::{Bounds, MirrorPlane};
 use crate::view::ControlShape;
 use crate::workspace::Workspace;
 
-/// A violet that neither handles nor axes have.
+/// A violet that differs from handles and axes.
 const EDGE: [u8; 4] = [170, 90, 230, 200];
 const RING: [u8; 4] = [235, 235, 245, 150];
 
-/// How far the plane is shown beyond the model, as a share of its size.
+/// The extent of the plane beyond the model, as a share of its size.
 const MARGIN: f64 = 0.06;
 
-/// The plane where the model is, and the image of the brush's ring.
+/// The plane at the model, and the image of the brush's ring.
 pub(super) fn symmetry_shapes(workspace: &Workspace, ring: &[DVec3]) -> Vec<ControlShape> {
     let (Some(sides), Some(bounds)) = (
         workspace.both_sides(),
@@ -31,7 +32,7 @@ pub(super) fn symmetry_shapes(workspace: &Workspace, ring: &[DVec3]) -> Vec<Cont
         lines: closed(&outline),
         triangles: Vec::new(),
     }];
-    // The other side of a bent shape is elsewhere.
+    // The other side of a bent shape is at another place.
     let is_at_rest = !workspace.document.is_displaced() && !workspace.document.is_applied();
     if is_at_rest && !ring.is_empty() {
         let image: Vec<DVec3> = ring.iter().map(|point| sides.plane.mirrored(*point)).collect();
@@ -44,7 +45,7 @@ pub(super) fn symmetry_shapes(workspace: &Workspace, ring: &[DVec3]) -> Vec<Cont
     shapes
 }
 
-/// The polygon in which a plane cuts a box that is a little larger than the bounds, in order.
+/// The polygon of a plane's intersection with a box a little larger than the bounds, in order.
 fn section(bounds: &Bounds, plane: &MirrorPlane) -> Vec<DVec3> {
     let margin = DVec3::splat(MARGIN * bounds.diagonal());
     let (min, max) = (bounds.min - margin, bounds.max + margin);

@@ -1,7 +1,7 @@
 //! Moving, turning and scaling a handle or control points, by the gizmo or by G, R and S: begin, preview, commit or abort.
 //!
 //! A drag of the gizmo ends when its button goes up; a transform begun by a key follows the pointer without a button
-//! and ends with a click or Enter. Both understand x, y, z (with Shift: every axis but that one), typed numbers, and
+//! and ends with a click or Enter. Both understand x, y, z (with Shift: every axis except that one), typed numbers, and
 //! Escape.
 
 use glam::{DVec2, DVec3};
@@ -22,16 +22,16 @@ use crate::workspace::{Workspace, count_turn, held_because, members, put_handle}
 /// A held button must move the pointer this far before a handle follows.
 const THRESHOLD_PX: f64 = 3.0;
 
-/// When it ends.
+/// The condition for its end.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 enum Ending {
-    /// With a click or Enter.
+    /// A click or Enter.
     Click,
-    /// When the button goes up.
+    /// The release of the button.
     Release(Button),
 }
 
-/// A transform that goes on.
+/// An active transform.
 #[derive(Debug)]
 pub(crate) struct TransformDrag {
     transaction: Transaction,
@@ -42,14 +42,14 @@ pub(crate) struct TransformDrag {
     is_armed: bool,
 }
 
-/// What is moved.
+/// The moved object.
 #[derive(Debug)]
 enum Subject {
     Handle {
         id: HandleId,
-        /// Where its pivot is on the rest shape.
+        /// The position of its pivot on the rest shape.
         pivot: DVec3,
-        /// Handles that go along, as they were when it began.
+        /// Other handles that move with it, in their state at the beginning.
         companions: Vec<Handle>,
     },
     Controls(MovedControls),
@@ -57,7 +57,7 @@ enum Subject {
 
 impl TransformDrag {
     /// Begins with the selected control points, or else with the selected handle; `None` if none is selected, or it is
-    /// held. It ends with a click.
+    /// locked. It ends with a click.
     pub(crate) fn begin(
         context: &mut Context<'_>,
         kind: TransformKind,
@@ -119,7 +119,7 @@ impl TransformDrag {
         Next::End
     }
 
-    /// Holds the transform to other axes; to none, if it is held to these already.
+    /// Constrains the transform to other axes; to none, if it already has these.
     fn constrain(&mut self, view: &View, wanted: Constraint) {
         let measure = &mut self.measure;
         measure.constraint = if measure.constraint == wanted {
@@ -130,7 +130,7 @@ impl TransformDrag {
         measure.restart(view);
     }
 
-    /// Goes on as another transform, from where the pointer is.
+    /// Continues as another transform, from the pointer's place.
     fn become_kind(&mut self, view: &View, kind: TransformKind) {
         let measure = &mut self.measure;
         if kind != measure.kind {
@@ -149,7 +149,7 @@ impl TransformDrag {
         }
     }
 
-    /// Puts what is moved where the transform has come to.
+    /// Moves the object by the present transform.
     fn preview(&self, workspace: &mut Workspace, view: &View) {
         if !self.is_armed {
             return;
@@ -170,7 +170,7 @@ impl TransformDrag {
         }
     }
 
-    /// Puts the handle, and those that go along, where the transform has come to.
+    /// Moves the handle, and those that move with it, by the present transform.
     fn preview_handle(
         &self,
         workspace: &mut Workspace,
@@ -225,7 +225,7 @@ impl TransformDrag {
     }
 }
 
-/// How far above the file's lowest point, on which its ground lies, the lowest vertex of a handle is seen.
+/// The visible height of a handle's lowest vertex above the file's lowest point, which is the ground.
 fn height_above_ground(workspace: &Workspace, up: DVec3, id: HandleId) -> Option<f64> {
     let ground = workspace.model()?.bounds()?.min.dot(up);
     let own = members(&workspace.document, id)

@@ -7,18 +7,18 @@ use super::number_entry::NumberEntry;
 use crate::document::HandleTransform;
 use crate::view::{ControlShape, GizmoPart, View, arc_shapes, axis_vector};
 
-/// The smallest factor that the pointer can scale by.
+/// The smallest factor of scaling by the pointer.
 const MIN_FACTOR: f64 = 1e-3;
-/// What Ctrl holds turns to: 15 degrees.
+/// Ctrl snaps turns to this: 15 degrees.
 const SNAP_RAD: f64 = std::f64::consts::PI / 12.0;
-/// What Ctrl holds factors to.
+/// Ctrl snaps factors to this.
 const SNAP_FACTOR: f64 = 0.1;
-/// What Ctrl holds lengths to is the largest power of ten below this many points.
+/// Ctrl snaps lengths to the largest power of ten below this many points.
 const SNAP_PX: f64 = 40.0;
-/// What is nearer to the ground than this many points is held to it by Ctrl.
+/// Ctrl snaps objects nearer to the ground than this many points to it.
 const GROUND_PX: f64 = 12.0;
 
-/// What is done to the handle.
+/// The kind of transform.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum TransformKind {
     Move,
@@ -26,32 +26,32 @@ pub(crate) enum TransformKind {
     Scale,
 }
 
-/// What a transform began with, and where the pointer has taken it.
+/// The beginning of a transform, and its extent by the pointer.
 #[derive(Debug)]
 pub(super) struct Measure {
     pub(super) kind: TransformKind,
     pub(super) constraint: Constraint,
-    /// The part of the gizmo that was grabbed.
+    /// The grabbed part of the gizmo.
     pub(super) part: Option<GizmoPart>,
-    /// The handle's transform when it began; the identity for control points.
+    /// The handle's transform at the beginning; the identity for control points.
     pub(super) start: HandleTransform,
-    /// Where the handle's pivot, or the points' middle, was when it began.
+    /// The position of the handle's pivot, or of the points' middle, at the beginning.
     pub(super) centre: DVec3,
     pub(super) start_px: DVec2,
     pub(super) last_px: DVec2,
     /// The turn so far, which may exceed a full circle.
     turned_rad: f64,
     pub(super) number: NumberEntry,
-    /// Whether Ctrl holds the pointer's way to round numbers, and what is near the ground to it.
+    /// Whether Ctrl snaps the pointer's movement to round numbers, and objects near the ground to it.
     snaps: bool,
-    /// How far above the ground the lowest point of what is moved was when it began.
+    /// The height of the object's lowest point above the ground at the beginning.
     above_ground: Option<f64>,
-    /// The gizmo's axes when it began.
+    /// The gizmo's axes at the beginning.
     basis: DQuat,
 }
 
 impl Measure {
-    /// Nothing was done yet to what stands like this, about this centre.
+    /// The beginning for an object with this transform, about this centre.
     pub(super) fn begin(
         kind: TransformKind,
         constraint: Constraint,
@@ -75,13 +75,13 @@ impl Measure {
         }
     }
 
-    /// With the ground this far below what is moved.
+    /// The same with the ground this far below the object.
     pub(super) fn above_ground(mut self, height: Option<f64>) -> Self {
         self.above_ground = height;
         self
     }
 
-    /// The pointer moved on; `snaps` says whether Ctrl is held.
+    /// The pointer moved; `snaps` says whether Ctrl is held.
     pub(super) fn move_to(&mut self, view: &View, position_px: DVec2, snaps: bool) {
         self.snaps = snaps;
         if self.kind == TransformKind::Turn {
@@ -120,7 +120,7 @@ impl Measure {
         }
     }
 
-    /// The arc of the turn so far; none for what is no turn.
+    /// The arc of the turn so far; none without a turn.
     pub(super) fn arc(&self, view: &View) -> Vec<ControlShape> {
         let (camera, viewport_px) = (view.camera(), view.viewport_px());
         if self.kind != TransformKind::Turn || self.angle_rad() == 0.0 {
@@ -137,7 +137,7 @@ impl Measure {
         self.basis * axis_vector(axis)
     }
 
-    /// How far the handle goes, in world units.
+    /// The displacement of the handle, in world units.
     pub(super) fn translation(&self, view: &View) -> DVec3 {
         let way = self.way(view);
         let lands = self.snaps && self.number.value().is_none();
@@ -147,21 +147,22 @@ impl Measure {
         }
     }
 
-    /// What brings the lowest point, this far above the ground, onto it, if that is near and the constraint lets it.
+    /// The displacement that brings the lowest point, this far above the ground, onto it, if that is near and the
+    /// constraint allows it.
     fn landing(&self, view: &View, height: f64) -> DVec3 {
         let near = GROUND_PX * view.camera().world_per_px(self.centre, view.viewport_px());
         let up = view.camera().up.vector();
         let along = match self.constraint {
             Constraint::Free => Some(up),
             Constraint::Axis(axis) => Some(self.axis(axis)),
-            // Within the plane only where it stands upright.
+            // Within the plane only if it is vertical.
             Constraint::Plane(axis) => (self.axis(axis).dot(up).abs() < 1e-6).then_some(up),
         };
         let steep = along.filter(|along| along.dot(up).abs() > 0.5 && height.abs() <= near);
         steep.map_or(DVec3::ZERO, |along| along * (-height / along.dot(up)))
     }
 
-    /// The same wherever the ground is.
+    /// This holds for every height of the ground.
     fn way(&self, view: &View) -> DVec3 {
         if let Some(length) = self.number.value() {
             return match self.constraint {
@@ -186,7 +187,7 @@ impl Measure {
                 way.map_or(DVec3::ZERO, |(from, to)| {
                     let way = to - from;
                     match self.constraint {
-                        // Exactly within the plane, so that the other coordinate keeps its bits.
+                        // It stays exactly within the plane, so that the other coordinate keeps its bits.
                         Constraint::Plane(axis) if self.basis == DQuat::IDENTITY => {
                             let snapped = way.to_array().map(|part| self.snapped(view, part));
                             DVec3::from(snapped) * (DVec3::ONE - axis_vector(axis))
@@ -203,7 +204,8 @@ impl Measure {
         }
     }
 
-    /// A length, held to round numbers while Ctrl is: the power of ten that some dozens of points of the screen span.
+    /// A length, snapped to round numbers while Ctrl is held: to the power of ten of some dozens of points on the
+    /// screen.
     fn snapped(&self, view: &View, length: f64) -> f64 {
         if !self.snaps {
             return length;
@@ -213,7 +215,7 @@ impl Measure {
         (length / step).round() * step
     }
 
-    /// The axis that a turn goes about.
+    /// The axis of a turn.
     pub(super) fn turn_axis(&self, view: &View) -> DVec3 {
         match self.constraint {
             Constraint::Free => -view.camera().forward(),
@@ -221,11 +223,11 @@ impl Measure {
         }
     }
 
-    /// The turn that the pointer's way from one point to another means.
+    /// The turn by the pointer's movement from one point to another.
     fn turn_rad(&self, view: &View, from_px: DVec2, to_px: DVec2) -> f64 {
         let axis = self.turn_axis(view);
         let to_eye = view.camera().towards_eye(self.centre);
-        // Within the ring's plane where that is seen well, else on the screen.
+        // Within the ring's plane if that is clearly visible, else on the screen.
         if self.part.is_some() && axis.dot(to_eye).abs() > 0.25 {
             let [from, to] = [from_px, to_px].map(|px| {
                 let point = on_plane(view.camera().ray(px, view.viewport_px()), self.centre, axis)?;
@@ -245,7 +247,7 @@ impl Measure {
         }
     }
 
-    /// The factor that the pointer's way means.
+    /// The factor by the pointer's movement.
     fn factor(&self, view: &View) -> f64 {
         match self.number.value() {
             Some(factor) => factor,
@@ -284,7 +286,7 @@ impl Measure {
         }
     }
 
-    /// How the handle was turned when it began.
+    /// The handle's rotation at the beginning.
     pub(super) fn own_rotation(&self) -> DQuat {
         match self.start {
             HandleTransform::Trs { rotation, .. } => rotation,
@@ -306,7 +308,7 @@ fn length_label(length: f64) -> String {
 }
 
 impl TransformKind {
-    /// As the history calls it.
+    /// Its name in the history.
     pub(super) fn verb(self) -> &'static str {
         match self {
             Self::Move => "Move",
@@ -315,7 +317,7 @@ impl TransformKind {
         }
     }
 
-    /// As the status line says it while it goes on.
+    /// Its text in the status line while it is active.
     pub(super) fn doing(self) -> &'static str {
         match self {
             Self::Move => "Moving",

@@ -1,4 +1,4 @@
-//! Widening a handle's reach with the pointer: the farther from the handle, the farther the surface comes along.
+//! Widening a handle's reach with the pointer: a larger distance from the handle is a larger reach.
 
 use glam::DVec2;
 
@@ -32,7 +32,7 @@ impl Widen {
         let (camera, viewport_px) = (view.camera(), view.viewport_px());
         let centre_px = camera.project(handle.centre(), viewport_px)?;
         let pointer_px = pointer.map_or(centre_px + DVec2::X * 60.0, |pointer| pointer.position_px);
-        // What lies on the screen under the pointer is where the reach begins to be measured.
+        // The reach is measured from the point under the pointer on the screen.
         let px = camera.world_per_px(handle.centre(), viewport_px);
         Some(Self {
             transaction: workspace.begin(format!("Reach of {}", handle.name)),

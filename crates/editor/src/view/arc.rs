@@ -1,4 +1,4 @@
-//! An arc that shows how far something was turned: a fan between where it was and where it is.
+//! An arc that shows a turn: a fan between the old and the new direction.
 
 use glam::{DQuat, DVec2, DVec3};
 
@@ -9,7 +9,7 @@ const FAN: [u8; 4] = [255, 190, 80, 70];
 const LINE: [u8; 4] = [255, 190, 80, 255];
 /// The arc's radius in points of the view.
 const RADIUS_PX: f64 = 56.0;
-/// An arc has a corner at every so many degrees.
+/// The angle between two corners of an arc, in degrees.
 const STEP_DEG: f64 = 4.0;
 
 /// The arc of a turn by an angle in radians about a unit axis, from the direction `from` seen from the centre. Full turns

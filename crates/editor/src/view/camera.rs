@@ -1,4 +1,4 @@
-//! The eye: it circles a target, in f64, so that it works at geographic coordinates too.
+//! The camera: its eye circles a target, in f64, so that it also works at geographic coordinates.
 //!
 //! View space looks along −z with x to the right and y up. Clip space has x and y in −1..1, y up, and reversed depth:
 //! 1 at the near plane and 0 infinitely far away, which spreads f32 depth evenly over any distance.
@@ -7,13 +7,13 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
 
-/// Which axis of the world points up on the screen.
+/// The axis of the world that points up on the screen.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
 pub enum UpAxis {
-    /// As in glTF.
+    /// Up in glTF.
     #[default]
     Y,
-    /// As in most scans and in CAD.
+    /// Up in most scans and in CAD.
     Z,
 }
 
@@ -30,11 +30,11 @@ impl UpAxis {
 /// A side to look from.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Hash)]
 pub enum NamedView {
-    /// From the front: along −z where y is up, along +y where z is up.
+    /// From the front: along −z if y is up, along +y if z is up.
     Front,
     /// From behind.
     Back,
-    /// From the left of what is looked at, that is from −x.
+    /// From the left of the target, that is from −x.
     Left,
     /// From +x.
     Right,
@@ -72,17 +72,17 @@ impl NamedView {
     }
 }
 
-/// How depth looks.
+/// The appearance of depth.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
 pub enum Projection {
-    /// What is farther away looks smaller.
+    /// Distant objects look smaller.
     #[default]
     Perspective,
-    /// It does not: for comparing lengths. What is at the target's depth looks as large as in perspective.
+    /// They do not, for comparing lengths. Objects at the target's depth have the size that they have in perspective.
     Orthographic,
 }
 
-/// What dragging the view does.
+/// The effect of dragging the view.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
 pub enum Orbit {
     /// It turns about the up axis and tips; the horizon stays level.
@@ -95,7 +95,7 @@ pub enum Orbit {
 /// An eye that circles a target.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Camera {
-    /// What is looked at, in world space.
+    /// The target, in world space.
     pub target: DVec3,
     /// From the eye to the target, in world units, positive.
     pub distance: f64,
@@ -105,13 +105,13 @@ pub struct Camera {
     pub pitch_rad: f64,
     /// Turn about the line of sight; 0 keeps the horizon level, growing turns the picture clockwise.
     pub roll_rad: f64,
-    /// The angle of the view's height; an orthographic view shows as much at the target's depth.
+    /// The angle of the view's height; an orthographic view shows the same height at the target's depth.
     pub fov_y_rad: f64,
-    /// How depth looks.
+    /// The appearance of depth.
     pub projection: Projection,
-    /// Which axis points up.
+    /// The axis of the world that points up on the screen.
     pub up: UpAxis,
-    /// The size of what was framed last, in world units: bounds zooming.
+    /// The size of the last framed object, in world units: bounds zooming.
     pub scale: f64,
 }
 
@@ -135,14 +135,14 @@ impl Default for Camera {
 /// A half line in world space.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Ray {
-    /// Where it begins.
+    /// Its origin.
     pub origin: DVec3,
     /// A unit vector.
     pub direction: DVec3,
 }
 
 impl Camera {
-    /// Whether it can be looked through: everything finite, distances above zero.
+    /// Whether it is a valid view: everything finite, distances above zero.
     pub(crate) fn is_usable(&self) -> bool {
         self.target.is_finite()
             && [self.yaw_rad, self.pitch_rad, self.roll_rad]
@@ -179,8 +179,8 @@ impl Camera {
         )
     }
 
-    /// Clip from view for a viewport of this size: reversed depth; infinitely far in perspective, else as far before
-    /// and behind the target as anything is likely to be.
+    /// Clip from view for a viewport of this size: reversed depth; infinitely far in perspective, else a generous
+    /// distance before and behind the target.
     pub fn clip_from_view(&self, viewport_px: DVec2) -> DMat4 {
         let focal = 1.0 / (0.5 * self.fov_y_rad).tan();
         let aspect = viewport_px.x / viewport_px.y;
@@ -215,12 +215,12 @@ impl Camera {
         (self.distance * 1e-3).max(self.scale * 1e-6)
     }
 
-    /// How far before and behind the target an orthographic view shows things.
+    /// The range before and behind the target that an orthographic view shows.
     fn reach(&self) -> f64 {
         1.5 * self.scale + 3.0 * self.distance * (0.5 * self.fov_y_rad).tan()
     }
 
-    /// Where the eye is, in world space.
+    /// The eye's position, in world space.
     pub fn eye(&self) -> DVec3 {
         self.target + self.axes().z_axis * self.distance
     }
@@ -345,7 +345,7 @@ pub(super) mod tests {
     fn clip_space_agrees_with_projection_and_depth_is_reversed() {
         for camera in cameras() {
             let near = camera.target + DVec3::new(0.1, 0.1, 0.1);
-            // Within what an orthographic view shows, too.
+            // It is also within the range of an orthographic view.
             let far = near + camera.forward() * 2.0;
             let [near_clip, far_clip] = [near, far].map(|p| {
                 let clip = camera.clip_from_world(VIEWPORT_PX) * p.extend(1.0);

@@ -1,22 +1,22 @@
-//! Where one looked from before: the camera has a way back and forth of its own, apart from the document's undo.
+//! The camera's history: it has its own back and forth, apart from the document's undo.
 //!
-//! A place counts once the camera has left it: a gesture of the pointer is one way, however many events it has.
+//! A place counts once the camera has left it: a gesture of the pointer is one movement, for any number of events.
 
 use super::camera::Camera;
 
-/// How many places are kept.
+/// The number of kept places.
 const MOST: usize = 64;
 
-/// Places behind and ahead of the present one.
+/// Places before and after the present one.
 #[derive(Debug, Default)]
 pub(crate) struct CameraHistory {
     behind: Vec<Camera>,
     ahead: Vec<Camera>,
-    /// Where the camera stood when it last came to rest.
+    /// The camera's last resting place.
     resting: Option<Camera>,
 }
 
-/// Which way.
+/// The direction in the history.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum CameraStep {
     Back,
@@ -24,7 +24,7 @@ pub(crate) enum CameraStep {
 }
 
 impl CameraHistory {
-    /// Takes note of where the camera rests.
+    /// Notes the camera's resting place.
     pub(super) fn rest(&mut self, camera: Camera) {
         let Some(resting) = self.resting.replace(camera) else {
             return;
@@ -38,7 +38,7 @@ impl CameraHistory {
         }
     }
 
-    /// Where a step leads from `camera`; `None` where there is no such place.
+    /// The destination of a step from `camera`; `None` if there is none.
     pub(super) fn step(&mut self, step: CameraStep, camera: Camera) -> Option<Camera> {
         let (from, to) = match step {
             CameraStep::Back => (&mut self.behind, &mut self.ahead),
@@ -50,7 +50,7 @@ impl CameraHistory {
         Some(next)
     }
 
-    /// Whether there is a place that way.
+    /// Whether there is a place in that direction.
     pub(crate) fn has(&self, step: CameraStep) -> bool {
         match step {
             CameraStep::Back => !self.behind.is_empty(),

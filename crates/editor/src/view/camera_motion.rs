@@ -1,4 +1,4 @@
-//! How the eye moves: it orbits, pans and zooms, frames what it is shown, and looks from named sides.
+//! The camera's motion: it orbits, pans and zooms, frames objects, and looks from named sides.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -6,17 +6,17 @@ use glam::{DMat3, DQuat, DVec2, DVec3};
 
 use super::{Camera, NamedView, Orbit, Projection, UpAxis};
 
-/// As far up or down as the turntable tips: the poles themselves.
+/// The limit of the turntable's tip up and down: the poles themselves.
 const MAX_PITCH_RAD: f64 = FRAC_PI_2;
-/// How far the eye turns per point of dragging.
+/// The turn of the eye per point of dragging.
 const ORBIT_RAD_PER_PX: f64 = 0.007;
-/// How much closer one notch of the wheel comes.
+/// The zoom of one notch of the wheel.
 const ZOOM_PER_LINE: f64 = 1.15;
 
-/// How much larger than what is framed the picture is.
+/// The size of the picture relative to the framed object.
 const FRAME_MARGIN: f64 = 1.15;
 
-/// How many vertices tell where the middle of a picture is.
+/// The number of vertices that determine the middle of a picture.
 const FRAME_SAMPLE: usize = 20_000;
 
 impl Camera {
@@ -35,7 +35,7 @@ impl Camera {
         self.pitch_rad = (self.pitch_rad + angles_rad.y).clamp(-MAX_PITCH_RAD, MAX_PITCH_RAD);
     }
 
-    /// Turns about the view's own axes, by radians, wherever up then is.
+    /// Turns about the view's own axes, by radians, without keeping up.
     fn roll_ball(&mut self, angles_rad: DVec2) {
         let turn = DQuat::from_scaled_axis(DVec3::new(-angles_rad.y, -angles_rad.x, 0.0));
         let turned = self.axes() * DMat3::from_quat(turn);
@@ -49,21 +49,21 @@ impl Camera {
         self.roll_rad = turned.x_axis.dot(level.y_axis).atan2(turned.x_axis.dot(level.x_axis));
     }
 
-    /// Looks from the other side.
+    /// Looks from the opposite side.
     pub fn turn_around(&mut self) {
         self.yaw_rad = (self.yaw_rad + PI).rem_euclid(TAU);
         self.pitch_rad = -self.pitch_rad;
         self.roll_rad = -self.roll_rad;
     }
 
-    /// Moves eye and target across the view, so that what lies at `anchor`'s depth stays under the pointer.
+    /// Moves eye and target across the view, so that points at `anchor`'s depth stay under the pointer.
     pub fn pan(&mut self, delta_px: DVec2, anchor: DVec3, viewport_px: DVec2) {
         let axes = self.axes();
         let scale = self.world_per_px(anchor, viewport_px);
         self.target += (axes.y_axis * delta_px.y - axes.x_axis * delta_px.x) * scale;
     }
 
-    /// Comes closer by `factor` (above 1) or backs away, with `anchor` staying where it appears.
+    /// Comes closer by `factor` (above 1) or backs away, with `anchor` staying at its place on the screen.
     pub fn zoom(&mut self, factor: f64, anchor: DVec3) {
         let wanted = self.distance / factor;
         let distance = wanted.clamp(self.scale * 1e-4, self.scale * 1e3);
@@ -77,12 +77,12 @@ impl Camera {
         self.zoom(ZOOM_PER_LINE.powf(lines.clamp(-20.0, 20.0)), anchor);
     }
 
-    /// Looks at all of `positions` from the present side, as close as they allow, with a margin; nothing happens
-    /// where there are none. A single place is shown at the scale of the last framing.
+    /// Looks at all of `positions` from the present side, as close as they allow, with a margin; nothing happens if
+    /// there are none. A single place is shown at the scale of the last framing.
     pub fn frame(&mut self, positions: &[DVec3], viewport_px: DVec2) {
         let view_from_world = self.axes().transpose();
         let Some(first) = positions.first() else { return };
-        // Relative to one of them: at geographic coordinates nothing is lost.
+        // Positions are relative to one of them, so that no digits are lost at geographic coordinates.
         let seen = |position: &DVec3| view_from_world * (*position - *first);
         let (least, most) = positions
             .iter()
@@ -98,20 +98,20 @@ impl Camera {
         let slope_y = (0.5 * self.fov_y_rad).tan() / FRAME_MARGIN;
         let slope_x = slope_y * viewport_px.x / viewport_px.y;
         let least = if size > 0.0 { 1e-3 * size } else { self.scale };
-        // Without perspective nothing looks larger because it is near.
+        // Without perspective near objects do not look larger.
         let nearness = match self.projection {
             Projection::Perspective => 1.0,
             Projection::Orthographic => 0.0,
         };
         let distance = |centre: DVec3, stride: usize| {
             let nearest = positions.iter().step_by(stride).map(|position| {
-                // It lies `distance − seen.z` before the eye, which must see it within the slopes.
+                // It is `distance − seen.z` before the eye, which must see it within the slopes.
                 let seen = seen(position) - centre;
                 nearness * seen.z + (seen.x.abs() / slope_x).max(seen.y.abs() / slope_y)
             });
             nearest.fold(least, f64::max)
         };
-        // What is near looks larger: its share of the picture moves the middle. A sample tells by how much.
+        // Near parts look larger: their share of the picture moves the middle. A sample measures the shift.
         let stride = positions.len() / FRAME_SAMPLE + 1;
         for _ in 0..3 {
             let from_eye = distance(centre, stride);

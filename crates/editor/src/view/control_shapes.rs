@@ -1,5 +1,5 @@
-//! How a cage or a lattice is drawn over the surface: its edges as lines and its points as squares of constant size on
-//! the screen. The renderer makes fainter what the surface hides.
+//! The drawing of a cage or a lattice over the surface: its edges as lines and its points as squares of constant size
+//! on the screen. The renderer fades the parts that the surface hides.
 
 use glam::{DVec2, DVec3};
 
@@ -16,7 +16,7 @@ pub struct ControlShape {
     pub triangles: Vec<[DVec3; 3]>,
 }
 
-/// A control point as it is seen.
+/// A visible control point.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct ShownPoint {
     pub(crate) position: DVec3,
@@ -25,17 +25,17 @@ pub(crate) struct ShownPoint {
     pub(crate) is_pointed_at: bool,
 }
 
-/// Blue, orange and near-black are told apart from clay, from each other and from both themes' grounds.
+/// Blue, orange and near-black are distinct from clay, from each other and from both themes' grounds.
 const EDGE: [u8; 4] = [58, 128, 220, 220];
 const POINT: [u8; 4] = [120, 180, 255, 255];
 const SELECTED: [u8; 4] = [255, 150, 30, 255];
 const RIM: [u8; 4] = [18, 24, 36, 255];
 
-/// Half the side of a point's square, and how far its rim goes beyond it, in points of the view.
+/// Half the side of a point's square, and the width of its rim, in points of the view.
 const HALF_PX: f64 = 3.6;
 const RIM_PX: f64 = 1.3;
 
-/// How near to a point the pointer must be to take it.
+/// The pointer's distance to a point within which it takes the point.
 const GRAB_PX: f64 = 8.0;
 
 /// The shapes: edges, the points' rims, points and selected ones.
@@ -79,7 +79,7 @@ fn square(position: DVec3, half_px: f64, camera: &Camera, viewport_px: DVec2) ->
     [[a, b, c], [a, c, d]]
 }
 
-/// The point under the pointer: of those near it one that is seen, and of these the nearest to the eye.
+/// The point under the pointer: of those near it a visible one, and of these the nearest to the eye.
 pub(crate) fn control_at(points: &[ShownPoint], pointer_px: DVec2, camera: &Camera, viewport_px: DVec2) -> Option<u32> {
     let near = points.iter().enumerate().filter_map(|(number, point)| {
         let at_px = camera.project(point.position, viewport_px)?;

@@ -1,31 +1,31 @@
-//! How the view shows things: chosen by a person, not part of the document.
+//! The look of the view: a person's choice, not part of the document.
 
-/// How the surface is shown.
+/// The look of the surface.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Hash)]
 pub struct Look {
-    /// What it seems to be made of, or what its colours say.
+    /// The apparent material of the surface, or the meaning of its colours.
     pub shading: Shading,
-    /// Which clay.
+    /// The clay.
     pub clay: Clay,
-    /// Whether each triangle is flat, instead of normals being interpolated.
+    /// Whether each triangle is flat, instead of having interpolated normals.
     pub flat: bool,
     /// Whether the triangles' edges are shown.
     pub wireframe: bool,
-    /// Whether edges that a closed surface lacks are marked.
+    /// Whether edges that a closed surface does not have are marked.
     pub borders: bool,
     /// Whether the regions' colours are shown.
     pub regions: bool,
-    /// Whether handles are outlined, and the line is drawn where the free region meets what is held.
+    /// Whether handles are outlined, and the line between the free region and the fixed part is drawn.
     pub outlines: bool,
     /// Whether the ground's grid is shown.
     pub grid: bool,
-    /// Whether the surface throws a shadow on the ground.
+    /// Whether the surface casts a shadow on the ground.
     pub shadow: bool,
-    /// Whether the file's own shape is shown in place of the present one.
+    /// Whether the file's own shape is shown instead of the present one.
     pub original: bool,
-    /// Whether the smooth base is shown in place of the surface, where the method has one.
+    /// Whether the smooth base is shown instead of the surface, if the method has one.
     pub base: bool,
-    /// How the file's own shape is shown along with the present one.
+    /// The way in which the file's own shape is shown with the present one.
     pub before: Before,
 }
 
@@ -48,7 +48,7 @@ impl Default for Look {
     }
 }
 
-/// How the file's own shape is shown along with the present one.
+/// The way in which the file's own shape is shown with the present one.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
 pub enum Before {
     /// Not at all.
@@ -60,7 +60,7 @@ pub enum Before {
     Split,
 }
 
-/// What the surface seems to be made of, or what its colours say.
+/// The apparent material of the surface, or the meaning of its colours.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
 pub enum Shading {
     /// Plain clay.
@@ -68,19 +68,19 @@ pub enum Shading {
     Clay,
     /// The file's materials.
     Material,
-    /// How stiff it was painted.
+    /// The painted stiffness.
     Stiffness,
-    /// How much of the selected handle's turn and stretch it takes on, where the method has such weights.
+    /// The share of the selected handle's turn and stretch, if the method has such weights.
     Weights,
-    /// How much longer or shorter edges are than at rest.
+    /// The stretch of edges relative to rest.
     Stretch,
-    /// How much larger or smaller areas are than at rest.
+    /// The change of areas relative to rest.
     Area,
     /// Mean curvature.
     Curvature,
-    /// Stripes that it mirrors.
+    /// Mirrored stripes.
     Zebra,
-    /// Which way it faces.
+    /// The direction of its normals.
     Normals,
 }
 
@@ -98,7 +98,7 @@ pub enum Clay {
 }
 
 impl Clay {
-    /// Every clay with its name, which menus begin with a capital.
+    /// Every clay with its name, which menus capitalise.
     pub const NAMES: [(&'static str, Self); 6] = [
         ("clay", Self::Clay),
         ("plaster", Self::Plaster),

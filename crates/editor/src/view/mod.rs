@@ -1,4 +1,4 @@
-//! Where one looks from, what is seen there, and how it is shown.
+//! The view: its camera, its picking and its look.
 
 mod arc;
 mod camera;

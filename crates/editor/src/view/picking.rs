@@ -1,4 +1,4 @@
-//! What lies under the pointer: rays against a hierarchy that a job refits whenever the shape settles.
+//! Picking under the pointer: rays against a hierarchy that a job refits whenever the shape settles.
 
 use std::sync::Arc;
 
@@ -14,35 +14,35 @@ use crate::jobs::Pickable;
 pub struct Pick {
     /// The surface triangle.
     pub triangle: u32,
-    /// The corner that is nearest to the point.
+    /// The corner nearest to the point.
     pub vertex: SurfaceVertex,
     /// The point, in world space.
     pub point: DVec3,
-    /// The unit normal of the triangle on the side that was met.
+    /// The unit normal of the triangle on the side of the hit.
     pub normal: DVec3,
-    /// Whether the outer side was met.
+    /// Whether the hit is on the outer side.
     pub front: bool,
 }
 
-/// The present shape and the structure that answers rays, which may lag behind it.
+/// The present shape and the hierarchy for rays, which may lag behind it.
 #[derive(Clone)]
 pub(crate) struct Picking<'a> {
     pub(crate) model: &'a Model,
     /// Displacements of the surface from the file's shape.
     pub(crate) displacements: &'a Arc<Vec<DVec3>>,
     pub(crate) bvh: &'a Bvh,
-    /// The surface's triangles that rays may meet; `None` is all of them.
+    /// The surface's triangles that rays may hit; `None` is all of them.
     pub(crate) triangles: Option<&'a [u32]>,
     pub(crate) camera: &'a Camera,
     pub(crate) viewport_px: DVec2,
-    /// The camera, ready to look at many points.
+    /// The camera, prepared for many points.
     pub(crate) sight: Sight,
-    /// Whether rays are answered from the present shape.
+    /// Whether the hierarchy for rays is that of the present shape.
     pub(crate) is_current: bool,
 }
 
 impl<'a> Picking<'a> {
-    /// What a camera sees in a viewport.
+    /// The view of a camera in a viewport.
     pub(crate) fn of(
         model: &'a Model,
         displacements: &'a Arc<Vec<DVec3>>,
@@ -72,7 +72,7 @@ impl<'a> Picking<'a> {
         self.model.surface.triangles[triangle as usize].map(|vertex| self.position(vertex))
     }
 
-    /// Whether any triangle at the vertex shows the eye its front, or else its back; a bare point shows both.
+    /// Whether any triangle at the vertex faces the eye with its front, or else with its back; a bare point has both.
     pub(crate) fn shows(&self, vertex: SurfaceVertex, position: DVec3, front: bool) -> bool {
         let to_eye = self.sight.towards_eye(position);
         let model = &self.model;
@@ -85,20 +85,20 @@ impl<'a> Picking<'a> {
             })
     }
 
-    /// Whether nothing stands between the eye and a vertex at `position`, and the surface there faces it.
+    /// Whether nothing is between the eye and a vertex at `position`, and the surface there faces it.
     pub(crate) fn is_seen(&self, vertex: SurfaceVertex, position: DVec3, eye: DVec3) -> bool {
         if !self.shows(vertex, position, true) {
             return false;
         }
         let sight = position - eye;
-        // A hair before the vertex's own triangles.
+        // The ray ends just before the vertex's own triangles.
         self.bvh.ray(eye, sight).is_none_or(|hit| {
             let triangle = self.of_surface(hit.triangle) as usize;
             hit.distance >= 1.0 - 1e-4 || self.model.surface.triangles[triangle].contains(&vertex)
         })
     }
 
-    /// The surface's triangle of a hit's number.
+    /// The surface's triangle of a hit.
     fn of_surface(&self, hit: u32) -> u32 {
         let of = self.triangles.and_then(|triangles| triangles.get(hit as usize));
         of.copied().unwrap_or(hit)

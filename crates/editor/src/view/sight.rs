@@ -1,15 +1,15 @@
-//! A camera made ready to look at millions of points: its axes and lengths, worked out once.
+//! A camera prepared for millions of points: its axes and lengths, computed once.
 
 use glam::{DMat3, DVec2, DVec3};
 
 use super::camera::{Camera, Projection};
 
-/// How a camera sees points in a viewport of some size.
+/// A camera's projection of points in a viewport.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sight {
     view_from_world: DMat3,
     eye: DVec3,
-    /// What every point's depth counts as, where distance does not matter.
+    /// The common depth of all points, for a view in which distance does not matter.
     fixed_depth: Option<f64>,
     focal_px: f64,
     middle_px: DVec2,
@@ -29,7 +29,7 @@ impl Sight {
         }
     }
 
-    /// Where a point of the world appears in the viewport; `None` behind the eye.
+    /// The place of a world point in the viewport; `None` behind the eye.
     pub(crate) fn project(&self, world: DVec3) -> Option<DVec2> {
         let in_view = self.view_from_world * (world - self.eye);
         let depth = self.fixed_depth.unwrap_or(-in_view.z);
@@ -40,7 +40,7 @@ impl Sight {
         Some(self.middle_px + DVec2::new(offset.x, -offset.y))
     }
 
-    /// From a point towards the eye, of any length.
+    /// The direction from a point towards the eye, of any length.
     pub(crate) fn towards_eye(&self, world: DVec3) -> DVec3 {
         match self.fixed_depth {
             None => self.eye - world,
@@ -50,7 +50,7 @@ impl Sight {
 }
 
 impl Camera {
-    /// Where a point of the world appears in the viewport; `None` behind the eye.
+    /// The place of a world point in the viewport; `None` behind the eye.
     pub fn project(&self, world: DVec3, viewport_px: DVec2) -> Option<DVec2> {
         Sight::of(self, viewport_px).project(world)
     }

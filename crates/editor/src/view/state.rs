@@ -1,4 +1,4 @@
-//! The view: camera, viewport and look. It is chosen by a person and belongs to no document.
+//! The view: camera, viewport and look. A person chooses it, and it belongs to no document.
 
 use glam::{DVec2, DVec3};
 
@@ -6,7 +6,7 @@ use super::camera::{Camera, Orbit, UpAxis};
 use super::camera_history::{CameraHistory, CameraStep};
 use super::look::Look;
 
-/// Where one looks from, and how the surface is shown.
+/// The camera, and the look of the surface.
 #[derive(Debug)]
 pub(crate) struct View {
     camera: Camera,
@@ -14,7 +14,7 @@ pub(crate) struct View {
     viewport_px: DVec2,
     /// Grows when camera or viewport changed.
     revision: u64,
-    /// Whether nobody has moved the camera since everything was framed.
+    /// Whether the camera has not been moved since everything was framed.
     is_framed: bool,
     orbit: Orbit,
     pub(crate) look: Look,
@@ -44,7 +44,7 @@ impl View {
         self.viewport_px
     }
 
-    /// What dragging does.
+    /// The effect of dragging.
     pub(crate) fn orbit(&self) -> Orbit {
         self.orbit
     }
@@ -53,17 +53,17 @@ impl View {
         self.revision
     }
 
-    /// Whether everything is to be framed again when the view changes its size.
+    /// Whether a change of the view's size frames everything again.
     pub(crate) fn is_framed(&self) -> bool {
         self.is_framed
     }
 
-    /// Which places can be gone back and forth to.
+    /// The places in the camera's history.
     pub(crate) fn history(&self) -> &CameraHistory {
         &self.history
     }
 
-    /// Takes another size; false if that is none, or the present one.
+    /// Sets the size; false if it is invalid, or the present one.
     pub(crate) fn resize(&mut self, size_px: DVec2) -> bool {
         let is_usable = size_px.is_finite() && size_px.x >= 1.0 && size_px.y >= 1.0;
         let is_other = is_usable && size_px != self.viewport_px;
@@ -74,7 +74,7 @@ impl View {
         is_other
     }
 
-    /// Changes how the camera sees from where it is.
+    /// Changes the camera's projection without moving it.
     pub(crate) fn adjust(&mut self, change: impl FnOnce(&mut Camera)) {
         let before = self.camera;
         change(&mut self.camera);
@@ -83,13 +83,13 @@ impl View {
         }
     }
 
-    /// Moves the camera away from where everything was framed.
+    /// Moves the camera away from the framing of everything.
     pub(crate) fn travel(&mut self, change: impl FnOnce(&mut Camera)) {
         self.adjust(change);
         self.is_framed = false;
     }
 
-    /// Chooses what dragging does; a turntable has a level horizon.
+    /// Chooses the effect of dragging; a turntable has a level horizon.
     pub(crate) fn set_orbit(&mut self, orbit: Orbit) {
         self.orbit = orbit;
         if orbit == Orbit::Turntable {
@@ -97,14 +97,14 @@ impl View {
         }
     }
 
-    /// Shows all of these points, which are everything: the camera stays so when the view changes its size.
+    /// Frames all of these points, which are everything: the camera frames them again when the view changes its size.
     pub(crate) fn frame_all(&mut self, positions: &[DVec3]) {
         let viewport_px = self.viewport_px;
         self.adjust(|camera| camera.frame(positions, viewport_px));
         self.is_framed = true;
     }
 
-    /// Comes close to these points, with as much room again on every side to show what they lie on.
+    /// Frames these points, with a margin of their own size on every side to show their surroundings.
     pub(crate) fn frame(&mut self, positions: &[DVec3]) {
         let viewport_px = self.viewport_px;
         self.travel(|camera| {
@@ -113,7 +113,7 @@ impl View {
         });
     }
 
-    /// Comes close to a point.
+    /// Frames a point.
     pub(crate) fn approach(&mut self, point: DVec3) {
         self.travel(|camera| {
             camera.target = point;
@@ -121,7 +121,7 @@ impl View {
         });
     }
 
-    /// Begins a file of this size with no place to go back to. Which axis is up belongs to the file: it begins with Y.
+    /// Begins a file of this size without a place to go back to. The up axis belongs to the file: it begins with Y.
     pub(crate) fn open(&mut self, scale: Option<f64>) {
         self.adjust(|camera| {
             camera.up = UpAxis::Y;
@@ -130,14 +130,14 @@ impl View {
         self.history = CameraHistory::default();
     }
 
-    /// Goes to where one looked from before, or forth again.
+    /// Goes back to an earlier view, or forth again.
     pub(crate) fn step(&mut self, step: CameraStep) {
         if let Some(camera) = self.history.step(step, self.camera) {
             self.travel(|present| *present = camera);
         }
     }
 
-    /// Takes note that no gesture moves the camera.
+    /// Notes that no gesture moves the camera.
     pub(crate) fn rest(&mut self) {
         self.history.rest(self.camera);
     }

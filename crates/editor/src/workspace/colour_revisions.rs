@@ -1,4 +1,4 @@
-//! When the colours on the surface, and the lines between regions, are to be fetched again.
+//! Revisions of the colours on the surface, and of the lines between regions: a changed revision means a new upload.
 
 use pliant_mesh::SurfaceVertex;
 
@@ -6,24 +6,24 @@ use super::dirty_colours::DirtyColours;
 use crate::document::{HandleId, Repainted, Version};
 use crate::jobs::Revision;
 
-/// What the surface's colours tell.
+/// The meaning of the surface's colours.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub(crate) enum ColouredBy {
-    /// What each vertex does.
+    /// The role of each vertex.
     #[default]
     Region,
-    /// How stiff it was painted.
+    /// The painted stiffness.
     Stiffness,
 }
 
-/// What the colours of regions and the lines between them are made from, but for paint and stiffness.
+/// The sources of the regions' colours and of the lines between them, except paint and stiffness.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub(super) struct Sources {
-    /// How handles look.
+    /// The look of handles.
     pub(super) appearance: Version,
-    /// What is shown.
+    /// The shown parts.
     pub(super) access: Version,
-    /// The region that was measured last.
+    /// The last measured region.
     pub(super) roles: Revision,
     pub(super) by: ColouredBy,
     pub(super) selected: Option<HandleId>,
@@ -32,13 +32,13 @@ pub(super) struct Sources {
 /// The revisions of the regions' colours and of the lines between them.
 #[derive(Debug, Default)]
 pub(crate) struct Colours {
-    /// Grows when a vertex has another colour.
+    /// Grows when a vertex changes its colour.
     regions_revision: u64,
-    /// Grows when the lines have changed, or what is told apart by them.
+    /// Grows when the lines have changed, or the regions that they separate.
     rims_revision: u64,
     dirty: DirtyColours,
     sources: Sources,
-    /// The connected part that is lit up, by its component's number.
+    /// The highlighted connected part, by its component's number.
     lit: Option<u32>,
 }
 
@@ -51,28 +51,28 @@ impl Colours {
         self.rims_revision
     }
 
-    /// The colour that `by` tells has become what is shown.
+    /// The colours of `by` are now shown.
     pub(crate) fn by(&self) -> ColouredBy {
         self.sources.by
     }
 
-    /// The connected part that is lit up.
+    /// The highlighted connected part.
     pub(crate) fn lit(&self) -> Option<u32> {
         self.lit
     }
 
-    /// Lights up another part, or none; `vertices` are those of the one before and of this one.
+    /// Highlights another part, or none; `vertices` are those of the last one and of this one.
     pub(super) fn light(&mut self, part: Option<u32>, vertices: &[SurfaceVertex]) {
         self.lit = part;
         self.dirty.add(vertices);
     }
 
-    /// The vertices whose colour may have changed since a revision; `None`: all of them.
+    /// The vertices whose colour may have changed since a revision; `None` is all of them.
     pub(crate) fn since(&self, regions_revision: u64) -> Option<&[SurfaceVertex]> {
         self.dirty.since(regions_revision)
     }
 
-    /// Everything is another, and nothing is lit up.
+    /// Everything has changed, and nothing is highlighted.
     pub(super) fn change_all(&mut self) {
         self.lit = None;
         self.regions_revision += 1;
@@ -80,7 +80,7 @@ impl Colours {
         self.rims_revision += 1;
     }
 
-    /// Follows what colours and lines are made from.
+    /// Follows the sources of colours and lines.
     pub(super) fn follow(&mut self, sources: Sources, repainted: Repainted) {
         let before = std::mem::replace(&mut self.sources, sources);
         let line_sources = |s: &Sources| (s.appearance, s.access, s.roles, s.selected);

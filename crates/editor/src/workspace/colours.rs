@@ -10,7 +10,7 @@ use super::state::Workspace;
 use crate::document::{HandleId, Paint};
 use crate::jobs::{Rim, bounded};
 
-/// The colour of a stiffness, sRGB with alpha: blue where it gives way (0.001), grey at 1, red where it is firm (1000),
+/// The colour of a stiffness, sRGB with alpha: blue where it is soft (0.001), grey at 1, red where it is stiff (1000),
 /// violet where it is rigid.
 pub fn stiffness_colour(stiffness: f64) -> [u8; 4] {
     const SOFT: [f64; 3] = [58.0, 118.0, 214.0];
@@ -21,25 +21,25 @@ pub fn stiffness_colour(stiffness: f64) -> [u8; 4] {
         return RIGID;
     }
     let decades = stiffness.max(f64::MIN_POSITIVE).log10() / 3.0;
-    // What is near 1 is told apart, too.
+    // Values near 1 are also distinct.
     let share = decades.abs().min(1.0).sqrt();
     let end = if decades < 0.0 { SOFT } else { FIRM };
     let [r, g, b] = std::array::from_fn(|i| (PLAIN[i] + (end[i] - PLAIN[i]) * share).round() as u8);
     [r, g, b, 255]
 }
 
-/// How much of a region's or a handle's colour is seen over the surface's own, of 255: a tint, which leaves the form and
-/// the file's colours to be seen. Outlines and lists have the colours in full, and so have painted stiffness and what is
-/// lit up, which nothing outlines.
+/// The opacity of a region's or a handle's colour over the surface's own, of 255: a tint, under which the form and the
+/// file's colours stay visible. Outlines and lists have the full colours, and so have painted stiffness and highlighted
+/// parts, which have no outline.
 const TINT: u8 = 102;
 
-/// What may bend, and what is held still.
+/// The free region's and the fixed part's colours.
 const FREE: [u8; 4] = [96, 150, 222, TINT];
 const FIXED: [u8; 4] = [112, 112, 116, TINT];
 
-/// What tells the colour of a vertex, sRGB; alpha is how much of it is seen over the surface's own.
+/// The data for the colour of a vertex, sRGB; alpha is its opacity over the surface's own.
 pub(crate) fn region_colour(workspace: &Workspace) -> impl Fn(SurfaceVertex) -> [u8; 4] {
-    // The clay or the material as it is: a share of any grey would wash it out.
+    // The clay or the material stays unchanged: a share of any grey would wash it out.
     const STILL: [u8; 4] = [0; 4];
     const LIT: [u8; 4] = [255, 214, 110, 255];
     let document = &workspace.document;
@@ -71,7 +71,7 @@ pub(crate) fn region_colour(workspace: &Workspace) -> impl Fn(SurfaceVertex) -> 
     }
 }
 
-/// Lights up a connected part, by its component's number, in place of the one before; `None` lights up none.
+/// Highlights a connected part, by its component's number, instead of the last one; `None` highlights none.
 pub(crate) fn light_part(workspace: &mut Workspace, part: Option<u32>) {
     let Some(model) = workspace.model().map(Arc::clone) else {
         return;
@@ -86,7 +86,7 @@ pub(crate) fn light_part(workspace: &mut Workspace, part: Option<u32>) {
     }
 }
 
-/// The lines between the regions as they were last measured, each with what it bounds; those of hidden handles and on
+/// The lines between the last measured regions, each with the region that it bounds; those of hidden handles and on
 /// hidden triangles are left out.
 pub(crate) fn rims(workspace: &Workspace) -> impl Iterator<Item = (&ContourLine, Rim)> {
     let region = &workspace.computed().region;
@@ -106,7 +106,7 @@ mod tests {
     use super::{FIXED, FREE, TINT};
     use crate::document::HANDLE_COLOURS;
 
-    /// What is seen, in linear light, without and with the three blindnesses [MOF09, severity 1], by rows.
+    /// The perceived colours, in linear light, without and with the three blindnesses [MOF09, severity 1], by rows.
     const VISIONS: [(&str, [f64; 9]); 4] = [
         ("none", [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]),
         (
@@ -142,7 +142,7 @@ mod tests {
         DVec3::new(linear(red), linear(green), linear(blue))
     }
 
-    /// Linear light in CIE L*a*b* as a vision sees it.
+    /// Linear light in CIE L*a*b* under a vision.
     fn seen(light: DVec3, vision: &[f64; 9]) -> DVec3 {
         let light = (DMat3::from_cols_array(vision).transpose() * light).clamp(DVec3::ZERO, DVec3::ONE);
         let to_xyz = DMat3::from_cols(
@@ -161,8 +161,8 @@ mod tests {
         DVec3::new(116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z))
     }
 
-    /// Asserts that every two of the colours are more than `least` apart under every vision. Two colours side by side are
-    /// seen to differ from about 2 on.
+    /// Asserts that every two of the colours are more than `least` apart under every vision. Two adjacent colours look
+    /// different from about 2 on.
     fn assert_apart(colours: impl Iterator<Item = DVec3>, least: f64) {
         let colours: Vec<DVec3> = colours.collect();
         for (name, vision) in &VISIONS {

@@ -1,7 +1,7 @@
-//! What follows from an event: which revisions grow, and which jobs are asked for.
+//! The consequences of an event: the growing revisions, and the requested jobs.
 //!
-//! The document says what has changed by the versions of its aspects. Each thing that follows from some of them is
-//! renewed when those are others than what it was made from; nobody has to know who follows from a change.
+//! The versions of the document's aspects record its changes. Data that follow from some aspects are renewed when these
+//! differ from their sources; the code that makes a change need not know its consequences.
 
 use super::colour_revisions::{ColouredBy, Sources};
 use super::state::Workspace;
@@ -10,7 +10,7 @@ use crate::document::{Aspect, Paint, VertexAccess};
 use crate::jobs::{Activity, Arrival, Asked, Finality, Solved};
 
 impl Workspace {
-    /// Draws the conclusions from what an event changed: revisions grow, and jobs are asked for.
+    /// Computes the consequences of an event's changes: revisions grow, and jobs are requested.
     pub(crate) fn conclude(&mut self, activity: Activity, coloured_by: ColouredBy, asked: Asked) {
         self.renew_vertex_access();
         self.settle_what_needs_no_solve();
@@ -24,7 +24,7 @@ impl Workspace {
         self.jobs.inspect(asked, &self.document);
         let is_at_rest = activity == Activity::Still && self.document.is_settled();
         let is_bent = self.document.is_displaced() || self.document.is_applied();
-        // One that follows another is looked at, and not edited.
+        // A workspace that follows another is shown, not edited.
         if is_at_rest && is_bent && self.followed.is_none() {
             self.jobs.intersect(&self.document.from_file);
         }
@@ -40,7 +40,7 @@ impl Workspace {
         self.colours.follow(sources, self.document.take_repainted());
     }
 
-    /// Finds out whether anything is painted, once for each paint: commands ask at every frame.
+    /// Computes whether anything is painted, once for each version of the paint, because commands ask at every frame.
     fn look_for_paint(&mut self, activity: Activity) {
         let version = self.document.versions().of(Aspect::Paint);
         if activity != Activity::Painting && self.painted.1 != version {
@@ -49,8 +49,8 @@ impl Workspace {
         }
     }
 
-    /// Tells the jobs what has changed. While a stroke goes on the problem changes with every event; it counts once, at
-    /// the end, and not at all if the stroke was taken back.
+    /// Reports changes to the jobs. During a stroke the problem changes with every event; this counts once, at the end,
+    /// and not at all if the stroke was aborted.
     fn follow_versions(&mut self, activity: Activity) {
         let versions = *self.document.versions();
         let seen = std::mem::replace(&mut self.seen, versions);
@@ -68,8 +68,8 @@ impl Workspace {
         }
     }
 
-    /// Handles and control points that all rest need no solve: the rest shape is known. Nor is there anything to solve
-    /// where all handles lie on what is locked: what is seen stays.
+    /// Handles and control points that all rest need no solve: the rest shape is known. Nor is a solve needed if all
+    /// handles are on locked parts: the visible shape stays.
     fn settle_what_needs_no_solve(&mut self) {
         if self.document.is_settled() {
             return;
@@ -86,7 +86,7 @@ impl Workspace {
         }
     }
 
-    /// What is hidden and locked, triangle by triangle.
+    /// The hidden and locked parts, triangle by triangle.
     fn renew_vertex_access(&mut self) {
         let Some(model) = self.model() else { return };
         let of = (self.jobs.model_revision, self.document.versions().of(Aspect::Access));
@@ -101,7 +101,7 @@ impl Workspace {
         }
     }
 
-    /// Takes what a job has brought; what belongs to a gesture or to what waits for it is given back.
+    /// Stores a job's result; a result for a gesture or for a waiting action is returned.
     pub(crate) fn take_arrival(&mut self, arrival: Arrival) -> Option<Arrival> {
         match arrival {
             Arrival::Nothing | Arrival::Picking => {}

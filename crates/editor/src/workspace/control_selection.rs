@@ -1,6 +1,6 @@
-//! Which points of the method's cage or lattice are selected.
+//! The selected points of the method's cage or lattice.
 
-/// Control points that commands and the gizmo speak of, ascending.
+/// The control points for commands and the gizmo, ascending.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
 pub(crate) struct ControlSelection {
     points: Vec<u32>,
@@ -27,13 +27,13 @@ impl ControlSelection {
         self.points.dedup();
     }
 
-    /// Selects these, too.
+    /// Selects these too.
     pub(crate) fn add(&mut self, points: impl IntoIterator<Item = u32>) {
         let all: Vec<u32> = self.points.iter().copied().chain(points).collect();
         self.put(all);
     }
 
-    /// Selects a point along with the others, or lets go of it.
+    /// Selects a point in addition to the others, or deselects it.
     pub(crate) fn toggle(&mut self, point: u32) {
         match self.points.binary_search(&point) {
             Ok(place) => drop(self.points.remove(place)),
@@ -41,14 +41,14 @@ impl ControlSelection {
         }
     }
 
-    /// Selects a point that was clicked; a group that it belongs to stays selected.
+    /// Selects a clicked point; its selected group stays selected.
     pub(crate) fn click(&mut self, point: u32) {
         if !self.contains(point) {
             self.put([point]);
         }
     }
 
-    /// Lets go of points that are gone.
+    /// Deselects points that no longer exist.
     pub(super) fn drop_lost(&mut self, count: usize) {
         self.points.retain(|point| (*point as usize) < count);
     }

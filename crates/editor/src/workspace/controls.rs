@@ -1,4 +1,4 @@
-//! The control points of the method's cage or lattice: how they are shown, brought and moved.
+//! The control points of the method's cage or lattice: their display, their input and their moves.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -12,8 +12,8 @@ use crate::document::Document;
 use crate::jobs::BoundControls;
 
 impl Workspace {
-    /// The cage or lattice that is shown, with its points where they are seen: those of the binding, moved on at once
-    /// by what the hand has done since, or the document's own where there is no binding for it.
+    /// The shown cage or lattice, with the visible positions of its points: those of the binding, moved at once by
+    /// later moves of the hand, or the document's own if it has no binding.
     pub(crate) fn shown_controls(&self) -> Option<BoundControls> {
         let document = &self.document;
         let method = document.method();
@@ -42,7 +42,7 @@ impl Workspace {
     }
 }
 
-/// Puts an attachment of the present method, with its points where a drag has moved them, into the document.
+/// Puts an attachment of the present method, with its points moved by a drag, into the document.
 pub(crate) fn put_attachment(document: &mut Document, name: &'static str, attachment: Attachment) {
     let mut attachments = Arc::clone(&document.attachments);
     if attachments.get(name) != Some(&attachment) {
@@ -52,7 +52,7 @@ pub(crate) fn put_attachment(document: &mut Document, name: &'static str, attach
     }
 }
 
-/// Takes a cage or lattice that a person brings in the place of the one there is.
+/// Replaces the present cage or lattice by a person's.
 pub(crate) fn bring(workspace: &mut Workspace, attachment: Attachment) {
     let declaration = workspace.document.method().declaration();
     let declared = declaration.attachments.iter().find(|own| own.kind == attachment.kind());
@@ -77,7 +77,7 @@ pub(crate) fn bring(workspace: &mut Workspace, attachment: Attachment) {
     });
 }
 
-/// Takes the document's cage or lattice away: the method makes one.
+/// Removes the document's cage or lattice: the method makes one.
 pub(crate) fn make(workspace: &mut Workspace) {
     let Some((name, _)) = workspace.document.attachment() else {
         return;
@@ -90,7 +90,7 @@ pub(crate) fn make(workspace: &mut Workspace) {
     });
 }
 
-/// Takes the control points back to where they rest.
+/// Takes the control points back to their rest positions.
 pub(crate) fn reset(workspace: &mut Workspace) {
     workspace.change("Reset points", |document| {
         let rested = at_rest(document);
@@ -99,7 +99,7 @@ pub(crate) fn reset(workspace: &mut Workspace) {
     });
 }
 
-/// Another cage or lattice: what the former one has made of the shape is solved anew, from the rest shape alone.
+/// Sets another cage or lattice: the shape is solved anew, from the rest shape alone.
 fn put_other(document: &mut Document, attachments: Arc<BTreeMap<&'static str, Attachment>>) {
     document.unsettle_if_displaced();
     document.set_attachments(attachments);

@@ -1,4 +1,4 @@
-//! Which vertices changed colour since a revision: a dab on a mesh of millions recolours what it met, not everything.
+//! The vertices that changed colour since a revision: a dab on a mesh of millions recolours only its own vertices.
 
 use pliant_mesh::SurfaceVertex;
 
@@ -6,19 +6,19 @@ use pliant_mesh::SurfaceVertex;
 #[derive(Debug, Default)]
 pub(crate) struct DirtyColours {
     vertices: Vec<SurfaceVertex>,
-    /// What is known of: everything may have changed with this revision, and since then `vertices` alone.
+    /// The beginning of the record: everything may have changed with this revision, and since then only `vertices`.
     whole: u64,
-    /// For each revision since, where its vertices begin.
+    /// The start of the vertices of each later revision.
     starts: Vec<(u64, usize)>,
-    /// How many of the vertices belong to a revision.
+    /// The number of the vertices with a revision.
     filed: usize,
 }
 
-/// Above so many vertices everything is recoloured: an upload of all costs less than gathering them.
+/// Above this number of vertices everything is recoloured: an upload of all costs less than gathering them.
 const MOST: usize = 1 << 19;
 
 impl DirtyColours {
-    /// Vertices that change colour with the revision to come.
+    /// Vertices that change colour with the next revision.
     pub(crate) fn add(&mut self, vertices: &[SurfaceVertex]) {
         self.vertices.extend_from_slice(vertices);
     }
@@ -28,7 +28,7 @@ impl DirtyColours {
         self.filed < self.vertices.len()
     }
 
-    /// Files what was added under a new revision.
+    /// Assigns the added vertices to a new revision.
     pub(crate) fn part(&mut self, revision: u64) {
         if self.vertices.len() > MOST {
             return self.whole(revision);
@@ -44,7 +44,7 @@ impl DirtyColours {
         (self.whole, self.filed) = (revision, 0);
     }
 
-    /// What has changed since a revision; `None` where that may be everything.
+    /// The changes since a revision; `None` if that may be everything.
     pub(crate) fn since(&self, revision: u64) -> Option<&[SurfaceVertex]> {
         if revision < self.whole {
             return None;

@@ -1,4 +1,4 @@
-//! The examples that lead the method: poses that a person keeps, and their weights.
+//! The method's examples: kept poses, and their weights.
 
 use std::sync::Arc;
 
@@ -7,7 +7,7 @@ use pliant_deform::{Attachment, AttachmentKind, ExampleShape, Examples};
 use super::state::Workspace;
 use crate::document::Document;
 
-/// The declared name of the method's examples, where it takes some.
+/// The declared name of the method's examples, if it takes some.
 pub(crate) fn examples_name(document: &Document) -> Option<&'static str> {
     let mut declared = document.method().declaration().attachments.iter();
     declared
@@ -15,14 +15,14 @@ pub(crate) fn examples_name(document: &Document) -> Option<&'static str> {
         .map(|own| own.name)
 }
 
-/// Keeps the present shape as one more example.
+/// Keeps the present shape as a further example.
 pub(crate) fn keep_example(workspace: &mut Workspace) {
     let displacements = Arc::clone(&workspace.document.from_rest);
     let name = numbered("example", &workspace.document);
     push(workspace, "Keep example", ExampleShape { name, displacements });
 }
 
-/// Takes a shape, whose displacements are those from the file's shape, as one more example.
+/// Adds a shape, with displacements from the file's shape, as a further example.
 pub(crate) fn add_example(workspace: &mut Workspace, shape: ExampleShape) {
     let document = &workspace.document;
     let from_file = shape.displacements.iter().zip(document.rest());
@@ -35,7 +35,7 @@ pub(crate) fn add_example(workspace: &mut Workspace, shape: ExampleShape) {
     push(workspace, "Add example", ExampleShape { name, displacements });
 }
 
-/// Adds an example. Where its weight bends the surface it is 0, so that nothing moves.
+/// Adds an example. If its weight bends the surface it is 0, so that nothing moves.
 fn push(workspace: &mut Workspace, step: &'static str, shape: ExampleShape) {
     let weight = workspace.document.method().examples_bend().then_some(0.0);
     change(workspace, step, |examples| {
@@ -44,7 +44,7 @@ fn push(workspace: &mut Workspace, step: &'static str, shape: ExampleShape) {
     });
 }
 
-/// Sets the weight of an example; `None` has the solver find it.
+/// Sets the weight of an example; with `None` the solver finds it.
 pub(crate) fn set_example_weight(workspace: &mut Workspace, place: usize, weight: Option<f64>) {
     change(workspace, "Weigh example", |examples| {
         if let Some(own) = examples.weights.get_mut(place) {
@@ -53,7 +53,7 @@ pub(crate) fn set_example_weight(workspace: &mut Workspace, place: usize, weight
     });
 }
 
-/// Gives an example another name.
+/// Renames an example.
 pub(crate) fn rename_example(workspace: &mut Workspace, place: usize, name: String) {
     change(workspace, "Rename example", |examples| {
         if let Some(own) = Arc::make_mut(&mut examples.shapes).get_mut(place) {
@@ -90,7 +90,7 @@ fn change(workspace: &mut Workspace, name: &'static str, change: impl FnOnce(&mu
     });
 }
 
-/// The name with the first number after it that no example has.
+/// The name with the first number that no example has.
 fn numbered(name: &str, document: &Document) -> String {
     let number = (1..).find(|number| names(document).all(|other| other != format!("{name} {number}")));
     format!("{name} {}", number.unwrap_or(1))

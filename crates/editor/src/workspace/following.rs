@@ -1,7 +1,7 @@
-//! A workspace that follows another: the same document, solved by another method, to compare both on the same drag.
+//! A workspace that follows another: the same document, solved by another method, for a comparison on the same drag.
 //!
-//! It has jobs of its own and a shape of its own; everything else comes from the one that it follows. Nothing comes
-//! back, and nothing of it is undone or saved.
+//! It has its own jobs and its own shape; everything else comes from the one that it follows. Nothing is sent back, and
+//! it is neither undone nor saved.
 
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ use super::state::{Followed, Workspace};
 use crate::document::{Aspect, Document};
 
 impl Workspace {
-    /// Takes over what another workspace has, but for the method.
+    /// Takes over another workspace's state, except the method.
     pub(crate) fn follow(&mut self, leader: &WorkspaceSnapshot, method: &Method) {
         let theirs = *leader.document.versions();
         if self.followed.is_none_or(|known| known.model != leader.model_revision) {

@@ -1,5 +1,4 @@
-//! The numbers of a handle, as a panel or a command sets them: where it stands, how it is turned, how far the surface
-//! comes along, how it joins, how firmly it holds.
+//! The numbers of a handle that a panel or a command sets: its position, turn, reach, continuity and weight.
 
 use pliant_deform::CONTINUITY_RANGE;
 
@@ -8,7 +7,7 @@ use super::state::Workspace;
 use crate::SOFT_RANGE;
 use crate::document::{HandleId, HandleTransform, Reach, rotation_of};
 
-/// Puts a handle somewhere in a step of its own.
+/// Sets a handle's transform in a separate step.
 pub(crate) fn transform_handle(workspace: &mut Workspace, verb: &str, id: HandleId, transform: HandleTransform) {
     let Some(name) = workspace.document.handle(id).map(|handle| handle.name.clone()) else {
         return;
@@ -52,7 +51,7 @@ pub(crate) fn set_turn(workspace: &mut Workspace, id: HandleId, turn_deg: glam::
     });
 }
 
-/// Widening the region changes roles: the present shape is kept.
+/// Sets a handle's reach. This changes roles: the present shape is kept.
 pub(crate) fn set_reach(workspace: &mut Workspace, id: HandleId, reach: Reach) {
     let (Reach::Radii(size) | Reach::Length(size)) = reach;
     if !(size.is_finite() && size >= 0.0) {
@@ -69,7 +68,7 @@ pub(crate) fn set_reach(workspace: &mut Workspace, id: HandleId, reach: Reach) {
     });
 }
 
-/// With which continuity the surface joins a handle; `None` is what is painted.
+/// Sets the continuity with which the surface joins a handle; `None` is the painted one.
 pub(crate) fn set_continuity(workspace: &mut Workspace, id: HandleId, continuity: Option<f64>) {
     if continuity.is_some_and(|value| !CONTINUITY_RANGE.contains(&value)) {
         workspace.refuse("A continuity is from 0 (a hinge) to 2 (smooth): enter another number.");

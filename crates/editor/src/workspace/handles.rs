@@ -1,4 +1,4 @@
-//! What is done to handles: put somewhere, given a pivot, split, twinned, deleted, taken back with their region.
+//! Actions on handles: transforms, pivots, splits, twins, deletion, and a reset with their region.
 
 use glam::DVec3;
 use pliant_deform::Role;
@@ -10,7 +10,7 @@ use crate::document::{
     Document, Handle, HandleId, HandleTransform, Paint, PivotPlace, Reach, VertexAccess, means, mirrored_transform,
 };
 
-/// Why a handle can't be moved, if it can't.
+/// The reason why a handle can't be moved, if it can't.
 pub(crate) fn held_because(workspace: &Workspace, id: HandleId) -> Option<String> {
     let handle = workspace.document.handle(id)?;
     if handle.locked {
@@ -33,7 +33,7 @@ pub(crate) fn held_because(workspace: &Workspace, id: HandleId) -> Option<String
     })
 }
 
-/// Puts a handle somewhere, in the document as it stands: the surface follows as soon as it can, and so does its twin.
+/// Sets a handle's transform in the present document: the surface follows as soon as it can, and so does its twin.
 pub(crate) fn put_handle(workspace: &mut Workspace, id: HandleId, transform: HandleTransform) {
     if let Some(why) = held_because(workspace, id) {
         workspace.refuse(why);
@@ -51,7 +51,7 @@ pub(crate) fn put_handle(workspace: &mut Workspace, id: HandleId, transform: Han
         return;
     }
     let (twin, pivot) = (handle.twin, handle.pivot);
-    // A number that is typed digit by digit passes through 0.
+    // A number passes through 0 while it is typed digit by digit.
     workspace.refusal = None;
     workspace.document.unsettle();
     put_alone(workspace, id, transform);
@@ -66,7 +66,7 @@ pub(crate) fn put_handle(workspace: &mut Workspace, id: HandleId, transform: Han
     }
 }
 
-/// Puts a handle; before the factorisation is ready its own vertices follow it, and the rest stays.
+/// Sets a handle's transform; before the factorisation is ready its own vertices follow it, and the rest stays.
 fn put_alone(workspace: &mut Workspace, id: HandleId, transform: HandleTransform) {
     let document = &mut workspace.document;
     document.change_handle(id, |handle| handle.put(transform));
@@ -78,7 +78,7 @@ fn put_alone(workspace: &mut Workspace, id: HandleId, transform: HandleTransform
     }
 }
 
-/// The shape with a handle's own vertices where the handle takes them, as displacements from the rest shape.
+/// The shape with a handle's own vertices moved by it, as displacements from the rest shape.
 fn moved_alone(document: &Document, model: &Model, access: &VertexAccess, id: HandleId) -> Option<Vec<DVec3>> {
     let affine = document.handle(id)?.affine();
     let kept = document
@@ -105,7 +105,7 @@ fn moved_alone(document: &Document, model: &Model, access: &VertexAccess, id: Ha
     Some(from_rest)
 }
 
-/// Says how a handle's turn is counted, if that means its rotation.
+/// Sets the counted turn of a handle, if that is its rotation.
 pub(crate) fn count_turn(workspace: &mut Workspace, id: HandleId, turn_deg: DVec3) {
     workspace.document.change_handle(id, |handle| {
         if let HandleTransform::Trs { rotation, .. } = handle.transform
@@ -128,8 +128,8 @@ pub(crate) fn change_handle(
     });
 }
 
-/// Deletes the selected handle. What it has moved stays where it is, held by a pin; a pin that is deleted lets the next
-/// drag take along what it held.
+/// Deletes the selected handle. The vertices that it has moved keep their positions, held by a pin; after the deletion
+/// of a pin the next drag moves its vertices.
 pub(crate) fn delete_selected(workspace: &mut Workspace) {
     let Some(handle) = workspace.selected() else { return };
     let (id, name) = (handle.id, format!("Delete {}", handle.name));
@@ -152,7 +152,7 @@ pub(crate) fn delete_selected(workspace: &mut Workspace) {
     });
 }
 
-/// Makes the selected handle a pin, which stays where it is, or a pin a handle again.
+/// Pins the selected handle, or unpins it.
 pub(crate) fn pin_or_unpin_selected(workspace: &mut Workspace) {
     let Some(handle) = workspace.selected() else { return };
     let id = handle.id;
@@ -177,7 +177,7 @@ pub(crate) fn pin_or_unpin_selected(workspace: &mut Workspace) {
     });
 }
 
-/// Chooses where a pivot stands, and puts it there.
+/// Chooses the place of a pivot, and moves it there.
 pub(crate) fn set_pivot_place(workspace: &mut Workspace, id: HandleId, place: PivotPlace) {
     let Some(model) = workspace.model().cloned() else {
         return;
@@ -203,7 +203,7 @@ pub(crate) fn set_pivot_place(workspace: &mut Workspace, id: HandleId, place: Pi
     });
 }
 
-/// Puts a pivot at a point of the present shape.
+/// Moves a pivot to a point of the present shape.
 pub(crate) fn set_pivot(workspace: &mut Workspace, id: HandleId, point: DVec3) {
     if !point.is_finite() {
         workspace.refuse("The pivot is not finite: enter other numbers.");
@@ -212,7 +212,7 @@ pub(crate) fn set_pivot(workspace: &mut Workspace, id: HandleId, point: DVec3) {
     change_handle(workspace, "Put pivot", id, |handle| {
         let affine = handle.affine();
         let inverse = affine.inverse();
-        // A handle that was scaled to nothing has no way back: the pivot's way along is all there is.
+        // A handle scaled to zero has no inverse: only the pivot's displacement is known.
         let rest = if inverse.is_finite() {
             inverse.transform_point3(point)
         } else {
@@ -255,7 +255,7 @@ pub(crate) fn split_selected(workspace: &mut Workspace) {
     repaint(workspace, "Split handle".to_owned(), Paint::Handle(id), target, changes);
 }
 
-/// Parts the selected handle from its twin.
+/// Separates the selected handle from its twin.
 pub(crate) fn untwin(workspace: &mut Workspace) {
     let Some(id) = workspace.selection.selected() else {
         return;
@@ -268,12 +268,12 @@ pub(crate) fn untwin(workspace: &mut Workspace) {
     });
 }
 
-/// Takes the selected handle's vertices and what is free around them back to the file's shape.
+/// Takes the selected handle's vertices and the free ones around them back to the file's shape.
 pub(crate) fn reset_region(workspace: &mut Workspace) {
     let (Some(id), Some(model)) = (workspace.selection.selected(), workspace.model().cloned()) else {
         return;
     };
-    // The free vertices that hang together with the handle's.
+    // The free vertices connected to the handle's.
     let is_own = |vertex: usize| workspace.document.paint[vertex] == Paint::Handle(id);
     let mut taken: Vec<bool> = (0..workspace.document.paint.len()).map(is_own).collect();
     let mut stack: Vec<usize> = (0..taken.len()).filter(|&vertex| taken[vertex]).collect();

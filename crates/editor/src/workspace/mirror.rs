@@ -1,7 +1,7 @@
-//! The mirror image of a region: looked for by a job, since every vertex asks for the nearest one across the plane.
+//! The mirror image of a region: a job searches for it, because every vertex needs the nearest one across the plane.
 //!
-//! What is done with the image waits meanwhile. If the paint has changed when it comes, nothing is done, and that is
-//! said.
+//! The action on the image waits meanwhile. If the paint has changed when it arrives, nothing is done, and a message
+//! says so.
 
 use pliant_mesh::{Bvh, Cancel, Cancelled, MirrorPlane, Model, Progress, SurfaceVertex, image_of};
 use rayon::prelude::*;
@@ -12,10 +12,10 @@ use super::state::Workspace;
 use crate::document::{Aspect, HandleId, Paint, link_twins};
 use crate::jobs::JobOutcome;
 
-/// How many vertices are asked between two looks at the progress.
+/// The number of vertices between two updates of the progress.
 const BATCH: usize = 16_384;
 
-/// Has the mirror image of a role's vertices looked for.
+/// Requests the mirror image of a role's vertices.
 pub(crate) fn mirror(workspace: &mut Workspace, purpose: Purpose, axis: usize) {
     let (Some(model), Some(plane)) = (workspace.model().cloned(), mirror_plane(workspace, axis)) else {
         return;
@@ -40,7 +40,7 @@ pub(crate) fn mirror(workspace: &mut Workspace, purpose: Purpose, axis: usize) {
     }));
 }
 
-/// Does what an image was wanted for, if no gesture goes on and the paint is what it was.
+/// Executes the action on an image, if no gesture is active and the paint is unchanged.
 pub(crate) fn take_mirrored(workspace: &mut Workspace, image: Vec<usize>, is_idle: bool) {
     let Some(Mirroring { purpose, plane, paint }) = workspace.mirroring.take() else {
         return;
@@ -56,7 +56,7 @@ pub(crate) fn take_mirrored(workspace: &mut Workspace, image: Vec<usize>, is_idl
     }
 }
 
-/// Takes a region's mirror image in.
+/// Adds a region's mirror image to it.
 fn mirror_region(workspace: &mut Workspace, role: Paint, image: Vec<usize>) {
     let changes = image.into_iter().map(|vertex| (vertex, role)).collect();
     repaint(
@@ -68,7 +68,7 @@ fn mirror_region(workspace: &mut Workspace, role: Paint, image: Vec<usize>) {
     );
 }
 
-/// Makes an image of a handle's vertices its twin.
+/// Makes the image of a handle's vertices its twin.
 fn twin_of(workspace: &mut Workspace, id: HandleId, image: &[usize], plane: MirrorPlane) {
     let image: Vec<usize> = image
         .iter()
@@ -91,7 +91,7 @@ fn twin_of(workspace: &mut Workspace, id: HandleId, image: &[usize], plane: Mirr
     });
 }
 
-/// The hierarchy of the file's own shape, if it is at hand.
+/// The hierarchy of the file's own shape, if it exists.
 pub(super) fn rest_bvh(workspace: &Workspace) -> Option<Bvh> {
     let is_as_in_file = !workspace.document.applied && !workspace.document.is_displaced();
     let ready = workspace.computed().pickable.as_ref();

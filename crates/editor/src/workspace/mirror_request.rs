@@ -1,23 +1,23 @@
-//! A mirror image that is being looked for: of what, and what is done with it.
+//! A requested mirror image: its source, and the action on it.
 
 use pliant_mesh::MirrorPlane;
 
 use crate::document::{HandleId, Paint, Version};
 
-/// What an image is wanted for.
+/// The action on an image.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) enum Purpose {
-    /// To be taken into the region that it is the image of.
+    /// Its addition to the region of which it is the image.
     Region(Paint),
-    /// To become a twin of the handle.
+    /// Its use as a twin of the handle.
     Twin(HandleId),
 }
 
-/// An image that is being looked for.
+/// A requested image.
 #[derive(Debug)]
 pub(crate) struct Mirroring {
     pub(super) purpose: Purpose,
     pub(super) plane: MirrorPlane,
-    /// The paint that it was asked of.
+    /// The paint of the request.
     pub(super) paint: Version,
 }

@@ -1,4 +1,4 @@
-//! What a person works on, what is done to it, and what follows from that.
+//! A person's work, the actions on it, and their consequences.
 
 mod colour_revisions;
 mod colours;

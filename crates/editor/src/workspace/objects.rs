@@ -1,4 +1,4 @@
-//! What is done with objects: hidden, shown alone, locked, by the list or under the pointer.
+//! Actions on objects: hide, isolate, lock, by the list or under the pointer.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -9,7 +9,7 @@ use super::state::Workspace;
 use crate::document::{Access, ObjectAction, SmallParts, object_name};
 use crate::view::Pick;
 
-/// Does something with objects, by their numbers in [`pliant_mesh::Model::all_objects`].
+/// Executes an action on objects, by their numbers in [`pliant_mesh::Model::all_objects`].
 pub(crate) fn act_on_objects(workspace: &mut Workspace, action: ObjectAction, objects: &[u32]) {
     let Some(model) = workspace.model().cloned() else {
         return;
@@ -31,7 +31,7 @@ pub(crate) fn act_on_objects(workspace: &mut Workspace, action: ObjectAction, ob
     set_access(workspace, name, access);
 }
 
-/// Shows everything there is.
+/// Shows everything.
 pub(crate) fn show_everything(workspace: &mut Workspace) {
     let present = workspace.document.access();
     let access = Access {
@@ -46,7 +46,7 @@ pub(crate) fn show_everything(workspace: &mut Workspace) {
     set_access(workspace, "Show everything".to_owned(), access);
 }
 
-/// Says which parts are small, and whether they are shown and held still.
+/// Sets the size below which parts are small, and whether they are shown and fixed.
 pub(crate) fn set_small_parts(workspace: &mut Workspace, small: SmallParts) {
     let access = workspace.document.access().clone();
     let name = match (small.hidden, small.locked) {
@@ -59,7 +59,7 @@ pub(crate) fn set_small_parts(workspace: &mut Workspace, small: SmallParts) {
     set_access(workspace, name.to_owned(), Access { small, ..access });
 }
 
-/// Shows nothing but the connected part that is pointed at, or everything else again.
+/// Shows only the connected part under the pointer, or everything else again.
 pub(crate) fn isolate(workspace: &mut Workspace, pointed_at: Option<Pick>) {
     let access = workspace.document.access().clone();
     if access.isolated.is_some() {
@@ -77,8 +77,8 @@ pub(crate) fn isolate(workspace: &mut Workspace, pointed_at: Option<Pick>) {
     set_access(workspace, "Isolate part".to_owned(), Access { isolated, ..access });
 }
 
-/// Swaps outside and inside of the part that is shown alone; else of those that face inwards; else of all that are
-/// shown. Once more swaps them back.
+/// Swaps outside and inside of the isolated part; else of those that face inwards; else of all shown ones. A second
+/// time swaps them back.
 pub(crate) fn turn_inside_out(workspace: &mut Workspace) {
     let Some(model) = workspace.model().cloned() else {
         return;
@@ -99,7 +99,7 @@ pub(crate) fn turn_inside_out(workspace: &mut Workspace) {
     });
 }
 
-/// The connected parts with a triangle that is shown.
+/// The connected parts with a shown triangle.
 fn shown_parts(model: &Model, access: &Access) -> BTreeSet<u32> {
     let shown = access.shown_triangles(model);
     let shown = shown.unwrap_or_else(|| vec![true; model.drawn.triangle_count()]);
@@ -108,7 +108,7 @@ fn shown_parts(model: &Model, access: &Access) -> BTreeSet<u32> {
     shown.map(|([first, ..], _)| model.topology.component(*first)).collect()
 }
 
-/// Does something with the object that is pointed at.
+/// Executes an action on the object under the pointer.
 pub(crate) fn act_on_object_here(workspace: &mut Workspace, action: ObjectAction, pointed_at: Option<Pick>) {
     let object = pointed_at.and_then(|pick| workspace.model()?.object_of(pick.triangle));
     match object {
@@ -121,7 +121,7 @@ fn set_access(workspace: &mut Workspace, name: String, access: Access) {
     if *workspace.document.access() == access {
         return;
     }
-    // What is held still is part of the problem, and no change of that moves anything.
+    // The fixed part belongs to the problem, and no change of it moves a vertex.
     let relocked = access.locks() != workspace.document.access.locks();
     if relocked {
         workspace.jobs.drop_solves();

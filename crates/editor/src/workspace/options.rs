@@ -1,4 +1,4 @@
-//! What is chosen for the document as a whole: method, loose parts, stiffness; and its shape taken back.
+//! Choices for the document as a whole: method, loose parts, stiffness; and the reset of its shape.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -43,7 +43,7 @@ pub(crate) fn reset_shape(workspace: &mut Workspace) {
     });
 }
 
-/// The document's attachments with the control points of the present method's at rest.
+/// The document's attachments with the present method's control points at rest.
 pub(super) fn at_rest(document: &Document) -> Arc<BTreeMap<&'static str, Attachment>> {
     let mut attachments = Arc::clone(&document.attachments);
     if document.moved_controls().is_some()
@@ -64,7 +64,7 @@ pub(crate) fn set_strength(workspace: &mut Workspace, share: f64) {
     workspace.change("Change strength", |document| document.set_strength(share));
 }
 
-/// Removes all handles and regions; the shape stays as it is.
+/// Removes all handles and regions; the shape does not change.
 pub(crate) fn clear_regions(workspace: &mut Workspace) {
     workspace.jobs.drop_solves();
     workspace.change("Clear regions", |document| {
@@ -86,8 +86,8 @@ pub(crate) fn set_method(workspace: &mut Workspace, method: Method) {
     });
 }
 
-/// The document's attachments for another method or other options: where a lattice's points rest depends on its
-/// functions, and what was moved by hand keeps its displacements.
+/// The document's attachments for another method or other options: the rest positions of a lattice's points depend on
+/// its functions, and points moved by hand keep their displacements.
 fn carried_over(document: &Document, method: &Method) -> Arc<BTreeMap<&'static str, Attachment>> {
     let mut attachments = Arc::clone(&document.attachments);
     if let Some((name, own)) = document.attachment()
@@ -105,7 +105,7 @@ fn carried_over(document: &Document, method: &Method) -> Arc<BTreeMap<&'static s
     attachments
 }
 
-/// Chooses whether the parts that a reach cuts off from the body come along.
+/// Chooses whether the parts that a reach cuts off from the body are free.
 pub(crate) fn set_tips(workspace: &mut Workspace, tips: Tips) {
     let name = match tips {
         Tips::ComeAlong => "Take the tips along",
@@ -119,14 +119,14 @@ pub(crate) fn set_tips(workspace: &mut Workspace, tips: Tips) {
     });
 }
 
-/// Chooses what components that nothing holds do, all of them.
+/// Chooses the behaviour of all components that nothing holds.
 pub(crate) fn set_loose(workspace: &mut Workspace, loose: Loose) {
     workspace.change("Change loose parts", |document| {
         put_loose(document, loose, BTreeMap::new());
     });
 }
 
-/// Chooses what one of them does, by its component's number; `None` is what all do.
+/// Chooses the behaviour of one of them, by its component's number; `None` is the behaviour of all.
 pub(crate) fn set_loose_part(workspace: &mut Workspace, part: u32, loose: Option<Loose>) {
     let count = workspace.model().map_or(0, |model| model.topology.components().len());
     if part as usize >= count {

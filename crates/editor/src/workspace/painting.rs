@@ -1,4 +1,4 @@
-//! What every change of paint goes through: which vertices a role has, painting them in a step, and what that means for
+//! The common code of all changes of paint: the vertices of a role, painting in a step, and the consequences for
 //! handles.
 
 use std::sync::Arc;
@@ -19,7 +19,7 @@ pub(crate) fn members(document: &Document, id: HandleId) -> Vec<SurfaceVertex> {
         .collect()
 }
 
-/// Which vertices have a role; for the free region those that a reach has freed, too.
+/// The vertices with a role; for the free region also those that a reach has freed.
 pub(crate) fn members_of(workspace: &Workspace, role: Paint) -> Vec<bool> {
     let paint = &workspace.document.paint;
     let mut is_member: Vec<bool> = paint.iter().map(|paint| *paint == role).collect();
@@ -32,7 +32,7 @@ pub(crate) fn members_of(workspace: &Workspace, role: Paint) -> Vec<bool> {
     is_member
 }
 
-/// What a role's region is called.
+/// The name of a role's region.
 pub(super) fn name_of(workspace: &Workspace, role: Paint) -> String {
     match role {
         Paint::Handle(id) => {
@@ -45,8 +45,8 @@ pub(super) fn name_of(workspace: &Workspace, role: Paint) -> String {
     }
 }
 
-/// Paints vertices in one step; vertices of handles other than `role`'s stay as they are. `target` may be a handle
-/// that is not there yet.
+/// Paints vertices in one step; vertices of handles other than `role`'s do not change. `target` may be a handle that
+/// does not exist yet.
 pub(crate) fn repaint(
     workspace: &mut Workspace,
     name: String,
@@ -87,8 +87,8 @@ pub(crate) fn repaint(
     }
 }
 
-/// After regions have changed: handles without a vertex go, the pivot of each handle at rest whose vertices are others
-/// than before is their mean, and what is new on a bent shape is a handle or a pin where it is seen.
+/// Called after changes of regions: removes handles without a vertex, moves the pivot of each handle at rest with
+/// changed vertices to their mean, and makes new regions on a bent shape handles or pins at their visible positions.
 pub(crate) fn tidy_handles(workspace: &mut Workspace, before: &Document) {
     let Some(model) = workspace.model().cloned() else {
         return;
@@ -122,7 +122,7 @@ pub(crate) fn tidy_handles(workspace: &mut Workspace, before: &Document) {
     document.change_handles(|handles| {
         handles.retain_mut(|handle| {
             let (sum, count, changed) = sums[usize::from(handle.id.0)];
-            // A turned handle's numbers are about its pivot: they stay what they were set to.
+            // A turned handle's numbers are about its pivot: they keep their values.
             if changed && count > 0.0 && !handle.is_displaced() {
                 handle.pivot = match handle.pivot_place {
                     PivotPlace::Centroid => sum / count,
@@ -143,7 +143,7 @@ pub(crate) fn tidy_handles(workspace: &mut Workspace, before: &Document) {
     }
 }
 
-/// What a stroke holds still elsewhere than at rest becomes a pin: it stays where it is seen.
+/// Vertices that a stroke fixes away from rest become a pin: they keep their visible positions.
 fn pin_what_is_held_elsewhere(document: &mut Document, before: &Document) {
     if !document.is_displaced() {
         return;
@@ -168,8 +168,8 @@ fn pin_what_is_held_elsewhere(document: &mut Document, before: &Document) {
     );
 }
 
-/// Gives each new handle the transform that has brought its vertices where they are seen: that of the handle which all
-/// of them belonged to, or the rigid motion that fits best.
+/// Gives each new handle the transform that leads to its vertices' visible positions: that of their former handle, if
+/// all had the same one, or the rigid motion that fits best.
 fn put_new_handles_where_they_are_seen(document: &mut Document, before: &Document, model: &Model) {
     let is_new = |handle: &&Handle| before.handle(handle.id).is_none();
     let new: Vec<(HandleId, DVec3)> = document
@@ -216,7 +216,7 @@ fn put_new_handles_where_they_are_seen(document: &mut Document, before: &Documen
     }
 }
 
-/// The mean of a handle's vertices that stand beside others; `None` where it covers whole parts.
+/// The mean of a handle's vertices that are beside others; `None` if it covers whole parts.
 pub(crate) fn border_middle(
     id: HandleId,
     paint: &[Paint],

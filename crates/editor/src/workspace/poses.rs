@@ -1,10 +1,10 @@
-//! What is done with the poses that a person keeps.
+//! Actions on kept poses.
 
 use super::handles::held_because;
 use super::state::Workspace;
 use crate::document::{Document, HandleId};
 
-/// Keeps what is shown as a pose.
+/// Keeps the shown state as a pose.
 pub(crate) fn keep_pose(workspace: &mut Workspace) {
     workspace.change("Keep pose", |document| {
         let pose = document.present_pose(free_name(document));
@@ -12,7 +12,7 @@ pub(crate) fn keep_pose(workspace: &mut Workspace) {
     });
 }
 
-/// Puts everything where a pose has it; locked handles and pins stay.
+/// Moves everything to a pose; locked handles and pins stay.
 pub(crate) fn take_pose(workspace: &mut Workspace, place: usize) {
     let Some(pose) = workspace.document.poses().get(place).cloned() else {
         return;
@@ -28,7 +28,7 @@ pub(crate) fn take_pose(workspace: &mut Workspace, place: usize) {
     });
 }
 
-/// Has a pose be what is shown now.
+/// Replaces a pose by the shown state.
 pub(crate) fn renew_pose(workspace: &mut Workspace, place: usize) {
     workspace.change("Renew pose", |document| {
         if let Some(name) = document.poses().get(place).map(|pose| pose.name.clone()) {
@@ -38,7 +38,7 @@ pub(crate) fn renew_pose(workspace: &mut Workspace, place: usize) {
     });
 }
 
-/// Gives a pose another name.
+/// Renames a pose.
 pub(crate) fn rename_pose(workspace: &mut Workspace, place: usize, name: String) {
     workspace.change("Rename pose", |document| {
         document.change_poses(|poses| {

@@ -1,5 +1,5 @@
-//! What can be done to a painted region as a whole: grow, shrink, invert, fill, smooth its border, mirror it, hand it
-//! to another role.
+//! Actions on a painted region as a whole: grow, shrink, invert, fill, smooth its border, mirror it, give it another
+//! role.
 //!
 //! Each is a pure function from the region's vertices to the vertices that change; other handles' vertices never do.
 
@@ -12,33 +12,33 @@ use super::painting::{members_of, name_of, repaint};
 use super::state::Workspace;
 use crate::document::{HandleId, Paint};
 
-/// Something to do to the region in hand: that of the tool, or of the selected handle.
+/// An action on the selected region: that of the tool, or of the selected handle.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Hash)]
 pub enum RegionAction {
-    /// Takes in the vertices around it.
+    /// Adds the vertices around it.
     Grow,
-    /// Gives up the vertices at its border.
+    /// Removes the vertices at its border.
     Shrink,
-    /// Becomes what it was not.
+    /// Inverts it.
     Invert,
-    /// All that is not in it is held still; for what is held still: all else may bend.
+    /// Fixes everything outside it, or frees it if the region is the fixed part.
     EverythingBut,
     /// Straightens its border.
     SmoothBorder,
-    /// Takes in every part of the surface that it touches.
+    /// Adds all of every part of the surface that it touches.
     FillParts,
-    /// Takes in its mirror image across the plane through the model's middle, across axis 0, 1, 2 for x, y, z.
+    /// Adds its mirror image across the plane through the model's middle, across axis 0, 1, 2 for x, y, z.
     Mirror(usize),
-    /// Becomes free to bend.
+    /// Makes it free to bend.
     ToFree,
-    /// Is held still.
+    /// Fixes it.
     ToFixed,
-    /// Becomes a handle of its own.
+    /// Makes it a separate handle.
     ToHandle,
 }
 
 impl RegionAction {
-    /// What the history calls it.
+    /// Its name in the history.
     fn name(self) -> &'static str {
         match self {
             Self::Grow => "Grow",
@@ -67,7 +67,7 @@ pub(crate) fn act_on_region(workspace: &mut Workspace, role: Paint, action: Regi
     }
     let what = name_of(workspace, role);
     let removed = |vertex: usize| match role {
-        // What a reach frees would be free again.
+        // Otherwise vertices in a reach would be free again.
         Paint::Free if workspace.document.paint[vertex] == Paint::Bare => Paint::Fixed,
         _ => Paint::Bare,
     };
@@ -137,12 +137,12 @@ fn grown(model: &Model, is_member: &[bool]) -> Vec<usize> {
     border(model, is_member.len(), |vertex| !is_member[vertex])
 }
 
-/// Members beside vertices that are none, ascending.
+/// Members beside other vertices, ascending.
 fn rim(model: &Model, is_member: &[bool]) -> Vec<usize> {
     border(model, is_member.len(), |vertex| is_member[vertex])
 }
 
-/// Vertices inside that have a neighbour outside. Only the neighbours of the smaller of the two sets are looked at.
+/// Vertices inside that have a neighbour outside. Only the neighbours of the smaller of the two sets are checked.
 fn border(model: &Model, count: usize, is_inside: impl Fn(usize) -> bool) -> Vec<usize> {
     let neighbours = |vertex: usize| model.topology.neighbours(SurfaceVertex(vertex as u32)).iter();
     let inside = (0..count).filter(|&vertex| is_inside(vertex));
@@ -160,7 +160,7 @@ fn border(model: &Model, count: usize, is_inside: impl Fn(usize) -> bool) -> Vec
     inside.filter(|&vertex| is_beside[vertex]).collect()
 }
 
-/// Vertices that most of their neighbours differ from, and whether they join.
+/// Vertices that differ from most of their neighbours, and whether they join the region.
 fn smoothed(model: &Model, is_member: &[bool]) -> Vec<(usize, bool)> {
     (0..is_member.len())
         .into_par_iter()
@@ -175,7 +175,7 @@ fn smoothed(model: &Model, is_member: &[bool]) -> Vec<(usize, bool)> {
         .collect()
 }
 
-/// Every vertex of the parts that have a member.
+/// Every vertex of the parts with a member.
 fn filled<'a>(model: &'a Model, is_member: &'a [bool]) -> impl Iterator<Item = usize> + 'a {
     let part = |vertex: usize| model.topology.component(SurfaceVertex(vertex as u32)) as usize;
     let mut has_member = vec![false; model.topology.components().len()];

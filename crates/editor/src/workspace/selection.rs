@@ -1,13 +1,13 @@
-//! Which handles are selected: one, and others along with it.
+//! The selected handles: one, and others in addition.
 
 use crate::document::{Document, HandleId};
 
-/// The handles that commands, the gizmo and the handle brush speak of.
+/// The handles for commands, the gizmo and the handle brush.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct HandleSelection {
     selected: Option<HandleId>,
     companions: Vec<HandleId>,
-    /// Whether the next stroke of the handle brush makes a handle of its own.
+    /// Whether the next stroke of the handle brush makes a new handle.
     pub(crate) wants_new_handle: bool,
 }
 
@@ -17,12 +17,12 @@ impl HandleSelection {
         self.selected
     }
 
-    /// The handles that are selected along with it.
+    /// The other selected handles.
     pub(crate) fn companions(&self) -> &[HandleId] {
         &self.companions
     }
 
-    /// Selects a handle, or none, and keeps those that are selected along with the one before.
+    /// Selects a handle, or none, and keeps the other selected ones.
     pub(crate) fn put(&mut self, id: Option<HandleId>) {
         self.selected = id;
     }
@@ -33,7 +33,7 @@ impl HandleSelection {
         self.selected = id;
     }
 
-    /// Selects a handle that was clicked: those that are selected along with it stay so.
+    /// Selects a clicked handle: others in its selection stay selected.
     pub(crate) fn click(&mut self, id: HandleId) {
         if !self.companions.contains(&id) {
             self.companions.clear();
@@ -47,7 +47,7 @@ impl HandleSelection {
         self.selected = Some(id);
     }
 
-    /// Adds a handle to those that are selected, or takes it from them.
+    /// Adds a handle to the selected ones, or removes it from them.
     pub(crate) fn toggle(&mut self, id: HandleId) {
         if self.selected == Some(id) {
             self.selected = self.companions.pop();
@@ -58,7 +58,7 @@ impl HandleSelection {
         }
     }
 
-    /// Selects all handles; the selected one stays it.
+    /// Selects all handles; the selected one stays the main one.
     pub(crate) fn put_all(&mut self, document: &Document) {
         let ids = || document.handles().iter().map(|handle| handle.id);
         self.selected = self.selected.or_else(|| ids().next());
@@ -75,7 +75,7 @@ impl HandleSelection {
         self.selected = handles.get(next).map(|handle| handle.id);
     }
 
-    /// Lets go of handles that are gone; in place of the selected one the last of the list is selected.
+    /// Deselects handles that no longer exist; the last of the list replaces the selected one.
     pub(super) fn drop_lost(&mut self, document: &Document) {
         if self.selected.is_some_and(|id| document.handle(id).is_none()) {
             self.selected = document.handles().last().map(|handle| handle.id);

@@ -1,4 +1,4 @@
-//! The document as it stands, for those who write it elsewhere or follow it while the person goes on.
+//! The present document, for code that writes it elsewhere or follows it while the person continues to work.
 
 use std::sync::Arc;
 
@@ -9,7 +9,7 @@ use super::state::Workspace;
 use crate::document::{Document, Versions};
 use crate::jobs::Revision;
 
-/// A workspace that nobody changes any more. Taking one costs next to nothing: its long vectors are shared.
+/// A workspace that no longer changes. Making one is almost free: its long vectors are shared.
 #[derive(Clone, Debug)]
 pub(crate) struct WorkspaceSnapshot {
     pub(crate) document: Document,
@@ -20,7 +20,7 @@ pub(crate) struct WorkspaceSnapshot {
 }
 
 impl WorkspaceSnapshot {
-    /// What a workspace has; `None` before the first file.
+    /// The state of a workspace; `None` before the first file.
     pub(crate) fn of(workspace: &Workspace) -> Option<Self> {
         Some(Self {
             document: workspace.document.clone(),
@@ -32,7 +32,7 @@ impl WorkspaceSnapshot {
     }
 }
 
-/// What a snapshot differs by: equal states have equal ones within a session.
+/// The identity of a snapshot: equal states have equal ones within a session.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub struct SnapshotKey {
     steps: u64,
@@ -41,7 +41,7 @@ pub struct SnapshotKey {
 }
 
 impl SnapshotKey {
-    /// Another value for every other state of the document.
+    /// A value that differs for every other state of the document.
     pub(crate) fn of(workspace: &Workspace) -> Self {
         Self {
             steps: workspace.history.revision(),

@@ -1,4 +1,4 @@
-//! What a person works on: the document with its history, what jobs have made of it, and which handles are selected.
+//! A person's work: the document with its history, the jobs' results, and the selected handles.
 //!
 //! The document changes in named steps ([`Workspace::step`]), or in a transaction that a gesture holds.
 
@@ -17,7 +17,7 @@ use crate::document::{
 use crate::jobs::{BothSides, Computed, Descent, Executor, Intersections, Jobs, Revision, Symmetry};
 use crate::view::{Pick, Picking, View};
 
-/// The document and what follows from it.
+/// The document and its consequences.
 pub(crate) struct Workspace {
     pub(crate) document: Document,
     pub(crate) history: History,
@@ -25,34 +25,34 @@ pub(crate) struct Workspace {
     pub(crate) selection: HandleSelection,
     /// The selected points of the method's cage or lattice.
     pub(crate) controls: ControlSelection,
-    /// The last thing that was refused or went wrong, in one sentence.
+    /// The last refusal or failure, in one sentence.
     pub(crate) refusal: Option<String>,
     /// The open file's name.
     pub(crate) file_name: String,
-    /// No displacement of any vertex: the file's own shape.
+    /// Zero displacements: the file's own shape.
     pub(crate) original: Arc<Vec<DVec3>>,
-    /// How far the shape's descent is, where its method takes steps.
+    /// The progress of the shape's descent, if its method takes steps.
     pub(crate) descent: Option<Descent>,
     pub(crate) vertex_access: VertexAccess,
-    /// Of which model and what access that was made.
+    /// The model and the access behind it.
     pub(super) vertex_access_of: Option<(Revision, Version)>,
     pub(super) colours: Colours,
-    /// Grows when what is drawn has another shape.
+    /// Grows when the drawn shape changes.
     pub(super) shape_revision: u64,
-    /// The versions that jobs and colours were last made to follow.
+    /// The versions that jobs and colours last followed.
     pub(super) seen: Versions,
-    /// Whether anything is painted, and of which paint that was found.
+    /// Whether anything is painted, and the paint for which that was computed.
     pub(super) painted: (bool, Version),
-    /// The step that a widget is adjusting.
+    /// The step of an active widget.
     adjusting: Option<Transaction>,
     pub(super) mirroring: Option<Mirroring>,
     pub(super) symmetry: Symmetry,
-    /// What the symmetry is across, once it is found.
+    /// Both sides of the plane of symmetry, once they are found.
     pub(super) both_sides: Option<Arc<BothSides>>,
     pub(super) followed: Option<Followed>,
 }
 
-/// What was last taken over from another workspace.
+/// The state last taken over from another workspace.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(super) struct Followed {
     pub(super) model: Revision,
@@ -87,7 +87,7 @@ impl Workspace {
         }
     }
 
-    /// Works on another file, which begins with this document.
+    /// Opens another file, which begins with this document.
     pub(crate) fn open(&mut self, model: Arc<Model>, name: String, document: Document) {
         self.document.replace(document);
         self.original = Arc::new(vec![DVec3::ZERO; self.document.paint.len()]);
@@ -109,7 +109,7 @@ impl Workspace {
         self.colours.change_all();
     }
 
-    /// Whether anything was painted when the last event ended that was none of a stroke.
+    /// Whether anything was painted at the end of the last event outside a stroke.
     pub(crate) fn is_painted(&self) -> bool {
         self.painted.0
     }
@@ -119,7 +119,7 @@ impl Workspace {
         self.jobs.computed.model.as_ref()
     }
 
-    /// What jobs have made.
+    /// The results of the jobs.
     pub(crate) fn computed(&self) -> &Computed {
         &self.jobs.computed
     }
@@ -129,12 +129,12 @@ impl Workspace {
         self.document.handle(self.selection.selected()?)
     }
 
-    /// Grows when what is drawn has another shape.
+    /// Grows when the drawn shape changes.
     pub(crate) fn shape_revision(&self) -> u64 {
         self.shape_revision
     }
 
-    /// Where the shape at rest passes through itself; `None` until that was looked for, and while it moves.
+    /// The places where the settled shape passes through itself; `None` before the search, and while it moves.
     pub(crate) fn intersections(&self) -> Option<&Intersections> {
         self.jobs.intersections().filter(|_| self.document.is_settled())
     }
@@ -143,7 +143,7 @@ impl Workspace {
         &self.colours
     }
 
-    /// Says why something was not done.
+    /// Sets the reason why an action was refused.
     pub(crate) fn refuse(&mut self, why: impl Into<String>) {
         self.refusal = Some(why.into());
     }
@@ -156,7 +156,7 @@ impl Workspace {
         Transaction::begin(name, &self.document, &mut self.history)
     }
 
-    /// Begins a step that paints: what is being bound or solved is not wanted any more.
+    /// Begins a step that paints: running bindings and solves are no longer wanted.
     pub(crate) fn begin_stroke(&mut self, name: impl Into<String>) -> Transaction {
         self.jobs.stop_binding();
         self.jobs.drop_solves();
@@ -168,14 +168,14 @@ impl Workspace {
         transaction.commit(&self.document, &mut self.history)
     }
 
-    /// Takes everything back to where a step began.
+    /// Restores the beginning of a step.
     pub(crate) fn abort(&mut self, transaction: &Transaction) {
         transaction.abort(&mut self.document);
         self.jobs.drop_solves();
     }
 
-    /// Does something to the document in one named step, or in the step that is being adjusted; false if that changed
-    /// nothing. Solves that run are dropped if the shape was changed.
+    /// Changes the document in one named step, or in the adjusted step; false if that changed nothing. Running solves
+    /// are dropped if the shape has changed.
     pub(crate) fn step(&mut self, name: impl Into<String>, act: impl FnOnce(&mut Self)) -> bool {
         let shape = self.document.versions().of(Aspect::Shape);
         let begun = match &mut self.adjusting {
@@ -202,7 +202,7 @@ impl Workspace {
         self.adjusting.is_some()
     }
 
-    /// All steps that follow are one, until it is committed or aborted.
+    /// All following steps are one, until it is committed or aborted.
     pub(crate) fn begin_adjusting(&mut self) {
         self.adjusting = Some(self.begin("Adjust"));
     }
@@ -214,7 +214,7 @@ impl Workspace {
         }
     }
 
-    /// Takes the adjusted step back.
+    /// Aborts the adjusted step.
     pub(crate) fn abort_adjusting(&mut self) {
         if let Some(transaction) = self.adjusting.take() {
             self.abort(&transaction);
@@ -226,23 +226,23 @@ impl Workspace {
         self.jobs.drop_solves();
         let before: Vec<HandleId> = self.document.handles().iter().map(|handle| handle.id).collect();
         self.history.undo(&mut self.document);
-        // A handle whose deletion was taken back is selected, as it was.
+        // After undo of a deletion the handle is selected, as before.
         let mut handles = self.document.handles().iter().map(|handle| handle.id);
         if let Some(back) = handles.find(|id| !before.contains(id)) {
             self.selection.put(Some(back));
         }
     }
 
-    /// Does the last taken-back step again.
+    /// Redoes the last undone step.
     pub(crate) fn redo(&mut self) {
         self.jobs.drop_solves();
         self.history.redo(&mut self.document);
-        // A handle that has come back is most likely what one wants to go on with.
+        // A restored handle is probably the next one to be edited.
         let last = self.document.handles().last().map(|handle| handle.id);
         self.selection.put(self.selection.selected().or(last));
     }
 
-    /// Goes back or forth to the state after so many steps of the history.
+    /// Goes back or forth to the state after this many steps of the history.
     pub(crate) fn go_to_step(&mut self, steps: usize) {
         self.jobs.drop_solves();
         while self.history.names().1 > steps && self.history.undo(&mut self.document).is_some() {}
@@ -250,9 +250,9 @@ impl Workspace {
     }
 }
 
-/// What lies under a point of the view.
+/// Picking under a point of the view.
 impl Workspace {
-    /// What rays are answered from; `None` before a file's structure is built.
+    /// The data that answer rays; `None` before a file's hierarchy is built.
     pub(crate) fn picking<'a>(&'a self, view: &'a View) -> Option<Picking<'a>> {
         Some(Picking::of(
             self.model()?,
@@ -280,13 +280,13 @@ impl Workspace {
         }
     }
 
-    /// Where a surface vertex is drawn; the origin before the first file.
+    /// The drawn position of a surface vertex; the origin before the first file.
     pub(crate) fn position(&self, vertex: SurfaceVertex) -> DVec3 {
         let rest = self.model().map(|model| model.surface.positions[vertex.index()]);
         rest.unwrap_or_default() + self.document.from_file[vertex.index()]
     }
 
-    /// Every vertex that hangs together with this one.
+    /// Every vertex connected to this one.
     pub(crate) fn part_of(&self, vertex: SurfaceVertex) -> Vec<SurfaceVertex> {
         let Some(model) = self.model() else { return Vec::new() };
         let part = model.topology.component(vertex);
@@ -296,7 +296,7 @@ impl Workspace {
             .collect()
     }
 
-    /// The positions of all vertices that are shown, without specks.
+    /// The positions of all shown vertices, without specks.
     pub(crate) fn shown_positions(&self) -> Vec<DVec3> {
         let all = self
             .model()

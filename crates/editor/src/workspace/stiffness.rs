@@ -1,7 +1,7 @@
-//! What is done to painted stiffness as a whole: set, cleared, blurred, sharpened, grown, shrunk.
+//! Actions on painted stiffness as a whole: set, clear, blur, sharpen, grow, shrink.
 //!
-//! Stiffness spans six decades, so it is blurred in its logarithm. What is rigid stays so, and counts as the
-//! stiffest beside others.
+//! Stiffness spans six decades, so it is blurred in its logarithm. Rigid vertices stay rigid, and count as the stiffest
+//! for their neighbours.
 
 use pliant_mesh::{Model, SurfaceVertex};
 use rayon::prelude::*;
@@ -9,20 +9,20 @@ use rayon::prelude::*;
 use super::state::Workspace;
 use crate::STIFFNESS_RANGE;
 
-/// Something to do to the whole field.
+/// An action on the whole field.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Hash)]
 pub enum StiffnessChange {
-    /// Takes every vertex towards its neighbours.
+    /// Moves every vertex' value towards its neighbours'.
     Blur,
-    /// Takes every vertex away from its neighbours.
+    /// Moves every vertex' value away from its neighbours'.
     Sharpen,
-    /// What is painted takes in the vertices around it.
+    /// Grows the painted part by the vertices around it.
     Grow,
-    /// What is painted gives up the vertices at its border.
+    /// Shrinks the painted part by the vertices at its border.
     Shrink,
 }
 
-/// How often vertices and their neighbours are blurred at once.
+/// The number of blurs of vertices and their neighbours in one action.
 const ROUNDS: usize = 4;
 
 /// Changes the whole field in one step.
@@ -65,7 +65,7 @@ pub(crate) fn change_stiffness(workspace: &mut Workspace, change: StiffnessChang
     );
 }
 
-/// The field with every vertex halfway towards the mean of its neighbours, some times over.
+/// The field with every vertex halfway towards the mean of its neighbours, several times.
 fn blurred(model: &Model, field: &[f64]) -> Vec<f64> {
     let most = STIFFNESS_RANGE.end().ln();
     let mut field: Vec<f64> = field.iter().map(|stiffness| stiffness.ln()).collect();
@@ -84,7 +84,7 @@ fn blurred(model: &Model, field: &[f64]) -> Vec<f64> {
     field.into_iter().map(f64::exp).collect()
 }
 
-/// The field in which every vertex has the value of itself and its neighbours that no other is better than.
+/// The field in which every vertex has the best value among its own and its neighbours'.
 fn by_neighbours(model: &Model, field: &[f64], is_better: impl Fn(f64, f64) -> bool + Sync) -> Vec<f64> {
     let best = |vertex: usize| {
         let neighbours = model.topology.neighbours(SurfaceVertex(vertex as u32)).iter();
@@ -127,7 +127,7 @@ fn put_stiffness(workspace: &mut Workspace, name: &str, field: Vec<f64>) {
     });
 }
 
-/// Makes the whole surface equally stiff.
+/// Makes the stiffness of the whole surface even.
 pub(crate) fn clear_stiffness(workspace: &mut Workspace) {
     workspace.change("Clear stiffness", |document| {
         document.unsettle_if_displaced();

@@ -1,7 +1,7 @@
-//! Symmetry: what is painted or posed on one side of a plane is done on the other side, too.
+//! Symmetry: paint and poses on one side of a plane are repeated on the other side.
 //!
-//! The plane is the shape's own, or stands across an axis of the world. A job finds it, and which vertices go with each
-//! other across it, once for a file; a stroke only looks them up.
+//! The plane is the shape's own, or is normal to an axis of the world. A job finds it, and the pairs of vertices across
+//! it, once for a file; a stroke only looks them up.
 
 use std::sync::Arc;
 
@@ -14,18 +14,18 @@ use crate::document::{HandleId, Paint};
 use crate::jobs::{BothSides, JobOutcome, Symmetry};
 
 impl Workspace {
-    /// What is done on both sides of, once it is found.
+    /// Both sides, once they are found.
     pub(crate) fn both_sides(&self) -> Option<&Arc<BothSides>> {
         self.both_sides.as_ref()
     }
 
-    /// Across which plane, found or still looked for.
+    /// The plane, found or still being searched for.
     pub(crate) fn symmetry(&self) -> Symmetry {
         self.symmetry
     }
 }
 
-/// Does everything on both sides of a plane, once that is found, or on one side alone.
+/// Applies every action on both sides of a plane, once that is found, or on one side alone.
 pub(crate) fn set_symmetry(workspace: &mut Workspace, symmetry: Symmetry) {
     if workspace.symmetry == symmetry {
         return;
@@ -51,7 +51,7 @@ pub(crate) fn set_symmetry(workspace: &mut Workspace, symmetry: Symmetry) {
     }));
 }
 
-/// Takes what was found.
+/// Stores the result.
 pub(crate) fn take_symmetry(workspace: &mut Workspace, found: Option<Arc<BothSides>>) {
     if found.is_none() {
         workspace.symmetry = Symmetry::None;
@@ -60,8 +60,8 @@ pub(crate) fn take_symmetry(workspace: &mut Workspace, found: Option<Arc<BothSid
     workspace.both_sides = found;
 }
 
-/// A handle's twin across the plane: the one that it has, or a new one of all that goes with its vertices and these. `None`
-/// where they lie on both sides.
+/// A handle's twin across the plane: its present one, or a new one of all partners of its vertices and these. `None` if
+/// they are on both sides.
 pub(crate) fn twin_across(
     workspace: &mut Workspace,
     sides: &BothSides,

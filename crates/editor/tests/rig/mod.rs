@@ -16,7 +16,7 @@ use pliant_mesh::{Cancel, Drawn, Model, Object, Progress, WeldOptions};
 pub const VIEWPORT_PX: DVec2 = DVec2::new(800.0, 600.0);
 pub const CENTRE_PX: DVec2 = DVec2::new(400.0, 300.0);
 
-/// How far two descents to one minimum may end from each other, in diagonals.
+/// The largest distance between the ends of two descents to one minimum, in diagonals.
 pub const ITERATED: f64 = 1e-3;
 
 /// An editor and the list of its jobs.
@@ -27,7 +27,7 @@ pub struct Rig {
     colours: Colours,
 }
 
-/// The colours of regions as a window keeps them, which fetches what changed.
+/// The colours of regions in a window, which fetches changes.
 #[derive(Default)]
 struct Colours {
     colours: Vec<[u8; 4]>,
@@ -35,7 +35,7 @@ struct Colours {
 }
 
 impl Colours {
-    /// Fetches what changed, which must be everything that did.
+    /// Fetches the changes, which must be complete.
     fn follow(&mut self, editor: &Editor) {
         let known = std::mem::replace(&mut self.revision, editor.view().regions_revision);
         let mut all = Vec::new();
@@ -51,7 +51,7 @@ impl Colours {
     }
 }
 
-/// Everything of the document that undo must give back, to the bit.
+/// The document's state that undo must restore, to the bit.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Fingerprint {
     paint: Vec<Paint>,
@@ -102,7 +102,7 @@ impl Rig {
         rig
     }
 
-    /// A program with this mesh open, which tells objects apart, and every job done.
+    /// A program with this mesh open, which has separate objects, and every job done.
     pub fn open_with_objects(drawn: Drawn, objects: Vec<Object>) -> Self {
         let model = Arc::unwrap_or_clone(weld(drawn)).with_objects(objects);
         let mut rig = Self::open_model(Arc::new(model));
@@ -141,7 +141,7 @@ impl Rig {
         self.colours.follow(&self.editor);
     }
 
-    /// Chooses a method by its name, as a step of the history if it is another.
+    /// Chooses a method by its name, as a step of the history if it differs.
     pub fn choose(&mut self, method: &str) {
         self.command(Command::SetMethod(Method::from_name(method).unwrap()));
         self.drain();
@@ -193,7 +193,7 @@ impl Rig {
         self.send(Event::PointerReleased(at(position_px), Button::Primary));
     }
 
-    /// Holds the left button along a way over the screen.
+    /// Holds the left button along a path over the screen.
     pub fn swipe(&mut self, way_px: &[DVec2]) {
         self.press(way_px[0]);
         for &position_px in &way_px[1..] {
@@ -202,7 +202,7 @@ impl Rig {
         self.release(way_px[way_px.len() - 1]);
     }
 
-    /// Paints along a way.
+    /// Paints along a path.
     pub fn paint(&mut self, mode: ToolMode, way_px: &[DVec2]) {
         self.command(Command::SetTool(mode));
         self.swipe(way_px);
@@ -220,14 +220,14 @@ impl Rig {
         self.key(Key::Enter);
     }
 
-    /// Drags a part of the gizmo by some points; false if it is not to be seen.
+    /// Drags a part of the gizmo by a number of points; false if it is not visible.
     pub fn drag(&mut self, part: GizmoPart, by_px: DVec2) -> bool {
         let Some(from_px) = self.grip(part) else { return false };
         self.swipe(&[from_px, from_px + by_px * 0.5, from_px + by_px]);
         true
     }
 
-    /// A point of the screen where this part of the gizmo is grabbed; the pointer rests there.
+    /// A point of the screen at which this part of the gizmo is grabbed; the pointer rests there.
     pub fn grip(&mut self, part: GizmoPart) -> Option<DVec2> {
         let position_px = self.place_of(part)?;
         self.move_to(position_px);
@@ -235,7 +235,7 @@ impl Rig {
         Some(position_px)
     }
 
-    /// A point of the screen where this part of the gizmo lies.
+    /// A point of the screen on this part of the gizmo.
     pub fn place_of(&self, part: GizmoPart) -> Option<DVec2> {
         let view = self.editor.view();
         let shape = view.gizmo.iter().find(|shape| shape.part == part)?;
@@ -257,7 +257,7 @@ impl Rig {
         self.command(Command::Redo);
     }
 
-    /// What is drawn, to the bit.
+    /// The drawn shape, to the bit.
     pub fn drawn(&self) -> Vec<[u64; 3]> {
         let mut positions = Vec::new();
         self.model
@@ -269,8 +269,8 @@ impl Rig {
         Fingerprint::of(self.editor.document())
     }
 
-    /// Whether the settled shape is what regions, handles and options mean, solved apart from the program: a linear
-    /// method's to the bit; a minimum that was reached step by step from elsewhere within [`ITERATED`].
+    /// Whether the settled shape is the solution for regions, handles and options, solved outside the program: for a
+    /// linear method to the bit; for a minimum reached step by step from another start within [`ITERATED`].
     #[track_caller]
     pub fn assert_as_meant(&self, case: &str) {
         let document = self.editor.document();
@@ -294,7 +294,7 @@ impl Rig {
             let apart = a.iter().zip(b).map(|(a, b)| a.distance(*b));
             apart.fold(0.0, f64::max) / size
         };
-        // What is carried along of a kept shape is never more than what there was of it.
+        // The residual of a kept shape never grows.
         let residual = match (kept, &at_first) {
             (Some(kept), Some(at_first)) => farthest(&kept.shape, at_first),
             _ => 0.0,
@@ -306,12 +306,12 @@ impl Rig {
         );
     }
 
-    /// The problem that the document states, bound and solved to the end; `None` without a handle.
+    /// The document's problem, bound and solved to the end; `None` without a handle.
     fn solved_apart(&self, target: impl Fn(&Handle) -> DAffine3) -> Option<(Bound, Vec<DVec3>)> {
         let document = self.editor.document();
         let mut surface = self.model.surface.clone();
         let mut displacements = vec![DVec3::ZERO; surface.positions.len()];
-        // What lies on locked objects alone is no handle.
+        // A handle with only locked vertices does not count.
         let roles = self.editor.roles();
         let is_held = |handle: &&Handle| {
             let mut painted = document.paint().iter().zip(roles);
@@ -361,7 +361,7 @@ impl Rig {
         self.editor.document().paint().iter().filter(|p| **p == paint).count()
     }
 
-    /// How far the farthest vertex is from where the file has it.
+    /// The largest distance of a vertex from its place in the file.
     pub fn largest_displacement(&self) -> f64 {
         self.editor
             .document()
@@ -395,7 +395,7 @@ impl Random {
         self.next() % end
     }
 
-    /// Between 0 and 1.
+    /// A number between 0 and 1.
     pub fn unit(&mut self) -> f64 {
         (self.next() >> 11) as f64 / (1u64 << 53) as f64
     }

@@ -1,31 +1,32 @@
-//! What the new file takes over from the one it replaces: rights, owner, extended attributes, and its other names.
+//! The attributes that a new file takes over from the one it replaces: rights, owner, extended attributes, and its
+//! other names.
 //!
-//! A rename puts a new file in the old one's place, so all of these have to be copied to the new one first. The rights
-//! to run as another user (setuid, setgid, file capabilities) belonged to the old bytes and are not copied.
+//! A rename puts a new file in the old one's place, so all of these must be copied to the new one first. The rights to
+//! run as another user (setuid, setgid, file capabilities) belonged to the old bytes and are not copied.
 //!
 //! A file with several names (hard links) can't be replaced under all of them in one step, and writing over its bytes
 //! would leave a torn file if the program is killed. So the names in its own folder are replaced one after the other,
 //! each of them old or new and whole at every moment. Names in other folders, which can't be found, keep the old bytes,
-//! and the person is told.
+//! and a warning says so.
 
 use std::fs::{File, Metadata};
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// The other names of a file that is replaced.
+/// The other names of a replaced file.
 #[derive(Debug, Default)]
 pub(super) struct OtherNames {
-    /// Those in its own folder.
+    /// The names in its own folder.
     pub here: Vec<PathBuf>,
-    /// How many it has elsewhere.
+    /// The number of names elsewhere.
     pub elsewhere: u64,
 }
 
-/// Copies the attributes of `existing`, the file at `target`, to the new file. What the system refuses is left out, but
-/// the rights never become wider than they were.
+/// Copies the attributes of `existing`, the file at `target`, to the new file. Attributes that the system refuses are
+/// left out, but the rights never become wider than before.
 ///
 /// # Errors
-/// Where not even the rights can be set.
+/// Not even the rights can be set.
 #[cfg(unix)]
 pub(super) fn hand_on(new: &File, existing: &Metadata, target: &Path) -> io::Result<()> {
     use std::os::unix::fs::{MetadataExt, PermissionsExt, fchown};
@@ -36,7 +37,7 @@ pub(super) fn hand_on(new: &File, existing: &Metadata, target: &Path) -> io::Res
         let _ = fchown(new, Some(existing.uid()), None);
     }
     if own.gid() != existing.gid() && fchown(new, None, Some(existing.gid())).is_err() {
-        // Another group must not get what this group was allowed: it gets what everybody has.
+        // Another group must not get this group's rights: it gets everybody's.
         rights = (rights & 0o707) | ((rights & 0o007) << 3);
     }
     new.set_permissions(std::fs::Permissions::from_mode(rights))?;
@@ -47,7 +48,7 @@ pub(super) fn hand_on(new: &File, existing: &Metadata, target: &Path) -> io::Res
 /// Lets only the owner read and write a file.
 ///
 /// # Errors
-/// What the system says.
+/// The system's error.
 #[cfg(unix)]
 pub(super) fn make_private(file: &File) -> io::Result<()> {
     use std::os::unix::fs::PermissionsExt;
@@ -92,7 +93,7 @@ fn copy_extended(new: &File, target: &Path) {
 #[cfg(all(unix, not(any(target_os = "linux", target_os = "macos"))))]
 fn copy_extended(_new: &File, _target: &Path) {}
 
-/// Looks for the other names of the file at `target`.
+/// Finds the other names of the file at `target`.
 #[cfg(unix)]
 pub(super) fn other_names(existing: &Metadata, target: &Path) -> OtherNames {
     use std::os::unix::fs::MetadataExt;
@@ -104,7 +105,7 @@ pub(super) fn other_names(existing: &Metadata, target: &Path) -> OtherNames {
         .into_iter()
         .flatten()
         .flatten();
-    // An entry's own metadata, which follows no link.
+    // This is the entry's own metadata, which follows no link.
     let same = entries.filter(|entry| entry.metadata().is_ok_and(|other| (other.dev(), other.ino()) == node));
     let here: Vec<PathBuf> = same.map(|entry| entry.path()).filter(|path| path != target).collect();
     OtherNames {

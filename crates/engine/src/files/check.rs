@@ -1,4 +1,4 @@
-//! Reads back what was written, before it replaces anything.
+//! Reads a written file back, before it replaces anything.
 
 use std::path::{Path, PathBuf};
 
@@ -8,24 +8,24 @@ use pliant_mesh::{Cancel, Progress};
 use super::{Destination, Neighbours};
 use crate::EngineError;
 
-/// What was written and is not in its place yet.
+/// A written file that is not in its place yet.
 pub struct Written<'a> {
-    /// Where OUT goes.
+    /// The place of OUT.
     pub output: &'a Destination,
     /// Its bytes on the disk.
     pub file: &'a Path,
-    /// The neighbours that were written with it, by their names, and theirs.
+    /// The neighbours that were written with it, by name, and their bytes on the disk.
     pub neighbours: Vec<(String, &'a Path)>,
     /// The save's own [`triangles`](pliant_io::Saved::triangles).
     pub triangles: Option<Vec<u32>>,
 }
 
-/// Reads a save back from the disk, as the next reader will, and compares its shape with the one that was to be saved.
-/// It is the last check before the old file is replaced.
+/// Reads a save back from the disk, like the next reader, and compares its shape with the one to save. It is the last
+/// check before the old file is replaced.
 ///
 /// # Errors
-/// [`EngineError::ReadBack`] where it can't be read or shows another shape; [`EngineError::Interrupted`] soon after `cancel`
-/// is raised.
+/// [`EngineError::ReadBack`] if it can't be read or shows another shape; [`EngineError::Interrupted`] soon after
+/// `cancel` is raised.
 pub fn read_back(
     written: &Written<'_>,
     scene: &Scene,
@@ -59,7 +59,7 @@ pub fn read_back(
         .map_err(refuse)
 }
 
-/// Neighbours as they will be: new ones from their temporary files, the others from beside OUT.
+/// Neighbours in their future state: new ones from their temporary files, the others from beside OUT.
 struct AmongWritten {
     written: Vec<(String, PathBuf)>,
     beside: Neighbours,

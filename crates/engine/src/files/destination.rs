@@ -1,4 +1,4 @@
-//! Where a file is to be written, through links, and whether it may be written there.
+//! The place to write a file, through links, and whether it is writable.
 
 use std::ffi::OsStr;
 use std::fs::{self, Metadata};
@@ -8,25 +8,24 @@ use std::path::{Path, PathBuf};
 use super::error::{FileError, in_words};
 use super::{folder_of, follow};
 
-/// The place that a path leads to, found without opening anything.
+/// The place to which a path leads, found without opening anything.
 #[derive(Clone, Debug)]
 pub struct Destination {
     /// The path as the person gave it, for messages.
     pub given: PathBuf,
-    /// The file that is written: the target of links, with its folder's true spelling. The link itself stays.
+    /// The file to write: the target of links, with its folder's true spelling. The link itself stays.
     pub target: PathBuf,
-    /// The folder in which it is prepared: its own, or for a neighbour that of the file which names it.
+    /// The folder in which it is prepared: its own, or for a neighbour that of the file that names it.
     pub home: PathBuf,
     /// For a neighbour, the file that names it: a new neighbour gets that file's rights.
     pub(super) namer: Option<PathBuf>,
 }
 
 impl Destination {
-    /// Follows `path` as editors do.
+    /// Follows `path` like editors do.
     ///
     /// # Errors
-    /// If its folder is missing, or if the place holds a folder, a device, a pipe or a socket, or a file that may not
-    /// be written.
+    /// If its folder is missing, or if there is a folder, a device, a pipe or a socket, or a file that is not writable.
     pub fn of(path: &Path) -> Result<Self, FileError> {
         let target = follow(path).map_err(|error| FileError::writing(path, error))?;
         let destination = Self {
@@ -49,15 +48,15 @@ impl Destination {
         }
     }
 
-    /// The file's name, a link's target's.
+    /// The file's name, or that of a link's target.
     pub fn name(&self) -> &OsStr {
         self.target.file_name().unwrap_or_default()
     }
 
-    /// The existing file, if there is one and it may be replaced.
+    /// The existing file, if there is one; it must be replaceable.
     ///
     /// # Errors
-    /// As [`Self::of`].
+    /// Those of [`Self::of`].
     pub fn existing(&self) -> Result<Option<Metadata>, FileError> {
         let refuse = |error| Err(FileError::writing(&self.given, error));
         let metadata = match fs::metadata(&self.target) {

@@ -1,4 +1,4 @@
-//! Why a file could not be read or written.
+//! The reason why a file could not be read or written.
 
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
@@ -31,17 +31,17 @@ impl FileError {
         }
     }
 
-    /// The file that it is about.
+    /// The file that caused the error.
     pub fn file(&self) -> &Path {
         &self.file
     }
 
-    /// What kind of error the system told.
+    /// The system's kind of error.
     pub fn kind(&self) -> ErrorKind {
         self.source.kind()
     }
 
-    /// What the system said, with the remedy.
+    /// The system's message, with the remedy.
     pub fn reason(&self) -> String {
         reason(&self.source)
     }
@@ -57,7 +57,7 @@ pub(super) fn in_words(sentence: impl Into<String>) -> io::Error {
     io::Error::other(Words(sentence.into()))
 }
 
-/// What the system said, with the remedy.
+/// The system's message, with the remedy.
 pub(super) fn reason(error: &io::Error) -> String {
     match error.kind() {
         ErrorKind::NotFound => "there is no such file or folder; check the path".to_owned(),

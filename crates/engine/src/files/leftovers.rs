@@ -1,8 +1,8 @@
 //! The temporary files of a save, and the removal of those that a killed save has left.
 //!
-//! There are temporary files (`.pliant-XXXXXX.tmp`, and `.old` for what is put back should a save fail half-way), which
+//! There are temporary files (`.pliant-XXXXXX.tmp`, and `.old` for files to restore if a save fails half-way), which
 //! nothing names; and neighbours under passing names (`.pliant-` and 16 hex digits and `-` and the name), which a glTF
-//! that was being replaced may name.
+//! may name during its replacement.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -11,14 +11,14 @@ use std::path::Path;
 
 use super::named::names_in_folder;
 
-/// What all of them begin with.
+/// The beginning of all their names.
 pub(super) const PREFIX: &str = ".pliant-";
-/// What is being written.
+/// The end of a file during its writing.
 pub(super) const TEMPORARY: &str = ".tmp";
-/// What is being replaced.
+/// The end of a file during its replacement.
 pub(super) const REPLACED: &str = ".old";
 
-/// How many letters and digits a temporary file has between the two.
+/// The number of letters and digits between the two in a temporary file's name.
 pub(super) const RANDOM: usize = 6;
 
 /// The longest part of a name that a passing name keeps, in bytes: file systems end names at 255.
@@ -38,7 +38,7 @@ pub(crate) fn passing_name(name: &str) -> String {
     )
 }
 
-/// The name of a neighbour whatever its passing name is.
+/// The name of a neighbour, without the passing part.
 pub(super) fn real_name(name: &str) -> String {
     match behind_passing(name) {
         Some(flat) => flat.replace("%2F", "/").replace("%25", "%"),
@@ -46,7 +46,7 @@ pub(super) fn real_name(name: &str) -> String {
     }
 }
 
-/// Whether a neighbour goes by a passing name.
+/// Whether a neighbour has a passing name.
 pub(super) fn is_passing(name: &str) -> bool {
     behind_passing(name).is_some()
 }
@@ -57,7 +57,7 @@ fn behind_passing(name: &str) -> Option<&str> {
     is_ours.then_some(flat)
 }
 
-/// Whether a name is that of a temporary file of a save. Other files may begin and end as these do.
+/// Whether a name is that of a temporary file of a save. Other files may begin and end like these.
 fn is_temporary(name: &str) -> bool {
     let middle = name.strip_prefix(PREFIX).and_then(|rest| {
         let ends = [TEMPORARY, REPLACED];
@@ -66,7 +66,7 @@ fn is_temporary(name: &str) -> bool {
     middle.is_some_and(|middle| middle.len() == RANDOM && middle.bytes().all(|byte| byte.is_ascii_alphanumeric()))
 }
 
-/// Removes what killed saves have left in a folder. The caller must hold its lock alone.
+/// Removes the files that killed saves have left in a folder. The caller must have its lock alone.
 pub(super) fn clear(folder: &Path) {
     let Ok(entries) = fs::read_dir(folder) else { return };
     let mut passing = Vec::new();
@@ -79,7 +79,7 @@ pub(super) fn clear(folder: &Path) {
             continue;
         }
         if is_temporary(name) {
-            // One that can't be removed does no harm.
+            // A file that can't be removed does no harm.
             let _ = fs::remove_file(entry.path());
         } else if is_passing(name) {
             passing.push(name.to_owned());

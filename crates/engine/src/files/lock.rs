@@ -1,9 +1,8 @@
 //! A lock on a folder that is written to.
 //!
-//! It is an advisory lock of the system on a file in that folder. It ends with the process that holds it, however that
-//! ends, so there are no stale locks. A save of several files holds it alone; saves of single files, which are one
-//! rename each, share it. While it is held alone no other save is under way there, so temporary files in the folder are
-//! leftovers.
+//! It is an advisory lock of the system on a file in that folder. It ends with its process, for every way of ending, so
+//! there are no stale locks. A save of several files holds it alone; saves of single files, which are one rename each,
+//! share it. While it is held alone no other save is running there, so temporary files in the folder are leftovers.
 //!
 //! The lock's file is removed by its last holder. One that a killed process left is used by the next save.
 
@@ -19,15 +18,15 @@ use super::error::in_words;
 /// The lock's name in its folder.
 const NAME: &str = ".pliant.lock";
 
-/// How long a save waits for another one in the same folder.
+/// The time that a save waits for another one in the same folder.
 const PATIENCE: Duration = Duration::from_secs(120);
 
-/// With whom a lock is held.
+/// The sharing of a lock.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
 pub enum Share {
-    /// With other saves of single files.
+    /// Shared with other saves of single files.
     Together,
-    /// With nobody.
+    /// Not shared.
     Alone,
 }
 
@@ -36,16 +35,16 @@ pub enum Share {
 pub(super) struct FolderLock {
     pub folder: PathBuf,
     pub share: Share,
-    /// `None` if the file system has no locks: then saves go on without one.
+    /// `None` if the file system has no locks: then saves continue without one.
     file: Option<File>,
 }
 
 impl FolderLock {
     /// Waits for the lock on `folder`. `clear` is called while it is held alone, at least for a moment; it is not
-    /// called if the lock can't be had alone at once and `share` doesn't ask for that.
+    /// called if the lock can't be held alone at once and `share` doesn't require that.
     ///
     /// # Errors
-    /// What the system says; [`ErrorKind::Interrupted`] when `cancel` is raised; a sentence when another save in the
+    /// The system's error; [`ErrorKind::Interrupted`] when `cancel` is raised; a sentence when another save in the
     /// folder does not end.
     pub fn take(folder: &Path, share: Share, cancel: &Cancel, clear: impl FnOnce(&Path)) -> io::Result<Self> {
         let path = folder.join(NAME);
@@ -100,7 +99,7 @@ impl FolderLock {
         }
     }
 
-    /// Takes the file away unless others hold it, too.
+    /// Removes the file unless others hold it too.
     pub fn remove_file(&self) {
         let Some(file) = &self.file else { return };
         let path = self.folder.join(NAME);
@@ -120,7 +119,7 @@ impl Drop for FolderLock {
 /// Opens the lock's file, and makes it if necessary. It is always an ordinary file, never reached through a link.
 fn open(path: &Path) -> io::Result<File> {
     let mut last = io::Error::from(ErrorKind::NotFound);
-    // Its last holder may take it away between two looks.
+    // Its last holder may remove it between two checks.
     for _ in 0..1000 {
         match fs::symlink_metadata(path) {
             Ok(metadata) if !metadata.is_file() => {
@@ -148,7 +147,7 @@ fn open(path: &Path) -> io::Result<File> {
     Err(last)
 }
 
-/// Lets other users of a shared folder open the lock, whatever the umask: it is empty.
+/// Lets other users of a shared folder open the lock, independent of the umask: it is empty.
 fn for_everybody(file: &File) {
     #[cfg(unix)]
     {
@@ -159,10 +158,10 @@ fn for_everybody(file: &File) {
     let _ = file;
 }
 
-/// Removes a lock's file. A lock is empty, so one with content is somebody's file of this name, which stays.
+/// Removes a lock's file. A lock is empty, so a file with content is a person's file of this name, which stays.
 fn remove(file: &File, path: &Path) {
     if file.metadata().is_ok_and(|metadata| metadata.len() == 0) {
-        // One that can't be removed is taken over by the next save.
+        // The next save takes over a file that can't be removed.
         let _ = fs::remove_file(path);
     }
 }
@@ -198,7 +197,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let (go_on, stopped) = (Cancel::new(), Cancel::new());
         stopped.cancel();
-        // What a killed process left is taken over.
+        // A file left by a killed process is taken over.
         fs::write(folder.path().join(NAME), "").unwrap();
         let (first, was_alone) = take(folder.path(), Share::Together, &go_on).unwrap();
         assert!(was_alone);

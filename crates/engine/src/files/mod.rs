@@ -1,10 +1,10 @@
 //! Files on disk: read whole, and written all or not at all.
 //!
-//! The steps of a save: [`Destination`] resolves a path and refuses what is not a file. [`Staging`] locks the folders
-//! that are written to, so that two saves there don't mix and the leftovers of a killed save can be removed.
-//! [`placement`] finds a name for each neighbour under which no other file is overwritten. The bytes are written to
-//! temporary files beside their places, with the attributes of the files that they replace, and [`check`]ed by reading
-//! them back. Only then are they renamed into place.
+//! The steps of a save: [`Destination`] resolves a path and refuses anything except a file. [`Staging`] locks the
+//! folders of the save, so that two saves there don't mix and the leftovers of a killed save can be removed.
+//! [`placement`] finds a name for each neighbour that overwrites no other file. The bytes are written to temporary
+//! files beside their places, with the attributes of the files that they replace, and [`check`]ed by reading them back.
+//! Only then are they renamed into place.
 
 mod attributes;
 pub mod check;
@@ -33,7 +33,7 @@ pub use stamp::{KnownFiles, Stamp};
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
-/// The folder that a path stands in, "." for a bare name.
+/// The folder of a path, "." for a bare name.
 pub fn folder_of(path: &Path) -> &Path {
     match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
@@ -41,7 +41,7 @@ pub fn folder_of(path: &Path) -> &Path {
     }
 }
 
-/// A file's name as a glTF's URIs hold it: one that is not UTF-8 percent-encoded.
+/// A file's name in a glTF's URIs; one that is not UTF-8 is percent-encoded.
 pub fn name_as_text(name: &OsStr) -> String {
     #[cfg(unix)]
     {
@@ -53,7 +53,7 @@ pub fn name_as_text(name: &OsStr) -> String {
     }
 }
 
-/// A path with `/` between its folders, each called as [`name_as_text`] has it; [`path_of_text`] reads it back.
+/// A path with `/` between its folders, each named by [`name_as_text`]; [`path_of_text`] reads it back.
 pub fn path_as_text(path: &Path) -> String {
     if cfg!(not(unix)) {
         return path.to_string_lossy().replace('\\', "/");
@@ -67,8 +67,7 @@ pub fn path_of_text(folder: &Path, text: &str) -> PathBuf {
     neighbour_path(folder, text)
 }
 
-/// The path in `folder` that a neighbour's name stands for; see [`name_as_text`]. A file that is there by the very
-/// letters goes first.
+/// The path in `folder` of a neighbour's name; see [`name_as_text`]. A file with exactly these letters has priority.
 pub(crate) fn neighbour_path(folder: &Path, name: &str) -> PathBuf {
     let literal = folder.join(name);
     #[cfg(unix)]

@@ -1,4 +1,4 @@
-//! Which files the glTF in a folder name.
+//! The files that the glTFs in a folder name.
 
 use std::collections::BTreeSet;
 use std::fs::{self, File};
@@ -9,11 +9,11 @@ use pliant_io::neighbours_named;
 
 use super::is_same;
 
-/// A glTF's text beyond this size is not looked through.
+/// A glTF's text beyond this size is not searched.
 const LONGEST_TEXT: u64 = 256 << 20;
 
-/// The files that the glTF in a folder name, except one glTF; `None` if one is too large to be parsed. Those that can't
-/// be read name nothing.
+/// The files that the glTF in a folder name, except one glTF; `None` if one is too large to be parsed. Unreadable ones
+/// name nothing.
 pub(super) fn names_in_folder(folder: &Path, except: Option<&Path>) -> Option<BTreeSet<String>> {
     let mut names = BTreeSet::new();
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
@@ -35,7 +35,7 @@ pub(super) fn names_in_folder(folder: &Path, except: Option<&Path>) -> Option<BT
     Some(names)
 }
 
-/// The text of a glTF, of a GLB the JSON chunk alone; `None` where it is too long.
+/// The text of a glTF, or the JSON chunk of a GLB; `None` if it is too long.
 fn text_of(path: &Path) -> io::Result<Option<Vec<u8>>> {
     let mut file = File::open(path)?;
     let mut length = file.metadata()?.len();

@@ -1,6 +1,6 @@
-//! A file's neighbours on disk: what a glTF or an OBJ names by a path relative to its own folder.
+//! A file's neighbours on disk: files that a glTF or an OBJ names by a path relative to its own folder.
 //!
-//! A file from a stranger may name anything. Only ordinary files at relative paths are read, each once whatever its
+//! A file from a stranger may name anything. Only ordinary files at relative paths are read, each once for all of its
 //! spellings, and together no more than a budget allows.
 
 use std::cell::RefCell;
@@ -15,25 +15,25 @@ use super::error::{in_words, reason};
 use super::stamp::Stamp;
 use super::{folder_of, follow, neighbour_path};
 
-/// What a file's neighbours may take in all, unless the caller says otherwise: 16 GiB, several times what the largest
-/// scans bring.
+/// The limit of all neighbours of a file, unless the caller gives another: 16 GiB, several times the size of the
+/// largest scans.
 pub const NEIGHBOUR_BYTES: u64 = 16 << 30;
 
 /// The neighbours of one file; those that were read are shared by all that name them.
 #[derive(Debug)]
 pub struct Neighbours {
     folder: PathBuf,
-    /// Where a link leads to: a save through the link puts the neighbours there.
+    /// The place to which a link leads: a save through the link writes the neighbours there.
     folder_behind: Option<PathBuf>,
     budget: u64,
     known: RefCell<Known>,
 }
 
-/// What was read so far.
+/// The files read so far.
 #[derive(Debug, Default)]
 struct Known {
     by_path: HashMap<String, Bytes>,
-    /// By the place on disk, which several paths may lead to.
+    /// The bytes by the place on disk, to which several paths may lead.
     by_place: HashMap<PathBuf, (Bytes, fs::Metadata)>,
     bytes: u64,
 }
@@ -51,18 +51,18 @@ impl Neighbours {
         }
     }
 
-    /// The same with at most so many bytes in all.
+    /// The same with at most this many bytes in all.
     #[must_use]
     pub fn within(self, budget: u64) -> Self {
         Self { budget, ..self }
     }
 
-    /// The places on disk of those that were read so far.
+    /// The places on disk of the neighbours read so far.
     pub fn places(&self) -> Vec<PathBuf> {
         self.known.borrow().by_place.keys().cloned().collect()
     }
 
-    /// The places on disk of those that were read so far, sorted, each with its stamp.
+    /// The places on disk of the neighbours read so far, sorted, each with its stamp.
     pub fn were_read(&self) -> Vec<(PathBuf, Stamp)> {
         let known = self.known.borrow();
         let places = known.by_place.iter();
@@ -74,7 +74,7 @@ impl Neighbours {
         places
     }
 
-    /// Where both folders have one, the one that a save through the link writes counts.
+    /// If both folders have one, the one that a save through the link writes counts.
     fn read_once(&self, path: &str) -> io::Result<Bytes> {
         let behind = self.folder_behind.as_deref().map(|folder| self.read_in(folder, path));
         match behind {
@@ -104,7 +104,7 @@ impl Neighbours {
     fn read_ordinary(&self, path: &Path, left: u64) -> io::Result<(Vec<u8>, fs::Metadata)> {
         let file = open(path)?;
         let metadata = file.metadata()?;
-        // It may be another one than a moment ago.
+        // It may be another file than a moment ago.
         refuse_strange(&metadata)?;
         let too_large = || {
             let budget = self.budget as f64 / f64::from(1 << 30);
@@ -119,7 +119,7 @@ impl Neighbours {
         bytes
             .try_reserve_exact(metadata.len() as usize)
             .map_err(|_| ErrorKind::OutOfMemory)?;
-        // A file may have more than it tells.
+        // A file may have more bytes than its reported size.
         file.take(left.saturating_add(1)).read_to_end(&mut bytes)?;
         if bytes.len() as u64 > left {
             return Err(too_large());
@@ -169,7 +169,7 @@ fn relative(uri: &str) -> Result<String, String> {
     Ok(steps.join("/"))
 }
 
-/// Whether a name means a device, or a stream within a file, on Windows.
+/// Whether a name is a device, or a stream within a file, on Windows.
 fn is_reserved(step: &str) -> bool {
     if !cfg!(windows) {
         return false;

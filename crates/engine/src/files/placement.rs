@@ -1,15 +1,14 @@
-//! Names for the neighbours that a save writes, under which no file is overwritten that another file may need.
+//! Names for the neighbours that a save writes, which overwrite no file that another file may need.
 //!
-//! **The rule.** A neighbour gets the name that the file gives it, unless something stands there already, or another glTF
-//! in the folder names a buffer so that is missing. What stands
-//! there is shared if it holds the very same bytes (a buffer only if no other file names it, since buffers are edited).
-//! It is replaced only if it is this document's own: OUT is there and is a save of this very document (the same to the
-//! letter in all that no save changes), OUT names the neighbour, and no other glTF in the folder does. In every other
-//! case, a link that leads out of the folder among them, the neighbour gets another name (`scene-2.bin`), and the
-//! person is told.
+//! **The rule.** A neighbour gets the name in the file, unless that place is taken, or another glTF in the folder names
+//! a missing buffer that way. An existing file is shared if it has exactly the same bytes (a buffer only if no other
+//! file names it, because buffers are edited). It is replaced only if it is this document's own: OUT exists and is a
+//! save of this very document (equal to the letter in everything that no save changes), OUT names the neighbour, and no
+//! other glTF in the folder does. In every other case, including a link that leads out of the folder, the neighbour
+//! gets another name (`scene-2.bin`), and a warning says so.
 //!
 //! So an edit that is applied repeatedly writes the same files each time, a file that is saved over itself keeps its
-//! names, and two downloads whose buffers are both called `scene.bin` both keep their shape. The rule depends only on
+//! names, and two downloads with buffers of the same name `scene.bin` both keep their shape. The rule depends only on
 //! the folder's files; it needs no notes of our own.
 
 use std::collections::BTreeSet;
@@ -25,7 +24,7 @@ use super::same_file::FileSet;
 use super::{Destination, FileError, folder_of, follow, holds, is_same, neighbour_path};
 use crate::EngineError;
 
-/// Where `output` stands as seen from `source`.
+/// The place of `output`, relative to `source`.
 pub fn placement(source: &Path, output: &Destination) -> Placement {
     let folder = fs::canonicalize(folder_of(source)).ok();
     if folder.as_deref() != Some(&*output.home) {
@@ -37,12 +36,12 @@ pub fn placement(source: &Path, output: &Destination) -> Placement {
     }
 }
 
-/// What becomes of one neighbour.
+/// The placement of one neighbour.
 #[derive(Clone, Debug)]
 pub struct Settled {
     /// Its place among the save's files.
     pub file: usize,
-    /// Where it stands.
+    /// Its path.
     pub at: Destination,
     /// Whether it is written.
     pub action: Action,
@@ -51,19 +50,19 @@ pub struct Settled {
 /// Whether a neighbour is written.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Action {
-    /// It is.
+    /// It is written.
     Write,
-    /// The same bytes stand there already.
+    /// It is not: the same bytes are there already.
     Share,
 }
 
-/// Gives each neighbour of `saved` the name that it is written under, also in the texts that name it. Renamed
-/// neighbours are listed among the save's warnings.
+/// Gives each neighbour of `saved` its name for writing, also in the texts that name it. Renamed neighbours are listed
+/// among the save's warnings.
 ///
 /// The folder must be locked: its files may not change until the save is committed.
 ///
 /// # Errors
-/// Where a neighbour can't be called otherwise, or a thousand names are taken.
+/// A neighbour can't have another name, or a thousand names are taken.
 pub fn settle(saved: &mut Saved, format: Format, output: &Destination) -> Result<Vec<Settled>, EngineError> {
     if matches!(format, Format::Glb | Format::Gltf) {
         adopt_passing(saved, output)?;
@@ -73,11 +72,11 @@ pub fn settle(saved: &mut Saved, format: Format, output: &Destination) -> Result
     }
     let mut folder = Folder::of(output, &saved.files[0].bytes, format);
     let mut settled = Vec::new();
-    // Textures come behind the libraries that name them, whose bytes change with those names.
+    // Textures come after the libraries that name them, whose bytes change with those names.
     for place in (1..saved.files.len()).rev() {
         let old = saved.files[place].name.clone();
         let wanted = real_name(&old);
-        // Where a folder of its path can't be, it goes beside OUT.
+        // If a folder of its path can't exist, it is placed beside OUT.
         let flat = wanted.rsplit_once('/').map(|(_, flat)| flat);
         let candidates = [Some(&*wanted), flat].into_iter().flatten().flat_map(|name| {
             (1..1000).map(move |number| match number {
@@ -113,7 +112,7 @@ pub fn settle(saved: &mut Saved, format: Format, output: &Destination) -> Result
         let (action, target) = match there {
             There::Nothing(target) | There::Own(target) => (Action::Write, target),
             There::Same(target) => (Action::Share, target),
-            // It was not looked for.
+            // It was not searched for.
             There::Taken => continue,
         };
         if action == Action::Write {
@@ -129,8 +128,8 @@ pub fn settle(saved: &mut Saved, format: Format, output: &Destination) -> Result
     Ok(settled)
 }
 
-/// Adds the unchanged neighbours that OUT names by passing names: an earlier save of it was cut off, and this one gives
-/// them their own names back.
+/// Adds the unchanged neighbours that OUT names by passing names: an earlier save of it was cut off, and this one
+/// restores their own names.
 fn adopt_passing(saved: &mut Saved, output: &Destination) -> Result<(), FileError> {
     let Some(named) = neighbours_named(&saved.files[0].bytes) else {
         return Ok(());
@@ -149,30 +148,30 @@ fn adopt_passing(saved: &mut Saved, output: &Destination) -> Result<(), FileErro
     Ok(())
 }
 
-/// What stands at a neighbour's place.
+/// The state of a neighbour's place.
 enum There {
-    /// Nothing: it can be written there.
+    /// Free: the neighbour can be written there.
     Nothing(PathBuf),
-    /// This document's own neighbour, by an earlier save.
+    /// This document's own neighbour, from an earlier save.
     Own(PathBuf),
-    /// The very same bytes.
+    /// A file with the same bytes.
     Same(PathBuf),
-    /// Something that must stay.
+    /// Another file, which must stay.
     Taken,
 }
 
-/// OUT's folder, looked at as far as it is asked for.
+/// OUT's folder, examined as far as needed.
 struct Folder<'a> {
     output: &'a Destination,
     /// The neighbours that the existing OUT names, if it is a save of the same document.
     own: BTreeSet<String>,
-    /// The neighbours that other files in the folder name; `None` until somebody asks.
+    /// The neighbours that other files in the folder name; `None` before the first query.
     others: Option<Others>,
     /// Places that this save writes.
     taken: FileSet,
 }
 
-/// What other glTF in the folder name; `None` where one of them is too large to be looked through.
+/// The files that other glTFs in the folder name; `None` if one of them is too large to search.
 type Others = Option<BTreeSet<String>>;
 
 impl<'a> Folder<'a> {
@@ -196,7 +195,7 @@ impl<'a> Folder<'a> {
     fn look_at(&mut self, name: &str, bytes: &[u8], role: Role) -> There {
         let home = &self.output.home;
         let path = neighbour_path(home, name);
-        // Its folder may lead elsewhere, or be no folder.
+        // Its folder may be a link, or not a folder.
         let mut parent = home.clone();
         let steps: Vec<&str> = name.split('/').collect();
         for step in &steps[..steps.len() - 1] {
@@ -218,8 +217,8 @@ impl<'a> Folder<'a> {
         match fs::metadata(&target) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => {
                 let is_link = fs::symlink_metadata(&path).is_ok_and(|metadata| metadata.is_symlink());
-                // A link that leads nowhere is kept: its file may come back. So may the buffer that another file lacks,
-                // which would have this shape else.
+                // A link that leads nowhere is kept: its file may come back. So may the missing buffer of another file,
+                // which would otherwise get this shape.
                 let is_missed = role == Role::Buffer && self.is_named_by_others(name);
                 return if is_inside && !is_link && !is_missed {
                     There::Nothing(target)
@@ -250,7 +249,7 @@ impl<'a> Folder<'a> {
     }
 }
 
-/// As [`follow`], where folders on the way may be missing.
+/// Like [`follow`], but folders on the way may be missing.
 fn follow_to_new(path: &Path) -> io::Result<PathBuf> {
     if folder_of(path).exists() {
         return follow(path);

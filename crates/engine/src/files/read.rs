@@ -7,21 +7,21 @@ use std::path::Path;
 use super::error::{FileError, in_words};
 use super::stamp::Stamp;
 
-/// Reads a whole file. Anything but an ordinary file is refused: reading a pipe could block for ever.
+/// Reads a whole file. Anything except an ordinary file is refused: reading a pipe could block for ever.
 ///
 /// # Errors
-/// What the system says.
+/// The system's error.
 pub fn read(path: &Path) -> Result<Vec<u8>, FileError> {
     ordinary(path)?;
     fs::read(path).map_err(|error| FileError::reading(path, error))
 }
 
-/// As [`read`], with the file's stamp.
+/// Like [`read`], with the file's stamp.
 ///
 /// # Errors
-/// As [`read`].
+/// Those of [`read`].
 pub fn read_stamped(path: &Path) -> Result<(Vec<u8>, Stamp), FileError> {
-    // The metadata first: what is written after it shows in a later comparison.
+    // The metadata come first: a later write then shows in a comparison.
     let metadata = ordinary(path)?;
     let bytes = fs::read(path).map_err(|error| FileError::reading(path, error))?;
     let stamp = Stamp::of_bytes(path, &metadata, &bytes);
@@ -44,15 +44,15 @@ fn ordinary(path: &Path) -> Result<Metadata, FileError> {
 /// Reads a whole text file in UTF-8.
 ///
 /// # Errors
-/// What the system says, or that it is no UTF-8.
+/// The system's error, or text that is not UTF-8.
 pub fn read_text(path: &Path) -> Result<String, FileError> {
     Ok(read_text_stamped(path)?.0)
 }
 
-/// As [`read_text`], with the file's stamp.
+/// Like [`read_text`], with the file's stamp.
 ///
 /// # Errors
-/// As [`read_text`].
+/// Those of [`read_text`].
 pub fn read_text_stamped(path: &Path) -> Result<(String, Stamp), FileError> {
     let (bytes, stamp) = read_stamped(path)?;
     let text = String::from_utf8(bytes);
@@ -60,7 +60,7 @@ pub fn read_text_stamped(path: &Path) -> Result<(String, Stamp), FileError> {
     Ok((text, stamp))
 }
 
-/// Whether an ordinary file holds these bytes and no others.
+/// Whether an ordinary file has exactly these bytes.
 pub fn holds(path: &Path, bytes: &[u8]) -> bool {
     let has_length = ordinary(path).is_ok_and(|metadata| metadata.len() == bytes.len() as u64);
     let Some(mut file) = has_length.then(|| File::open(path).ok()).flatten() else {

@@ -1,4 +1,4 @@
-//! Which file a path leads to, whatever it is called there.
+//! The file to which a path leads, under any name.
 
 use std::collections::BTreeSet;
 use std::ffi::OsStr;
@@ -13,11 +13,11 @@ use crate::EngineError;
 /// The most links to links that are followed, as in the system.
 const MOST_LINKS: usize = 40;
 
-/// The place that a path leads to through all links, with its folder in its one true spelling. The file itself need
-/// not be there: a link may lead to one that is yet to be made.
+/// The place to which a path leads through all links, with its folder in its true spelling. The file itself need not
+/// exist: a link may lead to a future file.
 ///
 /// # Errors
-/// Where a folder on the way is missing or can't be looked into, or the path ends in no name.
+/// A folder on the way is missing or unreadable, or the path does not end in a name.
 pub fn follow(path: &Path) -> io::Result<PathBuf> {
     let mut at = path.to_owned();
     for _ in 0..MOST_LINKS {
@@ -36,13 +36,13 @@ pub fn follow(path: &Path) -> io::Result<PathBuf> {
     Err(in_words("its links lead in a circle; remove them"))
 }
 
-/// A file as the system knows it.
+/// A file's identity in the system.
 #[derive(Clone, PartialEq, Eq, PartialOrd, Ord, Debug)]
 pub(super) enum Identity {
-    /// One that is there: hard links share it.
+    /// The identity of an existing file, which hard links share.
     #[cfg(unix)]
     Node { device: u64, number: u64 },
-    /// One by its only place.
+    /// The only place of a file that does not exist.
     Place(PathBuf),
 }
 
@@ -69,12 +69,12 @@ pub(super) fn identity(path: &Path) -> Option<Identity> {
 }
 
 /// Whether two paths lead to one file, by links, hard links or another spelling. Files that don't exist yet are one if
-/// they would be.
+/// they would become one.
 pub fn is_same(a: &Path, b: &Path) -> bool {
     a == b || identity(a).is_some_and(|a| identity(b) == Some(a))
 }
 
-/// Files, of which [`is_same`] is asked without comparing each with each.
+/// A set of files for many [`is_same`] queries, without comparing each with each.
 #[derive(Clone, Default, Debug)]
 pub struct FileSet {
     paths: BTreeSet<PathBuf>,
@@ -82,7 +82,7 @@ pub struct FileSet {
 }
 
 impl FileSet {
-    /// Adds the file that a path leads to now.
+    /// Adds the file to which a path leads now.
     pub fn insert(&mut self, path: PathBuf) {
         self.identities.extend(identity(&path));
         self.paths.insert(path);
@@ -110,7 +110,7 @@ fn folds_case(folder: &Path) -> bool {
     if swapped == name {
         return cfg!(any(windows, target_os = "macos"));
     }
-    // Both must be there and lead to one folder.
+    // Both must exist and lead to one folder.
     let other = fs::canonicalize(folder.with_file_name(swapped));
     other.is_ok_and(|other| fs::canonicalize(folder).is_ok_and(|folder| is_one_folder(&other, &folder)))
 }
@@ -127,7 +127,7 @@ fn is_one_folder(a: &Path, b: &Path) -> bool {
     a == b
 }
 
-/// Refuses an output that is one of `others`, each with what it is ("FILE", "--edit").
+/// Refuses an output that is one of `others`, each with its description ("FILE", "--edit").
 ///
 /// # Errors
 /// [`EngineError::Arguments`], naming both.
@@ -170,7 +170,7 @@ mod tests {
         }
         assert!(is_same(&at("new"), &at("sub/dangling")) && is_same(&at("new"), &at("sub/../new")));
         assert!(!is_same(&at("new"), &at("newer")) && !is_same(&at("new"), &at("none/new")));
-        // A set of files says the same as asking of each.
+        // A set of files gives the same answer as each alone.
         let names = [
             "a",
             "./a",

@@ -1,7 +1,7 @@
-//! What a file held when it was read or written, to find out later whether another program has changed it.
+//! The content of a file when it was read or written, to detect later changes by another program.
 //!
-//! The content decides, by its digest: a program may write a file without changing its length, or set its time back, and
-//! a copy of the same bytes is no change. Length, time and identity alone are asked where hashing would take too long.
+//! The content decides, by its digest: a program may write a file without changing its length, or reset its time, and a
+//! copy of the same bytes is no change. Only length, time and identity are compared if hashing would take too long.
 
 use std::fs::{self, File, Metadata};
 use std::io::{self, ErrorKind, Read};
@@ -14,7 +14,7 @@ use sha2::{Digest, Sha256};
 use super::same_file::{Identity, identity};
 use super::{FileError, follow, is_same};
 
-/// Bytes that are hashed at a time.
+/// The number of bytes hashed at a time.
 const BLOCK: usize = 1 << 20;
 
 /// A file at one moment.
@@ -24,7 +24,7 @@ pub struct Stamp {
     digest: [u8; 32],
 }
 
-/// What tells that a file was written, without reading it.
+/// The properties that show a write without reading the file.
 #[derive(Clone, PartialEq, Eq, Debug)]
 struct Marks {
     length: u64,
@@ -43,7 +43,7 @@ impl Marks {
 }
 
 impl Stamp {
-    /// The stamp of these bytes, which were read from the file at `path` after its `metadata`.
+    /// The stamp of these bytes, read from the file at `path` after its `metadata`.
     pub(super) fn of_bytes(path: &Path, metadata: &Metadata, bytes: &[u8]) -> Self {
         Self {
             metadata: Marks::of(path, metadata),
@@ -51,10 +51,10 @@ impl Stamp {
         }
     }
 
-    /// The stamp of the file as it is now.
+    /// The stamp of the present file.
     ///
     /// # Errors
-    /// What the system says.
+    /// The system's error.
     pub fn of(path: &Path) -> Result<Self, FileError> {
         Self::read(path).map_err(|error| FileError::reading(path, error))
     }
@@ -89,18 +89,18 @@ impl Stamp {
         has_length && Self::read(path).is_ok_and(|now| self.has_content_of(&now))
     }
 
-    /// Whether nothing tells that the file at `path` was written since, as far as can be told without reading it.
+    /// Whether the file at `path` was not written since, judged without reading it.
     pub fn looks_current(&self, path: &Path) -> bool {
         fs::metadata(path).is_ok_and(|metadata| Marks::of(path, &metadata) == self.metadata)
     }
 }
 
-/// The files that a session has read or written, as they were then. Cloning shares them.
+/// The files that a session has read or written, in their state at that time. Cloning shares them.
 #[derive(Clone, Default, Debug)]
 pub struct KnownFiles(Arc<Mutex<Vec<(PathBuf, Stamp)>>>);
 
 impl KnownFiles {
-    /// Takes note of a file that was read or written, in place of what was known of it.
+    /// Notes a file that was read or written, replacing its earlier stamp.
     pub fn note(&self, path: &Path, stamp: Stamp) {
         let place = follow(path).unwrap_or_else(|_| path.to_owned());
         let mut files = self.lock();
@@ -108,14 +108,14 @@ impl KnownFiles {
         files.push((place, stamp));
     }
 
-    /// What is known of the file that a path leads to.
+    /// The stamp of the file to which a path leads.
     pub fn stamp(&self, path: &Path) -> Option<Stamp> {
         let files = self.lock().clone();
         let known = files.into_iter().find(|(known, _)| is_same(known, path));
         known.map(|(_, stamp)| stamp)
     }
 
-    /// Whether a file is known and has another content now. One that is gone has none that could be lost.
+    /// Whether a file is known and has another content now. A missing one has no content to lose.
     pub fn is_changed(&self, path: &Path) -> bool {
         path.exists() && self.stamp(path).is_some_and(|stamp| !stamp.is_current(path))
     }
@@ -181,7 +181,7 @@ mod tests {
         std::os::unix::fs::symlink("a", at("link")).unwrap();
         let known = KnownFiles::default();
         known.note(&at("link"), Stamp::of(&at("link")).unwrap());
-        // As other programs save: a new file is renamed into its place.
+        // Like saves of other programs: a new file is renamed into its place.
         fs::write(at("new"), "other").unwrap();
         fs::rename(at("new"), at("a")).unwrap();
         for name in ["a", "link", "sub/../a"] {

@@ -1,25 +1,25 @@
-//! An allocator that counts and the processor's time, for examples that tell what reading takes.
+//! An allocator that counts, and the processor's time, for examples that measure reading.
 #![allow(dead_code, reason = "each example asks for some of it")]
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::ptr::null_mut;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-/// The system's allocator, which notes the largest allocation and how much is held.
+/// The system's allocator, which notes the largest allocation and the bytes held.
 pub struct Counting;
 
 /// The largest allocation since it was last set to 0.
 pub static LARGEST: AtomicUsize = AtomicUsize::new(0);
 /// The sum of all allocations.
 pub static ALLOCATED: AtomicUsize = AtomicUsize::new(0);
-/// What is held.
+/// The bytes held.
 pub static HELD: AtomicUsize = AtomicUsize::new(0);
-/// The most that was held at once since it was last set.
+/// The most bytes held at once since it was last set.
 pub static PEAK: AtomicUsize = AtomicUsize::new(0);
-/// What may be held; an allocation beyond it fails, as where the machine has no more.
+/// The limit of held bytes; an allocation beyond it fails, as on a machine without more memory.
 pub static LIMIT: AtomicUsize = AtomicUsize::new(usize::MAX);
 
-/// Counts an allocation; `false` where it is beyond the limit.
+/// Counts an allocation; `false` if it is beyond the limit.
 fn admit(bytes: usize) -> bool {
     let held = HELD.load(Ordering::Relaxed).saturating_add(bytes);
     let limit = LIMIT.load(Ordering::Relaxed);
@@ -34,7 +34,7 @@ fn admit(bytes: usize) -> bool {
     true
 }
 
-/// Tells who asked for too much, the first time. That itself takes memory, so the limit is off meanwhile.
+/// Reports the first caller that asked for too much. The report itself takes memory, so the limit is off meanwhile.
 #[cold]
 fn tell(bytes: usize, limit: usize) {
     static TOLD: AtomicBool = AtomicBool::new(false);
@@ -54,7 +54,7 @@ fn tell(bytes: usize, limit: usize) {
     reason = "each call is handed to the system's allocator with the very arguments that came in"
 )]
 // SAFETY: as `System`, to which everything is handed on; counting does not touch the memory, a null pointer says that
-// an allocation failed and leaves an old one as it was, and `tell` runs into itself at most once.
+// an allocation failed and leaves an old one unchanged, and `tell` calls itself at most once.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         if !admit(layout.size()) {
@@ -88,7 +88,7 @@ unsafe impl GlobalAlloc for Counting {
 /// The processor time of a process and all of its threads. Linux counts it in hundredths of a second.
 pub fn cpu_ms(process: &str) -> Option<u64> {
     let text = std::fs::read_to_string(format!("/proc/{process}/stat")).ok()?;
-    // The name in brackets may hold anything.
+    // The name in brackets may contain anything.
     let fields: Vec<&str> = text.rsplit_once(')')?.1.split_whitespace().collect();
     let ticks = |place: usize| fields.get(place)?.parse::<u64>().ok();
     Some((ticks(11)? + ticks(12)?) * 10)

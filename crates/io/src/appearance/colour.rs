@@ -1,6 +1,7 @@
-//! Colours between the sRGB that scan formats store and the linear light that is drawn.
+//! Conversions between the sRGB of scan formats and the linear light that is drawn.
 
-/// The linear light of an sRGB channel, both from 0 to 1. f32: colours are only ever drawn and saved in 16 bits or less.
+/// The linear light of an sRGB channel, both from 0 to 1. f32: colours are only ever drawn and saved in 16 bits or
+/// less.
 pub(crate) fn linear_of_srgb(channel: f32) -> f32 {
     let channel = channel.clamp(0.0, 1.0);
     if channel <= 0.040_45 {
@@ -20,12 +21,12 @@ pub(crate) fn srgb_of_linear(light: f32) -> f32 {
     }
 }
 
-/// A channel from 0 to 1 in 8 bits; what isn't a number is 0.
+/// A channel from 0 to 1 in 8 bits; 0 for NaN.
 pub(crate) fn byte(channel: f32) -> u8 {
     (channel * 255.0).round() as u8
 }
 
-/// A channel from 0 to 1 in 16 bits; what isn't a number is 0.
+/// A channel from 0 to 1 in 16 bits; 0 for NaN.
 pub(crate) fn short(channel: f32) -> u16 {
     (channel * 65535.0).round() as u16
 }

@@ -1,4 +1,4 @@
-//! How a scene looks: attributes of the drawn vertices, materials and images.
+//! The appearance of a scene: attributes of the drawn vertices, materials and images.
 
 pub(crate) mod colour;
 
@@ -6,18 +6,19 @@ use std::ops::Range;
 
 use crate::Bytes;
 
-/// What a renderer or another file format needs besides positions and triangles; made on request, never edited.
+/// The data that a renderer or another file format needs besides positions and triangles; made on request, never
+/// edited.
 ///
-/// Each attribute is `None` when no drawn vertex has it, and else has one entry per drawn vertex.
+/// Each attribute is `None` if no drawn vertex has it, and otherwise has one entry per drawn vertex.
 #[derive(Clone, Debug, Default)]
 pub struct Appearance {
-    /// World-space normals of the rest shape; zero where a vertex has none. f32: display and files only.
+    /// World-space normals of the rest shape; zero for a vertex without one. f32: display and files only.
     pub normals: Option<Vec<[f32; 3]>>,
     /// Texture coordinates of the base colour image, v down (glTF's way), the material's transform applied.
     pub uvs: Option<Vec<[f32; 2]>>,
     /// Texture coordinates, as stored, of the second set that a material uses, if any does.
     pub second_uvs: Option<Vec<[f32; 2]>>,
-    /// Linear-light vertex colours, 0 to 65535; white where a vertex has none. 16 bits tell all 256 sRGB greys apart.
+    /// Linear-light vertex colours, 0 to 65535; white for a vertex without one. 16 bits distinguish all 256 sRGB greys.
     pub colours: Option<Vec<[u16; 4]>>,
     /// Ranges of drawn vertices, in order, whose triangles are shown flat: they have no normals, and the file says so.
     pub flat: Vec<Range<u32>>,
@@ -37,7 +38,7 @@ impl Appearance {
         Some(colours.map(|&colour| srgb.of_linear(colour)).collect())
     }
 
-    /// One plain material for all triangles: what a file without materials looks like.
+    /// One plain material for all triangles, for a file without materials.
     pub(crate) fn plain(triangle_count: u32) -> Self {
         Self {
             groups: vec![Group {
@@ -70,14 +71,14 @@ pub struct Group {
     pub triangles: Range<u32>,
     /// Index into [`Appearance::materials`].
     pub material: usize,
-    /// The node's, object's or group's name; empty where the file gives none.
+    /// The node's, object's or group's name; empty if the file gives none.
     pub node_name: String,
 }
 
 /// The part of a material that is drawn.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Material {
-    /// The file's name for it; empty where it gives none.
+    /// The file's name for it; empty if the file gives none.
     pub name: String,
     /// Linear-light base colour factor, 0 to 1.
     pub base_colour: [f32; 4],
@@ -91,28 +92,28 @@ pub struct Material {
     pub metallic_roughness_map: Option<Map>,
     /// Normals in tangent space, x along u and y against v; not encoded.
     pub normal_map: Option<Map>,
-    /// What the map's x and y are multiplied by.
+    /// The factors of the map's x and y.
     pub normal_scale: f32,
     /// Its red is the share of ambient light that arrives; not encoded.
     pub occlusion_map: Option<Map>,
-    /// How much of the map's darkening is used, 0 to 1.
+    /// The share of the map's darkening that is used, 0 to 1.
     pub occlusion_strength: f32,
     /// Light of its own, linear; above 1 with KHR_materials_emissive_strength.
     pub emissive: [f32; 3],
     /// Multiplies it; sRGB.
     pub emissive_map: Option<Map>,
-    /// Whether light plays a part.
+    /// Whether the material is lit.
     pub lighting: Lighting,
     /// Whether back faces are drawn.
     pub double_sided: bool,
-    /// What the base colour's alpha means.
+    /// The meaning of the base colour's alpha.
     pub alpha: AlphaMode,
-    /// How texture coordinates beyond 0 to 1 are taken along u and v.
+    /// The continuation of texture coordinates beyond 0 to 1 along u and v.
     pub wrap: [Wrap; 2],
 }
 
 impl Material {
-    /// A material of faces for which a scan format names nothing else. Such formats know no culling, so both sides are
+    /// A material for faces to which a scan format gives no other. Such formats know no culling, so both sides are
     /// drawn.
     pub(crate) fn plain(name: &str) -> Self {
         Self {
@@ -146,20 +147,20 @@ impl Default for Material {
     }
 }
 
-/// An image other than the base colour's, and how it is mapped onto the surface.
+/// An image other than the base colour's, and its mapping onto the surface.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Map {
     /// Index into [`Appearance::images`].
     pub image: usize,
-    /// How texture coordinates beyond 0 to 1 are taken along u and v.
+    /// The continuation of texture coordinates beyond 0 to 1 along u and v.
     pub wrap: [Wrap; 2],
-    /// Which texture coordinates are taken.
+    /// The set of texture coordinates.
     pub set: UvSet,
-    /// Where the image is looked up: rows that multiply (u, v, 1).
+    /// The place of the look-up in the image: rows that multiply (u, v, 1).
     pub transform: [[f32; 3]; 2],
 }
 
-/// Which texture coordinates an image takes.
+/// The set of texture coordinates of an image.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum UvSet {
     /// [`Appearance::uvs`], those of the base colour.
@@ -168,20 +169,20 @@ pub enum UvSet {
     Second,
 }
 
-/// Whether light plays a part in how a material looks.
+/// Whether a material is lit.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub enum Lighting {
-    /// It does.
+    /// Lit.
     #[default]
     Lit,
-    /// The base colour is shown as it is (KHR_materials_unlit), as photographed scans often want.
+    /// The base colour is shown without lighting (KHR_materials_unlit), which suits photographed scans.
     Unlit,
 }
 
-/// What alpha means.
+/// The meaning of alpha.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub enum AlphaMode {
-    /// Nothing: the surface is opaque.
+    /// None: the surface is opaque.
     Opaque,
     /// Drawn where alpha is at least this cut-off.
     Mask(f32),
@@ -189,7 +190,7 @@ pub enum AlphaMode {
     Blend,
 }
 
-/// How an image continues beyond its edges.
+/// The continuation of an image beyond its edges.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum Wrap {
     /// Its edge goes on.
@@ -203,19 +204,19 @@ pub enum Wrap {
 /// An image as stored.
 #[derive(Clone, Debug)]
 pub struct Image {
-    /// The file's name for it, or its neighbour's; empty where there is neither.
+    /// The file's name for it, or its neighbour's; empty if there is neither.
     pub name: String,
-    /// PNG, JPEG or whatever else the file holds; empty where the neighbour is missing.
+    /// PNG, JPEG or another format of the file; empty if the neighbour is missing.
     pub encoded: Bytes,
-    /// Where it was read from.
+    /// The place that it was read from.
     pub origin: Origin,
 }
 
-/// Where an image was read from.
+/// The place that an image was read from.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Origin {
     /// The file itself, or its folder.
     Inside,
-    /// A place outside the file's folder, which a file from a stranger may point at.
+    /// A place outside the file's folder, to which a file from a stranger may point.
     Outside,
 }

@@ -1,5 +1,5 @@
-//! What the writers of OBJ, PLY, STL and OFF share: the file's own faces, vertices without needless copies, and the
-//! precision that numbers need.
+//! The common code of the writers of OBJ, PLY, STL and OFF: the file's own faces, vertices without needless copies, and
+//! the precision that numbers need.
 
 use glam::DVec3;
 use pliant_mesh::{Cancelled, DrawnVertex};
@@ -9,8 +9,8 @@ use crate::convert::NewMesh;
 use crate::save::bits::bit_equal;
 use crate::save::course::Course;
 
-/// Calls `visit` with the corners of each face and the number of its first triangle: the file's own polygons where
-/// there are any, else the triangles.
+/// Calls `visit` with the corners of each face and the number of its first triangle: the file's own polygons if it has
+/// any, otherwise the triangles.
 pub(crate) fn for_each_face(
     mesh: &NewMesh<'_>,
     course: &Course<'_>,
@@ -37,7 +37,7 @@ pub(crate) fn for_each_face(
     Ok(())
 }
 
-/// How many faces [`for_each_face`] visits.
+/// The number of faces that [`for_each_face`] visits.
 pub(crate) fn face_count(mesh: &NewMesh<'_>) -> usize {
     mesh.polygons
         .as_ref()
@@ -69,8 +69,8 @@ pub(crate) fn merged(mesh: &NewMesh<'_>) -> (Vec<DrawnVertex>, Vec<u32>) {
     (kept, number)
 }
 
-/// The largest rounding of these coordinates to 32 bits, if it is more than a ten-millionth of the shape's size, as
-/// with scans at geographic coordinates; `None` if 32 bits are precise enough.
+/// The largest rounding of these coordinates to 32 bits, if it is more than a ten-millionth of the shape's size, as for
+/// scans at geographic coordinates; `None` if 32 bits are precise enough.
 pub(crate) fn coarse_in_f32(positions: &[DVec3]) -> Option<f64> {
     let finite = || positions.iter().filter(|position| position.is_finite());
     let min = finite().fold(DVec3::INFINITY, |min, &position| min.min(position));

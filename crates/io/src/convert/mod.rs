@@ -15,20 +15,20 @@ use crate::{Appearance, SaveError};
 
 /// A deformed shape with its appearance, independent of the format that it came from.
 ///
-/// Vertices are the drawn ones (an OBJ's corner with its own UV is a vertex of its own); `file_vertex` says which of
-/// them are one vertex of the file that was read.
+/// Vertices are the drawn ones (an OBJ's corner with its own UV is a vertex of its own); `file_vertex` gives the vertex
+/// of the input file behind each.
 pub(crate) struct NewMesh<'a> {
     /// OUT's file name.
     pub name: &'a str,
-    /// New world positions, one per drawn vertex; may be non-finite where the file's were.
+    /// New world positions, one per drawn vertex; may be non-finite if the file's were.
     pub positions: &'a [DVec3],
     /// Triangles over drawn vertices, in `appearance.groups`' order.
     pub triangles: Cow<'a, [[DrawnVertex; 3]]>,
-    /// The file's own polygons, where it has any that are not triangles.
+    /// The file's own polygons, if it has any that are not triangles.
     pub polygons: Option<Polygons>,
     /// The file vertex behind each drawn vertex.
     pub file_vertex: &'a [FileVertex],
-    /// How many vertices the file that was read has.
+    /// The number of vertices of the input file.
     pub file_vertex_count: usize,
     /// Whether named parts stay separate in formats that need separate vertices for that.
     pub parting: Parting,
@@ -36,10 +36,10 @@ pub(crate) struct NewMesh<'a> {
     pub appearance: Appearance,
 }
 
-/// What becomes of named parts in a format in which parts do not share vertices.
+/// The treatment of named parts in a format whose parts do not share vertices.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Parting {
-    /// Each name is a part of its own.
+    /// Each name is a separate part.
     ByName,
     /// All become one, so that vertices keep their order and number.
     Joined,
@@ -48,19 +48,19 @@ pub(crate) enum Parting {
 /// Faces as the file has them, triangles among them: a face with n corners is n − 2 of the drawn triangles, in order.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Polygons {
-    /// Where each face's corners begin in `corners`; one entry more than there are faces.
+    /// The start of each face's corners in `corners`; one entry more than there are faces.
     pub offsets: Vec<u32>,
-    /// Drawn vertices, counter-clockwise seen from outside.
+    /// Drawn vertices, counterclockwise seen from outside.
     pub corners: Vec<DrawnVertex>,
 }
 
 impl Polygons {
-    /// How many faces there are.
+    /// The number of faces.
     pub fn len(&self) -> usize {
         self.offsets.len().saturating_sub(1)
     }
 
-    /// The faces as they are to be wound.
+    /// The faces with their final winding.
     fn turned(mut self, moved: &Moved<'_>) -> Self {
         if moved.turns_any() {
             for face in 0..self.len() {
@@ -94,7 +94,7 @@ impl<'a> NewMesh<'a> {
         course: &Course<'_>,
     ) -> Result<Self, SaveError> {
         let (of_check, course) = course.split(0.1);
-        // A position that is not finite in the file stays so; every other one has to stay finite.
+        // A position that is not finite in the file stays so; every other one must stay finite.
         for (v, &position) in moved.positions.iter().enumerate() {
             of_check.pass(v, moved.positions.len())?;
             if position.is_finite() {

@@ -1,7 +1,7 @@
 //! Compares two glTF part by part: JSON by its values, buffers by their decoded contents.
 //!
-//! Accessors, meshes and images are compared where something refers to them, so that a part's number, the place of its
-//! bytes and the container don't matter. Parts that nothing refers to are compared by their numbers.
+//! Accessors, meshes and images are compared through the parts that refer to them, so that a part's number, the place
+//! of its bytes and the container don't matter. Parts that nothing refers to are compared by their numbers.
 
 use std::collections::{BTreeSet, HashMap, HashSet};
 use std::ops::Range;
@@ -11,7 +11,7 @@ use crate::gltf::document::accessor::Layout;
 use crate::gltf::document::json::{At, Json};
 use crate::scene::difference::{self, Difference, What};
 
-/// What differs, in the order of the first file's text.
+/// The differences, in the order of the first file's text.
 pub(crate) fn differences(a: &Document, b: &Document) -> Vec<Difference> {
     let mut comparison = Comparison {
         a,
@@ -33,24 +33,24 @@ struct Comparison<'a> {
     seen: BTreeSet<(usize, usize)>,
     /// Pairs of meshes that were compared.
     meshes_seen: BTreeSet<(usize, usize)>,
-    /// Pairs of images that were compared, by the place of their bytes, and what differs.
+    /// Pairs of images that were compared, by the place of their bytes, and their differences.
     images_seen: HashMap<(Place, Place), Option<What>>,
     out: Vec<Difference>,
 }
 
-/// Where bytes are held.
+/// The owner of bytes.
 type Place = (usize, Range<usize>);
 
-/// What a number in the JSON names.
+/// The kind of part that a number in the JSON names.
 enum Names {
     Accessor,
     Mesh,
 }
 
-/// Sections that are compared through the parts that refer to them, and members that follow from other things.
+/// Sections that are compared through the parts that refer to them, and members that follow from others.
 const PLACES: [&str; 3] = ["accessors", "bufferViews", "buffers"];
 
-/// How many values deep values are told apart.
+/// The depth down to which values are compared.
 const DEEPEST: usize = 100;
 
 fn names(path: &[String]) -> Option<Names> {
@@ -89,7 +89,7 @@ impl Comparison<'_> {
             };
         }
         match (raw_a.first(), raw_b.first()) {
-            // Deeper than any glTF goes, the text is compared as it is.
+            // Below the depth of any glTF, the text itself is compared.
             _ if path.len() > DEEPEST && raw_a == raw_b => {}
             (Some(b'{'), Some(b'{')) if path.len() <= DEEPEST => self.objects(a, b, path),
             (Some(b'['), Some(b'[')) if path.len() <= DEEPEST => self.arrays(a, b, path),
@@ -127,7 +127,7 @@ impl Comparison<'_> {
         let is_skipped = |key: &str| {
             (is_root && PLACES.contains(&key)) || (is_image && ["uri", "bufferView", "mimeType"].contains(&key))
         };
-        // The first of several members with one name is the one that is read.
+        // The first of several members with one name counts.
         let mut first_of_b: HashMap<&str, At> = HashMap::new();
         for (key, at) in &of_b {
             first_of_b.entry(key).or_insert(*at);
@@ -186,7 +186,7 @@ impl Comparison<'_> {
         };
         let bytes = |document: &Document| document.image(number).unwrap_or_default();
         let (first, second) = (bytes(self.a), bytes(self.b));
-        // Many images may be of the same bytes.
+        // Many images may have the same bytes.
         let known = self.images_seen.entry((first.place(), second.place()));
         let what = known.or_insert_with(|| difference::of_bytes(&first, &second).map(|difference| difference.what));
         if let Some(what) = what.clone() {
@@ -203,7 +203,7 @@ impl Comparison<'_> {
         };
         let layouts = (self.a.layout(first), self.b.layout(second));
         let (Ok(a), Ok(b)) = &layouts else {
-            // What can't be read is compared as text.
+            // Data that can't be read is compared as text.
             return self.values(at_a, at_b, &mut path.to_vec());
         };
         if a.lanes != b.lanes || a.count != b.count {
@@ -244,7 +244,7 @@ impl Comparison<'_> {
         }
     }
 
-    /// Accessors that nothing known refers to, such as an extension's, are compared by their numbers.
+    /// Accessors without a known reference, such as an extension's, are compared by their numbers.
     fn unnamed_accessors(&mut self) {
         let named: BTreeSet<usize> = self.seen.iter().map(|&(first, _)| first).collect();
         for accessor in (0..self.a.accessors_at.len()).filter(|accessor| !named.contains(accessor)) {

@@ -26,7 +26,7 @@ use crate::scene::summary::Summary;
 use crate::source::Source;
 use crate::{Appearance, Difference, Format, ReadError};
 
-/// A glTF as read, and how its drawn set is made up.
+/// A glTF as read, and the description of its drawn set.
 #[derive(Debug)]
 pub(crate) struct Stored {
     format: Format,
@@ -73,7 +73,7 @@ pub(crate) fn join_glb(json: &[u8], bin: &[u8]) -> Option<Vec<u8>> {
 pub(crate) const FROM_OUTSIDE: &str =
     "lies outside the file's own folder and was put into the result: share that only if you mean to share it too.";
 
-/// The warning about one that is named as an image and isn't one.
+/// The warning about a neighbour that is named as an image and isn't one.
 pub(crate) const NO_IMAGE: &str = "lies outside the file's own folder and is no image, so it was left out.";
 
 /// Whether a neighbour's path stays in the file's own folder.
@@ -116,7 +116,7 @@ impl Stored {
         targets::names(&self.document, &self.meshes)
     }
 
-    /// How far each drawn vertex is moved by the morph targets of this name; `None` if there is none.
+    /// The displacement of each drawn vertex by the morph targets of this name; `None` if there is none.
     pub fn morph_target(
         &self,
         file: &str,
@@ -134,10 +134,10 @@ impl Stored {
         found.map_err(|fault| fault.of_file(file, self.format))
     }
 
-    /// Ranges of drawn vertices, ascending, and how far each of their world coordinates may be off after a save.
+    /// Ranges of drawn vertices, ascending, and the largest error of each of their world coordinates after a save.
     ///
-    /// Positions are rounded to f32 in the node's space, and nodes that share a mesh keep sharing it where they differ
-    /// by four such roundings of its largest coordinate.
+    /// Positions are rounded to f32 in the node's space, and nodes that share a mesh keep sharing it if they differ by
+    /// at most four such roundings of its largest coordinate.
     pub fn roundings(&self, drawn: &Drawn) -> Vec<(Range<u32>, DVec3)> {
         let mut roundings = Vec::new();
         for instance in &self.pieces.instances {
@@ -151,7 +151,7 @@ impl Stored {
             let in_mesh = in_mesh.map(|(element, p)| mesh_from_world(element).transform_point3(*p));
             let in_mesh = in_mesh.filter(|p| p.is_finite()).fold(DVec3::ZERO, largest);
             let within = |element: usize, linear: Option<Linear>| {
-                // What a skin flattens is left as it is, wherever it was moved.
+                // Vertices that a skin flattens stay the same, wherever they were moved.
                 let Some(Linear { world_from_mesh, .. }) = linear else {
                     return DVec3::INFINITY;
                 };
@@ -175,7 +175,7 @@ impl Stored {
         roundings
     }
 
-    /// What differs between this file and another, in the order of this one's text.
+    /// The differences between this file and another, in the order of this one's text.
     pub fn differences(&self, other: &Self) -> Vec<Difference> {
         compare::differences(&self.document, &other.document)
     }

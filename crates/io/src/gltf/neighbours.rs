@@ -9,19 +9,19 @@ use crate::gltf::document::uri::{self, Address};
 use crate::gltf::document::{Buffer, Document, ImageFile};
 use crate::save::{OutputFile, Role, numbered};
 
-/// The neighbours that a save writes, while they are gathered.
+/// The neighbours that a save writes, as they are gathered.
 pub(crate) struct Gathered {
     pub files: Vec<OutputFile>,
-    /// Where each name stands among the files.
+    /// The place of each name among the files.
     place_of: BTreeMap<String, usize>,
-    /// The last number that a name was tried with: all smaller ones are taken.
+    /// The last number that was tried for a name: all smaller ones are taken.
     last_number: BTreeMap<String, usize>,
-    /// Names that are not free for a neighbour which needs another one.
+    /// Names that are not free for a neighbour with a new name.
     taken: BTreeSet<String>,
 }
 
 impl Gathered {
-    /// None yet; the names of those that were read are taken.
+    /// No files yet; the names of the input's neighbours are taken.
     pub fn of(document: &Document) -> Self {
         Self {
             files: Vec::new(),
@@ -71,7 +71,7 @@ impl Gathered {
     }
 }
 
-/// The paths by which the file that was read names its neighbours.
+/// The paths by which the input file names its neighbours.
 pub(crate) fn paths(document: &Document) -> impl Iterator<Item = &str> {
     let of_buffers = document.buffers.iter().filter_map(|buffer| match buffer {
         Buffer::Neighbour { path, .. } => Some(path.as_str()),
@@ -98,7 +98,7 @@ pub(crate) fn uris(json: &Json, section: &str) -> Vec<Option<At>> {
     elements.map(|element| json.member(element, "uri")).collect()
 }
 
-/// The path in its shortest form that a `uri` member names, if it names one inside of the folder.
+/// The path in its shortest form that a `uri` member names, if it is inside the folder.
 fn path_at(json: &Json, at: At) -> Option<String> {
     match uri::address(&json.string(at)?) {
         Ok(Address::Neighbour(path)) => uri::inside(&path),
@@ -109,16 +109,16 @@ fn path_at(json: &Json, at: At) -> Option<String> {
 /// The sections whose elements name neighbours.
 const SECTIONS: [&str; 2] = ["buffers", "images"];
 
-/// The files inside of its own folder that a glTF names, in their shortest form; `None` where it is no glTF. `file` is
-/// a `.gltf`, a GLB, or a GLB's JSON alone.
+/// The files inside its own folder that a glTF names, in their shortest form; `None` if it is not a glTF. `file` is a
+/// `.gltf`, a GLB, or a GLB's JSON alone.
 pub fn neighbours_named(file: &[u8]) -> Option<Vec<String>> {
     let json = Json::parse(text_of(file)?.to_vec()).ok()?;
     let named = SECTIONS.iter().flat_map(|section| uris(&json, section)).flatten();
     Some(named.filter_map(|at| path_at(&json, at)).collect())
 }
 
-/// A glTF with other names for the neighbours that `names` pairs with them, and all else as it is; `None` where it is
-/// no glTF or names none of them.
+/// A glTF with other names for the neighbours that `names` pairs with them, and otherwise unchanged; `None` if it is
+/// not a glTF or names none of them.
 pub fn with_neighbours_renamed(file: &[u8], names: &[(&str, String)]) -> Option<Vec<u8>> {
     let json = Json::parse(text_of(file)?.to_vec()).ok()?;
     let mut edits = Edits::default();
@@ -142,12 +142,12 @@ pub fn with_neighbours_renamed(file: &[u8], names: &[(&str, String)]) -> Option<
     container::join(without_padding(&text), bin, further, trailing)
 }
 
-/// Whether two glTF are saves of one document: equal, to the letter, in all that no save changes.
+/// Whether two glTF are saves of one document: equal, to the letter, in everything that no save changes.
 ///
-/// A save changes numbers in buffers and what describes them (accessors, views, buffers), clones meshes, adds morph
-/// targets, writes compressed ones out plainly and gives neighbours other names. It never changes how many elements an
-/// accessor has, nor scenes, materials, textures, skins, cameras, extras, or what nodes are called; it adds nodes behind
-/// the others alone.
+/// A save changes numbers in buffers and their descriptions (accessors, views, buffers), clones meshes, adds morph
+/// targets, writes compressed ones out plainly and gives neighbours other names. It never changes the number of an
+/// accessor's elements, nor scenes, materials, textures, skins, cameras, extras, or the names of nodes; it adds nodes
+/// only after the others.
 pub fn is_same_document(a: &[u8], b: &[u8]) -> bool {
     let parsed = |file: &[u8]| Json::parse(text_of(file)?.to_vec()).ok();
     let (Some(a), Some(b)) = (parsed(a), parsed(b)) else {
@@ -180,12 +180,12 @@ pub fn is_same_document(a: &[u8], b: &[u8]) -> bool {
         )
 }
 
-/// Whether both lists begin with those elements that were read.
+/// Whether both lists begin with these elements.
 fn begin_alike<T: PartialEq>(a: &[T], b: &[T]) -> bool {
     a.iter().zip(b).all(|(a, b)| a == b)
 }
 
-/// What the elements of a section say by `keys`, as written.
+/// The values of `keys` in the elements of a section, as written.
 fn said(json: &Json, section: &str, keys: &[&str]) -> Vec<Vec<Option<Vec<u8>>>> {
     let list = json.member(json.root(), section);
     let elements = list.into_iter().flat_map(|list| json.elements(list));

@@ -1,5 +1,5 @@
-//! Notes on a glTF that is read all the same: on splats and directions that an edit does not turn, unknown extensions,
-//! transforms that are no numbers, and members that an object has twice.
+//! Notes on a glTF that is read nevertheless: on splats and directions that an edit does not turn, unknown extensions,
+//! transforms that are not finite, and members that an object has twice.
 
 use crate::gltf::document::Document;
 use crate::gltf::document::json::{At, Json};
@@ -78,7 +78,7 @@ fn splats_and_directions(document: &Document, meshes: &[Vec<Primitive>], notes: 
     }
 }
 
-/// Extensions that are heeded, or that say nothing of what is drawn and saved.
+/// Extensions that are heeded, or that do not affect the picture or the saved shape.
 const KNOWN: [&str; 14] = [
     "EXT_mesh_gpu_instancing",
     "EXT_meshopt_compression",
@@ -111,7 +111,7 @@ fn unknown_extensions(document: &Document, notes: &mut Notes) {
     }
 }
 
-/// The members of a node's transform, and how many numbers each has.
+/// The members of a node's transform, and the count of numbers in each.
 const TRANSFORMS: [(&str, usize); 4] = [("matrix", 16), ("translation", 3), ("rotation", 4), ("scale", 3)];
 
 fn transforms(document: &Document, notes: &mut Notes) {
@@ -135,7 +135,7 @@ fn transforms(document: &Document, notes: &mut Notes) {
 }
 
 impl Json {
-    /// The name of a member that an object has twice, if any has.
+    /// The name of a member that an object has twice, if there is one.
     fn told_twice(&self) -> Option<String> {
         let mut open = vec![self.root()];
         while let Some(at) = open.pop() {

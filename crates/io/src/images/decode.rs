@@ -10,12 +10,12 @@ use crate::ImageError;
 use crate::images::pixels::{LONGEST_SIDE_PX, Rgba8};
 use crate::quote::quoted;
 
-/// What an image's header tells.
+/// The contents of an image's header.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) struct Header {
     pub width: u32,
     pub height: u32,
-    /// The bytes that decoding takes beside the encoded ones and the pixels that come out.
+    /// The bytes that decoding takes beside the encoded ones and the resulting pixels.
     pub decoding_bytes: u64,
 }
 
@@ -25,7 +25,7 @@ impl Header {
         [self.width, self.height].map(|side| (side >> halvings).max(1))
     }
 
-    /// The bytes of the pixels that come out after `halvings`.
+    /// The bytes of the resulting pixels after `halvings`.
     pub fn pixel_bytes(&self, halvings: u32) -> u64 {
         let [width, height] = self.size(halvings);
         4 * u64::from(width) * u64::from(height)
@@ -36,7 +36,7 @@ impl Header {
 pub(crate) fn header(encoded: &[u8]) -> Result<Header, ImageError> {
     if mime_type(encoded) == Some("image/ktx2") {
         let [width, height] = crate::images::ktx2::size(encoded)?;
-        // The blocks, a byte a pixel, and what they are unpacked from.
+        // The blocks, a byte a pixel, and their packed form.
         let decoding_bytes = 2 * u64::from(width) * u64::from(height);
         return Ok(Header {
             width,
@@ -49,7 +49,7 @@ pub(crate) fn header(encoded: &[u8]) -> Result<Header, ImageError> {
     let (width, height) = decoder.dimensions();
     let pixels = u64::from(width) * u64::from(height);
     let beside = match format {
-        // Every coefficient, in 16 bits and three channels, where they don't come block by block.
+        // Every coefficient, in 16 bits and three channels, if they don't come block by block.
         Some(ImageFormat::Jpeg) if !comes_by_blocks(encoded) => 6 * pixels,
         Some(ImageFormat::WebP) => match encoded.get(12..16) {
             // A plane of the image's size and two of a quarter of that.
@@ -67,9 +67,9 @@ pub(crate) fn header(encoded: &[u8]) -> Result<Header, ImageError> {
     })
 }
 
-/// Decodes a PNG, JPEG, WebP or KTX2 (with Basis Universal in it), told by its first bytes, with each side halved so many
-/// times. Images beyond 16384 pixels a side are refused. Raising `cancel` ends it with an error where the decoder next
-/// asks for bytes, or at the next row that is halved.
+/// Decodes a PNG, JPEG, WebP or KTX2 (with Basis Universal in it), recognised by its first bytes, with each side halved
+/// so many times. Images beyond 16384 pixels a side are refused. If `cancel` is raised, decoding ends with an error
+/// when the decoder next asks for bytes, or at the next row that is halved.
 pub(crate) fn decode(encoded: &[u8], halvings: u32, cancel: &Cancel) -> Result<Rgba8, ImageError> {
     if mime_type(encoded) == Some("image/ktx2") {
         let (image, left) = crate::images::ktx2::decode(encoded, halvings)?;
@@ -87,18 +87,18 @@ pub(crate) fn decode(encoded: &[u8], halvings: u32, cancel: &Cancel) -> Result<R
     halved(image, halvings, cancel)
 }
 
-/// Bytes that can no longer be read once a flag is raised. Decoders read a few kilobytes at a time, or everything.
+/// Bytes that can't be read after a flag is raised. Decoders read a few kilobytes at a time, or everything.
 struct Cancellable<'a> {
     bytes: Cursor<&'a [u8]>,
     cancel: &'a Cancel,
 }
 
-/// What a decoder is given at once.
+/// The bytes that a decoder gets at once.
 const BLOCK: usize = 1 << 14;
 
 impl Cancellable<'_> {
     fn check(&self) -> io::Result<()> {
-        // Not `Interrupted`, which readers take as a reason to try again.
+        // The kind is not `Interrupted`, after which readers try again.
         self.cancel.check().map_err(io::Error::other)
     }
 }
@@ -146,12 +146,12 @@ fn decoder<'a>(
 }
 
 fn failed(error: &dyn std::fmt::Display) -> ImageError {
-    // A decoder may end its sentence with a line's end.
+    // A decoder may end its sentence with a line break.
     let words = error.to_string().split_whitespace().collect::<Vec<_>>().join(" ");
     ImageError { reason: quoted(&words) }
 }
 
-/// Each pixel is the mean of those that it replaces. A few rows at a time, so that no whole copy is made.
+/// Each pixel is the mean of those that it replaces. The loop takes a few rows at a time, so that no full copy is made.
 fn halved(image: DynamicImage, halvings: u32, cancel: &Cancel) -> Result<Rgba8, ImageError> {
     let [width, height] = [image.width(), image.height()];
     let [new_width, new_height] = [width, height].map(|side| (side >> halvings).max(1));
@@ -195,7 +195,7 @@ impl From<DynamicImage> for Rgba8 {
 
 impl From<Rgba8> for DynamicImage {
     fn from(image: Rgba8) -> Self {
-        // A whole image has as many bytes as its size says.
+        // A complete image has as many bytes as its size requires.
         ::image::RgbaImage::from_raw(image.width, image.height, image.pixels)
             .unwrap_or_default()
             .into()
@@ -222,7 +222,7 @@ fn comes_by_blocks(encoded: &[u8]) -> bool {
     false
 }
 
-/// The MIME type by an image's first bytes, for glTF; `None` for formats that no glTF extension has.
+/// The MIME type for an image's first bytes, for glTF; `None` for formats that no glTF extension has.
 pub(crate) fn mime_type(encoded: &[u8]) -> Option<&'static str> {
     let is_webp = encoded.starts_with(b"RIFF") && encoded.get(8..12) == Some(b"WEBP");
     match encoded {

@@ -1,4 +1,4 @@
-//! Images of every kind that is read, told by their first bytes; what is broken is refused in a sentence.
+//! Images of every kind that is read, recognised by their first bytes; broken ones are refused in a sentence.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test fails by panicking")]
 
 use std::io::Cursor;
@@ -18,7 +18,7 @@ fn ramp(x: u32, y: u32) -> [u8; 4] {
     [(x * 16) as u8, (y * 16) as u8, 128, if x < 8 { 255 } else { 64 }]
 }
 
-/// Each kind with the pixels that it must give.
+/// Each kind with the expected pixels.
 fn encoded() -> Vec<(&'static str, Vec<u8>, RgbaImage)> {
     let picture = RgbaImage::from_fn(16, 16, |x, y| image::Rgba(ramp(x, y)));
     let written = |format| {

@@ -1,6 +1,6 @@
 //! KTX2 with Basis Universal in it, as glTF's `KHR_texture_basisu` allows: one image of ETC1S or UASTC blocks.
 //!
-//! The header is checked here before the reader sees it, since that allocates what the header says.
+//! The header is checked here before the reader sees it, because the reader allocates the sizes in the header.
 
 use std::ops::Range;
 
@@ -22,17 +22,17 @@ fn failed(reason: &str) -> ImageError {
     }
 }
 
-/// The size in pixels that a KTX2 file's header tells.
+/// The size in pixels in a KTX2 file's header.
 pub(crate) fn size(encoded: &[u8]) -> Result<[u32; 2], ImageError> {
     checked_size(encoded).map(|(size, _)| size).map_err(failed)
 }
 
-/// The level of a KTX2 file that is `halvings` times smaller than its first one, or else its smallest, and how many
-/// halvings that leaves.
+/// The level of a KTX2 file that is `halvings` times smaller than its first one, or else its smallest, and the number
+/// of remaining halvings.
 pub(crate) fn decode(encoded: &[u8], halvings: u32) -> Result<(Rgba8, u32), ImageError> {
     let ([width, height], levels) = checked_size(encoded).map_err(failed)?;
     let level = halvings.min(levels - 1);
-    // The reader runs on behind keys of a length that is no multiple of 4. One image needs none of them.
+    // The reader continues beyond keys whose length is not a multiple of 4. One image needs none of them.
     let mut encoded = encoded.to_vec();
     encoded[KEYS_LENGTH_AT].fill(0);
     let image = Transcoder::new(&encoded).map_err(|_| failed("it holds no whole Basis Universal image"))?;
@@ -49,7 +49,7 @@ pub(crate) fn decode(encoded: &[u8], halvings: u32) -> Result<(Rgba8, u32), Imag
     Ok((Rgba8 { width, height, pixels }, halvings - level))
 }
 
-/// The image's size in pixels and its levels, if the file is one image and has the bytes that its levels tell of.
+/// The image's size in pixels and its levels, if the file is one image and has all bytes of its levels.
 fn checked_size(encoded: &[u8]) -> Result<([u32; 2], u32), &'static str> {
     let word = |at: usize| Some(u32::from_le_bytes(*encoded.get(at..)?.first_chunk()?));
     let long = |at: usize| Some(u64::from_le_bytes(*encoded.get(at..)?.first_chunk()?));
@@ -63,7 +63,7 @@ fn checked_size(encoded: &[u8]) -> Result<([u32; 2], u32), &'static str> {
     if depth > 0 || layers > 1 || faces != 1 || !(1..=16).contains(&levels) {
         return Err("it is more than one image");
     }
-    // The descriptor, the keys and the codebooks: where each begins and how long it is.
+    // The descriptor, the keys and the codebooks: the start and length of each.
     let parts = (|| {
         let (at, keys) = (u64::from(word(48)?), u64::from(word(56)?));
         Some([

@@ -1,8 +1,8 @@
 //! Decodes all images of a document within one memory budget: those that do not fit are decoded smaller.
 //!
-//! A few bytes may be an image of a gigabyte, and a document may hold many. Sizes are known from the headers, so it is
-//! decided before anything is decoded: the largest images are halved until all of them fit beside the memory that
-//! decoding one takes. Decoding then goes in rounds, each as wide as the budget allows.
+//! A few bytes may be an image of a gigabyte, and a document may have many. The headers give the sizes, so the decision
+//! comes before any decoding: the largest images are halved until all of them fit beside the memory for decoding one.
+//! Decoding then goes in rounds, each as wide as the budget allows.
 
 pub(crate) mod decode;
 mod ktx2;
@@ -16,23 +16,23 @@ use rayon::prelude::*;
 use crate::images::decode::{Header, decode, header};
 use crate::{ImageError, Rgba8};
 
-/// What a document's images may take while they are decoded, unless the caller says otherwise: 2 GiB. Eight images of
-/// 8192 by 8192 pixels stay whole.
+/// The memory that a document's images may take during decoding, unless the caller chooses another: 2 GiB. Eight images
+/// of 8192 by 8192 pixels stay whole.
 pub const IMAGE_BYTES: u64 = 2 << 30;
 
 /// An image, decoded.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct DecodedImage {
-    /// Its pixels, smaller than stored where all images together would take too much.
+    /// Its pixels, smaller than stored if all images together would take too much.
     pub pixels: Rgba8,
-    /// The width and height that it is stored with.
+    /// The stored width and height.
     pub stored_size: [u32; 2],
 }
 
 /// Decodes images, in parallel as far as `budget` bytes allow; each becomes pixels or a sentence.
 ///
 /// # Errors
-/// [`Cancelled`] soon after `cancel` is raised: before the next image, and within one where its decoder next reads.
+/// [`Cancelled`] soon after `cancel` is raised: before the next image, or when a decoder next reads.
 pub fn decode_images(
     encoded: &[&[u8]],
     budget: u64,
@@ -44,7 +44,7 @@ pub fn decode_images(
     cancel.check()?;
     while out.len() < plans.len() {
         let first = out.len();
-        // At least one, whose cost was held against the budget.
+        // At least one image, whose cost was compared with the budget.
         let mut cost = 0;
         let costs = plans[first..].iter().map(|plan| plan.as_ref().map_or(0, Plan::cost));
         let fit = costs.take_while(|of_one| {
@@ -55,7 +55,8 @@ pub fn decode_images(
         let round = first..first + count;
         out.par_extend(round.into_par_iter().map(|number| {
             let plan = plans[number].clone()?;
-            // A raised flag fails the image here or on its way; who looks after the round tells it for all of them.
+            // A raised flag fails the image here or during decoding; the check after the round reports it for all of
+            // them.
             let pixels = decode(encoded[number], plan.halvings, cancel)?;
             Ok(DecodedImage {
                 pixels,
@@ -69,13 +70,13 @@ pub fn decode_images(
     Ok(out)
 }
 
-/// Whether the bytes are an image to their last pixel.
+/// Whether the bytes are a complete image.
 pub(crate) fn decodes(encoded: &[u8]) -> bool {
     let decoded = decode_images(&[encoded], IMAGE_BYTES, &Cancel::new());
     decoded.is_ok_and(|images| images.iter().all(Result::is_ok))
 }
 
-/// How an image is to be decoded.
+/// The plan for decoding an image.
 #[derive(Clone, Copy)]
 struct Plan {
     header: Header,
@@ -83,13 +84,13 @@ struct Plan {
 }
 
 impl Plan {
-    /// The bytes that it takes at most.
+    /// The largest number of bytes that it takes.
     fn cost(&self) -> u64 {
         self.header.decoding_bytes + self.header.pixel_bytes(self.halvings)
     }
 }
 
-/// Every image halved as often as it takes for all of them to fit.
+/// Every image, halved until all of them fit.
 fn plans(encoded: &[&[u8]], budget: u64) -> Vec<Result<Plan, ImageError>> {
     let plan = |encoded: &&[u8]| {
         let header = header(encoded)?;
@@ -111,7 +112,7 @@ fn plans(encoded: &[&[u8]], budget: u64) -> Vec<Result<Plan, ImageError>> {
     let largest = sound().map(|plan| plan.header.decoding_bytes).max().unwrap_or(0);
     let room = budget - largest;
     let mut needed: u64 = sound().map(|plan| plan.header.pixel_bytes(0)).sum();
-    // The largest first; of equal ones the last.
+    // The largest first; the last of equal ones.
     let mut by_size: BinaryHeap<(u64, usize)> = (plans.iter().enumerate())
         .filter_map(|(number, plan)| Some((plan.as_ref().ok()?.header.pixel_bytes(0), number)))
         .collect();
@@ -122,7 +123,7 @@ fn plans(encoded: &[&[u8]], budget: u64) -> Vec<Result<Plan, ImageError>> {
             plan.halvings += 1;
             let smaller = plan.header.pixel_bytes(plan.halvings);
             if smaller == bytes {
-                // Nothing but single pixels are left.
+                // Only single pixels are left.
                 break;
             }
             needed -= bytes - smaller;

@@ -1,8 +1,8 @@
 //! From faces of `v/vt/vn` corners to drawn vertices.
 //!
-//! Drawn vertex *i* stands for `v` line *i* while there are such, so a file without seams has no tables to speak of.
-//! A `v` line whose corners name several texture coordinates or normals is drawn as one vertex for each combination:
-//! the first one met keeps the `v` line's own number, the others come behind all of them, in the order of the faces.
+//! Drawn vertex *i* is `v` line *i* while there are such, so a file without seams needs almost no tables. A `v` line
+//! whose corners name several texture coordinates or normals is drawn as one vertex for each combination: the first one
+//! found keeps the `v` line's own number, the others come after all of them, in the order of the faces.
 
 use std::collections::HashMap;
 
@@ -12,20 +12,20 @@ use super::statements::{NONE, Statements, UNUSED};
 use crate::polygon::diagonals::Diagonals;
 use crate::polygon::{CORNERS_BETWEEN_LOOKS, triangulate};
 
-/// How many combinations of one `v` line are searched linearly before a table is used.
+/// The number of combinations of one `v` line that are searched linearly before a table is used.
 const LONGEST_CHAIN: u32 = 16;
 
-/// The drawn set of an OBJ file and what each drawn vertex looks up.
+/// The drawn set of an OBJ file and the lines behind each drawn vertex.
 #[derive(Debug, Default)]
 pub(super) struct Corners {
     pub(super) drawn: Drawn,
-    /// The `vt` of each drawn vertex or [`NONE`]; empty where no corner names one.
+    /// The `vt` of each drawn vertex or [`NONE`]; empty if no corner names one.
     pub(super) uv: Vec<u32>,
-    /// The `vn` of each drawn vertex or [`NONE`]; empty where no corner names one.
+    /// The `vn` of each drawn vertex or [`NONE`]; empty if no corner names one.
     pub(super) normal: Vec<u32>,
     /// The drawn vertex of each corner of `Statements::corners`.
     pub(super) drawn_of_corner: Vec<u32>,
-    /// Where the triangles of each run begin.
+    /// The start of each run's triangles.
     pub(super) run_triangles: Vec<u32>,
 }
 

@@ -1,4 +1,4 @@
-//! The corners of `f` lines, where they stand, to give them other normals.
+//! The corners of `f` lines and their places in the text, for giving them other normals.
 
 use std::ops::Range;
 
@@ -10,22 +10,22 @@ use crate::text::{Cursor, mark_len};
 pub(super) struct Corner {
     /// The number of its `v` line, from 0.
     pub(super) vertex: Option<u32>,
-    /// The number of its `vn` line, from 0, and where that is written.
+    /// The number of its `vn` line, from 0, and the place where it is written.
     pub(super) normal: Option<(u32, Range<usize>)>,
-    /// Where the whole corner is written.
+    /// The place of the whole corner.
     pub(super) span: Range<usize>,
 }
 
-/// A face, and how many `v` and `vn` lines stand before it.
+/// A face, and the number of `v` and `vn` lines before it.
 #[derive(Debug)]
 pub(super) struct Face<'a> {
-    /// Where its line begins.
+    /// The start of its line.
     pub(super) line_at: usize,
     pub(super) normals_before: usize,
     pub(super) corners: &'a [Corner],
 }
 
-/// Calls `visit_face` with every `f` line of an OBJ file that was read, and `visit_normal` with the place behind the
+/// Calls `visit_face` with every `f` line of an OBJ file that was read, and `visit_normal` with the place after the
 /// keyword of each `vn`, in the order of the bytes.
 pub(super) fn for_each<'a>(
     bytes: &'a [u8],

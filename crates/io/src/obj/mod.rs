@@ -1,9 +1,9 @@
 //! Wavefront OBJ, read with the place of every number, so that saving changes the moved vertices' `v` lines (and the
 //! `vn` lines around them) and no other byte.
 //!
-//! Our own reader instead of `tobj`'s, which renumbers vertices, drops unused ones and keeps f32. `tobj` reads the
-//! materials. Every `v` line is a file vertex; see [`corners`] for how corners with texture coordinates and normals
-//! are drawn.
+//! The reader is our own, because `tobj` renumbers vertices, drops unused ones and keeps f32. `tobj` reads the
+//! materials. Every `v` line is a file vertex; [`corners`] describes the drawing of corners with texture coordinates
+//! and normals.
 
 mod corners;
 mod faces;
@@ -43,16 +43,16 @@ pub(crate) struct Stored {
     bytes: Arc<Vec<u8>>,
     /// Without its positions, corners and faces, which the drawn set and `polygons` replace.
     statements: Statements,
-    /// The `vt` of each drawn vertex; empty where none has one.
+    /// The `vt` of each drawn vertex; empty if none has one.
     uv: Vec<u32>,
-    /// The `vn` of each drawn vertex; empty where none has one.
+    /// The `vn` of each drawn vertex; empty if none has one.
     normal: Vec<u32>,
-    /// The faces, where one has more than three corners.
+    /// The faces, if one has more than three corners.
     polygons: Option<Polygons>,
     /// The `v` line of each drawn vertex.
     position: Vec<u32>,
     groups: Vec<Group>,
-    /// The drawn vertices all of whose faces are to be flat.
+    /// The drawn vertices that belong only to flat faces.
     flat: Vec<Range<u32>>,
     materials: Materials,
     notes: Vec<String>,
@@ -95,7 +95,7 @@ pub(crate) fn read(source: &Source<'_>) -> Result<(Stored, Drawn), ReadError> {
     Ok((stored, corners.drawn))
 }
 
-/// One group a run; faces without a material get a plain one behind the named ones.
+/// One group a run; faces without a material get a plain one after the named ones.
 fn groups(statements: &Statements, corners: &corners::Corners, materials: &mut Materials) -> Vec<Group> {
     let ends = corners
         .run_triangles
@@ -120,7 +120,7 @@ fn groups(statements: &Statements, corners: &corners::Corners, materials: &mut M
         .collect()
 }
 
-/// The drawn vertices that no face uses which is not to be flat, in a file without normals.
+/// The drawn vertices that belong only to flat faces, in a file without normals.
 fn flat(statements: &Statements, corners: &corners::Corners) -> Vec<Range<u32>> {
     let is_flat = &statements.smoothing.flat_faces;
     if is_flat.is_empty() || !statements.normals.is_empty() {
@@ -139,7 +139,7 @@ fn flat(statements: &Statements, corners: &corners::Corners) -> Vec<Range<u32>> 
     ranges(wanted.into_iter().map(|is_flat| is_flat == Some(true)))
 }
 
-/// Sentences about what is in the file but can't be drawn.
+/// Sentences about data of the file that can't be drawn.
 fn left_out(source: &Source<'_>, statements: &Statements) -> Vec<String> {
     let mut notes = Vec::new();
     let line = |at| line_of(source.bytes, at);
@@ -233,7 +233,7 @@ impl Stored {
         }
     }
 
-    /// Colours behind the positions: sRGB from 0 to 1, or to 255 where one is larger than 1.
+    /// Colours after the positions: sRGB from 0 to 1, or to 255 if one is larger than 1.
     fn colours(&self) -> Option<Vec<[u16; 4]>> {
         let colours = &self.statements.colours;
         if colours.is_empty() {
@@ -260,7 +260,7 @@ impl Stored {
         materials::neighbours(&self.materials)
     }
 
-    /// A warning that names what of the materials a file of another format does not have.
+    /// A warning that names the parts of the materials that a file of another format does not have.
     pub(crate) fn materials_lost(&self, kind: &str) -> Option<String> {
         materials::unread_lost(&self.materials, kind)
     }
@@ -271,7 +271,7 @@ impl Stored {
         if !moved.turns_any() {
             return Ok((patched.bytes, Vec::new()));
         }
-        // Of each `vn` line, whether it is of parts that are turned, and whether of others.
+        // For each `vn` line, whether turned parts use it, and whether others do.
         let mut uses = vec![(false, false); patched.normal_count];
         for (v, &normal) in patched.normal.iter().enumerate().filter(|(_, normal)| **normal != NONE) {
             let (by_turned, by_others) = &mut uses[normal as usize];

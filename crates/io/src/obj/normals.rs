@@ -1,9 +1,8 @@
 //! The `vn` lines that an edit changes, and those that it adds.
 //!
-//! Exporters share one `vn` line among all corners with the same normal, so a `vn` has no single vertex to follow. As
-//! long as all its users want one direction, it turns with them. Where they bend apart, or some of them rest, the line
-//! stays with the first of them, or with those that rest, and the others get lines of their own; users that agree share
-//! one.
+//! Exporters share one `vn` line among all corners with the same normal, so a `vn` has no single vertex to follow.
+//! While all its users need one direction, it turns with them. If they bend apart, or some of them rest, the line stays
+//! with the first of them, or with those that rest, and the others get lines of their own; users that agree share one.
 
 use std::collections::HashMap;
 
@@ -18,7 +17,7 @@ use crate::save::moved::Moved;
 /// Users of one `vn` share a line if none is further from their mean than this: the cosine of a degree.
 const AGREEMENT: f64 = 0.999_847_695;
 
-/// Directions are sorted into cells of this many to a unit, a third of a degree.
+/// Directions are sorted into cells, this many to a unit, a third of a degree each.
 const CELLS: f64 = 256.0;
 
 /// The `vn` lines after an edit.
@@ -28,8 +27,7 @@ pub(super) struct Normals {
     pub(super) changed: Vec<(u32, DVec3)>,
     /// The values of new lines.
     pub(super) added: Vec<DVec3>,
-    /// The line of each drawn vertex: that of the file or, from the number of those on, an added one. Empty where none
-    /// is added.
+    /// The line of each drawn vertex: the file's, or an added one for numbers beyond those. Empty if none is added.
     pub(super) of_vertex: Vec<u32>,
 }
 
@@ -85,7 +83,8 @@ impl Normals {
         Ok(out)
     }
 
-    /// Divides the lines whose users want different directions. `each` has the direction that each drawn vertex wants, of unit length.
+    /// Divides the lines whose users need different directions. `each` has the direction for each drawn vertex, as a
+    /// unit vector.
     fn divide(
         &mut self,
         stored: &Stored,
@@ -96,7 +95,7 @@ impl Normals {
     ) -> Result<(), Cancelled> {
         let old_count = stored.statements.normals.len() as u32;
         self.of_vertex = stored.normal.clone();
-        // By line and direction: a number among the lines, and the sum of the directions that go there.
+        // By line and direction: a number among the lines, and the sum of the directions of its users.
         let mut cells: HashMap<(u32, [i16; 3]), usize> = HashMap::new();
         let mut divided: Vec<(u32, DVec3, f64)> = Vec::new();
         let mut is_taken = vec![false; lines.len()];
@@ -107,7 +106,7 @@ impl Normals {
                 continue;
             }
             let (line, stays) = (&lines[index as usize], rest[v].normalize_or_zero());
-            // Those that keep their direction keep the line.
+            // Users that keep their direction keep the line.
             if line.has_resting && direction.dot(stays) >= AGREEMENT {
                 continue;
             }
@@ -139,13 +138,13 @@ impl Normals {
     }
 }
 
-/// The directions that the users of one `vn` want.
+/// The directions that the users of one `vn` need.
 #[derive(Clone, Copy)]
 struct Line {
     sum: DVec3,
-    /// Whether a user wants another direction than the line has.
+    /// Whether a user needs another direction than the line's.
     changes: bool,
-    /// Whether a user wants the direction that it has.
+    /// Whether a user needs the line's direction.
     has_resting: bool,
     /// Whether all are near to their mean.
     agree: bool,
@@ -171,7 +170,7 @@ impl Line {
         }
     }
 
-    /// Whether one direction is all that its users need.
+    /// Whether one direction is enough for its users.
     fn is_whole(&self) -> bool {
         self.agree && !(self.changes && self.has_resting)
     }

@@ -1,6 +1,6 @@
 //! An edited OBJ file: the bytes as read, with other numbers in the `v` lines of moved vertices and in the `vn` lines
-//! that turn. Where one `vn` line no longer fits all its users, new lines stand before the first face that names one,
-//! because many readers look normals up as they come to a face, and corners name other lines.
+//! that turn. If one `vn` line no longer fits all its users, new lines come before the first face that names one,
+//! because many readers look up normals as they reach a face, and corners name other lines.
 
 use std::ops::Range;
 
@@ -21,7 +21,7 @@ pub(super) struct Patched {
     pub(super) bytes: Vec<u8>,
     /// The `vn` line of each drawn vertex in it; [`NONE`] for those without one.
     pub(super) normal: Vec<u32>,
-    /// How many `vn` lines it has.
+    /// The number of its `vn` lines.
     pub(super) normal_count: usize,
 }
 
@@ -56,7 +56,7 @@ pub(super) fn patched(stored: &Stored, moved: &Moved<'_>, course: &Course<'_>) -
             .iter()
             .map(|(span, line)| (span.start, Change::Name(span.end, *line))),
     );
-    // Each of these lists is in order, and merging such is what a stable sort is quick at.
+    // Each of these lists is in order, and a stable sort merges such lists quickly.
     changes.sort_by_key(|(at, _)| *at);
 
     let mut splice = Splice::new(&stored.bytes);
@@ -82,7 +82,7 @@ pub(super) fn patched(stored: &Stored, moved: &Moved<'_>, course: &Course<'_>) -
 
 /// The names of normals in an edited file.
 struct Renamed {
-    /// Where the new lines go; `None` where there are none.
+    /// The place of the new lines; `None` if there are none.
     place: Option<usize>,
     /// The corners that need another name, in the order of the bytes, with the number of the line.
     corners: Vec<(Range<usize>, u32)>,
@@ -108,7 +108,7 @@ impl Renamed {
                 before = face.normals_before as u32;
             }
         });
-        // The number of a line in the edited file, by that in the file as read.
+        // The number of a line in the edited file, for its number in the input.
         let renamed = |line: u32| match line {
             NONE => NONE,
             line if line < before => line,
@@ -121,12 +121,12 @@ impl Renamed {
             for (number, corner) in face.corners.iter().enumerate() {
                 let Some((old, span)) = &corner.normal else { continue };
                 let wanted = match drawn.get(number) {
-                    // A name of no line must not become that of a new one.
+                    // A name without a line must not become that of a new one.
                     _ if *old >= old_count => old + added,
                     Some(&vertex) => out.of_vertex[vertex],
                     None => renamed(*old),
                 };
-                // A name that counts back from the face counts the new lines, too, once it is behind them.
+                // A name that counts back from the face also counts the new lines, if they come before it.
                 let counts_back = stored.bytes[span.start] == b'-';
                 let found = if counts_back && face.line_at >= place {
                     old + added
@@ -142,7 +142,7 @@ impl Renamed {
     }
 }
 
-/// Calls `visit` with each face and the drawn vertices of its corners, of which one that is not drawn has none.
+/// Calls `visit` with each face and the drawn vertices of its corners; a face that is not drawn has none.
 fn for_each_face(stored: &Stored, moved: &Moved<'_>, mut visit: impl FnMut(&Face<'_>, &[usize])) {
     let of_polygons = stored.polygons.as_ref().map(|polygons| &polygons.corners[..]);
     let mut drawn = of_polygons.unwrap_or(moved.drawn.triangles.as_flattened()).iter();
@@ -160,7 +160,7 @@ fn for_each_face(stored: &Stored, moved: &Moved<'_>, mut visit: impl FnMut(&Face
     );
 }
 
-/// How the file ends its lines.
+/// The file's line ending.
 fn line_end(bytes: &[u8]) -> &'static [u8] {
     match bytes.iter().position(|&byte| byte == b'\n') {
         Some(at) if at > 0 && bytes[at - 1] == b'\r' => b"\r\n",
@@ -179,7 +179,7 @@ fn push_lines(out: &mut Vec<u8>, normals: &[DVec3], end: &[u8]) {
     }
 }
 
-/// Replaces the three numbers that begin at byte `at`, each where it changes.
+/// Replaces the three numbers that begin at byte `at`, each if it changes.
 fn replace_numbers<T: Copy + Into<f64>>(
     splice: &mut Splice<'_>,
     bytes: &[u8],

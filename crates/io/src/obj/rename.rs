@@ -3,13 +3,13 @@
 use super::materials::{as_uri, behind_options, folder_of, join};
 use crate::text::{Splice, mark_len};
 
-/// An OBJ with `new` in place of the material library `old`; `None` where it does not name that one plainly.
+/// An OBJ with `new` in place of the material library `old`; `None` if it does not name that one plainly.
 pub(crate) fn library_renamed(obj: &[u8], old: &str, new: &str) -> Option<Vec<u8>> {
     renamed(obj, |keyword, rest| {
         if keyword != "mtllib" {
             return Vec::new();
         }
-        // As it is read: the whole line as one name, or else a part of it between blanks.
+        // As in reading: the whole line is one name, or else a part of it between blanks.
         let names = if as_uri(rest) == old {
             vec![rest.trim()]
         } else if old.contains(' ') {
@@ -24,8 +24,8 @@ pub(crate) fn library_renamed(obj: &[u8], old: &str, new: &str) -> Option<Vec<u8
     })
 }
 
-/// A material library with `new` in place of the texture `old`, both relative to the OBJ's folder, as is the library's
-/// own path; `None` where it does not name that one.
+/// A material library with `new` in place of the texture `old`, both relative to the OBJ's folder, like the library's
+/// own path; `None` if it does not name that one.
 pub(crate) fn texture_renamed(text: &[u8], library: &str, old: &str, new: &str) -> Option<Vec<u8>> {
     let folder = folder_of(library);
     let bare = old.rsplit('/').next().unwrap_or(old);
@@ -35,7 +35,7 @@ pub(crate) fn texture_renamed(text: &[u8], library: &str, old: &str, new: &str) 
         }
         let (file, _) = behind_options(rest);
         let uri = join(folder, &as_uri(file));
-        // One that was read beside the OBJ may be named by its place on another computer.
+        // A texture that was read beside the OBJ may be named by its path on another computer.
         let is_named = uri == old || (old == bare && uri.rsplit('/').next() == Some(bare));
         let from_library = match new.strip_prefix(folder) {
             Some(inside) => inside.to_owned(),
@@ -48,8 +48,8 @@ pub(crate) fn texture_renamed(text: &[u8], library: &str, old: &str, new: &str) 
     })
 }
 
-/// The text with what `of_line` says of each line, given its keyword and the rest: places in the rest and what comes
-/// there.
+/// The text with the replacements that `of_line` returns for each line, given its keyword and the rest: places in the
+/// rest and their new text.
 fn renamed(text: &[u8], of_line: impl Fn(&str, &str) -> Vec<(std::ops::Range<usize>, String)>) -> Option<Vec<u8>> {
     let mut splice = Splice::new(text);
     let mut has_changed = false;
@@ -57,7 +57,7 @@ fn renamed(text: &[u8], of_line: impl Fn(&str, &str) -> Vec<(std::ops::Range<usi
     for line in text[start..].split_inclusive(|byte| matches!(byte, b'\n' | b'\r')) {
         let at = start;
         start += line.len();
-        // A name that is not UTF-8 is read with substitutes, and has no place that could be told.
+        // A name that is not UTF-8 is read with substitutes, so its place is unknown.
         let Ok(line) = std::str::from_utf8(line) else { continue };
         let trimmed = line.trim_start();
         let keyword = trimmed.split_whitespace().next().unwrap_or_default();
@@ -72,7 +72,7 @@ fn renamed(text: &[u8], of_line: impl Fn(&str, &str) -> Vec<(std::ops::Range<usi
     has_changed.then(|| splice.finish())
 }
 
-/// Where a part of a text stands in it.
+/// The place of a part of a text in it.
 fn place_in(part: &str, text: &str) -> std::ops::Range<usize> {
     let start = part.as_ptr() as usize - text.as_ptr() as usize;
     start..start + part.len()

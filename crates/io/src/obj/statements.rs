@@ -1,7 +1,8 @@
 //! An OBJ file's statements, with the place of every coordinate in the file.
 //!
-//! Only what draws or moves is kept (`v`, `vt`, `vn`, `f`, `usemtl`, `mtllib`, `o`, `g`, and ZBrush's colours); everything
-//! else is passed over and stays in the bytes. Indices are resolved to numbers from 0; a corner may name a `v` line that comes later.
+//! Only statements that affect the picture or the shape are kept (`v`, `vt`, `vn`, `f`, `usemtl`, `mtllib`, `o`, `g`,
+//! and ZBrush's colours); everything else is skipped and stays in the bytes. Indices are resolved to numbers from 0; a
+//! corner may name a `v` line that comes later.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -33,17 +34,17 @@ pub(super) struct Run {
     pub(super) first_face: usize,
     /// Index into [`Statements::material_names`].
     pub(super) material: Option<usize>,
-    /// The `o` name, or the `g` name where there is none; empty where neither is.
+    /// The `o` name, or else the `g` name; empty if there is neither.
     pub(super) object: String,
 }
 
-/// What an OBJ file says, in the order of its lines.
+/// The statements of an OBJ file, in the order of its lines.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Statements {
     pub(super) positions: Vec<DVec3>,
     /// Byte of the first coordinate of each `v`.
     pub(super) position_at: Vec<usize>,
-    /// Colours behind the positions, as written; empty where no `v` has any, white where this one has none.
+    /// Colours after the positions, as written; empty if no `v` has any, white for a `v` without one.
     pub(super) colours: Vec<[f32; 3]>,
     /// f32: only ever drawn; saving copies the bytes.
     pub(super) uvs: Vec<[f32; 2]>,
@@ -52,33 +53,33 @@ pub(super) struct Statements {
     pub(super) normal_at: Vec<usize>,
     /// The corners of all faces, one after the other.
     pub(super) corners: Vec<Corner>,
-    /// Where each face's corners end; they begin where the previous face's do.
+    /// The end of each face's corners; they begin at the previous face's end.
     pub(super) face_ends: Vec<usize>,
     pub(super) runs: Vec<Run>,
     pub(super) material_names: Vec<String>,
-    /// The spans of the names behind `mtllib`.
+    /// The spans of the names after `mtllib`.
     pub(super) libraries: Vec<Range<usize>>,
-    /// Faces with fewer than three corners, which draw nothing: how many, and the byte of the first.
+    /// Faces with fewer than three corners, which draw nothing: their number, and the byte of the first.
     pub(super) left_out: (usize, usize),
-    /// Corners whose `vt` or `vn` doesn't exist: how many, and the byte of the first.
+    /// Corners whose `vt` or `vn` doesn't exist: their number, and the byte of the first.
     pub(super) dangling: (usize, usize),
     pub(super) smoothing: Smoothing,
 }
 
-/// The shading that `s` lines ask for.
+/// The shading that `s` lines request.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Smoothing {
-    /// Whether some faces are to be flat.
+    /// Whether some faces are flat.
     pub(super) has_flat: bool,
     /// The first group.
     group: Option<String>,
     /// Whether there are several groups, between which edges are hard.
     pub(super) has_several: bool,
-    /// Whether each face is to be flat, up to the last that is.
+    /// Whether each face is flat, up to the last flat one.
     pub(super) flat_faces: Vec<bool>,
 }
 
-/// The highest number that a corner has named so far, and where.
+/// The highest number that a corner has named so far, and its place.
 #[derive(Clone, Copy, Default)]
 struct Highest {
     count: u32,
@@ -107,7 +108,7 @@ pub(super) fn parse(source: &Source<'_>) -> Result<Statements, ReadError> {
     reader.finish()
 }
 
-/// The statements read so far, and what they refer to.
+/// The statements read so far, and the data that they refer to.
 struct Reader<'a> {
     source: &'a Source<'a>,
     cursor: Cursor<'a>,
@@ -119,7 +120,7 @@ struct Reader<'a> {
     material: Option<usize>,
     material_numbers: HashMap<String, usize>,
     run_is_open: bool,
-    /// Whether `s off` stands before the faces that follow.
+    /// Whether `s off` applies to the faces that follow.
     is_flat: bool,
     /// The colours of `#MRGB` lines, in the vertices' order.
     polypaint: Vec<[f32; 3]>,
@@ -143,7 +144,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Reads the statement that the cursor's line holds; leaves the cursor somewhere on its last line.
+    /// Reads the statement on the cursor's line; leaves the cursor somewhere on its last line.
     fn line(&mut self) -> Result<(), ReadError> {
         self.cursor.skip_blanks();
         match self.cursor.word() {
@@ -203,7 +204,7 @@ impl<'a> Reader<'a> {
         String::from_utf8_lossy(self.cursor.rest_of_line().trim_ascii()).into_owned()
     }
 
-    /// A name that every run of its faces gets a copy of, so it is cut to a length that a person would read.
+    /// Every run of its faces gets a copy of this name, so it is cut to a readable length.
     fn name(&mut self) -> String {
         short_name(&self.rest())
     }
@@ -249,7 +250,7 @@ impl<'a> Reader<'a> {
         self.polypaint.extend(blocks.map_while(colour));
     }
 
-    /// `vt u [v [w]]`; what isn't a number counts as 0, since it moves nothing.
+    /// `vt u [v [w]]`; anything that isn't a number counts as 0, because it moves nothing.
     fn texture_coordinate(&mut self) {
         let u = self.real().unwrap_or(0.0);
         let v = self.real().unwrap_or(0.0);
@@ -414,7 +415,7 @@ fn note(counted: &mut (usize, usize), at: usize) {
     counted.0 += 1;
 }
 
-/// An index as written (from 1, or from the end when negative) as a number from 0; `None` where it can't exist.
+/// An index as written (from 1, or from the end when negative) as a number from 0; `None` if it can't exist.
 pub(super) fn resolve(index: i64, count: usize) -> Option<u32> {
     let number = if index > 0 {
         index - 1

@@ -7,7 +7,7 @@ use super::faces;
 use crate::save::turned::{push_negated, wound_back};
 use crate::text::{Cursor, Splice};
 
-/// The new bytes. `vertices` tells of each `v` line whether its part is turned, `normals` of each `vn` line.
+/// The new bytes. `vertices` says for each `v` line whether its part is turned, `normals` for each `vn` line.
 pub(super) fn turned(bytes: &[u8], vertices: &[bool], normals: &[bool]) -> Vec<u8> {
     let splice = RefCell::new(Splice::new(bytes));
     faces::for_each(

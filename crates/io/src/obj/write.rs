@@ -1,4 +1,4 @@
-//! A new OBJ file from any other kind, with a material library and its textures where the mesh has materials.
+//! A new OBJ file from any other format, with a material library and its textures if the mesh has materials.
 
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
@@ -55,7 +55,7 @@ pub(crate) fn write_new(mesh: &NewMesh<'_>, course: &Course<'_>) -> Result<Saved
     Ok(saved)
 }
 
-/// What a material library can't say of the materials.
+/// The properties of the materials that a material library can't express.
 fn left_out(look: &Appearance) -> Option<String> {
     let any = |has: &dyn Fn(&Material) -> bool| lost_where(look.materials.iter().any(has));
     // Fully rough metal is glTF's default, for a file that does not specify it.
@@ -78,7 +78,7 @@ fn left_out(look: &Appearance) -> Option<String> {
     )
 }
 
-/// Whether a material is what a reader assumes by default.
+/// Whether a material is the reader's default.
 fn is_plain(material: &Material) -> bool {
     let plain = Material {
         double_sided: material.double_sided,
@@ -193,7 +193,7 @@ fn one_line(name: &str) -> String {
     name.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
 }
 
-/// A name of its own for each material, without the blanks that many readers end a name at.
+/// A unique name for each material, without the blanks at which many readers end a name.
 fn material_names(look: &Appearance) -> Vec<String> {
     let mut taken = HashSet::new();
     let mut names = Vec::new();
@@ -222,7 +222,7 @@ fn material_names(look: &Appearance) -> Vec<String> {
     names
 }
 
-/// The file that each image is written to; `None` for images that no material shows or whose bytes are missing.
+/// The file of each image; `None` for images that no material shows or whose bytes are missing.
 fn image_files(look: &Appearance, stem: &str, warnings: &mut Vec<String>) -> Vec<Option<String>> {
     let used: HashSet<usize> = look
         .materials
@@ -246,7 +246,7 @@ fn image_files(look: &Appearance, stem: &str, warnings: &mut Vec<String>) -> Vec
         }
         if image.origin == Origin::Outside && !name_of.contains_key(&image.encoded.place()) {
             let name = quoted(&image.name);
-            // A file from a stranger may name anything there, and a private file would be copied as an image.
+            // A file from a stranger may name any file there, and a private file would be copied as an image.
             if !decodes(&image.encoded) {
                 warnings.push(format!("{name} {NO_IMAGE}"));
                 return None;

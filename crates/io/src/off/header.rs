@@ -1,15 +1,15 @@
-//! An OFF file's first words: what each vertex holds, and how many vertices and faces there are.
+//! An OFF file's first words: the contents of each vertex, and the numbers of vertices and faces.
 
 use crate::source::Source;
 use crate::text::{Cursor, excerpt, malformed_at, mark_len};
 use crate::{Format, ReadError};
 
-/// What the keyword and the counts say.
+/// The contents of the keyword and the counts.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub(super) struct Header {
-    /// `N`: a normal behind each position.
+    /// `N`: a normal after each position.
     pub(super) has_normals: bool,
-    /// `C`: a colour behind that.
+    /// `C`: a colour after that.
     pub(super) has_colours: bool,
     /// `ST`: texture coordinates last.
     pub(super) has_uvs: bool,
@@ -17,12 +17,11 @@ pub(super) struct Header {
     pub(super) faces: usize,
 }
 
-/// Reads the keyword, which some files leave out, and the counts, which stand behind it or on a line of their own.
-/// Gives the cursor behind them.
+/// Reads the keyword, which some files leave out, and the counts, which follow it or are on a line of their own. Gives
+/// the cursor after them.
 ///
 /// # Errors
-/// Binary OFF and coordinates of other than three dimensions are refused in words, as are counts that the bytes
-/// can't hold.
+/// Refused in words: binary OFF, coordinates of other than three dimensions, and counts that the bytes can't hold.
 pub(super) fn parse<'a>(source: &Source<'a>) -> Result<(Header, Cursor<'a>), ReadError> {
     let bytes: &'a [u8] = source.bytes;
     let fail = |at, reason: &str| malformed_at(source, Format::Off, at, reason);
@@ -81,9 +80,9 @@ pub(super) fn parse<'a>(source: &Source<'a>) -> Result<(Header, Cursor<'a>), Rea
     };
     header.vertices = count("vertices")?;
     header.faces = count("faces")?;
-    // The number of edges, which nobody needs and some leave out, ends the line.
+    // The number of edges, which is never needed and which some files leave out, ends the line.
     cursor.next_line();
-    // Three digits with separators per vertex, one per face; the last needs no separator behind it.
+    // Three digits with separators per vertex, one per face; the last needs no separator after it.
     let least = header
         .vertices
         .saturating_mul(6)

@@ -1,5 +1,5 @@
 //! OFF and its COFF, NOFF and STOFF variants, read with the place of every vertex, so that saving changes the moved
-//! vertices' coordinates (and normals) and no other byte: comments, colours and faces stay as they are written.
+//! vertices' coordinates (and normals) and no other byte: comments, colours and faces stay the same.
 
 mod header;
 mod patch;
@@ -29,10 +29,10 @@ pub(crate) struct Stored {
     bytes: Arc<Vec<u8>>,
     /// Without its positions and faces, which the drawn set and `polygons` replace.
     records: Records,
-    /// The faces, where one has more than three corners.
+    /// The faces, if one has more than three corners.
     polygons: Option<Polygons>,
     triangle_count: u32,
-    /// How many faces the file has, those that aren't drawn among them.
+    /// The number of the file's faces, including those that aren't drawn.
     face_count: usize,
     notes: Vec<String>,
 }
@@ -75,7 +75,7 @@ impl Stored {
 
     pub(crate) fn appearance(&self) -> Appearance {
         let records = &self.records;
-        // Colours are written from 0 to 1 or to 255; a file's largest channel tells.
+        // Colours are written from 0 to 1 or to 255; a file's largest channel decides.
         let most = records
             .colours
             .iter()
@@ -95,7 +95,7 @@ impl Stored {
         }
     }
 
-    /// The parts of the file that no other format is given.
+    /// The parts of the file that other formats do not get.
     pub(crate) fn unread(&self) -> Vec<String> {
         let has_colours = self.records.has_face_colours;
         has_colours
@@ -115,7 +115,7 @@ impl Stored {
             return Ok((bytes, Vec::new()));
         };
         let has_normals = !self.records.normals.is_empty();
-        // What moved has no other place for the first record.
+        // A moved vertex has no other place for the first record.
         let bytes = turned::turned(&bytes, first, &moved.turned_of_file(), has_normals, self.face_count);
         Ok((bytes, Vec::new()))
     }

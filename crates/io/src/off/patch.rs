@@ -33,7 +33,7 @@ pub(super) fn patched(stored: &Stored, moved: &Moved<'_>, course: &Course<'_>) -
     Ok(splice.finish())
 }
 
-/// Replaces the next three numbers, each where it changes.
+/// Replaces the next three numbers, each if it changes.
 fn replace_vector(splice: &mut Splice<'_>, cursor: &mut Cursor<'_>, vector: DVec3, push: impl Fn(&mut Vec<u8>, f64)) {
     for number in vector.to_array() {
         cursor.skip_space_and_comments();

@@ -7,32 +7,32 @@ use crate::source::{Looks, Source};
 use crate::text::{Cursor, excerpt, malformed_at};
 use crate::{Format, ReadError};
 
-/// What the lines behind the head say.
+/// The contents of the lines after the head.
 #[derive(Debug, Default)]
 pub(super) struct Records {
     /// The byte of each vertex's first coordinate.
     pub(super) vertex_at: Vec<usize>,
     pub(super) positions: Vec<DVec3>,
-    /// Empty where the vertices have none.
+    /// Empty if the vertices have none.
     pub(super) normals: Vec<DVec3>,
-    /// As written, with [`OPAQUE`] where no alpha is; empty where the vertices have none.
+    /// As written, with [`OPAQUE`] for a missing alpha; empty if the vertices have none.
     pub(super) colours: Vec<[f32; 4]>,
     /// f32: only ever drawn.
     pub(super) uvs: Vec<[f32; 2]>,
     /// The corners of all faces, one after the other.
     pub(super) corners: Vec<u32>,
-    /// Where each face's corners end.
+    /// The end of each face's corners.
     pub(super) face_ends: Vec<u32>,
-    /// How many faces have fewer than three corners.
+    /// The number of faces with fewer than three corners.
     pub(super) left_out: usize,
-    /// Whether something follows the corners of a face: its colour.
+    /// Whether a colour follows the corners of a face.
     pub(super) has_face_colours: bool,
 }
 
 /// Reads the records that `header` promises.
 ///
-/// A vertex begins on a line of its own; whatever else its line holds is passed over, since plain OFF files carry
-/// colours too. The same goes for a face and its colour.
+/// A vertex begins on a line of its own; the rest of its line is skipped, because plain OFF files carry colours too.
+/// The same is true of a face and its colour.
 pub(super) fn read(source: &Source<'_>, header: &Header, mut cursor: Cursor<'_>) -> Result<Records, ReadError> {
     let (mut records, mut looks) = (Records::default(), Looks::default());
     records.positions.reserve_exact(header.vertices);
@@ -71,7 +71,7 @@ fn vector(cursor: &mut Cursor<'_>) -> Option<DVec3> {
     Some(DVec3::from_array(values))
 }
 
-/// The rest of a vertex's line: three or four numbers of colour, two of texture coordinates; 0 for what is missing.
+/// The rest of a vertex's line: three or four numbers of colour, two of texture coordinates; 0 for missing ones.
 fn read_look(header: &Header, cursor: &mut Cursor<'_>, records: &mut Records) {
     let mut numbers = [0.0f32; 6];
     let mut count = 0;
@@ -96,7 +96,7 @@ fn read_look(header: &Header, cursor: &mut Cursor<'_>, records: &mut Records) {
     }
 }
 
-/// The alpha of a colour that has none, whether the file counts to 1 or to 255.
+/// The alpha of a colour that has none, in files that count to 1 or to 255.
 pub(super) const OPAQUE: f32 = f32::NAN;
 
 fn read_face(

@@ -5,7 +5,7 @@ use std::ops::Range;
 use crate::save::turned::{push_negated, wound_back};
 use crate::text::{Cursor, Splice};
 
-/// The new bytes. The vertices' records begin at `first`; `turned` tells of each vertex whether its part is turned, and
+/// The new bytes. The vertices' records begin at `first`; `turned` says for each vertex whether its part is turned, and
 /// `has_normals` whether three numbers of a normal follow its position.
 pub(super) fn turned(bytes: &[u8], first: usize, turned: &[bool], has_normals: bool, face_count: usize) -> Vec<u8> {
     let mut splice = Splice::new(bytes);

@@ -1,4 +1,4 @@
-//! A new OFF file (COFF where there are colours) from any other kind.
+//! A new OFF file (COFF if there are colours) from any other format.
 
 use crate::SaveError;
 use crate::appearance::colour::SrgbBytes;
@@ -8,8 +8,8 @@ use crate::save::Saved;
 use crate::save::course::Course;
 use crate::text::push_f64;
 
-/// Writes a mesh's positions, colours and faces. Normals are left to the reader: the variants that hold them beside
-/// colours are read by few.
+/// Writes a mesh's positions, colours and faces. Normals are left to the reader: few programs read the variants with
+/// normals beside colours.
 pub(crate) fn write_new(mesh: &NewMesh<'_>, course: &Course<'_>) -> Result<Saved, SaveError> {
     let look = &mesh.appearance;
     let srgb = SrgbBytes::new();

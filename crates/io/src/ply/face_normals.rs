@@ -24,7 +24,7 @@ pub(super) fn carried(stored: &Stored, bytes: Vec<u8>, moved: &Moved<'_>) -> Vec
     rewritten(stored, bytes, |corners| gradient(corners, moved).map(Change::Carried))
 }
 
-/// The bytes with the normals of the faces whose first corner is `turned` inside out pointing the other way.
+/// The bytes, in which the faces whose first corner is `turned` inside out get the opposite normals.
 pub(super) fn negated(stored: &Stored, bytes: Vec<u8>, turned: &[bool]) -> Vec<u8> {
     rewritten(stored, bytes, |corners| {
         let first = corners.first().and_then(|&corner| turned.get(corner));
@@ -75,7 +75,7 @@ fn rewritten(stored: &Stored, bytes: Vec<u8>, change: impl Fn(&[usize]) -> Optio
     out.finish()
 }
 
-/// The list of corners and the three columns of a normal, with their types, of an element of faces that has some.
+/// The list of corners and the three columns of a normal, with their types, for an element of faces that has them.
 fn columns(element: &Element) -> Option<(usize, [(usize, Scalar); 3])> {
     if element.name != "face" {
         return None;
@@ -95,7 +95,7 @@ fn columns(element: &Element) -> Option<(usize, [(usize, Scalar); 3])> {
     Some((corner_list(element)?, normal))
 }
 
-/// The mean gradient of a face's triangles, by their areas; `None` where no corner moved or the face has no area.
+/// The mean gradient of a face's triangles, weighted by area; `None` if no corner moved or the face has no area.
 fn gradient(corners: &[usize], moved: &Moved<'_>) -> Option<DMat3> {
     let of_file = moved.of_file();
     if !corners

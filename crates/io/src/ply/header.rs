@@ -1,4 +1,4 @@
-//! A PLY file's header: which elements follow, how many, and their properties.
+//! A PLY file's header: the elements that follow, their counts and their properties.
 
 use std::ops::Range;
 
@@ -7,7 +7,7 @@ use crate::source::{Looks, Source};
 use crate::text::{Cursor, excerpt, malformed_at, mark_len};
 use crate::{Format, ReadError};
 
-/// What a property's value is in a record.
+/// The kind of a property's value in a record.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum Kind {
     Scalar(Scalar),
@@ -23,13 +23,13 @@ pub(super) struct Property {
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub(super) struct Element {
     pub(super) name: String,
-    /// How many records the header promises, checked against the bytes later.
+    /// The number of records in the header, checked against the bytes later.
     pub(super) count: u64,
     pub(super) properties: Vec<Property>,
 }
 
 impl Element {
-    /// The bytes of a binary record; `None` where a list makes them vary.
+    /// The bytes of a binary record; `None` if a list makes them vary.
     pub(super) fn stride(&self) -> Option<usize> {
         self.properties.iter().try_fold(0, |sum, property| match property.kind {
             Kind::Scalar(scalar) => Some(sum + scalar.size()),
@@ -46,7 +46,7 @@ impl Element {
         self.properties.iter().map(of_property).sum()
     }
 
-    /// The number of the first property with one of these names, whatever their case.
+    /// The number of the first property with one of these names, in any case.
     pub(super) fn property(&self, names: &[&str]) -> Option<usize> {
         let is_named = |property: &Property| names.iter().any(|name| property.name.eq_ignore_ascii_case(name));
         self.properties.iter().position(is_named)
@@ -57,9 +57,9 @@ impl Element {
 pub(super) struct Header {
     pub(super) encoding: Encoding,
     pub(super) elements: Vec<Element>,
-    /// Where the names behind `comment TextureFile` are written.
+    /// The places of the names after `comment TextureFile`.
     pub(super) textures: Vec<Range<usize>>,
-    /// Where the first record begins.
+    /// The start of the first record.
     pub(super) data_at: usize,
 }
 
@@ -69,7 +69,7 @@ const MOST_TEXTURES: usize = 256;
 /// Reads the header, whose lines may end in any way.
 ///
 /// # Errors
-/// Anything that would leave the records' layout in doubt.
+/// Anything that makes the records' layout uncertain.
 pub(super) fn parse(source: &Source<'_>) -> Result<Header, ReadError> {
     let bytes: &[u8] = source.bytes;
     let fail = |at, reason: &str| malformed_at(source, Format::Ply, at, reason);
@@ -142,7 +142,7 @@ pub(super) fn parse(source: &Source<'_>) -> Result<Header, ReadError> {
     }
     let encoding = encoding.ok_or_else(|| fail(cursor.at(), "the header has no 'format' line: add one"))?;
     cursor.rest_of_line();
-    // Data may begin with a byte that looks like the second half of a line end.
+    // Data may begin with a byte that looks like the second half of a line break.
     if ends_in_return_alone {
         cursor.step()
     } else {

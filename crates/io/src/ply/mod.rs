@@ -1,8 +1,8 @@
 //! Stanford PLY, ascii and binary in both byte orders, read with the place of every vertex, so that saving changes the
 //! moved vertices' coordinates (and normals) and no other byte.
 //!
-//! Elements and properties may come in any order and of any type; those that nothing is known of are passed over and
-//! stay in the bytes. Faces are lists of corners or, in older scans, strips of triangles.
+//! Elements and properties may come in any order and of any type; unknown ones are skipped and stay in the bytes. Faces
+//! are lists of corners or, in older scans, strips of triangles.
 
 mod face_normals;
 mod header;
@@ -50,12 +50,12 @@ pub(crate) struct Stored {
     normals: Vec<[f32; 3]>,
     colours: Vec<[f32; 4]>,
     uvs: Vec<[f32; 2]>,
-    /// The vertex of the file behind each drawn vertex that comes behind all of those.
+    /// The file vertex behind each drawn vertex that comes after all of the file's.
     further: Vec<u32>,
     textures: Textures,
     materials: Vec<Material>,
     groups: Vec<Group>,
-    /// The faces, where one has more than three corners.
+    /// The faces, if one has more than three corners.
     polygons: Option<Polygons>,
     triangle_count: u32,
     notes: Vec<String>,
@@ -150,7 +150,7 @@ impl Stored {
         of_file.iter().copied().chain(further)
     }
 
-    /// The parts of the file that no other format is given.
+    /// The parts of the file that other formats do not get.
     pub(crate) fn unread(&self) -> Vec<String> {
         unread::parts(&self.header.elements, self.vertex_element, &self.columns)
     }
@@ -176,7 +176,7 @@ impl Stored {
         let bytes = match moved.turns_any() {
             true => {
                 let turned = moved.turned_of_file();
-                // While each face still begins with the corner that it is read with.
+                // This holds while each face still begins with the corner that it is read with.
                 let bytes = face_normals::negated(self, bytes, &turned);
                 turned::turned(self, &bytes, &turned)?
             }

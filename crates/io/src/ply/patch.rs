@@ -15,7 +15,7 @@ use crate::text::{Splice, push_f32, push_f64, shortest_f32};
 /// The new bytes and the warnings.
 ///
 /// # Errors
-/// A position beyond what the file's type of number holds; the end of `course`.
+/// A position beyond the range of the file's number type; the end of `course`.
 pub(super) fn patched(
     stored: &Stored,
     moved: &Moved<'_>,
@@ -64,7 +64,7 @@ fn whole_numbers_warning(stored: &Stored, element: &Element) -> Option<String> {
 /// One vertex's new numbers.
 struct Edit {
     vertex: usize,
-    /// x, y, z, then the normal; `None` for what keeps its bytes.
+    /// x, y, z, then the normal; `None` for numbers that keep their bytes.
     numbers: [Option<f64>; 6],
 }
 
@@ -121,8 +121,8 @@ impl Edits {
         positions: &[DVec3],
         course: &Course<'_>,
     ) -> Result<Vec<u8>, Cancelled> {
-        // A file whose text is finer than the type that it names (scans at geographic coordinates, called 'float')
-        // would lose what it says by following the name.
+        // If a file's text is finer than its named type (scans at geographic coordinates, called 'float'), following
+        // the name would lose digits.
         let is_finer = coarse_in_f32(positions).is_some();
         let mut splice = Splice::new(&stored.bytes);
         self.visit(stored, element, course, |scalar, span, value, old| {
@@ -132,7 +132,7 @@ impl Edits {
                 Scalar::F32 => value,
                 _ => scalar.nearest(value),
             };
-            // What did not change keeps its digits, be they more than its type holds.
+            // Unchanged numbers keep their digits, even if these are more than the type holds.
             if ![value, nearest].map(f64::to_bits).contains(&old.to_bits()) {
                 splice.replace(span, |out| {
                     if is_short {

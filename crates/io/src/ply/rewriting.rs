@@ -7,7 +7,7 @@ use super::scalar::{Encoding, Scalar, Walk, encode};
 use crate::save::turned::push_negated;
 use crate::text::{Splice, push_f32};
 
-/// A number of a record, and where it stands.
+/// A number of a record, and its place.
 pub(super) type Number = (f64, Range<usize>);
 
 /// The numbers of the next record, property by property: a list's items, or the one number.
@@ -24,10 +24,10 @@ pub(super) fn record(element: &Element, walk: &mut Walk<'_>) -> Option<Vec<Vec<N
     numbers.collect()
 }
 
-/// The bytes while they change. Changes come in the order of the bytes.
+/// The bytes during the changes. Changes come in the order of the bytes.
 pub(super) enum Out<'a> {
     Text(&'a [u8], Splice<'a>),
-    /// Numbers of one type are as long as each other.
+    /// Numbers of one type have the same length.
     Binary(&'a [u8], Vec<u8>, Encoding),
 }
 
@@ -39,7 +39,7 @@ impl<'a> Out<'a> {
         }
     }
 
-    /// Writes the number that stands at `from` over the one at `to`.
+    /// Writes the number at `from` over the one at `to`.
     pub(super) fn copy(&mut self, to: &Range<usize>, from: &Range<usize>) {
         match self {
             Self::Text(bytes, splice) => {
@@ -50,7 +50,7 @@ impl<'a> Out<'a> {
         }
     }
 
-    /// Writes a number with its other sign.
+    /// Writes a number with the opposite sign.
     pub(super) fn negate(&mut self, (value, at): &Number, scalar: Scalar) {
         match self {
             Self::Text(bytes, splice) => {
@@ -61,7 +61,7 @@ impl<'a> Out<'a> {
         }
     }
 
-    /// Writes another number over one; text gets the shortest decimals of an f32.
+    /// Writes another number over the old one; text gets the shortest decimals of an f32.
     pub(super) fn set(&mut self, (_, at): &Number, scalar: Scalar, value: f64) {
         match self {
             Self::Text(_, splice) => splice.replace(at.clone(), |out| push_f32(out, value as f32)),

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::text::Cursor;
 
-/// How the records are written.
+/// The encoding of the records.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum Encoding {
     Ascii,
@@ -54,7 +54,7 @@ impl Scalar {
         }
     }
 
-    /// The least and the most that an integer type holds; `None` for the floating-point types.
+    /// The least and the largest value of an integer type; `None` for the floating-point types.
     pub(super) fn integer_range(self) -> Option<[f64; 2]> {
         Some(match self {
             Self::I8 => [-128.0, 127.0],
@@ -69,7 +69,7 @@ impl Scalar {
         })
     }
 
-    /// `value` as the type holds it: rounded, and cut to the range of an integer.
+    /// `value` as the type stores it: rounded, and cut to the range of an integer.
     pub(super) fn nearest(self, value: f64) -> f64 {
         match self.integer_range() {
             Some([least, most]) => value.round().clamp(least, most),
@@ -85,7 +85,7 @@ fn array<const N: usize>(bytes: &[u8], at: usize) -> Option<[u8; N]> {
     bytes.get(at..at.checked_add(N)?)?.try_into().ok()
 }
 
-/// The binary number at byte `at`, as f64 (exact but for integers of 64 bits); `None` beyond the end.
+/// The binary number at byte `at`, as f64 (exact except for integers of 64 bits); `None` beyond the end.
 #[inline]
 pub(super) fn decode(bytes: &[u8], at: usize, scalar: Scalar, encoding: Encoding) -> Option<f64> {
     macro_rules! number {
@@ -112,7 +112,7 @@ pub(super) fn decode(bytes: &[u8], at: usize, scalar: Scalar, encoding: Encoding
     })
 }
 
-/// Writes `value`, which the type holds (see [`Scalar::nearest`]), over the binary number at byte `at`.
+/// Writes `value`, which the type can store (see [`Scalar::nearest`]), over the binary number at byte `at`.
 pub(super) fn encode(out: &mut [u8], at: usize, value: f64, scalar: Scalar, encoding: Encoding) {
     macro_rules! bytes {
         ($type:ty) => {{
@@ -154,22 +154,22 @@ impl<'a> Walk<'a> {
         Self { bytes, at, encoding }
     }
 
-    /// Where the next number is looked for.
+    /// The place where the search for the next number begins.
     pub(super) fn at(&self) -> usize {
         self.at
     }
 
-    /// How many bytes lie ahead.
+    /// The number of bytes that follow.
     pub(super) fn left(&self) -> u64 {
         (self.bytes.len() - self.at) as u64
     }
 
-    /// Goes over bytes without looking; the caller knows that they are there.
+    /// Skips bytes without a check; the caller knows that they are there.
     pub(super) fn skip(&mut self, bytes: usize) {
         self.at = self.bytes.len().min(self.at.saturating_add(bytes));
     }
 
-    /// The next number and its span; `None` at the file's end or where no number stands.
+    /// The next number and its span; `None` at the file's end or if there is no number.
     #[inline]
     pub(super) fn number(&mut self, scalar: Scalar) -> Option<(f64, Range<usize>)> {
         if self.encoding == Encoding::Ascii {

@@ -1,4 +1,5 @@
-//! The textures that a PLY file names: `comment TextureFile NAME`, one for each number that a face's `texnumber` may have.
+//! The textures that a PLY file names: `comment TextureFile NAME`, one for each number that a face's `texnumber` may
+//! have.
 
 use std::ops::Range;
 
@@ -16,12 +17,12 @@ pub(super) struct Textures {
     pub(super) images: Vec<Image>,
     /// The path of each image.
     paths: Vec<String>,
-    /// The image of each name in the header; `None` where it could not be read.
+    /// The image of each name in the header; `None` if it could not be read.
     of_name: Vec<Option<usize>>,
 }
 
 impl Textures {
-    /// Reads what the header names; what can't be read is noted.
+    /// Reads the textures that the header names; those that can't be read are noted.
     pub(super) fn read(source: &Source<'_>, names: &[Range<usize>], notes: &mut Notes) -> Self {
         let mut out = Self::default();
         for name in names {
@@ -69,8 +70,8 @@ impl Textures {
         }
     }
 
-    /// A material for each name, and the runs of triangles that share one: `numbers` tells of each face its texture, and
-    /// `triangles` how many triangles it is cut into.
+    /// A material for each name, and the runs of triangles that share one: `numbers` has the texture of each face, and
+    /// `triangles` the number of its triangles.
     pub(super) fn dress(
         &self,
         numbers: &[u32],
@@ -97,7 +98,7 @@ impl Textures {
         let mut start = 0;
         let numbers = numbers.iter().copied().chain(std::iter::repeat(0));
         for (number, count) in numbers.zip(triangles) {
-            // A number that the header doesn't name is the first texture's.
+            // A number without a name in the header means the first texture.
             let material = Some(number as usize)
                 .filter(|&number| number < materials.len())
                 .unwrap_or(0);

@@ -8,7 +8,7 @@ use super::scalar::Walk;
 use crate::SaveError;
 use crate::save::turned::wound_back;
 
-/// The new bytes; `turned` tells of each vertex whether its part is turned.
+/// The new bytes; `turned` says for each vertex whether its part is turned.
 ///
 /// # Errors
 /// Strips of triangles, whose winding alternates.
@@ -60,7 +60,7 @@ pub(super) fn turned(stored: &Stored, bytes: &[u8], turned: &[bool]) -> Result<V
                         continue;
                     }
                     let mut copies: Vec<(&Number, &Number)> = corners.iter().zip(wound_back(corners)).collect();
-                    // Texture coordinates go with their corners.
+                    // Texture coordinates move with their corners.
                     let uvs: Vec<&[Number]> = uvs.map_or(Vec::new(), |uvs| numbers[uvs].chunks_exact(2).collect());
                     if uvs.len() == corners.len() {
                         let pairs = uvs.iter().zip(wound_back(&uvs));

@@ -1,4 +1,4 @@
-//! Parts of a PLY file that are kept, but neither shown nor carried to another format.
+//! Parts of a PLY file that are kept, but neither shown nor carried over to another format.
 
 use super::header::Element;
 use super::records::{Columns, TEXTURE_NUMBER, UV_LIST, corner_list};
@@ -49,7 +49,7 @@ fn listed(names: &[&str]) -> String {
     list.join(", ")
 }
 
-/// Notes on parts that an edit or a viewer would be expected to heed.
+/// Notes on parts that users expect an edit or a viewer to heed.
 pub(super) fn notes(elements: &[Element], vertex_element: Option<usize>) -> Vec<String> {
     let mut notes = Vec::new();
     let has_all = |element: &Element, names: &[&str]| names.iter().all(|name| element.property(&[name]).is_some());

@@ -1,22 +1,22 @@
 //! Drawn vertices of a file whose faces have texture coordinates: a vertex whose corners have several is drawn once for
-//! each. The first that is met keeps the vertex's number; the others come behind all vertices, in the order of the faces.
+//! each. The first one found keeps the vertex's number; the others come after all vertices, in the order of the faces.
 
 use std::collections::HashMap;
 
 use glam::DVec3;
 use pliant_mesh::{Drawn, FileVertex};
 
-/// Which drawn vertex each corner is, and the texture coordinates of each drawn vertex.
+/// The drawn vertex of each corner, and the texture coordinates of each drawn vertex.
 #[derive(Debug, Default)]
 pub(super) struct Wedges {
     pub(super) uvs: Vec<[f32; 2]>,
-    /// The vertex of the file behind each drawn one that comes behind all of them.
+    /// The file vertex behind each drawn one that comes after all of the file's.
     pub(super) further: Vec<u32>,
 }
 
 impl Wedges {
-    /// Numbers the drawn vertices, and puts these numbers in place of the corners'. `vertex_uvs` holds for vertices whose
-    /// corners have none.
+    /// Numbers the drawn vertices, and puts these numbers in place of the corners'. `vertex_uvs` applies to vertices
+    /// whose corners have none.
     pub(super) fn number(corners: &mut [u32], corner_uvs: &[[f32; 2]], count: usize, vertex_uvs: &[[f32; 2]]) -> Self {
         let mut out = Self {
             uvs: (0..count)

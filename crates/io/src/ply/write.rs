@@ -1,4 +1,4 @@
-//! A new PLY file, binary and little-endian, from any other kind.
+//! A new PLY file, binary and little-endian, from any other format.
 
 use pliant_mesh::DrawnVertex;
 
@@ -9,8 +9,8 @@ use crate::convert::faces::{coarse_in_f32, face_count, for_each_face, has_materi
 use crate::save::Saved;
 use crate::save::course::Course;
 
-/// Writes a mesh as PLY: positions (as `double` where `float` would round visibly), and normals, texture coordinates
-/// and colours where the mesh has them.
+/// Writes a mesh as PLY: positions (as `double` if `float` would round visibly), and normals, texture coordinates and
+/// colours if the mesh has them.
 pub(crate) fn write_new(mesh: &NewMesh<'_>, course: &Course<'_>) -> Result<Saved, SaveError> {
     let look = &mesh.appearance;
     let (vertices, number) = if look.normals.is_none() && look.uvs.is_none() {
@@ -93,7 +93,7 @@ fn push_vertices(
                 out.extend_from_slice(&coordinate.to_le_bytes());
                 continue;
             }
-            // f32: fine enough here, as `coarse_in_f32` said.
+            // f32: precise enough here, as `coarse_in_f32` found.
             out.extend_from_slice(&(coordinate as f32).to_le_bytes());
         }
         for number in look.normals.iter().flat_map(|normals| normals[v]) {

@@ -1,13 +1,13 @@
-//! The choice between a quad's diagonals where both are as long: one that a mirror keeps.
+//! The choice between a quad's diagonals of equal length: one that a mirror keeps.
 //!
 //! The order of a face's corners says nothing of the shape, so a cut by it leans the same way on both sides of a figure
-//! that is its own mirror image, and a symmetric edit bends it lopsided. Here a plane across which most vertices have
-//! their image is looked for, and of equal diagonals the one is taken whose ends have the lesser value of a function that
-//! only asks how far a vertex is from that plane and where it is along it. The images of a quad's corners have the same
-//! values, so that its image is cut by the image of its cut. A quad that is its own image has no such cut.
+//! that is its own mirror image, and a symmetric edit bends it lopsided. This module finds a plane across which most
+//! vertices have their image. Of equal diagonals it takes the one whose ends have the lesser value of a function that
+//! depends only on a vertex's distance from that plane and its place along it. The images of a quad's corners have the
+//! same values, so that its image is cut by the image of its cut. A quad that is its own image has no such cut.
 //!
-//! The function also leaves out the sides of the other two axes, as long as it tells the diagonals apart, so that figures
-//! with several planes keep them all.
+//! The function also ignores the sides of the other two axes, as long as it distinguishes the diagonals, so that
+//! figures with several planes keep them all.
 
 use std::cell::OnceCell;
 
@@ -17,23 +17,23 @@ use pliant_mesh::mirror_planes;
 /// Diagonals that differ by less than this share of their squares are equal.
 const EQUAL: f64 = 1e-3;
 
-/// Values that differ by less than this share of a diagonal's square don't tell diagonals apart.
+/// Values that differ by less than this share of a diagonal's square don't distinguish diagonals.
 const ALIKE: f64 = 1e-4;
 
-/// How many roundings to f32 of a coordinate may be between a vertex and its image.
+/// The number of roundings to f32 of a coordinate that may be between a vertex and its image.
 const ROUNDINGS: f64 = 16.0;
 
-/// Normals whose cosine is below this are square to each other.
+/// Normals whose cosine is below this are perpendicular to each other.
 const SQUARE: f64 = 1e-4;
 
-/// How one of two equal diagonals of a shape is chosen.
+/// The choice of one of two equal diagonals of a shape.
 pub(crate) struct Diagonals<'a> {
     positions: &'a [DVec3],
     frame: OnceCell<Frame>,
 }
 
 impl<'a> Diagonals<'a> {
-    /// Those of faces over these vertices.
+    /// The rule for faces over these vertices.
     pub fn of(positions: &'a [DVec3]) -> Self {
         Self {
             positions,
@@ -41,7 +41,7 @@ impl<'a> Diagonals<'a> {
         }
     }
 
-    /// Whether b–d is taken of the quad a, b, c, d, of which either diagonal would do.
+    /// Whether the quad a, b, c, d takes b–d, if either diagonal would do.
     pub fn takes_bd(&self, [a, b, c, d]: [DVec3; 4]) -> bool {
         let (ac, bd) = (a.distance_squared(c), b.distance_squared(d));
         let frame = || self.frame.get_or_init(|| Frame::of(self.positions));
@@ -79,7 +79,7 @@ impl Frame {
         let most = judged.iter().map(|(share, _)| *share).fold(0.0, f64::max);
         let best = judged.iter().find(|(share, _)| *share >= most);
         let (normal, height) = best.map_or((DVec3::X, 0.0), |(_, plane)| (plane.normal(), plane.height(centre)));
-        // A second plane, square to the first, is kept as long as the sides of both tell diagonals apart.
+        // A second plane, perpendicular to the first, is kept as long as the sides of both distinguish diagonals.
         let mut square = judged.iter().map(|(_, other)| other.normal());
         let second = square.find(|other| other.dot(normal).abs() < SQUARE);
         let second = second.unwrap_or_else(|| normal.any_orthonormal_vector());
@@ -89,7 +89,7 @@ impl Frame {
         }
     }
 
-    /// A corner from the plane, and along it from the centre.
+    /// A corner's distance from the plane, and its place along it from the centre.
     fn seen(&self, corner: DVec3) -> DVec3 {
         let from = corner - self.centre;
         DVec3::from_array(self.axes.map(|axis| axis.dot(from)))
@@ -99,7 +99,7 @@ impl Frame {
         Self::value_of_one_side(seen.abs())
     }
 
-    /// A sum of products, since sums of functions of single axes are equal over both diagonals of a rectangle.
+    /// A sum of products, because sums of functions of single axes are equal over both diagonals of a rectangle.
     fn value_of_one_side(seen: DVec3) -> f64 {
         let side = seen.x.abs();
         side * seen.y + 0.754_877_666 * seen.y * seen.z + 0.569_840_291 * seen.z * side

@@ -1,4 +1,4 @@
-//! The progress of a save, and whether it has been cancelled.
+//! The progress of a save, and its cancellation.
 
 use pliant_mesh::{Cancel, Cancelled, Progress};
 
@@ -13,7 +13,7 @@ pub(crate) struct Course<'a> {
 }
 
 impl<'a> Course<'a> {
-    /// The whole of a job.
+    /// The complete job.
     pub fn new(progress: &Progress, cancel: &'a Cancel) -> Self {
         Self {
             progress: progress.clone(),
@@ -31,7 +31,7 @@ impl<'a> Course<'a> {
         (self.part(0.0, share), self.part(share, 1.0))
     }
 
-    /// Reports that `done` of `all` is done. Fails if the save was cancelled.
+    /// Reports that `done` of `all` are done. Fails if the save was cancelled.
     pub fn reach(&self, done: usize, all: usize) -> Result<(), Cancelled> {
         self.progress.set(done as f32 / all.max(1) as f32);
         self.cancel.check()

@@ -1,9 +1,9 @@
-//! Local frames of a deformation: how normals and tangents are carried along with the vertices that moved.
+//! Local frames of a deformation, which carry normals and tangents along with the vertices that moved.
 //!
-//! Normals are not recomputed, since a file's own may be custom, smoothed across seams or hard at edges. Each is
-//! turned by the deformation gradient F of the faces around it: n' ∝ F⁻ᵀ n and t' ∝ F t. [Twins](super::twins) that a
-//! seam split share one F (the area-weighted mean over the faces of all of them), so that no seam shows; the two sides of
-//! a hard edge have different normals, so each keeps to its own faces.
+//! Normals are not recomputed, because a file's own may be custom, smoothed across seams or hard at edges. The
+//! deformation gradient F of the faces around it turns each: n' ∝ F⁻ᵀ n and t' ∝ F t. [Twins](super::twins) that a seam
+//! split share one F (the area-weighted mean over the faces of all of them), so that no seam shows; the two sides of a
+//! hard edge have different normals, so each uses only its own faces.
 
 use glam::{DMat3, DVec3};
 use pliant_mesh::{Cancelled, Drawn, DrawnVertex, face_gradient};
@@ -16,8 +16,8 @@ use crate::save::twins;
 /// Frames closer to the identity than this leave stored numbers unchanged: f32 resolves 6e-8.
 const UNTURNED: f64 = 1e-7;
 
-/// Triangles whose gradients are computed in parallel before they are summed in order: as many as stay in the cache
-/// between the two. Sums do not depend on it.
+/// The number of triangles whose gradients are computed in parallel before they are summed in order: as many as stay in
+/// the cache between the two. Sums do not depend on it.
 const BLOCK: usize = 1 << 14;
 
 const NO_GROUP: u32 = u32::MAX;
@@ -78,8 +78,8 @@ impl Frames {
         Ok(Self { group_of, gradients })
     }
 
-    /// The gradient at a drawn vertex, in world space. It is `None` if the vertex did not move, its surroundings
-    /// neither turned nor stretched, or no face around it has an area. Its normal and tangent then stay as stored.
+    /// The gradient at a drawn vertex, in world space. It is `None` if the vertex did not move, if its surroundings
+    /// neither turned nor stretched, or if no face around it has an area. Its normal and tangent then stay as stored.
     pub fn gradient(&self, vertex: DrawnVertex) -> Option<DMat3> {
         match self.group_of[vertex.index()] {
             NO_GROUP => None,
@@ -94,8 +94,8 @@ impl Frames {
     }
 }
 
-/// `normal` carried by the inverse transpose of `gradient`, with its length kept. A normal that would have no direction
-/// is returned unchanged.
+/// `normal` carried by the inverse transpose of `gradient`, with its length kept. A normal that would become zero is
+/// returned unchanged.
 pub(crate) fn carried_normal(gradient: DMat3, normal: DVec3) -> DVec3 {
     // The cofactor matrix is det(F) F⁻ᵀ: the same direction without a division, and defined for a singular F.
     let [x, y, z] = [gradient.x_axis, gradient.y_axis, gradient.z_axis];
@@ -108,7 +108,7 @@ pub(crate) fn carried_normal(gradient: DMat3, normal: DVec3) -> DVec3 {
 }
 
 /// `tangent` carried by `gradient`, with its length kept and at its old angle to the normal (a right angle in any sound
-/// file), which `new_normal` replaces. A tangent that would have no direction is returned unchanged.
+/// file), which `new_normal` replaces. A tangent that would become zero is returned unchanged.
 pub(crate) fn carried_tangent(gradient: DMat3, normal: DVec3, new_normal: DVec3, tangent: DVec3) -> DVec3 {
     let (Some(old_up), Some(up)) = (normal.try_normalize(), new_normal.try_normalize()) else {
         return (gradient * tangent)
@@ -143,7 +143,7 @@ fn group(
     course: &Course<'_>,
 ) -> Result<(Vec<u32>, usize), Cancelled> {
     course.reach(0, 4)?;
-    // Adding zero turns -0 into 0, since exporters mix the two across a seam.
+    // Adding zero turns -0 into 0, because exporters mix the two across a seam.
     let bits = |x: f64| (x + 0.0).to_bits();
     let key = |v: usize| {
         let [a, b, c] = drawn.positions[v].to_array().map(bits);
@@ -158,7 +158,7 @@ fn group(
     course.reach(1, 4)?;
     moved.par_sort_unstable();
     course.reach(2, 4)?;
-    // First, the lowest twin of each vertex, which is the vertex itself if it has none.
+    // The first step finds the lowest twin of each vertex, which is the vertex itself if it has none.
     let mut group_of = vec![NO_GROUP; positions.len()];
     for run in moved.chunk_by(|a, b| a.0 == b.0) {
         for (k, &(_, v)) in run.iter().enumerate() {
@@ -191,7 +191,7 @@ fn group(
     Ok((group_of, group_count as usize))
 }
 
-/// The lowest twin that is known of a vertex, to which it is then led in fewer steps.
+/// The lowest known twin of a vertex; the vertex then points at it directly.
 fn root(group_of: &mut [u32], mut v: u32) -> u32 {
     while group_of[v as usize] != v {
         group_of[v as usize] = group_of[group_of[v as usize] as usize];

@@ -13,15 +13,15 @@ use pliant_mesh::Drawn;
 
 use crate::Format;
 
-/// What to save, and as what.
+/// A request to save: the data and the format.
 #[derive(Clone, Copy, Debug)]
 pub struct Save<'a> {
     /// The drawn set that [`read`](crate::read) returned with the scene.
     pub drawn: &'a Drawn,
     /// The new world position of each drawn vertex. A vertex moved if it is not bit-equal to `drawn.positions`.
     pub positions: &'a [DVec3],
-    /// Of each drawn vertex, whether its connected part is turned inside out: its faces are wound the other way, and its
-    /// normals point the other way. Empty: none is. All drawn vertices of one triangle are turned, or none of them.
+    /// For each drawn vertex, whether its connected part is turned inside out, with reversed faces and normals. Empty
+    /// if none is. All drawn vertices of one triangle are turned, or none of them.
     pub turned: &'a [bool],
     /// Whether the deltas of the file's morph targets turn with the surface.
     pub deltas: MorphDeltas,
@@ -29,19 +29,19 @@ pub struct Save<'a> {
     pub format: Format,
     /// OUT's file name, without a folder.
     pub name: &'a str,
-    /// Where OUT goes, which decides how its neighbours are named and whether they are copied.
+    /// The place of OUT, which decides the names of its neighbours and whether they are copied.
     pub placement: Placement,
 }
 
-/// Whether the deltas of a file's morph targets turn with the surface, each mesh's all or none.
+/// Whether the deltas of a file's morph targets turn with the surface: all or none of a mesh's.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub enum MorphDeltas {
-    /// Where one of them would else be off by more than 30 degrees.
+    /// If one of them would otherwise be wrong by more than 30 degrees.
     #[default]
     WhereFarOff,
-    /// Wherever the surface turns.
+    /// Always.
     Turn,
-    /// Nowhere: they stay as they are stored.
+    /// Never: they stay as stored.
     Stay,
 }
 
@@ -50,14 +50,15 @@ pub enum MorphDeltas {
 pub struct MorphTarget<'a> {
     /// Its name.
     pub name: &'a str,
-    /// How far it is applied by default, usually 1 (shows the edited shape) or 0 (shows the shape before the edit).
+    /// The weight by which it is applied by default, usually 1 (shows the edited shape) or 0 (shows the shape before
+    /// the edit).
     pub weight: f64,
 }
 
-/// Where OUT stands relative to the file that was read.
+/// The place of OUT relative to the input file.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Placement {
-    /// OUT is the file that was read.
+    /// OUT is the input file.
     SameFile,
     /// OUT has another name in the same folder: neighbours that change get new names.
     SameFolder,
@@ -70,10 +71,10 @@ pub enum Placement {
 pub struct Saved {
     /// OUT first, then the neighbours to write, each under its own name.
     pub files: Vec<OutputFile>,
-    /// What the format could not hold, or what did not follow the edit, each as a sentence.
+    /// The losses: data that the format could not hold or that did not follow the edit, each as a sentence.
     pub warnings: Vec<String>,
-    /// For each triangle that OUT draws, in OUT's order, the drawn triangle it came from. `None` if all of them are
-    /// there in their old order.
+    /// For each triangle that OUT draws, in OUT's order, the drawn triangle that it came from. `None` if all of them
+    /// are there in their old order.
     pub triangles: Option<Vec<u32>>,
 }
 
@@ -82,13 +83,13 @@ pub struct Saved {
 pub struct OutputFile {
     /// Its path relative to OUT's folder, with `/` between folders. It never leaves that folder.
     pub name: String,
-    /// What it is to OUT.
+    /// Its role.
     pub role: Role,
     /// Its content.
     pub bytes: Vec<u8>,
 }
 
-/// What a written file is for.
+/// The role of a written file.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Role {
     /// OUT itself.
@@ -117,8 +118,8 @@ impl Saved {
     }
 }
 
-/// The stem that OUT's new neighbours are named by: OUT's name without the extension, and without characters that a
-/// URI, a material library or another system would read differently (a backslash is a folder there, `c:` a drive).
+/// The stem for the names of OUT's new neighbours: OUT's name without the extension, and without characters that a URI,
+/// a material library or another system would read differently (a backslash is a folder there, `c:` a drive).
 pub(crate) fn own_stem(out: &str) -> String {
     let stem = out.rsplit_once('.').map_or(out, |(stem, _)| stem);
     let is_drive = stem.as_bytes().get(1) == Some(&b':');

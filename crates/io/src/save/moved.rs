@@ -1,4 +1,4 @@
-//! Which vertices moved, and to where, and which are turned inside out.
+//! The vertices that moved, their new places, and those that are turned inside out.
 
 use std::borrow::Cow;
 use std::sync::OnceLock;
@@ -27,12 +27,12 @@ pub(crate) fn check_single(position: DVec3, file_vertex: FileVertex) -> Result<(
 /// The rest shape and the new one, over the drawn vertices.
 ///
 /// A vertex moved if its new position is not bit-equal to its rest position. Every moved vertex's new position is
-/// finite in single precision, whatever the format, because nearly every reader keeps no more than that.
+/// finite in single precision, in every format, because nearly every reader keeps no more than that.
 pub(crate) struct Moved<'a> {
     pub drawn: &'a Drawn,
     /// New world positions, one per drawn vertex.
     pub positions: &'a [DVec3],
-    /// Whether each drawn vertex's part is turned inside out; empty where none is.
+    /// Whether each drawn vertex's part is turned inside out; empty if none is.
     turned: &'a [bool],
     any: bool,
     of_file: OnceLock<Vec<Option<DVec3>>>,
@@ -42,7 +42,7 @@ impl<'a> Moved<'a> {
     /// Compares new positions with the rest shape. Refuses a wrong count and a moved vertex that is not finite.
     ///
     /// # Errors
-    /// Besides these a file vertex that is turned inside out in one of the places where it is shown.
+    /// These two, and a file vertex that is turned inside out in only some of the places where it is shown.
     pub fn of(drawn: &'a Drawn, positions: &'a [DVec3], turned: &'a [bool], format: Format) -> Result<Self, SaveError> {
         let is_of_scene = turned.is_empty() || turned.len() == positions.len();
         if positions.len() != drawn.positions.len() || drawn.file_vertex.len() != drawn.positions.len() || !is_of_scene
@@ -86,7 +86,7 @@ impl<'a> Moved<'a> {
         !self.turned.is_empty()
     }
 
-    /// Whether the file stays as it is.
+    /// Whether the file does not change.
     pub fn is_nothing(&self) -> bool {
         self.moves_nothing() && !self.turns_any()
     }
@@ -107,7 +107,7 @@ impl<'a> Moved<'a> {
         out
     }
 
-    /// The drawn triangles as they are to be wound.
+    /// The drawn triangles with their final winding.
     pub fn triangles(&self) -> Cow<'a, [[DrawnVertex; 3]]> {
         if !self.turns_any() {
             return Cow::Borrowed(&self.drawn.triangles);
@@ -146,7 +146,7 @@ impl<'a> Moved<'a> {
         })
     }
 
-    /// The local frames that carry normals and tangents along. `normals` holds each drawn vertex's world-space rest
+    /// The local frames that carry normals and tangents along. `normals` has each drawn vertex's world-space rest
     /// normal (any length; zero if it has none).
     pub fn frames(&self, normals: &[DVec3], course: &Course<'_>) -> Result<Frames, Cancelled> {
         Frames::of(self.drawn, self.positions, normals, course)

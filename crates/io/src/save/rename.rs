@@ -8,7 +8,7 @@ impl Saved {
     /// it.
     ///
     /// # Errors
-    /// [`SaveError::CannotHold`] if a file refers to it in a way that can't be told apart from other references.
+    /// [`SaveError::CannotHold`] if a file refers to it in a way that can't be distinguished from other references.
     pub fn rename(&mut self, place: usize, name: &str, format: Format) -> Result<(), SaveError> {
         let old = self.files[place].name.clone();
         let is_named = match self.files[place].role {

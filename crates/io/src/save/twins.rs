@@ -1,26 +1,27 @@
-//! Twins: drawn vertices that a seam split, and that have to keep one normal if the seam is not to show.
+//! Twins: drawn vertices that a seam split. They must keep one normal so that the seam stays invisible.
 //!
-//! Exporters write the two sides of a seam in single precision or on grids of their own, so twins are rarely equal to the
-//! bit. Vertices count as twins if they are nearer to each other than a sixteenth of their shortest edge and their
-//! normals agree within a degree; the two sides of a hard edge don't. Only vertices at the rim of what is connected by
-//! number can be a side of a seam, so few are compared.
+//! Exporters write the two sides of a seam in single precision or on grids of their own, so twins are rarely equal to
+//! the bit. Vertices count as twins if they are closer to each other than a sixteenth of their shortest edge and their
+//! normals agree within a degree; the two sides of a hard edge don't agree. Only vertices at the rim of the parts that
+//! are connected by number can be a side of a seam, so few are compared.
 
 use glam::DVec3;
 use pliant_mesh::Drawn;
 
-/// The share of its shortest edge within which a vertex has its twins.
+/// The share of a vertex's shortest edge within which its twins are.
 const NEAR: f64 = 1.0 / 16.0;
 
 /// The cosine of a degree.
 const AGREEMENT: f64 = 0.999_847_695;
 
-/// How many neighbours along a line are compared with a vertex, so that a million vertices at one place end.
+/// The number of neighbours along a line that are compared with a vertex, so that a search among a million vertices at
+/// one place ends.
 const MOST_COMPARED: usize = 64;
 
-/// No axis of any mesh.
+/// A direction that is no mesh's axis.
 const DIRECTION: DVec3 = DVec3::new(0.533_817_26, 0.617_309_04, 0.577_854_49);
 
-/// Calls `join` with each vertex of `among` (by number) and an earlier one that it is a twin of.
+/// Calls `join` with each vertex of `among` (by number) and an earlier twin of it.
 pub(super) fn for_each(drawn: &Drawn, normals: &[DVec3], among: &[u32], mut join: impl FnMut(u32, u32)) {
     let is_at_rim = rim(drawn);
     let reach = reaches(drawn, &is_at_rim);
@@ -47,9 +48,9 @@ pub(super) fn for_each(drawn: &Drawn, normals: &[DVec3], among: &[u32], mut join
     }
 }
 
-/// Which vertices are at the rim of the triangles around them, as the numbers of corners connect those. Around a vertex
-/// within, each neighbour follows one triangle's corner and precedes another's, so that the sums are equal; a rim whose
-/// sums are equal, too, is as likely as two equal hashes.
+/// Whether each vertex is at the rim of the triangles around it, as the numbers of corners connect them. Around an
+/// interior vertex, each neighbour follows one triangle's corner and precedes another's, so that the sums are equal; a
+/// rim with equal sums is as unlikely as two equal hashes.
 fn rim(drawn: &Drawn) -> Vec<bool> {
     let mut sums = vec![0_u64; drawn.positions.len()];
     let hash = |v: usize| (v as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29) ^ (v as u64);
@@ -63,7 +64,8 @@ fn rim(drawn: &Drawn) -> Vec<bool> {
     sums.into_iter().map(|sum| sum != 0).collect()
 }
 
-/// How far from each vertex its twins may be; 0 for vertices that are not wanted or that no edge with a length touches.
+/// The largest distance of each vertex's twins; 0 for vertices that are not wanted or that no edge with a length
+/// touches.
 fn reaches(drawn: &Drawn, is_wanted: &[bool]) -> Vec<f64> {
     let mut shortest = vec![f64::INFINITY; drawn.positions.len()];
     for corners in &drawn.triangles {

@@ -1,4 +1,4 @@
-//! Checks that a file that was read back shows what was meant to be saved.
+//! Checks that a file that was read back shows the intended result.
 
 use std::ops::Range;
 
@@ -12,8 +12,8 @@ use crate::scene::{Scene, SceneAndDrawn, Stored};
 use crate::{Format, MorphTarget, Save};
 
 impl Scene {
-    /// Compares `back`, which was read from the bytes of a save of this scene, with what `save` asked for. `triangles`
-    /// is the save's own [`triangles`](crate::Saved::triangles). With `morph` the edit shows in proportion to the
+    /// Compares `back`, which was read from the bytes of a save of this scene, with the request `save`. `triangles` is
+    /// the save's own [`triangles`](crate::Saved::triangles). With `morph` the edit is visible in proportion to the
     /// target's weight.
     ///
     /// A save in the file's own format keeps its vertices and their order, so each vertex is compared. Another format
@@ -60,7 +60,7 @@ impl Scene {
                     Err("its triangles join other vertices".to_owned())
                 }
             }
-            // An STL's corners are its vertices: those of a turned facet change their places.
+            // An STL's corners are its vertices: those of a turned facet change places.
             (_, format) if format == self.format() && !(format == Format::Stl && save.turned.contains(&true)) => {
                 same_count("vertices", back.drawn.file_vertex_count, save.drawn.file_vertex_count)?;
                 same_count("triangles", back.drawn.triangles.len(), save.drawn.triangles.len())?;
@@ -99,7 +99,7 @@ impl Scene {
     }
 }
 
-/// A face's corners as they are to be written.
+/// A face's corners with their final winding.
 fn as_wound(face: &[DrawnVertex], is_turned: impl Fn(DrawnVertex) -> bool) -> impl Iterator<Item = &DrawnVertex> {
     let is_turned = face.first().is_some_and(|first| is_turned(*first));
     let (turned, as_read) = match is_turned {
@@ -126,9 +126,9 @@ fn same_windings(
     wrong.map_or(Ok(()), |face| Err(format!("face {face} joins other vertices")))
 }
 
-/// How the format of a file that was read back stores positions.
+/// The precision of positions in the format of a file that was read back.
 enum Precision<'a> {
-    /// Ranges of drawn vertices, ascending, and how far each of their coordinates may be off.
+    /// Ranges of drawn vertices, ascending, and the largest error of each of their coordinates.
     Within(Vec<(Range<u32>, DVec3)>),
     /// Each coordinate as the nearest number of its type, which may depend on the axis.
     Nearest(&'a Scene),
@@ -142,7 +142,7 @@ impl<'a> Precision<'a> {
         }
     }
 
-    /// Whether drawn vertex `v`, read back at `found`, is `wanted` as the format stores it.
+    /// Whether drawn vertex `v`, read back at `found`, is `wanted` to the format's precision.
     fn holds(&self, v: usize, found: DVec3, wanted: DVec3) -> bool {
         let lanes = found.to_array().into_iter().zip(wanted.to_array());
         match self {
@@ -172,7 +172,7 @@ fn same_count(what: &str, found: usize, wanted: usize) -> Result<(), String> {
     }
 }
 
-/// Compares drawn vertices of `back`, each with the position it should have.
+/// Compares drawn vertices of `back`, each with its expected position.
 fn each(
     mut wanted: impl Iterator<Item = (usize, DVec3)>,
     back: &SceneAndDrawn,
@@ -189,7 +189,7 @@ fn each(
     }
 }
 
-/// Where each file vertex should be: where its first moved drawn vertex is, or at rest.
+/// The expected place of each file vertex: that of its first moved drawn vertex, or the rest position.
 fn of_file_vertices(drawn: &Drawn, wanted: impl Fn(usize) -> DVec3) -> Vec<DVec3> {
     let mut out: Vec<Option<DVec3>> = vec![None; drawn.file_vertex_count];
     let mut has_moved = vec![false; drawn.file_vertex_count];

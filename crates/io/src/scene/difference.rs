@@ -9,34 +9,34 @@ use crate::{Appearance, Material, quoted};
 /// One thing that differs between two files.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Difference {
-    /// Where: "mesh 0, primitive 1, POSITION".
+    /// The place: "mesh 0, primitive 1, POSITION".
     pub place: String,
-    /// What differs.
+    /// The difference.
     pub what: What,
 }
 
-/// How two things differ.
+/// The kind of a difference.
 #[derive(Clone, PartialEq, Debug)]
 pub enum What {
     /// Numbers of a list of elements, such as an attribute.
     Elements {
         /// The elements that differ, in ascending order.
         elements: Vec<u32>,
-        /// How many elements there are in all.
+        /// The number of elements in all.
         of: usize,
         /// The largest difference between two numbers; infinite if one of them is not finite.
         largest: f64,
     },
     /// An accessor's min or max.
     Bounds,
-    /// How numbers are stored, in words.
+    /// The storage of numbers, in words.
     Stored {
         /// In the first file.
         first: String,
         /// In the second.
         second: String,
     },
-    /// How many there are.
+    /// A count.
     Count {
         /// In the first file.
         first: usize,
@@ -127,7 +127,7 @@ pub(crate) fn of_elements<const N: usize>(
     (!elements.is_empty()).then_some(What::Elements { elements, of, largest })
 }
 
-/// The largest difference between two numbers at the same place; infinite if it is not a number.
+/// The largest difference between two numbers at the same place; infinite if it is NaN.
 fn farthest<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
     let apart = |lane: usize| {
         let apart = (a[lane] - b[lane]).abs();
@@ -140,7 +140,7 @@ fn farthest<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
     (0..N).map(apart).max_by(f64::total_cmp).unwrap_or(0.0)
 }
 
-/// Where bytes differ.
+/// The difference between two byte strings.
 pub(crate) fn of_bytes(a: &[u8], b: &[u8]) -> Option<Difference> {
     let at = a.iter().zip(b).position(|(a, b)| a != b);
     let at = at.or((a.len() != b.len()).then_some(a.len().min(b.len())))?;
@@ -150,7 +150,8 @@ pub(crate) fn of_bytes(a: &[u8], b: &[u8]) -> Option<Difference> {
     })
 }
 
-/// The differences between what two files show. Where their faces are alike, triangles follow from positions alone.
+/// The differences between the shapes that two files show. If their faces are alike, triangles follow from positions
+/// alone.
 pub(crate) fn of_shapes(
     (a, a_looks): (&Drawn, &Appearance),
     (b, b_looks): (&Drawn, &Appearance),

@@ -1,4 +1,4 @@
-//! A file as stored, whatever its format, and the one place where formats are told apart.
+//! A file as stored, in any format, and the only place that distinguishes formats.
 //!
 //! Each format is one module with the same interface: `read(&Source) -> Result<(Stored, Drawn), ReadError>`;
 //! `Stored::{notes, summary, appearance, write}`, where `write(&Moved, &Course)` returns the file with only the moved
@@ -27,16 +27,16 @@ use crate::scene::summary::Summary;
 use crate::source::{Resolver, Source};
 use crate::{Appearance, Bytes, Format, ReadError, SaveError, gltf, obj, off, ply, stl};
 
-/// What [`read`] returns.
+/// The result of [`read`].
 #[derive(Debug)]
 pub struct SceneAndDrawn {
     /// The file as stored.
     pub scene: Scene,
-    /// What it shows.
+    /// The geometry that it shows.
     pub drawn: Drawn,
 }
 
-/// A file as stored, with nothing thrown away.
+/// A complete file as stored.
 #[derive(Debug)]
 pub struct Scene {
     format: Format,
@@ -125,7 +125,7 @@ impl Scene {
         self.format
     }
 
-    /// What a person should know about how the file was read (a node left out, an image missing), in sentences.
+    /// Notes for a person on how the file was read (a node left out, an image missing), in sentences.
     pub fn notes(&self) -> &[String] {
         match &self.stored {
             Stored::Gltf(stored) => stored.notes(),
@@ -136,7 +136,7 @@ impl Scene {
         }
     }
 
-    /// What the file holds, counted.
+    /// The file's contents, counted.
     pub fn summary(&self) -> Summary {
         match &self.stored {
             Stored::Gltf(stored) => stored.summary(),
@@ -157,8 +157,8 @@ impl Scene {
         }
     }
 
-    /// The names of the file's morph targets, each once. Only glTF has some; one without a name is called `target 0`,
-    /// `target 1`, ... by its number.
+    /// The names of the file's morph targets, each once. Only glTF has targets; one without a name is called `target
+    /// 0`, `target 1`, ... by its number.
     pub fn morph_targets(&self) -> Vec<String> {
         match &self.stored {
             Stored::Gltf(stored) => stored.morph_targets(),
@@ -166,8 +166,8 @@ impl Scene {
         }
     }
 
-    /// How far each of the file's `vertex_count` drawn vertices is moved, in world space, when the morph targets called
-    /// `target` are applied whole; `None` if there is none. `file` is used in messages only.
+    /// The displacement of each of the file's `vertex_count` drawn vertices, in world space, when the morph targets
+    /// called `target` are applied fully; `None` if there is none. `file` is used in messages only.
     ///
     /// # Errors
     /// A target that can't be read, or soon after `cancel` is raised.
@@ -184,7 +184,7 @@ impl Scene {
         }
     }
 
-    /// How the scene looks at rest. Each call decodes it from the stored bytes.
+    /// The appearance of the scene at rest. Each call decodes it from the stored bytes.
     pub fn appearance(&self) -> Appearance {
         match &self.stored {
             Stored::Gltf(stored) => stored.appearance(),
@@ -195,10 +195,10 @@ impl Scene {
         }
     }
 
-    /// The file as `save` asks for it. If nothing moved and the format is the same, these are the bytes that were read.
+    /// The file that `save` requests. If nothing moved and the format is the same, these are the bytes that were read.
     ///
     /// # Errors
-    /// What the format can't hold; [`SaveError::Cancelled`] soon after `cancel` is raised.
+    /// An edit that the format can't hold; [`SaveError::Cancelled`] soon after `cancel` is raised.
     pub fn save(&self, save: &Save<'_>, progress: &Progress, cancel: &Cancel) -> Result<Saved, SaveError> {
         let saved = self.save_parted(save, Parting::ByName, &Course::new(progress, cancel))?;
         progress.set(1.0);
@@ -282,7 +282,7 @@ impl Scene {
         {
             return stored.save_as_morph(save, &moved, target, course);
         }
-        // With `Parting::Joined` the written vertices are the drawn ones. A GLB has all of its neighbours in itself.
+        // With `Parting::Joined` the written vertices are the drawn ones. A GLB contains all of its neighbours.
         let at_rest = Save {
             positions: &save.drawn.positions,
             format: match self.stored {
@@ -342,7 +342,7 @@ impl Scene {
         Ok(saved)
     }
 
-    /// A warning about parts of the file that no other format is given.
+    /// A warning about parts of the file that other formats do not get.
     fn unread_lost(&self, format: Format) -> Option<String> {
         let unread = match &self.stored {
             Stored::Ply(stored) => stored.unread(),
@@ -370,10 +370,10 @@ impl Scene {
         lost(&format.to_string(), &motion)
     }
 
-    /// What differs between this file and another, given the drawn set that [`read`] returned with each; empty if they
-    /// hold the same. Two glTF files are compared part by part, whatever their containers and wherever their numbers
-    /// are stored. Other files are compared by what they show, and two of the same format also by whether anything
-    /// besides the shape differs.
+    /// The differences between this file and another, given the drawn set that [`read`] returned with each; empty if
+    /// their contents are the same. Two glTF files are compared part by part, for any containers and any places of
+    /// their numbers. Other files are compared by the shapes that they show, and two of the same format also by whether
+    /// anything besides the shape differs.
     pub fn differences(&self, drawn: &Drawn, other: &Self, other_drawn: &Drawn) -> Vec<Difference> {
         if self.format == other.format
             && self.bytes == other.bytes
@@ -412,8 +412,8 @@ impl Scene {
         &self.stored
     }
 
-    /// `value` rounded to what the file's format stores for a coordinate of the given axis. glTF stores coordinates in
-    /// a node's space, where no such number exists, so `value` is returned unchanged.
+    /// `value` rounded to the precision of the file's format for a coordinate of the given axis. glTF stores
+    /// coordinates in a node's space, where no such number exists, so `value` is returned unchanged.
     pub(crate) fn nearest_stored(&self, axis: usize, value: f64) -> f64 {
         match &self.stored {
             Stored::Ply(stored) => stored.nearest(axis, value),

@@ -6,8 +6,8 @@ use std::ops::Range;
 
 use pliant_mesh::Object;
 
-/// The longest name, in characters, that each run of triangles gets a copy of: as much as a person would read. The file
-/// keeps the whole name.
+/// The longest name, in characters, of which each run of triangles gets a copy: a readable length. The file keeps the
+/// whole name.
 const LONGEST_NAME: usize = 120;
 
 /// A name shortened for display.
@@ -27,7 +27,7 @@ pub(crate) struct TriangleRun<Key> {
     pub(crate) triangles: Range<u32>,
 }
 
-/// The objects, in the order in which the runs first mention them. Runs without triangles make no object.
+/// The objects, in the order in which the runs first name them. Runs without triangles make no object.
 pub(crate) fn gathered<Key: Eq + Hash>(runs: impl Iterator<Item = TriangleRun<Key>>) -> Vec<Object> {
     let mut known: HashMap<Key, usize> = HashMap::new();
     let mut objects: Vec<Object> = Vec::new();

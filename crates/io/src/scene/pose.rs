@@ -1,7 +1,7 @@
-//! Whether a file is a pose of another: the same vertices and faces in other places.
+//! Poses: files with the same vertices and faces in other places.
 //!
-//! Two poses may be drawn by other triangles and other drawn vertices: a polygon is cut by its shape, and corners of one
-//! vertex are drawn apart where their normals differ. The file's own faces and vertices stay.
+//! Two poses may be drawn with different triangles and drawn vertices: a polygon is cut by its shape, and corners of
+//! one vertex are drawn separately if their normals differ. The file's own faces and vertices stay the same.
 
 use glam::DVec3;
 use pliant_mesh::{Drawn, DrawnVertex};
@@ -10,8 +10,8 @@ use crate::save::bits::bit_equal;
 use crate::scene::Scene;
 use crate::scene::check::Faces;
 
-/// Where the pose puts each of the drawn vertices of `rest`; `None` where it has other vertices or faces. `rest` and
-/// `pose` are scenes with what they draw.
+/// The pose's position for each of the drawn vertices of `rest`; `None` if it has other vertices or faces. `rest` and
+/// `pose` are scenes with their drawn sets.
 pub fn positions_in_pose(rest: (&Scene, &Drawn), pose: (&Scene, &Drawn)) -> Option<Vec<DVec3>> {
     let (own, other) = (rest.1, pose.1);
     if own.positions.len() == other.positions.len() && own.triangles == other.triangles {
@@ -41,7 +41,7 @@ pub(crate) fn has_same_faces((scene, drawn): (&Scene, &Drawn), (other, other_dra
     }
 }
 
-/// Where each vertex of the file is; `None` where one is at several places.
+/// The position of each vertex of the file; `None` if one is at several places.
 fn places(drawn: &Drawn) -> Option<Vec<Option<DVec3>>> {
     let mut places: Vec<Option<DVec3>> = vec![None; drawn.file_vertex_count];
     for (vertex, &position) in drawn.file_vertex.iter().zip(&drawn.positions) {

@@ -1,8 +1,8 @@
-//! What a file holds, in counts.
+//! The contents of a file, in counts.
 
 use serde::Serialize;
 
-/// What a file holds, counted.
+/// The contents of a file, counted.
 #[derive(Clone, PartialEq, Eq, Debug, Default, Serialize)]
 #[expect(missing_docs, reason = "each count is of what its name says")]
 pub struct Summary {

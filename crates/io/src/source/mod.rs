@@ -12,7 +12,7 @@ use crate::{Bytes, Format, ReadError};
 pub trait Resolver {
     /// Returns the bytes of the neighbour at `uri`, a percent-decoded path with `/` between folders, relative to the
     /// file's own folder. A file may refer to the same neighbour many times and in several spellings, and keeps every
-    /// result, so share them. The error says why it failed, in words.
+    /// result, so share them. The error gives the reason, in words.
     fn read(&self, uri: &str) -> Result<Bytes, String>;
 }
 
@@ -31,14 +31,14 @@ pub(crate) struct Source<'a> {
 /// Bytes of a text between two checks for cancelling: a few thousand numbers.
 const BYTES_BETWEEN_LOOKS: usize = 1 << 15;
 
-/// Where in the bytes a reader last checked for cancelling.
+/// The place in the bytes where a reader last checked for cancelling.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Looks {
     next: usize,
 }
 
 impl Source<'_> {
-    /// Now and then reports the progress of a reader that has come to byte `at`, and checks for cancelling. It counts
+    /// Reports now and then the progress of a reader that has reached byte `at`, and checks for cancelling. It counts
     /// bytes, because a line, a face or a record may be as long as the file.
     #[inline]
     pub fn pass(&self, looks: &mut Looks, at: usize) -> Result<(), Cancelled> {

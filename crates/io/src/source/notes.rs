@@ -1,7 +1,6 @@
-//! What a person should know about how a file was read: sentences, kept few because a broken file could cause a
-//! million.
+//! Notes for a person on how a file was read: sentences, kept few because a broken file could cause a million.
 
-/// How many sentences of each kind are kept; the rest are only counted.
+/// The number of sentences of each kind that are kept; the others are only counted.
 const MOST_OF_A_KIND: usize = 12;
 
 /// Sentences, grouped by kind.
@@ -11,7 +10,7 @@ pub(crate) struct Notes {
 }
 
 impl Notes {
-    /// Adds a sentence, if there is one. `kind` is what it is about, in the plural.
+    /// Adds a sentence, if there is one. `kind` is its subject, in the plural.
     pub fn add(&mut self, kind: &'static str, sentence: Option<String>) {
         let Some(sentence) = sentence else { return };
         let known = self.kinds.iter().position(|(other, ..)| *other == kind);
@@ -27,7 +26,7 @@ impl Notes {
         }
     }
 
-    /// All sentences, then how many more of each kind were left out.
+    /// All sentences, and then the number of those of each kind that were left out.
     pub fn sentences(self) -> Vec<String> {
         let mut out = Vec::new();
         for (kind, sentences, further) in self.kinds {

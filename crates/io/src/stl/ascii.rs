@@ -20,7 +20,7 @@ pub(super) struct Facets {
     pub(super) corners: Vec<DVec3>,
     /// The byte position of each facet's keyword.
     pub(super) places: Vec<usize>,
-    /// How many solids begin.
+    /// The number of solids that begin.
     pub(super) solids: usize,
 }
 
@@ -71,7 +71,7 @@ fn unexpected(source: &Source<'_>, at: usize, word: &[u8], wanted: &str) -> Read
     malformed_at(source, Format::Stl, at, &reason)
 }
 
-/// Reads what follows `facet` up to `endfacet`.
+/// Reads the text after `facet` up to `endfacet`.
 fn facet(source: &Source<'_>, cursor: &mut Cursor<'_>) -> Result<[DVec3; 3], ReadError> {
     let keyword = |cursor: &mut Cursor<'_>, wanted: &str| {
         cursor.skip_space();
@@ -124,8 +124,8 @@ pub(super) fn patched(
             push_f32(out, value as f32)
         }
     };
-    // A number of more digits than f32 keeps is replaced by one of less, so that a save reads back as one of two
-    // numbers: the new one, or the nearest one that the file is given.
+    // A number with more digits than f32 keeps is replaced by one with fewer, so that a save reads back as one of two
+    // numbers: the new one, or the nearest one that the file stores.
     let is_same = |old: f64, new: f64| old == new || (!is_finer && old == shortest_f32(new));
     let mut splice = Splice::new(bytes);
     let changed = changed_facets(moved).take_while(|(number, ..)| *number < facets.len());
@@ -155,7 +155,7 @@ pub(super) fn patched(
     Ok(splice.finish())
 }
 
-/// The bytes with facets wound the other way and their normals turned.
+/// The bytes with reversed facets and normals.
 pub(super) fn turned(bytes: &[u8], is_turned: impl Fn(usize) -> bool) -> Vec<u8> {
     let mut splice = Splice::new(bytes);
     let mut cursor = Cursor::new(bytes, mark_len(bytes));

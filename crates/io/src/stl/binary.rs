@@ -20,8 +20,8 @@ fn stored_count(bytes: &[u8]) -> Option<u64> {
     Some(u64::from(u32::from_le_bytes(count)))
 }
 
-/// Whether a file is binary whatever its first word is: its length is exactly that of its facet count, or its count has
-/// a byte that no text has, and the file all its facets.
+/// Whether a file is binary, for any first word: its length is exactly that of its facet count, or its count has a byte
+/// that no text has, and the file has all its facets.
 pub(super) fn is_certain(bytes: &[u8]) -> bool {
     stored_count(bytes).is_some_and(|count| {
         let (wanted, length) = (HEADER as u64 + count * FACET as u64, bytes.len() as u64);
@@ -66,7 +66,7 @@ pub(super) fn read(source: &Source<'_>, notes: &mut Vec<String>) -> Result<Vec<D
     Ok(corners)
 }
 
-/// Whether a facet has attribute bytes, which some programs take for a colour.
+/// Whether a facet has attribute bytes, which some programs use for a colour.
 pub(super) fn has_attributes(bytes: &[u8], facet_count: usize) -> bool {
     let facets = bytes
         .get(HEADER..)
@@ -83,7 +83,7 @@ fn vector(bytes: &[u8]) -> Vec3 {
 }
 
 fn put(out: &mut [u8], vector: DVec3) {
-    // f32 is what the format stores.
+    // f32 is the format's precision.
     for (target, number) in out.chunks_exact_mut(4).zip(vector.as_vec3().to_array()) {
         target.copy_from_slice(&number.to_le_bytes());
     }
@@ -113,7 +113,7 @@ pub(super) fn patched(
     Ok(out)
 }
 
-/// The bytes with facets wound the other way and their normals turned.
+/// The bytes with reversed facets and normals.
 pub(super) fn turned(mut bytes: Vec<u8>, facet_count: usize, is_turned: impl Fn(usize) -> bool) -> Vec<u8> {
     let facets = bytes[HEADER..].chunks_exact_mut(FACET).take(facet_count).enumerate();
     for (_, facet) in facets.filter(|(number, _)| is_turned(*number)) {

@@ -40,8 +40,8 @@ enum Layout {
 
 /// Reads an STL file of either kind.
 ///
-/// Some binary files begin with "solid", and an ascii file can have any length. So a file is binary if its facet count
-/// says so; otherwise ascii if it begins with "solid"; otherwise binary, too.
+/// Some binary files begin with "solid", and an ascii file can have any length. So a file is binary if its length fits
+/// its facet count; otherwise ascii if it begins with "solid"; otherwise binary, too.
 pub(crate) fn read(source: &Source<'_>) -> Result<(Stored, Drawn), ReadError> {
     let bytes: &[u8] = source.bytes;
     let (mut notes, mut unread) = (Vec::new(), Vec::new());
@@ -85,7 +85,7 @@ impl Stored {
         &self.notes
     }
 
-    /// The parts of the file that no other format is given.
+    /// The parts of the file that other formats do not get.
     pub(crate) fn unread(&self) -> Vec<String> {
         self.unread.clone()
     }
@@ -94,15 +94,15 @@ impl Stored {
         Summary::of_one_mesh(self.facet_count)
     }
 
-    /// No normals are taken from the file: with facet normals every triangle of a scan would show.
+    /// No normals are taken from the file: with facet normals every triangle of a scan would be visible.
     pub(crate) fn appearance(&self) -> Appearance {
         Appearance::plain(self.facet_count as u32)
     }
 
-    /// The number nearest to `value` that the file is given for a coordinate, as it is read back.
+    /// The nearest number to `value` that the file stores for a coordinate, as it is read back.
     pub(crate) fn nearest(&self, value: f64) -> f64 {
         match self.layout {
-            // f32 is what the format stores.
+            // f32 is the format's precision.
             Layout::Binary => f64::from(value as f32),
             Layout::Ascii(_) => shortest_f32(value),
         }

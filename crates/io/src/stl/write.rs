@@ -8,7 +8,7 @@ use crate::save::course::Course;
 
 use super::facet_normal;
 
-/// Writes a mesh's triangles as binary STL, which holds only their corners.
+/// Writes a mesh's triangles as binary STL, which stores only their corners.
 pub(crate) fn write_new(mesh: &NewMesh<'_>, course: &Course<'_>) -> Result<Saved, SaveError> {
     let look = &mesh.appearance;
     let mut out = Vec::with_capacity(84 + 50 * mesh.triangles.len());
@@ -20,7 +20,7 @@ pub(crate) fn write_new(mesh: &NewMesh<'_>, course: &Course<'_>) -> Result<Saved
         course.pass(place, mesh.triangles.len())?;
         let corners = triangle.map(|corner| mesh.positions[corner.index()]);
         let mut push = |vector: glam::DVec3| {
-            // f32 is what the format stores.
+            // f32 is the format's precision.
             vector
                 .as_vec3()
                 .to_array()

@@ -1,7 +1,7 @@
-//! Text files read and edited in place: a cursor over bytes, numbers as they are written, and a splice that replaces
-//! some spans and copies everything between them.
+//! Text files read and edited in place: a cursor over bytes, numbers as written, and a splice that replaces some spans
+//! and copies everything between them.
 //!
-//! Works on bytes, not strings: scans contain comments and names in any encoding, and those are kept as they are.
+//! It works on bytes, not strings: scans contain comments and names in any encoding, and those are kept unchanged.
 
 mod number;
 mod splice;
@@ -15,8 +15,7 @@ pub(crate) use splice::Splice;
 
 /// A position in a text file that moves forward.
 ///
-/// Line ends are `\n`, `\r\n` and (in old files) a bare `\r`. A method that doesn't find what it looks for leaves the
-/// cursor where it was.
+/// Line ends are `\n`, `\r\n` and (in old files) a bare `\r`. A method that finds nothing does not move the cursor.
 #[derive(Clone, Debug)]
 pub(crate) struct Cursor<'a> {
     bytes: &'a [u8],
@@ -38,7 +37,7 @@ impl<'a> Cursor<'a> {
         self.at
     }
 
-    /// How many bytes are left.
+    /// The number of remaining bytes.
     #[inline]
     pub(crate) fn left(&self) -> usize {
         self.bytes.len() - self.at
@@ -56,7 +55,7 @@ impl<'a> Cursor<'a> {
         self.at >= self.bytes.len()
     }
 
-    /// Skips one byte, whatever it is.
+    /// Skips one byte of any kind.
     #[inline]
     pub(crate) fn step(&mut self) {
         self.at = (self.at + 1).min(self.bytes.len());
@@ -205,7 +204,7 @@ impl<'a> Cursor<'a> {
             decimals = at - first_decimal;
             digits += decimals;
         }
-        // Within the limits below the mantissa and the power of ten are exact in f64, so one division rounds once.
+        // Within these limits the mantissa and the power of ten are exact in f64, so one division rounds once.
         let ends = match self.bytes.get(at) {
             None | Some(b' ' | b'\t'..=b'\r' | b'\\') => true,
             // A comment, except in `1.#QNAN`.
@@ -242,7 +241,7 @@ const POWERS_OF_TEN: [f64; 23] = [
     1e21, 1e22,
 ];
 
-/// How many bytes of a text are a byte-order mark, which some editors put before UTF-8.
+/// The number of a text's bytes that are a byte-order mark, which some editors put before UTF-8.
 pub(crate) fn mark_len(bytes: &[u8]) -> usize {
     if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 }
 }
@@ -263,7 +262,7 @@ pub(crate) fn line_of(bytes: &[u8], at: usize) -> usize {
     1 + before.iter().enumerate().filter(|&pair| breaks(pair)).count()
 }
 
-/// Bytes of a file as text for a message: decoded lossily, and shortened to what a person would read.
+/// Bytes of a file as text for a message: decoded lossily, and cut to a readable length.
 pub(crate) fn excerpt(bytes: &[u8]) -> String {
     let text = String::from_utf8_lossy(&bytes[..bytes.len().min(160)]);
     let blank = |letter: char| if letter.is_control() { ' ' } else { letter };

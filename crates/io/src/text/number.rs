@@ -48,8 +48,8 @@ pub(crate) fn push_f32(out: &mut Vec<u8>, value: f32) {
     };
 }
 
-/// The number that the shortest decimals of the f32 nearest to `value` read back as: text is read as f64, in which it is
-/// another number than the f32 itself.
+/// The number as which the shortest decimals of the f32 nearest to `value` are read back: text is read as f64, in which
+/// it is another number than the f32 itself.
 pub(crate) fn shortest_f32(value: f64) -> f64 {
     let mut text = Vec::new();
     push_f32(&mut text, value as f32);

@@ -20,7 +20,7 @@ impl<'a> Splice<'a> {
         }
     }
 
-    /// Replaces `span`, which lies after all spans replaced so far, with what `write` appends.
+    /// Replaces `span`, which comes after all spans replaced so far, with the bytes that `write` appends.
     pub(crate) fn replace(&mut self, span: Range<usize>, write: impl FnOnce(&mut Vec<u8>)) {
         debug_assert!(self.copied <= span.start && span.start <= span.end && span.end <= self.source.len());
         self.out.extend_from_slice(&self.source[self.copied..span.start]);

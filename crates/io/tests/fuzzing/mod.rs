@@ -1,5 +1,5 @@
-//! Broken files by the million: mutations that know how files of each kind are built, and what every file is put
-//! through. The test `fuzz.rs` does a short run, the example `fuzz` long ones.
+//! Broken files by the million: mutations that follow the structure of each format's files, and the tests for every
+//! file. The test `fuzz.rs` does a short run, the example `fuzz` long ones.
 #![allow(
     clippy::unwrap_used,
     clippy::expect_used,
@@ -14,7 +14,7 @@ use glam::DVec3;
 use pliant_io::{Bytes, Format, MorphTarget, Placement, Resolver, Save, decode_images, read};
 use pliant_mesh::{Cancel, Progress};
 
-/// What a broken image may take.
+/// The memory limit of a broken image.
 const IMAGE_BUDGET: u64 = 64 << 20;
 
 /// A small generator of even quality (SplitMix64).
@@ -37,7 +37,7 @@ impl Chance {
     }
 }
 
-/// What a sound file is read as.
+/// The kind as which a sound file is read.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
 pub enum Kind {
     Mesh(usize),
@@ -68,14 +68,14 @@ pub fn corpus(folder: &Path) -> Vec<Sound> {
     files.into_values().collect()
 }
 
-/// A file's neighbours, in memory: whichever is asked for, it has these bytes.
+/// A file's neighbours, in memory: each has these bytes, under any name.
 pub struct Beside(pub Bytes);
 
 const LIBRARY: &str = "# looks\nnewmtl red\nKd 0.5 0.25 1e-1\nd 0.75\nTr 0.25\nmap_Kd -s 2 2 1 -o 0.5 0 0 -clamp on skin.png\n\
 newmtl b\nPr 0.5\nPm 1\nNs 96.0\nillum 2\nmap_Kd -bm 1.0 art\\\\my skin.png\n";
 
 impl Beside {
-    /// Neighbours of a run: a library of materials, broken, or a buffer without sense.
+    /// Neighbours of a run: a broken library of materials, or a buffer of random bytes.
     pub fn of(sound: &[Sound], chance: &mut Chance) -> Self {
         if chance.below(2) == 0 {
             return Self(vec![7; 600].into());
@@ -162,12 +162,12 @@ const STRANGE_WORDS: [u32; 10] = [
     36,
 ];
 
-/// A sound file, broken; now and then nothing but noise.
+/// A sound file, broken; sometimes only noise.
 pub fn broken(sound: &Sound, others: &[Sound], chance: &mut Chance) -> Vec<u8> {
     if chance.below(50) == 0 {
         let length = chance.below(300);
         let mut noise: Vec<u8> = (0..length).map(|_| chance.next() as u8).collect();
-        // Half of it begins as a file of the kind does.
+        // Half of the noise begins like a file of the kind.
         let magic = sound.bytes.len().min(chance.below(24));
         if chance.below(2) == 0 && noise.len() > magic {
             noise[..magic].copy_from_slice(&sound.bytes[..magic]);
@@ -218,7 +218,7 @@ fn of_bytes(bytes: &mut Vec<u8>, chance: &mut Chance) {
     }
 }
 
-/// A number of 32 bits becomes a strange one, in either byte order.
+/// A number of 32 bits becomes an extreme one, in either byte order.
 fn of_words(bytes: &mut [u8], chance: &mut Chance) {
     if bytes.len() < 4 {
         return;
@@ -233,7 +233,7 @@ fn of_words(bytes: &mut [u8], chance: &mut Chance) {
     bytes[at..at + 4].copy_from_slice(&word);
 }
 
-/// A number in the BIN chunk becomes a strange one, or a few of its bytes noise.
+/// A number in the BIN chunk becomes an extreme one, or a few of its bytes noise.
 fn of_bin(bytes: &mut [u8], chance: &mut Chance) {
     let word = |at: usize| Some(u32::from_le_bytes(*bytes.get(at..)?.first_chunk()?) as usize);
     let start = word(12).map_or(0, |length| (28 + length).min(bytes.len()));
@@ -248,7 +248,7 @@ fn of_bin(bytes: &mut [u8], chance: &mut Chance) {
     }
 }
 
-/// The size in an image's header becomes another, often a huge one, and the header's sum follows.
+/// The size in an image's header changes, often to a huge one, and the header's checksum follows.
 fn of_image_size(bytes: &mut [u8], chance: &mut Chance) {
     let mut side = |most: u32| match chance.below(3) {
         0 => most,
@@ -277,7 +277,7 @@ fn of_image_size(bytes: &mut [u8], chance: &mut Chance) {
     }
 }
 
-/// PNG's sum of a chunk.
+/// PNG's checksum of a chunk.
 fn crc(bytes: &[u8]) -> u32 {
     !bytes.iter().fold(u32::MAX, |sum, &byte| {
         (0..8).fold(sum ^ u32::from(byte), |sum, _| {
@@ -315,7 +315,7 @@ fn of_text(bytes: &mut Vec<u8>, chance: &mut Chance) {
     bytes.splice(start..end.max(start), strange.bytes());
 }
 
-/// A value within the JSON chunk becomes another, and the chunk's lengths follow.
+/// A value within the JSON chunk changes, and the chunk's lengths follow.
 fn of_glb(bytes: &mut Vec<u8>, chance: &mut Chance) {
     let word = |bytes: &[u8], at: usize| Some(u32::from_le_bytes(*bytes.get(at..)?.first_chunk()?) as usize);
     let Some(length) = word(bytes, 12) else { return };
@@ -330,7 +330,7 @@ fn of_glb(bytes: &mut Vec<u8>, chance: &mut Chance) {
     bytes[8..12].copy_from_slice(&total.to_le_bytes());
 }
 
-/// A JSON scalar, or now and then a whole list or object, becomes another value.
+/// A JSON scalar, or sometimes a whole list or object, becomes another value.
 fn of_json(text: &mut Vec<u8>, from: usize, chance: &mut Chance) {
     let starts: Vec<usize> = (from..text.len())
         .filter(|&at| at > 0 && matches!(text[at - 1], b':' | b',' | b'['))
@@ -352,7 +352,7 @@ fn of_json(text: &mut Vec<u8>, from: usize, chance: &mut Chance) {
         end += 1;
     }
     let new = match chance.below(4) {
-        // The value of another place.
+        // The value at another place.
         0 => {
             let other = *chance.of(&starts);
             let length = text[other..]
@@ -366,14 +366,14 @@ fn of_json(text: &mut Vec<u8>, from: usize, chance: &mut Chance) {
     text.splice(start..end, new);
 }
 
-/// What came of a file.
+/// The result for a file.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Outcome {
     Refused,
     Read,
 }
 
-/// Reads a file; what is read is looked at, saved as it was and moved, as its own kind and as `other`.
+/// Reads a file; a file that is read is inspected, and saved unchanged and moved, in its own format and in `other`.
 ///
 /// `after_reading` is called once the file was read or refused.
 pub fn exercise(bytes: &[u8], kind: Kind, other: Format, beside: &Beside, after_reading: impl FnOnce()) -> Outcome {
@@ -459,7 +459,7 @@ pub fn exercise(bytes: &[u8], kind: Kind, other: Format, beside: &Beside, after_
                 &Progress::new(),
                 &Cancel::new(),
             );
-            // Neighbours that were missing or broken are missing still.
+            // Neighbours that were missing or broken are still missing.
             if let Ok(again) = again {
                 assert!(again.drawn.triangles.len() <= drawn.triangles.len());
             }

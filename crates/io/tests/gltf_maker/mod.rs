@@ -1,5 +1,5 @@
-//! What the glTF tests share: tiny files made in code, opening and saving them without a file system, and telling what
-//! differs between two of them.
+//! The common code of the glTF tests: tiny files made in code, opening and saving them without a file system, and the
+//! differences between two of them.
 #![allow(
     clippy::unwrap_used,
     clippy::expect_used,
@@ -164,7 +164,7 @@ impl Shape {
     }
 }
 
-/// A glTF that is being made.
+/// A glTF under construction.
 #[derive(Clone, Debug)]
 pub struct Maker {
     pub root: Value,
@@ -210,7 +210,7 @@ impl Maker {
         self.push("accessors", accessor)
     }
 
-    /// An accessor of f32 in a view of its own, with min and max.
+    /// An accessor of f32 in its own view, with min and max.
     pub fn floats<const N: usize>(&mut self, elements: &[[f32; N]]) -> usize {
         let bytes: Vec<u8> = elements
             .iter()
@@ -279,7 +279,7 @@ impl Maker {
         format!("{root:#}\n").into_bytes()
     }
 
-    /// A `.gltf` that holds its buffer.
+    /// A `.gltf` that contains its buffer.
     pub fn embedded(&self) -> Vec<u8> {
         let data = base64::engine::general_purpose::STANDARD.encode(&self.bin);
         self.gltf(&format!("data:application/octet-stream;base64,{data}"))
@@ -318,7 +318,7 @@ pub fn open(glb: &[u8]) -> SceneAndDrawn {
     try_open(glb, Format::Glb, &Folder::default()).unwrap()
 }
 
-/// What a refusal of a GLB says.
+/// The message of a refused GLB.
 pub fn refusal(glb: &[u8]) -> String {
     match try_open(glb, Format::Glb, &Folder::default()) {
         Ok(opened) => panic!("was read: {:?}", opened.drawn),
@@ -355,7 +355,7 @@ pub fn saved_glb(opened: &SceneAndDrawn, positions: &[DVec3]) -> Vec<u8> {
     saved.files[0].bytes.clone()
 }
 
-/// New positions: those of the drawn vertices that `which` names, moved.
+/// New positions: those of the drawn vertices for which `which` is true, moved.
 pub fn moved(opened: &SceneAndDrawn, which: impl Fn(usize) -> bool, to: impl Fn(DVec3) -> DVec3) -> Vec<DVec3> {
     let one = |(v, &p): (usize, &DVec3)| if which(v) { to(p) } else { p };
     opened.drawn.positions.iter().enumerate().map(one).collect()

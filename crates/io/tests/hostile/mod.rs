@@ -1,6 +1,6 @@
 //! Small files that ask for much: one maker for each way in which reading, showing or saving could cost more than the
-//! file's bytes justify. Each takes a size that its bytes grow with in proportion, so that costs at one size and at
-//! twice that size tell whether they do, too.
+//! file's bytes justify. Each takes a size, to which its bytes are proportional, so that costs at one size and at twice
+//! that size show whether they are proportional, too.
 #![allow(
     clippy::unwrap_used,
     clippy::expect_used,
@@ -12,7 +12,7 @@ use std::fmt::Write as _;
 
 use pliant_io::Format;
 
-/// A file, and what its neighbours hold: whichever of them is asked for has these bytes.
+/// A file, and the contents of its neighbours: each has these bytes, under any name.
 pub struct Hostile {
     pub format: Format,
     pub bytes: Vec<u8>,
@@ -76,12 +76,12 @@ fn floats(numbers: &[f32]) -> Vec<u8> {
     numbers.iter().flat_map(|number| number.to_le_bytes()).collect()
 }
 
-/// `count` texts of their numbers, with commas between.
+/// `count` texts from their numbers, with commas between.
 fn list(count: usize, text: impl Fn(usize) -> String) -> String {
     (0..count).map(text).collect::<Vec<_>>().join(",")
 }
 
-/// A GLB of JSON members and a buffer.
+/// A GLB from JSON members and a buffer.
 fn glb(members: &str, bin: &[u8]) -> Hostile {
     let text = format!("{{\"asset\":{{\"version\":\"2.0\"}},{members}}}");
     let mut out = b"glTF\x02\0\0\0\0\0\0\0".to_vec();
@@ -103,7 +103,7 @@ fn buffer(bin: &[u8]) -> String {
 
 const POSITIONS: &str = "{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}";
 
-/// As many primitives, each with an accessor of its own over the same bytes.
+/// `n` primitives, each with its own accessor over the same bytes.
 pub fn many_primitives(n: usize) -> Hostile {
     let bin = floats(&TRIANGLE);
     let primitives = list(n, |k| format!("{{\"attributes\":{{\"POSITION\":{k}}}}}"));
@@ -115,7 +115,7 @@ pub fn many_primitives(n: usize) -> Hostile {
     glb(&text, &bin)
 }
 
-/// As many primitives that all name the same accessor, which has as many elements and sparse ones among them.
+/// `n` primitives that all name the same accessor, which has as many elements, sparse ones among them.
 pub fn shared_primitives(n: usize) -> Hostile {
     let bin = floats(&vec![1.0; 4 * n]);
     let primitives = list(n, |_| "{\"attributes\":{\"POSITION\":0},\"indices\":1}".to_owned());
@@ -133,7 +133,7 @@ pub fn shared_primitives(n: usize) -> Hostile {
     glb(&text, &bin)
 }
 
-/// One triangle, and as many primitives of lines that name accessors of their own.
+/// One triangle, and `n` primitives of lines that name their own accessors.
 pub fn lines(n: usize) -> Hostile {
     let bin = floats(&TRIANGLE);
     let primitives = list(n, |k| {
@@ -167,7 +167,7 @@ pub fn morphs_through_instances(n: usize) -> Hostile {
     morphs(9 * n, 4 * n, &nodes, &format!(",\"weights\":[{weights}]"))
 }
 
-/// A mesh of `9 n` vertices and `4 n` targets, through a dozen nodes of which each has weights of its own.
+/// A mesh of `9 n` vertices and `4 n` targets, through a dozen nodes, each with its own weights.
 pub fn morphs_by_nodes(n: usize) -> Hostile {
     let nodes = list(12, |node| {
         format!(
@@ -194,7 +194,7 @@ pub fn strip_through_instances(n: usize) -> Hostile {
     glb(&text, &bin)
 }
 
-/// One triangle through as many nodes, which turn it.
+/// One triangle through `n` nodes, which turn it.
 pub fn instances(n: usize) -> Hostile {
     let bin = floats(&TRIANGLE);
     let nodes = list(n, |k| {
@@ -210,7 +210,7 @@ pub fn instances(n: usize) -> Hostile {
     glb(&text, &bin)
 }
 
-/// As many primitives of an accessor of one element that tells `n` sparse ones.
+/// `n` primitives of an accessor of one element that declares `n` sparse ones.
 pub fn sparse(n: usize) -> Hostile {
     let bin = vec![0; 4 * n + 12];
     let primitives = list(n, |_| "{\"attributes\":{\"POSITION\":0}}".to_owned());
@@ -226,7 +226,7 @@ pub fn sparse(n: usize) -> Hostile {
     glb(&text, &bin)
 }
 
-/// As many accessors of zeros beside as many images.
+/// `n` accessors of zeros beside as many images.
 pub fn zeros_beside_images(n: usize) -> Hostile {
     let bin = floats(&TRIANGLE);
     let primitives = list(n, |k| format!("{{\"attributes\":{{\"POSITION\":{k}}}}}"));
@@ -241,7 +241,7 @@ pub fn zeros_beside_images(n: usize) -> Hostile {
     glb(&text, &bin)
 }
 
-/// As many primitives under a node, a mesh and a material with names of `40 n` letters.
+/// `n` primitives under a node, a mesh and a material with names of `40 n` letters.
 pub fn long_name(n: usize) -> Hostile {
     let bin = floats(&TRIANGLE);
     let name = "n".repeat(40 * n);
@@ -254,7 +254,7 @@ pub fn long_name(n: usize) -> Hostile {
     glb(&text, &bin)
 }
 
-/// As many primitives without a triangle through as many nodes.
+/// `n` primitives without a triangle through as many nodes.
 pub fn empty_pieces(n: usize) -> Hostile {
     let bin = floats(&TRIANGLE);
     let primitives = list(n, |_| "{\"attributes\":{\"POSITION\":0},\"indices\":1}".to_owned());
@@ -267,7 +267,7 @@ pub fn empty_pieces(n: usize) -> Hostile {
     glb(&text, &bin)
 }
 
-/// As many images that are all of the same `40 n` bytes.
+/// `n` images that are all of the same `40 n` bytes.
 pub fn images_of_one_view(n: usize) -> Hostile {
     let mut bin = floats(&TRIANGLE);
     bin.resize(40 * n, 0);
@@ -280,7 +280,7 @@ pub fn images_of_one_view(n: usize) -> Hostile {
     glb(&text, &bin)
 }
 
-/// As many images that are nowhere.
+/// `n` images that are nowhere.
 pub fn missing_images(n: usize) -> Hostile {
     let bin = floats(&TRIANGLE);
     let images = list(n, |k| format!("{{\"uri\":\"https://x.org/{k}.png\"}}"));
@@ -299,7 +299,7 @@ fn gltf(members: &str, beside: Vec<u8>) -> Hostile {
     }
 }
 
-/// As many images, each shown by a material, that are the same neighbour of `100 n` bytes in other spellings.
+/// `n` images, each shown by a material, that are the same neighbour of `100 n` bytes in other spellings.
 pub fn images_of_one_neighbour(n: usize) -> Hostile {
     let images = list(n, |k| format!("{{\"uri\":\"{}a.png\"}}", "./".repeat(k % 7)));
     let mut beside = floats(&TRIANGLE);
@@ -316,7 +316,7 @@ pub fn images_of_one_neighbour(n: usize) -> Hostile {
     gltf(&text, beside)
 }
 
-/// As many buffers, each with a primitive, that are the same neighbour of `100 n` bytes in other spellings.
+/// `n` buffers, each with a primitive, that are the same neighbour of `100 n` bytes in other spellings.
 pub fn buffers_of_one_neighbour(n: usize) -> Hostile {
     let mut beside = floats(&TRIANGLE);
     beside.resize(100 * n, 0);
@@ -335,7 +335,7 @@ pub fn buffers_of_one_neighbour(n: usize) -> Hostile {
     gltf(&text, beside)
 }
 
-/// As many primitives of a material with `n` members.
+/// `n` primitives of a material with `n` members.
 pub fn laden_material(n: usize) -> Hostile {
     let bin = floats(&TRIANGLE);
     let members = list(n, |k| format!("\"{k}\":0"));
@@ -348,7 +348,7 @@ pub fn laden_material(n: usize) -> Hostile {
     glb(&text, &bin)
 }
 
-/// Nodes of which each is the child of the one before.
+/// Nodes, each the child of the one before.
 pub fn chain(n: usize) -> Hostile {
     let bin = floats(&TRIANGLE);
     let nodes = list(n, |k| match k + 1 {
@@ -362,7 +362,7 @@ pub fn chain(n: usize) -> Hostile {
     glb(&text, &bin)
 }
 
-/// Nodes that flatten what they show, each of which could be told.
+/// Nodes that flatten their meshes, each of which could cause a message.
 pub fn flat_nodes(n: usize) -> Hostile {
     let bin = floats(&TRIANGLE);
     let nodes = list(n, |_| "{\"mesh\":0,\"scale\":[1,1,0]}".to_owned());
@@ -373,7 +373,7 @@ pub fn flat_nodes(n: usize) -> Hostile {
     glb(&text, &bin)
 }
 
-/// As many meshes with a node each, and an animation of the weights of each node.
+/// `n` meshes with a node each, and an animation of the weights of each node.
 pub fn animations(n: usize) -> Hostile {
     let bin = floats(&TRIANGLE);
     let text = format!(
@@ -392,7 +392,7 @@ pub fn animations(n: usize) -> Hostile {
     glb(&text, &bin)
 }
 
-/// An object with as many members.
+/// An object with `n` members.
 pub fn members(n: usize) -> Hostile {
     let bin = floats(&TRIANGLE);
     let members = list(n, |k| format!("\"{k}\":{k}"));
@@ -404,7 +404,7 @@ pub fn members(n: usize) -> Hostile {
     glb(&text, &bin)
 }
 
-/// Lists in lists, so many deep.
+/// Lists in lists, `n` deep.
 pub fn nested(n: usize) -> Hostile {
     let bin = floats(&TRIANGLE);
     let (open, close) = ("[".repeat(n), "]".repeat(n));
@@ -416,7 +416,7 @@ pub fn nested(n: usize) -> Hostile {
     glb(&text, &bin)
 }
 
-/// As many accessors of 3 elements whose elements stand between each other's, each moved by itself.
+/// `n` accessors of 3 interleaved elements, each moved separately.
 pub fn interleaved(n: usize) -> Hostile {
     let numbers: Vec<f32> = (0..9 * n).map(|k| (k % 7) as f32 + (k / (3 * n)) as f32).collect();
     let bin = floats(&numbers);
@@ -456,12 +456,12 @@ fn around(k: usize, radius: f32) -> [f32; 2] {
     [radius * angle.cos(), radius * angle.sin()]
 }
 
-/// As many convex polygons.
+/// `n` convex polygons.
 pub fn gons(n: usize) -> Hostile {
     ply(&(0..256).map(|k| around(k, 1.0)).collect::<Vec<_>>(), n)
 }
 
-/// As many polygons with every other corner reflex.
+/// `n` polygons with every other corner reflex.
 pub fn stars(n: usize) -> Hostile {
     ply(
         &(0..256).map(|k| around(k, 1.0 + (k % 2) as f32)).collect::<Vec<_>>(),
@@ -502,7 +502,7 @@ pub fn obj_images(n: usize) -> Hostile {
     let mut text = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\n".to_owned();
     (0..n).for_each(|k| write!(text, "usemtl {k}\nf 1/1 2/1 3/1\n").unwrap());
     let mut library = String::new();
-    // The library is the image, too: whatever is asked for, it is the same bytes.
+    // The library is also the image: every name has the same bytes.
     (0..n).for_each(|k| write!(library, "newmtl {k}\nmap_Kd {}a.png\n", "./".repeat(k % 40)).unwrap());
     Hostile {
         beside: library.into_bytes(),
@@ -552,7 +552,7 @@ pub fn stl_solids(n: usize) -> Hostile {
     )
 }
 
-/// As many equal triangles, and as many on one edge.
+/// `n` equal triangles, and as many on one edge.
 pub fn duplicates(n: usize) -> Hostile {
     let mut text = format!("OFF\n{} {} 0\n0 0 0\n1 0 0\n", n + 2, 2 * n);
     (0..n).for_each(|k| writeln!(text, "0 1 {k}").unwrap());

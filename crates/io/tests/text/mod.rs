@@ -1,4 +1,4 @@
-//! What the tests of the text and scan formats share: opening, moving and saving without a file system.
+//! The common code of the tests of the text and scan formats: opening, moving and saving without a file system.
 #![allow(
     clippy::unwrap_used,
     clippy::expect_used,
@@ -50,7 +50,7 @@ pub fn open(bytes: &[u8], format: Format) -> SceneAndDrawn {
     try_open(bytes, format).unwrap()
 }
 
-/// What a refusal says.
+/// The message of a refusal.
 pub fn refusal(bytes: &[u8], format: Format) -> String {
     match try_open(bytes, format) {
         Ok(opened) => panic!("was read: {:?}", opened.drawn),
@@ -89,7 +89,7 @@ pub fn moved(opened: &SceneAndDrawn, is_moved: impl Fn(u32) -> bool, change: imp
         .collect()
 }
 
-/// The lines (with their ends) in which two texts of equally many lines differ, from 0.
+/// The lines (with their endings) in which two texts with the same number of lines differ, from 0.
 pub fn changed_lines(before: &[u8], after: &[u8]) -> Vec<usize> {
     let lines = |text: &[u8]| {
         text.split_inclusive(|&byte| byte == b'\n')
@@ -101,7 +101,7 @@ pub fn changed_lines(before: &[u8], after: &[u8]) -> Vec<usize> {
     (0..before.len()).filter(|&line| before[line] != after[line]).collect()
 }
 
-/// The bytes in which two files of one length differ.
+/// The places of bytes in which two files of one length differ.
 pub fn changed_bytes(before: &[u8], after: &[u8]) -> Vec<usize> {
     assert_eq!(before.len(), after.len(), "the length changed");
     (0..before.len()).filter(|&at| before[at] != after[at]).collect()
@@ -118,11 +118,9 @@ pub fn same_bits(a: &[DVec3], b: &[DVec3]) -> bool {
     bits(a) == bits(b)
 }
 
-/// The folder of shared data files beside the checkout; tests that need it skip by name where it is absent.
+/// The files of a folder in `PLIANT_DATA`; tests that need them skip by name where it is absent.
 pub fn data(folder: &str) -> Option<Vec<(PathBuf, Vec<u8>)>> {
-    let root = PathBuf::from(env!("CARGO_MANIFEST_DIR"))
-        .join("../../../shared/data")
-        .join(folder);
+    let root = PathBuf::from(std::env::var_os("PLIANT_DATA").unwrap_or_default()).join(folder);
     let mut files: Vec<PathBuf> = std::fs::read_dir(root)
         .ok()?
         .map(|entry| entry.unwrap().path())

@@ -28,8 +28,7 @@ impl<T: Copy> Blocks<T> {
         &mut self.0
     }
 
-    /// Writes into one block while all can be read: `write` gets the block, and all blocks as they were before the
-    /// change.
+    /// Writes into one block while all can be read: `write` gets the block, and all blocks as before the change.
     pub(crate) fn rewrite(&mut self, number: usize, write: impl FnOnce(&mut [T], &Self)) {
         let mut block = std::mem::replace(&mut self.0[number], Arc::from([]));
         write(Arc::make_mut(&mut block), self);

@@ -13,7 +13,7 @@ pub(super) struct Span {
     pub(super) max: Vec3,
 }
 
-/// The space that boxes stand in: the built surface fills the cube from -1 to 1.
+/// The space of boxes: the built surface fills the cube from -1 to 1.
 #[derive(Clone, Copy)]
 pub(super) struct BoxSpace {
     pub(super) centre: DVec3,
@@ -71,7 +71,7 @@ impl BoxSpace {
             let point = self.of_point(point);
             (min, max) = (min.min(point), max.max(point));
         }
-        // Relative as well: a refitted surface may have left the cube.
+        // The margin is relative as well: a refitted surface may have left the cube.
         let margin = MARGIN * (1.0 + min.abs().max(max.abs()).max_element() as f32);
         Span {
             min: min.as_vec3() - Vec3::splat(margin),
@@ -86,20 +86,20 @@ impl BoxSpace {
     }
 }
 
-/// A ray in box space; its parameter is the world ray's.
+/// A ray in box space; its parameter is that of the ray in world space.
 pub(super) struct BoxRay {
     pub(super) origin: DVec3,
     pub(super) inverse: DVec3,
 }
 
 impl BoxRay {
-    /// Where the ray enters the box, not before its origin; infinite where it misses.
+    /// The ray's parameter where it enters the box, not before its origin; infinite if it misses.
     pub(super) fn entry(&self, span: &Span) -> f64 {
         let to_min = (span.min.as_dvec3() - self.origin) * self.inverse;
         let to_max = (span.max.as_dvec3() - self.origin) * self.inverse;
         let (mut enter, mut leave) = (0.0_f64, f64::INFINITY);
         for axis in 0..3 {
-            // Zero times infinity, for a ray inside a wall's plane, is NaN, which `min` and `max` pass over.
+            // Zero times infinity, for a ray inside a wall's plane, is NaN, which `min` and `max` ignore.
             enter = enter.max(to_min[axis].min(to_max[axis]));
             leave = leave.min(to_min[axis].max(to_max[axis]));
         }

@@ -1,11 +1,11 @@
 //! A bounding-volume hierarchy over a surface's triangles: rays, nearest vertices and views, refitted while it moves.
 //!
-//! obvhs builds the tree (PLOC, [MB18]); walking it is done here, because its own traversal works in
-//! f32 throughout. Boxes are f32, relative to a centre and scaled to the unit cube, and rounded outward; positions and
-//! all tests on them are f64. So a surface at geographic coordinates is hit as exactly as one at the origin.
+//! obvhs builds the tree (PLOC, [MB18]); this module walks it, because the traversal of obvhs works in f32 throughout.
+//! Boxes are f32, relative to a centre and scaled to the unit cube, and rounded outward; positions and all tests on
+//! them are f64. So a surface at geographic coordinates is hit as exactly as one at the origin.
 //!
-//! Boxes and positions are stored in [`Blocks`]: a copy is nearly free, and refitting it rewrites only what moved, so
-//! that one copy can be refitted while the other still answers queries.
+//! Boxes and positions are stored in [`Blocks`]: a copy is nearly free, and refitting it rewrites only the blocks that
+//! moved, so that one copy can be refitted while the other still answers queries.
 
 mod blocks;
 mod boxes;
@@ -32,11 +32,12 @@ use boxes::{BoxSpace, RUN, Span};
 /// Where a ray met the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
-    /// The triangle, as an index into those that the hierarchy was built over.
+    /// The triangle, as an index into the triangles of the hierarchy.
     pub triangle: u32,
     /// The weights of its three corners: not negative, their sum 1.
     pub barycentric: [f64; 3],
-    /// The ray's parameter: the point is `origin + distance * direction`, so a length where the direction is a unit.
+    /// The ray's parameter: the point is `origin + distance * direction`, so this is a length if the direction is a
+    /// unit vector.
     pub distance: f64,
 }
 
@@ -45,34 +46,34 @@ pub struct Hit {
 pub struct Bvh {
     nodes: Blocks<Node>,
     positions: Blocks<DVec3>,
-    /// Boxes of [`RUN`] vertices each that follow one another.
+    /// Boxes of [`RUN`] consecutive vertices each.
     runs: Vec<Span>,
     leaves: Arc<Leaves>,
     space: BoxSpace,
 }
 
-/// The triangles as leaves have them, one after another; never changed.
+/// The triangles in the order of the leaves; never changed.
 struct Leaves {
     triangles: Vec<u32>,
     corners: Vec<[SurfaceVertex; 3]>,
 }
 
-/// A box, and below it two nodes one after the other or a leaf.
+/// A box, and below it two adjacent nodes or a leaf.
 #[derive(Clone, Copy)]
 struct Node {
     span: Span,
-    /// The first child's number, or of a leaf the place of its first triangle.
+    /// The first child's number, or for a leaf the place of its first triangle.
     first: u32,
-    /// Triangles of a leaf; 0 of any other.
+    /// The triangles of a leaf; 0 for other nodes.
     count: u32,
 }
 
-/// A box as the tree is built from: larger by a millionth or two of the whole, by no two numbers nearby alike. PLOC joins
-/// the boxes whose union has the least area; among triangles on one line or in one place all unions are alike, only
-/// two boxes were joined in a round, and the time was quadratic.
+/// A box for building the tree: larger by a millionth or two of the whole, by different amounts for numbers nearby.
+/// PLOC joins the boxes whose union has the least area; among triangles on one line or in one place all unions are
+/// alike, so only two boxes were joined in a round, and the time was quadratic.
 fn grown(own: Aabb, number: usize) -> Aabb {
     const LEAST: f32 = 2e-6;
-    // The golden ratio's multiples lie evenly between 0 and 1.
+    // The golden ratio's multiples are evenly distributed between 0 and 1.
     let share = (number as u32).wrapping_mul(0x9e37_79b9) as f32 / u32::MAX as f32;
     let by = LEAST * (1.0 + share);
     Aabb {
@@ -82,9 +83,9 @@ fn grown(own: Aabb, number: usize) -> Aabb {
 }
 
 impl Bvh {
-    /// A hierarchy over `triangles`, all of them or some, of a surface with these finite `positions`.
+    /// A hierarchy over all or some `triangles` of a surface with these finite `positions`.
     pub fn build(positions: &[DVec3], triangles: &[[SurfaceVertex; 3]]) -> Self {
-        // Bare points stand behind the last corner; one far away would leave no digits for the boxes of the triangles.
+        // Bare points come after the last corner; one far away would leave no digits for the boxes of the triangles.
         let used = triangles.par_iter().flatten().map(|corner| corner.index() + 1).max();
         let space = BoxSpace::of(&positions[..used.unwrap_or(positions.len())]);
         let boxes: Vec<Aabb> = (0..triangles.len())
@@ -120,8 +121,8 @@ impl Bvh {
     }
 
     /// Takes the vertices' new positions, all finite, from `position`. The tree's shape stays, so answers stay correct
-    /// but get slower the more the surface differs from the one it was built for. After one pass over everything, the
-    /// time depends on how much moved.
+    /// but get slower the more the surface differs from the one that the tree was built for. After one pass over
+    /// everything, the time depends on the number of moved vertices.
     pub fn refit(&mut self, position: impl Fn(SurfaceVertex) -> DVec3 + Sync) {
         let mut moved = vec![false; self.positions.len()];
         let blocks = self.positions.each_mut().par_iter_mut();
@@ -148,7 +149,7 @@ impl Bvh {
         self.refit_boxes(&moved);
     }
 
-    /// Boxes of everything with a corner that moved.
+    /// The boxes of all nodes with a corner that moved.
     fn refit_boxes(&mut self, moved: &[bool]) {
         let (leaves, positions, space) = (&*self.leaves, &self.positions, self.space);
         let mut is_other = vec![false; self.nodes.len()];
@@ -172,7 +173,7 @@ impl Bvh {
                     }
                 }
             });
-        // Children stand behind their parents.
+        // Children come after their parents.
         for number in (0..self.nodes.len().div_ceil(BLOCK)).rev() {
             let start = number * BLOCK;
             let mut any = false;
@@ -201,7 +202,7 @@ impl Bvh {
     }
 }
 
-/// The nodes of a tree whose children stand behind their parents, as obvhs's builder leaves them.
+/// The nodes of a tree with children after their parents, as obvhs builds it.
 fn nodes(tree: &Bvh2) -> Blocks<Node> {
     debug_assert!(tree.children_are_ordered_after_parents || tree.nodes.is_empty());
     let nodes: Vec<Node> = tree

@@ -1,4 +1,4 @@
-//! Queries: where a ray meets the surface, which vertices a view contains, which vertex is nearest.
+//! Queries: the first triangle on a ray, the vertices in a view, the nearest vertex.
 
 use glam::{DVec3, DVec4};
 
@@ -11,13 +11,13 @@ use crate::geometry::distance_to_triangle;
 const EDGE_SLACK: f64 = -1e-9;
 
 impl Bvh {
-    /// The first triangle that the ray from `origin` along `direction` (any length) meets, from either side; of
-    /// several at one distance the lowest.
+    /// The first triangle that the ray from `origin` along `direction` (any length) meets, from either side; if several
+    /// are at one distance, the lowest.
     pub fn ray(&self, origin: DVec3, direction: DVec3) -> Option<Hit> {
         self.ray_within(origin, direction, f64::INFINITY)
     }
 
-    /// As [`Bvh::ray`], up to the ray's parameter `limit`. It costs the less the shorter that is.
+    /// As [`Bvh::ray`], up to the ray's parameter `limit`. A shorter ray costs less.
     pub fn ray_within(&self, origin: DVec3, direction: DVec3, limit: f64) -> Option<Hit> {
         let ray = BoxRay {
             origin: self.space.of_point(origin),
@@ -39,9 +39,9 @@ impl Bvh {
         best
     }
 
-    /// Visits, ascending, the vertices in the convex space before all `planes` (a point p is before one if its product
-    /// with (p, 1) is not negative) and some beside it, with their positions: those of triangles that the hierarchy was
-    /// not built over, too.
+    /// Visits, in ascending order, the vertices in the convex space in front of all `planes` (a point p is in front if
+    /// its product with (p, 1) is not negative) and some near it, with their positions. Vertices of triangles that the
+    /// hierarchy leaves out are included.
     pub fn vertices_within(&self, planes: &[DVec4], mut visit: impl FnMut(SurfaceVertex, DVec3)) {
         // In the boxes' space the same planes have other lengths and distances.
         let planes: Vec<DVec4> = planes
@@ -65,8 +65,8 @@ impl Bvh {
         }
     }
 
-    /// The triangle nearest to `point` whose first corner `is_meant`, of those not farther than `limit`: its corner
-    /// nearest to the point, of several the lowest, and the distance to the triangle.
+    /// The triangle nearest to `point` among those whose first corner `is_meant` and which are not farther than
+    /// `limit`: its corner nearest to the point (the lowest if there are several), and the distance to the triangle.
     pub(crate) fn nearest_on_triangles(
         &self,
         point: DVec3,
@@ -102,8 +102,8 @@ impl Bvh {
         best.map(|(distance, _, v)| (v, distance))
     }
 
-    /// The vertex nearest to `point` in a straight line, of several the lowest, and its distance; `None` of an empty
-    /// hierarchy.
+    /// The vertex nearest to `point` in a straight line (the lowest if there are several), and its distance; `None` for
+    /// an empty hierarchy.
     pub fn nearest_vertex(&self, point: DVec3) -> Option<(SurfaceVertex, f64)> {
         let in_boxes = self.space.of_point(point);
         let mut best: Option<(f64, SurfaceVertex)> = None;
@@ -122,8 +122,8 @@ impl Bvh {
         best.map(|(distance, v)| (v, distance))
     }
 
-    /// Visits the triangles' places in every leaf whose box has a `bound` (infinite: never) not above the limit, nearer
-    /// boxes first; `visit` returns the new limit.
+    /// Visits the triangles' places in every leaf whose box has a `bound` (infinite means never) up to the limit,
+    /// nearer boxes first; `visit` returns the new limit.
     fn walk(&self, bound: impl Fn(&Span) -> f64, mut visit: impl FnMut(usize) -> f64) {
         if self.nodes.len() == 0 {
             return;

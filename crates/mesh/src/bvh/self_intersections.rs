@@ -1,4 +1,4 @@
-//! Where a surface passes through itself: pairs of triangles by their boxes, then by their corners.
+//! Places where a surface passes through itself: pairs of triangles by their boxes, then by their corners.
 
 use std::collections::BTreeMap;
 
@@ -16,22 +16,22 @@ use crate::{Cancel, Cancelled, Progress, Surface, SurfaceVertex, Topology};
 pub struct SelfIntersection {
     /// Their corners.
     pub triangles: [[SurfaceVertex; 3]; 2],
-    /// The segment in which they do.
+    /// The segment in which they pass through each other.
     pub segment: [DVec3; 2],
 }
 
-/// What was found.
+/// The result of a search.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SelfIntersections {
     /// The pairs, in the order of the hierarchy.
     pub pairs: Vec<SelfIntersection>,
-    /// Whether these are all that there are.
+    /// Whether these are all pairs.
     pub are_all: bool,
 }
 
 impl SelfIntersections {
-    /// The numbers of the pairs, place by place: pairs are at one place where they hang together by corners. In the
-    /// order of the first pair of each.
+    /// The numbers of the pairs, grouped by place: pairs that are connected by corners are at one place. Places are in
+    /// the order of their first pairs.
     pub fn places(&self) -> Vec<Vec<usize>> {
         let mut corners: Vec<SurfaceVertex> = self.pairs.iter().flat_map(SelfIntersection::corners).collect();
         corners.sort_unstable();
@@ -62,29 +62,30 @@ impl SelfIntersection {
     }
 }
 
-/// Leaves whose pairs are looked for before it is asked whether to go on: a few at first, because where everything
-/// overlaps each has as many pairs as there are triangles.
+/// The number of leaves searched between two checks whether to go on: a few at first, because if everything overlaps
+/// each leaf has as many pairs as there are triangles.
 const FIRST_LEAVES: usize = 8;
 const MOST_LEAVES: usize = 512;
 
-/// To find out whether a crossing is new costs as much as so many pairs.
+/// Deciding whether a crossing is new costs as much as this many pairs.
 const PAIRS_A_CROSSING: usize = 50;
 
-/// So many pairs of triangles are tried for each triangle before the search ends: a surface has some twenty with boxes
-/// that overlap, and one where everything overlaps has as many as there are triangles.
+/// The number of pairs tried for each triangle before the search ends: a surface has some twenty with boxes that
+/// overlap, and a tangle has as many as there are triangles.
 const TRIED_A_TRIANGLE: usize = 400;
 
-/// At most so many of the triangles around a corner count as next to it. Few corners have more than ten.
+/// At most this many of the triangles around a corner count as next to it. Few corners have more than ten.
 const NEXT: usize = 32;
 
 impl Bvh {
-    /// The pairs of triangles that pass through each other in the hierarchy's positions and did not at rest, which is
-    /// `surface`, of whose triangles the hierarchy has all or some. No more are looked for once there are `most`, or once
-    /// the search has become as long as only a tangle makes it.
+    /// The pairs of triangles that pass through each other in the hierarchy's positions and did not at rest. The rest
+    /// shape is `surface`; the hierarchy has all or some of its triangles. The search ends at `most` pairs, or when it
+    /// has become as long as only a tangle makes it.
     ///
-    /// Where the triangles next to a pair crossed at rest, the same crossing has only shifted, and the pair does not
-    /// count. Nor does one with a triangle that is joined to no other, as in a soup: it bounds nothing, and soups cross
-    /// themselves anyway. Pairs of triangles that stand where they rested are not looked at, so a local change costs what it moved.
+    /// If the triangles next to a pair crossed at rest, the same crossing has only shifted, and the pair does not
+    /// count. Nor does a pair with a triangle that is joined to no other, as in a soup: it bounds nothing, and soups
+    /// cross themselves anyway. Pairs of triangles that did not move are skipped, so the cost of a local change is that
+    /// of its own triangles.
     ///
     /// # Errors
     /// [`Cancelled`] soon after `cancel` is raised.
@@ -136,7 +137,7 @@ impl Bvh {
         Ok(SelfIntersections { pairs, are_all })
     }
 
-    /// Of each node, whether a corner of a triangle below it stands elsewhere than at `rest`.
+    /// For each node, whether a corner of a triangle below it differs from its position at `rest`.
     fn moved_nodes(&self, rest: &[DVec3]) -> Vec<bool> {
         let is_elsewhere = |v: &SurfaceVertex| self.positions.get(v.index()) != rest[v.index()];
         let of_leaf = |place: usize| {
@@ -144,7 +145,7 @@ impl Bvh {
             leaf.is_some_and(|leaf| self.leaves.corners[leaf].iter().flatten().any(is_elsewhere))
         };
         let mut is_moved: Vec<bool> = (0..self.nodes.len()).into_par_iter().map(of_leaf).collect();
-        // Children stand behind their parents.
+        // Children come after their parents.
         for place in (0..self.nodes.len()).rev() {
             let Node { first, count, .. } = self.nodes.get(place);
             if count == 0 {
@@ -154,8 +155,8 @@ impl Bvh {
         is_moved
     }
 
-    /// The pairs of a leaf that moved: within it, with leaves that did not move, and with those behind it that did; and
-    /// how many were tried.
+    /// The pairs of a moved leaf: within it, with leaves that did not move, and with moved leaves after it; and the
+    /// number of pairs that were tried.
     fn pairs_of(&self, leaf: u32, is_moved: &[bool]) -> (Vec<SelfIntersection>, usize) {
         let own = self.nodes.get(leaf as usize);
         let places = own.leaf().unwrap_or_default();

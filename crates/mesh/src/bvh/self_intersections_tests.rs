@@ -1,4 +1,4 @@
-//! Where a surface passes through itself: found as by trying every pair, and only where its shape made it so.
+//! Self-intersections are those that trying every pair finds, and only those that the deformation made.
 
 #![allow(clippy::unwrap_used, reason = "a test that fails may panic")]
 
@@ -6,7 +6,7 @@ use crate::geometry::triangle_intersection;
 use crate::{Bvh, Cancel, Drawn, Model, Progress, SelfIntersections, SurfaceVertex, shapes};
 use glam::{DAffine3, DVec3};
 
-/// What is found after the vertices were moved.
+/// The pairs that are found after the vertices were moved.
 fn found(model: &Model, moved: &[DVec3], most: usize) -> SelfIntersections {
     let mut bvh = Bvh::build(&model.surface.positions, &model.surface.triangles);
     bvh.refit(|v| moved[v.index()]);
@@ -89,14 +89,14 @@ fn a_crossing_that_was_there_at_rest_is_no_news_where_it_shifts() {
         shapes::moved(&shapes::icosphere(3), DAffine3::from_translation(DVec3::X)),
     ]);
     let model = shapes::model(pair);
-    // Both balls are swollen by a little, the one more than the other.
+    // Both balls are swollen a little, one more than the other.
     let swollen = |p: &DVec3| *p + 0.004 * (*p - DVec3::X * 0.5);
     let moved: Vec<DVec3> = model.surface.positions.iter().map(swollen).collect();
     let before = every_pair(&model.surface.triangles, &model.surface.positions);
     let after = every_pair(&model.surface.triangles, &moved);
     assert!(!before.is_empty() && !after.is_empty());
     assert!(found(&model, &moved, 10).pairs.is_empty());
-    // A third ball that comes into one of them is.
+    // A third ball that comes into one of them counts.
     let far = shapes::moved(&shapes::icosphere(2), DAffine3::from_translation(DVec3::Y * 4.0));
     let drawn = shapes::together(&[shapes::icosphere(3), far]);
     let model = shapes::model(drawn);
@@ -131,7 +131,7 @@ fn triangles_that_are_joined_to_no_other_are_no_news() {
 
 #[test]
 fn pairs_are_at_one_place_where_they_hang_together() {
-    // Two balls come into a third one, at opposite sides.
+    // Two balls enter a third one, at opposite sides.
     let ball = |x: f64| shapes::moved(&shapes::icosphere(3), DAffine3::from_translation(DVec3::X * x));
     let model = shapes::model(shapes::together(&[ball(0.0), ball(4.0), ball(-4.0)]));
     let near = |p: &DVec3| *p - DVec3::X * if p.x.abs() > 2.0 { 2.5 * p.x.signum() } else { 0.0 };

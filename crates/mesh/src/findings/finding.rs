@@ -1,15 +1,15 @@
-//! Something found wrong with a mesh, counted, with examples.
+//! A fault of a mesh: its count, with examples.
 
 use rayon::prelude::*;
 
 use crate::Findings;
 
-/// How often something was found, and a few places.
+/// The count of a fault, and a few places.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Finding {
-    /// How many there are.
+    /// The count.
     pub count: usize,
-    /// The first few of them or of their vertices, at most [`Findings::EXAMPLES`].
+    /// The first few faults or their vertices, at most [`Findings::EXAMPLES`].
     pub examples: Vec<u32>,
 }
 
@@ -27,7 +27,7 @@ impl Finding {
         }
     }
 
-    /// One thing at each of `vertices`; the examples are the lowest of them, each once.
+    /// One fault at each of `vertices`; the examples are the lowest of them, each once.
     pub(crate) fn at_vertices(vertices: impl Iterator<Item = u32>) -> Self {
         let mut count = 0;
         let mut lowest: Vec<u32> = Vec::with_capacity(Findings::EXAMPLES + 1);
@@ -60,7 +60,7 @@ impl Finding {
         self
     }
 
-    /// Adds what was found further on.
+    /// Adds the faults that were found further on.
     pub(crate) fn extend(&mut self, later: &Self) {
         self.count += later.count;
         let room = Findings::EXAMPLES - self.examples.len();
@@ -75,7 +75,7 @@ impl Finding {
         }
     }
 
-    /// "3 vertices (4, 5 and 9)": how many, and the first of them named by `at` and their numbers.
+    /// "3 vertices (4, 5 and 9)": the count, and the first of them named by `at` and their numbers.
     pub(crate) fn counted(&self, one: &str, many: &str, at: &str) -> String {
         let shown: Vec<String> = self.examples.iter().take(3).map(u32::to_string).collect();
         let noun = if self.count == 1 { one } else { many };
@@ -90,13 +90,13 @@ impl Finding {
     }
 }
 
-/// Finds the numbers below `count` of which `is_found` holds, in parallel.
+/// Finds the numbers below `count` for which `is_found` is true, in parallel.
 pub(crate) fn collect(count: usize, is_found: impl Fn(usize) -> bool + Sync) -> Finding {
     let [finding] = sort_out(count, |i| is_found(i).then_some(0));
     finding
 }
 
-/// Finds several kinds in one pass: `kind_of` says of which kind each number below `count` is, if of any.
+/// Finds several kinds in one pass: `kind_of` returns the kind of each number below `count`, if it has one.
 pub(crate) fn sort_out<const KINDS: usize>(
     count: usize,
     kind_of: impl Fn(usize) -> Option<usize> + Sync,

@@ -7,35 +7,36 @@ use crate::topology::rings::topology_findings;
 use crate::weld::{Welded, weld};
 use crate::{Bounds, Cancel, Cancelled, Drawn, Findings, LocatedFinding, Progress, WeldOptions, bounding_box};
 
-/// What [`Model::weld`](crate::Model::weld) would find, in less memory and time, for callers that don't edit.
+/// The counts and findings of [`Model::weld`](crate::Model::weld), in less memory and time, for callers that don't
+/// edit.
 #[derive(Clone, Debug, Default)]
 pub struct Inspection {
-    /// How many vertices the file has, drawn or not.
+    /// The number of the file's vertices, drawn or not.
     pub file_vertices: usize,
-    /// How many vertices are drawn: one of the file's through two nodes is two.
+    /// The number of drawn vertices: a file vertex through two nodes counts twice.
     pub drawn_vertices: usize,
-    /// How many triangles are drawn.
+    /// The number of drawn triangles.
     pub drawn_triangles: usize,
-    /// How many vertices the welded surface has, bare points among them.
+    /// The number of the welded surface's vertices, bare points included.
     pub surface_vertices: usize,
-    /// How many of these are bare points, which no kept triangle uses.
+    /// The number of bare points among these, which no kept triangle uses.
     pub bare_points: usize,
-    /// How many triangles it has.
+    /// The number of its triangles.
     pub surface_triangles: usize,
-    /// The bounding box of the vertices that kept triangles use, of all bare points where there is no triangle; `None`
-    /// of an empty surface.
+    /// The bounding box of the vertices that kept triangles use, or of all bare points if there is no triangle; `None`
+    /// for an empty surface.
     pub bounds: Option<Bounds>,
-    /// The surface's connected parts by falling vertex count, equal ones by their first file vertex. Bare points are
-    /// left out: they would come last.
+    /// The surface's connected parts by falling vertex count, equal ones by their first file vertex. Bare points, which
+    /// would come last, are left out.
     pub components: Vec<Component>,
-    /// What is wrong with the mesh.
+    /// The faults of the mesh.
     pub findings: Findings,
-    /// The same with the places of examples.
+    /// The same faults with the places of examples.
     pub located_findings: Vec<LocatedFinding>,
 }
 
 impl Inspection {
-    /// Welds `drawn`, looks at the surface and lets it go.
+    /// Welds `drawn`, inspects the surface and drops it.
     pub fn of(drawn: Drawn, options: &WeldOptions, progress: &Progress, cancel: &Cancel) -> Result<Self, Cancelled> {
         let Welded {
             surface,

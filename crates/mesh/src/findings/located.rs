@@ -9,36 +9,36 @@ use crate::{DrawnSet, DrawnVertex, FindingKind, Findings, Model, Named, Surface}
 /// A finding with its sentence and the positions of its first examples.
 #[derive(Clone, PartialEq, Debug)]
 pub struct LocatedFinding {
-    /// What it is.
+    /// The kind.
     pub kind: FindingKind,
-    /// How many there are.
+    /// The count.
     pub count: usize,
-    /// The same for a person.
+    /// The sentence for a person.
     pub sentence: String,
     /// The first few.
     pub examples: Vec<Example>,
 }
 
-/// One of the things that were found.
+/// One example of a fault.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Example {
-    /// Its number: of what, [`FindingKind::named`] says.
+    /// Its number, of the kind that [`FindingKind::named`] gives.
     pub number: u32,
-    /// Where it is at rest, in world space (of a triangle: its centre); `None` where it has no finite place or is not
+    /// Its position at rest, in world space (for a triangle, its centre); `None` if it has no finite position or is not
     /// drawn.
     pub position: Option<DVec3>,
 }
 
 impl Model {
-    /// What is wrong with the mesh, each with the places of its first examples, in the order of
-    /// [`Findings::sentences`]. One look at every vertex, so made on request.
+    /// The faults of the mesh, each with the places of its first examples, in the order of [`Findings::sentences`].
+    /// This reads every vertex, so it is made on request.
     pub fn located_findings(&self) -> Vec<LocatedFinding> {
         self.findings.located_findings(&self.drawn, &self.surface)
     }
 }
 
 impl Findings {
-    /// What is wrong with the mesh that `drawn` was welded into.
+    /// The faults of the mesh into which `drawn` was welded.
     pub(crate) fn located_findings(&self, drawn: &DrawnSet, surface: &Surface) -> Vec<LocatedFinding> {
         let told = || {
             FindingKind::ALL
@@ -71,7 +71,7 @@ impl Findings {
     }
 }
 
-/// Where file vertices are first drawn at a finite place.
+/// The first finite position at which each file vertex is drawn.
 fn places_of_file_vertices(
     drawn: &DrawnSet,
     surface: &Surface,

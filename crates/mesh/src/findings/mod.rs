@@ -1,4 +1,4 @@
-//! What loading found wrong with a mesh, as numbers with examples and as sentences for a person.
+//! The faults that loading found in a mesh, as numbers with examples and as sentences for a person.
 
 pub(crate) mod finding;
 mod inspection;
@@ -11,18 +11,18 @@ pub use finding::Finding;
 pub use inspection::Inspection;
 pub use located::{Example, LocatedFinding};
 
-/// What loading found wrong with a mesh. Vertices are named by their file vertex, triangles by their drawn triangle.
+/// The faults that loading found in a mesh. Vertices are named by their file vertex, triangles by their drawn triangle.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Findings {
     /// File vertices whose position is not finite (or beyond 1e60): set aside.
     pub non_finite_vertices: Finding,
     /// Triangles left out because they use such a vertex.
     pub non_finite_triangles: Finding,
-    /// File vertices that no triangle uses: bare points where they are drawn.
+    /// File vertices that no triangle uses: bare points if they are drawn.
     pub unreferenced_vertices: Finding,
     /// Triangles left out because two of their corners were welded into one.
     pub collapsed_triangles: Finding,
-    /// Triangles kept although they have no area to speak of.
+    /// Triangles kept although their area is nearly zero.
     pub zero_area_triangles: Finding,
     /// Triangles left out because an earlier one has the same three vertices.
     pub duplicate_triangles: Finding,
@@ -33,7 +33,7 @@ pub struct Findings {
     /// Edges whose two triangles disagree about which side is outside; the examples are vertices on them.
     pub misoriented_edges: Finding,
     /// Closed parts whose triangles face inwards; the examples are their first vertices. A part within the box of
-    /// another closed part is taken for a cavity, whose triangles have to face inwards.
+    /// another closed part counts as a cavity, whose triangles must face inwards.
     pub inside_out_components: Finding,
     /// Edges with one triangle only; the examples are vertices on them.
     pub boundary_edges: Finding,
@@ -47,7 +47,7 @@ pub struct Findings {
     pub loose_bits: Finding,
 }
 
-/// One of the things that loading looks for.
+/// One of the faults that loading looks for.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 #[expect(missing_docs, reason = "each variant is the field of its name in `Findings`")]
 pub enum FindingKind {
@@ -68,7 +68,7 @@ pub enum FindingKind {
     LooseBits,
 }
 
-/// What a finding's examples are numbers of.
+/// The kind of number that a finding's examples are.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Named {
     /// The file's vertices.
@@ -78,7 +78,7 @@ pub enum Named {
 }
 
 impl FindingKind {
-    /// Every kind, in the order in which they are told.
+    /// Every kind, in the order of the sentences.
     pub const ALL: [Self; 15] = [
         Self::NonFiniteVertices,
         Self::NonFiniteTriangles,
@@ -118,7 +118,7 @@ impl FindingKind {
         }
     }
 
-    /// What its examples are numbers of.
+    /// The kind of number that its examples are.
     pub const fn named(self) -> Named {
         match self {
             Self::NonFiniteTriangles
@@ -131,7 +131,7 @@ impl FindingKind {
 }
 
 impl Findings {
-    /// How many examples a finding keeps.
+    /// The number of examples that a finding keeps.
     pub const EXAMPLES: usize = 8;
 
     /// The finding of a kind.

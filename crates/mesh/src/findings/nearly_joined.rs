@@ -1,4 +1,4 @@
-//! Borders that run beside each other at a small share of their edges' length, as a cut that should not be there does.
+//! Borders that run beside each other at a small share of their edges' length, like an unintended cut.
 
 use glam::DVec3;
 
@@ -9,8 +9,8 @@ use crate::{Surface, SurfaceVertex};
 /// Vertices on borders are nearly joined within this share of the shortest border edge at either of them.
 const NEARLY: f64 = 0.05;
 
-/// The vertices on borders that are close to others which they are not joined to, ascending. Both ends of an edge of
-/// the border have to be: single vertices touch in sound meshes as well.
+/// The vertices on borders that are close to others to which they are not joined, ascending. Both ends of a border edge
+/// must be close: single vertices touch in sound meshes as well.
 pub(super) fn nearly_joined(surface: &Surface, found: &TopologyFindings) -> Vec<SurfaceVertex> {
     let mut vertices: Vec<SurfaceVertex> = found.boundary.as_flattened().to_vec();
     vertices.sort_unstable();

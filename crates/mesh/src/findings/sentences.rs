@@ -6,8 +6,8 @@ use super::{FindingKind, Findings};
 const AT_VERTEX: &str = "at vertex ";
 
 impl Findings {
-    /// A sentence about a kind; `None` if it is as in a clean, closed, connected mesh, and for edges of rims, which the
-    /// sentence about holes covers.
+    /// A sentence about a kind; `None` if its count is that of a clean, closed, connected mesh, and for edges of rims,
+    /// which the sentence about holes covers.
     pub fn sentence(&self, kind: FindingKind) -> Option<String> {
         let finding = self.of(kind);
         match kind {
@@ -37,7 +37,7 @@ impl Findings {
         }
     }
 
-    /// One sentence for each thing that is not as in a clean, closed, connected mesh; none for such a mesh.
+    /// One sentence for each difference from a clean, closed, connected mesh; none for such a mesh.
     pub fn sentences(&self) -> Vec<String> {
         FindingKind::ALL
             .into_iter()
@@ -55,7 +55,7 @@ struct Wording {
 }
 
 impl Wording {
-    /// The wording of a kind; `None` for the kinds whose sentence says more than that.
+    /// The wording of a kind; `None` for the kinds whose sentence needs more than that.
     fn of(kind: FindingKind) -> Option<Self> {
         let of_vertices = |predicates| Self::new(["vertex", "vertices"], "", predicates);
         let of_triangles = |predicates| Self::new(["triangle", "triangles"], "", predicates);

@@ -12,7 +12,7 @@ use crate::{Bounds, Component, DrawnSet, Finding, Findings, Surface, SurfaceVert
 /// A part with less than this share of the largest one's vertices is a loose bit.
 const BIT: f64 = 0.01;
 
-/// How many of the largest closed parts are searched for the one that a cavity lies in.
+/// The number of the largest closed parts that are searched for the one around a cavity.
 const HOLLOW_CANDIDATES: usize = 64;
 
 /// A surface and its connected parts.
@@ -23,7 +23,7 @@ pub(crate) struct Parts<'a> {
 }
 
 impl Parts<'_> {
-    /// Reports what was found at surface vertices in terms of file vertices. Returns the components that are inside out,
+    /// Reports the faults at surface vertices in terms of file vertices. Returns the components that are inside out,
     /// ascending.
     pub(crate) fn report(&self, found: &TopologyFindings, findings: &mut Findings) -> Vec<u32> {
         let range = found.range();
@@ -53,7 +53,7 @@ impl Parts<'_> {
         self.components.of_vertex(v) as usize
     }
 
-    /// Closed, consistently wound parts that enclose a negative volume and lie within no other closed part's box.
+    /// Closed, consistently wound parts that enclose a negative volume and are not within another closed part's box.
     fn inside_out(&self, found: &TopologyFindings) -> Vec<u32> {
         let surface = self.surface;
         let count = of_triangles(&self.components.all).len();
@@ -68,7 +68,7 @@ impl Parts<'_> {
         for &v in boundary.iter().flatten().chain(odd.into_iter().flatten()) {
             is_closed[self.component(v)] = false;
         }
-        // Each part's volume is taken around one of its own vertices: far from the origin nothing of it is lost.
+        // Each part's volume is measured from one of its own vertices, so that it loses no digits far from the origin.
         let first = |component: usize| self.components.vertices(component).next();
         let position = |v: SurfaceVertex| surface.positions[v.index()];
         let origin: Vec<DVec3> = (0..count)

@@ -1,20 +1,21 @@
 //! The front of a search: a priority queue of the vertices reached, by rising distance.
 //!
-//! Only the nearest vertices are kept in order. The rest waits in bins by distance, so that the ordered part stays as
-//! small as a bin and within the processor's caches, however wide the front is.
+//! Only the nearest vertices are kept in order. The others wait in bins by distance, so that the ordered part stays as
+//! small as a bin and within the processor's caches, even if the front is wide.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use crate::SurfaceVertex;
 
-/// Bins for the whole way.
+/// Bins for the whole distance.
 const BINS: usize = 256;
 
-/// Vertices and their distances, not negative, the least and of equal ones the lowest vertex first.
+/// Vertices and their distances, not negative, by rising distance and then by vertex.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Front {
-    /// Of the bins up to `bin`; distances as their bits, which compare alike where numbers are not negative.
+    /// The entries of the bins up to `bin`, with distances as their bits, whose order is the same for numbers that are
+    /// not negative.
     near: BinaryHeap<Reverse<(u64, SurfaceVertex)>>,
     far: Vec<Vec<Reverse<(u64, SurfaceVertex)>>>,
     bin: usize,

@@ -2,9 +2,9 @@
 //!
 //! Vertices settle by rising distance as in Dijkstra's search. A settled edge of a triangle also reaches the third
 //! vertex straight through the triangle: unfolded into the plane, the two distances place a virtual source behind the
-//! edge, and the third vertex is as far as the straight line from there, if that line crosses the edge [KS98], with the
-//! circular front of [NK02]. So on a flat sheet without obtuse triangles
-//! distances are exact, where plain Dijkstra zigzags and is up to 40% too long; it costs a few operations a triangle.
+//! edge, and the third vertex's distance is the length of the straight line from there, if that line crosses the edge
+//! [KS98], with the circular front of [NK02]. So on a flat sheet without obtuse triangles distances are exact, where
+//! plain Dijkstra zigzags and is up to 40% too long; it costs a few operations a triangle.
 
 mod front;
 mod joint;
@@ -16,8 +16,8 @@ use crate::geodesics::front::Front;
 use crate::{Surface, SurfaceVertex, Topology};
 
 /// The distance of every vertex from the nearest of `sources`, along the surface, in world units; infinite beyond
-/// `limit` and on components without a source. Never shorter than the straight line, never longer than the shortest
-/// way along edges.
+/// `limit` and on components without a source. It is never shorter than the straight line and never longer than the
+/// shortest path along edges.
 pub fn distances_along_surface(
     surface: &Surface,
     topology: &Topology,
@@ -34,11 +34,11 @@ pub fn distances_along_surface(
     distances
 }
 
-/// A search whose memory is kept between calls: the cost of a brush's dab then depends on what is under it, not on the
-/// size of the mesh.
+/// A search whose memory is kept between calls: the cost of a brush's dab then depends on the vertices under it, not on
+/// the size of the mesh.
 #[derive(Clone, Debug, Default)]
 pub struct DistanceSearch {
-    /// The best distance so far, infinite where the front has not been yet; reset after each search.
+    /// The best distance so far, infinite for vertices that the front has not reached yet; reset after each search.
     distance: Vec<f64>,
     is_settled: Vec<bool>,
     front: Front,
@@ -48,8 +48,8 @@ pub struct DistanceSearch {
 
 impl DistanceSearch {
     /// The vertices within `limit` of the nearest of `seeds`, nearest first, with their distances, on the surface of
-    /// these triangles whose vertices stand where `position` says. A seed is a vertex and the distance, not negative,
-    /// that it starts with: a point on a triangle is its corners with theirs.
+    /// these triangles with vertices at `position`. A seed is a vertex and its initial distance, not negative: a point
+    /// on a triangle is given by its corners and their distances.
     pub fn within(
         &mut self,
         triangles: &[[SurfaceVertex; 3]],
@@ -130,7 +130,7 @@ impl DistanceSearch {
 }
 
 /// The third corner's distance by a straight line across the edge between the first two, whose distances are given;
-/// `None` where no such line crosses the edge.
+/// `None` if no such line crosses the edge.
 fn through_triangle([a, b, c]: [DVec3; 3], [at_a, at_b]: [f64; 2]) -> Option<f64> {
     // The plane with a at the origin, b on the x axis and c above it.
     let (along, to_c) = (b - a, c - a);
@@ -147,7 +147,7 @@ fn through_triangle([a, b, c]: [DVec3; 3], [at_a, at_b]: [f64; 2]) -> Option<f64
     }
     let below = below_squared.sqrt();
     let height = c_y + below;
-    // Where the line crosses the axis, times its height.
+    // The point where the line crosses the axis, times its height.
     let crossing = source_x * c_y + c_x * below;
     let across = c_x - source_x;
     (crossing >= 0.0 && crossing <= length * height).then(|| (across * across + height * height).sqrt())

@@ -7,7 +7,7 @@ use crate::geometry::{area_of_lengths, cotangents, edge_lengths, face_area};
 use crate::surface::corners;
 use crate::{Surface, SurfaceVertex};
 
-/// Triangles per piece of a sum: sums are cut in the same way whatever the number of threads.
+/// Triangles per piece of a sum: the pieces do not depend on the number of threads.
 const PIECE: usize = 16_384;
 
 /// The area of every triangle of `surface` with its vertices at `positions`.
@@ -22,8 +22,8 @@ pub fn face_areas(surface: &Surface, positions: &[DVec3]) -> Vec<f64> {
 /// Each corner's share of a triangle's area, from edge lengths (entry `i` opposite corner `i`) [MDSB03,
 /// figure 4]. The shares sum to the area.
 ///
-/// A triangle without an obtuse angle is shared by its circumcentre, one with an obtuse angle gives half of itself to
-/// that corner and a quarter to each other.
+/// The circumcentre divides a triangle without an obtuse angle; a triangle with an obtuse angle gives half of its area
+/// to that corner and a quarter to each of the others.
 pub fn mixed_corner_areas(lengths: [f64; 3]) -> [f64; 3] {
     let area = area_of_lengths(lengths);
     if area <= 0.0 {
@@ -62,7 +62,7 @@ pub fn mixed_voronoi_areas(surface: &Surface) -> Vec<f64> {
 
 /// The volume inside a closed surface, positive where normals point outward; meaningless for an open one.
 pub fn signed_volume(triangles: &[[SurfaceVertex; 3]], positions: &[DVec3]) -> f64 {
-    // Relative to a vertex of the surface, because far from the origin the terms would cancel.
+    // Measured from a vertex of the surface, because far from the origin the terms would cancel.
     let Some(&[apex, ..]) = triangles.first() else {
         return 0.0;
     };

@@ -35,7 +35,7 @@ pub fn mean_curvatures(surface: &Surface, topology: &Topology, positions: &[DVec
                 };
                 let (next, last) = ((at + 1) % 3, (at + 2) % 3);
                 let here = positions[v.index()];
-                // The edge to one corner is opposite the other.
+                // The edge to one corner is opposite to the other corner.
                 pull += cotangents[last] * (here - positions[corners[next].index()]);
                 pull += cotangents[next] * (here - positions[corners[last].index()]);
                 area += areas[at];

@@ -1,4 +1,4 @@
-//! What came out badly of a deformation, counted, each with a place.
+//! The damage of a deformation, counted, each kind with a place.
 
 use glam::DVec3;
 
@@ -7,29 +7,29 @@ use super::face_area;
 use crate::surface::corners;
 use crate::{Surface, Topology};
 
-/// An edge shorter than this share of its rest length has collapsed, and one longer by its inverse is torn out.
+/// An edge shorter than this share of its rest length has collapsed, and one longer than its inverse is torn out.
 const SHRUNK: f64 = 0.01;
 
 /// A triangle of less than this share of its area has collapsed.
 const COLLAPSED: f64 = 0.01;
 
-/// How often something came out badly, and where for the first time.
+/// The count of a kind of damage, and its first place.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct Damaged {
-    /// How many there are.
+    /// The count.
     pub count: usize,
     /// The middle of the first of them, as deformed, in world units.
     pub place: Option<DVec3>,
 }
 
-/// What came out badly.
+/// The damage of a deformation.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct Damage {
     /// Triangles that turned over, as [`crate::Distortion::flipped_faces`] counts them.
     pub flipped: Damaged,
     /// Edges shorter than a hundredth of their rest length.
     pub shrunk: Damaged,
-    /// Edges longer than a hundred times that.
+    /// Edges longer than a hundred times their rest length.
     pub stretched: Damaged,
     /// Triangles of less than a hundredth of their area.
     pub collapsed: Damaged,
@@ -42,7 +42,7 @@ impl Damaged {
         self.place.get_or_insert_with(middle);
     }
 
-    /// "3 triangles (the first at 0.1 0.2 0.3) .."; `None` of none.
+    /// "3 triangles (the first at 0.1 0.2 0.3) .."; `None` if there are none.
     fn told(&self, [one, many]: [&str; 2], predicate: &str) -> Option<String> {
         let place = self.place?;
         let (noun, first) = if self.count == 1 {
@@ -58,7 +58,7 @@ impl Damaged {
     }
 }
 
-/// A point as sentences have it, to about four digits whatever the size of its mesh.
+/// A point for a sentence, to about four digits for a mesh of any size.
 ///
 /// ```
 /// use glam::dvec3;
@@ -102,7 +102,7 @@ impl Damage {
         damage
     }
 
-    /// A sentence for each kind that there is, with what helps.
+    /// A sentence for each kind that occurs, with the remedy.
     pub fn sentences(&self) -> Vec<String> {
         let remedy = "lower the strength, leave more of the surface free, or take another method";
         let told = [

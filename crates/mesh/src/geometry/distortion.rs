@@ -1,4 +1,4 @@
-//! How far a deformation is from the rest shape.
+//! The distance of a deformation from the rest shape.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -10,22 +10,22 @@ use crate::{Surface, SurfaceVertex, Topology, bounding_box};
 /// The distortion figures of a deformed surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Distortion {
-    /// Mean over edges of max(r, 1/r), where r is the deformed length over the rest length: 1 for a rigid motion, else
-    /// more. Edges without rest length are left out.
+    /// Mean over edges of max(r, 1/r), where r is the deformed length over the rest length: 1 for a rigid motion,
+    /// otherwise more. Edges without rest length are left out.
     pub edge_stretch_mean: f64,
-    /// The largest of them; infinite where an edge shrank to a point.
+    /// The largest of these ratios; infinite if an edge shrank to a point.
     pub edge_stretch_max: f64,
     /// Triangles that turned over: their normal opposes the mean normal, weighted by area, of the other triangles at
-    /// their vertices, and did not at rest. A part that turned over as a whole counts at its rim only, and a triangle
+    /// their vertices, and did not at rest. A part that turned over as a whole counts only at its rim, and a triangle
     /// without an area has no normal.
     pub flipped_faces: usize,
-    /// Deformed over rest volume, each hole closed by a cap from its rim's centre. 1 where the rest shape encloses
-    /// next to nothing (below 1e-9 of its box's diagonal cubed), as a flat sheet.
+    /// Deformed over rest volume, each hole closed by a cap from its rim's centre. 1 if the rest shape encloses almost
+    /// nothing (below 1e-9 of its box's diagonal cubed), as a flat sheet.
     pub volume_ratio: f64,
 }
 
 impl Default for Distortion {
-    /// The rest shape's.
+    /// The box of the rest shape.
     fn default() -> Self {
         Self {
             edge_stretch_mean: 1.0,
@@ -52,11 +52,11 @@ impl Distortion {
     }
 }
 
-/// Vertices or triangles per piece of a sum: sums are cut in the same way whatever the number of threads.
+/// Vertices or triangles per piece of a sum: the pieces do not depend on the number of threads.
 const PIECE: usize = 8192;
 
-/// max(r, 1/r) of every edge with a rest length, r = deformed / rest length: the figures' own terms, in the order of
-/// [`Topology::edges`] for those of vertex `v` to higher ones.
+/// max(r, 1/r) for every edge with a rest length, r = deformed / rest length: the terms of the figures, in the order of
+/// [`Topology::edges`] for the edges from vertex `v` to higher ones.
 fn edge_stretches<'a>(
     surface: &'a Surface,
     topology: &'a Topology,
@@ -104,10 +104,10 @@ pub(super) fn flipped(surface: &Surface, topology: &Topology, deformed: &[DVec3]
         .collect()
 }
 
-/// Below this share of its longest side squared, a triangle's area is made of roundings alone.
+/// Below this share of its longest side squared, a triangle's area consists of rounding errors only.
 const LEAST_AREA: f64 = 1e-6;
 
-/// Whether a triangle has an area that tells its normal.
+/// Whether a triangle has enough area to determine its normal.
 fn has_area([a, b, c]: [DVec3; 3]) -> bool {
     let longest = a
         .distance_squared(b)
@@ -160,7 +160,7 @@ fn volume_ratio(surface: &Surface, topology: &Topology, deformed: &[DVec3]) -> f
 
 /// The signed volume with a fan from each rim's mean vertex across its hole, so that it doesn't depend on the origin.
 fn capped_volume(surface: &Surface, rims: &[Vec<SurfaceVertex>], positions: &[DVec3]) -> f64 {
-    // The apex that `signed_volume` measures from.
+    // The apex for `signed_volume`.
     let Some(&[origin, ..]) = surface.triangles.first() else {
         return 0.0;
     };

@@ -5,7 +5,7 @@ use glam::{DMat3, DVec3};
 use crate::geometry::is_without_area;
 
 /// The linear map that takes the rest triangle's edges to the deformed one's and its unit normal to the deformed one's
-/// (Sumner and Popović 2004, equation 4, with the normal kept a unit). The identity where either has no area.
+/// (Sumner and Popović 2004, equation 4, with the normal kept a unit). The identity if either has no area.
 ///
 /// It describes the whole deformation at this triangle; a rigid motion gives its rotation. Tangents are transformed by
 /// it, normals by its inverse transpose.

@@ -1,7 +1,7 @@
 //! Lengths, areas, angles and normals of single triangles, and boxes.
 //!
-//! Angles and areas come from edge lengths \[Kah14\], so that the same functions serve mollified lengths, which belong
-//! to no positions.
+//! Angles and areas come from edge lengths \[Kah14\], so that the same functions serve mollified lengths, for which
+//! there are no positions.
 
 mod areas;
 mod curvature;
@@ -84,8 +84,8 @@ impl Bounds {
     }
 }
 
-/// The smallest box that contains all `positions`; `None` for none. It runs on the caller's thread: the window asks for
-/// it too, and would wait behind a job's loops for longer than this takes.
+/// The smallest box that contains all `positions`; `None` for none. It runs on the caller's thread: the window calls it
+/// too, and waiting for a job's loops would take longer than the work itself.
 pub fn bounding_box(positions: &[DVec3]) -> Option<Bounds> {
     Bounds::around(positions.iter().copied())
 }
@@ -122,7 +122,7 @@ pub fn edge_lengths([a, b, c]: [DVec3; 3]) -> [f64; 3] {
 }
 
 /// The area of a triangle with these edge lengths, in any order, by Kahan's form of Heron's formula, whose relative
-/// error stays a few roundings for needles too. Zero where the lengths fail the triangle inequality.
+/// error stays a few roundings even for needles. Zero if the lengths violate the triangle inequality.
 pub fn area_of_lengths(lengths: [f64; 3]) -> f64 {
     let [mut a, mut b, mut c] = lengths;
     if a < b {

@@ -1,10 +1,10 @@
 //! Vertex normals, computed every frame.
 //!
-//! Each vertex gathers from its own surroundings, so the sums are the same bits whatever the number of threads. The
+//! Each vertex gathers from its own surroundings, so the sums have the same bits for any number of threads. The
 //! triangles around a regular vertex add up to the area vector of the polygon that its neighbours form (with the vertex
-//! itself, where its fan is open), and a polygon's is that of its quadrilaterals: half the cross product of two
-//! diagonals. A vertex with six neighbours costs two cross products, and neither its own position nor any triangle is
-//! looked up. Lengths are computed many at a time, by loops compiled for the machine's vectors.
+//! itself, if its fan is open), and a polygon's area vector is the sum over its quadrilaterals: half the cross product
+//! of two diagonals. A vertex with six neighbours costs two cross products, and neither its own position nor any
+//! triangle is looked up. Lengths are computed many at a time, by loops compiled for the machine's vectors.
 
 use pulp::{Simd, WithSimd};
 use rayon::prelude::*;
@@ -14,11 +14,11 @@ use crate::surface::corners;
 use crate::vectors::vectors;
 use crate::{FanKind, SurfaceVertex, Topology};
 
-/// Vertices that one task takes.
+/// The number of vertices for one task.
 const CHUNK: usize = 2048;
 
-/// The unit normal of every vertex into `out`: the mean of its triangles' normals weighted by area. Where none has an
-/// area it is zero; where they cancel it may be any direction.
+/// The unit normal of every vertex into `out`: the mean of its triangles' normals weighted by area. It is zero if no
+/// triangle has an area; if the normals cancel it may have any direction.
 ///
 /// In single precision a normal is off by the rounding of the positions over the length of an edge, and edges should be
 /// between 1e-9 and 1e9 long, because the square of an area is taken.
@@ -44,7 +44,7 @@ pub fn vertex_normals<V: Vector3>(
     });
 }
 
-/// What normals are gathered from.
+/// The input of the normals.
 #[derive(Clone, Copy)]
 struct Around<'a, V> {
     triangles: &'a [[SurfaceVertex; 3]],
@@ -114,7 +114,7 @@ impl<V: Vector3> Around<'_, V> {
         }
     }
 
-    /// The same sum, whatever the triangles look like.
+    /// The same sum, for any triangles.
     fn triangles(self, v: SurfaceVertex) -> V {
         let doubled_area = |t: u32| {
             let [a, b, c] = corners(self.triangles[t as usize], self.positions);
@@ -156,7 +156,7 @@ mod tests {
                     normals[v]
                 );
             }
-            // In single precision the same, as far as it goes.
+            // In single precision the same, up to its accuracy.
             let centre = model.bounds().map_or(DVec3::ZERO, |bounds| bounds.centre());
             let single: Vec<Vec3A> = surface.positions.iter().map(|p| (*p - centre).as_vec3a()).collect();
             let mut rounded = Vec::new();

@@ -1,4 +1,4 @@
-//! How far a point is from a triangle.
+//! The distance of a point from a triangle.
 
 use glam::DVec3;
 

@@ -1,15 +1,15 @@
-//! Where two triangles pass through each other.
+//! The segment in which two triangles pass through each other.
 
 use glam::DVec3;
 
 /// Rounding of [`side`] is below this times the sum of its terms' sizes: (7 + 56ε)ε of [She97], with ε = 2⁻⁵³.
 const SIDE_ERROR: f64 = 7.771_561_172_376_104e-16;
 
-/// The segment in which two triangles pass through each other; `None` where they are apart, only touch, or lie in one
-/// plane, as far as f64 can tell.
+/// The segment in which two triangles pass through each other; `None` if they are apart, only touch, or are in one
+/// plane, as far as f64 can decide.
 ///
-/// Corners in bit-equal positions are shared ones: triangles that share an edge never pass through each other, and those
-/// that share a corner do where they meet beyond it.
+/// Corners in bit-equal positions are shared: triangles that share an edge never pass through each other, and triangles
+/// that share a corner do so if they also meet elsewhere.
 pub fn triangle_intersection(a: [DVec3; 3], b: [DVec3; 3]) -> Option<[DVec3; 2]> {
     let is_shared = |corner: &&DVec3| b.contains(corner);
     let shared: Vec<DVec3> = a.iter().filter(is_shared).copied().collect();
@@ -23,14 +23,14 @@ pub fn triangle_intersection(a: [DVec3; 3], b: [DVec3; 3]) -> Option<[DVec3; 2]>
     };
     let mut ends = shared.iter().copied().chain(pierced(a, b)).chain(pierced(b, a));
     let first = ends.next()?;
-    // The farthest, where rounding has an edge pierce twice.
+    // Takes the two farthest points, because rounding may give an edge two.
     ends.max_by(|p, q| p.distance_squared(first).total_cmp(&q.distance_squared(first)))
         .filter(|last| *last != first)
         .map(|last| [first, last])
 }
 
-/// Where the edge passes through a triangle. Where it passes through the triangle's border counts: two halves that are
-/// each other's mirror image meet in such points alone.
+/// The point where the edge passes through a triangle. The triangle's border counts: two halves that are each other's
+/// mirror image meet only in such points.
 fn pierced([p, q]: [DVec3; 2], [a, b, c]: [DVec3; 3]) -> Option<DVec3> {
     let (before, after) = (side([a, b, c], p), side([a, b, c], q));
     let are_opposite = (before > 0.0 && after < 0.0) || (before < 0.0 && after > 0.0);
@@ -42,8 +42,8 @@ fn pierced([p, q]: [DVec3; 2], [a, b, c]: [DVec3; 3]) -> Option<DVec3> {
     is_inside.then(|| p + (q - p) * (before / (before - after)))
 }
 
-/// Six times the signed volume of the tetrahedron a b c d, which tells on which side of the triangle d is; 0 where its
-/// sign can't be told.
+/// Six times the signed volume of the tetrahedron a b c d, which says on which side of the triangle d is; 0 if its sign
+/// is uncertain.
 fn side([a, b, c]: [DVec3; 3], d: DVec3) -> f64 {
     let (a, b, c) = (a - d, b - d, c - d);
     let volume = a.dot(b.cross(c));
@@ -91,7 +91,7 @@ mod tests {
             // A corner or an edge on it.
             [[1.0, 1.0, 0.0], [2.0, 1.0, 1.0], [1.0, 2.0, 1.0]],
             [[1.0, 1.0, 0.0], [2.0, 1.0, 0.0], [1.0, 2.0, 1.0]],
-            // Neighbours over an edge, folded down or not, and over a corner.
+            // Neighbours across an edge, folded down or not, and across a corner.
             [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [1.0, 1.0, 1e-9]],
             [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [1.0, 1.0, 0.0]],
             [[0.0, 0.0, 0.0], [1.0, 1.0, 1.0], [2.0, 1.0, 1.0]],

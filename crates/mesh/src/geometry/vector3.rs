@@ -5,25 +5,25 @@ use std::ops::{Add, AddAssign, Sub};
 
 use glam::{DVec3, Vec3A};
 
-/// Vectors whose lengths are taken together, by loops compiled for the machine's vectors.
+/// Vectors whose lengths are computed together, by loops compiled for the machine's vectors.
 pub(crate) const BLOCK: usize = 64;
 
 /// [`DVec3`], or [`Vec3A`] in single precision.
 pub trait Vector3: Copy + Send + Sync + Add<Output = Self> + Sub<Output = Self> + AddAssign + Sum {
-    /// No length.
+    /// The zero vector.
     const ZERO: Self;
 
     /// This vector, rounded to the precision.
     fn rounded(vector: DVec3) -> Self;
 
-    /// In single precision.
+    /// This vector in single precision.
     fn single(self) -> Vec3A;
 
-    /// Perpendicular to both, as long as the parallelogram that they span has area.
+    /// Perpendicular to both; its length is the area of the parallelogram that they span.
     #[must_use]
     fn cross(self, other: Self) -> Self;
 
-    /// Gives each a length of one; none where the inverse of its length is no number.
+    /// Scales each to length one, or to zero if the inverse of its length is not finite.
     fn normalize_all(vectors: &mut [Self]);
 }
 

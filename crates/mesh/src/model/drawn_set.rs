@@ -1,5 +1,6 @@
-//! What a file shows, without what the surface has already: once welded, a drawn vertex has the position of its surface
-//! vertex, so that position is not stored twice. The few that differ in a bit are stored separately.
+//! The geometry that a file shows, without the data that the surface already has: once welded, a drawn vertex has the
+//! position of its surface vertex, so that position is not stored twice. The few that differ in a bit are stored
+//! separately.
 
 use std::ops::Range;
 
@@ -12,14 +13,14 @@ use crate::{Drawn, DrawnVertex, FileVertex, Model, Surface, SurfaceVertex};
 /// No surface vertex.
 pub(crate) const NONE: u32 = u32::MAX;
 
-/// Drawn vertices that a thread handles at a time.
+/// The number of drawn vertices for one task.
 const CHUNK: usize = 8192;
 
 /// The drawn vertices and triangles of a file, in about a fifth of [`Drawn`]'s bytes. Positions and triangles can only
 /// be restored with the surface: see [`Model`].
 #[derive(Clone, Debug, Default)]
 pub struct DrawnSet {
-    /// [`NONE`] where a drawn vertex has no finite position.
+    /// [`NONE`] for a drawn vertex without a finite position.
     surface_vertices: Vec<u32>,
     strays: Strays,
     file_vertices: FileVertices,
@@ -28,8 +29,8 @@ pub struct DrawnSet {
     lines: Vec<[DrawnVertex; 2]>,
 }
 
-/// Drawn vertices whose position is not their surface vertex's, to the bit: joined within the tolerance, −0 for 0, or
-/// not finite.
+/// Drawn vertices whose position differs in a bit from their surface vertex's: joined within the tolerance, −0 for 0,
+/// or not finite.
 #[derive(Clone, Debug, Default)]
 struct Strays {
     /// Ascending.
@@ -41,7 +42,7 @@ struct Strays {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct FileVertices {
     count: usize,
-    /// Empty where each drawn vertex is the file's of that number.
+    /// Empty if each drawn vertex is the file's vertex of that number.
     listed: Vec<FileVertex>,
 }
 
@@ -88,7 +89,7 @@ impl Strays {
         Some(self.positions[place])
     }
 
-    /// Those among a run of `count` drawn vertices, by their place in it.
+    /// Those in a run of `count` drawn vertices, by their place in it.
     fn within(&self, first: usize, count: usize) -> impl Iterator<Item = (usize, DVec3)> + '_ {
         let place = |vertex: usize| self.vertices.partition_point(|&v| (v as usize) < vertex);
         (place(first)..place(first + count)).map(move |k| (self.vertices[k] as usize - first, self.positions[k]))
@@ -115,7 +116,7 @@ impl DrawnSet {
         }
     }
 
-    /// The same with its triangles and, for each of the surface's, the number of the drawn one behind it.
+    /// The same with its triangles and, for each triangle of the surface, the number of the drawn one behind it.
     pub(crate) fn with_triangles(self, corners: Corners, triangle_of_surface: Vec<u32>) -> Self {
         Self {
             triangles: DrawnTriangles::AsTheyCame(corners),
@@ -136,12 +137,12 @@ impl DrawnSet {
         self
     }
 
-    /// How many vertices are drawn.
+    /// The number of drawn vertices.
     pub fn vertex_count(&self) -> usize {
         self.surface_vertices.len()
     }
 
-    /// How many triangles are drawn.
+    /// The number of drawn triangles.
     pub fn triangle_count(&self) -> usize {
         self.triangles.len()
     }
@@ -151,12 +152,12 @@ impl DrawnSet {
         &self.lines
     }
 
-    /// How many vertices the file has, drawn or not.
+    /// The number of the file's vertices, drawn or not.
     pub fn file_vertex_count(&self) -> usize {
         self.file_vertices.count()
     }
 
-    /// The surface vertex behind a drawn vertex; `None` where it has no finite position.
+    /// The surface vertex behind a drawn vertex; `None` if it has no finite position.
     #[inline]
     pub fn surface_vertex(&self, vertex: DrawnVertex) -> Option<SurfaceVertex> {
         known(self.surface_vertices[vertex.index()])
@@ -198,9 +199,9 @@ impl DrawnSet {
         first
     }
 
-    /// Where a drawn vertex stands at rest.
+    /// The position of a drawn vertex at rest.
     pub(crate) fn position(&self, vertex: DrawnVertex, surface: &Surface) -> DVec3 {
-        // One without a surface vertex strays.
+        // A vertex without a surface vertex is a stray.
         let told = || surface.positions.get(self.surface_vertices[vertex.index()] as usize);
         let stray = self.strays.get(vertex);
         stray.or_else(|| told().copied()).unwrap_or(DVec3::NAN)
@@ -218,7 +219,7 @@ fn known(surface_vertex: u32) -> Option<SurfaceVertex> {
 }
 
 impl Model {
-    /// What the file shows, as it was before it was welded: the same to the bit.
+    /// The geometry that the file shows, as before welding: the same to the bit.
     pub fn rest(&self) -> Drawn {
         Drawn {
             positions: self.rest_positions(),
@@ -230,12 +231,12 @@ impl Model {
         }
     }
 
-    /// Where a drawn vertex stands at rest.
+    /// The position of a drawn vertex at rest.
     pub fn rest_position(&self, vertex: DrawnVertex) -> DVec3 {
         self.drawn.position(vertex, &self.surface)
     }
 
-    /// Where each drawn vertex stands at rest.
+    /// The position of each drawn vertex at rest.
     pub fn rest_positions(&self) -> Vec<DVec3> {
         let mut out = Vec::new();
         let rest = &self.surface.positions;
@@ -263,8 +264,9 @@ impl Model {
         self.drawn.triangles.behind(corners, number)
     }
 
-    /// Each drawn vertex's rest position plus the displacement of its surface vertex (`displacements`, one each),
-    /// into `out`. Where the displacement is zero, and where there is no surface vertex, the rest position's own bits.
+    /// Each drawn vertex's rest position plus the displacement of its surface vertex (`displacements`, one each), into
+    /// `out`. If the displacement is zero, or if there is no surface vertex, the result has the rest position's own
+    /// bits.
     pub fn drawn_positions(&self, displacements: &[DVec3], out: &mut Vec<DVec3>) {
         let rest = &self.surface.positions[..];
         let displacements = &displacements[..rest.len()];
@@ -275,8 +277,9 @@ impl Model {
         );
     }
 
-    /// For each drawn vertex what `of_surface` gives for its surface vertex, into `out`. A drawn vertex whose rest position
-    /// is not its surface vertex's to the bit, or that has none, gets what `of_stray` gives for that position.
+    /// For each drawn vertex the value of `of_surface` for its surface vertex, into `out`. A drawn vertex whose rest
+    /// position differs in a bit from its surface vertex's, or that has no surface vertex, gets the value of `of_stray`
+    /// for that position.
     #[inline]
     pub fn spread<T: Copy + Default + Send>(
         &self,

@@ -4,32 +4,32 @@ use rayon::prelude::*;
 
 use crate::{DrawnVertex, Surface, SurfaceVertex};
 
-/// Triangles over drawn vertices, as they come.
+/// Triangles over drawn vertices, in the file's order.
 #[derive(Clone, Debug)]
 pub(crate) enum Corners {
     /// Triangle t has the corners 3t, 3t + 1 and 3t + 2, as in an STL file.
     InRow(usize),
-    /// One after the other.
+    /// A list of triangles.
     Listed(Vec<[DrawnVertex; 3]>),
 }
 
 /// Triangles over drawn vertices, beside a surface.
 #[derive(Clone, Debug)]
 pub(crate) enum DrawnTriangles {
-    /// By themselves.
+    /// A list of their own.
     AsTheyCame(Corners),
-    /// As the surface has them.
+    /// A reference to the surface's triangles.
     BySurface(BySurface),
 }
 
-/// Triangles that are the surface's in another order, over the first drawn vertex of each surface vertex, but for some.
+/// The surface's triangles in another order, mostly over the first drawn vertex of each surface vertex.
 #[derive(Clone, Debug)]
 pub(crate) struct BySurface {
     count: usize,
-    /// Of each surface vertex.
+    /// The first drawn vertex of each surface vertex.
     first_drawn: Vec<DrawnVertex>,
-    /// The numbers, ascending, and the corners of those that the surface does not have or has over other drawn
-    /// vertices.
+    /// The exceptions: the numbers, ascending, and the corners of triangles that the surface does not have or has over
+    /// other drawn vertices.
     others: Vec<u32>,
     corners_of_others: Vec<[DrawnVertex; 3]>,
 }
@@ -49,7 +49,7 @@ impl Corners {
         }
     }
 
-    /// How many triangles there are.
+    /// The number of triangles.
     pub(crate) fn len(&self) -> usize {
         match self {
             Self::InRow(count) => *count,
@@ -57,7 +57,7 @@ impl Corners {
         }
     }
 
-    /// Those of a triangle.
+    /// The corners of a triangle.
     #[inline]
     pub(crate) fn of(&self, triangle: usize) -> [DrawnVertex; 3] {
         match self {
@@ -66,14 +66,14 @@ impl Corners {
         }
     }
 
-    /// Those of all triangles.
+    /// The corners of all triangles.
     pub(crate) fn iter(&self) -> impl Iterator<Item = [DrawnVertex; 3]> + '_ {
         (0..self.len()).map(|t| self.of(t))
     }
 }
 
 impl DrawnTriangles {
-    /// How many there are.
+    /// The number of triangles.
     pub(crate) fn len(&self) -> usize {
         match self {
             Self::AsTheyCame(corners) => corners.len(),
@@ -81,8 +81,9 @@ impl DrawnTriangles {
         }
     }
 
-    /// The same by reference to a surface, if that takes less. `of_surface` gives each triangle's place in the surface,
-    /// and `surface_vertices` the surface vertex behind each drawn one, a number beyond all if there is none.
+    /// The same by reference to a surface, if that takes less memory. `of_surface` gives each triangle's place in the
+    /// surface, and `surface_vertices` the surface vertex behind each drawn one, or a number beyond all if there is
+    /// none.
     pub(crate) fn told_by(self, surface: &Surface, surface_vertices: &[u32], of_surface: &[u32]) -> Self {
         let Self::AsTheyCame(Corners::Listed(listed)) = self else {
             return self;
@@ -135,7 +136,7 @@ impl DrawnTriangles {
         }
     }
 
-    /// All of them, in their order.
+    /// All triangles, in their order.
     pub(crate) fn listed(&self, surface: &Surface, of_surface: &[u32]) -> Vec<[DrawnVertex; 3]> {
         match self {
             Self::AsTheyCame(corners) => corners.iter().collect(),

@@ -21,11 +21,11 @@ pub use drawn::{Drawn, Rounding};
 pub use drawn_set::DrawnSet;
 pub use object::Object;
 
-/// Which vertices count as one.
+/// The choice of vertices that count as one.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct WeldOptions {
-    /// Vertices closer than this are joined, in world units, 0 (equal ones only) or more; near triangles that are not
-    /// twice as long, half their length. `None` takes the distance from the mesh: see [`Model::weld`].
+    /// Vertices closer than this are joined, in world units, 0 (only equal ones) or more; near triangles less than
+    /// twice as long, half their length. `None` derives the distance from the mesh: see [`Model::weld`].
     pub distance: Option<f64>,
 }
 
@@ -35,25 +35,25 @@ pub const LOOSE_BIT: f64 = 0.01;
 /// The drawn set, the welded surface and the tables between them.
 #[derive(Clone, Debug, Default)]
 pub struct Model {
-    /// What the file shows: see [`Self::rest`].
+    /// The geometry that the file shows: see [`Self::rest`].
     pub drawn: DrawnSet,
-    /// What is solved.
+    /// The surface that the solver works on.
     pub surface: Surface,
-    /// Who neighbours whom on the surface.
+    /// The connectivity of the surface.
     pub topology: Topology,
-    /// What is wrong with the mesh.
+    /// The faults of the mesh.
     pub findings: Findings,
     /// The connected parts that [`Findings::inside_out_components`] counts, ascending.
     pub inside_out: Vec<u32>,
-    /// What the file itself tells apart; empty where nobody said.
+    /// The objects that the file itself has; empty if it has none.
     pub objects: Vec<Object>,
-    /// How its vertices were joined.
+    /// The options with which its vertices were joined.
     pub weld: WeldOptions,
 }
 
 impl Model {
-    /// Welds `drawn` into a surface. Vertices that no kept triangle uses become bare points behind its other vertices
-    /// ([`Topology::bare_points`]). Anything that can't be solved is set aside and told in the findings.
+    /// Welds `drawn` into a surface. Vertices that no kept triangle uses become bare points after its other vertices
+    /// ([`Topology::bare_points`]). Geometry that can't be solved for is set aside and reported in the findings.
     ///
     /// Without a distance in the options, vertices on borders are joined within 1e-4 of the triangles' size near the
     /// place and others within 1e-7 of it; borders of vertices that were rounded apart ([`Drawn::roundings`]) within
@@ -83,14 +83,14 @@ impl Model {
         })
     }
 
-    /// The bounding box of the vertices that kept triangles use, of all bare points where there is no triangle; `None`
-    /// of an empty surface.
+    /// The bounding box of the vertices that kept triangles use, or of all bare points if there is no triangle; `None`
+    /// for an empty surface.
     pub fn bounds(&self) -> Option<Bounds> {
         bounding_box(self.main_positions())
     }
 
-    /// Whether each connected part has fewer vertices than this share (0 to 1) of the largest part's. Bare points are no
-    /// part.
+    /// Whether each connected part has fewer vertices than this share (0 to 1) of the largest part's. Bare points are
+    /// not parts.
     ///
     /// ```
     /// use pliant_mesh::{Cancel, LOOSE_BIT, Model, Progress, WeldOptions, shapes};
@@ -114,8 +114,7 @@ impl Model {
         components.iter().enumerate().map(is_small).collect()
     }
 
-    /// Whether each connected part is a speck: a loose bit that is further from all parts which are none than these are
-    /// large.
+    /// Whether each connected part is a speck: a loose bit that is further from all other parts than their size.
     pub fn specks(&self) -> Vec<bool> {
         let components = self.topology.components();
         let of_triangles = of_triangles(components).len();
@@ -135,7 +134,7 @@ impl Model {
             .collect()
     }
 
-    /// The box that is looked at: as [`Self::bounds`], without specks.
+    /// The box that the view shows: as [`Self::bounds`], without specks.
     pub fn bounds_without_specks(&self) -> Option<Bounds> {
         Bounds::around(
             self.vertices_without_specks()
@@ -150,13 +149,13 @@ impl Model {
         vertices.filter(move |&v| !specks[self.topology.component(v) as usize])
     }
 
-    /// The positions that say where the model is and how large: see [`Topology::main_positions`].
+    /// The positions that determine where the model is and how large: see [`Topology::main_positions`].
     pub fn main_positions(&self) -> &[DVec3] {
         self.topology.main_positions(&self.surface.positions)
     }
 
-    /// Of each drawn vertex, whether it is of one of these connected parts, or is another place where a file vertex of
-    /// theirs is shown. Empty where none is chosen.
+    /// For each drawn vertex, whether it belongs to one of these connected parts, or shows a file vertex of theirs in
+    /// another place. Empty if none is chosen.
     pub fn drawn_vertices_of(&self, parts: &BTreeSet<u32>) -> Vec<bool> {
         if parts.is_empty() {
             return Vec::new();
@@ -180,7 +179,7 @@ impl Model {
     }
 }
 
-/// As [`Model::main_positions`], where the positions from `first_bare` on are bare points.
+/// As [`Model::main_positions`], with bare points from `first_bare` on.
 pub(crate) fn main_positions(positions: &[DVec3], first_bare: usize) -> &[DVec3] {
     if first_bare == 0 {
         positions
@@ -218,8 +217,8 @@ impl SurfaceOfFile {
         }
     }
 
-    /// The surface vertices of `vertex`, ascending: none where it is not finite or not drawn (or the file has no
-    /// such vertex), two where two nodes show it in two places.
+    /// The surface vertices of `vertex`, ascending: none if it is not finite or not drawn (or the file has no such
+    /// vertex), two if two nodes show it in two places.
     pub fn of(&self, vertex: FileVertex) -> &[SurfaceVertex] {
         let row = self.offsets.get(vertex.index()..=vertex.index() + 1);
         match row {

@@ -7,9 +7,9 @@ use crate::{Model, SurfaceVertex};
 /// Triangles that share node and material.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
 pub struct Object {
-    /// The node's, object's or group's name; empty where the file gives none.
+    /// The node's, object's or group's name; empty if the file gives none.
     pub name: String,
-    /// The material's name; empty where the file gives none.
+    /// The material's name; empty if the file gives none.
     pub material: String,
     /// Runs of [`crate::Drawn::triangles`], ascending.
     pub triangles: Vec<Range<u32>>,
@@ -33,7 +33,7 @@ impl Model {
         }]
     }
 
-    /// For each of [`crate::Drawn::triangles`] whether `holds` is true of its object's number.
+    /// For each of [`crate::Drawn::triangles`], the value of `holds` for its object's number.
     pub fn triangles_of_objects(&self, holds: impl Fn(usize) -> bool) -> Vec<bool> {
         let mut chosen = vec![false; self.drawn.triangle_count()];
         for (number, object) in self.all_objects().iter().enumerate() {

@@ -1,7 +1,7 @@
 //! Which vertices are each other's mirror images.
 //!
-//! No mesh of a scan is symmetric vertex by vertex. A vertex' image lies somewhere on the other side's surface, and what
-//! is done to the vertex nearest to it is done to the vertex: asked this way round, no vertex between images is left out.
+//! The mesh of a scan is never symmetric vertex by vertex. A vertex' image is somewhere on the other side's surface,
+//! and the vertex copies the vertex nearest to its image: in this direction, no vertex between images is left out.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -9,11 +9,11 @@ use rayon::prelude::*;
 use super::plane::MirrorPlane;
 use crate::{Bvh, Cancel, Cancelled, Progress, SurfaceVertex, Topology};
 
-/// How many vertices are asked between two looks at the progress.
+/// The number of vertices between two checks of the progress.
 const BATCH: usize = 16_384;
 
-/// The vertex nearest to the mirror image of `vertex`; `None` where it is farther from it than its longest edge.
-/// `bvh` is that of the same `positions`.
+/// The vertex nearest to the mirror image of `vertex`; `None` if it is farther away than its longest edge. `bvh` is
+/// that of the same `positions`.
 pub fn image_of(
     positions: &[DVec3],
     topology: &Topology,
@@ -28,7 +28,7 @@ pub fn image_of(
     (distance <= longest).then_some(nearest)
 }
 
-/// For every vertex those on the other side that go with it.
+/// For every vertex its counterparts on the other side.
 #[derive(Clone, Debug)]
 pub struct Counterparts {
     offsets: Vec<u32>,
@@ -36,7 +36,7 @@ pub struct Counterparts {
 }
 
 impl Counterparts {
-    /// Looks for every vertex' image; `bvh` is that of the same `positions`.
+    /// Finds every vertex' image; `bvh` is that of the same `positions`.
     ///
     /// # Errors
     /// If it was cancelled.
@@ -74,8 +74,8 @@ impl Counterparts {
         Ok(Self { offsets, vertices })
     }
 
-    /// The vertices that go with this one, ascending: that nearest to its image, and those whose image it is nearest to.
-    /// Empty where the shape has no other side, and where a vertex on the plane is its own image.
+    /// The counterparts of this vertex, ascending: the vertex nearest to its image, and those whose image is nearest to
+    /// it. Empty if the shape has no other side, and for a vertex on the plane that is its own image.
     pub fn of(&self, vertex: SurfaceVertex) -> &[SurfaceVertex] {
         let [from, to] = [vertex.index(), vertex.index() + 1].map(|place| self.offsets[place] as usize);
         &self.vertices[from..to]

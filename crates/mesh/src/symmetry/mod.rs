@@ -1,4 +1,4 @@
-//! Mirror symmetry: a plane, the plane that a shape has, and which vertices are each other's images across it.
+//! Mirror symmetry: a plane, the shape's own plane, and the vertices that are each other's images across it.
 
 mod counterparts;
 mod of_points;

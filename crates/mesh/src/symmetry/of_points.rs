@@ -6,21 +6,22 @@ use glam::DVec3;
 
 use super::MirrorPlane;
 
-/// Vertices by which a plane is judged.
+/// The number of vertices by which a plane is judged.
 const SAMPLES: usize = 64;
 
-/// Vertices that are furthest from the centre, pairs of which suggest planes, and how many pairs are tried.
+/// The number of vertices farthest from the centre, pairs of which suggest planes, and the number of pairs that are
+/// tried.
 const FURTHEST: usize = 48;
 const PAIRS: usize = 200;
 
-/// A vertex has its image if a vertex is this near to it, as a share of the shape's size.
+/// A vertex has its image if another vertex is this close to it, as a share of the shape's size.
 const NEAR: f64 = 1e-4;
 
 /// The share of the samples that must have their image.
 const MOST: f64 = 0.5;
 
 /// The planes across which more than half of these finite positions have their image among them, the likeliest first,
-/// each with the share that does. Some positions stand for all, so a plane may be told that a few of them lack.
+/// each with that share. A sample represents all positions, so the result may include a plane that a few of them lack.
 ///
 /// ```
 /// use glam::DVec3;
@@ -42,7 +43,7 @@ pub fn mirror_planes(positions: &[DVec3]) -> Vec<(f64, MirrorPlane)> {
         .collect()
 }
 
-/// Planes that the shape may be its own image across, each by its unit normal and a point: the most likely first.
+/// Planes that may be planes of symmetry, each by its unit normal and a point: the most likely first.
 fn planes(positions: &[DVec3], centre: DVec3, size: f64) -> Vec<(DVec3, DVec3)> {
     let mut planes = Vec::new();
     for axis in [DVec3::X, DVec3::Z, DVec3::Y] {
@@ -60,7 +61,7 @@ fn planes(positions: &[DVec3], centre: DVec3, size: f64) -> Vec<(DVec3, DVec3)> 
         lanes.find(|order| order.is_ne()).unwrap_or(std::cmp::Ordering::Equal)
     };
     far[..count].sort_by(by_place);
-    // A vertex and its image are as far from the centre.
+    // A vertex and its image have the same distance from the centre.
     let pairs = (0..count).flat_map(|a| (a + 1..count).map(move |b| (a, b)));
     let alike = pairs.map(|(a, b)| (far[a], far[b]));
     let alike = alike.filter(|((a, _), (b, _))| (a - b).abs() <= NEAR * size);
@@ -69,7 +70,7 @@ fn planes(positions: &[DVec3], centre: DVec3, size: f64) -> Vec<(DVec3, DVec3)> 
     planes
 }
 
-/// Which cells of a grid hold vertices.
+/// The cells of a grid that contain vertices.
 struct Places {
     width: f64,
     cells: HashMap<[i64; 3], Vec<DVec3>>,
@@ -84,7 +85,7 @@ impl Places {
         if width > 0.0 {
             for &position in positions {
                 let cell = places.cells.entry(places.cell(position)).or_default();
-                // One tells as much as a million.
+                // One of them says as much as a million.
                 if cell.len() < 4 {
                     cell.push(position);
                 }
@@ -99,7 +100,7 @@ impl Places {
 
     fn has_near(&self, position: DVec3) -> bool {
         let cell = self.cell(position);
-        // A plane may be so far off that its image lies beyond the last cell.
+        // A plane may be so inaccurate that its image is beyond the last cell.
         let around = (0..27).map(|k| {
             let steps = [k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1];
             std::array::from_fn(|axis| i64::saturating_add(cell[axis], steps[axis]))

@@ -17,7 +17,7 @@ pub struct MirrorPlane {
 }
 
 impl MirrorPlane {
-    /// The plane across a direction of any length, at this distance from the origin along it; `None` where that is no
+    /// The plane across a direction of any length, at this distance from the origin along it; `None` if that is not a
     /// plane.
     pub fn new(normal: DVec3, distance: f64) -> Option<Self> {
         let normal = normal.try_normalize()?;
@@ -42,12 +42,12 @@ impl MirrorPlane {
         self.distance
     }
 
-    /// The axis of the world that it stands across, if it does so exactly.
+    /// The axis of the world that is its normal, if it is exactly one.
     pub fn axis(&self) -> Option<usize> {
         DVec3::AXES.iter().position(|&axis| axis == self.normal)
     }
 
-    /// How far before the plane a point is; negative behind it.
+    /// The distance of a point in front of the plane; negative behind it.
     pub fn height(&self, point: DVec3) -> f64 {
         self.normal.dot(point) - self.distance
     }

@@ -1,9 +1,9 @@
-//! The plane across which a shape is its own mirror image, as far as a scan can be.
+//! The plane across which a shape is its own mirror image, to a scan's accuracy.
 //!
-//! Such a plane goes through the surface's centroid, so only its direction is looked for: many are tried with few samples
-//! of the surface, and the best are fitted to it. A fit goes on as that of closest points [CM92]: each
-//! sample's image is paired with the vertex nearest to it, and the plane that brings images nearest to the tangent planes
-//! there takes the place of the last.
+//! Such a plane goes through the surface's centroid, so only its direction is unknown: many are tried with few samples
+//! of the surface, and the best are fitted to it. A fit works like that of closest points [CM92]: each sample's image
+//! is paired with the vertex nearest to it, and the plane that brings images nearest to the tangent planes there
+//! replaces the last one.
 
 use std::f64::consts::PI;
 
@@ -15,24 +15,24 @@ use crate::{Bvh, Cancel, Cancelled, Progress, Surface, Topology, mixed_voronoi_a
 
 /// Directions over a half sphere, 14° apart, beside the axes of the world.
 const DIRECTIONS: usize = 200;
-/// Samples of the surface by which a direction is judged, and by which a plane is fitted.
+/// The samples of the surface by which a direction is judged, and by which a plane is fitted.
 const FEW: usize = 150;
 const MANY: usize = 1_000;
-/// So many of the best directions are fitted, none nearer to another than this cosine.
+/// The number of the best directions that are fitted, none nearer to another than this cosine.
 const FITTED: usize = 6;
 const SAME: f64 = 0.95;
 const ROUNDS: usize = 30;
-/// A fit is done when a round turns the plane by less than this in radians, and shifts it by less as a share of the size.
+/// A fit ends when a round turns the plane by less than this in radians, and shifts it by less as a share of the size.
 const SETTLED: f64 = 1e-7;
-/// The share of the samples that count: what the other side lacks, such as a bag in one hand, does not.
+/// The share of the samples that count: parts that the other side lacks, such as a bag in one hand, do not.
 const COUNTED: f64 = 0.8;
-/// A shape has a plane if the samples' images are on average this near to the surface, as a share of the samples' mean
+/// A shape has a plane if the samples' images are on average this close to the surface, as a share of the samples' mean
 /// distance from the centroid.
 const NEAR: f64 = 0.04;
-/// Of planes that fit alike, as those of a ball, that across the world's first axis counts.
+/// Of planes that fit equally well, as for a ball, the one across the world's first axis counts.
 const ALIKE: f64 = 1.2;
 
-/// What planes are fitted to.
+/// The input of the fit.
 struct Shape<'a> {
     positions: &'a [DVec3],
     normals: Vec<DVec3>,
@@ -43,7 +43,7 @@ struct Shape<'a> {
     size: f64,
 }
 
-/// The plane across which the surface is its own mirror image; `None` if no plane does that nearly. `topology` and
+/// The plane across which the surface is its own mirror image; `None` if no plane comes close to that. `topology` and
 /// `bvh` are the surface's own.
 ///
 /// # Errors
@@ -93,7 +93,7 @@ pub fn symmetry_plane(
         .collect();
     cancel.check()?;
     progress.set(0.4);
-    // The axes come first, whatever the samples say of them.
+    // The axes come first, for any samples.
     let mut chosen: Vec<DVec3> = DVec3::AXES.to_vec();
     judged.sort_by(|a, b| a.0.total_cmp(&b.0));
     for (_, normal) in judged {
@@ -115,13 +115,13 @@ pub fn symmetry_plane(
     cancel.check()?;
     progress.set(1.0);
     let best = fitted.iter().map(|(error, _)| *error).fold(f64::INFINITY, f64::min);
-    // Rounding decides nothing between planes that are exact.
+    // Rounding does not decide between planes that are exact.
     let limit = (ALIKE * best).max(1e-6 * size);
     let first = fitted.into_iter().find(|(error, _)| *error <= limit);
     Ok(first.filter(|(error, _)| *error <= NEAR * size).map(|(_, plane)| plane))
 }
 
-/// Vertices that stand for equal areas.
+/// Vertices that represent equal areas.
 fn samples(positions: &[DVec3], areas: &[f64], total: f64, count: usize) -> Vec<DVec3> {
     let (mut samples, mut sum) = (Vec::with_capacity(count), 0.0);
     for (position, area) in positions.iter().zip(areas) {
@@ -133,7 +133,7 @@ fn samples(positions: &[DVec3], areas: &[f64], total: f64, count: usize) -> Vec<
     samples
 }
 
-/// The axes, and directions that lie evenly over a half sphere (a Fibonacci lattice).
+/// The axes, and directions that are evenly distributed over a half sphere (a Fibonacci lattice).
 fn directions() -> Vec<DVec3> {
     let golden = PI * (3.0 - 5.0_f64.sqrt());
     let lattice = (0..DIRECTIONS).map(|place| {
@@ -145,7 +145,7 @@ fn directions() -> Vec<DVec3> {
     DVec3::AXES.into_iter().chain(lattice).collect()
 }
 
-/// The mean of the least of these numbers.
+/// The mean of the smallest of these numbers.
 fn counted_mean(numbers: impl Iterator<Item = f64>) -> f64 {
     let mut numbers: Vec<f64> = numbers.collect();
     numbers.sort_by(f64::total_cmp);
@@ -157,7 +157,7 @@ fn counted(count: usize) -> usize {
     ((COUNTED * count as f64) as usize).max(1)
 }
 
-/// Fits a plane to the samples from where it is; `None` where nothing can be fitted, or it was cancelled.
+/// Fits a plane to the samples from its present place; `None` if nothing can be fitted, or if it was cancelled.
 fn fit(mut plane: MirrorPlane, shape: &Shape<'_>, cancel: &Cancel) -> Option<MirrorPlane> {
     for _ in 0..ROUNDS {
         cancel.check().ok()?;
@@ -179,9 +179,9 @@ fn fit(mut plane: MirrorPlane, shape: &Shape<'_>, cancel: &Cancel) -> Option<Mir
     Some(plane)
 }
 
-/// A step of Gauss and Newton on Σ (m · (p' − q))²: how far the images p' of points are from the tangent planes, with
-/// normals m, at the vertices q nearest to them. The unknowns are the plane's distance from the centroid and a small change
-/// of its normal across itself.
+/// A Gauss–Newton step on Σ (m · (p' − q))², the squared distances of the images p' of points from the tangent planes,
+/// with normals m, at the vertices q nearest to them. The unknowns are the plane's distance from the centroid and a
+/// small change of its normal across itself.
 fn step(plane: MirrorPlane, shape: &Shape<'_>, pairs: &[(f64, DVec3, usize)]) -> Option<MirrorPlane> {
     let normal = plane.normal();
     let (across, along) = normal.any_orthonormal_pair();
@@ -197,7 +197,7 @@ fn step(plane: MirrorPlane, shape: &Shape<'_>, pairs: &[(f64, DVec3, usize)]) ->
         matrix += DMat3::from_cols(slope * slope.x, slope * slope.y, slope * slope.z);
         gradient += slope * missed;
     }
-    // What the shape leaves open, such as any turn of a ball's plane, stays as it is.
+    // Directions that the shape does not determine, such as any turn of a ball's plane, stay the same.
     let trace = matrix.x_axis.x + matrix.y_axis.y + matrix.z_axis.z;
     let damped = matrix + DMat3::from_diagonal(DVec3::splat(1e-6 * trace));
     let change = -(damped.inverse() * gradient) / shape.size;

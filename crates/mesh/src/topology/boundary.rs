@@ -6,9 +6,9 @@ use crate::SurfaceVertex;
 
 /// Strings `edges` into loops, each vertex once in each loop.
 ///
-/// At a vertex the walk leaves by the first unused edge that starts there, else (triangles disagree about the outside)
-/// by one that ends there. Where it meets its own track, the cycle is cut off as a loop. What is left when it can't go
-/// on is an open chain, which counts as a loop; chains are walked first, from their ends.
+/// At a vertex the walk leaves by the first unused edge that starts there, or else (if triangles disagree about the
+/// outside) by one that ends there. If it meets its own track, the cycle is cut off as a loop. The remainder of a walk
+/// that can't go on is an open chain, which counts as a loop; chains are walked first, from their ends.
 pub(crate) fn trace_loops(edges: &[[SurfaceVertex; 2]]) -> Vec<Vec<SurfaceVertex>> {
     let mut rim = Rim::of(edges);
     let mut place_on_path = vec![None; rim.vertices.len()];
@@ -48,9 +48,9 @@ struct Rim {
     edges: Vec<[u32; 2]>,
     /// The edges at each vertex: first those that start there, then those that end there, each by rising number.
     edges_at: Vec<u32>,
-    /// Where each vertex's edges begin, and where the last one's end.
+    /// The place where each vertex's edges begin, and the end of the last one's.
     starts: Vec<u32>,
-    /// How far each vertex's edges are known to be used up.
+    /// The number of each vertex's edges that are known to be used up.
     next: Vec<u32>,
     used: Vec<bool>,
 }

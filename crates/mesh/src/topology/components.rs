@@ -7,9 +7,9 @@ use crate::{FileVertex, SurfaceVertex};
 /// A connected part of the surface: vertices joined by edges.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Component {
-    /// How many surface vertices it has.
+    /// The number of surface vertices.
     pub vertex_count: usize,
-    /// How many triangles it has.
+    /// The number of triangles.
     pub face_count: usize,
     /// The lowest file vertex that was welded into it (for a bare surface: its lowest surface vertex's number).
     pub first_file_vertex: FileVertex,
@@ -20,11 +20,11 @@ pub struct Component {
 pub(crate) struct Components {
     /// By falling vertex count, then by rising first file vertex.
     pub(crate) all: Vec<Component>,
-    /// Of each vertex; empty where there is but one.
+    /// The component of each vertex; empty if there is only one.
     of_vertex: Vec<u32>,
-    /// Component after component, ascending in each; empty where there is but one.
+    /// Component after component, ascending in each; empty if there is only one.
     vertices: Vec<SurfaceVertex>,
-    /// Where each one's vertices begin.
+    /// The start of each component's vertices.
     starts: Vec<u32>,
 }
 
@@ -94,7 +94,7 @@ impl Components {
     }
 }
 
-/// The lowest vertex of each vertex's component, where each of the `edges` joins two vertices.
+/// The lowest vertex of each vertex's component; each of the `edges` joins two vertices.
 pub(crate) fn roots(vertex_count: usize, edges: impl Iterator<Item = [u32; 2]>) -> Vec<u32> {
     let mut parent: Vec<u32> = (0..vertex_count as u32).collect();
     edges.for_each(|[a, b]| join(&mut parent, a, b));

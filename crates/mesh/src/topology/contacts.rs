@@ -1,7 +1,7 @@
-//! Where connected components touch one another: what a rivet, a buckle or an eye lies on.
+//! Places where connected components touch one another: the part under a rivet, a buckle or an eye.
 //!
-//! A component touches another where its vertices lie within a small distance, a share of its own size, of the other's
-//! triangles. The areas of those vertices tell how much it touches. Distances are to triangles, not to their corners: a
+//! A component touches another if its vertices are within a small distance, a share of its own size, of the other's
+//! triangles. The areas of those vertices measure the contact. Distances are to triangles, not to their corners: a
 //! small part on a coarse plate is far from every corner of it.
 
 use glam::DVec3;
@@ -12,15 +12,15 @@ use crate::{Bvh, Cancel, Cancelled, Surface, SurfaceVertex, Topology, face_area}
 /// A place where a component touches another.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Contact {
-    /// The other component's vertex beside that place.
+    /// The other component's vertex next to that place.
     pub place: SurfaceVertex,
-    /// How far apart the two are, in world units.
+    /// The distance between the two, in world units.
     pub distance: f64,
-    /// The area of the component that touches there, in square world units.
+    /// The component's area that touches there, in square world units.
     pub area: f64,
 }
 
-/// A component touches what is within this share of the half diagonal of its own bounding box.
+/// A component touches everything within this share of the half diagonal of its own bounding box.
 const TOUCH: f64 = 0.1;
 
 /// At most this many vertices of a component are tested, evenly spread over their order in the file. With the distance
@@ -37,9 +37,9 @@ pub fn component_areas(surface: &Surface, topology: &Topology) -> Vec<f64> {
     areas
 }
 
-/// Where each of the components `of` touches others that `may_hold(component, other)` and whose triangles are in
-/// `tree`, a hierarchy over this surface; empty where it touches none. A vertex that lies beside several touches the
-/// nearest.
+/// The places where each of the components `of` touches others for which `may_hold(component, other)` is true and whose
+/// triangles are in `tree`, a hierarchy over this surface; empty for a component that touches none. A vertex next to
+/// several touches the nearest.
 ///
 /// # Errors
 /// It was cancelled.

@@ -1,7 +1,7 @@
 //! Lines on the surface around every region of vertices with the same label.
 //!
-//! In a triangle whose corners differ, the line runs from edge to edge, as marching triangles draw it. With the middles
-//! of edges it would zigzag from triangle to triangle, so its points slide along their edges towards the mean of their
+//! In a triangle whose corners differ, the line runs from edge to edge, as in marching triangles. With the middles of
+//! edges it would zigzag from triangle to triangle, so its points slide along their edges towards the mean of their
 //! neighbours: the line gets straighter and still separates the same vertices.
 
 use std::collections::HashMap;
@@ -16,9 +16,9 @@ use crate::{Surface, SurfaceVertex};
 pub struct ContourLine {
     /// The surface's triangle.
     pub triangle: u32,
-    /// Where it crosses two of the triangle's edges.
+    /// The points where it crosses two of the triangle's edges.
     pub ends: [Crossing; 2],
-    /// The label of what it goes around.
+    /// The label of the region that it surrounds.
     pub label: u16,
 }
 
@@ -27,17 +27,17 @@ pub struct ContourLine {
 pub struct Crossing {
     /// The edge's corners, 0 to 2, the lower surface vertex first.
     pub corners: [u8; 2],
-    /// How far from the first to the second, from 0 to 1.
+    /// The position from the first to the second, from 0 to 1.
     pub share: f32,
 }
 
-/// How often points slide towards their neighbours' mean.
+/// The number of times that points slide towards their neighbours' mean.
 const ROUNDS: usize = 12;
-/// How near a point may come to an edge's ends, as a share of its length.
+/// The smallest distance of a point from an edge's ends, as a share of its length.
 const CLEARANCE: f64 = 0.08;
 
-/// The lines around the regions of equal `labels` (one per vertex), by triangle. Where regions meet, the line belongs
-/// to the higher label: none is drawn twice.
+/// The lines around the regions of equal `labels` (one per vertex), by triangle. If regions meet, the line belongs to
+/// the higher label, so that none is drawn twice.
 pub fn contours(surface: &Surface, labels: &[u16]) -> Vec<ContourLine> {
     let mut lines: Vec<ContourLine> = surface
         .triangles
@@ -53,7 +53,7 @@ pub fn contours(surface: &Surface, labels: &[u16]) -> Vec<ContourLine> {
     lines
 }
 
-/// The line that cuts `corner` off from both others, if there is one and this corner's turn to draw it.
+/// The line that cuts `corner` off from both others, if there is one and it is this corner's turn to draw it.
 fn line(triangle: u32, corners: &[SurfaceVertex; 3], labels: [u16; 3], corner: u8) -> Option<ContourLine> {
     let others = [(corner + 1) % 3, (corner + 2) % 3];
     let own = labels[usize::from(corner)];
@@ -61,7 +61,8 @@ fn line(triangle: u32, corners: &[SurfaceVertex; 3], labels: [u16; 3], corner: u
     if own == next || own == last {
         return None;
     }
-    // Cut off from two alike: one line, of the higher label. Of three labels the two higher ones have a line each.
+    // One corner is cut off from two of the same label: one line, of the higher label. With three labels, the two
+    // higher ones have a line each.
     let label = if next == last {
         own.max(next)
     } else if own > next.min(last) {
@@ -118,7 +119,7 @@ fn straighten(lines: &mut [ContourLine], surface: &Surface) {
     }
     for (line, points) in lines.iter_mut().zip(ends_of_line) {
         for (end, point) in line.ends.iter_mut().zip(points) {
-            // f32 begins here: a share of an edge only says where a line is drawn.
+            // f32 begins here: a share of an edge only determines where a line is drawn.
             end.share = shares[point] as f32;
         }
     }
@@ -140,7 +141,7 @@ mod tests {
         contours(&model.surface, &labels)
     }
 
-    /// Where a line's ends are, and which edges they lie on.
+    /// The ends of a line, and the edges that they are on.
     fn ends(model: &Model, line: &ContourLine) -> [(DVec3, [SurfaceVertex; 2]); 2] {
         let corners = model.surface.triangles[line.triangle as usize];
         line.ends.map(|end| {

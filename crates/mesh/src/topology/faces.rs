@@ -1,18 +1,18 @@
-//! The triangles around a vertex, found from their order. They are sorted by their lowest vertex, so those of which a
-//! vertex is not the lowest are in the runs of its lower neighbours. A stored list would take as much memory as the
-//! triangles.
+//! The triangles around a vertex, found from their order. They are sorted by their lowest vertex, so those triangles of
+//! a vertex in which it is not the lowest are in the runs of its lower neighbours. A stored list would take as much
+//! memory as the triangles.
 
 use std::ops::Range;
 
 use crate::SurfaceVertex;
 
-/// Runs of more are searched by their order rather than looked through.
+/// Longer runs are searched by their order, not from end to end.
 const LONG: usize = 32;
 
-/// Triangles a block.
+/// The number of triangles in a block.
 const BLOCK: usize = 1024;
 
-/// Where the run of triangles begins of which each vertex is the lowest, and where the last one ends.
+/// The start of the run of triangles in which each vertex is the lowest, and the end of the last one.
 pub(crate) fn runs(vertex_count: usize, triangles: &[[SurfaceVertex; 3]]) -> Vec<u32> {
     let mut starts = Vec::with_capacity(vertex_count + 1);
     for (t, triangle) in (0..).zip(triangles) {
@@ -33,7 +33,7 @@ fn sorted(triangle: [SurfaceVertex; 3]) -> [SurfaceVertex; 3] {
     [low.min(c), low.max(high.min(c)), high.max(c)]
 }
 
-/// Whether triangles stand by their lowest, then their middle, then their highest vertex.
+/// Whether triangles are in order of their lowest, then their middle, then their highest vertex.
 pub(crate) fn are_in_order(triangles: &[[SurfaceVertex; 3]]) -> bool {
     triangles.is_sorted_by_key(|triangle| sorted(*triangle))
 }
@@ -47,15 +47,15 @@ pub struct Faces<'a> {
     /// The lower neighbours whose runs are still to come; the vertex's own comes last.
     lower: &'a [SurfaceVertex],
     own: Range<u32>,
-    /// What is left of the present run.
+    /// The rest of the present run.
     run: Range<u32>,
-    /// A long run, and the middle vertices with which the vertex is still to be looked for in it.
+    /// A long run, and the middle vertices with which it is still to be searched for the vertex.
     long: Range<u32>,
     middles: &'a [SurfaceVertex],
 }
 
 impl<'a> Faces<'a> {
-    /// Those around `vertex`, whose neighbours are `ring`.
+    /// The triangles around `vertex`, whose neighbours are `ring`.
     #[inline]
     pub(crate) fn around(
         vertex: SurfaceVertex,
@@ -80,7 +80,7 @@ impl<'a> Faces<'a> {
         }
     }
 
-    /// Those of the long run that are not below these middle and highest vertices.
+    /// The triangles of the long run from these middle and highest vertices on.
     fn from(&self, middle: SurfaceVertex, highest: SurfaceVertex) -> Range<u32> {
         let Range { start, end } = self.long;
         let below = |triangle: &[SurfaceVertex; 3]| {
@@ -91,8 +91,8 @@ impl<'a> Faces<'a> {
         start + count as u32..end
     }
 
-    /// Begins a long run: with each middle vertex there is at most one triangle up to the vertex, and behind them stand
-    /// those whose middle vertex it is itself.
+    /// Begins a long run: for each middle vertex there is at most one triangle up to the vertex, and after them come
+    /// the triangles whose middle vertex is the vertex itself.
     #[cold]
     fn search(&mut self) {
         while let Some((&middle, rest)) = self.middles.split_first() {
@@ -146,12 +146,12 @@ fn run(runs: &[u32], lowest: SurfaceVertex) -> Range<u32> {
 
 /// Rows of triangles around a range of vertices.
 pub(crate) struct FaceRows {
-    /// Where each vertex's row starts, and where the last one ends.
+    /// The start of each vertex's row, and the end of the last one.
     pub(crate) offsets: Vec<u32>,
     pub(crate) list: Vec<u32>,
 }
 
-/// Triangles in blocks, of which only some touch a range of vertices.
+/// Triangles in blocks, of which only some have corners in a range of vertices.
 pub(crate) struct Blocks<'a> {
     triangles: &'a [[SurfaceVertex; 3]],
     /// Each block's highest vertex.
@@ -167,11 +167,11 @@ impl<'a> Blocks<'a> {
         }
     }
 
-    /// The triangles with a corner among some vertices, and then some, ascending.
+    /// The triangles with a corner among some vertices, and a few others, ascending.
     fn touching(&self, vertices: &Range<usize>) -> impl Iterator<Item = (u32, [SurfaceVertex; 3])> + Clone + '_ {
         let (start, end) = (vertices.start, vertices.end);
         let blocks = self.triangles.chunks(BLOCK).zip(&self.highest).zip(0..);
-        // Blocks stand by their first triangle's lowest vertex.
+        // Blocks are in order of their first triangle's lowest vertex.
         blocks
             .take_while(move |((block, _), _)| sorted(block[0])[0].index() < end)
             .filter(move |((_, highest), _)| highest.index() >= start)

@@ -33,18 +33,18 @@ use crate::{Cancel, Cancelled, FileVertex, Surface, SurfaceVertex};
 pub struct Topology {
     neighbour_offsets: Vec<u32>,
     neighbour_list: Vec<SurfaceVertex>,
-    /// Places in `neighbour_list`'s rows.
+    /// Places in the rows of `neighbour_list`.
     fans: Vec<u8>,
     fan_kinds: Vec<FanKind>,
-    /// Where the triangles begin of which each vertex is the lowest, and the triangles' number.
+    /// The start of the triangles in which each vertex is the lowest, and the number of triangles.
     runs: Vec<u32>,
     findings: TopologyFindings,
     components: Components,
 }
 
 impl Topology {
-    /// The connectivity of `surface`, whose triangles stand by their lowest, then their middle, then their highest
-    /// vertex; components of equal size stand by their lowest surface vertex.
+    /// The connectivity of `surface`, whose triangles are in order of their lowest, then their middle, then their
+    /// highest vertex; components of equal size are in order of their lowest surface vertex.
     pub fn of(surface: &Surface) -> Self {
         let own: Vec<FileVertex> = (0..surface.positions.len() as u32).map(FileVertex).collect();
         let components = Components::of(&surface.triangles, &own);
@@ -73,12 +73,12 @@ impl Topology {
         })
     }
 
-    /// How many vertices the surface has.
+    /// The number of the surface's vertices.
     pub fn vertex_count(&self) -> usize {
         self.fan_kinds.len()
     }
 
-    /// The vertices behind the last one that a triangle uses: the bare points of a welded surface.
+    /// The vertices after the last one that a triangle uses: the bare points of a welded surface.
     pub fn bare_points(&self) -> Range<usize> {
         let count = self.vertex_count();
         let end = self.neighbour_list.len() as u32;
@@ -86,8 +86,8 @@ impl Topology {
         starts.partition_point(|&start| start < end)..count
     }
 
-    /// Those of the positions that say where the surface is and how large: of the vertices that triangles use, of all
-    /// bare points where there is no triangle. Stray points far away from a scan don't count.
+    /// The positions that determine where the surface is and how large: those of the vertices that triangles use, or of
+    /// all bare points if there is no triangle. Stray points far away from a scan don't count.
     pub fn main_positions<'a>(&self, positions: &'a [DVec3]) -> &'a [DVec3] {
         main_positions(positions, self.bare_points().start)
     }
@@ -98,8 +98,8 @@ impl Topology {
         &self.neighbour_list[row(&self.neighbour_offsets, v)]
     }
 
-    /// The neighbours of `v` counter-clockwise seen from outside, and how they close; ascending where irregular. A
-    /// closed fan starts at the lowest neighbour, an open one at its rim.
+    /// The neighbours of `v` counterclockwise seen from outside, and how they close; ascending if irregular. A closed
+    /// fan starts at the lowest neighbour, an open one at its rim.
     #[inline]
     pub fn fan(&self, v: SurfaceVertex) -> (FanKind, impl ExactSizeIterator<Item = SurfaceVertex> + '_) {
         let (kind, ring, places) = self.ring_and_fan(v);
@@ -153,7 +153,7 @@ impl Topology {
         &self.components.all
     }
 
-    /// The components, and who belongs to them.
+    /// The components, and the component of each vertex.
     pub(crate) fn parts(&self) -> &Components {
         &self.components
     }
@@ -167,12 +167,12 @@ impl Topology {
         })
     }
 
-    /// How many edges there are.
+    /// The number of edges.
     pub fn edge_count(&self) -> usize {
         self.neighbour_list.len() / 2
     }
 
-    /// How many edges have one triangle.
+    /// The number of edges with one triangle.
     pub fn boundary_edges(&self) -> usize {
         self.findings.boundary.len()
     }
@@ -182,27 +182,27 @@ impl Topology {
         &self.findings.boundary
     }
 
-    /// How many edges have more than two triangles.
+    /// The number of edges with more than two triangles.
     pub fn non_manifold_edges(&self) -> usize {
         self.findings.non_manifold_edges.len()
     }
 
-    /// How many vertices' triangles form more than one fan (triangles that share an edge are in one fan).
+    /// The number of vertices whose triangles form more than one fan (triangles that share an edge are in one fan).
     pub fn non_manifold_vertices(&self) -> usize {
         self.findings.non_manifold_vertices.len()
     }
 
-    /// How many edges lie between two triangles that disagree about which side is outside.
+    /// The number of edges between two triangles that disagree about the outside.
     pub fn misoriented_edges(&self) -> usize {
         self.findings.misoriented_edges.len()
     }
 
-    /// Whether no edge has one triangle only.
+    /// Whether no edge has only one triangle.
     pub fn is_closed(&self) -> bool {
         self.findings.boundary.is_empty()
     }
 
-    /// Whether `v` lies on an edge with one triangle.
+    /// Whether `v` is on an edge with one triangle.
     pub fn is_boundary_vertex(&self, v: SurfaceVertex) -> bool {
         let boundary = &self.findings.boundary;
         let has_rim_to = |[from, to]: [SurfaceVertex; 2]| {
@@ -224,13 +224,13 @@ impl Topology {
 
     /// The holes' rims, each vertex once in each loop, with the hole on the left; by rising first vertex found.
     ///
-    /// A rim that passes a vertex twice is cut into loops there. Where more than two triangles share an edge a rim may
-    /// end at it: such a chain counts as a loop too.
+    /// A rim that passes a vertex twice is cut into loops there. A rim may end at an edge that more than two triangles
+    /// share: such a chain counts as a loop too.
     pub fn boundary_loops(&self) -> Vec<Vec<SurfaceVertex>> {
         trace_loops(&self.findings.boundary)
     }
 
-    /// Rims, and where something is odd.
+    /// Rims, and irregular places.
     pub(crate) fn findings(&self) -> &TopologyFindings {
         &self.findings
     }

@@ -1,4 +1,4 @@
-//! One-rings: the neighbours of each vertex, how many triangles lie on each edge, and what was found wrong with them.
+//! One-rings: the neighbours of each vertex, the number of triangles on each edge, and the faults found there.
 
 use std::ops::Range;
 
@@ -13,16 +13,16 @@ const PIECE: usize = 2048;
 /// The rows and findings of a range of vertices, or of all.
 #[derive(Default)]
 pub(crate) struct Rings {
-    /// The length of each vertex's row; of a range.
+    /// The length of each vertex's row in the range.
     pub(crate) degrees: Vec<u32>,
     /// The rows: neighbours ascending.
     pub(crate) neighbours: Vec<SurfaceVertex>,
     /// The rows again, as places in them, each in the order in which the triangles pass from neighbour to neighbour;
-    /// meaningless where the vertex is irregular. A fan of more neighbours than a byte counts is irregular too.
+    /// meaningless for an irregular vertex. A fan with more neighbours than a byte can count is irregular too.
     pub(crate) fans: Vec<u8>,
-    /// What each vertex's row in `fans` is.
+    /// The kind of each vertex's row in `fans`.
     pub(crate) fan_kinds: Vec<FanKind>,
-    /// What was found wrong with them.
+    /// The faults found there.
     pub(crate) findings: TopologyFindings,
 }
 
@@ -51,7 +51,7 @@ impl Rings {
 }
 
 impl TopologyFindings {
-    /// The vertices from the lowest to the highest one that is named.
+    /// The vertices from the lowest to the highest one in the lists.
     pub(crate) fn range(&self) -> Range<usize> {
         let edges = self.boundary.as_flattened();
         let others = [
@@ -82,7 +82,7 @@ impl TopologyFindings {
     }
 }
 
-/// How the triangles around a vertex hang together.
+/// The connection of the triangles around a vertex.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum FanKind {
     /// One fan all around: each neighbour and the next make a triangle with the vertex, the last one with the first.
@@ -94,22 +94,21 @@ pub enum FanKind {
     Irregular,
 }
 
-/// Pieces that are walked before they are put behind the rows that are done: few, so that hardly anything is held
-/// twice.
+/// Pieces that are walked before they are appended to the finished rows: few, so that little is stored twice.
 const BATCH: usize = 64;
 
-/// Parts of the vertices, one after the other, whose triangles are listed: all their rows would be as much as the
-/// triangles themselves.
+/// Parts of the vertices, one after the other, whose triangles are listed: the rows of all vertices would take as much
+/// memory as the triangles themselves.
 const PARTS: usize = 16;
 
-/// Walks around every vertex, and gives where each one's row begins (and the last one ends), and the rows.
+/// Walks around every vertex, and gives the start of each one's row (and the end of the last one), and the rows.
 pub(crate) fn rings(
     vertex_count: usize,
     triangles: &[[SurfaceVertex; 3]],
     cancel: &Cancel,
 ) -> Result<(Vec<u32>, Rings), Cancelled> {
-    // A closed surface has three neighbours a triangle, an open one a few more: room for those is made as they come,
-    // since a vector would double.
+    // A closed surface has three neighbours a triangle, an open one a few more: space for those is added as they come,
+    // because a vector would double.
     let total = 3 * triangles.len();
     let mut offsets = Vec::with_capacity(vertex_count + 1);
     offsets.push(0);
@@ -140,7 +139,7 @@ pub(crate) fn rings(
     Ok((offsets, all))
 }
 
-/// What is wrong around the vertices, without their rings.
+/// The faults around the vertices, without their rings.
 pub(crate) fn topology_findings(
     vertex_count: usize,
     triangles: &[[SurfaceVertex; 3]],
@@ -196,7 +195,7 @@ fn walk_around(
 #[derive(Default)]
 struct Walk {
     /// The far ends of the edges of each triangle at the vertex: neighbour, whether the triangle runs towards the
-    /// vertex along it, and the triangle's place in the row. Packed, so that they sort fast.
+    /// vertex along it, and the triangle's place in the row. They are packed, so that they sort fast.
     spokes: Vec<u64>,
     /// Union-find over the row's triangles.
     fan: Vec<u32>,
@@ -299,7 +298,7 @@ impl Walk {
         }
     }
 
-    /// Joins the fans of two spokes' triangles; whether they were apart.
+    /// Joins the fans of two spokes' triangles; returns whether they were apart.
     fn join(&mut self, a: u64, b: u64) -> bool {
         let (a, b) = (self.root(a), self.root(b));
         self.fan[a.max(b)] = a.min(b) as u32;

@@ -1,8 +1,8 @@
-//! Bare points: drawn vertices that no kept triangle uses. Each gets a surface vertex behind those of the triangles, so
+//! Bare points: drawn vertices that no kept triangle uses. Each gets a surface vertex after those of the triangles, so
 //! that a file without them is welded in the same way, with the same memory.
 //!
-//! A point as near to a triangle's vertex as another vertex that would be joined to it becomes a twin of that vertex and
-//! moves with it. Equal points become one.
+//! If a point is so close to a triangle's vertex that another vertex there would be joined to it, the point becomes a
+//! twin of that vertex and moves with it. Equal points become one.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -14,9 +14,9 @@ use crate::Bounds;
 use crate::geometry::bounds_of;
 use crate::model::drawn_set::NONE;
 
-/// Gives the drawn vertices `bare`, which have finite positions, a surface vertex each. `positions` holds those of the
-/// triangles' vertices, whose distances `closeness` has; new ones are appended in Morton order, and `surface_vertices`
-/// is filled in.
+/// Gives the drawn vertices `bare`, which have finite positions, a surface vertex each. `positions` has those of the
+/// triangles' vertices, whose distances are in `closeness`; new ones are appended in Morton order, and
+/// `surface_vertices` is filled in.
 pub(super) fn add(
     drawn_positions: &[DVec3],
     bare: &[u32],
@@ -72,7 +72,7 @@ pub(super) fn add(
     }
 }
 
-/// Points join vertices, and each other within a distance that a person gives; vertices are apart already.
+/// Points join vertices, and each other within a distance that a person gives; vertices are already apart.
 struct Rule<'a> {
     order: &'a [u32],
     vertices: usize,
@@ -88,7 +88,7 @@ impl MayJoin for Rule<'_> {
     fn has_joined(&mut self, _: u32, _: u32) {}
 }
 
-/// The vertices that a point of this box might join.
+/// The vertices that a point in this box might join.
 fn vertices_near(positions: &[DVec3], bounds: &Bounds, closeness: &Closeness<'_>) -> Vec<u32> {
     (0..)
         .zip(positions)

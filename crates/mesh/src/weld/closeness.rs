@@ -1,4 +1,4 @@
-//! The distance within which two vertices count as one, which follows from the mesh around each of them.
+//! The distance within which two vertices count as one. The mesh around each of them determines it.
 //!
 //! A vertex's *size* is the longest edge of the smallest triangle that uses it. So the distance does not depend on the
 //! rest of the scene, is never above a share of the finer of two parts, and scales and turns with the mesh.
@@ -13,25 +13,25 @@ use crate::model::drawn_set::NONE;
 use crate::model::drawn_triangles::Corners;
 
 /// Vertices on borders are joined within this share of their size: exporters that cut a mesh apart compute its corners
-/// anew, with the errors of single precision.
+/// again, with the errors of single precision.
 const BORDERS: f64 = 1e-4;
 
-/// But no further than this share of their shortest edge: strips may be far narrower than long.
+/// The limit as a share of their shortest edge: strips may be far narrower than long.
 const OF_EDGE: f64 = 0.25;
 
 /// Other vertices are joined within this share of their size. A larger one would flatten thin plates.
 const ANY: f64 = 1e-7;
 
 /// Borders that were rounded apart are joined no further than this share of their size, and a distance that a person
-/// gives reaches no further than twice this: well-shaped triangles must not collapse.
+/// gives extends to at most twice this: well-shaped triangles must not collapse.
 const LARGEST: f64 = 0.25;
 
-/// A little more than the rounding itself, for the errors of the transforms that place what was rounded.
+/// A little more than the rounding itself, for the errors of the transforms that place the rounded vertices.
 const ALLOWANCE: f64 = 1.001;
 
 /// The distances of a mesh's groups.
 pub(super) struct Closeness<'a> {
-    /// Zero where no proper triangle uses a group.
+    /// Zero for a group that no proper triangle uses.
     sizes: Vec<f64>,
     /// The distance that a person gives.
     given: Option<f64>,
@@ -41,7 +41,7 @@ pub(super) struct Closeness<'a> {
 }
 
 impl<'a> Closeness<'a> {
-    /// Those of `count` groups, given the one of each drawn vertex.
+    /// The distances of `count` groups, given the group of each drawn vertex.
     pub(super) fn of(positions: &[DVec3], corners: &Corners, groups: &[u32], count: usize) -> Self {
         let mut squared = vec![f64::INFINITY; count];
         for triangle in corners.iter() {
@@ -73,7 +73,7 @@ impl<'a> Closeness<'a> {
         Self { given, ..self }
     }
 
-    /// The same where runs of drawn vertices were rounded apart.
+    /// The same for runs of drawn vertices that were rounded apart.
     pub(super) fn with_roundings(self, roundings: &'a [Rounding]) -> Self {
         Self {
             roundings,
@@ -148,7 +148,7 @@ impl<'a> Closeness<'a> {
         }
     }
 
-    /// The run that a drawn vertex was rounded with, and by how much.
+    /// The run with which a drawn vertex was rounded, and its rounding.
     fn run_of(&self, vertex: u32) -> (u32, f64) {
         let after = self.roundings.partition_point(|run| run.vertices.start <= vertex);
         match self.roundings[..after].last() {
@@ -163,12 +163,12 @@ fn is_proper([a, b, c]: [u32; 3]) -> bool {
     ![a, b, c].contains(&NONE) && a != b && b != c && c != a
 }
 
-/// What is known of a group that has neighbours.
+/// The data of a group that has neighbours.
 struct Surroundings {
     is_on_border: bool,
     /// Its shortest edge.
     shortest: f64,
-    /// The runs that its members were rounded with.
+    /// The runs with which its members were rounded.
     runs: Vec<u32>,
     /// The largest of their roundings.
     rounding: f64,
@@ -185,7 +185,7 @@ impl Surroundings {
     }
 }
 
-/// Which groups may be joined.
+/// The rule for joining groups.
 pub(super) struct Rule<'a> {
     closeness: &'a Closeness<'a>,
     of_group: HashMap<u32, Surroundings>,
@@ -194,7 +194,7 @@ pub(super) struct Rule<'a> {
 impl MayJoin for Rule<'_> {
     fn may_join(&self, place: u32, other: u32, distance: f64) -> bool {
         if self.closeness.given.is_some() {
-            // Both reach that far.
+            // Both distances are large enough.
             return true;
         }
         let size = |group: u32| self.closeness.sizes[group as usize];

@@ -51,7 +51,7 @@ pub(crate) fn join_equal(positions: &[DVec3], members: Vec<u32>, bounds: &Bounds
     entries.par_sort_unstable();
     let mut representative: Vec<u32> = (0..entries.len() as u32).collect();
     join_within_cells(positions, &entries, &mut representative);
-    // Collecting reuses the entries' allocation; shrinking gives the rest of it back.
+    // Collecting reuses the entries' allocation; shrinking frees the rest of it.
     let mut order: Vec<u32> = entries.into_iter().map(|entry| entry.index).collect();
     order.shrink_to_fit();
     Joined { order, representative }
@@ -112,7 +112,7 @@ fn join_run(positions: &[DVec3], run: &[Entry], offset: u32, representative: &mu
 
 /// Points each of `count` places at the first place with the same position.
 fn join_by_sorting(count: usize, position: impl Fn(usize) -> DVec3, offset: u32, representative: &mut [u32]) {
-    // Adding zero turns −0 into 0, so that both sort alike.
+    // Adding zero turns −0 into 0, so that both sort equally.
     let key = |place: usize| (position(place) + DVec3::ZERO).to_array().map(ordered_bits);
     let mut places: Vec<([u64; 3], usize)> = (0..count).map(|place| (key(place), place)).collect();
     places.sort_unstable();

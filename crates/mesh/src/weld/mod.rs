@@ -29,7 +29,7 @@ const LARGEST_COORDINATE: f64 = 1e60;
 pub(crate) struct Welded {
     /// Its triangles use the first vertices; the others are bare points.
     pub(crate) surface: Surface,
-    /// The number of the first bare point, or that of all vertices.
+    /// The number of the first bare point, or the number of all vertices.
     pub(crate) first_bare: usize,
     /// The drawn set that was welded, its triangles in their original order.
     pub(crate) drawn: DrawnSet,
@@ -38,7 +38,7 @@ pub(crate) struct Welded {
     pub(crate) findings: Findings,
 }
 
-/// What uses a drawn vertex.
+/// The users of a drawn vertex.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Use {
     None,
@@ -46,8 +46,8 @@ enum Use {
     Triangle,
 }
 
-/// Welds `drawn`; progress goes from 0 to 0.6. Each array is dropped as soon as it is no longer needed, because a
-/// scan's positions alone take as much memory as its file.
+/// Welds `drawn`; progress goes from 0 to 0.6. It drops each array as soon as it is no longer needed, because a scan's
+/// positions alone take as much memory as its file.
 pub(crate) fn weld(
     drawn: Drawn,
     options: &WeldOptions,
@@ -148,7 +148,7 @@ pub(crate) fn weld(
     })
 }
 
-/// The groups of drawn vertices, once those that are near enough are joined.
+/// The groups of drawn vertices, after close ones are joined.
 fn joined_to_near_ones(
     positions: &[DVec3],
     corners: &Corners,
@@ -166,7 +166,7 @@ fn joined_to_near_ones(
     groups
 }
 
-/// Welded positions, in Morton order, and the one of each drawn vertex ([`NONE`] where it has none).
+/// Welded positions, in Morton order, and the one of each drawn vertex ([`NONE`] if it has none).
 struct Joining {
     positions: Vec<DVec3>,
     surface_vertices: Vec<u32>,

@@ -1,8 +1,8 @@
 //! Finds positions near each other, and joins each to the nearest that it may join.
 //!
-//! Runs of positions along the Morton curve are patches, so a tree of boxes around such runs answers which positions
-//! are within a distance. Each position has a distance of its own, which may differ by orders of magnitude over a
-//! scene; cells of one size, which earlier welds took, would be crowded where the scene is finer.
+//! Runs of positions along the Morton curve are patches, so a tree of boxes around such runs finds the positions within
+//! a distance. Each position has a distance of its own, which may differ by orders of magnitude over a scene; cells of
+//! one size would be crowded where the scene is finer.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -14,8 +14,8 @@ use crate::Bounds;
 /// Positions that share a box, and boxes that share a parent.
 const RUN: usize = 8;
 
-/// A group asks the rule about no more neighbours that it refuses. Few have ten; where triangles are spikes across the
-/// scene, all of their corners reach each other.
+/// The number of refused neighbours after which a group asks the rule no further. Few have ten; if triangles are spikes
+/// across the scene, all of their corners are close to each other.
 const MOST_REFUSED: usize = 256;
 
 /// Runs of one Morton code that are longer than this are sorted along a finer curve.
@@ -26,8 +26,8 @@ const CROWD: usize = 32;
 /// further than the rule allows, and a row of positions does not collapse into one.
 ///
 /// Two groups are neighbours if their distance is at most the reach of both, which `reach` gives for their
-/// representative's place; a reach of zero has none. `prepare` is told the groups that have neighbours and gives the
-/// rule, which is asked about neighbours alone. Returns whether any were joined.
+/// representative's place; a group with a reach of zero has no neighbours. `prepare` gets the groups that have
+/// neighbours and returns the rule, which decides only about neighbours. Returns whether any were joined.
 pub(super) fn join_nearest<J: MayJoin>(
     positions: &[DVec3],
     joined: &mut Joined,
@@ -90,7 +90,7 @@ pub(crate) fn with_neighbours(positions: &[DVec3], reach: impl Fn(u32) -> f64 + 
     near.into_iter().map(|number| places[number as usize]).collect()
 }
 
-/// Which groups may be joined.
+/// The rule for joining groups.
 pub(super) trait MayJoin {
     /// Whether the group at a place may join the one at another, which is this far away.
     fn may_join(&self, place: u32, other: u32, distance: f64) -> bool;
@@ -100,12 +100,12 @@ pub(super) trait MayJoin {
 }
 
 /// Sorts runs that fall into one cell of the grid over `bounds` along curves of their own, so that neighbours in the
-/// list are neighbours in space though the box is much larger than most of its contents.
+/// list are neighbours in space even if the box is much larger than most of its contents.
 fn spread_crowds(position: &(impl Fn(u32) -> DVec3 + Sync), places: &mut [u32], bounds: &Bounds) {
     let grid = MortonGrid::over(bounds);
     let mut first = 0;
     while first + CROWD < places.len() {
-        // Whoever shares a cell with the entry that is CROWD further on has a run of that length between them.
+        // Entries that share a cell with the entry CROWD places further on have a run of that length between them.
         if grid.code(position(places[first])) != grid.code(position(places[first + CROWD])) {
             first += CROWD;
             continue;
@@ -126,7 +126,7 @@ fn sort_along_curve(position: &(impl Fn(u32) -> DVec3 + Sync), places: &mut [u32
     let grid = MortonGrid::over(&bounds);
     let code = |place: u32| grid.code(position(place));
     if code_range_is_one(&grid, &bounds) {
-        // They are so close together that no number tells their cells apart.
+        // They are so close together that no number distinguishes their cells.
         return;
     }
     places.par_sort_by_cached_key(|&place| (code(place), place));
@@ -143,8 +143,8 @@ struct Tree<'a, P> {
     places: &'a [u32],
     /// The boxes of runs of places, then those of runs of these, up to a single one.
     levels: Vec<Vec<Bounds>>,
-    /// The furthest reach of the places in each box: what is further away is no neighbour of any, however far it reaches
-    /// itself.
+    /// The largest reach of the places in each box: a position further away is not a neighbour of any, whatever its own
+    /// reach.
     reaches: Vec<Vec<f64>>,
 }
 
@@ -174,7 +174,7 @@ impl<'a, P: Fn(u32) -> DVec3 + Sync> Tree<'a, P> {
         }
     }
 
-    /// Those that have another within the reach of both, by their numbers among the places.
+    /// The places that have another within the reach of both, by their numbers.
     fn with_neighbours(&self, reach: &(impl Fn(u32) -> f64 + Sync)) -> Vec<u32> {
         let runs: Vec<&[u32]> = self.places.chunks(RUN).collect();
         let found: Vec<Vec<u32>> = runs
@@ -221,8 +221,8 @@ impl<'a, P: Fn(u32) -> DVec3 + Sync> Tree<'a, P> {
         found.extend(with_neighbours.map(|(place, _)| place));
     }
 
-    /// Calls `found` with the occupied places within `radius` of a point and their distances, all of those whose own reach
-    /// is that far among them.
+    /// Calls `found` with the occupied places within `radius` of a point and their distances. All places whose own
+    /// reach is that large are among them.
     fn visit(&self, occupied: &Occupied, centre: DVec3, radius: f64, mut found: impl FnMut(u32, f64)) {
         let point = Bounds {
             min: centre,
@@ -246,7 +246,7 @@ impl<'a, P: Fn(u32) -> DVec3 + Sync> Tree<'a, P> {
         &self.places[number * RUN..((number + 1) * RUN).min(self.places.len())]
     }
 
-    /// Calls `found` with every run whose box meets `bounds`, leaving out boxes that `is_wanted` does not want, by
+    /// Calls `found` with every run whose box meets `bounds`, leaving out boxes for which `is_wanted` is false, by
     /// level and number.
     fn runs_within(&self, bounds: &Bounds, is_wanted: &impl Fn(usize, usize) -> bool, mut found: impl FnMut(usize)) {
         self.descend(self.levels.len() - 1, 0, bounds, is_wanted, &mut found);
@@ -272,7 +272,7 @@ impl<'a, P: Fn(u32) -> DVec3 + Sync> Tree<'a, P> {
     }
 }
 
-/// Some of a tree's places, and how many of them each box holds.
+/// Some of a tree's places, and the number of them in each box.
 struct Occupied {
     is_occupied: Vec<bool>,
     counts: Vec<Vec<u32>>,

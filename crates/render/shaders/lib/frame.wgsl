@@ -9,7 +9,7 @@ struct Frame {
     // The part of the background that this picture shows: its start from the bottom and its length. 0 and 1 unless the
     // picture is a tile of a larger one.
     background_span: vec2f,
-    // How much of the shading's colour the region colours replace, 0 to 1.
+    // The share of the shading's colour that the region colours replace, 0 to 1.
     region_share: f32,
     // Pixels per world unit at distance 1 (perspective) or at any distance (orthographic).
     scale_px: f32,

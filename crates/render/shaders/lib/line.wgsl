@@ -11,7 +11,7 @@ struct LineFragment {
     @location(5) hidden_share: f32,
 }
 
-// Clips `a` to the near plane: if it lies in front of it (z > w), the intersection on the way to `b`.
+// Clips `a` to the near plane: if it is in front of the plane (z > w), gives the intersection on the way to `b`.
 fn clipped_to_near(a: vec4f, b: vec4f) -> vec4f {
     let inside_a = a.w - a.z;
     let inside_b = b.w - b.z;

@@ -2,7 +2,7 @@
 struct SurfaceVertex {
     @location(0) position: vec3f,
     @location(1) normal: vec3f,
-    // sRGB; alpha is how much of the surface's own colour it replaces.
+    // sRGB; alpha is the share of the surface's own colour that it replaces.
     @location(2) region: vec4f,
 }
 
@@ -21,8 +21,8 @@ fn region_share(region: vec4f) -> vec4f {
     return vec4f(sqrt(linear_from_srgb_fast(region.rgb)) * share, share);
 }
 
-// A region colour composited over a linear colour. Square roots are mixed, because a share of them is seen as that share
-// of the difference; of linear light, a dark colour's share would hardly be seen.
+// A region colour composited over a linear colour. The mix is of square roots, because the eye sees a share of them as
+// that share of the difference; a share of a dark colour's linear light would hardly be visible.
 fn under_region(colour: vec3f, region: vec4f) -> vec3f {
     let mixed = sqrt(colour) * (1.0 - region.a) + region.rgb;
     return mixed * mixed;
@@ -35,7 +35,7 @@ fn seen_normal(normal_view: vec3f, position_view: vec3f, to_eye: vec3f, is_front
     let has_normal = length_squared > 1e-20;
     var n = select(to_eye, normal_view * inverseSqrt(length_squared), has_normal);
     n = select(-n, n, is_front);
-    // Derivatives are taken where all fragments come by.
+    // Derivatives need a place that all fragments pass.
     let face = cross(dpdx(position_view), dpdy(position_view));
     let face_squared = dot(face, face);
     if face_squared > 1e-30 && (frame.flatness > 0.5 || !has_normal) {

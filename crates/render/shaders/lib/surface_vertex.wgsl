@@ -1,5 +1,5 @@
-// What all shaders of a surface share: its uniform, and the one function that projects its vertices, so that picture,
-// edges and ids agree exactly.
+// The common part of all shaders of a surface: its uniform, and the one function that projects its vertices, so that
+// picture, edges and ids agree exactly.
 struct Surface {
     // The id of the surface's first triangle in the frame; ids start at 1.
     id_base: u32,

@@ -1,6 +1,6 @@
 // Tone mapping.
 
-// Highlight roll-off: bright light bends towards white instead of clipping; below the knee nothing changes. For
+// Highlight roll-off: bright light bends towards white instead of clipping; below the knee nothing changes. It serves
 // matcaps, whose light is made to fit.
 fn rolled_off(light: vec3f) -> vec3f {
     const KNEE: f32 = 0.50;
@@ -10,7 +10,7 @@ fn rolled_off(light: vec3f) -> vec3f {
 
 // The Khronos PBR Neutral Tone Mapper [Khr24]. Base colours under even light are shown as the file defines them; only
 // brighter light is compressed and desaturated. Curves that also bend the mid-tones, such as ACES, would shift the
-// colours that a scan was graded to.
+// colours of a graded scan.
 fn neutral_tone_mapped(light: vec3f) -> vec3f {
     const SHOULDER: f32 = 0.76;
     const DESATURATION: f32 = 0.15;

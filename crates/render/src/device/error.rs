@@ -24,7 +24,7 @@ pub enum NoGpu {
     },
 }
 
-/// Why drawing or uploading failed; what was drawn before is still there.
+/// Why drawing or uploading failed; the earlier picture is still there.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum RenderError {
     /// A slice whose length differs from the number of vertices.
@@ -50,11 +50,11 @@ pub enum RenderError {
     /// A group, material or texture index out of range.
     #[error("{what} {number} does not exist, there are {count}")]
     NoSuch {
-        /// What is indexed.
+        /// The kind of index.
         what: &'static str,
         /// The index.
         number: usize,
-        /// How many there are.
+        /// The number of entries.
         count: usize,
     },
     /// An image whose number of bytes does not match its size.

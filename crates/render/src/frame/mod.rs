@@ -1,4 +1,4 @@
-//! What one frame shows: a view, a style, surfaces, and overlays.
+//! The contents of one frame: a view, a style, surfaces, and overlays.
 
 pub(crate) mod grid;
 pub(crate) mod image;
@@ -31,7 +31,8 @@ pub struct Frame<'a> {
 pub struct Style {
     /// How surfaces are shaded.
     pub shading: Shading,
-    /// How much of the shading's colour the region colours replace (see [`Surface::update_regions`]): 0 none, 1 all.
+    /// The share of the shading's colour that the region colours replace (see [`Surface::update_regions`]): 0 none, 1
+    /// all.
     pub region_share: f32,
     /// Smooth or flat shading.
     pub faces: Faces,
@@ -47,7 +48,7 @@ pub struct Style {
     pub detail: Detail,
     /// Pixels per point, which scales the widths of borders and outlines.
     pub pixels_per_point: f32,
-    /// What is behind the surfaces.
+    /// The background behind the surfaces.
     pub background: Background,
 }
 
@@ -71,7 +72,7 @@ impl Default for Style {
 /// How a surface is shaded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Shading {
-    /// A clay matcap: shape and nothing else.
+    /// A clay matcap: only the shape.
     Matcap(Matcap),
     /// The file's own materials.
     Material,
@@ -135,7 +136,7 @@ pub enum Shadows {
     /// None.
     #[default]
     Off,
-    /// Drawn over the ground and its grid; from below they are not seen.
+    /// Drawn over the ground and its grid; they are invisible from below.
     On,
 }
 
@@ -150,7 +151,7 @@ pub enum Detail {
     Reduced,
 }
 
-/// What is behind the surfaces.
+/// The background behind the surfaces.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Background {
     /// A vertical gradient, sRGB 0 to 255.

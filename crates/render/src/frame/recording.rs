@@ -1,4 +1,4 @@
-//! A frame as GPU commands: what is drawn, in which order, and by which pipelines.
+//! A frame as GPU commands: draw calls, their order and their pipelines.
 
 use crate::frame::overlay::OverlayBatch;
 use crate::frame::target::{Attachments, cleared_depth};

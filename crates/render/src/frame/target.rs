@@ -45,7 +45,7 @@ pub(crate) struct Attachments {
 impl Target {
     /// The colour format: sRGB, so that blending and multisampling are done in linear light.
     pub const COLOUR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
-    /// The format of [`Target::texture_view`]: the same bytes without conversion, which is what egui expects.
+    /// The format of [`Target::texture_view`]: the same bytes without conversion, as egui expects.
     pub const VIEW_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
     /// The depth format (reversed: cleared to 0, nearer is greater).
     pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;

@@ -1,9 +1,9 @@
 //! Matcaps: a sphere in each of the editor's clays, shaded on the processor from a few lights and stored as a small
 //! texture that the shader looks up by normal.
 //!
-//! A texture, because then any number of lights costs one look-up per pixel, which matters on software devices.
-//! Computed, not painted, because a dozen numbers are easy to read and change. Diffuse and specular light are stored
-//! separately so that a region's colour can replace the clay's under the same, evened-out light: regions must be
+//! It is a texture, because then any number of lights costs one look-up per pixel, which matters on software devices.
+//! It is computed, not painted, because a dozen numbers are easy to read and change. Diffuse and specular light are
+//! stored separately so that a region's colour can replace the clay's under the same, evened-out light: regions must be
 //! recognisable by their colour on every clay.
 
 use glam::{Vec3, Vec4};
@@ -13,7 +13,7 @@ use crate::frame::uniforms::MatcapUniform;
 /// A clay with its lighting.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Matcap {
-    /// Warm grey modelling clay: shape and nothing else.
+    /// Warm grey modelling clay: only the shape.
     #[default]
     Clay,
     /// White plaster in soft daylight: the finest gradations.
@@ -51,7 +51,7 @@ struct Light {
     power: i32,
 }
 
-/// The numbers that a matcap is computed from.
+/// The numbers from which a matcap is computed.
 #[derive(Debug, Clone, Copy)]
 struct MatcapParameters {
     colour: Vec3,
@@ -198,7 +198,7 @@ pub(crate) fn texture(matcap: Matcap) -> Vec<u8> {
     rgba
 }
 
-/// A clay's own colours, and the factors that its light is multiplied by on region colours.
+/// A clay's own colours, and the factors by which its light is multiplied on region colours.
 pub(crate) fn uniform(matcap: Matcap) -> MatcapUniform {
     let parameters = parameters(matcap);
     MatcapUniform {

@@ -128,7 +128,7 @@ pub enum AlphaMode {
         /// The least alpha that is drawn, 0 to 1.
         cutoff: f32,
     },
-    /// Blended with what is behind; triangles are not sorted.
+    /// Blended with the picture behind; triangles are not sorted.
     Blend,
 }
 

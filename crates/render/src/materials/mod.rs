@@ -9,7 +9,7 @@ pub(crate) mod texture;
 use crate::surface::data::textures_exist;
 use crate::{Material, RenderError, Renderer, TextureData};
 
-/// Materials and their textures on the device. They are made separately from the surface, possibly on another thread,
+/// Materials and their textures on the device. They are made separately from the surface, perhaps on another thread,
 /// because decoding and uploading textures takes longer than everything else. Clones share the textures.
 #[derive(Clone, Debug)]
 pub struct Materials {

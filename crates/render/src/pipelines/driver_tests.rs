@@ -1,7 +1,7 @@
-//! Laws of the pipelines that need a device, though not one that draws: its driver's compiler takes every one of them.
+//! Laws of the pipelines that need a device, though not one that draws: its driver's compiler accepts every pipeline.
 //!
-//! Mesa's Radeon driver compiles for cards that are not there (`RADV_FORCE_FAMILY=navi21`) and fails only when work is
-//! submitted, so the same is tested for some of them.
+//! Mesa's Radeon driver compiles for absent cards (`RADV_FORCE_FAMILY=navi21`) and fails only when work is submitted,
+//! so some of them are tested in the same way.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may fail by panicking")]
 
 use std::collections::BTreeSet;
@@ -16,7 +16,7 @@ use crate::materials::environment;
 use crate::surface::shadow;
 use crate::{Headless, Samples};
 
-/// All of them, since [`every_fragment_shader_belongs_to_a_pipeline`].
+/// All pipelines, because of [`every_fragment_shader_belongs_to_a_pipeline`].
 fn every_pipeline() -> Vec<Pipeline> {
     let mut every = vec![
         Pipeline::Matcap,
@@ -68,12 +68,12 @@ const CARDS: [&str; 4] = ["polaris10", "vega10", "navi10", "navi21"];
 /// The manifest of Mesa's driver for Radeon cards.
 const RADEON: &str = "/usr/share/vulkan/icd.d/radeon_icd.x86_64.json";
 
-/// Which of [`CARDS`] a test process is to find.
+/// The one of [`CARDS`] that a test process must find.
 const CARD: &str = "PLIANT_TEST_CARD";
 
 #[test]
 fn the_driver_compiles_every_pipeline() {
-    // Those of textures are made with the renderer.
+    // The pipelines of textures are made with the renderer.
     let headless = match Headless::new() {
         Ok(headless) => headless,
         Err(error) => return say(&format!("skipped: pictures ({error})")),
@@ -87,7 +87,7 @@ fn the_driver_compiles_every_pipeline() {
     for pipeline in every_pipeline() {
         for samples in [Samples::One, Samples::Four] {
             if matches!(pipeline, Pipeline::Id | Pipeline::Occlusion) && samples == Samples::Four {
-                continue; // These are drawn with one sample alone.
+                continue; // These are drawn with only one sample.
             }
             pipelines
                 .prepare(device, pipeline, samples)
@@ -106,7 +106,7 @@ fn drivers_of_cards_that_are_not_here_compile_every_pipeline() {
         return say("skipped: pictures on Radeon cards (Mesa's driver for them is not installed)");
     }
     for card in CARDS {
-        // A process loads its drivers once: each card takes one of its own.
+        // A process loads its drivers once: each card needs its own process.
         let output = Command::new(std::env::current_exe().unwrap())
             .args(["--exact", "pipelines::driver_tests::the_driver_compiles_every_pipeline"])
             .env("RADV_FORCE_FAMILY", card)

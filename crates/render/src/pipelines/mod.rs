@@ -18,7 +18,7 @@ use crate::{RenderError, Samples};
 /// The format of the id buffer.
 pub(crate) const ID_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
 
-/// The format of the picture of how near the ground a surface is.
+/// The format of the picture of the surface's height above the ground.
 pub(crate) const OCCLUSION_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg8Unorm;
 
 /// The bind group layouts, and the pipelines created so far.

@@ -1,7 +1,7 @@
 //! The embedded source of the shaders: each file of `shaders/` with its includes expanded.
 //!
-//! There is no preprocessor crate, because a handful of shaders needs nothing but a line `#include "lib/NAME.wgsl"`
-//! that is replaced by a file. The line numbers in naga's messages refer to the expanded source.
+//! There is no preprocessor crate, because a handful of shaders needs only a line `#include "lib/NAME.wgsl"` that a
+//! file replaces. The line numbers in naga's messages refer to the expanded source.
 
 /// A shader file in `shaders/`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

@@ -14,14 +14,14 @@ impl Surface {
         self.borders.get().map_or(&[], Vec::as_slice)
     }
 
-    /// Finds the borders if that was not done yet.
+    /// Finds the borders if they are not known yet.
     pub(crate) fn prepare_borders(&self, renderer: &Renderer) -> Result<(), RenderError> {
         if self.borders.get().is_some() {
             return Ok(());
         }
         let mut edges = irregular_edges(&self.triangles, self.vertex_count, self.welded.as_deref());
         if self.shown.is_some() {
-            // Hiding triangles creates no borders, and a border of which both ends are hidden disappears with them.
+            // Hiding triangles creates no borders, and a border with two hidden ends disappears with them.
             let mut of_shown = vec![false; self.vertex_count];
             let shown = (0..)
                 .zip(&self.triangles)

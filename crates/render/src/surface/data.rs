@@ -1,10 +1,10 @@
-//! The slices that a surface is made from, validated before anything is uploaded.
+//! The slices from which a surface is made, validated before anything is uploaded.
 
 use std::sync::Arc;
 
 use crate::{Chunks, Material, MaterialGroup, RenderError, TextureData};
 
-/// The slices that a [`crate::Surface`] is made from. All per-vertex slices have one entry per vertex.
+/// The slices from which a [`crate::Surface`] is made. All per-vertex slices have one entry per vertex.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct SurfaceData<'a> {
     /// Positions relative to the caller's centre.

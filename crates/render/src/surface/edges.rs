@@ -3,8 +3,9 @@
 /// The edges of `triangles` without duplicates, lower vertex index first, in ascending order. Degenerate edges from a
 /// vertex to itself are left out.
 ///
-/// A counting sort by the lower vertex, linear in the triangles, then a sort of each small bucket. Drawing edges rather
-/// than triangles in line mode draws every line once, so that its alpha is right, and needs no optional device feature.
+/// The method is a counting sort by the lower vertex, linear in the triangles, then a sort of each small bucket.
+/// Drawing edges rather than triangles in line mode draws every line once, so that its alpha is right, and needs no
+/// optional device feature.
 pub(crate) fn unique_edges(triangles: &[[u32; 3]], vertex_count: usize) -> Vec<[u32; 2]> {
     let mut starts = vec![0_u32; vertex_count + 1];
     for_each_edge(triangles, |low, _| starts[low as usize + 1] += 1);

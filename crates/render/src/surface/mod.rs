@@ -22,7 +22,7 @@ use crate::frame::uniforms::{MaterialVertex, SurfaceUniform};
 use crate::pipelines::MaterialAttributes;
 use crate::{ColourSpace, Detail, RenderError, Renderer, SurfaceData};
 
-/// A triangle mesh in GPU buffers. Its topology is fixed; its vertices can move and change colour.
+/// A triangle mesh in GPU buffers. Its topology is fixed; its vertices can move, and their colours can change.
 #[derive(Debug)]
 pub struct Surface {
     vertex_count: usize,
@@ -150,7 +150,7 @@ impl Surface {
         self.pages.iter().map(Page::bytes).sum()
     }
 
-    /// The number of pages: sets of buffers that the mesh is distributed over.
+    /// The number of pages: sets of buffers over which the mesh is distributed.
     pub fn page_count(&self) -> usize {
         self.pages.len()
     }

@@ -1,8 +1,8 @@
-//! A surface's soft shadow on the ground: darkest where it touches it, as under an overcast sky.
+//! A surface's soft shadow on the ground: darkest where the surface touches the ground, as under an overcast sky.
 //!
-//! The surface is drawn once from below, orthographically, into a small picture of how near above the ground it is; the
+//! The surface is drawn once from below, orthographically, into a small picture of its height above the ground; the
 //! picture is blurred, and drawn as a square on the ground. So a frame costs one textured square, and the surface is
-//! drawn a second time only when the shadow is made anew.
+//! drawn a second time only when the shadow is made again.
 
 use glam::{Mat4, Vec3, Vec4};
 
@@ -23,17 +23,17 @@ const SIDE_PX: u32 = 192;
 /// How far the square reaches beyond the surface, as a share of the surface's larger half side: room for the blur.
 const MARGIN: f32 = 0.3;
 
-/// From which height on the surface throws no shadow, as a share of its size.
+/// The height above which the surface casts no shadow, as a share of its size.
 const HEIGHT: f32 = 0.6;
 
-/// What draws a shadow: made once a device, when first needed.
+/// The resources that draw a shadow: made once a device, on first use.
 #[derive(Debug)]
 pub(crate) struct ShadowTools {
     blurs: [wgpu::RenderPipeline; 2],
     sampler: wgpu::Sampler,
 }
 
-/// Where the shadow lies and which of the surface throws it.
+/// The position of the shadow, and the heights of the surface that cast it.
 struct Place {
     uniform: ShadowUniform,
     from_below: View,
@@ -65,7 +65,7 @@ pub(crate) fn blurs(device: &wgpu::Device) -> [wgpu::RenderPipeline; 2] {
 
 impl Surface {
     /// Makes the shadow that [`crate::Shadows::On`] draws: that of the present shape and of the shown triangles, on the
-    /// plane of `ground`. It stays as it is when the surface moves, until it is made again.
+    /// plane of `ground`. It does not change when the surface moves, until it is made again.
     ///
     /// # Errors
     /// As [`Renderer::draw`].
@@ -84,7 +84,7 @@ impl Surface {
 }
 
 impl Place {
-    /// `None` for a surface that is nowhere.
+    /// `None` for a surface without finite positions.
     fn of(surface: &Surface, ground: &Grid) -> Option<Self> {
         let [u, v] = ground.along.map(Vec3::from);
         let up = u.cross(v);

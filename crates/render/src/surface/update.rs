@@ -55,8 +55,8 @@ impl Surface {
         self.update(renderer, "normals", |page| &page.normals, normals)
     }
 
-    /// Updates the region colours that [`crate::Style::region_share`] shows: sRGB, and in the fourth byte how much of
-    /// the shading's colour they replace (0 none, 255 all).
+    /// Updates the region colours that [`crate::Style::region_share`] shows: sRGB, and in the fourth byte the share of
+    /// the shading's colour that they replace (0 none, 255 all).
     ///
     /// # Errors
     /// As [`Surface::update_positions`].
@@ -99,8 +99,8 @@ impl Surface {
         Ok(())
     }
 
-    /// Replaces the lines that are drawn whatever the style; one whose ends are the same vertex is a dot. A surface that
-    /// is spread over several pages draws those of its triangles' vertices alone.
+    /// Replaces the lines that are drawn with every style; a line with both ends at the same vertex is a dot. A surface
+    /// on several pages draws only the lines between its triangles' vertices.
     ///
     /// # Errors
     /// As [`Surface::update_lines`].

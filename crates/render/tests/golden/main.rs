@@ -16,7 +16,7 @@ use std::path::Path;
 use pliant_render::{Frame, Grid, Overlay, Renderer, Samples, Shading, Style, Surface, SurfaceData, View, region};
 use rig::{SIZE_PX, Shape, golden, oblique_view};
 
-/// What a picture shows in addition to its surface; most use the default style and view.
+/// The parts of a picture beside its surface; most pictures use the default style and view.
 struct Shot<'a> {
     view: View,
     style: Style,

@@ -316,7 +316,7 @@ impl Solid for Creature {
             srgb(0x4a3a35),
             step(0.056, 0.040, p.y) * step(0.072, 0.086, ahead),
         );
-        // Grooves are darker, as dust and shadow make them in a scan.
+        // Grooves are darker, like the dust and shadow in a scan.
         skin = skin * (1.0 - 0.36 * (1.0 - scales(p * SCALES, 23)) * self.scaliness(p));
         skin = mix(plate, skin, step(0.003, 0.010, self.crest(p)));
         let outward = v(if p.x < 0.0 { -normal.x } else { normal.x }, normal.y, normal.z);

@@ -4,7 +4,7 @@ use super::mesh::Mesh;
 use super::solid::{mix, srgb};
 use super::vector::{Vec3, v};
 
-/// Segments around the circle: a power of two, so that the points follow by halving a quarter turn.
+/// Segments around the circle: a power of two, so that halving a quarter turn gives the points.
 const AROUND: u32 = 64;
 /// Rings from the bottom's rim to the top's.
 const RINGS: u32 = 96;
@@ -16,7 +16,7 @@ const HEIGHT: f64 = 1.2;
 /// The rod from y = 0 upwards.
 pub fn cylinder() -> Mesh {
     let circle = circle();
-    // The profile from the bottom's centre over both rims to the top's centre: radius and height of each ring.
+    // This is the profile from the bottom's centre over both rims to the top's centre: radius and height of each ring.
     let mut profile = Vec::new();
     profile.extend((1..=DISC).map(|i| (RADIUS * f64::from(i) / f64::from(DISC + 1), 0.0)));
     profile.extend((0..=RINGS).map(|i| (RADIUS, HEIGHT * f64::from(i) / f64::from(RINGS))));
@@ -52,7 +52,7 @@ pub fn cylinder() -> Mesh {
     mesh
 }
 
-/// Twelve alternating bands along the length, 0 to 1, which show how a bend is distributed.
+/// Twelve alternating bands along the length, 0 to 1, which show the distribution of a bend.
 pub fn banded(along: f64, one: u32, other: u32) -> Vec3 {
     let band = (along * 12.0 - 0.5).floor() as i32;
     mix(srgb(one), srgb(other), f64::from(band.rem_euclid(2)))

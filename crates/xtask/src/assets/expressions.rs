@@ -1,12 +1,12 @@
-//! The face's expressions: how far each point moves, and the wrinkles that fold the skin across the direction in which
-//! it is compressed.
+//! The face's expressions: the displacement of each point, and the wrinkles that fold the skin across the direction of
+//! compression.
 
 use super::face::outwards;
 use super::noise::gradient;
 use super::solid::step;
 use super::vector::{Vec3, v};
 
-/// An expression: its name, and where a point of the face goes.
+/// An expression: its name, and the displacements of the face.
 pub struct Expression {
     /// The morph target's name.
     pub name: &'static str,
@@ -30,13 +30,13 @@ pub const EXPRESSIONS: [Expression; 3] = [
     },
 ];
 
-/// Both brows go up, and the forehead folds into furrows across.
+/// Both brows rise, and the forehead folds into furrows across.
 fn brows_raised(p: Vec3) -> Vec3 {
     let x = p.x.abs();
     let out = outwards(p);
     let up = (v(0.0, 1.0, 0.0) - out * out.y).normalized();
     let lifted = step(0.075, 0.135, p.y) * step(0.50, 0.17, p.y) * step(0.36, 0.24, x) * step(0.02, 0.14, p.z);
-    // Furrows sink at their ends, and no two are alike.
+    // Furrows sink at their ends, and no two are equal.
     let height = p.y + 0.30 * x * x + 0.008 * gradient(v(p.x * 7.0, p.y * 7.0, 0.0), 5);
     let place = (height - 0.212) / 0.053;
     let which = place.floor();
@@ -46,7 +46,7 @@ fn brows_raised(p: Vec3) -> Vec3 {
     up * (0.080 * lifted) + out * (0.020 * folded * (fold(place) - 0.45))
 }
 
-/// The brows go down and together, and furrows stand upright between them.
+/// The brows move down and together, and upright furrows form between them.
 fn frown(p: Vec3) -> Vec3 {
     let x = p.x.abs();
     let out = outwards(p);
@@ -61,7 +61,8 @@ fn frown(p: Vec3) -> Vec3 {
     v(inwards * 0.036, -0.045, 0.006) * moved + out * (between * (puff - furrow) - root)
 }
 
-/// The corners of the mouth go out and up, a fold runs from the nose past the mouth, and the eyes' outer corners crinkle.
+/// The corners of the mouth move out and up, a fold runs from the nose past the mouth, and the eyes' outer corners
+/// crinkle.
 fn smile(p: Vec3) -> Vec3 {
     let x = p.x.abs();
     let side = (p.x / 0.06).clamp(-1.0, 1.0);
@@ -70,7 +71,7 @@ fn smile(p: Vec3) -> Vec3 {
     let near = step(0.170, 0.030, (p.y + 0.290).abs()) * step(0.310, 0.130, x) * front;
     let (widened, raised) = (step(0.0, 0.120, x) * near, step(0.0, 0.200, x) * near);
     let cheek = step(0.120, 0.010, v(x - 0.175, p.y + 0.125, 0.0).length()) * front;
-    // The fold's course: at this height it is so far from the middle.
+    // The fold's course: its distance from the middle at this height.
     let below = -0.125 - p.y;
     let course = 0.080 + 0.62 * below - 0.95 * below * below;
     let beyond = (x - course) * 0.85;
@@ -87,7 +88,7 @@ fn smile(p: Vec3) -> Vec3 {
         + out * (0.012 * cheek - along * crease + feet * crinkle)
 }
 
-/// A row of folds, one to a unit: round ridges of the height 1 with sharp furrows between them at whole numbers.
+/// A row of folds, one per unit: round ridges of the height 1 with sharp furrows between them at whole numbers.
 fn fold(place: f64) -> f64 {
     let from_furrow = 1.0 - (2.0 * (place - place.floor()) - 1.0).abs();
     from_furrow * (2.0 - from_furrow)

@@ -1,7 +1,7 @@
 //! The face: the head of a man with a high forehead, whose expressions ([`super::expressions`]) have wrinkles.
 //!
-//! The head is about one unit high, stands around the origin and looks to +z. All but hair and skin is modelled at
-//! x > 0 and mirrored.
+//! The head is about one unit high, is centred on the origin and looks to +z. Everything except hair and skin is
+//! modelled at x > 0 and mirrored.
 
 use super::Solid;
 use super::noise::{fractal, gradient};
@@ -23,7 +23,7 @@ pub fn outwards(p: Vec3) -> Vec3 {
     flat.over(radii).over(radii).normalized()
 }
 
-/// Skull, jaw, cheeks and brows, without what lies on them.
+/// Skull, jaw, cheeks and brows, without the features on them.
 fn head(q: Vec3) -> f64 {
     let (middle, radii) = CRANIUM;
     let mut d = ellipsoid(q, middle, radii);
@@ -95,14 +95,14 @@ fn lids(q: Vec3) -> f64 {
 }
 
 fn ear(q: Vec3) -> f64 {
-    // It stands out towards the back.
+    // The ear sticks out towards the back.
     let lean = v(q.x - 0.30 * (-0.03 - q.z), q.y - 0.10 * (q.z + 0.05), q.z);
     let shell = ellipsoid(lean, v(0.372, -0.005, -0.055), v(0.034, 0.112, 0.072));
     let bowl = ellipsoid(lean, v(0.405, 0.005, -0.040), v(0.030, 0.078, 0.045));
     smooth_difference(shell, bowl, 0.02) * 0.9
 }
 
-/// Where hair grows: 1 within, 0 on the skin.
+/// The area of the hair: 1 within, 0 on the skin.
 fn hair(p: Vec3) -> f64 {
     let q = p.mirrored();
     let front = 0.445 - 0.9 * (q.x - 0.13).max(0.0) * (0.30 - q.x).max(0.0) * 10.0 * (q.x - 0.13).max(0.0);
@@ -112,7 +112,7 @@ fn hair(p: Vec3) -> f64 {
     step(ragged - 0.012, ragged + 0.012, q.y) * step(0.030, 0.045, ear(q))
 }
 
-/// Where the eyebrows are.
+/// The area of the eyebrows.
 fn eyebrow(p: Vec3) -> f64 {
     let q = p.mirrored();
     let along = ((q.x - 0.045) / 0.215).clamp(0.0, 1.0);
@@ -206,15 +206,15 @@ fn eye_colour(q: Vec3) -> Vec3 {
     mix(srgb(0xffffff), colour, step(0.06, 0.11, glint))
 }
 
-/// The face in a space in which its front is larger: inverted in a sphere around a point before it, and mirrored, so
-/// that it looks to +z again. An inversion keeps angles, so equal triangles there are well-shaped ones here, about three
-/// times as long at the nape as on the face.
+/// The face in a space in which its front is larger: inverted in a sphere around a point in front of it, and mirrored,
+/// so that it looks to +z again. An inversion keeps angles, so equal triangles there are well-shaped ones here, about
+/// three times as long at the nape as on the face.
 pub struct Magnified;
 
 /// The centre of the sphere, and its squared radius.
 const INVERSION: (Vec3, f64) = (v(0.0, 0.06, 1.35), 1.4);
 
-/// The point that one of the magnified space stands for, and back.
+/// The point of the face for one of the magnified space, and back.
 pub fn inverted(p: Vec3) -> Vec3 {
     let (centre, square) = INVERSION;
     let from = p - centre;

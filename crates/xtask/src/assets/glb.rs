@@ -42,7 +42,7 @@ pub fn write(mesh: &Mesh, name: &str) -> Vec<u8> {
         ranges.push(push(&mut buffer, displacements));
         targets_at = view(&mut buffer, targets_at, 34962);
     }
-    // Accessors have the numbers of their views.
+    // Accessors have the same numbers as their views.
     let (mut morphs, mut extras, mut accessors) = (String::new(), String::new(), String::new());
     if !mesh.targets.is_empty() {
         let own = (0..mesh.targets.len()).map(|target| format!(r#"{{"POSITION":{}}}"#, 4 + target));
@@ -90,7 +90,7 @@ pub fn write(mesh: &Mesh, name: &str) -> Vec<u8> {
     container(json.into_bytes(), &buffer)
 }
 
-/// Appends vectors rounded to f32; the least and the largest number along each axis.
+/// Appends vectors rounded to f32; returns the least and the largest number along each axis.
 fn push(buffer: &mut Vec<u8>, vectors: &[Vec3]) -> [[f32; 3]; 2] {
     let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
     for vector in vectors {

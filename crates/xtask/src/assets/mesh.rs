@@ -11,7 +11,7 @@ pub struct Mesh {
     pub colours: Vec<Vec3>,
     /// Vertex indices, three per triangle.
     pub triangles: Vec<[u32; 3]>,
-    /// Morph targets: a name, and how far each vertex moves.
+    /// Morph targets: a name, and the displacement of each vertex.
     pub targets: Vec<(&'static str, Vec<Vec3>)>,
 }
 

@@ -44,7 +44,7 @@ pub struct Sample {
     pub make: fn() -> Result<Mesh, String>,
 }
 
-/// Every sample that ships. The first is the one that opens by default.
+/// Every sample that ships. The first one opens by default.
 pub const SAMPLES: [Sample; 6] = [
     Sample {
         name: "creature",
@@ -72,7 +72,7 @@ pub const SAMPLES: [Sample; 6] = [
     },
 ];
 
-/// The face with its expressions: fine in front, where the wrinkles are, and coarse behind.
+/// The face with its expressions: fine in front, at the wrinkles, and coarse behind.
 fn face() -> Result<Mesh, String> {
     let mut mesh = mesh_of(&face::Magnified, 24_000)?;
     mesh.positions = mesh.positions.into_iter().map(face::inverted).collect();
@@ -87,7 +87,7 @@ fn face() -> Result<Mesh, String> {
 /// The creature with about `triangles` triangles; more triangles give finer skin.
 ///
 /// # Errors
-/// As [`mesh_of`].
+/// Those of [`mesh_of`].
 pub fn creature_of(triangles: usize) -> Result<Mesh, String> {
     mesh_of(&creature::Creature::new(), triangles)
 }
@@ -98,7 +98,7 @@ const GRAIN: f64 = 0.03;
 /// The surface of `solid` with about `triangles` triangles: closed, manifold, oriented outwards.
 ///
 /// # Errors
-/// What is wrong with the surface on the last of several grids, if none gives a manifold.
+/// The fault of the surface on the last of several grids, if none gives a manifold.
 pub fn mesh_of(solid: &dyn Solid, triangles: usize) -> Result<Mesh, String> {
     let (low, high) = solid.bounds();
     // The count grows with the inverse square of the cell size; two coarse trials give the factor.

@@ -43,7 +43,7 @@ pub fn gradient(p: Vec3, seed: u64) -> f64 {
     mix(mix(x00, x10, w), mix(x01, x11, w), s) * 1.4
 }
 
-/// `octaves` of gradient noise, each with half the size and half the amplitude of the one before.
+/// `octaves` of gradient noise, each with half the size and half the amplitude of the last.
 pub fn fractal(p: Vec3, octaves: u32, seed: u64) -> f64 {
     let (mut sum, mut height, mut q) = (0.0, 1.0, p);
     for octave in 0..octaves {

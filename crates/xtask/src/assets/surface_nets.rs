@@ -1,9 +1,9 @@
 //! Extracts a solid's surface as a mesh: surface nets [Gib98] in the blocks that the surface crosses, with one vertex
 //! for each sheet through a cell [Nie04], so that two close sheets don't share a vertex.
 //!
-//! Not marching cubes, whose sliver triangles would have to be removed; these triangles are about equal from the start.
-//! The remaining ambiguity (both sheets of two cells meeting in their common face) is detected by
-//! [`Mesh::check_closed`] and resolved by shifting the grid.
+//! Marching cubes would make sliver triangles that must be removed; these triangles are about equal from the start. The
+//! remaining ambiguity (both sheets of two cells meeting in their common face) is detected by [`Mesh::check_closed`]
+//! and resolved by shifting the grid.
 
 use std::collections::HashMap;
 
@@ -35,9 +35,9 @@ const EDGES: [(u8, u8); 12] = [
 /// One sheet of the surface through one cell: one vertex.
 struct Crossing {
     cell: [i32; 3],
-    /// Bit `i` is set where corner `i` lies inside.
+    /// Bit `i` is set if corner `i` is inside.
     inside: u8,
-    /// Bit `e` is set where this sheet crosses edge `e`.
+    /// Bit `e` is set if this sheet crosses edge `e`.
     edges: u16,
     position: Vec3,
 }
@@ -110,7 +110,7 @@ fn crossings(solid: &dyn Solid, origin: Vec3, size: f64, block: [i32; 3]) -> Vec
 }
 
 /// The crossed edges of each sheet. On a face with four crossed edges, the two edges at an inside corner belong
-/// together, which both cells of the face decide alike.
+/// together; both cells of the face decide this alike.
 fn sheets(inside: u8) -> Vec<u16> {
     let is_inside = |corner: u8| inside >> corner & 1 == 1;
     let mut sheets: Vec<u16> = (0..12)

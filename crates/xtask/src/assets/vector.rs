@@ -1,7 +1,7 @@
 //! A 3D vector with the few operations that the generator needs.
 //!
-//! Here and in the shapes, only `+ - * /` and square roots are used: IEEE 754 defines their results exactly, so the
-//! samples are equal on every machine, which is not guaranteed for `sin` or `exp`.
+//! This code and the shapes use only `+ - * /` and square roots: IEEE 754 defines their results exactly, so the samples
+//! are equal on every machine, which is not guaranteed for `sin` or `exp`.
 
 use std::ops::{Add, AddAssign, Mul, Neg, Sub};
 

@@ -1,26 +1,27 @@
-//! As-rigid-as-possible deformation compared with libigl, by the example `arap` of `deform` and `tests/peer/arap.py`:
+//! As-rigid-as-possible deformation compared with libigl, with the example `arap` of `deform` and `tests/peer/arap.py`:
 //! the scenes of [BS08] and a scan.
 //!
-//! libigl runs 400 iterations; `reach` is the time in which Pliant gets below the energy of its result. An iteration is
-//! a local and a global step in both. The times do not include binding, which has its own column.
+//! libigl runs 400 iterations; `reach` is the time after which Pliant's energy is below that of its result. An
+//! iteration is a local and a global step in both. The times do not include binding, which has its own column.
 
 use std::path::{Path, PathBuf};
 
 use super::Scale;
+use super::beside::{data, peers};
 use super::table::{Row, folder, measured};
 use crate::process::output;
 
 /// One row per scene and program.
 pub fn rows(scale: Scale) -> Result<Vec<Row>, String> {
-    let data = crate::root().join("../shared/data");
+    let data = data();
     if !data.is_dir() {
-        return Ok(vec![Row::default().text("says", "not here: ../shared/data")]);
+        return Ok(vec![Row::default().text("says", "not here: the folder PLIANT_DATA")]);
     }
     let mut scenes = Vec::new();
     for name in ["bar", "cylinder", "cactus"] {
         scenes.push(copied(&data.join("survey"), name)?);
     }
-    let peers = crate::root().join("../shared/peers");
+    let peers = peers();
     scenes.extend(scan(&peers, &data, 0));
     if scale == Scale::Full {
         scenes.extend(scan(&peers, &data, 1));
@@ -64,7 +65,7 @@ pub(super) fn copied(survey: &Path, name: &str) -> Result<PathBuf, String> {
     Ok(folder.join(format!("{name}.off")))
 }
 
-/// The armadillo as an OFF file, subdivided `level` times; `None` where the peers' script can't run.
+/// The armadillo as an OFF file, subdivided `level` times; `None` if the peers' script can't run.
 fn scan(peers: &Path, data: &Path, level: usize) -> Option<PathBuf> {
     let off = folder().join(format!("armadillo-{level}.off"));
     if !off.exists() {

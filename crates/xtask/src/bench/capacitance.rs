@@ -1,12 +1,13 @@
-//! The thin plate by its own factor and by the Laplacian's, by the example `capacitance` of `deform`.
+//! The thin plate by its own factor and by the Laplacian's, with the example `capacitance` of `deform`.
 
 use super::Scale;
 use super::meshes::creature_off;
 use super::table::{Row, measured};
 
-/// Two rows for each size: the own factor and the Laplacian's, on all threads. Where the own factor is not measured, one.
+/// Two rows for each size, on all threads: the own factor and the Laplacian's. Only one if the own factor is not
+/// measured.
 pub fn rows(scale: Scale) -> Result<Vec<Row>, String> {
-    // How often a mesh of 50,000 vertices is subdivided, and which factors are measured.
+    // The number of subdivisions of a mesh of 50,000 vertices, and the measured factors.
     let sizes: &[(u32, &[&str])] = match scale {
         Scale::Usual => &[(0, &["factor", "laplacian"]), (1, &["factor", "laplacian"])],
         Scale::Full => &[
@@ -20,7 +21,7 @@ pub fn rows(scale: Scale) -> Result<Vec<Row>, String> {
     let file = creature_off(50_000)?.display().to_string();
     let mut rows = Vec::new();
     for &(times, factors) in sizes {
-        // One process for each, so that its peak of memory is its own.
+        // Each runs in a separate process, so that its peak of memory is its own.
         for &factor in factors {
             let arguments = [file.clone(), all.clone(), times.to_string(), factor.to_owned()];
             rows.extend(measured("pliant-deform", "capacitance", &arguments)?);

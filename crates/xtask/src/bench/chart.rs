@@ -1,4 +1,4 @@
-//! A picture of measurements: panels side by side, both axes logarithmic, as SVG.
+//! A picture of measurements: adjacent panels, both axes logarithmic, as SVG.
 
 use std::fmt::Write;
 
@@ -12,24 +12,24 @@ pub struct Panel {
 /// Measurements of one kind; points that are not positive numbers are left out.
 pub struct Line {
     pub name: &'static str,
-    /// As SVG has it.
+    /// Its colour in SVG.
     pub colour: &'static str,
     pub points: Vec<[f64; 2]>,
 }
 
-/// What was asked for: a point that the lines should stay below.
+/// A limit: a point below which the lines should stay.
 pub struct Limit {
     pub at: [f64; 2],
     pub name: String,
 }
 
-/// A panel's width and height in pixels, and the room around it.
+/// A panel's width and height in pixels, and the margin around it.
 const SIZE: [f64; 2] = [400.0, 260.0];
 const LEFT: f64 = 64.0;
 const TOP: f64 = 44.0;
 const BELOW: f64 = 74.0;
 
-/// The panels beside each other; `across` is what all measure along x, and `caption` stands below.
+/// The panels in a row; `across` is the common quantity along x, and `caption` is below.
 pub fn chart(panels: &[Panel], across: &str, caption: &str) -> String {
     let pitch = LEFT + SIZE[0] + 24.0;
     let (width, height) = (pitch * panels.len() as f64, TOP + SIZE[1] + BELOW);
@@ -118,7 +118,7 @@ struct Range {
 }
 
 impl Range {
-    /// With some room around positive values; `None` where there are none.
+    /// An axis with some margin around positive values; `None` if there are none.
     fn of(values: impl Iterator<Item = f64>) -> Option<Self> {
         let (low, high) = values.fold((f64::INFINITY, 0.0_f64), |(low, high), value| {
             (low.min(value), high.max(value))
@@ -129,7 +129,7 @@ impl Range {
         })
     }
 
-    /// Where a value stands, 0 to 1.
+    /// The place of a value, 0 to 1.
     fn share(&self, value: f64) -> f64 {
         (value / self.low).ln() / (self.high / self.low).ln()
     }
@@ -142,7 +142,7 @@ impl Range {
     }
 }
 
-/// "50k" and "2M".
+/// A count as "50k" or "2M".
 fn short(value: f64) -> String {
     match value {
         1e6.. => format!("{}M", value / 1e6),
@@ -166,7 +166,7 @@ mod tests {
             }],
             limit: Limit {
                 at: [5e6, 12.0],
-                name: "asked".to_owned(),
+                name: "the limit".to_owned(),
             },
         };
         let svg = chart(&[panel], "vertices", "a machine");
@@ -177,7 +177,7 @@ mod tests {
             .collect();
         assert_eq!(places.len(), 2);
         assert!(places.iter().all(|x| (0.0..SIZE[0]).contains(x)) && places[0] < places[1]);
-        assert!(!svg.contains("NaN") && svg.contains("a machine") && svg.contains(">asked<"));
+        assert!(!svg.contains("NaN") && svg.contains("a machine") && svg.contains(">the limit<"));
     }
 
     #[test]

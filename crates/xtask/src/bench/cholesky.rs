@@ -1,7 +1,8 @@
-//! The sparse Cholesky factorisation beside faer's, by the example `cholesky` of `deform`: the same matrices, order and
-//! threads, with every vector level that the processor has and with those up to AVX2.
+//! The sparse Cholesky factorisation against faer's, with the example `cholesky` of `deform`: the same matrices, order
+//! and threads, with every vector level that the processor has and with those up to AVX2.
 //!
-//! Both solvers take turns, and a ratio is the median over the turns: work beside the bench slows both of a turn alike.
+//! Both solvers take turns, and a ratio is the median over the turns: other work on the machine slows both of a turn
+//! alike.
 
 use std::path::Path;
 
@@ -10,15 +11,15 @@ use super::meshes::creature_off;
 use super::table::{Row, rows_of};
 use crate::process::cargo;
 
-/// How often each solver takes its turn.
+/// The number of turns of each solver.
 const TURNS: usize = 5;
 
-/// What is compared.
+/// The compared columns.
 const MEASURED: [&str; 5] = ["symbolic", "numeric", "solve3", "factor_mb", "more_mb"];
 
 /// A row for each size, vector level, number of threads and solver, and a row with the ratios of each pair.
 pub fn rows(scale: Scale) -> Result<Vec<Row>, String> {
-    // As many free vertices as the meshes of the other measurements have, and a million: nearly all of these are free.
+    // The sizes are those of the other measurements' meshes, and a million: nearly all of these vertices are free.
     let sizes: &[usize] = match scale {
         Scale::Usual => &[46_000, 184_000],
         Scale::Full => &[46_000, 184_000, 1_000_000],
@@ -62,7 +63,7 @@ fn compared(file: &Path, vectors: &[&str], threads: usize) -> Result<[Row; 3], S
     Ok([medians(0), medians(1), ratio])
 }
 
-/// `like` with the medians of what `values` gives for each measured column.
+/// `like` with the medians of `values` for each measured column.
 fn median_row(like: &Row, values: impl Fn(&str) -> Vec<f64>) -> Row {
     MEASURED.iter().fold(like.clone(), |row, name| {
         let mut values = values(name);
@@ -75,7 +76,7 @@ fn number(row: &Row, name: &str) -> f64 {
     row.get(name).and_then(|value| value.parse().ok()).unwrap_or(f64::NAN)
 }
 
-/// One solver's row, from a process of its own: its peak of memory is its own.
+/// One solver's row, from a separate process, so that its peak of memory is its own.
 fn measured(file: &Path, vectors: &[&str], threads: usize, solver: &str) -> Result<Row, String> {
     let mut command = cargo(&["run", "--locked", "--quiet", "--release", "--package", "pliant-deform"]);
     command.args(["--example", "cholesky"]).args(vectors).arg("--");

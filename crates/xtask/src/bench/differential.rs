@@ -1,4 +1,4 @@
-//! The differential methods and the kinds of detail during a drag, by the example `differential` of `deform`.
+//! The differential methods and the kinds of detail during a drag, with the example `differential` of `deform`.
 
 use super::Scale;
 use super::meshes::{creature_off, sizes};

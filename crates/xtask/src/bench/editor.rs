@@ -1,5 +1,5 @@
-//! The editor on 400k triangles: the time of each event without a window and the memory that a hundred strokes take, by
-//! the example `editor_times` of `app`; and the window's longest frames without drawing, by `window_times`.
+//! The editor on 400k triangles: the time of each event without a window and the memory of a hundred strokes, with the
+//! example `editor_times` of `app`; and the window's longest frames without drawing, with `window_times`.
 
 use super::Scale;
 use super::meshes::creature_glb;

@@ -1,4 +1,4 @@
-//! Reading and saving files, by the example `files` of `io`.
+//! Reading and saving files, with the example `files` of `io`.
 
 use super::Scale;
 use super::meshes::creature_glb;

@@ -1,4 +1,4 @@
-//! Binding and drag frames, from the command line's own report: what a user waits for.
+//! Binding and drag frames, from the command line's own report: the times for which a user waits.
 
 use std::path::Path;
 use std::process::Stdio;

@@ -1,5 +1,5 @@
-//! How binding grows with the mesh, by the thin plate's own factor and by the Laplacian's, by the example `capacitance`
-//! of `deform`: a table, and with the large meshes the picture `docs/growth.svg`.
+//! The growth of binding with the mesh, by the thin plate's own factor and by the Laplacian's, with the example
+//! `capacitance` of `deform`: a table, and with the large meshes the picture `bench/growth.svg`.
 
 use super::Scale;
 use super::chart::{Limit, Line, Panel, chart};
@@ -7,20 +7,20 @@ use super::machine::machine;
 use super::meshes::creature_off;
 use super::table::{self, Row, measured};
 
-/// The meshes: vertices, and how often each is subdivided.
+/// The meshes: vertices, and the number of subdivisions of each.
 const USUAL: &[(usize, u32)] = &[(50_000, 0), (50_000, 1)];
 const FULL: &[(usize, u32)] = &[(50_000, 0), (50_000, 1), (50_000, 2), (83_000, 3)];
 
-/// What each way is called in the example and in the picture, and its colour.
+/// The name of each way in the example and in the picture, and its colour.
 const WAYS: [(&str, &str, &str); 2] = [
     ("factor", "own factor", "#b4552d"),
     ("laplacian", "the Laplacian's factor", "#2d6fb4"),
 ];
 
-/// What is asked for at so many free vertices: seconds to bind, and bytes.
-const ASKED: (f64, f64, f64) = (5e6, 60.0, 10e9);
+/// The limits at this many free vertices: seconds to bind, and bytes.
+const LIMITS: (f64, f64, f64) = (5e6, 60.0, 10e9);
 
-/// One row for each mesh and way, on all threads. What an interrupted run has measured is taken from
+/// One row for each mesh and way, on all threads. Measurements of an interrupted run are taken from
 /// `target/bench/growth.json`; without that file everything is measured anew.
 pub fn rows(scale: Scale) -> Result<Vec<Row>, String> {
     let meshes = match scale {
@@ -40,7 +40,7 @@ pub fn rows(scale: Scale) -> Result<Vec<Row>, String> {
             if rows.iter().any(is_it) {
                 continue;
             }
-            // One process for each, so that its peak of memory is its own.
+            // Each runs in a separate process, so that its peak of memory is its own.
             let arguments = [
                 file.display().to_string(),
                 all.clone(),
@@ -54,7 +54,7 @@ pub fn rows(scale: Scale) -> Result<Vec<Row>, String> {
     }
     rows.sort_by(|a, b| number(a, "free").total_cmp(&number(b, "free")));
     if scale == Scale::Full {
-        table::write(&crate::root().join("docs/growth.svg"), picture(&rows).as_bytes())?;
+        table::write(&crate::root().join("bench/growth.svg"), picture(&rows).as_bytes())?;
     }
     Ok(rows)
 }
@@ -76,7 +76,7 @@ fn picture(rows: &[Row]) -> String {
         };
         WAYS.into_iter().map(line).collect()
     };
-    let (free, seconds, bytes) = ASKED;
+    let (free, seconds, bytes) = LIMITS;
     let limit = |value: f64, name: &str| Limit {
         at: [free, value],
         name: name.to_owned(),
@@ -85,12 +85,12 @@ fn picture(rows: &[Row]) -> String {
         Panel {
             title: "Ordering and binding, microseconds a free vertex",
             lines: lines(|row| 1e6 * (number(row, "order_s") + number(row, "bind_s")) / number(row, "free")),
-            limit: limit(1e6 * seconds / free, "asked: 60 s"),
+            limit: limit(1e6 * seconds / free, "60 s"),
         },
         Panel {
             title: "Most memory beyond the mesh, bytes a free vertex",
             lines: lines(|row| 1024.0 * 1024.0 * number(row, "peak_mb") / number(row, "free")),
-            limit: limit(bytes / free, "asked: 10 GB"),
+            limit: limit(bytes / free, "10 GB"),
         },
     ];
     chart(&panels, "free vertices", &machine())

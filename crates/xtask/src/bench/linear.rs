@@ -1,4 +1,4 @@
-//! The bi-Laplacian, step by step, by the example `linear` of `deform`.
+//! The bi-Laplacian, step by step, with the example `linear` of `deform`.
 
 use super::Scale;
 use super::meshes::{creature_off, sizes};
@@ -11,7 +11,7 @@ pub fn rows(scale: Scale) -> Result<Vec<Row>, String> {
     for &vertices in sizes(scale) {
         let file = creature_off(vertices)?;
         for threads in [1, all] {
-            // One process per mesh, so that its peak memory is this mesh's.
+            // Each mesh has a separate process, so that the peak memory is this mesh's.
             let arguments = [file.display().to_string(), threads.to_string()];
             rows.extend(measured("pliant-deform", "linear", &arguments)?);
         }

@@ -1,8 +1,8 @@
-//! The machine that measures, for captions: its processor, what vectors it has, and the cache of each core.
+//! The measuring machine, for captions: its processor, its vectors, and the cache of each core.
 
 use std::fs;
 
-/// "2 cores, AMD EPYC, AVX-512, 1024K of second-level cache a core"; what the system doesn't tell is left out.
+/// "2 cores, AMD EPYC, AVX-512, 1024K of second-level cache a core"; facts that the system doesn't report are left out.
 pub fn machine() -> String {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let cache = fs::read_to_string("/sys/devices/system/cpu/cpu0/cache/index2/size").unwrap_or_default();

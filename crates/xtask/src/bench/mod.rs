@@ -5,6 +5,7 @@
 //! rows; and list it in [`SECTIONS`]. Printing and saving happen here.
 
 mod arap;
+mod beside;
 mod capacitance;
 mod chart;
 mod cholesky;
@@ -129,7 +130,7 @@ const SECTIONS: &[Section] = &[
 /// Runs the sections in `names`, or all if it is empty; prints and saves their tables.
 ///
 /// # Errors
-/// One sentence naming an unknown section or what failed.
+/// One sentence naming an unknown section or the failure.
 pub fn bench(names: &[String], scale: Scale) -> Result<(), String> {
     if let Some(name) = names
         .iter()

@@ -1,16 +1,17 @@
-//! Other programs on the same edit, in the same run: the times of `../shared/peers` on this machine, and how many times
-//! faster Pliant does the same.
+//! Other programs on the same edit, in the same run: the times of the scripts in `PLIANT_PEERS` on this machine, and
+//! Pliant's speed relative to theirs.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use super::Scale;
+use super::beside;
 use super::table::{Row, folder, measured};
 use crate::process::output;
 
-/// A comparison of a time that a peer prints with the columns of Pliant's rows that together do the same work.
+/// A comparison of a peer's printed time with the columns of Pliant's rows for the same work.
 struct Versus {
-    /// Beginning of the peer's line.
+    /// The beginning of the peer's line.
     line: &'static str,
     /// The word before its milliseconds.
     does: &'static str,
@@ -51,12 +52,12 @@ const VERSUS: [Versus; 15] = [
     Versus { line: "cgal sr-arap", does: "iteration", ours: Ours::Smooth, columns: &["step"] },
 ];
 
-/// One row per comparison, for horse.ply as it is and subdivided.
+/// One row per comparison, for horse.ply unchanged and subdivided.
 pub fn rows(scale: Scale) -> Result<Vec<Row>, String> {
-    let peers = crate::root().join("../shared/peers");
-    let mesh = crate::root().join("../shared/data/scans/horse.ply");
+    let peers = beside::peers();
+    let mesh = beside::data().join("scans/horse.ply");
     if !peers.is_dir() || !mesh.is_file() {
-        return Ok(vec![said(0, "not here: ../shared/peers and ../shared/data")]);
+        return Ok(vec![said(0, "not here: the folders PLIANT_PEERS and PLIANT_DATA")]);
     }
     let subdivisions: &[usize] = match scale {
         Scale::Usual => &[0, 1],

@@ -1,14 +1,13 @@
-//! Coupled prisms on the survey's scenes, by the example `primo` of `deform`.
-
-use std::path::Path;
+//! Coupled prisms on the survey's scenes, with the example `primo` of `deform`.
 
 use super::Scale;
+use super::beside::data;
 use super::table::{Row, measured};
 
-/// One row per scene, on all threads; none if the survey's scenes are not there.
+/// One row per scene, on all threads; none if the survey's scenes are missing.
 pub fn rows(_: Scale) -> Result<Vec<Row>, String> {
     let all = std::thread::available_parallelism().map_or(1, usize::from);
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/survey");
+    let folder = data().join("survey");
     let mut rows = Vec::new();
     for scene in ["bar", "cylinder", "cactus", "plane"] {
         let scene = folder.join(scene);

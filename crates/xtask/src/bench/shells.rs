@@ -1,19 +1,20 @@
-//! Discrete shells beside a direct Gauss–Newton of the same energy in Python (`tests/peer/shells.py`), by the example
-//! `shells` of `deform`: the scenes of [BS08].
+//! Discrete shells against a direct Gauss–Newton of the same energy in Python (`tests/peer/shells.py`), with the
+//! example `shells` of `deform`: the scenes of [BS08].
 //!
-//! Both start from a blend of what the handle does, Pliant's by its own weights, the peer's harmonic, and end where a step
-//! gains less than 10⁻⁷ of the energy, the peer after 40 steps at the latest: compare their energies.
+//! Both start from a blend of the handle's motion, Pliant's with its own weights, the peer's with harmonic ones, and
+//! end when a step gains less than 10⁻⁷ of the energy, the peer after 40 steps at the latest: compare their energies.
 
 use super::Scale;
 use super::arap::copied;
+use super::beside::data;
 use super::table::{Row, measured};
 use crate::process::output;
 
 /// One row per scene and program.
 pub fn rows(_: Scale) -> Result<Vec<Row>, String> {
-    let survey = crate::root().join("../shared/data/survey");
+    let survey = data().join("survey");
     if !survey.is_dir() {
-        return Ok(vec![Row::default().text("says", "not here: ../shared/data")]);
+        return Ok(vec![Row::default().text("says", "not here: the folder PLIANT_DATA")]);
     }
     let script = crate::root().join("tests/peer/shells.py").display().to_string();
     let all = std::thread::available_parallelism().map_or(1, usize::from).to_string();

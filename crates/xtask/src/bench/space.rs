@@ -1,11 +1,11 @@
-//! The methods that bend space, by the example `space` of `deform`, beside Blender's modifiers of the same kind on the
-//! same shape (`tests/peer/blender_space.py`).
+//! The methods that bend space, with the example `space` of `deform`, against Blender's modifiers of the same kind on
+//! the same shape (`tests/peer/blender_space.py`).
 
 use super::Scale;
 use super::table::{Row, measured};
 use crate::process::output;
 
-/// Each method with the options that its figures are asked for. A cage of `detail` 3 has 300 faces here.
+/// Each method with the options for its figures. A cage of `detail` 3 has 300 faces here.
 #[rustfmt::skip]
 const METHODS: [&[&str]; 12] = [
     &["rbf", "tolerance=1e-9", "centres=1000"],

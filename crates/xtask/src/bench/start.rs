@@ -1,4 +1,4 @@
-//! From the process' start to the first picture, as someone before the screen sees it: read off a virtual display.
+//! From the process' start to the first picture, as a person sees it: read from a virtual display.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -11,16 +11,16 @@ use crate::display::{Display, Screen};
 use crate::process::{build_program, target_folder};
 use crate::system;
 
-/// Starts of each file, of which the median counts.
+/// The number of starts of each file; the median counts.
 const STARTS: usize = 5;
 
-/// How long nothing changes on the screen before the last picture is taken for the last; a large file is read in less.
+/// The time without a change on the screen after which a picture counts as the last; a large file is read in less.
 const STILL: Duration = Duration::from_secs(10);
 
 /// The longest wait for it.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// The shape is seen where a picture is nearer to the last one than this share of the farthest one's distance: it may
+/// The shape is visible once a picture is nearer to the last one than this share of the farthest one's distance: it may
 /// still be drawn coarsely.
 const NEAR: f64 = 0.25;
 
@@ -55,9 +55,9 @@ pub fn rows(scale: Scale) -> Result<Vec<Row>, String> {
     Ok(rows)
 }
 
-/// When something was first seen, since the process was started.
+/// The time of the first appearance, since the start of the process.
 struct Start {
-    /// Anything in the screen's middle.
+    /// Any picture in the screen's middle.
     window: Duration,
     /// The shape.
     picture: Duration,
@@ -71,7 +71,7 @@ fn start(file: &Path, display: &Display, screen: &Screen) -> Result<Start, Strin
         .arg(file)
         .env("DISPLAY", display.name())
         .env_remove("WAYLAND_DISPLAY")
-        // Neither settings nor files that are to be restored.
+        // Without settings and files to restore.
         .env("HOME", &home)
         .env("XDG_CONFIG_HOME", home.join("config"))
         .env("XDG_STATE_HOME", home.join("state"))
@@ -88,7 +88,7 @@ fn start(file: &Path, display: &Display, screen: &Screen) -> Result<Start, Strin
         .spawn()
         .map_err(|e| format!("{} can't be started: {e}.", program.display()))?;
     let watched = watch(screen, begun, &mut pictures);
-    // The window's state is of no interest: nothing is saved.
+    // The window's state does not matter: nothing is saved.
     let _ = child.kill();
     let _ = child.wait();
     watched?;
@@ -106,7 +106,7 @@ fn start(file: &Path, display: &Display, screen: &Screen) -> Result<Start, Strin
     }
 }
 
-/// Keeps each picture that differs from the one before, until nothing changes any more.
+/// Keeps each picture that differs from the last one, until nothing changes.
 fn watch(screen: &Screen, begun: Instant, pictures: &mut Vec<(Duration, Vec<u8>)>) -> Result<(), String> {
     let mut changed = begun;
     loop {

@@ -25,13 +25,13 @@ impl Row {
         self
     }
 
-    /// The row with another text where it has one of this name.
+    /// The row with this text if it has a column of this name.
     #[must_use]
     pub fn with_text(self, name: &str, value: &str) -> Self {
         self.with(Self::default().text(name, value))
     }
 
-    /// The row with another number where it has one of this name.
+    /// The row with this number if it has a column of this name.
     #[must_use]
     pub fn with_number(self, name: &str, value: f64) -> Self {
         self.with(Self::default().number(name, value))
@@ -169,7 +169,7 @@ pub fn keep(name: &str, rows: &[Row]) -> Result<(), String> {
     write(&path, format!("[\n{}\n]\n", lines.join(",\n")).as_bytes())
 }
 
-/// A section's rows as they were saved last; none where they were not.
+/// A section's last saved rows; none if there are none.
 pub fn kept(name: &str) -> Vec<Row> {
     let text = std::fs::read_to_string(folder().join(format!("{name}.json"))).unwrap_or_default();
     let lines = text.lines().map(|line| line.trim().trim_end_matches(','));

@@ -1,5 +1,5 @@
-//! What machines with narrower vectors take: the examples `linear` and `steps` of `deform` with each of the vectors that
-//! this processor has. Its caches stay as they are.
+//! The times of machines with narrower vectors: the examples `linear` and `steps` of `deform` with each kind of vectors
+//! of this processor. Its caches stay the same.
 //!
 //! The variable `PLIANT_VECTORS` does the same for any other section, for example
 //! `PLIANT_VECTORS=avx2 cargo xtask bench peers`.
@@ -8,7 +8,7 @@ use super::Scale;
 use super::meshes::{creature_off, sizes};
 use super::table::{Row, release, rows_of};
 
-/// The names that `PLIANT_VECTORS` takes.
+/// The names for `PLIANT_VECTORS`.
 const VECTORS: [&str; 3] = ["avx512", "avx2", "baseline"];
 
 /// One row per size, vectors and method.

@@ -1,4 +1,4 @@
-//! The archive that runs from wherever it is unpacked.
+//! The archive, which runs from any folder.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -23,7 +23,7 @@ const TOOLS: &[Tool] = &[
 /// Makes `pliant-VERSION-ARCHITECTURE-linux.tar.xz` of the tree, with a script that installs it for one person.
 ///
 /// # Errors
-/// One sentence naming what is missing or what failed.
+/// One sentence naming the missing tool or the failure.
 pub fn archive(release: &Release, tree: &Path, folder: &Path) -> Result<Vec<PathBuf>, String> {
     all_there(TOOLS)?;
     let name = release.name();
@@ -52,7 +52,7 @@ pub fn archive(release: &Release, tree: &Path, folder: &Path) -> Result<Vec<Path
         .arg(&packed)
         .arg(&name);
     succeed(&mut tar)?;
-    // One thread, because what xz gives depends on how many there are.
+    // One thread, because the output of xz depends on the number of threads.
     succeed(Command::new("xz").args(["-9", "--threads=1", "--force"]).arg(&packed))?;
     files::remove_folder(&unpacked)?;
     Ok(vec![folder.join(format!("{name}.tar.xz"))])

@@ -24,7 +24,7 @@ const TOOLS: &[Tool] = &[
 /// Makes `pliant_VERSION-1_ARCHITECTURE.deb` of the tree.
 ///
 /// # Errors
-/// One sentence naming what is missing or what failed.
+/// One sentence naming the missing tool or the failure.
 pub fn package(release: &Release, tree: &Path, folder: &Path) -> Result<Vec<PathBuf>, String> {
     all_there(TOOLS)?;
     let architecture = said(Command::new("dpkg").arg("--print-architecture"))?;
@@ -32,7 +32,7 @@ pub fn package(release: &Release, tree: &Path, folder: &Path) -> Result<Vec<Path
     let root = folder.join("deb");
     files::fresh_folder(&root)?;
     files::copy_folder(tree, &root.join("usr"))?;
-    // In Debian the text of this licence is in the system, and `copyright` says where.
+    // In Debian the text of this licence is in the system, and `copyright` names its place.
     let documents = root.join("usr").join(DOCUMENTS);
     files::remove_file(&documents.join("LICENSE-MIT"))?;
     changelog(release, &documents)?;
@@ -47,7 +47,7 @@ pub fn package(release: &Release, tree: &Path, folder: &Path) -> Result<Vec<Path
     let file = folder.join(format!("pliant_{}-1_{architecture}.deb", release.version));
     let mut build = Command::new("dpkg-deb");
     build.env("SOURCE_DATE_EPOCH", release.epoch.to_string());
-    // One thread, because what xz gives depends on how many there are.
+    // One thread, because the output of xz depends on the number of threads.
     build
         .args(["--root-owner-group", "-Zxz", "--threads-max=1", "--build"])
         .arg(&root);
@@ -56,7 +56,7 @@ pub fn package(release: &Release, tree: &Path, folder: &Path) -> Result<Vec<Path
     Ok(vec![file])
 }
 
-/// Debian's own changelog, which only says where the program's is.
+/// Debian's own changelog, which only names the place of the program's.
 fn changelog(release: &Release, documents: &Path) -> Result<(), String> {
     let file = documents.join("changelog.Debian");
     let text = format!(
@@ -69,7 +69,7 @@ fn changelog(release: &Release, documents: &Path) -> Result<(), String> {
     compress(&file)
 }
 
-/// The packages of the libraries that the program is linked with, as Debian's tool finds them.
+/// The packages of the program's libraries, found by Debian's tool.
 fn linked_libraries(root: &Path) -> Result<String, String> {
     // The tool refuses to work without a source package around it.
     let source = root.join("debian/control");
@@ -83,7 +83,7 @@ fn linked_libraries(root: &Path) -> Result<String, String> {
         .ok_or_else(|| "`dpkg-shlibdeps` does not name the libraries of the program.".to_owned())
 }
 
-/// The file that describes the package. What the window and its pictures load at run time is asked for by name.
+/// The file that describes the package. It names the packages that the window and its pictures load at run time.
 fn control(release: &Release, architecture: &str, libraries: &str, kibibytes: u64) -> String {
     format!(
         "Package: pliant\n\
@@ -113,7 +113,7 @@ fn checksums(root: &Path) -> Result<String, String> {
     said(Command::new("md5sum").current_dir(root).args(files::all_files(root)?))
 }
 
-/// What the files take on a disk, each rounded up to whole KiB.
+/// The size of the files on a disk, each rounded up to whole KiB.
 fn kibibytes(root: &Path) -> Result<u64, String> {
     let files = files::all_files(root)?;
     let sizes = files.iter().map(|file| {

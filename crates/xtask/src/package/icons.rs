@@ -12,7 +12,7 @@ fn picture(size: u32) -> Result<Vec<u8>, String> {
     files::read(&crate::root().join(format!("packaging/icons/{size}.png")))
 }
 
-/// Puts the pictures and the drawing into a theme of icons, as the freedesktop specification lays it out.
+/// Puts the pictures and the drawing into an icon theme, in the layout of the freedesktop specification.
 ///
 /// # Errors
 /// One sentence naming the picture.

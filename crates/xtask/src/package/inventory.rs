@@ -1,4 +1,4 @@
-//! What the program is made of: the licences of its dependencies, and a bill of materials (SBOM).
+//! The program's components: the licences of its dependencies, and a bill of materials (SBOM).
 
 use std::path::{Path, PathBuf};
 
@@ -7,22 +7,22 @@ use crate::files;
 use crate::process::{cargo, said, succeed};
 use crate::tool::Tool;
 
-/// What lists licences.
+/// The tool that lists licences.
 pub const CARGO_ABOUT: Tool = Tool {
     program: "cargo-about",
     install: "cargo install cargo-about --features cli",
 };
 
-/// What lists dependencies.
+/// The tool that lists dependencies.
 pub const CARGO_CYCLONEDX: Tool = Tool {
     program: "cargo-cyclonedx",
     install: "cargo install cargo-cyclonedx",
 };
 
-/// What both are made with.
+/// The tools for both.
 pub const TOOLS: &[Tool] = &[CARGO_ABOUT, CARGO_CYCLONEDX];
 
-/// The papers that come with the program.
+/// The documents that come with the program.
 pub struct Papers {
     /// The licences of all dependencies, as text.
     pub licences: PathBuf,
@@ -56,8 +56,8 @@ pub fn licences(manifest: &str) -> Result<String, String> {
     said(about.arg("packaging/licences/about.hbs"))
 }
 
-/// What a crate's program or module is made of, in CycloneDX's format: of the crate in this folder (`crates/app`), by the
-/// name that the tool gives to it (`pliant_bin`).
+/// The components of a crate's program or module, in CycloneDX's format: the crate in this folder (`crates/app`), with
+/// the tool's name for it (`pliant_bin`).
 ///
 /// # Errors
 /// One sentence if the tool fails.
@@ -77,7 +77,7 @@ pub fn bill_of_materials(release: &Release, folder: &str, name: &str) -> Result<
     without_this_machine(&bill?, folder)
 }
 
-/// A bill of materials in which our crates do not lie where they lie on this machine.
+/// A bill of materials without this machine's paths of our crates.
 fn without_this_machine(bill: &str, folder: &str) -> Result<String, String> {
     let first = bill.split_once("\"bom-ref\": \"path+");
     let root = first.and_then(|(_, after)| Some(after.split_once(&format!("/{folder}#"))?.0));
@@ -85,7 +85,7 @@ fn without_this_machine(bill: &str, folder: &str) -> Result<String, String> {
     Ok(bill.replace(root, "file:///pliant"))
 }
 
-/// The target that the compiler builds for.
+/// The target of the compiler.
 fn target() -> Result<String, String> {
     let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
     let about = said(std::process::Command::new(rustc).arg("-vV"))?;
@@ -100,7 +100,7 @@ mod tests {
 
     use super::*;
 
-    /// The names in quotes between a mark and the bracket that closes the list.
+    /// The names in quotes between a mark and the closing bracket of the list.
     fn list(text: &str, mark: &str) -> Vec<String> {
         let (_, after) = text.split_once(mark).unwrap_or_default();
         let (inside, _) = after.split_once(']').unwrap_or_default();

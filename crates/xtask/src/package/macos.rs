@@ -1,6 +1,6 @@
 //! The disk image for macOS: `Pliant.app` in it, and the debug information beside it.
 //!
-//! Nobody has tried this yet.
+//! This is untested.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -25,7 +25,7 @@ const TOOLS: &[Tool] = &[
 /// Makes `pliant-VERSION-ARCHITECTURE-macos.dmg`.
 ///
 /// # Errors
-/// One sentence naming what is missing or what failed.
+/// One sentence naming the missing tool or the failure.
 pub fn image(release: &Release, folder: &Path) -> Result<Vec<PathBuf>, String> {
     all_there(&[TOOLS, inventory::TOOLS].concat())?;
     let built = program::compile(&[])?;
@@ -51,7 +51,7 @@ pub fn image(release: &Release, folder: &Path) -> Result<Vec<PathBuf>, String> {
         files::copy(&crate::root().join(name), &content.join(name))?;
     }
     files::copy(&papers.licences, &content.join("licences-of-dependencies.txt"))?;
-    // Changing a program breaks the signature that the linker gave it, and macOS starts none without.
+    // Changing a program breaks its signature by the linker, and macOS starts no program without one.
     let bundle = content.join("Pliant.app");
     succeed(Command::new("codesign").args(["--force", "--sign", "-"]).arg(&bundle))?;
     let image = folder.join(format!("{}.dmg", release.name()));

@@ -20,7 +20,7 @@ use crate::files;
 use crate::process::target_folder;
 use release::Release;
 
-/// What became of the packages.
+/// The results of packaging.
 #[derive(Default)]
 struct Outcome {
     made: Vec<PathBuf>,
@@ -28,7 +28,7 @@ struct Outcome {
 }
 
 impl Outcome {
-    /// Takes note of a package, or of why there is none.
+    /// Notes a package, or the reason why there is none.
     fn note(&mut self, name: &str, result: Result<Vec<PathBuf>, String>) {
         match result {
             Ok(files) => self.made.extend(files),
@@ -37,7 +37,7 @@ impl Outcome {
     }
 }
 
-/// Makes what this system can make and prints it, and what is left with the reason.
+/// Makes the packages that this system can make and prints them, and the others with the reason.
 ///
 /// # Errors
 /// One sentence if the program can't be built, or if a package is faulty.

@@ -7,7 +7,7 @@ use super::release::Release;
 use crate::process::{cargo, cargo_home, succeed, target_folder};
 use crate::tool::Tool;
 
-/// What stripping needs.
+/// The tools for stripping.
 pub const TOOLS: &[Tool] = &[Tool {
     program: "objcopy",
     install: "apt install binutils",
@@ -17,7 +17,7 @@ pub const TOOLS: &[Tool] = &[Tool {
 pub struct Program {
     /// The program without debug information.
     pub program: PathBuf,
-    /// Its debug information, which it names.
+    /// Its debug information, to which it refers.
     pub debug_info: PathBuf,
 }
 
@@ -43,7 +43,7 @@ pub fn build(release: &Release, folder: &Path) -> Result<Program, String> {
     Ok(built)
 }
 
-/// Compiles the program with more arguments for its linker, into `target/dist`, and gives its path.
+/// Compiles the program with more arguments for its linker, into `target/dist`, and returns its path.
 ///
 /// # Errors
 /// One sentence if it can't be compiled.
@@ -61,7 +61,7 @@ pub fn compile(link_arguments: &[String]) -> Result<PathBuf, String> {
     Ok(target_folder().join("dist").join(name))
 }
 
-/// Compiler flags that leave the folders of this machine out of what is compiled.
+/// Compiler flags that keep this machine's folders out of the program.
 pub fn neutral_paths() -> String {
     let given = std::env::var("RUSTFLAGS").unwrap_or_default();
     let neutral = |folder: &Path, name: &str| format!("--remap-path-prefix={}={name}", folder.display());

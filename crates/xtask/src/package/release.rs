@@ -1,16 +1,16 @@
-//! Which Pliant is packaged.
+//! The Pliant to package.
 
 use std::process::Command;
 
 use crate::process;
 
-/// The version and the time of what is packaged.
+/// The version and the time of the packaged program.
 pub struct Release {
     /// The workspace's version, such as "0.1.0".
     pub version: &'static str,
     /// Seconds since 1970: `SOURCE_DATE_EPOCH`, or the commit's time.
     pub epoch: u64,
-    /// Who packages: `DEBFULLNAME` and `DEBEMAIL`, or the commit's author.
+    /// The maintainer: `DEBFULLNAME` and `DEBEMAIL`, or the commit's author.
     pub maintainer: String,
 }
 
@@ -18,7 +18,7 @@ impl Release {
     /// Reads it from the environment and from git.
     ///
     /// # Errors
-    /// One sentence if neither tells the time or the maintainer.
+    /// One sentence if neither gives the time or the maintainer.
     pub fn read() -> Result<Self, String> {
         let variable = |name: &str| std::env::var(name).ok().filter(|value| !value.is_empty());
         let commit = |format: &str| {
@@ -59,7 +59,7 @@ impl Release {
         text.replace("@VERSION@", self.version)
     }
 
-    /// The beginning of the names of files: `pliant-0.1.0-x86_64-linux`.
+    /// The beginning of file names: `pliant-0.1.0-x86_64-linux`.
     pub fn name(&self) -> String {
         format!(
             "pliant-{}-{}-{}",

@@ -1,4 +1,4 @@
-//! The files that are installed, as they lie below `/usr` or any other prefix.
+//! The installed files, in their layout below `/usr` or any other prefix.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -11,7 +11,7 @@ use crate::files;
 use crate::process::succeed;
 use crate::tool::Tool;
 
-/// What compresses the man pages.
+/// The tool that compresses the man pages.
 pub const TOOLS: &[Tool] = &[Tool {
     program: "gzip",
     install: "apt install gzip",
@@ -20,10 +20,10 @@ pub const TOOLS: &[Tool] = &[Tool {
 /// The folder of the documents below the prefix.
 pub const DOCUMENTS: &str = "share/doc/pliant";
 
-/// Puts `bin` and `share` into a folder `tree` and gives its path.
+/// Puts `bin` and `share` into a folder `tree` and returns its path.
 ///
 /// # Errors
-/// One sentence naming what can't be made.
+/// One sentence naming the failed file or folder.
 pub fn grow(release: &Release, built: &Program, papers: &Papers, folder: &Path) -> Result<PathBuf, String> {
     let tree = folder.join("tree");
     let share = tree.join("share");
@@ -52,7 +52,7 @@ pub fn grow(release: &Release, built: &Program, papers: &Papers, folder: &Path) 
     Ok(tree)
 }
 
-/// What desktops find: the entry, the types of files, and the description.
+/// The files for desktops: the entry, the types of files, and the description.
 fn desktop(release: &Release, share: &Path) -> Result<(), String> {
     files::write(
         &share.join("applications/pliant.desktop"),
@@ -67,7 +67,7 @@ fn desktop(release: &Release, share: &Path) -> Result<(), String> {
     files::write(&share.join("metainfo/local.pliant.pliant.metainfo.xml"), description)
 }
 
-/// What the program writes from the definition of its command line.
+/// The files that the program writes from the definition of its command line.
 fn from_the_command_line(tree: &Path) -> Result<(), String> {
     let written = tree.join("generated");
     succeed(Command::new(tree.join("bin/pliant")).arg("generate").arg(&written))?;
@@ -86,7 +86,7 @@ fn from_the_command_line(tree: &Path) -> Result<(), String> {
     files::remove_folder(&written)
 }
 
-/// Compresses a file in its place, without the name and the time.
+/// Compresses a file in place, without the name and the time.
 ///
 /// # Errors
 /// One sentence naming the file.
@@ -94,7 +94,7 @@ pub fn compress(file: &Path) -> Result<(), String> {
     succeed(Command::new("gzip").args(["-n9", "--force"]).arg(file))
 }
 
-/// Gives every file and folder the permissions of installed ones, whatever this machine's mask is.
+/// Gives every file and folder the permissions of installed ones, independent of this machine's mask.
 ///
 /// # Errors
 /// One sentence if they can't be changed.

@@ -1,4 +1,4 @@
-//! The checks of what was packaged, by the tools of those who take packages in.
+//! The checks of the packages, by the tools of their distributors.
 
 use std::path::Path;
 use std::process::Command;
@@ -6,7 +6,7 @@ use std::process::Command;
 use crate::process::succeed;
 use crate::tool::Tool;
 
-/// Runs every check whose tool is installed. Returns a sentence for each that is not.
+/// Runs every check whose tool is installed. Returns a sentence for each check without its tool.
 ///
 /// # Errors
 /// One sentence naming the check that found an error.
@@ -49,5 +49,5 @@ pub fn validate(tree: &Path, package: Option<&Path>) -> Result<Vec<String>, Stri
     Ok(left)
 }
 
-/// The most bytes that the stripped program may take.
+/// The largest size of the stripped program in bytes.
 const LARGEST_PROGRAM: u64 = 40_000_000;

@@ -1,6 +1,6 @@
 //! The zip for Windows: the program with its icon and version, and the debug information beside it.
 //!
-//! Nobody has tried this yet.
+//! This is untested.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -25,7 +25,7 @@ const TOOLS: &[Tool] = &[
 /// Makes `pliant-VERSION-ARCHITECTURE-windows.zip`.
 ///
 /// # Errors
-/// One sentence naming what is missing or what failed.
+/// One sentence naming the missing tool or the failure.
 pub fn zip(release: &Release, folder: &Path) -> Result<Vec<PathBuf>, String> {
     all_there(&[TOOLS, inventory::TOOLS].concat())?;
     let name = release.name();

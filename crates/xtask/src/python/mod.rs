@@ -1,5 +1,5 @@
 //! `cargo xtask python`: the Python package as a wheel and the Blender add-on around it, and the tests of both, each in
-//! an environment of its own.
+//! a separate environment.
 
 pub mod unpacked;
 
@@ -19,19 +19,19 @@ const PYTHON: Tool = Tool {
 
 const MANIFEST: &str = "crates/python/Cargo.toml";
 
-/// What the add-on's tests run on: the oldest version, the one with long support and the newest. Each is built for one
-/// version of Python alone.
+/// The versions of Blender for the add-on's tests: the oldest, the one with long support and the newest. Each is built
+/// for one version of Python alone.
 const BLENDERS: [&str; 3] = ["bpy==4.2.0", "bpy==4.5.15", "bpy==5.0.1"];
 const BLENDER_PYTHON: Tool = Tool {
     program: "python3.11",
     install: "apt install python3.11-venv, or pyenv install 3.11",
 };
 
-/// Builds the wheel and the add-on into `target/python`, installs the wheel into a clean environment, and runs its tests
-/// and the notebook there; then the add-on's in one with Blender.
+/// Builds the wheel and the add-on into `target/python`, installs the wheel into a clean environment, and runs its
+/// tests and the notebook there; then runs the add-on's tests in one with Blender.
 ///
 /// # Errors
-/// One sentence naming what is missing or what failed.
+/// One sentence naming the missing tool or the failure.
 pub fn python() -> Result<(), String> {
     let python = PYTHON.find()?;
     let release = Release::read()?;
@@ -59,7 +59,7 @@ pub fn python() -> Result<(), String> {
     for version in BLENDERS {
         let blender = environment(&python, &folder.join(version.replace("==", "-")))?;
         install(&blender, &["pytest", version])?;
-        // It is as new as the other, whatever its version says.
+        // The wheel is equally new, independent of its version.
         install(
             &blender,
             &["--force-reinstall", "--no-deps", &wheel.display().to_string()],
@@ -69,7 +69,7 @@ pub fn python() -> Result<(), String> {
     Ok(())
 }
 
-/// The wheel, built by maturin: from the commit and the tools alone, as packages are, and with the same licences.
+/// The wheel, built by maturin: from the commit and the tools alone, like packages, and with the same licences.
 fn wheel(release: &Release, python: &Path, folder: &Path) -> Result<PathBuf, String> {
     let tools = environment(python, &folder.join("tools"))?;
     install(&tools, &["maturin>=1.9.4,<2"])?;
@@ -94,7 +94,7 @@ fn wheel(release: &Release, python: &Path, folder: &Path) -> Result<PathBuf, Str
         .ok_or_else(|| format!("maturin left no wheel in {}.", wheels.display()))
 }
 
-/// Puts what the wheel is to have beside its code into a folder: our licences, and those of all that it contains.
+/// Puts the wheel's documents into a folder: our licences, and those of all its components.
 fn licences(folder: &Path) -> Result<(), String> {
     files::fresh_folder(folder)?;
     for name in ["LICENSE-MIT", "LICENSE-APACHE"] {
@@ -112,7 +112,8 @@ fn licences(folder: &Path) -> Result<(), String> {
     }
 }
 
-/// What the wheel is made of, as packages have it: maturin's own would name the folders of this machine and the time.
+/// The wheel's components, in the packages' format: maturin's own list would name the folders of this machine and the
+/// time.
 fn bill_of_materials(release: &Release, folder: &Path) -> Result<Option<PathBuf>, String> {
     if let Err(sentence) = inventory::CARGO_CYCLONEDX.find() {
         println!("left out of the wheel: its bill of materials ({sentence})");
@@ -124,7 +125,7 @@ fn bill_of_materials(release: &Release, folder: &Path) -> Result<Option<PathBuf>
     Ok(Some(file))
 }
 
-/// The add-on with the wheel in it, as Blender installs it.
+/// The add-on with the wheel in it, in Blender's format.
 fn extension(python: &Path, wheel: &Path, folder: &Path) -> Result<PathBuf, String> {
     let made = said(
         Command::new(python)
@@ -135,7 +136,7 @@ fn extension(python: &Path, wheel: &Path, folder: &Path) -> Result<PathBuf, Stri
     Ok(PathBuf::from(made.trim()))
 }
 
-/// The Python of a virtual environment, which is made if it is not there.
+/// The Python of a virtual environment, which is made if it does not exist.
 fn environment(python: &Path, folder: &Path) -> Result<PathBuf, String> {
     let own = match cfg!(windows) {
         true => folder.join("Scripts/python.exe"),

@@ -1,5 +1,5 @@
-//! The Python package as an ordinary build leaves it: no wheel, no environment, no network. Its tests are among all
-//! tests where there is a Python to run them.
+//! The Python package from an ordinary build, without wheel, environment and network. If there is a suitable Python,
+//! its tests are among all tests.
 
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX, EXE_SUFFIX};
 use std::path::{Path, PathBuf};
@@ -10,8 +10,8 @@ use crate::process::{cargo, output, program, succeed, target_folder};
 use crate::verdict::Verdict;
 use crate::{files, root};
 
-/// Builds the module in the development profile and runs the package's tests on it, apart from the notebook's, which
-/// measure. Where no Python has what they need, they are named as skipped.
+/// Builds the module in the development profile and runs the package's tests on it, except the notebook's, which
+/// measure. If no Python has the needed packages, they are named as skipped.
 pub fn tests(verdict: &mut Verdict) {
     let has_all = |name: &&str| output(name, &["-c", "import numpy, pytest"]).is_some();
     let Some(python) = ["python3", "python"].into_iter().find(has_all).and_then(program) else {
@@ -46,7 +46,7 @@ fn run(python: &Path) -> Result<(), String> {
     succeed(pytest.env("PLIANT", built.join(format!("pliant{EXE_SUFFIX}"))))
 }
 
-/// Puts the module and the package's own files together, in a folder that Python finds them in.
+/// Puts the module and the package's own files into one folder in which Python finds them.
 fn lay_out(built: &Path) -> Result<PathBuf, String> {
     let folder = target_folder().join("python/unpacked");
     let package = folder.join("pliant");

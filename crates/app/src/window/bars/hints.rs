@@ -1,13 +1,12 @@
-//! The first steps, on the canvas, until a person puts them away or has done them.
+//! The first steps, on the canvas, until a person closes them or has done them.
 
 use eframe::egui::{self, Align2, Color32, RichText};
 use pliant_editor::Editor;
 
-/// How wide a hint is at most, in points.
+/// The largest width of a hint, in points.
 const WIDTH: f32 = 330.0;
 
-/// Shows the step that comes next in the view's lower left corner, above `toast`; true when it is to be put away for
-/// good.
+/// Shows the next step in the view's lower left corner, above `toast`; true when the person closes the hints for good.
 pub fn show(ui: &egui::Ui, view_rect: egui::Rect, toast: Option<egui::Rect>, editor: &Editor) -> bool {
     let view = editor.view();
     if view.model.is_none() {

@@ -1,5 +1,5 @@
-//! What frames the view: menus above, tools at the left, what is shown over the view, the status below; the first steps
-//! and what became of a request over its corners.
+//! The frame of the view: menus above, tools at the left, the choices of the view over it, the status below; the first
+//! steps and the results of requests over its corners.
 
 pub(in crate::window) mod hints;
 pub(in crate::window) mod status;

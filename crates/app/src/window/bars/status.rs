@@ -1,11 +1,11 @@
-//! The line below the view: what the program is doing, and what one can do next.
+//! The line below the view: the program's activity, and the next possible step.
 
 use eframe::egui::{self, Color32, ProgressBar, RichText, Spinner};
 use pliant_editor::{Command, Editor};
 
 use crate::window::widgets::outbox::Outbox;
 
-/// The colour of what went wrong, legible on a dim and on a bright ground.
+/// The colour of failures, legible on a dim and on a bright ground.
 pub fn failed(ui: &egui::Ui) -> Color32 {
     if ui.visuals().dark_mode {
         Color32::from_rgb(255, 138, 122)
@@ -14,7 +14,7 @@ pub fn failed(ui: &egui::Ui) -> Color32 {
     }
 }
 
-/// The colour of what went well.
+/// The colour of successes.
 pub fn done(ui: &egui::Ui) -> Color32 {
     if ui.visuals().dark_mode {
         Color32::from_rgb(150, 210, 140)
@@ -23,17 +23,17 @@ pub fn done(ui: &egui::Ui) -> Color32 {
     }
 }
 
-/// What is done with files.
+/// The activity on files.
 pub struct FileWork {
-    /// What is being read or written, with its progress (0 to 1).
+    /// The file that is being read or written, with its progress (0 to 1).
     pub doing: Option<(&'static str, f32)>,
-    /// Which saves wait, and for what, in a sentence.
+    /// The waiting saves and their reason, in a sentence.
     pub waiting: Option<String>,
     /// Whether the file's images are being decoded.
     pub is_loading_textures: bool,
 }
 
-/// What a person wants of that.
+/// A person's request about it.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum FileWorkAnswer {
     /// To stop it.
@@ -70,7 +70,7 @@ pub fn show(
             }
         }
         for (kind, share) in &view.jobs {
-            // What takes no time to notice is not worth a bar.
+            // A job too short to notice needs no bar.
             if *share > 0.0 {
                 progress(ui, kind.doing(), *share);
             }

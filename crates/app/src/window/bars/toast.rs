@@ -1,4 +1,4 @@
-//! What became of what the person asked for, over the view's lower right corner: there it moves nothing else.
+//! The result of a person's request, over the view's lower right corner, where it moves nothing else.
 
 use std::time::{Duration, Instant};
 
@@ -7,22 +7,22 @@ use eframe::egui::{self, Align2, Id, Rect, RichText, Role, WidgetInfo, vec2};
 use super::status::{done, failed};
 use crate::window::panels::notes::Note;
 
-/// How long good news stays. It can be read in the log afterwards.
+/// The time that good news stays. The log keeps it afterwards.
 const GOOD_NEWS: Duration = Duration::from_secs(8);
 /// The distance to the view's edge, in points.
 const MARGIN: f32 = 16.0;
-/// As wide as a sentence can be read well, in points.
+/// The width at which a sentence is easy to read, in points.
 const WIDTH: f32 = 460.0;
 
-/// The sentence that is shown, and since when.
+/// The shown sentence, and its start.
 #[derive(Debug, Default)]
 pub struct Toast {
     shown: Option<(Note, Instant)>,
 }
 
 impl Toast {
-    /// Shows what is wrong with the document (`problem`), and the newest thing that went well or wrong with a file
-    /// (`headline`), until the person puts that away. Returns where, if anything is shown.
+    /// Shows the document's problem (`problem`), and the newest success or failure with a file (`headline`), until the
+    /// person closes it. Returns its place, if anything is shown.
     pub fn show(
         &mut self,
         context: &egui::Context,
@@ -65,7 +65,7 @@ impl Toast {
                     };
                     ui.horizontal_top(|ui| {
                         let dismiss = ui.small_button("×").on_hover_text("Dismiss");
-                        // A cross says nothing to who hears the window.
+                        // A cross means nothing to people who use a screen reader.
                         let name = format!("Dismiss: {sentence}");
                         dismiss.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
                         if dismiss.clicked() {

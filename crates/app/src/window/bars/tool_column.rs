@@ -7,10 +7,10 @@ use crate::window::widgets::command_button::{LABELLED_TILE, tile_choice};
 use crate::window::widgets::icon::Glyph;
 use crate::window::widgets::outbox::Outbox;
 
-/// Its width.
+/// The width.
 pub const WIDTH: f32 = 68.0;
 
-/// The heights that tiles may have: an icon alone, and an icon with its label and air.
+/// The possible heights of tiles: an icon alone, and an icon with its label and some space.
 const HEIGHTS: [f32; 2] = [22.0, 54.0];
 
 /// Space between two tiles.
@@ -36,7 +36,7 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
         (Command::Scale, Glyph::Scale3d, "Scale"),
     ]
     .map(|(command, glyph, label)| (command, false, glyph, label));
-    // The tile shows along which axes the gizmo stands, and a click takes the next ones.
+    // The tile shows the gizmo's axes, and a click takes the next ones.
     let (next, glyph, label) = match editor.view().orientation {
         GizmoOrientation::World => (GizmoOrientation::Local, Glyph::Globe, "World"),
         GizmoOrientation::Local => (GizmoOrientation::View, Glyph::Axis3d, "Own"),
@@ -48,7 +48,7 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     let count = (tools.len() + modes.len()) as f32;
     let room = (ui.available_height() - 12.0) / count - GAP;
     let height = room.clamp(HEIGHTS[0], HEIGHTS[1]);
-    // Labels come and go together.
+    // All labels appear or none.
     let height = if height < LABELLED_TILE { HEIGHTS[0] } else { height };
     ui.spacing_mut().item_spacing.y = GAP;
     ScrollArea::vertical().show(ui, |ui| {

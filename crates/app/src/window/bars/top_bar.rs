@@ -1,4 +1,4 @@
-//! The bar above everything: the menus, and what is open.
+//! The bar above everything: the menus, and the open file.
 
 use std::path::PathBuf;
 
@@ -179,10 +179,10 @@ fn region_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     }
 }
 
-/// Commands of the window in groups, with other names where those of the palette say too little.
+/// Commands of the window in groups, with other names if those of the palette are too short.
 type Groups<'a> = [&'a [(FileCommand, Option<&'static str>)]];
 
-/// How the window itself looks.
+/// The look of the window itself.
 const WINDOW_MENU: [&[(FileCommand, Option<&str>)]; 4] = [
     &[(FileCommand::Panel, None)],
     &[(FileCommand::Compare, None)],
@@ -194,7 +194,7 @@ const WINDOW_MENU: [&[(FileCommand, Option<&str>)]; 4] = [
     &[(FileCommand::Memory, None)],
 ];
 
-/// What the window can tell.
+/// The window's information.
 const HELP_MENU: [&[(FileCommand, Option<&str>)]; 2] = [
     &[
         (FileCommand::Palette, None),

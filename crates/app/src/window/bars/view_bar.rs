@@ -1,4 +1,4 @@
-//! The bar over the view: undo and redo at the left, what is shown and how at the right.
+//! The bar over the view: undo and redo at the left, the choices of the view at the right.
 
 use eframe::egui::{self, Align, Layout};
 use pliant_editor::{Command, Editor, Shading};
@@ -7,7 +7,7 @@ use crate::window::widgets::command_button::icon_choice;
 use crate::window::widgets::icon::Glyph;
 use crate::window::widgets::outbox::Outbox;
 
-/// Narrower than this the choices show their icons alone.
+/// Below this width the choices show only their icons.
 const ROOMY: f32 = 480.0;
 
 /// Shows the bar. Commands are added to `commands`.

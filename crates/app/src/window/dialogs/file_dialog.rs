@@ -1,4 +1,4 @@
-//! How a person is asked for a file: by the system's dialog, or by the window's own folder browser where there is none.
+//! Asking a person for a file: by the system's dialog, or else by the window's own folder browser.
 
 use std::path::{Path, PathBuf};
 use std::pin::Pin;
@@ -15,11 +15,11 @@ use pliant_engine::files::folder_of;
 /// The kinds of mesh file.
 const MODELS: &[&str] = &["glb", "gltf", "obj", "ply", "stl", "off"];
 
-/// What is asked for.
+/// The purpose of a dialog.
 struct Request {
     title: &'static str,
     asked: Asked,
-    /// What the files are called, and their extensions.
+    /// The name of the kind of files, and their extensions.
     kind: &'static str,
     endings: &'static [&'static str],
 }
@@ -48,13 +48,14 @@ fn request(purpose: Purpose) -> Request {
     }
 }
 
-/// What a dialog for this purpose is called.
+/// The title of a dialog for this purpose.
 pub fn title(purpose: Purpose) -> &'static str {
     request(purpose).title
 }
 
 /// Asks for a path by the system's dialog, which is made here, on the main thread, and awaited elsewhere. It begins in
-/// the folder of `suggested`, whose name is the one to save under. Where the system has no dialog that is said, and the browser of folders takes its place.
+/// the folder of `suggested`, whose name is the one to save under. If the system has no dialog, this is reported, and
+/// the folder browser takes its place.
 pub fn choose(purpose: Purpose, suggested: &Path, workers: &Workers) {
     let request = request(purpose);
     let mut dialog = rfd::AsyncFileDialog::new()
@@ -101,7 +102,7 @@ pub fn browser(purpose: Purpose, suggested: &Path, open: Option<&Path>, recent: 
     for file in open.into_iter().chain(recent.iter().map(PathBuf::as_path)) {
         offer(None, folder_of(file));
     }
-    // A bare name is to stand where files were last, or at home.
+    // A bare name goes to the folder of the last files, or to the home folder.
     let last = places.get(1).or(places.first());
     let suggested = match last {
         Some(last) if !suggested.is_absolute() => last.folder.join(suggested),

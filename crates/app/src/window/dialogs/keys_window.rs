@@ -1,4 +1,4 @@
-//! The list of commands and their keys, each of which can be changed by pressing another.
+//! The list of commands and their keys. A person changes a key by pressing another.
 
 use eframe::egui::{self, RichText, ScrollArea};
 use pliant_editor::{Command, Editor, Key, Shortcut};
@@ -7,7 +7,7 @@ use crate::window::bars::status;
 use crate::window::files::settings::SettingsFile;
 use crate::window::input::own_keys;
 
-/// What egui tells its window by.
+/// egui's id of its window.
 pub const ID: &str = "keys window";
 
 /// The open list.
@@ -17,7 +17,7 @@ pub struct KeysWindow {
     pub open: bool,
     /// The command that waits for its key.
     waiting: Option<&'static str>,
-    /// Why the key that was pressed last was not taken.
+    /// The reason why the last key was not taken.
     refusal: Option<String>,
 }
 
@@ -27,7 +27,7 @@ impl KeysWindow {
         self.open && self.waiting.is_some()
     }
 
-    /// Shows it, if it is open; true when a key was changed.
+    /// Shows the list, if it is open; true when a key was changed.
     pub fn show(&mut self, context: &egui::Context, editor: &Editor, settings: &mut SettingsFile) -> bool {
         let mut changed = false;
         if let Some(name) = self.waiting
@@ -35,11 +35,11 @@ impl KeysWindow {
         {
             let allowed = key.and_then(|key| own_keys::refusal(key, name).map_or(Ok(key), Err));
             match allowed {
-                // It waits for another.
+                // It waits for another key.
                 Err(refusal) => self.refusal = Some(refusal),
                 Ok(key) => {
                     (self.waiting, self.refusal) = (None, None);
-                    // Escape leaves everything as it was.
+                    // Escape changes nothing.
                     if key.key != Key::Escape {
                         give(key, name, editor, settings);
                         changed = true;

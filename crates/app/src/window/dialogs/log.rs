@@ -1,16 +1,16 @@
-//! What was said in this session, in order, to be read again and copied.
+//! The messages of this session, in order, to read again and copy.
 
 use std::time::SystemTime;
 
 use eframe::egui::{self, RichText, ScrollArea};
 
-/// Sentences that are kept.
+/// The number of sentences that are kept.
 const MOST: usize = 500;
 
-/// So many sentences are told to the log again in every frame that they stand.
+/// The number of sentences that come to the log again in every frame while they are shown.
 const STANDING: usize = 3;
 
-/// What egui tells its window by.
+/// egui's id of its window.
 pub const ID: &str = "log window";
 
 /// The log.
@@ -22,7 +22,7 @@ pub struct Log {
 }
 
 impl Log {
-    /// Adds a sentence, unless it is one of those that were said last: several may stand at a time.
+    /// Adds a sentence, unless it is one of the last ones: several may be shown at a time.
     pub fn say(&mut self, sentence: &str) {
         let sentence: String = sentence.chars().filter(|letter| !pliant_io::steers(*letter)).collect();
         let sentence = &*sentence;

@@ -1,17 +1,17 @@
-//! How much memory binding may take: what the machine leaves, or a number of a person's own.
+//! The limit of memory for binding: the machine's free memory, or a number that the person chooses.
 
 use eframe::egui::{self, DragValue, RichText};
 
 use crate::window::files::settings::{MostMemory, SettingsFile};
 use crate::window::widgets::number_field::number_field;
 
-/// What egui tells its window by.
+/// egui's id of its window.
 pub const ID: &str = "memory window";
 
-/// What is offered first, in bytes.
+/// The first suggestion, in bytes.
 const FIRST: u64 = 8_000_000_000;
 
-/// What can be chosen, in gigabytes.
+/// The possible values, in gigabytes.
 const RANGE_GB: std::ops::RangeInclusive<f64> = 0.1..=4096.0;
 
 /// The choice.
@@ -19,12 +19,12 @@ const RANGE_GB: std::ops::RangeInclusive<f64> = 0.1..=4096.0;
 pub struct MemoryWindow {
     /// Whether it is open.
     pub open: bool,
-    /// The number while it is being dragged: it counts once it is let go.
+    /// The number while it is being dragged: it takes effect on release.
     dragged_gb: Option<f64>,
 }
 
 impl MemoryWindow {
-    /// Shows it, if it is open; true when another choice was made.
+    /// Shows the window, if it is open; true when the choice changes.
     pub fn show(&mut self, context: &egui::Context, settings: &mut SettingsFile) -> bool {
         let before = settings.get().memory;
         let mut most = before;

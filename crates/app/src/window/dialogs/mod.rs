@@ -1,5 +1,5 @@
-//! What opens over the window: questions, the folder browser, the palette, the list of keys, the choice of memory,
-//! the log.
+//! The layers that open over the window: questions, the folder browser, the palette, the list of keys, the choice of
+//! memory, the log.
 
 pub(in crate::window) mod file_dialog;
 pub(in crate::window) mod folder_browser;

@@ -14,11 +14,11 @@ use crate::window::files::file_command::FileCommand;
 pub struct Palette {
     typed: String,
     chosen: usize,
-    /// Why what was asked for last can't be done now.
+    /// The reason why the last request can't be done now.
     refusal: Option<String>,
 }
 
-/// What the palette offers.
+/// An entry of the palette.
 #[derive(Clone, Debug)]
 pub enum Found {
     /// A command of the editor.
@@ -27,12 +27,12 @@ pub enum Found {
     File(FileCommand),
 }
 
-/// What came of a frame of the palette.
+/// The result of a frame of the palette.
 #[derive(Clone, Debug)]
 pub enum Outcome {
     /// It stays open.
     Open,
-    /// It closes, and this is to be done.
+    /// It closes, and this command follows.
     Chosen(Option<Found>),
 }
 
@@ -42,7 +42,7 @@ struct Entry {
     keywords: &'static str,
     shortcut: String,
     found: Found,
-    /// Why it can't be done now.
+    /// The reason why it can't be done now.
     obstacle: Option<String>,
 }
 
@@ -59,7 +59,7 @@ impl Palette {
                     input.key_pressed(Key::Enter),
                 )
             });
-            // The keys are its own from the first frame on: who types fast loses no letter.
+            // It has the keyboard from the first frame on, so that fast typing loses no letter.
             let id = ui.scope_id().with("typed");
             ui.memory_mut(|memory| memory.request_focus(id));
             let field = egui::TextEdit::singleline(&mut self.typed)
@@ -92,7 +92,7 @@ impl Palette {
                     for (number, entry) in entries.iter().enumerate() {
                         let shortcut = RichText::new(&entry.shortcut);
                         let shortcut = match number == self.chosen {
-                            // Weak text is too weak on what is chosen.
+                            // Weak text has too little contrast on the chosen row.
                             true => shortcut,
                             false => shortcut.weak(),
                         };
@@ -106,7 +106,7 @@ impl Palette {
                         if number == self.chosen && (up || down) {
                             button.scroll_to_me(None);
                         }
-                        // A button that is greyed is never clicked in egui's eyes.
+                        // A disabled button is never clicked for egui.
                         let is_pointed_at =
                             button.contains_pointer() && ui.input(|input| input.pointer.primary_clicked());
                         if is_pointed_at || button.clicked() || (enter && number == self.chosen) {
@@ -114,7 +114,7 @@ impl Palette {
                                 None => outcome = Outcome::Chosen(Some(entry.found.clone())),
                                 Some(obstacle) => {
                                     self.refusal = Some(obstacle.clone());
-                                    // It stands above the list, where this frame has passed already.
+                                    // This is above the list, whose place this frame has already passed.
                                     ui.ctx().request_repaint();
                                 }
                             }
@@ -129,8 +129,9 @@ impl Palette {
     }
 }
 
-/// What matches, the best first: what begins with what was typed, then what has it, then what is also called so, then
-/// what has its letters in order. Of what matches as well, what can be done now comes first.
+/// The matches, the best first: names that begin with the typed text, then names that contain it, then entries whose
+/// keywords contain it, then names with its letters in order. Among equal matches, those that can be done now come
+/// first.
 fn entries(context: &egui::Context, editor: &Editor, typed: &str) -> Vec<Entry> {
     let typed = typed.trim().to_lowercase();
     let listed = Command::all_listed().map(|listed| Entry {
@@ -175,7 +176,7 @@ fn entries(context: &egui::Context, editor: &Editor, typed: &str) -> Vec<Entry> 
         .chain(files)
         .filter_map(|entry| Some((rank(&entry.name.to_lowercase(), entry.keywords, &typed)?, entry)))
         .collect();
-    // Before anything is typed the order is that of the list.
+    // Before any typing the order is that of the list.
     let is_sought = !typed.is_empty();
     found.sort_by_key(|(rank, entry)| (*rank, is_sought && entry.obstacle.is_some()));
     found.into_iter().map(|(_, entry)| entry).collect()

@@ -1,4 +1,4 @@
-//! Questions to the person that the window itself asks.
+//! Questions that the window itself asks.
 
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
@@ -14,26 +14,26 @@ use crate::window::files::recovery::left::Left;
 use crate::window::threads::message::Purpose;
 use crate::window::widgets::default_button::default_button;
 
-/// A question that waits for an answer; the window behind it does nothing meanwhile.
+/// A question that waits for an answer; the window behind it does nothing in the meantime.
 #[derive(Clone, PartialEq, Debug)]
 pub enum Question {
-    /// Whether the file that was opened may be written over; with it where its original is kept, or will be, once that
-    /// was found out.
+    /// Whether the opened file may be replaced; with it the place of its original, kept or to be kept, once that is
+    /// known.
     WriteOver(PathBuf, Option<Result<Kept, String>>),
-    /// What to do with a file that another program has changed and that is to be written.
+    /// What to do with a file that another program has changed before a save.
     Changed(PathBuf, ChangedOffer),
-    /// For a file, where the system has no dialog.
+    /// The path of a file, if the system has no dialog.
     File(Purpose, Box<FolderBrowser>),
-    /// Whether a file that stands where the chosen path leads may be replaced.
+    /// Whether the existing file at the chosen path may be replaced.
     Replace(Purpose, PathBuf),
-    /// Whether the work may be lost that the file of this name does not have.
+    /// Whether the unsaved work may be lost.
     Discard(Then, String),
-    /// Whether what earlier sessions have left is to be opened.
+    /// Whether to open the work of earlier sessions.
     Recover(Vec<Left>),
 }
 
 impl Question {
-    /// What it is about, for the window's title: who doesn't see the window learns that it waits.
+    /// Its subject, for the window's title: people who don't see the window learn that it waits.
     pub fn title(&self) -> &'static str {
         match self {
             Self::WriteOver(..) => "Save over the source?",
@@ -46,25 +46,25 @@ impl Question {
     }
 }
 
-/// What can be done with a file that another program has changed, beside saving elsewhere and overwriting it.
+/// The options for a file that another program has changed, besides saving elsewhere and overwriting it.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum ChangedOffer {
-    /// It can be read again, and the edit put onto it.
+    /// Read it again, and apply the edit to it.
     Reload,
-    /// Nothing.
+    /// No further option.
     Others,
 }
 
-/// What was asked for when unsaved work stood in the way.
+/// The request that was interrupted by unsaved work.
 #[derive(Clone, PartialEq, Debug)]
 pub enum Then {
-    /// Opening this file, or asking which.
+    /// Open this file, or ask for one.
     Open(Option<PathBuf>),
-    /// Closing the window.
+    /// Close the window.
     Close,
 }
 
-/// What the person answered.
+/// The person's answer.
 #[derive(Clone, PartialEq, Debug)]
 pub enum Answer {
     /// Write over the file and keep the original beside it.
@@ -75,27 +75,27 @@ pub enum Answer {
     Save,
     /// This path.
     Path(Purpose, PathBuf),
-    /// This path, whatever stands there.
+    /// This path, even if it exists.
     Replace(Purpose, PathBuf),
-    /// Read the file again that another program has changed, and put the edit onto it.
+    /// Read the file that another program has changed again, and apply the edit to it.
     Reload,
     /// Replace the file that another program has changed.
     Overwrite,
-    /// Save under another name than that of the file which another program has changed.
+    /// Save under another name than the file that another program has changed.
     Beside,
     /// Another path than this one.
     Rename(Purpose, PathBuf),
-    /// Go on and lose the unsaved work.
+    /// Continue and lose the unsaved work.
     Discard(Then),
-    /// Open what an earlier session has left.
+    /// Open the work of an earlier session.
     Recover(PathBuf),
-    /// Delete what earlier sessions have left.
+    /// Delete the work of earlier sessions.
     Forget(Vec<PathBuf>),
-    /// Nothing after all.
+    /// Cancel.
     Cancel,
 }
 
-/// Shows a question; `Some` once it is answered.
+/// Shows a question; `Some` after the answer.
 pub fn ask(context: &egui::Context, question: &mut Question) -> Option<Answer> {
     let mut answer = None;
     let response = Modal::new(Id::unique("question")).show(context, |ui| {

@@ -1,12 +1,12 @@
-//! Whether the system has a dialog for files. One that was cancelled and one that is not there give the same answer.
+//! Whether the system has a dialog for files. A cancelled one and a missing one give the same answer.
 
-/// Whether a portal of the desktop answers on the session's bus, or zenity stands in for it.
+/// Whether a portal of the desktop answers on the session's bus, or zenity replaces it.
 #[cfg(all(unix, not(target_os = "macos")))]
 pub fn is_there() -> bool {
     pollster::block_on(has_portal()).unwrap_or(false) || has_zenity()
 }
 
-/// There always is one on these systems.
+/// These systems always have one.
 #[cfg(any(windows, target_os = "macos"))]
 pub fn is_there() -> bool {
     true

@@ -34,7 +34,7 @@ impl Application {
         let is_typing = EventQueue::is_typing(context) || context.egui_wants_keyboard_input();
         for command in FileCommand::WITH_SHORTCUTS {
             let Some(shortcut) = command.shortcut() else { continue };
-            // A letter is typed where somebody types.
+            // A letter goes to the field that has the focus.
             let is_letter = shortcut.modifiers.is_none() && shortcut.logical_key == egui::Key::N;
             if is_letter && (self.palette.is_some() || self.editor.is_acting() || is_typing) {
                 continue;
@@ -71,12 +71,12 @@ impl Application {
                 Ok(None) => self.fail("the view is busy or empty: try again".to_owned()),
                 Err(error) => self.fail(error.to_string()),
             },
-            // What was to follow the save is given up with it.
+            // The action that was to follow the save is given up with it.
             (_, None) => self.after_saving = None,
         }
     }
 
-    /// Writes what the document is not saved with.
+    /// Writes the document's unsaved changes.
     fn save_copy(&mut self, path: &Path, content: Content) {
         let mark = self.editor.save_mark();
         self.session.save(path, content, mark, &self.workers);
@@ -87,7 +87,7 @@ impl Application {
         file_dialog::choose(purpose, &self.suggested_path(purpose), &self.workers);
     }
 
-    /// Asks which file to open by the window's own dialog, as where the system has none.
+    /// Asks for a file to open by the window's own dialog, as on systems without one.
     pub fn browse_to_open(&mut self) {
         self.browse(Purpose::Open, &self.suggested_path(Purpose::Open));
     }
@@ -104,7 +104,7 @@ impl Application {
         self.read_folder();
     }
 
-    /// Has the folder read that the window's own dialog wants to show, off the window's thread.
+    /// Reads the folder that the window's own dialog wants to show, off the window's thread.
     pub(in crate::window) fn read_folder(&mut self) {
         let Some(Question::File(_, browser)) = &mut self.question else {
             return;
@@ -140,8 +140,8 @@ impl Application {
         }
     }
 
-    /// Whether saving under a path that the window's own dialog gave would replace a file that is not the open one; the system's dialogs ask that
-    /// themselves.
+    /// Whether saving under a path from the window's own dialog would replace a file other than the open one; the
+    /// system's dialogs ask that themselves.
     fn would_be_lost(&self, purpose: Purpose, path: &Path) -> bool {
         let path = match purpose {
             Purpose::SaveProject => project_path(path.to_owned()),
@@ -228,7 +228,7 @@ impl Application {
         }
     }
 
-    /// Reads a shape of the open file that is to be an example, off the window's thread.
+    /// Reads a shape of the open file for an example, off the window's thread.
     pub fn load_example(&mut self, path: PathBuf) {
         self.read_example(move |loaded| {
             let displacements = examples::from_file(&path, loaded, &Watch::default())?;
@@ -239,7 +239,7 @@ impl Application {
         });
     }
 
-    /// Reads a morph target of the open file that is to be an example, off the window's thread.
+    /// Reads a morph target of the open file for an example, off the window's thread.
     fn load_morph_target(&mut self, target: String) {
         self.read_example(move |loaded| {
             let displacements = examples::from_morph_target(&target, loaded, &Watch::default())?;
@@ -261,7 +261,7 @@ impl Application {
         );
     }
 
-    /// Takes the example that was read, unless another file is open by now.
+    /// Takes the example that was read, unless another file has been opened.
     pub(in crate::window) fn take_example(&mut self, of: &Arc<Loaded>, shape: Result<ExampleShape, String>) {
         let is_open = |open: &OpenFile| Arc::ptr_eq(&open.loaded, of);
         if !self.session.open.as_ref().is_some_and(is_open) {
@@ -276,7 +276,7 @@ impl Application {
         }
     }
 
-    /// Goes on at once, after the saves that are under way, or when the person has agreed to lose what is unsaved.
+    /// Goes on at once after the running saves, or when the person has agreed to lose unsaved work.
     fn unless_unsaved(&mut self, then: Then) {
         if self.is_saving() {
             self.after_saving = Some(then);
@@ -287,7 +287,7 @@ impl Application {
         }
     }
 
-    /// Opens a file, after a question where unsaved work would be lost.
+    /// Opens a file, after a question if unsaved work would be lost.
     pub fn ask_to_open(&mut self, path: PathBuf) {
         self.unless_unsaved(Then::Open(Some(path)));
     }
@@ -341,14 +341,14 @@ impl Application {
             context.send_viewport_cmd(egui::ViewportCommand::Close);
         } else if context.input(|input| input.viewport().close_requested()) && has_more_to_do() {
             context.send_viewport_cmd(egui::ViewportCommand::CancelClose);
-            // It is asked in the next frame, without waiting for the pointer to move.
+            // The question comes in the next frame, without waiting for the pointer to move.
             self.unless_unsaved(Then::Close);
             context.request_repaint();
         }
     }
 }
 
-/// Takes presses of a key without any modifier: for egui a shortcut without Shift is pressed with Shift, too.
+/// Takes presses of a key without any modifier: egui counts a shortcut without Shift as pressed with Shift, too.
 fn take_plain_key(input: &mut egui::InputState, plain: egui::Key) -> bool {
     let before = input.events.len();
     input.events.retain(|event| {

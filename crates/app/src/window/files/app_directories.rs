@@ -1,18 +1,18 @@
-//! The program's own directories: for settings, and for what a session that ends without saving leaves behind.
+//! The program's own directories: for settings, and for the work of a session that ends without saving.
 
 use std::path::PathBuf;
 
-/// The program's own folders; `None` if the system names none, and in tests, which must not touch a person's.
+/// The program's own folders; `None` if the system names none, and in tests, which must not use a person's.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
 pub struct AppDirectories {
     /// The file of settings.
     pub settings: Option<PathBuf>,
-    /// The folder of sessions that may have to be recovered, and of reports of faults.
+    /// The folder of sessions that may need recovery, and of reports of faults.
     pub recovery: Option<PathBuf>,
 }
 
 impl AppDirectories {
-    /// The person's own.
+    /// The person's own directories.
     pub fn of_user() -> Self {
         Self {
             settings: dirs::config_dir().map(|folder| folder.join("pliant").join("settings.json")),

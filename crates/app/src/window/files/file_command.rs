@@ -1,4 +1,4 @@
-//! The window's own commands: what is done with files, and how the window itself looks.
+//! The window's own commands: on files, and on the look of the window itself.
 
 use std::path::PathBuf;
 
@@ -9,7 +9,7 @@ use pliant_mesh::WeldOptions;
 
 use crate::window::threads::message::{Ground, PictureKind};
 
-/// What is done with files; the window's own, since the editor knows no paths.
+/// A command on files. It belongs to the window, because the editor knows no paths.
 #[derive(Clone, PartialEq, Debug)]
 pub enum FileCommand {
     /// Open a file, by dialog.
@@ -20,7 +20,7 @@ pub enum FileCommand {
     Save,
     /// Save under another name.
     SaveAs,
-    /// Save a copy whose mesh rests, with the present shape as a morph target.
+    /// Save a copy with its mesh at rest and the present shape as a morph target.
     SaveMorph,
     /// Save the project.
     SaveProject,
@@ -28,7 +28,7 @@ pub enum FileCommand {
     SaveProjectAs,
     /// Write the regions, handles and transforms as an edit for the command line.
     ExportEdit,
-    /// Join the open mesh's vertices otherwise.
+    /// Weld the open mesh's vertices in another way.
     Weld(WeldOptions),
     /// Take a cage from a file.
     LoadCage,
@@ -38,7 +38,7 @@ pub enum FileCommand {
     AddMorphTarget(String),
     /// Find a command by its name.
     Palette,
-    /// Show what was said.
+    /// Show the log.
     Log,
     /// Show or hide the panel beside the view.
     Panel,
@@ -46,11 +46,11 @@ pub enum FileCommand {
     Keys,
     /// Choose how much memory binding may take.
     Memory,
-    /// Light, dark, or as the system is.
+    /// Light, dark, or the system's choice.
     NextTheme,
     /// Everything larger (above 0) or smaller, in tenths.
     Scale(i8),
-    /// Show a second view bent by another method, or not.
+    /// Show or hide a second view bent by another method.
     Compare,
     /// Show the first steps again.
     Hints,
@@ -61,7 +61,7 @@ pub enum FileCommand {
 }
 
 impl FileCommand {
-    /// Why it can't be done now; `None` where it can.
+    /// The reason why it can't be done now; `None` if it can.
     pub fn unavailable_because(&self, editor: &Editor) -> Option<&'static str> {
         let takes = |kind: AttachmentKind| {
             let mut attachments = editor.document().method().declaration().attachments.iter();
@@ -75,7 +75,7 @@ impl FileCommand {
         }
     }
 
-    /// The ones that have a key.
+    /// The commands that have a key.
     pub const WITH_SHORTCUTS: [Self; 10] = [
         Self::SaveAs,
         Self::SaveProject,
@@ -120,7 +120,7 @@ impl FileCommand {
         }
     }
 
-    /// All that need no path, in the order of the menu.
+    /// All commands that need no path, in the order of the menu.
     pub const LISTED: [Self; 19] = [
         Self::Open,
         Self::Save,
@@ -146,7 +146,7 @@ impl FileCommand {
         Self::Quit,
     ];
 
-    /// What a menu calls it.
+    /// Its name in a menu.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Open | Self::OpenPath(_) => "Open…",
@@ -174,7 +174,7 @@ impl FileCommand {
         }
     }
 
-    /// What else people call it, in lower case.
+    /// Its keywords, in lower case.
     pub fn keywords(&self) -> &'static str {
         match self {
             Self::Open | Self::OpenPath(_) => "load import file",

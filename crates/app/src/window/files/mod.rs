@@ -1,4 +1,4 @@
-//! Files in the window: opening, saving, projects, settings, unsaved work that is recovered.
+//! Files in the window: opening, saving, projects, settings, recovery of unsaved work.
 
 pub(in crate::window) mod actions;
 pub(in crate::window) mod app_directories;

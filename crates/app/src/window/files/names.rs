@@ -5,14 +5,14 @@ use std::path::{Path, PathBuf};
 
 use pliant_engine::files::folder_of;
 
-/// The name of the sample that is shown when no file is named.
+/// The name of the sample that the window shows when no file is named.
 pub(in crate::window) const SAMPLE_NAME: &str = "creature.glb";
 
 /// The highest number in the name of an original.
 const MOST_ORIGINALS: usize = 1000;
 
-/// `NAME.original.EXT` beside `NAME.EXT`. A `.gltf`'s buffers are saved over along with it, so its original is kept as
-/// a GLB, `NAME.original.glb`.
+/// `NAME.original.EXT` beside `NAME.EXT`. A save also replaces a `.gltf`'s buffers, so its original is kept as a GLB,
+/// `NAME.original.glb`.
 pub fn original_name(path: &Path) -> PathBuf {
     marked_name(path, "original", 1)
 }
@@ -22,14 +22,14 @@ pub(in crate::window) fn original_names(path: &Path) -> impl Iterator<Item = Pat
     (1..=MOST_ORIGINALS).map(move |number| marked_name(path, "original", number))
 }
 
-/// The names under which a project keeps the mesh that was called `mesh`: `PROJECT.source.EXT`, then
+/// The names under which a project keeps the mesh with the name `mesh`: `PROJECT.source.EXT`, then
 /// `PROJECT.source-2.EXT` and so on; a `.gltf` is kept as a GLB.
 pub(in crate::window) fn source_names(project: &Path, mesh: &Path) -> impl Iterator<Item = PathBuf> {
     let like = project.with_extension(mesh.extension().unwrap_or_default());
     (1..=MOST_ORIGINALS).map(move |number| marked_name(&like, "source", number))
 }
 
-/// The meshes that are kept beside a project, whatever they were called before; see [`source_names`].
+/// The meshes that are kept beside a project, with any former names; see [`source_names`].
 pub(in crate::window) fn sources_of(project: &Path) -> Vec<PathBuf> {
     let mut prefix = project.file_stem().unwrap_or_default().to_owned();
     prefix.push(".source");
@@ -43,7 +43,7 @@ pub(in crate::window) fn sources_of(project: &Path) -> Vec<PathBuf> {
     kept
 }
 
-/// `NAME.MARK.EXT`, from the second on `NAME.MARK-NUMBER.EXT`.
+/// `NAME.MARK.EXT`; from the second on, `NAME.MARK-NUMBER.EXT`.
 fn marked_name(path: &Path, mark: &str, number: usize) -> PathBuf {
     let tail = match number {
         1 => format!(".{mark}"),
@@ -54,14 +54,14 @@ fn marked_name(path: &Path, mark: &str, number: usize) -> PathBuf {
     name_with(path, &tail, packed)
 }
 
-/// A name beside `path` that is free: `NAME-2.EXT`, or the next number that is.
+/// A free name beside `path`: `NAME-2.EXT`, or the next free number.
 pub fn free_name(path: &Path) -> PathBuf {
     let mut names = (2..=MOST_ORIGINALS).map(|number| name_with(path, &format!("-{number}"), path.extension()));
     let free = names.find(|name| std::fs::symlink_metadata(name).is_err());
     free.unwrap_or_else(|| path.to_owned())
 }
 
-/// A path's name with `tail` behind its stem, and this extension.
+/// A path's name with `tail` after its stem, and this extension.
 fn name_with(path: &Path, tail: &str, extension: Option<&OsStr>) -> PathBuf {
     let mut name = path.file_stem().unwrap_or_default().to_owned();
     name.push(tail);
@@ -72,7 +72,7 @@ fn name_with(path: &Path, tail: &str, extension: Option<&OsStr>) -> PathBuf {
     path.with_file_name(name)
 }
 
-/// Whether a path is that of a glTF whose buffers stand beside it.
+/// Whether a path is that of a glTF whose buffers are beside it.
 pub fn is_gltf(path: &Path) -> bool {
     path.extension()
         .is_some_and(|extension| extension.eq_ignore_ascii_case("gltf"))

@@ -18,38 +18,38 @@ use pliant_engine::files::Stamp;
 use pliant_engine::watch::Watch;
 use pliant_engine::{EngineError, examples, files};
 
-/// Where a model comes from.
+/// The source of a model.
 #[derive(Clone, Debug)]
 pub enum Source {
     /// The built-in sample.
     Sample,
     /// A mesh or a project.
     File(PathBuf),
-    /// A mesh, with an edit or a project to begin with.
+    /// A mesh, and an edit or a project to begin with.
     Edited {
         /// The mesh.
         file: PathBuf,
-        /// What is set up on it.
+        /// The edit or project.
         edit: PathBuf,
     },
-    /// A project that was left by a session that ended without saving.
+    /// A project from a session that ended without saving.
     Recovered(PathBuf),
-    /// The open mesh once more: another program has changed its file, or its vertices are joined otherwise.
+    /// The open mesh again: another program has changed its file, or its vertices are welded in another way.
     Reloaded(Box<Reload>),
 }
 
-/// A mesh that is read again, and what is put onto it.
+/// A mesh that is read again, and the work that is applied to it.
 #[derive(Clone, Debug)]
 pub struct Reload {
-    /// Where the mesh stands; `None` is the built-in sample.
+    /// The path of the mesh; `None` for the built-in sample.
     pub file: Option<PathBuf>,
-    /// Where it is saved; `None` where nobody has said.
+    /// The path for saving it; `None` if nobody has chosen one.
     pub path: Option<PathBuf>,
-    /// How its vertices are joined.
+    /// The welding of its vertices.
     pub weld: WeldOptions,
     /// The document.
     pub snapshot: Snapshot,
-    /// What the mesh in `file` was moved by when it was saved there, per surface vertex, if it was.
+    /// The displacements with which the mesh in `file` was saved there, per surface vertex, if it was.
     pub saved: Option<Arc<Vec<DVec3>>>,
     /// Whether the work counts as unsaved.
     pub unsaved: bool,
@@ -58,7 +58,7 @@ pub struct Reload {
 }
 
 impl Source {
-    /// What a person names: a mesh or a project with the edit on it, or nothing.
+    /// The files that a person names: a mesh or a project with the edit on it, or nothing.
     pub fn of(file: Option<PathBuf>, edit: Option<PathBuf>) -> Self {
         match (file, edit) {
             (None, _) => Self::Sample,
@@ -67,7 +67,8 @@ impl Source {
         }
     }
 
-    /// The same by absolute paths: what a session knows of files outlasts a change of folder, and is one way to a file.
+    /// The same by absolute paths: a session's paths must survive a change of the current folder, and there must be one
+    /// path to a file.
     pub(super) fn absolute(self) -> Self {
         match self {
             Self::Sample => Self::Sample,
@@ -82,12 +83,12 @@ impl Source {
     }
 }
 
-/// The path from the root; itself where the system can't tell the present folder.
+/// The absolute path; the path itself if the system can't give the current folder.
 pub(super) fn absolute(path: &Path) -> PathBuf {
     std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
 }
 
-/// As what the work is saved where this project is open.
+/// The file in which the work is saved while this project is open.
 fn saved_as(project: Option<&Path>) -> SavedAs {
     match project {
         Some(_) => SavedAs::Project,
@@ -111,7 +112,7 @@ pub(super) fn open(source: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<Mode
             MeshSource::File(path.clone()),
         ),
         Source::Edited { file, edit } => {
-            // Before it is read: what is written in between shows as a change.
+            // This comes before reading: a write in between shows as a change.
             stamps.push((edit.clone(), Stamp::of(edit)?));
             let mut read = pliant_engine::read_edit(edit, watch)?;
             let loaded = pliant_engine::load(file, &read.weld_options(), watch)?;
@@ -154,7 +155,7 @@ pub(super) fn open(source: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<Mode
                 _ => project = Some(path.clone()),
             }
             beginning = Some(Beginning::from(opened.project));
-            // A recovered session's own mesh file is removed with the recovery, so it counts as gone.
+            // The mesh file of a recovered session is deleted with the recovery, so it counts as gone.
             match opened.source {
                 MeshSource::File(mesh) if recovered.is_some() && files::folder_of(&mesh) == files::folder_of(path) => {
                     let model = Some(opened.named).filter(|named| files::folder_of(named) != files::folder_of(path));

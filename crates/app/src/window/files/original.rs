@@ -1,4 +1,4 @@
-//! The original of a file that is saved over: it is kept beside it, unless it is kept already, which its content tells.
+//! The original of a file that a save replaces: it is kept beside it, unless a file with its content already is.
 
 use std::path::{Path, PathBuf};
 
@@ -10,10 +10,10 @@ use pliant_engine::saving::{self, SaveAs};
 use pliant_engine::watch::Watch;
 use pliant_engine::{EngineError, Loaded};
 
-/// Where the original of a file is.
+/// The place of a file's original.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub enum Kept {
-    /// A file beside it has the same content already.
+    /// A file beside it already has the same content.
     Already(PathBuf),
     /// This name is free for it.
     Under(PathBuf),
@@ -27,7 +27,7 @@ pub struct Original {
     content: Content,
 }
 
-/// What is kept of it.
+/// The kept data.
 enum Content {
     /// Its bytes.
     Bytes(Vec<u8>),
@@ -43,11 +43,11 @@ impl Original {
     /// The original of the file at `path` as it is now; `loaded` is the open one, which may be the same.
     ///
     /// # Errors
-    /// Where it can't be read.
+    /// If it can't be read.
     pub fn of(path: &Path, loaded: &Loaded, cancel: &Cancel) -> Result<Self, EngineError> {
         let is_alone = |loaded: &Loaded| !is_gltf(path) && loaded.neighbours.is_empty();
         let content = if !path.exists() {
-            // Another program has moved or removed it: what was read is the last of it.
+            // Another program has moved or removed it: the data in memory is the last copy.
             match files::is_same(&loaded.path, path) {
                 true => Content::Open,
                 false => Content::Nothing,
@@ -73,8 +73,8 @@ impl Original {
         })
     }
 
-    /// The open file as it was read from `path`, where another one stands there now but its neighbours still do: saves
-    /// go over them.
+    /// The open file as it was read from `path`, if another one is there now but its neighbours are unchanged: saves
+    /// would replace them.
     pub fn as_read(path: &Path, loaded: &Loaded) -> Option<Self> {
         let is_other = path.exists() && files::is_same(&loaded.path, path) && !is_as_read(path, loaded);
         let mut neighbours = loaded.neighbours.iter();
@@ -85,10 +85,10 @@ impl Original {
         })
     }
 
-    /// Whether it is kept already, or under which name it will be.
+    /// Whether it is already kept, or the name under which it will be.
     ///
     /// # Errors
-    /// Where it can't be encoded, or a thousand names are taken.
+    /// If it can't be encoded, or if a thousand names are taken.
     pub fn place(&self, loaded: &Loaded, cancel: &Cancel) -> Result<Kept, EngineError> {
         self.place_beside(&[], loaded, cancel)
     }
@@ -107,16 +107,16 @@ impl Original {
         free_or_same(original_names(&self.path).filter(|name| !taken.contains(name)), bytes)
     }
 
-    /// Whether it is the open file as it was read, and that is no longer what stands at its path.
+    /// Whether it is the open file as it was read, and its path now has another one.
     pub fn is_former(&self, loaded: &Loaded) -> bool {
         matches!(self.content, Content::Open) && !is_as_read(&self.path, loaded)
     }
 
-    /// Stages it where [`place`](Self::place) says, but under none of the names `taken`. Gives where it is kept then, and
-    /// what is to be committed if it was not kept before.
+    /// Stages it at [`place`](Self::place), but under none of the names `taken`. Gives the path where it is then kept,
+    /// and the staged files if it was not kept before.
     ///
     /// # Errors
-    /// As [`place`](Self::place); where it can't be written.
+    /// As [`place`](Self::place); if it can't be written.
     pub fn keep(
         &self,
         taken: &[PathBuf],
@@ -146,7 +146,7 @@ impl Original {
         Ok((kept, Some(staged)))
     }
 
-    /// What is packed, where that is done.
+    /// The packed file, if it is packed.
     fn packed<'a>(&'a self, open: &'a Loaded) -> &'a Loaded {
         match &self.content {
             Content::Packed(loaded) => loaded,
@@ -155,14 +155,14 @@ impl Original {
     }
 }
 
-/// The first of these names that is free, or whose file holds these bytes.
+/// The first of these names that is free, or whose file has these bytes.
 ///
 /// # Errors
 /// All of them are taken.
 pub fn free_or_same(names: impl Iterator<Item = PathBuf>, bytes: &[u8]) -> Result<Kept, EngineError> {
     let mut last = PathBuf::new();
     for name in names {
-        // A link that leads nowhere is no free name: its file may come back.
+        // A dangling link is not a free name: its file may come back.
         if std::fs::symlink_metadata(&name).is_err() {
             return Ok(Kept::Under(name));
         }
@@ -177,7 +177,7 @@ pub fn free_or_same(names: impl Iterator<Item = PathBuf>, bytes: &[u8]) -> Resul
     )))
 }
 
-/// Whether the file at `path` and its neighbours are those that were opened, and as they were then.
+/// Whether the file at `path` and its neighbours are those that were opened, and unchanged.
 pub fn is_as_read(path: &Path, loaded: &Loaded) -> bool {
     loaded.stamp.is_some()
         && files::is_same(&loaded.path, path)
@@ -204,7 +204,7 @@ mod tests {
         pliant_engine::load(path, &WeldOptions::default(), &Watch::default()).unwrap()
     }
 
-    /// Writes a ball as a file of the kind that its name says.
+    /// Writes a ball as a file in the format of its name.
     fn ball(path: &Path, level: u32) {
         let drawn = shapes::icosphere(level);
         let mut text = format!("OFF\n{} {} 0\n", drawn.positions.len(), drawn.triangles.len());
@@ -253,13 +253,13 @@ mod tests {
             assert_eq!(read(name).model.rest_positions(), loaded.model.rest_positions());
         }
         assert_eq!(fs::read(&names[0]).unwrap(), fs::read(&glb).unwrap(), "to the byte");
-        // Another program's glTF in its place is what is kept then, and not the one that was read.
+        // If another program's glTF is in its place, that one is kept, and not the one that was read.
         let loaded = read(&gltf);
         ball(&gltf, 3);
         assert_eq!(keep(&gltf, &loaded), Kept::Under(at("scan.original-3.glb")));
         let (kept, theirs) = (read(&at("scan.original-3.glb")), read(&gltf));
         assert_eq!(kept.model.rest_positions(), theirs.model.rest_positions());
-        // What was read here is kept, too, whether another file stands here or none.
+        // The file that was read here is kept, too, whether another file is here or none.
         let former = Original::as_read(&gltf, &loaded).unwrap();
         let place = former.place(&loaded, &Cancel::new()).unwrap();
         assert_eq!(place, Kept::Already(at("scan.original-2.glb")));

@@ -13,11 +13,11 @@ use pliant_engine::saving::{self, SaveAs};
 use pliant_engine::watch::Watch;
 use pliant_engine::{EngineError, Loaded};
 
-/// Writes a snapshot as a project. A mesh that stands in no file, or whose file is another one now, is written beside it,
-/// as [`source_names`] says, so that a project which is there can be opened.
+/// Writes a snapshot as a project. A mesh without a file, or whose file is another one now, is written beside it, under
+/// one of the [`source_names`], so that every project that exists can be opened.
 ///
 /// # Errors
-/// Where a file can't be written, or `cancel` is raised; an existing project is as it was then.
+/// If a file can't be written, or `cancel` is raised; an existing project is then unchanged.
 pub fn stage(
     snapshot: &Snapshot,
     mesh: &RestMesh,
@@ -43,7 +43,7 @@ pub fn stage(
     assembled(snapshot, (mesh_path, name), beside, path, staging)
 }
 
-/// A project that names its mesh by a path and, where that doesn't tell, by what people call it.
+/// A project that names its mesh by a path and, if that is not its own name, by the name that people know.
 fn assembled(
     snapshot: &Snapshot,
     (mesh_path, name): (Option<String>, Option<String>),
@@ -59,7 +59,7 @@ fn assembled(
     let staged = staging.stage([(path.to_owned(), project.to_json().as_bytes())])?;
     let (kept, mesh) = beside.unzip();
     Ok(StagedProject {
-        // The mesh first: the project must not be there without it.
+        // The mesh comes first: the project must not exist without it.
         staged: match mesh.flatten() {
             Some(mesh) => mesh.and(staged),
             None => staged,
@@ -68,11 +68,11 @@ fn assembled(
     })
 }
 
-/// Writes a snapshot as a project that only its owner may read, with the mesh beside it in any case. `model` is the file
-/// that is worked on; the project names that where it can, for who opens it.
+/// Writes a snapshot as a project that only its owner may read, always with the mesh beside it. `model` is the open
+/// file; the project names it if possible, for the person who opens the project.
 ///
 /// # Errors
-/// Where a file can't be written; an existing project is as it was then.
+/// If a file can't be written; an existing project is then unchanged.
 pub fn write_with_mesh(
     snapshot: &Snapshot,
     mesh: &RestMesh,
@@ -89,7 +89,7 @@ pub fn write_with_mesh(
     };
     let kept = beside.as_ref().map(|(kept, _)| &**kept);
     let stands_at = kept.map(|kept| relative(model.unwrap_or(kept), files::folder_of(path)));
-    // Where the model stands somewhere, its path tells.
+    // If the model has a file, its path says which.
     let name = (beside.is_some() && model.is_none()).then(|| file_name(&mesh.loaded.path));
     let StagedProject { staged, kept } = assembled(snapshot, (stands_at, name), beside, path, &staging)?;
     staged.commit()?;
@@ -107,7 +107,7 @@ pub struct StagedProject {
     pub kept: Option<PathBuf>,
 }
 
-/// Stages the mesh at rest beside a project, unless it is there already. With it where it stands then.
+/// Stages the mesh at rest beside a project, unless it is already there. Returns its path, too.
 pub fn stage_mesh(
     mesh: &RestMesh,
     project: &Path,
@@ -137,9 +137,9 @@ pub fn stage_mesh(
     }
 }
 
-/// The name that people know a project's mesh by; `None` if the project can't be read.
+/// The name by which people know a project's mesh; `None` if the project can't be read.
 pub fn mesh_name(project: &Path) -> Option<String> {
-    /// A project, as far as it tells that.
+    /// The parts of a project that have the name.
     #[derive(serde::Deserialize)]
     struct Named {
         mesh: MeshReference,
@@ -154,23 +154,23 @@ pub fn mesh_name(project: &Path) -> Option<String> {
     Some(name.unwrap_or_else(|| SAMPLE_NAME.to_owned()))
 }
 
-/// The path as seen from `folder` where it stands below that, else whole; with `/` between folders, and names that are
-/// not UTF-8 as [`files::name_as_text`] has them.
+/// The path relative to `folder` if it is inside it, otherwise absolute; with `/` between folders, and names that are
+/// not UTF-8 in the form of [`files::name_as_text`].
 fn relative(path: &Path, folder: &Path) -> String {
     let whole = |path: &Path| std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
     let (path, folder) = (whole(path), whole(folder));
     files::path_as_text(path.strip_prefix(&folder).unwrap_or(&path))
 }
 
-/// A project, its mesh, and where that was found.
+/// A project, its mesh, and the mesh's path.
 pub struct OpenedProject {
-    /// What it says.
+    /// The contents of the project.
     pub project: Project,
     /// Its mesh.
     pub loaded: Loaded,
-    /// Where that stands.
+    /// The mesh's path.
     pub source: MeshSource,
-    /// Where the project says that it stands; empty for the sample.
+    /// The mesh's path in the project; empty for the sample.
     pub named: PathBuf,
     /// The project's file as it was read.
     pub stamp: Stamp,
@@ -179,7 +179,7 @@ pub struct OpenedProject {
 /// Reads a project and the mesh it belongs to: at its path, beside the project, or the kept original of either.
 ///
 /// # Errors
-/// A project that can't be read, or whose mesh is not to be found.
+/// A project that can't be read, or whose mesh is missing.
 pub fn read(path: &Path, watch: &Watch) -> Result<OpenedProject, EngineError> {
     let (text, stamp) = files::read_text_stamped(path)?;
     let refuse = |source| EngineError::Edit {
@@ -224,7 +224,7 @@ pub fn read(path: &Path, watch: &Watch) -> Result<OpenedProject, EngineError> {
         let loaded = match pliant_engine::load(&mesh, &weld, watch) {
             Ok(loaded) => loaded,
             Err(EngineError::Interrupted) => return Err(EngineError::Interrupted),
-            // Something else stands there, which may be no mesh at all.
+            // The path now has something else, which may not be a mesh.
             Err(_) => {
                 what = "another one now";
                 continue;

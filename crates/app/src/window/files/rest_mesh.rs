@@ -1,4 +1,4 @@
-//! The open mesh as it was read, which projects belong to, and where it stands now.
+//! The open mesh as it was read, to which projects belong, and its present file.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -11,14 +11,14 @@ use pliant_mesh::WeldOptions;
 
 use super::names::SAMPLE_NAME;
 
-/// Where a mesh as it was read stands now.
+/// The present place of a mesh as it was read.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub enum MeshSource {
     /// It is built in.
     Sample,
     /// In this file.
     File(PathBuf),
-    /// Nowhere: it was saved over, and has to be written again if it is needed.
+    /// Nowhere: a save replaced it, and it must be written again if it is needed.
     Gone,
 }
 
@@ -27,7 +27,7 @@ pub(super) fn load_sample(weld: &WeldOptions, watch: &Watch) -> Result<Loaded, E
     pliant_engine::load_bytes(CREATURE.to_vec(), Path::new(SAMPLE_NAME), weld, watch)
 }
 
-/// How a file is compared with its stamp: [`Stamp::is_current`] or [`Stamp::looks_current`].
+/// The comparison of a file with its stamp: [`Stamp::is_current`] or [`Stamp::looks_current`].
 pub type Check = fn(&Stamp, &Path) -> bool;
 
 /// The open mesh as it was read. Cloning shares it.
@@ -35,14 +35,14 @@ pub type Check = fn(&Stamp, &Path) -> bool;
 pub struct RestMesh {
     /// The file as stored and its vertex sets.
     pub loaded: Arc<Loaded>,
-    /// Where it stands.
+    /// Its place.
     pub source: MeshSource,
-    /// The files that hold it, as they were when they did.
+    /// The files that contain it, as they were then.
     copies: KnownFiles,
 }
 
 impl RestMesh {
-    /// A mesh that was just read from where it stands.
+    /// A mesh that was just read from its place.
     pub fn new(loaded: Arc<Loaded>, source: MeshSource) -> Self {
         let copies = KnownFiles::default();
         if let Some(stamp) = &loaded.stamp {
@@ -51,12 +51,12 @@ impl RestMesh {
         Self { loaded, source, copies }
     }
 
-    /// Notes that a file holds it.
+    /// Notes that a file contains it.
     pub fn note_copy(&self, path: &Path, stamp: Stamp) {
         self.copies.note(path, stamp);
     }
 
-    /// Whether the file at `path` holds it still, as far as `check` finds out.
+    /// Whether the file at `path` still contains it, as far as `check` finds out.
     pub fn is_in(&self, path: &Path, check: Check) -> bool {
         let is_read_file = is_same(path, &self.loaded.path);
         let mut neighbours = self.loaded.neighbours.iter().filter(|_| is_read_file);

@@ -1,4 +1,4 @@
-//! What a save is asked to write, and what comes of it.
+//! The request of a save, and its result.
 
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -11,35 +11,35 @@ use pliant_render::Image;
 use super::rest_mesh::{MeshSource, RestMesh};
 use pliant_engine::files::KnownFiles;
 
-/// What is to be written.
+/// The request.
 #[derive(Clone)]
 pub struct SaveRequest {
-    /// Where.
+    /// The path.
     pub path: PathBuf,
-    /// What.
+    /// The content.
     pub content: Content,
-    /// The files of the open model, which nothing else may be saved over.
+    /// The files of the open model, which nothing else may replace.
     pub sources: Vec<PathBuf>,
     /// The files that the window has read or written, as they were then.
     pub known: KnownFiles,
-    /// What to do where one of them that is to be replaced has another content now.
+    /// The action if one of the files to be replaced has changed.
     pub changed: Changed,
     /// The state of the document that is written.
     pub mark: SaveMark,
-    /// Which of the files that were opened one after the other it belongs to.
+    /// The number of the opened file that it belongs to.
     pub opened: u64,
 }
 
-/// What to do with a file that another program has changed since the window read or wrote it.
+/// The action for a file that another program has changed since the window read or wrote it.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Changed {
-    /// Leave it, and ask the person.
+    /// Do not replace it, and ask the person.
     Ask,
     /// Replace it.
     Replace,
 }
 
-/// What a file holds.
+/// The content of a file.
 #[derive(Clone)]
 pub enum Content {
     /// The bent mesh.
@@ -59,9 +59,9 @@ pub enum Content {
 pub struct Model {
     /// The mesh as it was read.
     pub mesh: RestMesh,
-    /// What it is bent to.
+    /// The bent shape.
     pub shape: Shape,
-    /// Whether the file that is replaced is kept.
+    /// Whether the replaced file is kept.
     pub keep_original: KeepOriginal,
 }
 
@@ -77,7 +77,7 @@ pub struct Shape {
 /// Whether the file that a save replaces is kept.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum KeepOriginal {
-    /// As `NAME.original.EXT`, or with a number behind it, unless one of these has its content already.
+    /// As `NAME.original.EXT`, or with a number after it, unless one of these already has its content.
     Yes,
     /// Only if it is the mesh as it was read.
     No,
@@ -85,48 +85,48 @@ pub enum KeepOriginal {
 
 /// A file that was written.
 pub struct Written {
-    /// Where.
+    /// The path.
     pub path: PathBuf,
-    /// What it is.
+    /// The content.
     pub what: WrittenKind,
-    /// What a person should know, a sentence each.
+    /// Notes for the person, a sentence each.
     pub notes: Vec<String>,
-    /// The state of the document that it has.
+    /// The state of the document in it.
     pub mark: SaveMark,
     /// As [`SaveRequest::opened`].
     pub opened: u64,
 }
 
-/// What was written.
+/// The written content.
 #[derive(Clone, PartialEq, Debug)]
 pub enum WrittenKind {
     /// The model.
     Model {
-        /// Where the mesh as it was read stands now, if that has changed.
+        /// The new place of the mesh as it was read, if that has changed.
         source: Option<MeshSource>,
-        /// What the file is moved by, per surface vertex.
+        /// The file's displacements, per surface vertex.
         saved: Arc<Vec<DVec3>>,
     },
     /// The project.
     Project,
     /// A picture.
     Picture,
-    /// An edit for the command line: the work is not saved with it.
+    /// An edit for the command line; it does not count as saving the work.
     Edit,
     /// The model at rest with the edit as a morph target, which is a copy beside the open file.
     Morph,
 }
 
-/// Why a file was not written; all files are as they were then.
+/// The reason why a file was not written; all files are unchanged.
 pub enum Unwritten {
     /// Another program has changed this file since the window read or wrote it: the person decides.
     Changed(PathBuf, Box<SaveRequest>),
-    /// For this reason.
+    /// Another reason.
     Refused(String),
 }
 
 impl Content {
-    /// The mesh as it was read, of which it is a shape or a project.
+    /// The mesh as it was read, to which the shape or project belongs.
     pub(super) fn mesh(&self) -> Option<&RestMesh> {
         match self {
             Self::Model(Model { mesh, .. }) | Self::Project(_, mesh) | Self::Morph(_, mesh) => Some(mesh),
@@ -134,7 +134,7 @@ impl Content {
         }
     }
 
-    /// The same, to be changed.
+    /// The same, for changes.
     pub(super) fn mesh_mut(&mut self) -> Option<&mut RestMesh> {
         match self {
             Self::Model(Model { mesh, .. }) | Self::Project(_, mesh) | Self::Morph(_, mesh) => Some(mesh),

@@ -1,10 +1,10 @@
-//! A save that a person has asked for, which waits until the shape has settled.
+//! A save that a person has requested, which waits until the shape has settled.
 
 use std::path::{Path, PathBuf};
 
 use super::save_request::KeepOriginal;
 
-/// What is to be saved, and where.
+/// The content to be saved, and its path.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub enum SaveWish {
     /// The model.
@@ -16,7 +16,7 @@ pub enum SaveWish {
 }
 
 impl SaveWish {
-    /// The same in place of others with its path: what one of them was to keep is kept.
+    /// The same in place of others with its path: if one of them was to keep the original, this one does.
     #[must_use]
     pub fn in_place_of(self, others: Vec<Self>) -> Self {
         let keeps = others
@@ -28,7 +28,7 @@ impl SaveWish {
         }
     }
 
-    /// Where.
+    /// The path.
     pub fn path(&self) -> &Path {
         match self {
             Self::Model(path, _) | Self::Morph(path) | Self::Project(path) => path,

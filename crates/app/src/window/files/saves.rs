@@ -1,5 +1,5 @@
-//! Saves as a person asks for them: they wait until the shape has settled, ask where another program has changed the
-//! file, and are followed by what was to happen after them.
+//! Saves that a person requests: they wait until the shape has settled, ask if another program has changed the file,
+//! and are followed by the next requested action.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -22,7 +22,7 @@ use pliant_engine::is_project;
 use pliant_mesh::WeldOptions;
 
 impl Application {
-    /// Saves under `path` once the shape has settled, without asking whether a source may be written over.
+    /// Saves under `path` once the shape has settled, without asking whether it may replace a source.
     pub fn save_to(&mut self, path: PathBuf, keep_original: KeepOriginal) {
         self.wish(SaveWish::Model(path, keep_original));
     }
@@ -49,7 +49,7 @@ impl Application {
         }
     }
 
-    /// Saves over the file that was opened, as the person has agreed to: they are not asked again while that waits.
+    /// Saves over the opened file, as the person has agreed: there is no further question while that waits.
     pub(in crate::window) fn write_over(&mut self, path: PathBuf) {
         if let Some(open) = &mut self.session.open {
             open.may_write_over = true;
@@ -57,14 +57,14 @@ impl Application {
         self.save_to(path, KeepOriginal::Yes);
     }
 
-    /// Begins the saves that wait, once no other shape can follow.
+    /// Begins the waiting saves, once no other shape can follow.
     pub(in crate::window) fn save_what_has_settled(&mut self) {
         if !self.wishes.is_empty() && self.editor.is_settled() {
             self.save_as_it_is();
         }
     }
 
-    /// Begins the saves that wait, with the shape of this moment.
+    /// Begins the waiting saves, with the present shape.
     pub fn save_as_it_is(&mut self) {
         let wishes = std::mem::take(&mut self.wishes);
         let Some(open) = &self.session.open else { return };
@@ -98,7 +98,7 @@ impl Application {
         }
     }
 
-    /// Which saves wait, and for what, in a sentence; `None` if none does.
+    /// The waiting saves and their reason, in a sentence; `None` if none waits.
     pub fn waiting_save(&self) -> Option<String> {
         let names: Vec<String> = self.wishes.iter().map(|wish| file_name(wish.path())).collect();
         let verb = if names.len() > 1 { "are" } else { "is" };
@@ -109,7 +109,7 @@ impl Application {
         (!names.is_empty()).then(|| format!("{} {verb} saved once {end}", names.join(" and ")))
     }
 
-    /// Gives up the saves that wait, and stops what is under way with files.
+    /// Gives up the waiting saves, and stops the running work on files.
     pub(in crate::window) fn stop_file_work(&mut self) {
         self.wishes.clear();
         self.after_saving = None;
@@ -122,7 +122,7 @@ impl Application {
         self.session.is_saving() || !self.wishes.is_empty()
     }
 
-    /// Saves what is open: the project, or else the model.
+    /// Saves the open project, or else the model.
     pub(in crate::window) fn save_what_is_open(&mut self) {
         match self.project() {
             Some(project) => self.save_project_to(project),
@@ -130,7 +130,7 @@ impl Application {
         }
     }
 
-    /// Saves the model in its place, asking first whether the file that was opened may be written over.
+    /// Saves the model in its place, after asking whether the opened file may be replaced.
     pub(in crate::window) fn save(&mut self) {
         match self.path().map(Path::to_owned) {
             Some(path) if self.may_write_over() => self.save_to(path, KeepOriginal::No),
@@ -186,7 +186,7 @@ impl Application {
                 self.editor.handle(Event::Saved(saved, written.mark));
             }
             if self.editor.document().is_displaced() || self.editor.document().is_applied() {
-                // The last of the first steps.
+                // This is the last of the first steps.
                 self.settings.change(|settings| settings.hints_seen = true);
             }
         }
@@ -199,7 +199,7 @@ impl Application {
         self.go_on_after_saving();
     }
 
-    /// Does what was to follow the saves, once all of them have ended and nothing is unsaved.
+    /// Performs the action that was to follow the saves, once all of them have ended and nothing is unsaved.
     fn go_on_after_saving(&mut self) {
         if self.is_saving() || self.question.is_some() {
             return;
@@ -211,7 +211,7 @@ impl Application {
         }
     }
 
-    /// Asks about unsaved work, naming the file that does not have it.
+    /// Asks about unsaved work, naming the file that lacks it.
     pub(in crate::window) fn about_unsaved(&self, then: Then) -> Question {
         let open = self.session.open.as_ref();
         let name = self.project().as_deref().map(file_name);
@@ -232,7 +232,7 @@ impl Application {
         self.session.save_again(*request, &self.workers);
     }
 
-    /// Opens the changed file with what was set up on the former one.
+    /// Opens the changed file with the former one's edit.
     pub(in crate::window) fn reload_changed(&mut self) {
         let reload = self.unwritten.take().and_then(|request| self.reload(&request.content));
         if let Some(reload) = reload {
@@ -242,7 +242,7 @@ impl Application {
         }
     }
 
-    /// How the changed file is opened again with what was set up on the former one, where it is known what of that the
+    /// The way to open the changed file again with the former one's edit, if it is known which part of the edit the
     /// file has.
     fn reload(&self, content: &Content) -> Option<Reload> {
         let open = self.session.open.as_ref()?;
@@ -251,7 +251,7 @@ impl Application {
         let is_model = matches!(content, Content::Model(_));
         let snapshot = self.editor.snapshot().filter(|_| is_known && is_model)?;
         Some(Reload {
-            // As before: the edit or a person may have asked for it.
+            // As before: the edit or a person may have requested it.
             weld: snapshot.model().weld,
             snapshot,
             saved: open.saved.clone(),
@@ -262,8 +262,8 @@ impl Application {
         })
     }
 
-    /// Opens the mesh once more with its vertices joined otherwise, and puts the work onto it. It is read from where it
-    /// stands as it was opened, or else from where it was saved.
+    /// Opens the mesh again with its vertices welded in another way, and applies the work to it. It is read from its
+    /// original place, or else from the saved file.
     pub(in crate::window) fn weld_anew(&mut self, weld: WeldOptions) {
         let (Some(open), Some(snapshot)) = (&self.session.open, self.editor.snapshot()) else {
             return;
@@ -295,7 +295,7 @@ impl Application {
         self.session.load(source, &self.viewport.gpu(), &self.workers);
     }
 
-    /// Asks for another name in place of that of the file which another program has changed.
+    /// Asks for another name than that of the file that another program has changed.
     pub(in crate::window) fn save_beside(&mut self) {
         let Some(request) = self.unwritten.take() else { return };
         file_dialog::choose(purpose(&request.content), &free_name(&request.path), &self.workers);
@@ -306,7 +306,7 @@ impl Application {
     }
 }
 
-/// For what a path is chosen that such a file is saved under.
+/// The purpose for which the path of such a file is chosen.
 fn purpose(content: &Content) -> Purpose {
     match content {
         Content::Model(_) => Purpose::SaveAs,

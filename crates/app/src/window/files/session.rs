@@ -27,38 +27,38 @@ use pliant_mesh::Cancel;
 /// The open file and the jobs that read and write it.
 #[derive(Default)]
 pub struct Session {
-    /// What is open.
+    /// The open file.
     pub open: Option<OpenFile>,
     next: u64,
     loading: JobQueue<(Source, Gpu)>,
-    /// What the load that runs is doing.
+    /// The stage of the running load.
     watch: Watch,
     saving: JobQueue<SaveRequest>,
-    /// Saves that wait for the one that runs, in their order: none takes another's place.
+    /// Saves that wait for the running one, in their order: none replaces another.
     to_save: VecDeque<SaveRequest>,
     /// The files that were read and written, as they were then.
     known: KnownFiles,
-    /// How many files were opened so far.
+    /// The number of files opened so far.
     opened: u64,
 }
 
-/// What is open.
+/// The open file.
 pub struct OpenFile {
-    /// Where it was read from, or saved to since; the built-in sample stands nowhere.
+    /// The path from which it was read, or to which it was last saved; none for the built-in sample.
     pub path: Option<PathBuf>,
-    /// The file as stored when it was opened, and its vertex sets: what every save patches.
+    /// The file as stored when it was opened, and its vertex sets: every save patches it.
     pub loaded: Arc<Loaded>,
     /// The names of its morph targets.
     pub morph_targets: Vec<String>,
-    /// What the renderer takes of it.
+    /// Its data for the renderer.
     pub drawing: Arc<Drawing>,
-    /// The mesh as it was read, and where it stands now.
+    /// The mesh as it was read, and its present place.
     pub mesh: RestMesh,
     /// The project that it was opened from or saved to.
     pub project: Option<PathBuf>,
-    /// What the file at `path` was moved by when it was saved there, per surface vertex; `None` where it was not.
+    /// The displacements with which the file at `path` was saved there, per surface vertex; `None` if it was not.
     pub saved: Option<Arc<Vec<DVec3>>>,
-    /// Whether a person agreed to write over `path`, or it was saved here under a new name.
+    /// Whether a person agreed to replace `path`, or saved it here under a new name.
     pub may_write_over: bool,
 }
 
@@ -68,7 +68,7 @@ impl OpenFile {
         file_name(self.path.as_deref().unwrap_or(&self.loaded.path))
     }
 
-    /// Whether a path leads to the file that was read or saved to.
+    /// Whether a path leads to the file that was read or last saved.
     pub fn is_at(&self, path: &Path) -> bool {
         self.path.as_deref().is_some_and(|own| is_same(own, path))
     }
@@ -80,7 +80,7 @@ impl OpenFile {
 }
 
 impl Session {
-    /// Opens a file, off the window's thread. A load that is under way is cancelled.
+    /// Opens a file, off the window's thread. A running load is cancelled.
     pub fn load(&mut self, source: Source, gpu: &Gpu, workers: &Workers) {
         self.loading.cancel();
         let stamp = self.stamp();
@@ -88,21 +88,21 @@ impl Session {
         self.start_loading(workers);
     }
 
-    /// Cancels what is under way: a load, or a save before it has changed anything on the disk.
+    /// Cancels the running work: a load, or a save before it has changed anything on the disk.
     pub fn stop(&mut self) {
         self.loading.cancel();
         self.saving.cancel();
         self.to_save.clear();
     }
 
-    /// Has the person asked once more before the opened file is written over, unless it was.
+    /// Makes the next save ask again before it replaces the opened file, unless one already did.
     pub fn ask_again(&mut self) {
         if let Some(open) = &mut self.open {
             open.may_write_over = open.saved.is_some();
         }
     }
 
-    /// Whether a save is under way.
+    /// Whether a save is running.
     pub fn is_saving(&self) -> bool {
         self.saving.is_busy() || !self.to_save.is_empty()
     }
@@ -141,7 +141,7 @@ impl Session {
         });
     }
 
-    /// Writes a file, off the window's thread: the state of the document that `mark` stands for.
+    /// Writes a file, off the window's thread: the state of the document for `mark`.
     pub fn save(&mut self, path: &Path, content: Content, mark: SaveMark, workers: &Workers) {
         let of_open = |open: &OpenFile| {
             let sources = open.loaded.sources().skip(usize::from(open.path.is_none()));
@@ -159,13 +159,13 @@ impl Session {
         self.save_again(request, workers);
     }
 
-    /// Writes what was to be written before, off the window's thread.
+    /// Writes the next waiting save, off the window's thread.
     pub fn save_again(&mut self, request: SaveRequest, workers: &Workers) {
         self.to_save.push_back(request);
         self.start_saving(workers);
     }
 
-    /// Finds out where the original of the file at `path` is kept, or will be, off the window's thread.
+    /// Finds out where the original of the file at `path` is or will be kept, off the window's thread.
     pub fn look_for_original(&self, path: &Path, workers: &Workers) {
         let Some(open) = &self.open else { return };
         let (loaded, path) = (Arc::clone(&open.loaded), path.to_owned());
@@ -203,12 +203,12 @@ impl Session {
         self.start_saving(workers);
     }
 
-    /// Whether what a save has written belongs to the file that is open.
+    /// Whether a save's file belongs to the open one.
     pub fn is_of_open(&self, written: &Written) -> bool {
         written.opened == self.opened
     }
 
-    /// What runs, with its progress (0 to 1).
+    /// The running work, with its progress (0 to 1).
     pub fn doing(&self) -> Option<(&'static str, f32)> {
         let loading = self
             .loading

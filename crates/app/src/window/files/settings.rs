@@ -1,7 +1,7 @@
-//! The settings: what is remembered from one session to the next, in a JSON file that a person may edit.
+//! The settings, which last from one session to the next, in a JSON file that a person may edit.
 //!
-//! A file that holds no settings is reported once and put aside under another name, so that settings can be kept again;
-//! missing members have their defaults.
+//! A file without valid settings is reported once and renamed, so that settings can be kept again; missing members have
+//! their defaults.
 
 use std::path::{Path, PathBuf};
 
@@ -10,10 +10,10 @@ use serde::{Deserialize, Serialize};
 use pliant_engine::files::{self, Staging, shown};
 use pliant_engine::memory;
 
-/// How many files are remembered.
+/// The number of files that are remembered.
 const RECENT: usize = 10;
 
-/// What is remembered.
+/// The settings.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Settings {
@@ -21,30 +21,30 @@ pub struct Settings {
     pub recent: Vec<PathBuf>,
     /// Light or dark.
     pub theme: ThemeChoice,
-    /// How large everything is, 1 as the system says.
+    /// The scale of the interface, 1 for the system's own.
     pub ui_scale: f32,
     /// The panel's width in points.
     pub panel_width: f32,
     /// The window's size in points.
     pub window_size: Option<[f32; 2]>,
-    /// Whether the window fills the screen; its size is what it has otherwise.
+    /// Whether the window fills the screen; its size is the one for the other case.
     pub maximised: bool,
     /// Sections of the panel that are folded away, by their titles.
     pub folded: std::collections::BTreeSet<String>,
-    /// Whether the hints on the canvas were put away.
+    /// Whether the person has closed the hints on the canvas.
     pub hints_seen: bool,
-    /// The most memory that binding may take; without one what the machine leaves.
+    /// The memory limit for binding; without one, the machine's free memory.
     pub memory: Option<MostMemory>,
     /// Keys of commands, by the commands' names, if they differ from the program's own.
     pub keys: std::collections::BTreeMap<String, Vec<String>>,
 }
 
-/// The settings and the file they stand in; a change is written at once.
+/// The settings and their file; a change is written at once.
 #[derive(Debug, Default)]
 pub struct SettingsFile {
     settings: Settings,
     path: Option<PathBuf>,
-    /// What went wrong with the file, in a sentence.
+    /// The problem with the file, in a sentence.
     pub problem: Option<String>,
 }
 
@@ -92,16 +92,16 @@ impl SettingsFile {
     }
 }
 
-/// Why settings could not be read.
+/// The reason why settings could not be read.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub enum Problem {
-    /// The file can't be read, in a sentence; it is the person's to mend.
+    /// The file can't be read, in a sentence; the person must repair it.
     Unreadable(String),
-    /// It holds no settings, for this reason.
+    /// It has no valid settings, for this reason.
     Corrupted(String),
 }
 
-/// Renames a file to a name beside it that is free; with it the new name.
+/// Renames a file to a free name beside it; returns the new name.
 fn put_aside(path: &Path) -> Result<PathBuf, String> {
     let named = |number: usize| match number {
         1 => path.with_extension("broken.json"),
@@ -130,12 +130,12 @@ pub enum ThemeChoice {
     Dark,
     /// A bright one.
     Light,
-    /// As the system is.
+    /// The system's choice.
     System,
 }
 
 impl ThemeChoice {
-    /// The one that a person comes to next.
+    /// The next choice in the cycle.
     pub fn next(self) -> Self {
         match self {
             Self::Dark => Self::Light,
@@ -145,7 +145,7 @@ impl ThemeChoice {
     }
 }
 
-/// So many bytes of memory at most, in the file as the command line takes it: "8GB".
+/// A memory limit in bytes, written as on the command line: "8GB".
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub struct MostMemory(pub u64);
@@ -182,7 +182,7 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// Reads the settings; the defaults where there is no such file, and with the reason where it can't be read.
+    /// Reads the settings; the defaults if there is no such file, and with the reason if it can't be read.
     pub fn read(path: &Path) -> (Self, Option<Problem>) {
         if !path.exists() {
             return (Self::default(), None);
@@ -208,7 +208,7 @@ impl Settings {
     /// Writes the settings.
     ///
     /// # Errors
-    /// What the disk says, in a sentence.
+    /// The disk's message, in a sentence.
     pub fn write(&self, path: &Path) -> Result<(), String> {
         let folder = files::folder_of(path);
         std::fs::create_dir_all(folder)
@@ -229,7 +229,7 @@ impl Settings {
         self.recent.truncate(RECENT);
     }
 
-    /// Takes the recent file that a refusal names out of the list, if it is not there any more.
+    /// Removes the recent file that a refusal names from the list, if it no longer exists.
     pub fn forget_if_gone(&mut self, refusal: &str) {
         let is_named = |path: &Path| refusal.starts_with(&shown(path));
         self.recent.retain(|path| !is_named(path) || path.exists());

@@ -21,7 +21,7 @@ use pliant_engine::saving::{self, SaveAs};
 ///
 /// # Errors
 /// [`Unwritten::Changed`] if another program has changed a file that would be replaced, and [`Unwritten::Refused`] with
-/// a sentence otherwise; every file is as it was then.
+/// a sentence otherwise; every file is then unchanged.
 pub fn write(request: SaveRequest, progress: &Progress, cancel: &Cancel) -> Result<Written, Unwritten> {
     let name = file_name(&request.path);
     let stopped = || {
@@ -36,12 +36,12 @@ pub fn write(request: SaveRequest, progress: &Progress, cancel: &Cancel) -> Resu
     }
 }
 
-/// What is ready to be committed.
+/// Files that are ready to be committed.
 struct Ready {
     staged: Staged,
     what: WrittenKind,
     notes: Vec<String>,
-    /// A file that holds the mesh as it was read once this is committed.
+    /// A file that contains the mesh as it was read once this is committed.
     copy: Option<PathBuf>,
 }
 
@@ -67,10 +67,10 @@ fn write_unless_changed(
     } = request;
     let is_changed = |path: &Path| request.changed == Changed::Ask && known.is_changed(path);
     let go_on = || cancel.check().map_err(|_| EngineError::Interrupted);
-    // What has begun shows that it has.
+    // The progress shows that the work has begun.
     progress.set(0.02);
     go_on()?;
-    // Before the work, so that the person is asked at once; and once more after it.
+    // This comes before the work, so that the question comes at once, and again after it.
     if is_changed(path) {
         return Ok(Err(path.clone()));
     }
@@ -160,7 +160,7 @@ fn ready(request: &SaveRequest, staging: &Staging, progress: &Progress, cancel: 
     }
 }
 
-/// The model, and with it the original of the file that it replaces.
+/// The model, together with the original of the file that it replaces.
 fn ready_model(
     model: &Model,
     path: &Path,
@@ -201,7 +201,7 @@ fn ready_model(
     for original in originals.into_iter().flatten() {
         let (kept, staged) = original.keep(&taken, loaded, staging, &of_original, cancel)?;
         if let Some(original) = staged {
-            // The original first: the file that replaces it must not be there without it.
+            // The original comes first: the file that replaces it must not exist without it.
             ready.staged = original.and(ready.staged);
         }
         let is_former = original.is_former(loaded);

@@ -1,15 +1,15 @@
-//! One press a frame: what the window system delivers is handed to egui in portions that no frame can mix up.
+//! One press a frame: the window system's events reach egui in portions that no frame can mix up.
 //!
-//! A slow frame gathers a click, the key that opens the palette and the letters typed into it. Whoever hears an event is
-//! decided once a frame, so all three would go to the same listener. A portion therefore ends where the listener may
-//! change; what is left comes in the next frame, which is asked for at once.
+//! A slow frame gathers a click, the key that opens the palette and the letters typed into it. The receiver of events
+//! is decided once a frame, so all three would go to the same one. A portion therefore ends where the receiver may
+//! change; the rest comes in the next frame, which is requested at once.
 
 use std::collections::VecDeque;
 
 use eframe::egui::{Context, Event, Key, Plugin, RawInput};
 
-/// Two clicks within so many seconds are a double click, as on most systems. What comes within one frame comes at one
-/// time, so this is also the slowest frame with which double clicks are heard.
+/// Two clicks within so many seconds are a double click, as on most systems. Events within one frame have one time, so
+/// this is also the slowest frame with which double clicks work.
 const DOUBLE_CLICK: f64 = 0.5;
 
 /// The least time from a frame to the next, in seconds.
@@ -19,15 +19,15 @@ const MOMENT: f64 = 1e-4;
 #[derive(Debug, Default)]
 pub struct EventQueue {
     waiting: VecDeque<(Event, f64)>,
-    /// When what comes in now has come, in seconds.
+    /// The time of the events that come in now, in seconds.
     now: f64,
-    /// When the last thing came that has been handed on. egui measures double clicks by it: frames that are slow, and
-    /// those that each press gets, would hold two clicks too far apart.
+    /// The time of the last event that was handed on. egui measures double clicks by it: slow frames, and the frames of
+    /// each press, would put two clicks too far apart.
     heard: f64,
-    /// Keys that are down: what the system tells of them again is a repeat, which only egui itself says otherwise.
+    /// Keys that are down: if the system reports one again it is a repeat, which otherwise only egui itself marks.
     held: Vec<Key>,
     typing: bool,
-    /// Frames, this one included, in which what was typed before Escape is still taken back.
+    /// Frames, this one included, in which the text typed before Escape is still undone.
     escaped: u8,
 }
 
@@ -39,8 +39,8 @@ impl EventQueue {
             .unwrap_or(false)
     }
 
-    /// Whether a field had the keys when this frame's events were handed over: all its keys belong to the field, also
-    /// where one of them (Enter, Escape) has made the field let go.
+    /// Whether a field had the keyboard when this frame's events were handed over: all its keys belong to the field,
+    /// even if one of them (Enter, Escape) made the field lose it.
     pub fn is_typing(context: &Context) -> bool {
         context.with_plugin(|queue: &mut Self| queue.typing).unwrap_or(false)
     }
@@ -52,7 +52,7 @@ impl EventQueue {
             .unwrap_or(false)
     }
 
-    /// Marks the press of a key that is down already as a repeat.
+    /// Marks the press of a key that is already down as a repeat.
     fn tell_repeat(&mut self, event: &mut Event) {
         match event {
             Event::Key {
@@ -75,8 +75,8 @@ impl EventQueue {
         }
     }
 
-    /// Takes what happened since the last frame and leaves what this frame shall hear. `typing` says whether a field has
-    /// the keys: letters that go into it come together.
+    /// Takes the events since the last frame and leaves those for this frame. `typing` says whether a field has the
+    /// keyboard: letters for it come together.
     fn portion(&mut self, events: &mut Vec<Event>, typing: bool) {
         self.typing = typing;
         for mut event in events.drain(..) {
@@ -85,7 +85,8 @@ impl EventQueue {
         }
         let (mut is_decided, mut is_button) = (false, false);
         while let Some((event, came)) = self.waiting.front() {
-            // The pointer's place is known once a frame: a press is judged where it happened, not where the pointer went.
+            // The pointer's place is known once a frame: a press counts at its own place, not at the pointer's later
+            // one.
             let moves_on = is_button && matches!(event, Event::PointerMoved(_) | Event::PointerGone);
             if (is_decided && is_press(event)) || moves_on {
                 break;
@@ -103,8 +104,8 @@ impl EventQueue {
     }
 }
 
-/// Whether the event is a press of its own: a key's letter comes with the key, and a key that is held down goes to
-/// whoever heard it first.
+/// Whether the event is a press of its own: a key's letter comes with the key, and a key that is held down goes to its
+/// first receiver.
 fn is_press(event: &Event) -> bool {
     match event {
         Event::PointerButton { .. } => true,
@@ -113,7 +114,7 @@ fn is_press(event: &Event) -> bool {
     }
 }
 
-/// Whether another listener may hear what comes after this press.
+/// Whether another receiver may get the events after this press.
 fn may_change_listener(event: &Event, typing: bool) -> bool {
     match event {
         Event::Key { key, modifiers, .. } => !typing || modifiers.command || modifiers.alt || leaves_field(*key),
@@ -121,7 +122,7 @@ fn may_change_listener(event: &Event, typing: bool) -> bool {
     }
 }
 
-/// Whether a field that is typed into may lose the keys by this one.
+/// Whether this press may take the keyboard from a field that has it.
 fn leaves_field(key: Key) -> bool {
     let is_function = || {
         let name = key.name();

@@ -1,4 +1,4 @@
-//! From egui's events to the editor's: what happened over the 3D view, in the view's own points.
+//! From egui's events to the editor's: the events over the 3D view, in the view's own points.
 
 pub(in crate::window) mod event_queue;
 pub(in crate::window) mod own_keys;
@@ -10,35 +10,35 @@ use eframe::egui::{self, MouseWheelUnit, PointerButton, Rect};
 use glam::DVec2;
 use pliant_editor::{Button, Event, Key, Modifiers, Pointer};
 
-/// Points that a wheel's notch scrolls where the system reports points.
+/// The points that a notch of the wheel scrolls, on systems that report points.
 const POINTS_PER_LINE: f64 = 50.0;
 
-/// Remembers which buttons went down over the view: they belong to it until they go up, wherever that is.
+/// Remembers the buttons that went down over the view: they belong to it until they go up, anywhere.
 #[derive(Debug, Default)]
 pub struct Input {
     held: Vec<PointerButton>,
     inside: bool,
-    /// Since when the pointer stands still over the view, until the editor was told.
+    /// The time since when the pointer has rested over the view, until the editor gets the event.
     still_since: Option<Instant>,
-    /// Digits of the numeric pad that went down and have not been heard yet.
+    /// Digits of the numeric pad that went down and have not been handled yet.
     pub numpad: VecDeque<u8>,
 }
 
-/// After this long the pointer means what lies under it.
+/// After this time the resting pointer refers to the part under it.
 const RESTS_AFTER: Duration = Duration::from_millis(120);
 
-/// Who gets what happens now.
+/// The receivers of the present events.
 #[derive(Clone, Copy, Debug)]
 pub struct Attention {
     /// The view's rectangle in the window, in points.
     pub rect: Rect,
-    /// Where the pointer was last seen in the window, in points.
+    /// The pointer's last known place in the window, in points.
     pub pointer: egui::Pos2,
-    /// Whether the pointer is over the view and nothing lies above it.
+    /// Whether the pointer is over the view and nothing covers it.
     pub pointer_over: bool,
     /// Whether a transform follows the pointer wherever it goes, over panels and bars too.
     pub follows_pointer: bool,
-    /// Whether keys are for the view: nobody types into a field and no question is open.
+    /// Whether keys are for the view: no field has the keyboard and no question is open.
     pub keys: bool,
     /// Whether events of this moment wait for the next frame.
     pub more_to_come: bool,
@@ -64,7 +64,7 @@ impl Input {
                 }
             }
         }
-        // What went elsewhere, into a field to type in, is no command.
+        // Keys that went into a field are not commands.
         if !attention.more_to_come {
             self.numpad.clear();
         }
@@ -150,7 +150,7 @@ impl Input {
         }
     }
 
-    /// The key as one of the numeric pad, if that is where its digit went down.
+    /// The key as one of the numeric pad, if its digit went down there.
     fn take_numpad(&mut self, physical_key: egui::Key) -> Option<Key> {
         let digit = digit_of(physical_key).filter(|digit| self.numpad.front() == Some(digit))?;
         self.numpad.pop_front();
@@ -169,7 +169,7 @@ impl Attention {
     }
 }
 
-/// Lines that one unit of a wheel scrolls.
+/// The lines that one unit of a wheel scrolls.
 fn lines_of(unit: MouseWheelUnit) -> f64 {
     match unit {
         MouseWheelUnit::Point => 1.0 / POINTS_PER_LINE,
@@ -208,7 +208,7 @@ fn button_of(button: PointerButton) -> Option<Button> {
     }
 }
 
-/// The digit that stands on a key, in either row.
+/// The digit on a key, in either row.
 fn digit_of(key: egui::Key) -> Option<u8> {
     key.symbol_or_name().parse::<u8>().ok().filter(|digit| *digit < 10)
 }

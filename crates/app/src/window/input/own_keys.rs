@@ -1,5 +1,5 @@
-//! Keys that the window itself answers to, before the editor: those of files, of the palette, of copying text. A command
-//! of the editor that had one of them would never hear of it.
+//! Keys that the window itself handles, before the editor: those for files, for the palette, for copying text. A
+//! command of the editor with one of them would never get it.
 
 use std::collections::BTreeMap;
 
@@ -9,8 +9,8 @@ use pliant_editor::{Key, Modifiers, Shortcut};
 use super::{held_modifiers, key_of, pressed_key};
 use crate::window::files::file_command::FileCommand;
 
-/// The key that went down in this frame, also where the window system has made "copy", "cut" or "paste" of it; a
-/// sentence where it is none that a command can have.
+/// The key that went down in this frame, even if the window system has turned it into "copy", "cut" or "paste"; a
+/// sentence if a command can't have it.
 pub fn pressed(input: &egui::InputState) -> Option<Result<Shortcut, String>> {
     let of_text = |event: &egui::Event| match event {
         egui::Event::Copy => Some('c'),
@@ -35,7 +35,7 @@ pub fn pressed(input: &egui::InputState) -> Option<Result<Shortcut, String>> {
     known.map(Ok).or_else(|| input.events.iter().find_map(unknown).map(Err))
 }
 
-/// Why a command of the editor can't have this key, in a sentence, if it is the window's.
+/// The reason why a command of the editor can't have this key, in a sentence, if it is the window's.
 pub fn refusal(key: Shortcut, command: &str) -> Option<String> {
     let holder = holder(key)?;
     let key = key.label();
@@ -56,7 +56,7 @@ pub fn refuse(chosen: &mut BTreeMap<String, Vec<String>>) -> Vec<String> {
     sentences
 }
 
-/// What the window does at this key.
+/// The window's action for this key.
 fn holder(key: Shortcut) -> Option<String> {
     let of_files = FileCommand::WITH_SHORTCUTS
         .iter()
@@ -72,7 +72,7 @@ fn holder(key: Shortcut) -> Option<String> {
         .map(|(_, what)| (*what).to_owned())
 }
 
-/// A key of egui's as the editor writes it; `None` for those that it does not know.
+/// A key of egui's in the editor's notation; `None` for unknown ones.
 fn editors(shortcut: egui::KeyboardShortcut) -> Option<Shortcut> {
     Some(Shortcut {
         modifiers: held_modifiers(shortcut.modifiers),

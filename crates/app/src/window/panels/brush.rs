@@ -1,4 +1,4 @@
-//! What the left button does on the surface: the stroke's shape, the brush, and what stiffness it paints.
+//! The settings of the tool: the stroke's shape, the brush, and the stiffness that it paints.
 
 use eframe::egui::{self, Color32, DragValue, RichText, Slider};
 use pliant_editor::{
@@ -11,7 +11,7 @@ use crate::window::widgets::number_field::number_field;
 use crate::window::widgets::outbox::Outbox;
 use crate::window::widgets::row_label::row_label;
 
-/// Shows what belongs to the tool in hand.
+/// Shows the settings of the current tool.
 pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     let view = editor.view();
     ui.horizontal_wrapped(|ui| {
@@ -49,7 +49,7 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     }
 }
 
-/// The brush's radius, and how distance from its centre is measured.
+/// The brush's radius, and the measure of distance from its centre.
 fn brush_rows(ui: &mut egui::Ui, mut radius_px: f64, metric: BrushMetric, commands: &mut Outbox) {
     let label = row_label(ui, "Radius");
     let slider = number_field(ui, &mut radius_px, |ui, radius_px| {
@@ -87,7 +87,7 @@ fn brush_rows(ui: &mut egui::Ui, mut radius_px: f64, metric: BrushMetric, comman
     ui.end_row();
 }
 
-/// How far a lasso or a box reaches into the model.
+/// The depth of a lasso or a box in the model.
 fn depth_row(ui: &mut egui::Ui, depth: Depth, commands: &mut Outbox) {
     row_label(ui, "Takes");
     const DEPTHS: [(Depth, &str, &str); 2] = [
@@ -104,7 +104,7 @@ fn depth_row(ui: &mut egui::Ui, depth: Depth, commands: &mut Outbox) {
     ui.end_row();
 }
 
-/// Across which plane both sides are painted.
+/// The plane across which both sides are painted.
 fn symmetry_row(ui: &mut egui::Ui, symmetry: Symmetry, commands: &mut Outbox) {
     row_label(ui, "Symmetry");
     const PLANES: [(Symmetry, &str, &str); 5] = [
@@ -189,7 +189,7 @@ fn stiffness(ui: &mut egui::Ui, editor: &Editor, brush: &StiffnessBrush, pressur
     if let Some(action) = choices(ui, brush.action, &ACTIONS) {
         changed.action = action;
     }
-    // Rigid or not: no number says how much.
+    // Rigid or not: no number expresses it.
     if changed.action != StiffnessAction::Rigid {
         stiffness_rows(ui, &mut changed);
     }
@@ -209,7 +209,7 @@ fn stiffness(ui: &mut egui::Ui, editor: &Editor, brush: &StiffnessBrush, pressur
     });
 }
 
-/// The stiffness that is painted, how far one stroke goes, and how softly it ends.
+/// The painted stiffness, the strength of one stroke, and its falloff.
 fn stiffness_rows(ui: &mut egui::Ui, brush: &mut StiffnessBrush) {
     egui::Grid::new("stiffness")
         .num_columns(2)
@@ -242,7 +242,7 @@ fn stiffness_rows(ui: &mut egui::Ui, brush: &mut StiffnessBrush) {
         });
 }
 
-/// What the colours mean: from 0.001 to 1000, and rigid.
+/// The meaning of the colours: from 0.001 to 1000, and rigid.
 fn legend(ui: &mut egui::Ui) {
     let width = (ui.available_width() - 40.0).min(240.0);
     let (rect, _) = ui.allocate_exact_size(egui::vec2(width, 10.0), egui::Sense::hover());

@@ -1,4 +1,4 @@
-//! The examples that the method is led by or learns from: a list with a weight each.
+//! The examples that guide or teach the method: a list with a weight each.
 
 use eframe::egui::{self, RichText, ScrollArea, Slider, SliderClamping};
 use pliant_deform::{AttachmentKind, LARGEST_WEIGHT};
@@ -9,7 +9,7 @@ use crate::window::widgets::command_button::command_button;
 use crate::window::widgets::name_label::name_label;
 use crate::window::widgets::outbox::Outbox;
 
-/// Shows the list, where the method takes examples.
+/// Shows the list, if the method takes examples.
 ///
 /// `morph_targets` are the names of the file's own.
 pub fn show(ui: &mut egui::Ui, editor: &Editor, morph_targets: &[String], commands: &mut Outbox) {

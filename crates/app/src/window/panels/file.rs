@@ -1,4 +1,4 @@
-//! What is to be known about the open file; each thing found in its mesh leads to where it is.
+//! Information about the open file; each fault found in its mesh leads to its place.
 
 use eframe::egui::{self, RichText};
 use pliant_editor::{Command, Editor, thousands};
@@ -37,7 +37,7 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, notes: &Notes, commands: &mut Ou
     }
 }
 
-/// Whether what faces inwards was turned, and the button that does it.
+/// Whether inward-facing parts were turned, and the button that does it.
 fn turn(ui: &mut egui::Ui, editor: &Editor, model: &Model, commands: &mut Outbox) {
     ui.horizontal_wrapped(|ui| {
         let turned = editor.document().inside_out();

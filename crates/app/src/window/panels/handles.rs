@@ -103,7 +103,7 @@ fn swatch(ui: &mut egui::Ui, handle: &Handle, commands: &mut Outbox) {
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &label));
 }
 
-/// The name: a click selects, with Ctrl along with others; a double click renames.
+/// The name: a click selects it, with Ctrl in addition to others; a double click renames.
 fn name(ui: &mut egui::Ui, handle: &Handle, is_selected: bool, commands: &mut Outbox) {
     let editing = egui::Id::unique("renamed handle");
     let typed: Option<(HandleId, String)> = ui.data(|data| data.get_temp(editing));
@@ -205,7 +205,7 @@ fn triple(
     ui.end_row();
 }
 
-/// As egui writes it, but "0.0" for what rounds to nothing from below.
+/// As egui writes it, but "0.0" for negative values that round to zero.
 fn without_minus_zero(value: f64, decimals: std::ops::RangeInclusive<usize>) -> String {
     let text = egui::emath::format_with_decimals_in_range(value, decimals);
     match text.strip_prefix('-') {
@@ -269,7 +269,7 @@ fn reach(ui: &mut egui::Ui, handle: &Handle, commands: &mut Outbox) {
     ui.end_row();
 }
 
-/// How smoothly the surface goes over into the handle, where the method has a choice.
+/// The smoothness of the joint with the handle, if the method has a choice.
 fn joint(ui: &mut egui::Ui, editor: &Editor, handle: &Handle, commands: &mut Outbox) {
     let label = row_label(ui, "Border");
     let has_choice = editor.document().method().has_continuity();
@@ -298,7 +298,7 @@ fn joint(ui: &mut egui::Ui, editor: &Editor, handle: &Handle, commands: &mut Out
     ui.end_row();
 }
 
-/// Whether the handle holds its vertices or only pulls at them, and how firmly.
+/// Whether the handle fixes its vertices or only pulls at them, and how strongly.
 fn softness(ui: &mut egui::Ui, handle: &Handle, commands: &mut Outbox) {
     let mut is_soft = handle.soft.is_some();
     let hover = "A soft handle pulls at its part of the surface instead of holding it.";

@@ -1,4 +1,4 @@
-//! The steps of the document: a click goes back or forth to one; how much memory they take.
+//! The steps of the document: a click goes back or forth to one; their memory.
 
 use eframe::egui::{self, RichText, ScrollArea};
 use pliant_editor::{Command, Editor, HISTORY_BYTES};

@@ -1,12 +1,12 @@
-//! Warnings of what came out badly: where bending has put the surface through itself, with a way to each place, and
-//! which triangles and edges are spoilt.
+//! Warnings about damage: the places where bending has put the surface through itself, with a button for each, and the
+//! damaged triangles and edges.
 
 use eframe::egui::{self, RichText};
 use pliant_editor::{Command, Editor};
 
 use crate::window::widgets::outbox::Outbox;
 
-/// So many places have a button: the largest.
+/// The number of places that have a button: the largest ones.
 const SHOWN: usize = 8;
 
 /// Shows the warnings, if there are any.

@@ -1,4 +1,4 @@
-//! What parts do that nothing holds: all of them, and each.
+//! The choice for loose parts: for all of them, and for each.
 
 use eframe::egui::{self, ComboBox, RichText, ScrollArea};
 use pliant_deform::Loose;
@@ -65,7 +65,7 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     light(editor, pointed, commands);
 }
 
-/// Lights up the part whose row the pointer is on.
+/// Highlights the part whose row is under the pointer.
 fn light(editor: &Editor, part: Option<u32>, commands: &mut Outbox) {
     if editor.lit_part() != part {
         commands.push(Command::LightPart(part));

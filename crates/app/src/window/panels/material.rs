@@ -1,5 +1,5 @@
-//! How a method's material bends as one slider, on a logarithmic scale: discrete shells from paper to rubber, ARAP's
-//! smooth energy from rigid to smooth.
+//! The bending of a method's material as one slider, on a logarithmic scale: discrete shells from paper to rubber,
+//! ARAP's smooth energy from rigid to smooth.
 
 use eframe::egui::{self, Slider, SliderClamping};
 use pliant_deform::{Arap, ArapEnergy, Method, OptionValue, Shells};
@@ -35,10 +35,10 @@ fn scale(method: &Method) -> Option<Scale> {
     })
 }
 
-/// A hundredth of the default and a hundred times it: the slider, which goes by the logarithm, begins in its middle.
+/// From a hundredth of the default to a hundred times it: the logarithmic slider begins in its middle.
 const RIGID_TO_SMOOTH: [f64; 2] = [3e-5, 0.3];
 
-/// Shows the slider, where the method has one.
+/// Shows the slider, if the method has one.
 pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     let method = editor.document().method();
     let Some(scale) = scale(method) else { return };

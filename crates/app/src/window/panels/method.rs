@@ -1,4 +1,5 @@
-//! The method and its options: widgets made of the methods' declarations, so that an option that is declared is shown.
+//! The method and its options: the widgets are made from the methods' declarations, so that every declared option is
+//! shown.
 
 use eframe::egui::{self, Atom, Button, ComboBox, DragValue, RichText};
 use pliant_deform::{AttachmentKind, METHODS, Method, OptionDeclaration, OptionKind, OptionValue};
@@ -38,7 +39,7 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, morph_targets: &[String], comman
     options(ui, method, commands);
 }
 
-/// The method's options, folded away, and apart from them those for who knows the method.
+/// The method's options, folded, and separately those for experts.
 fn options(ui: &mut egui::Ui, method: &Method, commands: &mut Outbox) {
     let declared = method.declaration();
     let first_choice = (declared.first_choice)();
@@ -69,7 +70,7 @@ fn options(ui: &mut egui::Ui, method: &Method, commands: &mut Outbox) {
     }
 }
 
-/// What there is of the method's cage or lattice, and what can be done with it.
+/// The method's present cage or lattice, and the commands for it.
 fn control_points(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     let declaration = editor.document().method().declaration();
     let mut attachments = declaration.attachments.iter();
@@ -137,10 +138,10 @@ pub fn choose_method(ui: &mut egui::Ui, id: &str, present: &Method, width: f32) 
     let list = ComboBox::from_id_salt(id)
         .selected_text(present.declaration().title)
         .width(width)
-        // As high as all methods together: nothing tells that a list scrolls.
+        // As high as all methods together: nothing shows that a list scrolls.
         .height(640.0)
         .show_ui(ui, |ui| {
-            // Pictures are apart from each other as they are.
+            // Pictures are already apart from each other.
             ui.spacing_mut().item_spacing.y = 1.0;
             ui.spacing_mut().button_padding.y = 1.0;
             for declaration in METHODS {
@@ -159,7 +160,7 @@ pub fn choose_method(ui: &mut egui::Ui, id: &str, present: &Method, width: f32) 
     (list.response, chosen)
 }
 
-/// An option's name and its widget, which can't be used where the option has no effect.
+/// An option's name and its widget, which is disabled if the option has no effect.
 fn row(ui: &mut egui::Ui, method: &Method, option: &OptionDeclaration, commands: &mut Outbox) {
     let default = (method.declaration().default)();
     let (Some(value), Some(default)) = (method.value(option.name), default.value(option.name)) else {
@@ -180,8 +181,8 @@ fn row(ui: &mut egui::Ui, method: &Method, option: &OptionDeclaration, commands:
     }
 }
 
-/// The widget of an option that is set to `value`. What the method refuses (nothing resists both bending and stretching,
-/// say) is not sent.
+/// The widget of an option with the value `value`. A value that the method refuses (for example no resistance to both
+/// bending and stretching) is not sent.
 fn widget(
     ui: &mut egui::Ui,
     option: &OptionDeclaration,
@@ -191,7 +192,7 @@ fn widget(
 ) -> Option<egui::Response> {
     let widget = match (option.kind, value) {
         (OptionKind::Number { range, unit }, OptionValue::Number(mut number)) => {
-            // Small numbers go by their own size, so that one drag reaches from 1e-12 to 0.1.
+            // Small numbers change in proportion to their size, so that one drag goes from 1e-12 to 0.1.
             let speed = (number.abs() * 0.02).max((range[1] - range[0]).min(1.0) * 1e-3);
             let suffix = if unit.is_empty() {
                 String::new()
@@ -272,7 +273,7 @@ fn title(name: &str) -> String {
         .map_or_else(String::new, |first| first.to_uppercase().chain(characters).collect())
 }
 
-/// A number as short as it can be told apart at a glance.
+/// A number, as short as it is still distinguishable.
 fn short(number: f64) -> String {
     if number != 0.0 && !(1e-3..1e5).contains(&number.abs()) {
         format!("{number:.3e}").replace(".000e", "e")

@@ -1,7 +1,7 @@
-//! A small picture of each method, for the list of methods: a bar that is held at its left end and bent upwards by a
-//! handle at the other, with what the method sees in it.
+//! A small picture of each method, for the list of methods: a bar that is fixed at its left end and bent upwards by a
+//! handle at the other, with the elements that the method works on.
 //!
-//! Pictures are a few lines, drawn in the colours of the theme. A method without one shows the bent bar alone.
+//! Pictures are a few lines, drawn in the colours of the theme. A method without one shows only the bent bar.
 
 use std::f32::consts::{FRAC_PI_2, TAU};
 
@@ -10,7 +10,7 @@ use eframe::egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, Ui, Vec2, vec2};
 /// Width and height in points.
 pub const SIZE: Vec2 = vec2(46.0, 31.0);
 
-/// The held end of the bar's middle line, and how far the handle is from there, in points from the upper left corner.
+/// The fixed end of the bar's middle line, and the handle's distance from there, in points from the upper left corner.
 const HELD: Vec2 = vec2(6.0, 23.0);
 const WAY: Vec2 = vec2(31.0, -16.0);
 
@@ -47,8 +47,8 @@ pub fn paint(ui: &Ui, rect: Rect, method: &str, colour: Color32) {
     pen.ends();
 }
 
-/// A point of the bent bar, a quarter of an ellipse: `along` from 0, its held end, to 1, the handle, and `off` points to
-/// its left.
+/// A point of the bent bar, a quarter of an ellipse: `along` from 0, its fixed end, to 1, the handle, and `off` points
+/// to its left.
 fn bent(along: f32, off: f32) -> Vec2 {
     let angle = along * FRAC_PI_2;
     HELD + WAY * vec2(angle.sin(), 1.0 - angle.cos()) - normal(along) * off
@@ -105,19 +105,19 @@ impl Pen<'_> {
         self.along(HALF, stroke);
     }
 
-    /// What is held and what is moved.
+    /// The fixed and the moved part.
     fn ends(&self) {
         let held = Rect::from_center_size(self.at(bent(0.0, 0.0)), vec2(4.0, 7.0));
         self.painter.rect_filled(held, 1.0, self.weak.color);
         self.dot(bent(1.0, 0.0), 3.0, HANDLE);
     }
 
-    /// A sheet from the side, as it springs.
+    /// A sheet from the side, like a spring.
     fn plate(&self) {
         self.along(0.0, Stroke::new(2.2, self.strong.color));
     }
 
-    /// Neighbourhoods that only turn: squares along the bar, `share` of their way long.
+    /// Neighbourhoods that only turn: squares along the bar, each as long as `share` of its part.
     fn blocks(&self, count: usize, share: f32) {
         for step in 0..count {
             let middle = (step as f32 + 0.5) / count as f32;
@@ -163,7 +163,7 @@ impl Pen<'_> {
         }
     }
 
-    /// Details that stand on the bar.
+    /// Details on the bar.
     fn spikes(&self) {
         let side = |(step, along): (usize, f32)| bent(along, if step % 2 == 0 { 0.0 } else { -5.0 });
         self.line(even(14).enumerate().map(side), self.strong);
@@ -179,7 +179,7 @@ impl Pen<'_> {
         }
     }
 
-    /// What each handle's place does around it.
+    /// The effect of each handle around it.
     fn circles(&self) {
         self.bar(self.weak);
         for along in [0.0, 0.5, 1.0] {
@@ -190,7 +190,7 @@ impl Pen<'_> {
         }
     }
 
-    /// Points, and where they go.
+    /// Points, and their moves.
     fn moves(&self) {
         for along in [0.3, 0.55, 0.8, 1.0] {
             let from = HELD + vec2(WAY.x * along, 0.0);
@@ -201,7 +201,7 @@ impl Pen<'_> {
         }
     }
 
-    /// Few nodes that carry the rest.
+    /// Few nodes that carry the others.
     fn graph(&self) {
         self.bar(self.weak);
         let nodes = [

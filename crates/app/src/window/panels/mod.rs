@@ -1,5 +1,4 @@
-//! The panel beside the view: handles, brush, how the surface bends, what was done, and what is to be known about the
-//! file.
+//! The panel beside the view: handles, brush, the bending of the surface, the history, and information about the file.
 
 pub(in crate::window) mod brush;
 mod examples;
@@ -65,7 +64,7 @@ fn title(name: &str) -> RichText {
     RichText::new(name).strong().size(14.0)
 }
 
-/// A part of the panel that can be folded away; true when it is just turned from one to the other.
+/// A part of the panel that can be folded; true if it was folded or unfolded just now.
 fn section(ui: &mut egui::Ui, title: &str, folded: &BTreeSet<String>, contents: &mut dyn FnMut(&mut egui::Ui)) -> bool {
     let header = egui::CollapsingHeader::new(self::title(title))
         .id_salt(title)

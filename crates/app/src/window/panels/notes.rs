@@ -1,19 +1,19 @@
-//! Sentences for the person that are no part of the editor's status: about files and what became of them.
+//! Sentences for the person that are not part of the editor's status: about files and the results of requests.
 
-/// What the person is told beside the status line.
+/// The person's information beside the status line.
 #[derive(Debug, Default)]
 pub struct Notes {
-    /// The newest thing that went well or wrong with a file, in a sentence.
+    /// The newest success or failure with a file, in a sentence.
     pub headline: Option<Note>,
-    /// What is to be known about the open file, a sentence each.
+    /// Information about the open file, a sentence each.
     pub about_file: Vec<String>,
 }
 
 /// A sentence for the person.
 #[derive(Clone, PartialEq, Debug)]
 pub enum Note {
-    /// Something was done.
+    /// A success.
     Done(String),
-    /// Something could not be done.
+    /// A failure.
     Failed(String),
 }

@@ -1,4 +1,4 @@
-//! The list of the file's nodes and materials: what is shown, shown alone, and held still.
+//! The list of the file's nodes and materials: shown, shown alone, or fixed.
 
 use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
@@ -12,7 +12,7 @@ use crate::window::widgets::icon::{Icon, toggle};
 use crate::window::widgets::number_field::number_field;
 use crate::window::widgets::outbox::Outbox;
 
-/// How many rows are seen at a time.
+/// The number of rows that are visible at a time.
 const ROWS: f32 = 7.0;
 
 /// A line of the list: objects of one node, or of one material.
@@ -27,7 +27,7 @@ struct Rows {
     of: Arc<Model>,
     nodes: Vec<Row>,
     materials: Vec<Row>,
-    /// How many objects there are.
+    /// The number of objects.
     count: usize,
     /// Whether some connected part is smaller than another.
     has_parts: bool,
@@ -40,7 +40,7 @@ impl Rows {
         Self {
             of: Arc::clone(model),
             nodes: grouped(&objects, |object| &object.name, |number| object_name("", number)),
-            // One alone says nothing that the nodes don't.
+            // A single material adds nothing to the nodes.
             materials: if materials.len() > 1 { materials } else { Vec::new() },
             count: objects.len(),
             has_parts: model.small_parts(1.0).contains(&true),
@@ -48,8 +48,8 @@ impl Rows {
     }
 }
 
-/// Objects of one name are one row, in the order in which the file names them; those without a name are one each, but
-/// for equal ones of `unnamed`.
+/// Objects of one name are one row, in the file's order; those without a name are one each, except equal ones of
+/// `unnamed`.
 fn grouped<'a>(
     objects: &'a [Object],
     name_of: impl Fn(&'a Object) -> &'a String,
@@ -113,7 +113,7 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     });
 }
 
-/// Which parts are small, and whether they are shown and held still.
+/// The small parts, and whether they are shown and fixed.
 fn small_parts(ui: &mut egui::Ui, model: &Model, access: &Access, commands: &mut Outbox) {
     let small = access.small;
     ui.horizontal(|ui| {

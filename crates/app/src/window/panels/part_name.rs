@@ -1,4 +1,4 @@
-//! What a connected part is called: by its size beside the whole and by its place, since it has no name of its own.
+//! The name of a connected part: by its size beside the whole and by its place, because it has no name of its own.
 
 use pliant_editor::UpAxis;
 use pliant_mesh::{Bounds, Model, bounding_box};
@@ -22,7 +22,7 @@ fn size(whole: &Bounds, part: &Bounds) -> &'static str {
     }
 }
 
-/// Where the part's middle is, seen from the front: outside the middle third of each axis counts.
+/// The place of the part's middle, seen from the front: positions outside the middle third of each axis count.
 fn place(whole: &Bounds, part: &Bounds, up: UpAxis) -> String {
     let offset = (part.centre() - whole.centre()) / whole.extent();
     // To the right, upwards and towards the eye.

@@ -1,4 +1,4 @@
-//! The poses that a person keeps: a list, each to be taken again, renewed, renamed or removed.
+//! The poses that a person keeps: a list, each to be taken, renewed, renamed or removed.
 
 use eframe::egui;
 use pliant_editor::{Command, Editor};
@@ -7,7 +7,7 @@ use crate::window::widgets::command_button::command_button;
 use crate::window::widgets::name_label::name_label;
 use crate::window::widgets::outbox::Outbox;
 
-/// Shows what there is before the first pose is kept: the title, and how one is kept, on a line.
+/// Shows the title and the button that keeps the first pose, on a line.
 pub fn show_none(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     ui.horizontal(|ui| {
         // Under the titles of the sections that fold.

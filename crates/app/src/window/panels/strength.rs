@@ -1,4 +1,4 @@
-//! How much of the edit is shown, as a slider.
+//! The shown share of the edit, as a slider.
 
 use eframe::egui::{self, Slider};
 use pliant_editor::{Command, Editor};
@@ -6,7 +6,7 @@ use pliant_editor::{Command, Editor};
 use crate::window::widgets::outbox::Outbox;
 use crate::window::widgets::row_label::row_label;
 
-/// Shows the slider. It is grey while nothing is bent.
+/// Shows the slider. It is disabled while nothing is bent.
 pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     let mut percent = editor.document().strength() * 100.0;
     let obstacle = editor.unavailable_because(&Command::SetStrength(0.5));

@@ -1,4 +1,4 @@
-//! Which vertices of the file are joined: by the mesh itself, equal ones alone, or those within a distance.
+//! The vertices of the file that are welded: by the mesh itself, only equal ones, or those within a distance.
 
 use eframe::egui::{self, DragValue};
 use pliant_editor::Editor;
@@ -32,13 +32,13 @@ const CHOICES: [(Joined, &str, &str); 3] = [
     ),
 ];
 
-/// The distance that is offered first, as a share of the mean edge.
+/// The suggested distance, as a share of the mean edge.
 const FIRST_DISTANCE: f64 = 0.1;
 
-/// How many triangles the mean edge is taken from.
+/// The number of triangles from which the mean edge is computed.
 const SAMPLED: usize = 4096;
 
-/// Shows the choice, and the distance where one is chosen.
+/// Shows the choice, and the distance if one is chosen.
 pub fn show(ui: &mut egui::Ui, editor: &Editor, model: &Model, commands: &mut Outbox) {
     let joined = match model.weld.distance {
         None => Joined::ByMesh,
@@ -64,7 +64,7 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, model: &Model, commands: &mut Ou
     };
     ui.horizontal(|ui| {
         let label = row_label(ui, "Distance");
-        // While it is dragged the value is kept here: the mesh is read again only when that ends.
+        // The value is kept here during a drag: the mesh is read again only at its end.
         let id = ui.scope_id().with("weld distance");
         let mut value = ui.data(|data| data.get_temp(id)).unwrap_or(distance);
         let field = number_field(ui, &mut value, |ui, value| {

@@ -15,8 +15,8 @@ use crate::window::files::session::OpenFile;
 use crate::window::panels::notes::Notes;
 
 impl Application {
-    /// Takes what other threads have done. Whether there was anything but new shapes, which come at every frame of a
-    /// drag.
+    /// Takes the results of other threads. Returns whether there was anything besides new shapes, which come at every
+    /// frame of a drag.
     pub(in crate::window) fn take_messages(&mut self) -> bool {
         let mut is_news = false;
         while let Ok(message) = self.messages.try_recv() {
@@ -29,7 +29,7 @@ impl Application {
             match message {
                 Message::Job(done, posed) => {
                     self.editor.handle(Event::JobDone(done));
-                    // A stale result's pose is not shown: the editor has another shape.
+                    // A stale result's pose is not shown, because the editor has another shape.
                     if let Some(posed) =
                         posed.filter(|posed| Arc::ptr_eq(&posed.displacements, self.editor.view().drawn))
                     {
@@ -44,7 +44,7 @@ impl Application {
                         Err(sentence) => self.fail(sentence),
                     }
                 }
-                // That goes to the second view.
+                // This one goes to the second view.
                 Message::Uploaded(..) => {}
                 Message::Redrawn(result) => self.take_drawing(result),
                 Message::LoadedMaterials(of, result) => self.set_materials(&of, result),
@@ -93,7 +93,7 @@ impl Application {
 
     fn adopt(&mut self, opened: ModelToShow) {
         self.session.adopt(&opened);
-        // What was asked for of the former file is none of this one's.
+        // Requests of the former file do not apply to this one.
         self.wishes.clear();
         self.unwritten = None;
         self.redrawing = None;
@@ -153,7 +153,7 @@ impl Application {
         drawing::field(self.editor.view().look.shading).filter(|field| field.is_of_shape())
     }
 
-    /// Has the images decoded and uploaded when materials are first shown.
+    /// Decodes and uploads the images when materials are first shown.
     pub(in crate::window) fn request_images(&mut self) {
         let Some(open) = &self.session.open else { return };
         if self.images.is_some()
@@ -209,8 +209,8 @@ impl Application {
         }
     }
 
-    /// Asks for the pose of the present shape if it is not the one that is shown (after undo, or while a handle moves
-    /// before its binding is ready).
+    /// Requests the pose of the present shape if it is not the shown one (after undo, or while a handle moves before
+    /// its binding is ready).
     pub(in crate::window) fn request_pose(&mut self) {
         let field = self.wanted_field();
         let Some(mut stage) = self.workers.stage() else { return };

@@ -21,31 +21,31 @@ use pliant_engine::files::Stamp;
 pub enum Message {
     /// One of the editor's jobs ended; a solved shape comes with its pose.
     Job(JobDone, Option<Posed>),
-    /// A shape was made ready for the renderer.
+    /// A shape was prepared for the renderer.
     Posed(Revision, Result<Posed, String>),
-    /// A file was uploaded once more, for a second view.
+    /// A file was uploaded again, for a second view.
     Uploaded(Arc<Drawing>, Result<Surface, String>),
-    /// The open file was made ready to be drawn with other parts turned inside out, or why not.
+    /// The open file was prepared for drawing with other parts turned inside out, or the reason why not.
     Redrawn(Result<Box<Redrawn>, String>),
-    /// The images of a file were decoded and uploaded, or why not.
+    /// The images of a file were decoded and uploaded, or the reason why not.
     LoadedMaterials(ImagesOf, Result<LoadedMaterials, String>),
-    /// A file was opened, or why it was not.
+    /// A file was opened, or the reason why not.
     Opened(Revision, Result<Box<ModelToShow>, String>),
-    /// A file was written, or why it was not.
+    /// A file was written, or the reason why not.
     Written(Revision, Result<Written, Unwritten>),
-    /// Where the original of the file at this path is kept or will be, or why that can't be told.
+    /// The place where the original of the file at this path is or will be kept, or the reason why it is unknown.
     OriginalFound(PathBuf, Result<Kept, String>),
-    /// The state of the document with this key was kept for a recovery, or why it was not.
+    /// The state of the document with this key was kept for a recovery, or the reason why not.
     Autosaved(SnapshotKey, Result<(), String>),
-    /// A cage was read, its vertices and triangles, or why it was not.
+    /// A cage was read, its vertices and triangles, or the reason why not.
     Cage(Result<(Vec<DVec3>, Vec<[u32; 3]>), String>),
-    /// A shape was read that is to be an example for this file, or why it was not.
+    /// A shape was read for an example of this file, or the reason why not.
     Example(Arc<Loaded>, Result<ExampleShape, String>),
-    /// What is in a folder, or why it can't be read.
+    /// The contents of a folder, or the reason why it can't be read.
     Folder(PathBuf, Result<Vec<Entry>, String>),
     /// A person chose a path in a dialog; `None` if they chose none.
     Chosen(Purpose, Option<PathBuf>),
-    /// The system has no dialog to ask for a path, which was to begin at this one.
+    /// The system has no dialog to ask for a path; it was to begin at this one.
     NoDialog(Purpose, PathBuf),
 }
 
@@ -53,7 +53,7 @@ pub enum Message {
 pub struct Redrawn {
     /// The file.
     pub loaded: Arc<Loaded>,
-    /// What the renderer takes of it now.
+    /// Its new data for the renderer.
     pub drawing: Arc<Drawing>,
     /// Its surface in GPU buffers, in the shape of `displacements`.
     pub surface: Surface,
@@ -63,32 +63,32 @@ pub struct Redrawn {
 
 /// A shape with its pose.
 pub struct Posed {
-    /// What it is a pose of.
+    /// The source of the pose.
     pub drawing: Arc<Drawing>,
     /// The shape, as the editor shares it; compared by its address.
     pub displacements: Arc<Vec<DVec3>>,
     /// The same for the renderer.
     pub pose: Pose,
-    /// The shape's numbers as colours, where such are shown.
+    /// The shape's numbers as colours, if these are shown.
     pub painted: Option<Painted>,
 }
 
 /// Numbers on the surface as colours.
 pub struct Painted {
-    /// What they are.
+    /// The numbers.
     pub field: Field,
-    /// What the colours mean.
+    /// The meaning of the colours.
     pub scale: Arc<Scale>,
     /// Colours of the drawn vertices.
     pub colours: Vec<[u8; 4]>,
 }
 
-/// Whose images are decoded, and what stops that.
+/// The drawing whose images are decoded, and the flag that stops it.
 #[derive(Clone)]
 pub struct ImagesOf {
     /// The file's drawing.
     pub drawing: Arc<Drawing>,
-    /// Raised once nobody waits for them.
+    /// Raised when nobody waits for them any longer.
     pub cancel: Cancel,
 }
 
@@ -102,33 +102,33 @@ pub struct LoadedMaterials {
 
 /// A file that was read, welded and uploaded, ready to be shown and edited.
 pub struct ModelToShow {
-    /// Where it stands; the built-in sample stands nowhere.
+    /// Its path; none for the built-in sample.
     pub path: Option<PathBuf>,
     /// The file as stored and its vertex sets.
     pub loaded: Arc<Loaded>,
-    /// What the renderer takes of it.
+    /// Its data for the renderer.
     pub drawing: Arc<Drawing>,
     /// Its surface in GPU buffers, in its own shape.
     pub surface: Surface,
-    /// Its own shape: no vertex displaced.
+    /// Its own shape: no vertex is displaced.
     pub displacements: Arc<Vec<DVec3>>,
     /// Regions and handles to begin with.
     pub beginning: Option<Beginning>,
-    /// The project that it was opened from, or is to be saved to.
+    /// The project from which it was opened, or to which it will be saved.
     pub project: Option<PathBuf>,
-    /// Where the mesh as it was read stands; the built-in sample stands nowhere.
+    /// The path of the mesh as it was read; none for the built-in sample.
     pub source: MeshSource,
-    /// The recovery file that it was opened from, left by a session that ended without saving.
+    /// The recovery file from which it was opened, left by a session that ended without saving.
     pub recovered: Option<PathBuf>,
-    /// Which file is needed for the work that no file has; `None` where there is none.
+    /// The file that unsaved work needs; `None` if there is none.
     pub unsaved: Option<SavedAs>,
     /// The files beside the mesh's that were read, as they were then.
     pub stamps: Vec<(PathBuf, Stamp)>,
-    /// What a person should know about the file, a sentence each.
+    /// Notes for a person about the file, a sentence each.
     pub notes: Vec<String>,
 }
 
-/// What a path is chosen for.
+/// The purpose of choosing a path.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Purpose {
     /// To open a model.
@@ -149,19 +149,19 @@ pub enum Purpose {
     SavePicture(PictureKind),
 }
 
-/// How a picture of the view is saved.
+/// The way to save a picture of the view.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct PictureKind {
-    /// How many of its pixels along a side one pixel of the view becomes, at least 1.
+    /// The number of its pixels along a side for one pixel of the view, at least 1.
     pub scale: u32,
-    /// What is behind the surface.
+    /// The background behind the surface.
     pub ground: Ground,
 }
 
-/// What is behind the surface in a saved picture.
+/// The background behind the surface in a saved picture.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Ground {
-    /// What the window shows.
+    /// The window's.
     AsShown,
     /// Nothing.
     Transparent,

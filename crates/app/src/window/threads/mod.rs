@@ -1,4 +1,4 @@
-//! Work on other threads, and how its results come back.
+//! Work on other threads, and the return of its results.
 
 pub(in crate::window) mod arrivals;
 pub(in crate::window) mod interface_pool;

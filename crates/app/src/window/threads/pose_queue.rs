@@ -1,4 +1,4 @@
-//! Shapes that wait to be posed for the renderer: one runs at a time, and of those that wait only the newest is kept.
+//! Shapes that wait to be posed for the renderer: one runs at a time, and only the newest of the waiting ones is kept.
 
 use std::sync::Arc;
 
@@ -9,7 +9,7 @@ use super::message::Message;
 use super::workers::{Stage, Workers};
 use crate::window::viewport::Viewport;
 
-/// The poses that one view has asked for.
+/// The poses that one view has requested.
 #[derive(Default)]
 pub struct PoseQueue {
     jobs: JobQueue<Arc<Vec<DVec3>>>,
@@ -17,7 +17,7 @@ pub struct PoseQueue {
 }
 
 impl PoseQueue {
-    /// Asks for the pose of `wanted` if the view shows another shape, or other numbers as colours.
+    /// Requests the pose of `wanted` if the view shows another shape, or other numbers as colours.
     pub fn follow(&mut self, wanted: &Arc<Vec<DVec3>>, viewport: &Viewport, stage: &Stage, workers: &Workers) {
         let is_stale = viewport.displacements().is_some_and(|shown| {
             !Arc::ptr_eq(shown, wanted) || (stage.field.is_some() && viewport.field() != stage.field)
@@ -37,12 +37,12 @@ impl PoseQueue {
         );
     }
 
-    /// A pose that was asked for has come, or failed.
+    /// A requested pose has come, or failed.
     pub fn finish(&mut self, stamp: Revision) {
         self.jobs.finish(stamp);
     }
 
-    /// What was asked for is not wanted any more.
+    /// The requested pose is no longer wanted.
     pub fn cancel(&mut self) {
         self.jobs.cancel();
     }

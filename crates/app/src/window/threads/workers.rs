@@ -22,27 +22,27 @@ use pliant_engine::{Loaded, memory};
 /// Starts work off the window's thread and wakes the window when it ends. Cloning shares the channel.
 #[derive(Clone)]
 pub struct Workers {
-    /// Another one after the graphics device was lost.
+    /// Another channel after the graphics device was lost.
     context: Arc<Mutex<egui::Context>>,
     sender: Sender<Message>,
     stage: Arc<Mutex<Option<Stage>>>,
 }
 
-/// What poses are made of.
+/// The input of poses.
 #[derive(Clone)]
 pub struct Stage {
     /// The open file.
     pub loaded: Arc<Loaded>,
-    /// What the renderer takes of it.
+    /// Its data for the renderer.
     pub drawing: Arc<Drawing>,
     /// The numbers that are shown as colours.
     pub field: Option<Field>,
-    /// The scales used so far, cached because some take a pass over the whole surface.
+    /// The scales used so far, cached because some need a pass over the whole surface.
     pub scales: Arc<Mutex<HashMap<Field, Arc<Scale>>>>,
 }
 
 impl Stage {
-    /// A shape, made ready for the renderer; its normals are turned by `jacobians` where these are known.
+    /// A shape, prepared for the renderer; its normals are turned by `jacobians` if these are known.
     pub fn pose(&self, displacements: Arc<Vec<DVec3>>, jacobians: Option<&[Mat3]>) -> Posed {
         let model = &self.loaded.model;
         let pose = match jacobians {
@@ -80,7 +80,7 @@ impl Workers {
         }
     }
 
-    /// Work's ends wake another window from now on.
+    /// From now on the ends of work wake another window.
     pub fn wake(&self, context: egui::Context) {
         *self.context.lock().unwrap_or_else(PoisonError::into_inner) = context;
     }
@@ -91,13 +91,13 @@ impl Workers {
         *self.stage.lock().unwrap_or_else(PoisonError::into_inner) = Some(stage);
     }
 
-    /// What shapes are posed for.
+    /// The input for posing shapes.
     pub fn stage(&self) -> Option<Stage> {
         self.stage.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
     /// Does `work` on a thread of its own and sends its message. If it panics or the system gives no thread, the
-    /// message is `failed` of a sentence.
+    /// message is `failed` with a sentence.
     pub fn spawn(
         &self,
         name: &str,
@@ -119,7 +119,7 @@ impl Workers {
 
     /// Sends a message to the window and wakes it.
     pub fn send(&self, message: Message) {
-        // A window that is gone wants no messages.
+        // A closed window needs no messages.
         if self.sender.send(message).is_ok() {
             self.context
                 .lock()

@@ -1,4 +1,4 @@
-//! The 3D view's part of the window: its input, its pictures and what is painted over them.
+//! The 3D view's part of the window: its input, its pictures and the marks painted over them.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -23,8 +23,8 @@ use crate::window::widgets::outbox::Outbox;
 use crate::window::widgets::theme;
 
 impl Application {
-    /// With the pointer over the view and the keys with it, Tab is the view's: it selects the next handle. Elsewhere it
-    /// goes from one widget to the next.
+    /// While the pointer is over the view and the view has the keyboard, Tab belongs to the view: it selects the next
+    /// handle. Elsewhere it goes from one widget to the next.
     fn keep_tab(ui: &egui::Ui, is_over_view: bool, typing: bool) {
         let focused = ui.memory(egui::Memory::focused);
         let is_tab = ui.input(|input| input.key_pressed(egui::Key::Tab));
@@ -33,7 +33,7 @@ impl Application {
         }
     }
 
-    /// The 3D view: input first, then the picture, then what lies over it.
+    /// The 3D view: input first, then the picture, then the layers over it.
     pub(in crate::window) fn view(&mut self, ui: &mut egui::Ui) -> Result<(), pliant_render::RenderError> {
         let (whole, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         let (above, strip) = match self.editor.comparison() {
@@ -84,7 +84,7 @@ impl Application {
         Ok(())
     }
 
-    /// Gives the editor what the pointer and the keys did to the view.
+    /// Gives the editor the pointer's and keys' events over the view.
     fn hear(&mut self, ui: &egui::Ui, rect: egui::Rect, response: &egui::Response) {
         if response.is_pointer_button_down_on() {
             ui.memory_mut(|memory| {
@@ -119,7 +119,7 @@ impl Application {
         }
     }
 
-    /// Whether anything has moved of late.
+    /// Whether anything has moved recently.
     fn smoothness(&self) -> Smoothness {
         let is_resting = self.last_change.elapsed() >= REST && self.editor.view().settled;
         if is_resting {
@@ -133,7 +133,7 @@ impl Application {
     fn method_views(&mut self, ui: &mut egui::Ui, strip: Option<egui::Rect>) -> Result<(), pliant_render::RenderError> {
         let (Some(strip), Some(comparison), Some(stage)) = (strip, self.editor.comparison(), self.workers.stage())
         else {
-            // What is on the device for them goes with them.
+            // Their data on the device is dropped with them.
             self.method_views = MethodViews::default();
             return Ok(());
         };
@@ -155,7 +155,7 @@ impl Application {
         Ok(())
     }
 
-    /// Draws the view, and beside it the `second` one where two methods are compared.
+    /// Draws the view, and beside it the `second` one if two methods are compared.
     fn picture(
         &mut self,
         ui: &mut egui::Ui,
@@ -184,7 +184,7 @@ impl Application {
         Ok(())
     }
 
-    /// Lays the shape as it was opened over the picture, where it is shown along with the present one.
+    /// Lays the shape of the file over the picture, if it is shown along with the present one.
     fn original(
         &mut self,
         ui: &mut egui::Ui,
@@ -193,7 +193,7 @@ impl Application {
     ) -> Result<(), pliant_render::RenderError> {
         let before = self.editor.view().look.before;
         let (Some(stage), true) = (self.workers.stage(), before != Before::Off) else {
-            // What is on the device for it goes with it.
+            // Its data on the device is dropped with it.
             self.original = None;
             return Ok(());
         };
@@ -209,7 +209,7 @@ impl Application {
         Ok(())
     }
 
-    /// Paints what lies over the picture: a lasso, the legend, a readout beside the pointer, the axes.
+    /// Paints the layers over the picture: a lasso, the legend, a readout beside the pointer, the axes.
     fn marks(&mut self, ui: &mut egui::Ui, rect: egui::Rect) {
         let shown = self.editor.view();
         if shown.outline_px.len() > 1 {
@@ -246,7 +246,7 @@ impl Application {
         }
     }
 
-    /// While nothing is open and nothing is being opened: how to open something.
+    /// While nothing is open and nothing is being opened: the ways to open something.
     fn invitation(&mut self, ui: &mut egui::Ui, rect: egui::Rect) {
         if self.editor.view().model.is_some() || self.session.doing().is_some() {
             return;
@@ -265,7 +265,7 @@ impl Application {
         );
     }
 
-    /// Shows messages and the first steps over the corners of the views, which are `whole` together.
+    /// Shows messages and the first steps over the corners of the views, which together are `whole`.
     fn words(&mut self, ui: &egui::Ui, rect: egui::Rect, whole: egui::Rect) {
         let problem = self.editor.view().problem;
         let toast = self.toast.show(ui.ctx(), whole, problem, &mut self.notes.headline);
@@ -275,7 +275,7 @@ impl Application {
     }
 }
 
-/// While files are held over the window: what letting go of them does.
+/// While files are held over the window: the effect of dropping them.
 fn drop_target(ui: &egui::Ui, rect: egui::Rect) {
     let held = ui.input(|input| input.raw.hovered_files.first().map(|file| file.path.clone()));
     let Some(path) = held else { return };

@@ -25,12 +25,12 @@ struct Knob {
     depth: f64,
 }
 
-/// Whether a point of the window is on the ball of a view that stands at `view`.
+/// Whether a point of the window is on the ball of a view at `view`.
 pub fn contains(view: Rect, position: Option<Pos2>) -> bool {
     position.is_some_and(|position| position.distance(middle(view)) <= RADIUS + KNOB)
 }
 
-/// Shows the ball in the corner of `view`; what a click on it asks for.
+/// Shows the ball in the corner of `view`; returns the command of a click on it.
 pub fn show(ui: &egui::Ui, view: Rect, camera: &Camera) -> Option<Command> {
     if view.width() < 6.0 * RADIUS || view.height() < 6.0 * RADIUS {
         return None;
@@ -91,7 +91,7 @@ fn knobs(camera: &Camera, middle: Pos2) -> Vec<Knob> {
 }
 
 fn paint(painter: &Painter, middle: Pos2, knob: &Knob, is_hovered: bool) {
-    // What points away is dimmer.
+    // Axes that point away are dimmer.
     let share = (0.55 + 0.45 * knob.depth) as f32;
     let colour = COLOURS[knob.axis];
     let dimmed = colour.lerp_to_gamma(Color32::from_rgb(60, 64, 70), 0.6 * (1.0 - share));

@@ -1,4 +1,4 @@
-//! What is behind the surface in the window: dim in the dark theme, pale in the light one, with lines that stand out.
+//! The background of the surface in the window: dim in the dark theme, pale in the light one, with visible lines.
 
 use eframe::egui::Visuals;
 use pliant_render::{Background, Grid};
@@ -12,7 +12,8 @@ pub enum Backdrop {
 
 /// Lines on the light backdrop, sRGB with straight alpha.
 const DARK_LINES: [u8; 3] = [58, 62, 70];
-/// Factors of the axes' colours and of their alpha on the light backdrop: dark and nearly opaque, each hue still told.
+/// Factors of the axes' colours and of their alpha on the light backdrop: dark and nearly opaque, with hues that are
+/// still distinct.
 const DARK_AXES: [f32; 4] = [0.48, 0.48, 0.48, 1.3];
 
 impl Backdrop {
@@ -33,7 +34,7 @@ impl Backdrop {
         }
     }
 
-    /// The grid in colours that are seen on this backdrop.
+    /// The grid in colours that are visible on this backdrop.
     pub fn grid(self, mut grid: Grid) -> Grid {
         if self == Self::Light {
             grid.colour[..3].copy_from_slice(&DARK_LINES);

@@ -1,7 +1,7 @@
-//! The shape as it was opened along with the present one: on the left of a line that can be dragged, or as a ghost.
+//! The shape of the file along with the present one: on the left of a line that can be dragged, or as a ghost.
 //!
-//! It is a further picture from the same eye, which is laid over the first: clipped at the line, or faded. So the two
-//! need no common depth, and nothing of it is drawn while it is off.
+//! It is a further picture from the same eye, drawn over the first: clipped at the line, or faded. So the two need no
+//! common depth, and nothing is drawn while it is off.
 
 use std::time::Duration;
 
@@ -14,17 +14,17 @@ use super::side_view::SideView;
 use super::{Smoothness, Viewport};
 use crate::window::threads::workers::Stage;
 
-/// How much a ghost covers of what lies behind it.
+/// The opacity of a ghost.
 const GHOST: f32 = 0.45;
 
-/// How far from the line the pointer takes it, in points.
+/// The distance within which the pointer takes the line, in points.
 const GRIP: f32 = 6.0;
 
-/// The share of the view's width that is left of the line at first, and how near to the borders it goes.
+/// The share of the view's width to the left of the line at first, and its least distance from the borders.
 const MIDDLE: f32 = 0.5;
 const LEAST: f32 = 0.03;
 
-/// Where the line stands, as a share of the view's width.
+/// The position of the line, as a share of the view's width.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Split(f32);
 
@@ -35,18 +35,18 @@ impl Default for Split {
 }
 
 impl Split {
-    /// Where the pointer takes the line.
+    /// The place where the pointer takes the line.
     fn grip(self, view: Rect) -> Rect {
         let x = view.left() + self.0 * view.width();
         Rect::from_x_y_ranges(x - GRIP..=x + GRIP, view.y_range())
     }
 
-    /// Whether the pointer is on the line, where that is shown.
+    /// Whether the pointer is on the line, if that is shown.
     pub fn takes(self, view: Rect, position: Option<Pos2>, before: Before) -> bool {
         before == Before::Split && position.is_some_and(|position| self.grip(view).contains(position))
     }
 
-    /// Shows the line, and moves it as it is dragged.
+    /// Shows the line, and moves it during a drag.
     pub fn show(&mut self, ui: &egui::Ui, view: Rect) {
         let response = ui.interact(self.grip(view), egui::Id::unique("before and after"), Sense::drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Splitter, true, "Line between before and after"));
@@ -69,11 +69,11 @@ impl Split {
     }
 }
 
-/// The picture of the shape as it was opened.
+/// The picture of the file's shape.
 pub struct OriginalView(SideView);
 
 impl OriginalView {
-    /// A picture of nothing yet, on the device of another.
+    /// An empty picture, on the device of another.
     pub fn beside(context: &egui::Context, first: &Viewport) -> Self {
         Self(SideView::beside(context, first))
     }
@@ -83,12 +83,12 @@ impl OriginalView {
         self.0.shows(view.original)
     }
 
-    /// How long drawing it has kept the window's thread busy so far.
+    /// The time that drawing it has kept the window's thread busy so far.
     pub fn drawing_time(&self) -> Duration {
         self.0.viewport.drawing_time()
     }
 
-    /// Takes over what the first view has, and what has ended elsewhere.
+    /// Takes over the first view's state, and the results of other threads.
     pub fn follow(&mut self, editor: &Editor, first: &Viewport, stage: &Stage) {
         let view = editor.view();
         self.0.workers.set_stage(stage.clone());
@@ -98,7 +98,7 @@ impl OriginalView {
         self.0.follow(view.original, first, stage);
     }
 
-    /// Lays it over the first view's picture in `rect`. Returns whether it is worth a second drawing when nothing has
+    /// Draws it over the first view's picture in `rect`. Returns whether it is worth a second drawing when nothing has
     /// changed for a while.
     ///
     /// # Errors
@@ -111,7 +111,7 @@ impl OriginalView {
         split: Split,
         smooth: Smoothness,
     ) -> Result<bool, RenderError> {
-        // What is done is done to the present shape, and marked there.
+        // Tools act on the present shape, and mark it there.
         let view = SceneView {
             brush_ring: &[],
             gizmo: &[],

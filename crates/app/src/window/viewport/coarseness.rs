@@ -1,8 +1,8 @@
-//! How many of the view's pixels become one while something moves: as few as the device manages in time.
+//! The number of the view's pixels that become one while something moves: as few as the device manages in time.
 
-/// A drawing that takes longer is drawn with fewer pixels, milliseconds.
+/// A drawing that takes longer than this in milliseconds gets fewer pixels.
 const SLOW_MS: f64 = 50.0;
-/// And with more again where it takes less; far enough below that it does not swing to and fro.
+/// A drawing that takes less than this gets more again; the limit is low enough that it does not oscillate.
 const FAST_MS: f64 = 10.0;
 /// The most pixels a side that become one.
 const COARSEST: u32 = 4;
@@ -14,7 +14,7 @@ const WORTH: f64 = 0.8;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Coarseness {
     factor: u32,
-    /// How long a drawing took before the last step to fewer pixels.
+    /// The time of a drawing before the last step to fewer pixels.
     before_ms: Option<f64>,
     /// Fewer pixels were tried and gained nothing.
     is_in_vain: bool,
@@ -31,12 +31,12 @@ impl Default for Coarseness {
 }
 
 impl Coarseness {
-    /// Pixels of the view a side that become one of the picture.
+    /// The view's pixels a side for one pixel of the picture.
     pub fn factor(&self) -> u32 {
         self.factor
     }
 
-    /// Learns how long a drawing at the present factor took.
+    /// Takes the time of a drawing at the present factor.
     pub fn took(&mut self, ms: f64) {
         if let Some(before_ms) = self.before_ms.take()
             && ms > WORTH * before_ms

@@ -34,23 +34,23 @@ impl Compare {
         }
     }
 
-    /// The editor behind the view, to look at.
+    /// The editor behind the view, for reading.
     pub fn editor(&self) -> &Editor {
         &self.editor
     }
 
-    /// How long drawing it has kept the window's thread busy so far.
+    /// The time that drawing it has kept the window's thread busy so far.
     pub fn drawing_time(&self) -> Duration {
         self.side.viewport.drawing_time()
     }
 
-    /// Whether it shows what its method makes of the handles.
+    /// Whether it shows its method's result for the handles.
     pub fn is_settled(&self) -> bool {
         let view = self.editor.view();
         view.settled && self.side.shows(view.drawn)
     }
 
-    /// Takes over what the first view and its editor have, and what has ended elsewhere.
+    /// Takes over the state of the first view and its editor, and the results of other threads.
     pub fn follow(&mut self, leader: &Editor, first: &Viewport, stage: &Stage) {
         self.side.workers.set_stage(stage.clone());
         if self.editor.most_memory() != leader.most_memory() {

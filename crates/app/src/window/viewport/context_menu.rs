@@ -1,4 +1,4 @@
-//! The menu of a right click: what can be done with what lies under the pointer.
+//! The menu of a right click: the commands for the part under the pointer.
 
 use eframe::egui;
 use glam::DVec2;
@@ -7,8 +7,8 @@ use pliant_editor::{Command, Editor, HandleId, Paint};
 use crate::window::widgets::command_button::command_button;
 use crate::window::widgets::outbox::Outbox;
 
-/// Shows it where the view was clicked with the right button, until it is clicked away. A handle that is clicked is
-/// selected, so that the menu is about it.
+/// Shows it where the view was clicked with the right button, until a click elsewhere closes it. A handle under the
+/// click is selected, so that the menu applies to it.
 pub fn show(response: &egui::Response, editor: &Editor, commands: &mut Outbox) {
     if response.secondary_clicked()
         && let Some(at) = response.interact_pointer_pos()

@@ -6,12 +6,13 @@ use pliant_render::{Materials, RenderError, Renderer, Surface};
 
 use crate::drawing::{DecodedMaterials, Drawing, Pose};
 
-/// The device, shared with the threads that upload files. Drawing needs it alone, and rather skips a frame than wait.
+/// The device, shared with the threads that upload files. Drawing needs exclusive access, and skips a frame rather than
+/// wait.
 #[derive(Clone)]
 pub struct Gpu(Arc<RwLock<Renderer>>);
 
 impl Gpu {
-    /// A device's renderer, to be shared.
+    /// A device's renderer, for sharing.
     pub fn new(renderer: Renderer) -> Self {
         Self(Arc::new(RwLock::new(renderer)))
     }
@@ -32,18 +33,18 @@ impl Gpu {
         drawing.upload(&self.read(), pose)
     }
 
-    /// The renderer, beside whoever else reads it.
+    /// The renderer, shared with other readers.
     pub fn read(&self) -> RwLockReadGuard<'_, Renderer> {
-        // A panic elsewhere leaves the device as it is.
+        // A panic elsewhere does not change the device.
         self.0.read().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The renderer beside others, unless somebody draws.
+    /// The renderer, shared, unless somebody draws.
     pub fn try_read(&self) -> Option<RwLockReadGuard<'_, Renderer>> {
         self.0.try_read().ok()
     }
 
-    /// The renderer alone, unless somebody has it.
+    /// The renderer, exclusively, unless somebody has it.
     pub fn try_write(&self) -> Option<RwLockWriteGuard<'_, Renderer>> {
         self.0.try_write().ok()
     }

@@ -1,4 +1,4 @@
-//! Small live views of what each method makes of the present edit, from the main view's camera, with names and figures
+//! Small live views of each method's result for the present edit, from the main view's camera, with names and figures
 //! beneath. A click takes a method.
 
 use std::time::Duration;
@@ -20,7 +20,7 @@ use pliant_engine::report::finite_or;
 
 /// The height of a caption in points.
 const CAPTION: f32 = 52.0;
-/// What is left free around a picture, in points.
+/// The margin around a picture, in points.
 const GAP: f32 = 3.0;
 
 /// A view for each method that is compared.
@@ -29,7 +29,7 @@ pub struct MethodViews {
     views: Vec<SideView>,
 }
 
-/// What came of showing the views.
+/// The result of showing the views.
 pub struct Shown {
     /// Whether a second drawing is worth it when nothing has changed for a while.
     pub again: bool,
@@ -38,7 +38,7 @@ pub struct Shown {
 }
 
 impl MethodViews {
-    /// Whether every view shows what its method makes of the present edit.
+    /// Whether every view shows its method's result for the present edit.
     pub fn are_settled(&self, comparison: &Comparison) -> bool {
         let alternatives = comparison.alternatives();
         let mut pairs = self.views.iter().zip(alternatives);
@@ -47,13 +47,13 @@ impl MethodViews {
             && pairs.all(|(view, alternative)| view.shows(&alternative.shape))
     }
 
-    /// How long drawing them has kept the window's thread busy so far.
+    /// The time that drawing them has kept the window's thread busy so far.
     pub fn drawing_time(&self) -> Duration {
         self.views.iter().map(|view| view.viewport.drawing_time()).sum()
     }
 
-    /// Takes over the shapes of the comparison, and what has ended elsewhere. The file is uploaded for one view after the
-    /// other.
+    /// Takes over the shapes of the comparison, and the results of other threads. The file is uploaded for one view
+    /// after the other.
     pub fn follow(&mut self, context: &egui::Context, comparison: &Comparison, first: &Viewport, stage: &Stage) {
         let alternatives = comparison.alternatives();
         self.views.truncate(alternatives.len());
@@ -115,8 +115,8 @@ impl MethodViews {
     }
 }
 
-/// Draws a method's shape as the main view sees it, with this share of its width and height, and without what belongs to
-/// the pointer there.
+/// Draws a method's shape as in the main view, with this share of its width and height, and without the marks of the
+/// pointer there.
 fn draw(
     ui: &Ui,
     rect: Rect,
@@ -126,7 +126,7 @@ fn draw(
     smooth: Smoothness,
 ) -> Result<bool, RenderError> {
     let main = editor.view();
-    // Nothing but the shape: it is small enough. Weights are the document's own method's.
+    // Only the shape: it is small enough. Weights belong to the document's own method.
     let look = Look {
         shading: match main.look.shading {
             Shading::Weights => Shading::Clay,
@@ -154,8 +154,8 @@ fn draw(
     view.viewport.paint(ui, rect, &scene, editor, smooth)
 }
 
-/// The camera that shows in `to` at least the middle `share` of the width and of the height of what `camera` shows in
-/// `from`, in the same perspective.
+/// The camera that shows in `to` at least the middle `share` of the width and height of `camera`'s picture in `from`,
+/// in the same perspective.
 fn as_wide(camera: &Camera, from: DVec2, share: DVec2, to: DVec2) -> Camera {
     let wider = ((share.x * from.x / from.y) / (to.x / to.y)).max(share.y);
     Camera {
@@ -164,9 +164,9 @@ fn as_wide(camera: &Camera, from: DVec2, share: DVec2, to: DVec2) -> Camera {
     }
 }
 
-/// The share of the main view's width and height, about its middle, that the small views show: all of its height at
-/// least, and in width what holds every method's shape. Where a person sees all of the model, that is more than the main
-/// view's where a method has bent its shape beyond it; where a person has come nearer, the main view's is the most.
+/// The share of the main view's width and height, about its middle, that the small views show: at least all of its
+/// height, and in width every method's shape. If the person sees all of the model, that is more than the main view's if
+/// a method has bent its shape beyond it; if the person has come nearer, the main view's is the most.
 fn share_in_sight(main: &SceneView<'_>, comparison: &Comparison) -> DVec2 {
     let bounds = main.model.and_then(|model| model.bounds());
     let figures = comparison
@@ -177,19 +177,19 @@ fn share_in_sight(main: &SceneView<'_>, comparison: &Comparison) -> DVec2 {
     let at_rest = reach(main.camera, main.viewport_px, bounds);
     let most = if at_rest.max_element() <= 1.0 { FARTHEST } else { 1.0 };
     let all = reach(main.camera, main.viewport_px, bounds.into_iter().chain(bent));
-    // With a little room at the sides, and above and below what the main view does not show.
+    // With a little room at the sides, and above and below for parts that the main view does not show.
     let height = if all.y > 1.0 { ROOM * all.y } else { 1.0 };
     DVec2::new((ROOM * all.x).clamp(0.2, most), height.min(most))
 }
 
-/// The room around a shape, as a factor of what it takes.
+/// The room around a shape, as a factor of its size.
 const ROOM: f64 = 1.1;
 
-/// A small view shows at most so many times what the main view does: a shape that some method has thrown far away does
-/// not make all the others dots.
+/// A small view shows at most this many times the main view's content: a shape that some method has thrown far away
+/// does not turn all the others into dots.
 const FARTHEST: f64 = 3.0;
 
-/// How far boxes reach from the middle of a view to its edges, the edges being at 1; 1 where a corner is behind the eye.
+/// The extent of boxes from the middle of a view towards its edges, which are at 1; 1 if a corner is behind the eye.
 fn reach(camera: &Camera, size_px: DVec2, boxes: impl IntoIterator<Item = Bounds>) -> DVec2 {
     let corners = boxes.into_iter().flat_map(|bounds| {
         (0..8).map(move |number: u32| {
@@ -204,7 +204,7 @@ fn reach(camera: &Camera, size_px: DVec2, boxes: impl IntoIterator<Item = Bounds
     reached.fold(DVec2::ZERO, DVec2::max)
 }
 
-/// Writes a method's name and figures beneath its picture, or why there is none in the picture's place.
+/// Writes a method's name and figures beneath its picture, or the reason why there is none in the picture's place.
 fn caption(ui: &Ui, cell: Rect, picture: Rect, alternative: &Alternative, problem: Option<&str>, is_own: bool) {
     let painter = ui.painter().with_clip_rect(cell);
     let visuals = ui.visuals();

@@ -1,8 +1,8 @@
 //! The one place where egui meets the renderer: the 3D view, drawn into a texture of its own and shown as an image.
 //!
-//! The picture is drawn anew only when the shape, the colours, the marks, the camera, the style or the size changed.
-//! On a device that is the processor itself a changing view is drawn with one sample a pixel and large meshes with fewer
-//! triangles, and once more in full when it has come to rest.
+//! The picture is drawn again only when the shape, the colours, the marks, the camera, the style or the size changes.
+//! If the processor itself draws, a changing view is drawn with one sample a pixel and large meshes with fewer
+//! triangles, and again in full when it has come to rest.
 
 pub(in crate::window) mod area;
 pub(in crate::window) mod axis_ball;
@@ -46,7 +46,7 @@ pub struct Viewport {
     state: RenderState,
     gpu: Gpu,
     software: Option<String>,
-    /// Set when the device is gone, by whoever notices.
+    /// Set by whoever notices that the device is lost.
     lost: Arc<AtomicBool>,
     target: Target,
     texture: Option<TextureId>,
@@ -55,7 +55,7 @@ pub struct Viewport {
     drawings: u64,
     drawing_time: Duration,
     coarseness: Coarseness,
-    /// How much of what lies behind its picture the picture covers; a part of it leaves the surroundings out.
+    /// The opacity of the picture over its background; below 1 the surroundings of the surface are left out.
     opacity: f32,
 }
 
@@ -70,7 +70,7 @@ impl Viewport {
         state
             .device
             .set_device_lost_callback(move |_, _| is_lost.store(true, Ordering::Relaxed));
-        // What we ask of the device we hear about ourselves; an error of anybody else's on a device that is going must
+        // Our own requests to the device return their errors; another party's error on a device that is being lost must
         // not end the program.
         state.device.on_uncaptured_error(Arc::new(|_| {}));
         let renderer = Renderer::new(&state.device, &state.queue)?;
@@ -78,7 +78,7 @@ impl Viewport {
         Ok(Self::of(state, Gpu::new(renderer), software, lost))
     }
 
-    /// Another view on the same device, of nothing yet.
+    /// Another view on the same device, still empty.
     pub fn beside(&self) -> Self {
         let lost = Arc::clone(&self.lost);
         Self::of(self.state.clone(), self.gpu.clone(), self.software.clone(), lost)
@@ -101,7 +101,7 @@ impl Viewport {
         }
     }
 
-    /// Chooses how much of what lies behind its picture the picture covers: all (1), or the surface alone a part.
+    /// Chooses the opacity of the picture over its background: 1, or less for the surface alone.
     pub fn set_opacity(&mut self, opacity: f32) {
         if self.opacity != opacity {
             self.opacity = opacity;
@@ -109,19 +109,19 @@ impl Viewport {
         }
     }
 
-    /// The file that is shown.
+    /// The shown file.
     pub fn shows(&self, drawing: &Arc<Drawing>) -> bool {
         self.surface
             .as_ref()
             .is_some_and(|shown| Arc::ptr_eq(&shown.drawing, drawing))
     }
 
-    /// Whether the device is gone: a driver was updated or crashed, or a card was pulled out.
+    /// Whether the device is lost: a driver was updated or crashed, or a card was removed.
     pub fn is_lost(&self) -> bool {
         self.lost.load(Ordering::Relaxed)
     }
 
-    /// Loses the device, as a driver that crashes does: for trying out that nothing else is lost.
+    /// Loses the device, like a driver that crashes, to test that nothing else is lost.
     pub fn lose_device(&self) {
         self.state.device.destroy();
         self.lost.store(true, Ordering::Relaxed);
@@ -132,18 +132,17 @@ impl Viewport {
         self.software.as_deref()
     }
 
-    /// What uploads files' surfaces, from any thread.
+    /// The means to upload files' surfaces, from any thread.
     pub fn gpu(&self) -> Gpu {
         self.gpu.clone()
     }
 
-    /// How often a picture was drawn.
+    /// The number of drawn pictures.
     pub fn drawings(&self) -> u64 {
         self.drawings
     }
 
-    /// How long drawing has kept the window's thread busy so far: on a software device it is the processor that
-    /// draws.
+    /// The time that drawing has kept the window's thread busy so far: a software device draws on the processor.
     pub fn drawing_time(&self) -> Duration {
         self.drawing_time
     }
@@ -170,7 +169,7 @@ impl Viewport {
         });
     }
 
-    /// Gives the file that is shown its materials with their images, if it is still this one.
+    /// Gives the shown file its materials with their images, if it is still this one.
     ///
     /// # Errors
     /// As [`Surface::set_materials`].
@@ -186,7 +185,7 @@ impl Viewport {
         }
     }
 
-    /// Shows the materials of the file without their images, which will not come.
+    /// Shows the materials of the file without their images, which are not available.
     pub fn give_up_images(&mut self, drawing: &Arc<Drawing>) {
         if let Some(shown) = &mut self.surface
             && Arc::ptr_eq(&shown.drawing, drawing)
@@ -201,8 +200,8 @@ impl Viewport {
         self.surface.as_ref().is_some_and(|shown| shown.awaits_images)
     }
 
-    /// The look that can be shown now: clay in place of materials whose images are still to come, because without
-    /// them they are nothing but white, and in place of weights where there are none.
+    /// The look that can be shown now: clay in place of materials whose images are still to come, because without them
+    /// they are plain white, and in place of weights if there are none.
     fn present_look(&self, look: Look) -> Look {
         let shading = match look.shading {
             Shading::Material if self.awaits_images() => Shading::Clay,
@@ -212,12 +211,12 @@ impl Viewport {
         Look { shading, ..look }
     }
 
-    /// The materials with their images of the file that is shown, once it has them.
+    /// The materials with their images of the shown file, if it has them.
     pub fn materials(&self) -> Option<&Materials> {
         self.surface.as_ref()?.materials.as_ref()
     }
 
-    /// The numbers that the surface's colours show.
+    /// The numbers behind the surface's colours.
     pub fn field(&self) -> Option<Field> {
         match self.surface.as_ref()?.colours {
             Colours::Field(field) => Some(field),
@@ -227,13 +226,13 @@ impl Viewport {
         }
     }
 
-    /// What the surface's colours mean, where they show numbers.
+    /// The meaning of the surface's colours, if they show numbers.
     pub fn scale(&self) -> Option<&Scale> {
         self.field()?;
         self.surface.as_ref()?.scale.as_deref()
     }
 
-    /// Moves the surface to a pose of what is shown; one of another drawing changes nothing.
+    /// Moves the surface to a pose of the shown drawing; a pose of another one changes nothing.
     ///
     /// # Errors
     /// As [`Surface::update_shape`].
@@ -259,8 +258,8 @@ impl Viewport {
         self.surface.as_ref().map(|shown| &shown.displacements)
     }
 
-    /// Draws the scene `view` with the editor's colours if anything changed, and paints the picture into `rect`. Returns whether a smoother picture is worth a
-    /// second drawing when nothing has changed for a while.
+    /// Draws the scene `view` with the editor's colours if anything changed, and paints the picture into `rect`.
+    /// Returns whether a smoother picture is worth a second drawing when nothing has changed for a while.
     ///
     /// # Errors
     /// As [`Renderer::draw`].
@@ -294,7 +293,7 @@ impl Viewport {
             Smoothness::Moving if software && self.may_be_reduced(view) => Detail::Reduced,
             Smoothness::Moving | Smoothness::Resting => Detail::Full,
         };
-        // What moves drags its last shadow along: a new one is made when it rests.
+        // A moving surface keeps its last shadow: a new one is made when it rests.
         let wanted_shadow = self.surface.as_ref().and_then(|shown| shown.wanted_shadow(view));
         let shadow = match smooth {
             Smoothness::Moving => self.surface.as_ref().and_then(|shown| shown.shadow),
@@ -331,7 +330,7 @@ impl Viewport {
         Ok(is_coarse || is_stale || (is_jagged && triangles <= SOFT_SMOOTH_TRIANGLES))
     }
 
-    /// Whether the surface can be drawn with fewer triangles: not as materials and not with its edges.
+    /// Whether the surface can be drawn with fewer triangles: not with materials and not with its edges.
     fn may_be_reduced(&self, view: &SceneView<'_>) -> bool {
         let Some(shown) = &self.surface else { return false };
         let eye = drawing::view(view.camera, view.viewport_px, shown.drawing.centre());
@@ -340,7 +339,7 @@ impl Viewport {
             && shown.surface.has_reduced(&eye)
     }
 
-    /// How long the device worked on a drawing of late.
+    /// The time that the device has recently needed for a drawing.
     fn device_ms(&self) -> Option<f64> {
         self.gpu.try_read()?.device_ms()
     }
@@ -367,7 +366,7 @@ impl Viewport {
         }
     }
 
-    /// Draws; false if a file is just being uploaded, which this thread does not wait for.
+    /// Draws; false if a file is being uploaded, for which this thread does not wait.
     fn draw(&mut self, view: &SceneView<'_>, key: &DrawnKey) -> Result<bool, RenderError> {
         let gpu = self.gpu.clone();
         let Some(mut renderer) = gpu.try_write() else {
@@ -416,7 +415,7 @@ impl Viewport {
         drawn.map(|()| true)
     }
 
-    /// A picture of what the view shows, without its marks; `None` while a file is being uploaded or nothing is open.
+    /// A picture of the view's scene, without its marks; `None` while a file is being uploaded or nothing is open.
     ///
     /// # Errors
     /// As [`Renderer::draw_to_image`].
@@ -425,7 +424,7 @@ impl Viewport {
         let (Some(shown), Some(key), Some(mut renderer)) = (&self.surface, &self.drawn, gpu.try_write()) else {
             return Ok(None);
         };
-        // As large as the view, though it may just be drawn with fewer pixels.
+        // As large as the view, even if that is being drawn with fewer pixels.
         let [width, height] = view.viewport_px.as_vec2().to_array();
         let size_px =
             pixels(egui::vec2(width, height) * key.pixels_per_point).map(|side| side.max(1) * kind.scale.max(1));
@@ -452,7 +451,7 @@ impl Viewport {
         Ok(Some(image))
     }
 
-    /// Tells egui about a new texture.
+    /// Registers a new texture with egui.
     fn register(&mut self) {
         let mut egui_renderer = self.state.renderer.write();
         let Some(view) = self.target.texture_view() else {
@@ -482,7 +481,7 @@ impl Drop for Viewport {
 pub enum Smoothness {
     /// Something moves: speed first.
     Moving,
-    /// Nothing has moved for a while: beauty first.
+    /// Nothing has moved for a while: quality first.
     Resting,
 }
 

@@ -1,4 +1,4 @@
-//! The open file in another drawing, once other parts of it are turned inside out.
+//! The open file in another drawing, when other parts of it are turned inside out.
 
 use std::sync::Arc;
 
@@ -9,13 +9,13 @@ use crate::window::application::Application;
 use crate::window::threads::message::{Message, Redrawn};
 
 impl Application {
-    /// Whether the parts that are drawn turned inside out are those that the document turns.
+    /// Whether the drawing turns the same parts inside out as the document.
     pub(in crate::window) fn shows_what_is_turned(&self) -> bool {
         let open = self.session.open.as_ref();
         open.is_none_or(|open| open.drawing.inside_out == *self.editor.document().inside_out())
     }
 
-    /// Has the file drawn with the parts turned inside out that the document turns, off the window's thread.
+    /// Draws the file with the document's parts turned inside out, off the window's thread.
     pub(in crate::window) fn request_drawing(&mut self) {
         let Some(open) = &self.session.open else { return };
         if self.shows_what_is_turned() || self.redrawing.is_some() {
@@ -50,7 +50,7 @@ impl Application {
         let redrawn = match result {
             Ok(redrawn) => redrawn,
             Err(sentence) => {
-                // Not asked for again and again.
+                // This is not requested again and again.
                 self.redrawing = wanted;
                 return self.fail(format!("the view does not show what is turned inside out: {sentence}"));
             }

@@ -10,7 +10,7 @@ use pliant_render::{Grid, Materials, RenderError, Renderer, Surface};
 use super::gpu::Gpu;
 use crate::drawing::{self, Drawing, Field, Scale};
 
-/// The surface in GPU buffers and what it shows.
+/// The surface in GPU buffers and its present contents.
 pub struct Shown {
     pub surface: Surface,
     pub drawing: Arc<Drawing>,
@@ -18,9 +18,9 @@ pub struct Shown {
     /// The height of the file's lowest point along each axis, in world units.
     pub lowest: DVec3,
     pub colours: Colours,
-    /// One a drawn vertex, where they are regions.
+    /// One for each drawn vertex, if they are regions.
     pub drawn_colours: Vec<[u8; 4]>,
-    /// Which of the editor's rims it has.
+    /// The editor's rims that it has.
     pub rims: Option<u64>,
     pub scale: Option<Arc<Scale>>,
     /// Whether its images are still to come.
@@ -29,15 +29,15 @@ pub struct Shown {
     pub materials: Option<Materials>,
     /// The weights that its colours show, kept so that others have another address.
     pub weights: Option<Arc<Vec<f64>>>,
-    /// How often its materials changed.
+    /// The number of changes of its materials.
     pub materials_revision: u64,
-    /// The triangles that are drawn.
+    /// The drawn triangles.
     pub shown: Option<Arc<Vec<bool>>>,
-    /// What its shadow was made of.
+    /// The source of its shadow.
     pub shadow: Option<ShadowKey>,
 }
 
-/// What a shadow is made of: the addresses of a shape and of the triangles that are drawn, and the axis that points up.
+/// The source of a shadow: the addresses of a shape and of the drawn triangles, and the axis that points up.
 pub type ShadowKey = (usize, usize, UpAxis);
 
 impl Shown {
@@ -50,7 +50,7 @@ impl Shown {
         drawing::ground(view.camera, view.viewport_px, height, self.drawing.centre())
     }
 
-    /// The shadow that belongs to what is shown now.
+    /// The shadow that belongs to the present picture.
     pub fn wanted_shadow(&self, view: &SceneView<'_>) -> Option<ShadowKey> {
         let shape = Arc::as_ptr(&self.displacements) as usize;
         let key = (shape, address(self.shown.as_ref()), view.camera.up);
@@ -77,7 +77,7 @@ impl Shown {
         Ok(())
     }
 
-    /// Brings the colours and the shown triangles to what the editor has now.
+    /// Updates the colours and the shown triangles to the editor's present ones.
     ///
     /// # Errors
     /// As [`Surface::update_regions`].
@@ -111,7 +111,7 @@ impl Shown {
             }
             _ => None,
         };
-        // One by one a vertex costs several times what it costs among all.
+        // A vertex by itself costs several times as much as among all.
         let recoloured = recoloured.filter(|vertices| vertices.len() < model.surface.positions.len() / 4);
         if let Some(vertices) = recoloured {
             let of_region = editor.region_colour();
@@ -148,7 +148,7 @@ impl Shown {
         Ok(())
     }
 
-    /// Brings the outlines to what the editor has now, where they are to be seen.
+    /// Updates the outlines to the editor's present ones, if they are shown.
     ///
     /// # Errors
     /// As [`Surface::update_lines`].
@@ -164,7 +164,7 @@ impl Shown {
     }
 }
 
-/// What the surface's region colours are at present.
+/// The present meaning of the surface's region colours.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Colours {
     /// Not set.
@@ -179,7 +179,7 @@ pub enum Colours {
     Weights(usize),
 }
 
-/// What tells two lists of triangles apart; 0 for all of them.
+/// The identity of a list of triangles; 0 for all of them.
 pub fn address(shown: Option<&Arc<Vec<bool>>>) -> usize {
     shown.map_or(0, |shown| Arc::as_ptr(shown) as usize)
 }

@@ -12,7 +12,7 @@ use crate::window::threads::message::{Message, Posed};
 use crate::window::threads::pose_queue::PoseQueue;
 use crate::window::threads::workers::{Stage, Workers};
 
-/// A view beside the first, with threads of its own.
+/// A view beside the first, with its own threads.
 pub struct SideView {
     pub viewport: Viewport,
     pub workers: Workers,
@@ -20,12 +20,12 @@ pub struct SideView {
     /// The file whose surface is being uploaded for it.
     uploading: Option<Arc<Drawing>>,
     poses: PoseQueue,
-    /// What went wrong last, in a sentence.
+    /// The last failure, in a sentence.
     pub problem: Option<String>,
 }
 
 impl SideView {
-    /// A view of nothing yet, on the device of another.
+    /// An empty view, on the device of another.
     pub fn beside(context: &egui::Context, first: &Viewport) -> Self {
         let (sender, messages) = channel();
         Self {
@@ -50,12 +50,12 @@ impl SideView {
         self.uploading.is_some()
     }
 
-    /// What its threads have sent.
+    /// The results of its threads.
     pub fn receive(&mut self) -> Option<Message> {
         self.messages.try_recv().ok()
     }
 
-    /// Takes what its threads have sent; `wanted` is the shape that it is to show.
+    /// Takes the results of its threads; `wanted` is the shape to show.
     pub fn take(&mut self, message: Message, wanted: &Arc<Vec<DVec3>>, stage: &Stage) {
         match message {
             Message::Posed(stamp, result) => {
@@ -81,7 +81,7 @@ impl SideView {
         }
     }
 
-    /// Shows a pose, unless it is of another shape than is wanted by now.
+    /// Shows a pose, unless another shape is wanted by now.
     pub fn show_pose(&mut self, posed: Posed, wanted: &Arc<Vec<DVec3>>) {
         let is_present = Arc::ptr_eq(&posed.displacements, wanted);
         let fits = self.viewport.displacements().map(|shown| shown.len()) == Some(posed.displacements.len());
@@ -93,7 +93,7 @@ impl SideView {
         }
     }
 
-    /// Asks for what it lacks to show the shape `wanted` of the open file as the first view shows its own.
+    /// Requests everything that it lacks to show the shape `wanted` of the open file in the first view's style.
     pub fn follow(&mut self, wanted: &Arc<Vec<DVec3>>, first: &Viewport, stage: &Stage) {
         self.upload(stage);
         self.set_materials(first, stage);
@@ -120,7 +120,7 @@ impl SideView {
         }
     }
 
-    /// Has the open file's surface uploaded once more.
+    /// Uploads the open file's surface again.
     fn upload(&mut self, stage: &Stage) {
         let drawing = &stage.drawing;
         let is_under_way = self

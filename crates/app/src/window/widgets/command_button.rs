@@ -7,7 +7,7 @@ use pliant_editor::{Command, Editor};
 
 use super::icon::{self, Glyph};
 
-/// A button for a listed command, disabled when it can't be done now; true when it is clicked.
+/// A button for a listed command, disabled when it is unavailable; true when it is clicked.
 pub fn command_button(ui: &mut egui::Ui, editor: &Editor, command: &Command) -> bool {
     let Some(listed) = command.listed() else { return false };
     let mut button = Button::new(listed.name);
@@ -19,13 +19,13 @@ pub fn command_button(ui: &mut egui::Ui, editor: &Editor, command: &Command) -> 
         .clicked()
 }
 
-/// The same as a choice that is marked while it holds.
+/// The same as a choice that is marked while it is true.
 pub fn command_choice(ui: &mut egui::Ui, editor: &Editor, command: &Command, chosen: bool) -> bool {
     let Some(listed) = command.listed() else { return false };
     choice(ui, editor, command, chosen, Button::selectable(chosen, listed.name))
 }
 
-/// The same with an icon, and with `label` beside it where there is room.
+/// The same with an icon, and with `label` beside it if there is room.
 pub fn icon_choice(
     ui: &mut egui::Ui,
     editor: &Editor,
@@ -84,7 +84,7 @@ pub fn tile_choice(
 /// The least height of a tile with its label.
 pub const LABELLED_TILE: f32 = 44.0;
 
-/// A widget that is a choice of a listed command, named by it for screen readers.
+/// A widget that is a choice of a listed command, with its name for screen readers.
 fn choice(ui: &mut egui::Ui, editor: &Editor, command: &Command, chosen: bool, widget: impl Widget) -> bool {
     let Some(listed) = command.listed() else { return false };
     let tooltip = match editor.shortcuts(command).first() {
@@ -98,7 +98,7 @@ fn choice(ui: &mut egui::Ui, editor: &Editor, command: &Command, chosen: bool, w
     response.on_hover_text(tooltip).clicked()
 }
 
-/// A widget that is greyed out with a reason, which its tooltip shows.
+/// A widget that is disabled for a reason, which its tooltip shows.
 fn enabled_unless(ui: &mut egui::Ui, obstacle: Option<Cow<'_, str>>, button: impl Widget) -> egui::Response {
     let response = ui.add_enabled(obstacle.is_none(), button);
     match obstacle {
@@ -107,7 +107,7 @@ fn enabled_unless(ui: &mut egui::Ui, obstacle: Option<Cow<'_, str>>, button: imp
     }
 }
 
-/// Choices side by side, each with its name and what it means; the one that is clicked.
+/// Choices side by side, each with its name and meaning; returns the one that is clicked.
 pub fn choices<T: Copy + PartialEq>(ui: &mut egui::Ui, chosen: T, all: &[(T, &str, &str)]) -> Option<T> {
     let mut clicked = None;
     ui.horizontal(|ui| {

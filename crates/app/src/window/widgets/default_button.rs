@@ -1,8 +1,8 @@
-//! The button that Enter presses: filled, so that it is told apart at a glance.
+//! The button that Enter presses: filled, so that it is recognised at a glance.
 
 use eframe::egui::{self, Button, RichText};
 
-/// A button of this name in the colours of what is selected.
+/// A button of this name in the colours of the selection.
 pub fn default_button(ui: &egui::Ui, name: &str) -> Button<'static> {
     let selection = ui.visuals().selection;
     let text = RichText::new(name).strong().color(selection.stroke.color);

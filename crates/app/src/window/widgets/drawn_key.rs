@@ -1,4 +1,4 @@
-//! What a picture was drawn from, and whether it can be shown for a new request.
+//! The source of a picture, and whether it can be shown for a new request.
 
 use pliant_editor::Look;
 use pliant_render::{Detail, Samples};
@@ -6,7 +6,7 @@ use pliant_render::{Detail, Samples};
 use crate::window::viewport::backdrop::Backdrop;
 use crate::window::viewport::shown::{Colours, ShadowKey};
 
-/// What the picture in the texture was drawn from.
+/// The source of the picture in the texture.
 #[derive(Clone, PartialEq)]
 pub struct DrawnKey {
     pub pixels_per_point: f32,
@@ -26,7 +26,7 @@ pub struct DrawnKey {
 }
 
 impl DrawnKey {
-    /// Whether this picture is as good as the one asked for: of the same state, with as many samples, and as large, or
+    /// Whether this picture is as good as the requested one: of the same state, with as many samples, and as large, or
     /// as large as the view, `full_px`.
     pub fn serves(&self, wanted: &Self, full_px: [u32; 2]) -> bool {
         let same = Self {

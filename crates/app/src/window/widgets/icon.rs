@@ -5,7 +5,7 @@ use eframe::egui::{self, FontData, FontFamily, FontId, RichText, Sense};
 pub use lucide_icons::Icon as Glyph;
 use lucide_icons::LUCIDE_FONT_BYTES;
 
-/// The family that the icons' font is alone in: its signs share their numbers with other fonts' own.
+/// The family that contains only the icons' font: its signs share their numbers with those of other fonts.
 const FAMILY: &str = "icons";
 
 /// The font of icons of this size.
@@ -13,7 +13,7 @@ pub fn font(size: f32) -> FontId {
     FontId::new(size, FontFamily::Name(FAMILY.into()))
 }
 
-/// Makes the icons' font known to the context.
+/// Adds the icons' font to the context.
 pub fn install(context: &egui::Context) {
     let family = InsertFontFamily {
         family: FontFamily::Name(FAMILY.into()),

@@ -3,7 +3,7 @@
 use eframe::egui::{self, Response, TextEdit, Ui};
 
 /// Shows the name of the thing called `what` ("the example") at a place of its list, or the field in which it is being
-/// typed. The label, and the new name once it is typed.
+/// typed. Returns the label, and the new name once it is typed.
 pub fn name_label(ui: &mut Ui, what: &str, place: usize, name: &str, is_chosen: bool) -> (Response, Option<String>) {
     let editing = egui::Id::unique(("renamed", what));
     let typed: Option<(usize, String)> = ui.data(|data| data.get_temp(editing));

@@ -5,17 +5,17 @@ use pliant_editor::{Command, Event};
 
 use crate::window::files::file_command::FileCommand;
 
-/// Events for the editor, in order, and what is asked of files.
+/// Events for the editor, in order, and the request for files.
 #[derive(Debug, Default)]
 pub struct Outbox(Vec<Event>, Option<FileCommand>);
 
 impl Outbox {
-    /// Asks for a command.
+    /// Requests a command.
     pub fn push(&mut self, command: Command) {
         self.0.push(Event::Command(command));
     }
 
-    /// Requests the value of a widget: while it is dragged every value is shown, and all of them make one step of the
+    /// Requests the value of a widget: during a drag every value is shown, and all of them make one step of the
     /// history.
     pub fn adjust(&mut self, response: &Response, command: impl FnOnce() -> Command) {
         if response.changed() {
@@ -30,12 +30,12 @@ impl Outbox {
         }
     }
 
-    /// Asks for something with files.
+    /// Requests a file command.
     pub fn push_file(&mut self, command: FileCommand) {
         self.1 = Some(command);
     }
 
-    /// What was asked for with files.
+    /// The requested file command.
     pub fn take_file(&mut self) -> Option<FileCommand> {
         self.1.take()
     }

@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, Align, Label, Layout, TextStyle};
 
-/// The column's least width; longer names take more.
+/// The column's least width; longer names are wider.
 const WIDTH: f32 = 70.0;
 
 /// Shows the name.

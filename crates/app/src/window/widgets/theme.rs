@@ -7,7 +7,7 @@ use crate::window::files::settings::{Settings, ThemeChoice};
 /// The accent colour: for the selected handle and the active tool.
 pub const ACCENT: Color32 = Color32::from_rgb(226, 172, 72);
 
-/// Dresses the context as the settings say.
+/// Gives the context the look in the settings.
 pub fn apply(context: &egui::Context, settings: &Settings) {
     context.set_visuals_of(Theme::Dark, dark());
     context.set_visuals_of(Theme::Light, light());
@@ -21,9 +21,9 @@ pub fn apply(context: &egui::Context, settings: &Settings) {
         style.spacing.item_spacing = egui::vec2(8.0, 6.0);
         style.spacing.button_padding = egui::vec2(9.0, 4.0);
         style.spacing.slider_width = 120.0;
-        // Lists are as high as what they hold, in place of 400.
+        // Lists are as high as their content, instead of 400.
         style.spacing.default_area_size.y = 720.0;
-        // Scroll bars float, and would cover what is at the right edge.
+        // Scroll bars float, and would cover the content at the right edge.
         style.spacing.scroll.floating_allocated_width = style.spacing.scroll.bar_width;
         style
             .text_styles
@@ -101,7 +101,7 @@ mod tests {
     }
 
     fn contrast(text: Color32, ground: Color32) -> f64 {
-        // What is translucent is blended as egui does, in gamma space.
+        // Translucent colours are blended as in egui, in gamma space.
         let share = 1.0 - f32::from(text.a()) / 255.0;
         let [red, green, blue] = [(text.r(), ground.r()), (text.g(), ground.g()), (text.b(), ground.b())]
             .map(|(text, ground)| (f32::from(text) + share * f32::from(ground)).round() as u8);
@@ -109,8 +109,8 @@ mod tests {
         (text.max(ground) + 0.05) / (text.min(ground) + 0.05)
     }
 
-    /// Every colour of text and signs with every ground that it may lie on, each with its name. What can't be used now
-    /// is excepted, as it is by the guidelines: it is faded on purpose.
+    /// Every colour of text and signs with every background that it may have, each with its name. Disabled widgets are
+    /// excepted, as in the guidelines: they are faded on purpose.
     fn pairs(ui: &egui::Ui) -> Vec<(String, Color32, Color32)> {
         let visuals = ui.visuals();
         let widgets = &visuals.widgets;
@@ -139,7 +139,7 @@ mod tests {
             visuals.strong_text_color(),
             &[&frames[..], &buttons].concat(),
         );
-        // Shortcuts stand on buttons, hints in fields.
+        // Shortcuts appear on buttons, hints in fields.
         add("weak text", visuals.weak_text_color(), &everywhere);
         for (name, own) in of_buttons {
             // Buttons without a frame, signs of check boxes and folded sections, too.
@@ -184,7 +184,7 @@ mod tests {
         }
     }
 
-    /// The least contrast of graphics that a person has to tell, by the same guidelines (1.4.11).
+    /// The least contrast of graphics that a person must recognise, by the same guidelines (1.4.11).
     const LEAST_OF_GRAPHICS: f64 = 3.0;
 
     #[test]

@@ -1,8 +1,8 @@
 //! Directions that are conjugate with respect to a matrix S, and solving with them.
 //!
-//! They are few and short, so each new one is made conjugate to all before it, which conjugate gradients only are in
-//! exact arithmetic. All right-hand sides contribute to the same directions and profit from all of them (block conjugate
-//! gradients [OLe80]).
+//! They are few and short, so each new one is made conjugate to all before it, whereas conjugate gradients are
+//! conjugate only in exact arithmetic. All right-hand sides contribute to the same directions and profit from all of
+//! them (block conjugate gradients [OLe80]).
 
 use rayon::prelude::*;
 
@@ -16,17 +16,17 @@ pub(super) struct Directions {
     images: Vec<Vec<f64>>,
 }
 
-/// A new direction keeps at least this share of its squared S-norm when those of its block are taken out; less is
+/// A new direction keeps at least this share of its squared S-norm when the others of its block are removed; less is
 /// rounding.
 const INDEPENDENT: f64 = 1e-12;
 
 impl Directions {
-    /// How many there are.
+    /// The number of directions.
     pub fn len(&self) -> usize {
         self.own.len()
     }
 
-    /// Adds further ones, each with its image.
+    /// Adds further directions, each with its image.
     pub fn extend(&mut self, others: impl IntoIterator<Item = (Vec<f64>, Vec<f64>)>) {
         for (own, image) in others {
             self.own.push(own);
@@ -34,12 +34,12 @@ impl Directions {
         }
     }
 
-    /// The first so many of them.
+    /// The first directions, this many.
     pub fn first(self, count: usize) -> impl Iterator<Item = (Vec<f64>, Vec<f64>)> {
         self.own.into_iter().zip(self.images).take(count)
     }
 
-    /// Solves S y = r in the span of the directions from number `first` on: adds to `y` and takes from `r`.
+    /// Solves S y = r in the span of the directions from number `first` on, adds to `y` and subtracts from `r`.
     pub fn project<const K: usize>(&self, first: usize, y: &mut [[f64; K]], r: &mut [[f64; K]]) {
         let (own, images) = (&self.own[first..], &self.images[first..]);
         let shares = products(own, r);
@@ -58,8 +58,7 @@ impl Directions {
     }
 }
 
-/// The S-orthonormal directions that span a block whose images under S are given; those that depend on others are left
-/// out.
+/// The S-orthonormal directions that span a block whose images under S are given; dependent ones are left out.
 pub(super) fn orthonormalised<const K: usize>(block: &[[f64; K]], images: &[[f64; K]]) -> Vec<(Vec<f64>, Vec<f64>)> {
     let mut found: Vec<(Vec<f64>, Vec<f64>)> = Vec::with_capacity(K);
     for k in 0..K {

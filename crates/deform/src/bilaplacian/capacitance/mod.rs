@@ -1,20 +1,21 @@
-//! The thin plate solved with the factor of the Laplacian in place of its own, which takes a fraction of the memory.
+//! The thin plate solved with the factor of the Laplacian instead of its own, in a fraction of the memory.
 //!
 //! At order 2 the rows of A = Bᵀ N⁻¹ B belong to solved vertices (f) and to the constrained ones beside them (c):
 //!
 //! A = P N⁻¹ P + Cᵀ D C, with P = −L_ff, C = L_cf, N = M / (k_b s) at f and D = k_b s M⁻¹ at c.
 //!
-//! The first term is a plate whose rim is supported but free to turn: its inverse is P⁻¹ N P⁻¹, two Poisson solves.
-//! What clamps the rim has the rank of the rim's vertices, and so have soft handles' springs, which are further rows of
-//! C with their strengths in D. By Woodbury's identity
+//! The first term is a plate whose rim is supported but free to turn: its inverse is P⁻¹ N P⁻¹, two Poisson solves. The
+//! clamping of the rim has the rank of the rim's vertices. The springs of soft handles are further rows of C, with
+//! their strengths in D. By Woodbury's identity
 //!
 //! A⁻¹ = B − B Cᵀ S⁻¹ C B, with B = P⁻¹ N P⁻¹ and the *capacitance matrix* S = D⁻¹ + C B Cᵀ,
 //!
 //! the capacitance matrix method [BDGG71], which [Bjo83] uses for the biharmonic equation. S is never formed. It is
-//! solved by conjugate directions ([`directions`]) that take all right-hand sides together, are as long as the rim,
-//! are found with the plate near the rim as preconditioner ([`near_rim`]), and are kept for the next right-hand side.
+//! solved by conjugate directions ([`directions`]) for all right-hand sides together. They are as long as the rim, use
+//! the plate near the rim as preconditioner ([`near_rim`]), and are kept for the next right-hand side.
 //!
-//! The factor of P has 0.4 of the numbers of A's on scans, because its separators are one vertex wide in place of two. Multigrid with point smoothers on A itself was tried first, and lost: see `docs/measurements.md`.
+//! On scans the factor of P has 0.4 times as many numbers as that of A, because its separators are one vertex wide
+//! instead of two. Multigrid with point smoothers on A itself was tried first, and lost: see `bench/measurements.md`.
 
 mod directions;
 mod near_rim;
@@ -34,13 +35,13 @@ use crate::operators::CHUNK;
 use crate::sparse::refactorisation::RenewableFactor;
 use crate::sparse::solve::PartRows;
 
-/// The most times that a solve applies S.
+/// The most applications of S in a solve.
 const ROUNDS: usize = 100;
 
 /// The most directions that are kept.
 const MOST_KEPT: usize = 2000;
 
-/// The factor of P, and what makes it solve with A. All vectors are scaled by T, the scale of P's columns.
+/// The factor of P, and the data that make it solve with A. All vectors are scaled by T, the scale of P's columns.
 #[derive(Debug)]
 pub(crate) struct Capacitance {
     factored: Arc<RenewableFactor>,
@@ -53,12 +54,12 @@ pub(crate) struct Capacitance {
     beside_rim: Vec<bool>,
     kept: RwLock<Directions>,
     most_kept: usize,
-    /// Whether directions are added to those that are kept.
+    /// Whether new directions are kept.
     is_learning: bool,
 }
 
-/// What a solve's passes work in, so that it is mapped once: at millions of vertices a page fault costs more than the
-/// arithmetic on its page.
+/// The scratch memory of a solve's passes, so that it is mapped once: at millions of vertices a page fault costs more
+/// than the arithmetic on its page.
 #[derive(Default)]
 struct SolveMemory<const K: usize> {
     columns: Vec<[f64; K]>,
@@ -71,7 +72,7 @@ impl Capacitance {
         operator.power == 2 && operator.stretching == 0.0 && operator.bending > 0.0 && operator.natural.is_none()
     }
 
-    /// With the factor of P, whose columns are the local vertices `columns`.
+    /// Solves with the factor of P, whose columns are the local vertices `columns`.
     pub fn new(
         operator: &BilaplacianOperator,
         (columns, column_of): (&[u32], &[u32]),
@@ -108,24 +109,24 @@ impl Capacitance {
         &self.factored
     }
 
-    /// How many numbers are stored.
+    /// The number of stored entries.
     pub fn stored(&self) -> usize {
         let kept = self.kept.read().unwrap_or_else(PoisonError::into_inner);
         let near_rim = self.near_rim.as_ref().map_or(0, NearRim::stored);
         self.factored.factor.stored() + near_rim + self.middle.len() + 2 * kept.len() * self.rows.len()
     }
 
-    /// From now on no solve leaves anything behind, so that solves may run beside each other and in any order.
+    /// From now on solves keep nothing, so that they may run at once and in any order.
     pub fn settle(&mut self) {
         self.is_learning = false;
     }
 
-    /// Whether solves must follow each other in a fixed order, because each one learns from those before it.
+    /// Whether solves must follow each other in a fixed order, because each one learns from earlier ones.
     pub fn is_learning(&self) -> bool {
         self.is_learning
     }
 
-    /// A sentence on how the system was solved.
+    /// A sentence on the way of solving.
     pub fn sentence(&self) -> String {
         let kept = self.kept.read().unwrap_or_else(PoisonError::into_inner);
         format!(
@@ -153,13 +154,13 @@ impl Capacitance {
         self.solve_supported(x, &mut memory);
     }
 
-    /// x ← F⁻¹ (T N T) F⁻¹ x with the factor F: the plate whose rim is free to turn.
+    /// x ← F⁻¹ (T N T) F⁻¹ x with the factor F, for the plate whose rim is free to turn.
     fn solve_supported<const K: usize>(&self, x: &mut [[f64; K]], memory: &mut SolveMemory<K>) {
         self.solve_load(x, memory);
         self.factored.factor.solve_within(None, x, &mut memory.part_rows);
     }
 
-    /// As [`Capacitance::solve_supported`] in the columns that rows have entries in; elsewhere anything.
+    /// Like [`Capacitance::solve_supported`], but right only in the columns in which rows have entries.
     fn solve_supported_beside_rim<const K: usize>(&self, x: &mut [[f64; K]], memory: &mut SolveMemory<K>) {
         self.solve_load(x, memory);
         let parts = Some(&*self.beside_rim);
@@ -216,7 +217,7 @@ impl Capacitance {
             if let Some(near_rim) = &self.near_rim {
                 near_rim.precondition(&mut block);
             }
-            // Once leaves what was rounded, twice is enough.
+            // One pass leaves the rounding; two are enough.
             for _ in 0..2 {
                 kept.remove_from(&mut block);
                 own.remove_from(&mut block);

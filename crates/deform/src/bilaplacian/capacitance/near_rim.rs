@@ -4,14 +4,14 @@
 //!
 //! S⁻¹ = 1 − E A⁻¹ Eᵀ.
 //!
-//! What waves along the rim decays within about a wavelength from it. So A is cut off to a band b beside the rim, which
-//! is clamped at its far edge, too:
+//! Waves along the rim decay within about a wavelength from it. So A is cut off to a band b beside the rim, which is
+//! clamped at its far edge, too:
 //!
 //! M = 1 − E A_bb⁻¹ Eᵀ, S⁻¹ ≤ M ≤ 1,
 //!
 //! because A_bb⁻¹ is at most the block of A⁻¹ there. So M is positive definite, no eigenvalue of M S is below 1, and
-//! only waves that are longer than the band is wide are above. Without it the directions grow as the square root of the
-//! rim's length.
+//! only waves longer than the band's width are above. Without it the directions grow as the square root of the rim's
+//! length.
 
 use std::collections::BTreeSet;
 
@@ -29,24 +29,24 @@ use crate::sparse::matrix::CONSTRAINED;
 use crate::sparse::ordering::dissection::dissect;
 use crate::sparse::refactorisation::{Refactorisation, RenewableFactor};
 
-/// The band has this share of the solved vertices at most: its factor is passed over as often as the Laplacian's.
+/// The band has at most this share of the solved vertices: its factor is read as often as the Laplacian's.
 const SHARE: usize = 16;
 
-/// A band narrower than so many rings is left out.
+/// A band with fewer rings than this is left out.
 const LEAST_RINGS: usize = 4;
 
 /// The band's factor.
 #[derive(Debug)]
 pub(super) struct NearRim {
-    /// Of T A_bb T, in scaled columns.
+    /// The factor of T A_bb T, in scaled columns.
     factored: RenewableFactor,
     /// E T over the band's columns.
     rows: CapacitanceRows,
 }
 
 impl NearRim {
-    /// The band beside the rim whose `rows` are over the local vertices `columns` of this `scale`. `None` where it would
-    /// be too narrow, exceed the budget, or its matrix have hubs.
+    /// The band beside the rim whose `rows` are over the local vertices `columns` of this `scale`. `None` if it would
+    /// be too narrow or exceed the budget, or if its matrix would have hubs.
     pub fn of(
         operator: &BilaplacianOperator,
         (columns, column_of, scale): (&[u32], &[u32], &[f64]),
@@ -89,7 +89,7 @@ impl NearRim {
         bytes_of(self.stored(), size_of::<f64>())
     }
 
-    /// How many numbers the factor stores.
+    /// The number of entries that the factor stores.
     pub fn stored(&self) -> usize {
         self.factored.factor.stored()
     }
@@ -107,7 +107,7 @@ impl NearRim {
     }
 }
 
-/// The solved local vertices within as many rings of the rim's as their share allows, ascending.
+/// The solved local vertices within as many rings of the rim as their share allows, ascending.
 fn band(laplacian: &Laplacian, columns: &[u32], column_of: &[u32], rows: &CapacitanceRows) -> Option<Vec<u32>> {
     let most = columns.len() / SHARE;
     let mut ring: Vec<u32> = rows.columns().map(|column| columns[column as usize]).collect();
@@ -134,14 +134,14 @@ fn band(laplacian: &Laplacian, columns: &[u32], column_of: &[u32], rows: &Capaci
     Some(near)
 }
 
-/// Which vertices of the band are neighbours, by their numbers in it.
+/// The band's neighbours, by their numbers in it.
 struct BandGraph {
     starts: Vec<usize>,
     neighbours: Vec<SurfaceVertex>,
 }
 
 impl BandGraph {
-    /// Of local vertices, ascending.
+    /// The local vertices, ascending.
     fn of(laplacian: &Laplacian, locals: &[u32]) -> Self {
         let mut graph = Self {
             starts: vec![0],

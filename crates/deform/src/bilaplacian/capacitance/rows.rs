@@ -15,8 +15,8 @@ pub(super) struct CapacitanceRows {
 }
 
 impl CapacitanceRows {
-    /// For columns of this `scale`; `resistance` gives D of a constrained vertex. A vertex where it is zero (a hinge) has
-    /// no row.
+    /// The rows for columns of this `scale`; `resistance` gives D of a constrained vertex. A vertex of zero resistance
+    /// (a hinge) has no row.
     pub fn of(
         operator: &BilaplacianOperator,
         column_of: &[u32],
@@ -46,12 +46,12 @@ impl CapacitanceRows {
         rows
     }
 
-    /// The columns that have entries, as often as they have.
+    /// The column of every entry, repeated as often as it occurs.
     pub fn columns(&self) -> impl Iterator<Item = u32> {
         self.columns.iter().copied()
     }
 
-    /// The same rows over other columns: where each entry goes, and by what it is multiplied.
+    /// The same rows over other columns: the new column of each entry, and its factor.
     pub fn moved(&self, to: impl Fn(u32) -> u32, factor: impl Fn(u32) -> f64) -> Self {
         let entries = self.columns.iter().zip(&self.values);
         Self {
@@ -73,7 +73,7 @@ impl CapacitanceRows {
         }
     }
 
-    /// How many rows there are.
+    /// The number of rows.
     pub fn len(&self) -> usize {
         self.starts.len() - 1
     }

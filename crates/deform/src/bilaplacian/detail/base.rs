@@ -1,8 +1,8 @@
-//! The smooth base: L^k x = 0 where the surface bends, the surface itself elsewhere [BS08, section 2.4].
+//! The smooth base: L^k x = 0 on the bending part, the surface itself elsewhere [BS08, section 2.4].
 //!
 //! L is measured on the surface, as for bending. Handles, fixed vertices and borders keep their positions. At a border
-//! L x is the flux across it, which does not vanish on a plane, so the border's cells are left out of the energy: a flat
-//! sheet is then its own base, free borders or not.
+//! L x is the flux across it, which does not vanish on a plane, so the border's cells are left out of the energy: a
+//! flat sheet is then its own base, with free borders or without.
 
 use glam::{DMat3, DVec3};
 use pliant_mesh::SurfaceVertex;
@@ -27,9 +27,9 @@ use crate::{Bilaplacian, BindError, Laplacian};
 pub(crate) struct Base {
     /// The base's points relative to the centre of the surface's bounding box.
     pub patch: Patch,
-    /// Of each row: the surface's vertex less the base's.
+    /// The surface's vertex less the base's, for each row.
     pub offsets: Vec<DVec3>,
-    /// Of each row: whether fairing moved it.
+    /// Whether fairing moved the row.
     pub is_faired: Vec<bool>,
     carried: Carried,
 }
@@ -37,15 +37,15 @@ pub(crate) struct Base {
 /// The base's points, one for each surface vertex, relative to the centre of the surface's bounding box.
 pub(crate) struct Faired {
     points: Vec<DVec3>,
-    /// The surface vertices that were solved for, ascending.
+    /// The solved surface vertices, ascending.
     vertices: Vec<u32>,
 }
 
 impl Faired {
-    /// Fairs the part of the surface that is solved for, without soft handles and borders.
+    /// Fairs the solved part of the surface, without soft handles and borders.
     ///
     /// # Errors
-    /// As the bi-Laplacian's of that order.
+    /// The errors of the bi-Laplacian of that order.
     pub fn of(options: &Bilaplacian, input: &BindInput<'_>) -> Result<Self, BindError> {
         let &BindInput {
             problem,
@@ -147,12 +147,12 @@ impl Base {
         }
     }
 
-    /// How the components turn in which nothing is fixed, R − I.
+    /// The turns R − I of the components in which nothing is fixed.
     pub fn turns(&self, motions: &[Motion]) -> Vec<DMat3> {
         self.carried.turns(motions)
     }
 
-    /// What a row turns by where its component has nothing fixed, R − I; zero elsewhere.
+    /// The turn R − I of a row whose component has nothing fixed; zero elsewhere.
     #[inline]
     pub fn turn(&self, row: usize, turns: &[DMat3]) -> DMat3 {
         self.carried.turn(row, turns)

@@ -1,13 +1,13 @@
-//! Rigid motions where nothing is fixed.
+//! Rigid motions of components in which nothing is fixed.
 //!
-//! Linear bending reproduces translations of all handles, and turns only of what it would leave alone itself. So in a
-//! component in which nothing is fixed the turn R that fits the motion of all its handles best is taken out before
-//! bending and put back after it. With the linear extension d of the handles' displacements and x̂ of their rest
-//! positions, the base b goes to
+//! Linear bending reproduces translations of all handles, but turns only of surfaces that it would not bend. So in a
+//! component in which nothing is fixed, the turn R that fits the motion of all its handles best is removed before
+//! bending and restored after it. With the linear extension d of the handles' displacements and x̂ of their rest
+//! positions, the base b moves to
 //!
 //! b' = b + d + (R − I) (b − x̂),
 //!
-//! which is R b + t for rigid motions x ↦ R x + t of all handles, whatever the operator.
+//! which is R b + t for rigid motions x ↦ R x + t of all handles, for every operator.
 
 use glam::{DMat3, DQuat, DVec3};
 use pliant_mesh::SurfaceVertex;
@@ -22,9 +22,9 @@ use crate::region::patch::Patch;
 #[derive(Debug, Default)]
 pub(crate) struct Carried {
     components: Vec<Component>,
-    /// Of each row: its place in `components`, or [`HELD`]. Empty where all are held.
+    /// Each row's place in `components`, or [`HELD`]. Empty if all are held.
     of_row: Vec<u32>,
-    /// Of each row: b − x̂.
+    /// b − x̂ of each row.
     residues: Vec<DVec3>,
 }
 
@@ -36,7 +36,7 @@ struct Component {
     handles: Vec<Share>,
     /// Σ (p − c) (p − c)ᵀ over the handles' vertices, c their mean.
     moment: DMat3,
-    /// How much a handle's own linear map counts for each of its vertices, so that handles of single points turn, too.
+    /// The weight of a handle's own linear map for each of its vertices, so that handles of single points turn, too.
     tripod: f64,
 }
 
@@ -55,7 +55,7 @@ struct Share {
 const TRIPOD: f64 = 0.01;
 
 impl Carried {
-    /// Of the base, whose positions are relative to `centre`.
+    /// The motions of the base, whose positions are relative to `centre`.
     pub fn of(base: &Patch, centre: DVec3, solver: &BilaplacianSolver<f64>, input: &BindInput<'_>) -> Self {
         let &BindInput {
             problem,
@@ -111,7 +111,7 @@ impl Carried {
         }
     }
 
-    /// R − I of each component, zero where its handles rest.
+    /// R − I of each component, zero if its handles rest.
     pub fn turns(&self, motions: &[Motion]) -> Vec<DMat3> {
         self.components
             .iter()
@@ -135,7 +135,7 @@ impl Carried {
 }
 
 impl Component {
-    /// Of its handles' vertices: the handle's number and the position relative to `centre`, handle by handle.
+    /// The handle's number and the position relative to `centre` of each handle vertex, handle by handle.
     fn of(points: &[(usize, DVec3)], input: &BindInput<'_>, centre: DVec3) -> Self {
         let count = points.len() as f64;
         let mean = points.iter().map(|(_, point)| *point).sum::<DVec3>() / count;

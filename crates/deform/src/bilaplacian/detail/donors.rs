@@ -1,12 +1,12 @@
-//! Who lends what a degenerate place of the base lacks.
+//! The donors of frames for degenerate places of the base.
 
 use std::collections::VecDeque;
 
 /// No place.
 pub(crate) const NONE: u32 = u32::MAX;
 
-/// For each place the nearest one of those that `has` it, by edges, itself first; [`NONE`] where none can be reached.
-/// Of equally near ones it is the one whose way was found first from the lowest number. `neighbours` visits a place's.
+/// For each place the nearest one that `has` a frame, by edges, itself first; [`NONE`] if none can be reached. Among
+/// equally near ones it is the one found first in the order of numbers. `neighbours` visits a place's neighbours.
 pub(crate) fn nearest(has: &[bool], neighbours: impl Fn(usize, &mut dyn FnMut(u32))) -> Vec<u32> {
     let mut sources: Vec<u32> = (0..has.len() as u32)
         .map(|place| if has[place as usize] { place } else { NONE })

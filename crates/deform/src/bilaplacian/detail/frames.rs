@@ -1,6 +1,6 @@
 //! Normal displacements: each vertex keeps its displacement from the base in the base's local frame [BS08, equation 9].
 //!
-//! The displacement begins at the vertex's own point of the base, so it is along the normal only about, and the whole
+//! The displacement begins at the vertex's own point of the base, so it is only nearly along the normal, and the whole
 //! frame turns it. The frame is that of the base's gradient over a ring, fitted by least squares in the tangent plane:
 //! the normal is perpendicular to the images x and y of the two tangents, and within the plane it turns as they do on
 //! average. No edge is singled out.
@@ -24,28 +24,28 @@ pub(crate) struct Frames {
     at_rest: Vec<DVec3>,
 }
 
-/// What a frame is made of at each row of a patch.
+/// The parts of a frame at each row of a patch.
 #[derive(Debug)]
 pub(crate) struct RingFrames {
-    /// For each row where its neighbours begin; one more at the end.
+    /// The start of each row's neighbours; one more at the end.
     starts: Vec<u32>,
     /// The neighbours' local numbers and their shares in x and y.
     ring: Vec<(u32, [f64; 2])>,
-    /// The row whose frame this one has: itself, or the nearest one with a frame, or [`NONE`].
+    /// The row that lends its frame to this one: itself, or the nearest one with a frame, or [`NONE`].
     sources: Vec<u32>,
 }
 
-/// Where a ring of the base is narrower than this, in diagonals, nothing but the solver's error is left of it.
+/// In a ring of the base narrower than this, in diagonals, only the solver's error is left.
 pub(crate) const NARROWEST: f64 = 1e-7;
 
 /// A ring or triangle of the base that is narrower than this share of its length has no frame of its own.
 pub(crate) const SLIMMEST: f64 = 1e-6;
 
-/// The least length of a ring's mean normal: less and the base is folded there.
+/// The least length of a ring's mean normal: with less the base is folded there.
 const UNFOLDED: f64 = 0.1;
 
 impl Frames {
-    /// Of the base's rings.
+    /// The frames of the base's rings.
     pub fn of(base: &Base, triangles: &[[SurfaceVertex; 3]], topology: &Topology) -> Self {
         let rings = RingFrames::of(&base.patch, triangles, topology);
         let rest = |row: usize| {
@@ -82,7 +82,7 @@ impl Frames {
 }
 
 impl RingFrames {
-    /// Of a patch's rings at rest.
+    /// The frames of a patch's rings at rest.
     pub fn of(patch: &Patch, triangles: &[[SurfaceVertex; 3]], topology: &Topology) -> Self {
         let of_row = |row: usize| ring(patch, row, triangles, topology);
         let rings: Vec<Ring> = (0..patch.rows.len())
@@ -116,8 +116,8 @@ impl RingFrames {
         }
     }
 
-    /// The frame of a row's source, the local vertices being at `posed`: two tangents and the normal; `None` where there
-    /// is none, or the patch is bent to a line or a point there.
+    /// The frame of a row's source, the local vertices being at `posed`: two tangents and the normal; `None` if there
+    /// is none, or if the patch is bent to a line or a point there.
     #[inline]
     pub fn frame(&self, patch: &Patch, row: usize, posed: &[DVec3]) -> Option<DMat3> {
         let source = self.sources[row] as usize;
@@ -131,7 +131,7 @@ impl RingFrames {
         let first = x.try_normalize()?;
         let normal = x.cross(y).try_normalize()?;
         let second = normal.cross(first);
-        // The turn about the normal that fits x and y best: its cosine and sine, but for a factor.
+        // The turn about the normal that fits x and y best: its cosine and sine, up to a factor.
         let (cosine, sine) = (x.length() + y.dot(second), -y.dot(first));
         let length = cosine.hypot(sine);
         let (cosine, sine) = (cosine / length, sine / length);

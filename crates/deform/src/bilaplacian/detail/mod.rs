@@ -5,8 +5,8 @@
 //! corrects their heights, `transfer` transfers gradients, `sheets` keeps the sides of thin sheets apart.
 //!
 //! The base is a mesh of the surface's connectivity. A region that is long or has protrusions makes parts of it shrink
-//! exponentially, so its bases are kept in f64, and where too little is left for a direction the nearest sound place
-//! lends its own (`donors`).
+//! exponentially, so its bases are kept in f64, and if too little is left for a direction the nearest sound place lends
+//! its own (`donors`).
 
 mod base;
 mod carry;
@@ -38,14 +38,14 @@ pub(crate) struct Multiresolution {
     base: Base,
     reconstruction: Reconstruction,
     sheets: Option<Sheets>,
-    /// The base's points as the last step has bent them, one for each local vertex.
+    /// The base's points after the last step, one for each local vertex.
     posed: Vec<DVec3>,
 }
 
-/// How the details are put back.
+/// The way of putting details back.
 #[derive(Debug)]
 enum Reconstruction {
-    /// As the base is bent: there are no vertices to put details on.
+    /// No details: there are no vertices with details.
     Plain,
     Normals(Frames),
     Volumes(Box<Volumes>),
@@ -53,10 +53,10 @@ enum Reconstruction {
 }
 
 impl Multiresolution {
-    /// Fairs the base, then binds what bends it.
+    /// Fairs the base, then binds its bending.
     ///
     /// # Errors
-    /// As the bi-Laplacian's.
+    /// The bi-Laplacian's errors.
     pub fn bind(options: &Bilaplacian, input: &BindInput<'_>) -> Result<Self, BindError> {
         let &BindInput { problem, progress, .. } = input;
         let faired = Faired::of(options, input)?;
@@ -122,7 +122,7 @@ impl Multiresolution {
     }
 }
 
-/// Replaces the solved vertices' displacements by those of the bent base and what `change` adds to a row's detail.
+/// Replaces the solved vertices' displacements by those of the bent base and the `change` of a row's detail.
 fn write(base: &Base, posed: &[DVec3], displacements: &mut [DVec3], change: impl Fn(usize) -> DVec3 + Sync) {
     let patch = &base.patch;
     patch.write(displacements, |row, local| {

@@ -1,12 +1,13 @@
-//! Thin sheets: the two sides of a closed sheet stay about as far apart as they are at rest.
+//! Thin sheets: the two sides of a closed sheet keep about their rest distance.
 //!
-//! A base has no thickness where it is faired to a line or where both sides shrink onto each other, so details that each
-//! side puts back alone take the back through the front, or spread at the rim. A vertex p is *opposite* the point q where
-//! a ray into the body leaves it again. The middles (p + q) / 2 are a surface that no side moves alone, so they tell how
-//! the sheet turns: with R, the turn of the middles' ring, the thickness o = p − q ought to become R o. What it differs by
-//! is cut to a share of its length, and each side takes half of the cut; all of it where the other side is held.
+//! A base has no thickness if it is faired to a line or if both sides shrink onto each other, so details that each side
+//! puts back alone move the back through the front, or spread at the rim. A vertex p is *opposite* the point q where a
+//! ray into the body leaves it again. The middles (p + q) / 2 are a surface that no side moves alone, so they show the
+//! sheet's turn: with R, the turn of the middles' ring, the thickness o = p − q should become R o. The difference is
+//! limited to a share of its length, and each side moves by half of the excess, or by all of it if the other side is
+//! held.
 //!
-//! Whatever is off by less stays to the last bit as the details have it.
+//! Smaller differences stay to the last bit as the details make them.
 
 use glam::{DMat3, DVec3};
 use pliant_mesh::{Bounds, Bvh, SurfaceVertex};
@@ -19,36 +20,36 @@ use crate::method::BindInput;
 use crate::operators::CHUNK;
 use crate::region::patch::Patch;
 
-/// A sheet is thinner than this, in sizes of what bends.
+/// A sheet is thinner than this, in sizes of the bending part.
 const THICKEST: f64 = 0.04;
 
-/// How far a thickness may be off, in units of its own length, where the sheet is thinnest. Towards [`THICKEST`] it may
-/// be off by ever more, so that there is no seam where a sheet ends.
+/// The allowed difference of a thickness, in units of its own length, where the sheet is thinnest. It grows towards
+/// [`THICKEST`], so that a sheet ends without a seam.
 const SLACK: f64 = 0.25;
 
 /// Opposite sides face away from each other by at least this much.
 const FACING: f64 = -0.5;
 
-/// Faces of one vertex are on different sides of it where their normals' product is less.
+/// Faces of one vertex are on different sides of it if their normals' product is less.
 const SAME_SIDE: f64 = 0.7;
 
-/// The middles around a vertex are a surface where they have at least this share of the area of its own faces: those of
-/// a limb lie near its axis.
+/// The middles around a vertex are a surface if they have at least this share of the area of its own faces: those of a
+/// limb are near its axis.
 const BROAD: f64 = 0.4;
 
-/// Rays begin so far inside the face, as a share of the way from the vertex to its centre, and so far below it, in sizes.
+/// The start of rays inside the face, as a share of the way from the vertex to its centre, and below it, in sizes.
 const INSIDE: f64 = 0.01;
 const BELOW: f64 = 1e-6;
 
-/// The sheets of what bends.
+/// The sheets of the bending part.
 #[derive(Debug)]
 pub(crate) struct Sheets {
     /// The middles around the sheets' solved vertices.
     patch: Patch,
     rings: RingFrames,
-    /// Of each local vertex of the patch.
+    /// Data of each local vertex of the patch.
     opposites: Vec<Option<Opposite>>,
-    /// Of each row.
+    /// Data of each row.
     thicknesses: Vec<Thickness>,
     room: Room,
 }
@@ -62,20 +63,20 @@ struct Opposite {
     offset: DVec3,
 }
 
-/// What a frame needs of a row.
+/// The data of a row's frame.
 #[derive(Clone, Copy, Debug)]
 struct Thickness {
-    /// The vertex's share in what both sides are moved by.
+    /// The vertex's share in the motion of both sides.
     share: f64,
-    /// How far the offset may be off.
+    /// The allowed difference of the offset.
     slack: f64,
     /// The offset's length in units of [`THICKEST`], squared.
     body: f64,
-    /// The ring's frame at rest, transposed; `None` where it has none.
+    /// The ring's frame at rest, transposed; `None` if it has none.
     unturned: Option<DMat3>,
 }
 
-/// What is kept from frame to frame, so that none allocates it.
+/// Buffers kept from frame to frame, so that no frame allocates them.
 #[derive(Debug, Default)]
 struct Room {
     middles: Vec<DVec3>,
@@ -83,7 +84,7 @@ struct Room {
 }
 
 impl Sheets {
-    /// Looks for sheets in what is solved for; `None` where there are none.
+    /// Searches the solved part for sheets; `None` if there are none.
     pub fn of(input: &BindInput<'_>) -> Option<Self> {
         let &BindInput { problem, partition, .. } = input;
         let surface = Patch::of(problem, &partition.solved, |vertex| problem.surface.positions[vertex]);
@@ -142,7 +143,7 @@ impl Sheets {
         })
     }
 
-    /// Of each row of the base: 1 in a body, and ever less the thinner a sheet is.
+    /// For each row of the base: 1 in a body, and less the thinner a sheet is.
     pub fn bodies(&self, base: &Base) -> Vec<f64> {
         let mut bodies = vec![1.0; base.patch.rows.len()];
         for (&local, thickness) in self.patch.rows.iter().zip(&self.thicknesses) {
@@ -153,7 +154,7 @@ impl Sheets {
         bodies
     }
 
-    /// Brings the sides of the sheets back to each other.
+    /// Brings the sides of the sheets back together.
     pub fn restore(&mut self, displacements: &mut [DVec3]) {
         let Room { middles, corrections } = &mut self.room;
         let patch = &self.patch;
@@ -192,10 +193,10 @@ impl Sheets {
     }
 }
 
-/// Looks for the points opposite vertices.
+/// Finds the points opposite vertices.
 struct Finder<'p> {
     problem: &'p Problem<'p>,
-    /// Over the triangles near the patch, and which those are.
+    /// Searches the triangles near the patch.
     hierarchy: Bvh,
     triangles: Vec<u32>,
     size: f64,

@@ -1,9 +1,9 @@
 //! Deformation transfer: each triangle of the surface takes on the deformation gradient of its triangle of the base, and
 //! a Poisson system joins the triangles [BSPG06; SP04, equation 4].
 //!
-//! With M = (e₁ e₂ n) of a triangle of the base, two edges and the unit normal, the gradient is F = M' M⁻¹: it stretches
-//! as the base does within the triangle and keeps lengths along the normal. A rest edge e of the surface's triangle
-//! becomes F e, so with q = M⁻¹ e its change is (M' − M) q, zero to the last bit where the base rests.
+//! With M = (e₁ e₂ n) of a triangle of the base, two edges and the unit normal, the gradient is F = M' M⁻¹: it
+//! stretches as the base does within the triangle and keeps lengths along the normal. A rest edge e of the surface's
+//! triangle becomes F e, so with q = M⁻¹ e its change is (M' − M) q, zero to the last bit if the base rests.
 
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
@@ -33,13 +33,13 @@ pub(crate) struct Transfer {
     room: Room,
 }
 
-/// What changes a triangle's edges.
+/// The change of a triangle's edges.
 #[derive(Clone, Copy, Debug)]
 struct Triangle {
-    /// The corners of the base's triangle as local vertices of the base. Where it is degenerate it is the nearest sound
-    /// one; the same vertex three times where there is none.
+    /// The corners of the base's triangle as local vertices of the base. A degenerate triangle is replaced by the
+    /// nearest sound one; the same vertex three times if there is none.
     corners: [u32; 3],
-    /// The row of a corner of its own.
+    /// The row of a corner that only this triangle has.
     row: u32,
     /// The base's unit normal at rest.
     normal: DVec3,
@@ -47,7 +47,7 @@ struct Triangle {
     coordinates: [DVec3; 2],
 }
 
-/// What is kept from frame to frame, so that none allocates it.
+/// Buffers kept from frame to frame, so that no frame allocates them.
 #[derive(Clone, Debug, Default)]
 struct Room {
     changes: Vec<EdgeChanges>,
@@ -56,10 +56,10 @@ struct Room {
 }
 
 impl Transfer {
-    /// Factors the surface's Laplacian at the base's rows, without soft handles: these go where the base does.
+    /// Factors the surface's Laplacian at the base's rows, without soft handles, which move with the base.
     ///
     /// # Errors
-    /// As the bi-Laplacian's of order 1.
+    /// The errors of the bi-Laplacian of order 1.
     pub fn bind(base: &Base, budget: Budget, input: &BindInput<'_>) -> Result<Option<Self>, BindError> {
         let &BindInput {
             problem,
@@ -80,7 +80,7 @@ impl Transfer {
         let triangulation = Triangulation::of_surface(problem.surface, problem.topology);
         let rows = bent_rows(&triangulation, &solved, &[]);
         let metric = Discretisation::CotangentArea;
-        // A soft part's triangles keep to their base like all others: given less weight they would make up for all
+        // A soft part's triangles keep to their base like all others: with less weight they would compensate everything
         // that the stiff ones' gradients lack, and swell.
         let firmness: Vec<f64> = problem.stiffness.iter().map(|stiffness| stiffness.max(1.0)).collect();
         let laplacian = Laplacian::on(&triangulation, &firmness, &rows, metric, &|_, _| 1.0);
@@ -113,7 +113,8 @@ impl Transfer {
         }))
     }
 
-    /// Replaces the displacements of what has details, given those of all others, by those that follow the bent base.
+    /// Replaces the displacements of vertices with details, given those of all others, by displacements that follow the
+    /// bent base.
     ///
     /// # Errors
     /// If the solution stays too inaccurate.
@@ -152,16 +153,16 @@ impl Transfer {
         solved
     }
 
-    /// How many numbers the factor stores.
+    /// The number of entries that the factor stores.
     pub fn factor_len(&self) -> usize {
         self.system.factor_len()
     }
 }
 
-/// What bending leaves of the budget.
+/// The part of the budget that bending leaves.
 ///
 /// # Errors
-/// [`BindError::Budget`] where nothing is left.
+/// [`BindError::Budget`] if nothing is left.
 pub(crate) fn left_by(factor_len: usize, input: &BindInput<'_>) -> Result<Budget, BindError> {
     let budget = input.partition.budget.without(bytes_of(factor_len, size_of::<f64>()));
     budget.map_err(|limit| BindError::budget(input.partition.solved.len(), limit))
@@ -255,7 +256,7 @@ fn is_sound(base: &Base, corners: [u32; 3]) -> bool {
     height > (NARROWEST * base.patch.size).max(SLIMMEST * longest)
 }
 
-/// M: two edges and the unit normal; `None` where the triangle has no area.
+/// M: two edges and the unit normal; `None` if the triangle has no area.
 #[inline]
 fn frame(corners: [u32; 3], points: &[DVec3]) -> Option<DMat3> {
     let [a, b, c] = corners.map(|corner| points[corner as usize]);

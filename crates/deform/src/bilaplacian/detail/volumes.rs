@@ -1,11 +1,11 @@
 //! Displacement volumes: the prism between a triangle of the base and that of the surface keeps its volume [BK03].
 //!
-//! Normal displacements are where iteration begins. Then the prisms around a vertex tell which volume they lack, and the
-//! vertex scales its displacement o until its ring would have it, if all of the ring scaled by as much: with A the sum
-//! of the ring's area vectors by 1 + Σ lack / (o · A). So details keep their direction, and no normal of the base is
-//! needed, which it lacks where it shrinks to a line. As neighbours scale by about as much, two corrections leave some
-//! percent of what was lacking, and further ones only sharpen what differs from vertex to vertex; iteration ends there.
-//! Over a thin sheet, whose base is hardly more than a line, prisms tell nothing, and little or nothing is corrected.
+//! Iteration begins with normal displacements. Then the vertex scales its displacement o by the volume that the prisms
+//! around it lack, as if all of the ring scaled by as much: with A the sum of the ring's area vectors, by 1 + Σ lack /
+//! (o · A). So details keep their direction, and no normal of the base is needed, which does not exist where the base
+//! shrinks to a line. As neighbours scale by about as much, two corrections leave some percent of the lack, and further
+//! ones only sharpen differences from vertex to vertex; iteration ends there. Over a thin sheet, whose base is hardly
+//! more than a line, prisms give no information, and little or nothing is corrected.
 //!
 //! Over a triangle of corners b the displacements o vary linearly, and the triangle with corners b + s o has the area
 //! vector A(s). So with m the mean of o the volume is m · ∫ A ds.
@@ -27,36 +27,35 @@ pub(crate) struct Volumes {
     frames: Frames,
     iterations: u32,
     prisms: Vec<Prism>,
-    /// At rest, from the displacements at rest.
+    /// The prisms at rest, from the displacements at rest.
     volumes: Vec<f64>,
-    /// For each row where its entries of `around` begin; one more at the end.
+    /// The start of each row's entries of `around`; one more at the end.
     starts: Vec<u32>,
     /// The places of the prisms around the rows.
     around: Vec<u32>,
-    /// Of each row the least o · A, squared, that counts in full: a ring of less is folded or hardly displaced.
+    /// For each row the least o · A, squared, that counts in full: a ring with less is folded or hardly displaced.
     least_squares: Vec<f64>,
-    /// Of each row how much of a correction counts, as [`Sheets::bodies`] has it.
+    /// The weight of each row's correction, from [`Sheets::bodies`].
     bodies: Vec<f64>,
     room: Room,
 }
 
-/// A prism's corners as local vertices of the base, and their rows; the row behind the last where fairing left the
-/// vertex.
+/// A prism's corners as local vertices of the base, and their rows; one row after the last if fairing left the vertex.
 #[derive(Clone, Copy, Debug)]
 struct Prism {
     locals: [u32; 3],
     rows: [u32; 3],
 }
 
-/// What is kept from frame to frame, so that none allocates it.
+/// Buffers kept from frame to frame, so that no frame allocates them.
 #[derive(Clone, Debug, Default)]
 struct Room {
-    /// As the base turns them.
+    /// The displacements as the base turns them.
     turned: Vec<DVec3>,
-    /// Scaled; one more than there are rows, the last one zero.
+    /// The scaled displacements; one more than there are rows, the last one zero.
     offsets: Vec<DVec3>,
     lacks: Vec<Lack>,
-    /// By how much the scales exceed 1.
+    /// The excess of the scales over 1.
     growths: Vec<f64>,
     /// The same before they are smoothed; one more than there are rows, the last one zero.
     rough: Vec<f64>,
@@ -69,21 +68,23 @@ struct Lack {
     area: DVec3,
 }
 
-/// The most that a displacement grows or shrinks, as a share of it: where the base is bent more sharply than its details
-/// are high, no scales give the volumes of rest.
+/// The largest growth or shrinkage of a displacement, as a share of it: if the base's radius of bending is less than
+/// the height of its details, no scales give the volumes of rest.
 const MOST: f64 = 0.4;
 
-/// How much of each scale is taken from its neighbours in a correction: neighbours that differ crumple the surface.
+/// The share of each scale that comes from its neighbours in a correction: neighbours with different scales crumple the
+/// surface.
 const SMOOTHING: f64 = 0.5;
 
-/// Of what a ring's area and longest displacement at rest could hold, o · A is at least this share where it counts.
+/// If o · A counts, it is at least this share of the largest value that a ring's area and longest displacement at rest
+/// allow.
 const FOLDED: f64 = 0.1;
 
 /// Corrections end with one whose root mean square is below this.
 const SMALL: f64 = 0.05;
 
 impl Volumes {
-    /// Of the base's faces.
+    /// The prisms of the base's faces.
     pub fn of(base: &Base, sheets: Option<&Sheets>, iterations: u32, problem: &Problem<'_>) -> Self {
         let (triangles, topology) = (&problem.surface.triangles, problem.topology);
         let count = base.patch.rows.len();
@@ -164,7 +165,7 @@ impl Volumes {
         }
     }
 
-    /// What the last frame added to a row's displacement from the base.
+    /// The last frame's addition to a row's displacement from the base.
     #[inline]
     pub fn change(&self, row: usize) -> DVec3 {
         self.room.offsets[row] - self.frames.at_rest()[row]
@@ -212,7 +213,7 @@ impl Volumes {
         self.room = room;
     }
 
-    /// Finds by how much every row grows so that its ring has the volume of rest.
+    /// Finds the growth of every row that gives its ring the volume of rest.
     fn grow(&self, turned: &[DVec3], lacks: &[Lack], growths: &[f64], rough: &mut [f64]) {
         let rows = rough.par_iter_mut().zip(turned).enumerate();
         rows.with_min_len(CHUNK).for_each(|(row, (rough, turned))| {
@@ -229,14 +230,14 @@ impl Volumes {
         });
     }
 
-    /// Scales every row by what it grows, smoothed; whether that was the last correction.
+    /// Scales every row by its smoothed growth; returns whether that was the last correction.
     fn smooth(&self, rough: &[f64], turned: &[DVec3], offsets: &mut [DVec3], growths: &mut [f64]) -> bool {
         let chunk = |(chunk, (offsets, growths)): (usize, (&mut [DVec3], &mut [f64]))| {
             let mut moved = 0.0;
             for (place, (offset, growth)) in offsets.iter_mut().zip(growths).enumerate() {
                 let row = chunk * CHUNK + place;
                 let around = self.around(row);
-                // Every prism has the row itself and two beside it; those that fairing left do not grow.
+                // Every prism has the row itself and two beside it; rows that fairing left do not grow.
                 let mut ring = 0.0;
                 for &prism in around {
                     let [a, b, c] = self.prisms[prism as usize].rows.map(|row| rough[row as usize]);

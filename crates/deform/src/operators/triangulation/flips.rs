@@ -2,13 +2,13 @@
 
 use pliant_mesh::{SurfaceVertex, area_of_lengths, cotangents};
 
-/// Triangles by corners and lengths. Side 3 f + i lies opposite corner i of triangle f and runs from corner i + 1 to
+/// Triangles by corners and lengths. Side 3 f + i is opposite corner i of triangle f and runs from corner i + 1 to
 /// corner i + 2; two joined sides run in opposite directions unless they are *turned*.
 #[derive(Clone, Debug)]
 pub(crate) struct Sides {
     corners: Vec<[SurfaceVertex; 3]>,
     lengths: Vec<[f64; 3]>,
-    /// What a side is joined to, [`ALONE`] where to nothing.
+    /// The side to which a side is joined, or [`ALONE`].
     twins: Vec<Twin>,
 }
 
@@ -89,7 +89,7 @@ impl Sides {
                 self.twins[side as usize] = ALONE;
                 continue;
             }
-            // A triangle joined to itself turns both ends.
+            // A triangle joined to itself turns both ends of the joint.
             let is_own = twin.side / 3 == face as u32;
             let turned = twin.turned ^ !is_own;
             self.twins[side as usize] = Twin {
@@ -119,7 +119,7 @@ impl Sides {
         let length = |face: usize, corner: usize| self.lengths[face][corner % 3];
         let (pq, qa, ap) = (length(f, i), length(f, i + 1), length(f, i + 2));
         let (pb, bq) = (length(g, j + 1), length(g, j + 2));
-        // Laid out with p at the origin and q on the axis; the apices lie on either side of it.
+        // Laid out with p at the origin and q on the axis; the apices are on either side of it.
         let apex = |from_p: f64, from_q: f64| {
             let along = ((from_p - from_q) * (from_p + from_q) / pq + pq) / 2.0;
             (along, 2.0 * area_of_lengths([pq, from_p, from_q]) / pq)
@@ -156,8 +156,8 @@ impl Sides {
     }
 }
 
-/// Flips edges until the cotangents opposite every joined edge add up to at least 0. Returns false if some edges had to
-/// be left.
+/// Flips edges until the cotangents opposite every joined edge add up to at least 0. Returns false if some edges could
+/// not be flipped.
 pub(crate) fn flip_to_delaunay(sides: &mut Sides) -> bool {
     let count = sides.twins.len();
     let mut stack: Vec<u32> = (0..count as u32).rev().collect();

@@ -1,11 +1,12 @@
 //! Intrinsic triangulations: triangles given by their edges' lengths alone.
 //!
 //! [`Intrinsic::delaunay`] flips edges of the surface within the surface until opposite angles add up to at most 180°
-//! ([FSBS06]; [SC20], section 4): no cotangent weight is negative then, and the surface is the same
-//! to the last point. Edges at a border or with more than two triangles stay. [`Intrinsic::tufted`] first covers the
-//! surface twice, so that every edge has exactly two triangles (see `tufted`): then it is so on any triangles at all.
+//! ([FSBS06]; [SC20], section 4): no cotangent weight is negative then, and the surface is the same to the last point.
+//! Edges at a border or with more than two triangles stay. [`Intrinsic::tufted`] first covers the surface twice, so
+//! that every edge has exactly two triangles (see `tufted`): then this holds for all triangles.
 //!
-//! Lengths are mollified first, by the same amount over a whole component, so that they agree on both sides of an edge.
+//! Lengths are mollified first, by the same amount over a whole component, so that an edge has one length on both
+//! sides.
 
 use pliant_mesh::SurfaceVertex;
 
@@ -94,24 +95,24 @@ impl Intrinsic {
         self.sides.lengths(face)
     }
 
-    /// One over the number of times that the triangles cover the surface.
+    /// One over the number of times by which the triangles cover the surface.
     pub fn share(&self) -> f64 {
         self.share
     }
 
-    /// How many of the surface's triangles were too flat.
+    /// The number of the surface's triangles that were too flat.
     pub fn mollified_faces(&self) -> usize {
         self.mollified_faces
     }
 
-    /// Whether no edge is left to be flipped.
+    /// Whether no edge remains to be flipped.
     pub fn is_delaunay(&self) -> bool {
         self.is_delaunay
     }
 }
 
-/// The triangles' lengths, mollified by what the flattest triangle of each component needs, and the number of triangles
-/// that need it.
+/// The triangles' lengths, mollified by the amount that the flattest triangle of each component needs, and the number
+/// of triangles that need it.
 fn mollified_lengths(triangulation: &SurfaceTriangulation) -> (Vec<[f64; 3]>, usize) {
     let mut lengths: Vec<[f64; 3]> = (0..triangulation.surface.triangles.len() as u32)
         .map(|face| triangulation.lengths(face))
@@ -144,7 +145,7 @@ struct Lists<T> {
 }
 
 impl<T: Copy + Ord> Lists<T> {
-    /// From pairs in any order; each list is sorted and without repeats.
+    /// The lists from pairs in any order; each list is sorted and without repeats.
     fn of(count: usize, mut pairs: Vec<(SurfaceVertex, T)>) -> Self {
         pairs.sort_unstable();
         pairs.dedup();
@@ -208,7 +209,7 @@ mod tests {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// Sheared until most triangles are obtuse.
+    /// The surface sheared until most triangles are obtuse.
     fn sheared(drawn: Drawn) -> Drawn {
         let mut shear = DAffine3::IDENTITY;
         shear.matrix3.y_axis = DVec3::new(2.3, 1.0, 0.4);
@@ -276,7 +277,7 @@ mod tests {
             let mut area = 0.0;
             for v in 0..field.len() {
                 area += laplacian.inverse_areas()[v].recip();
-                // The tufted cover goes on around a border, where it is no plane.
+                // The tufted cover continues around a border, where it is no plane.
                 let is_flat = triangulation != TriangulationKind::Tufted
                     && !model.topology.is_boundary_vertex(pliant_mesh::SurfaceVertex(v as u32));
                 if !is_flat {

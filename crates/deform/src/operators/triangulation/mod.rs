@@ -1,7 +1,7 @@
-//! What a Laplacian is defined on: triangles with edge lengths, and their adjacency.
+//! The domain of a Laplacian: triangles with edge lengths, and their adjacency.
 //!
 //! Either the surface's own triangles, measured in space or along stretched axes, or intrinsic ones on the same
-//! vertices, whose edges run straight within the surface and need not be edges of it.
+//! vertices, whose edges are straight within the surface and need not be its own edges.
 
 mod flips;
 mod intrinsic;
@@ -19,9 +19,9 @@ use crate::{Bilaplacian, Problem, TriangulationKind, alternatives};
 /// Triangles with edge lengths over the surface's vertices.
 #[derive(Clone, Debug)]
 pub(crate) enum Triangulation<'a> {
-    /// Its own.
+    /// The surface's own triangles.
     Surface(SurfaceTriangulation<'a>),
-    /// Others on its vertices.
+    /// Intrinsic triangles on its vertices.
     Intrinsic(Box<Intrinsic>, &'a Topology),
 }
 
@@ -47,7 +47,7 @@ impl Graph for Triangulation<'_> {
 }
 
 impl<'a> Triangulation<'a> {
-    /// The surface's own triangles as they stand in space.
+    /// The surface's own triangles as they are in space.
     pub fn of_surface(surface: &'a Surface, topology: &'a Topology) -> Self {
         Self::Surface(SurfaceTriangulation {
             surface,
@@ -56,7 +56,7 @@ impl<'a> Triangulation<'a> {
         })
     }
 
-    /// What the bi-Laplacian's options ask for.
+    /// The triangulation of the bi-Laplacian's options.
     pub fn of_options(problem: &Problem<'a>, options: &Bilaplacian) -> Self {
         let triangulation = SurfaceTriangulation {
             surface: problem.surface,
@@ -82,7 +82,7 @@ impl<'a> Triangulation<'a> {
         }
     }
 
-    /// How many vertices there are.
+    /// The number of vertices.
     pub fn vertex_count(&self) -> usize {
         match self {
             Self::Surface(triangulation) => triangulation.surface.positions.len(),
@@ -90,7 +90,7 @@ impl<'a> Triangulation<'a> {
         }
     }
 
-    /// How many triangles there are.
+    /// The number of triangles.
     pub fn face_count(&self) -> usize {
         match self {
             Self::Surface(triangulation) => triangulation.surface.triangles.len(),
@@ -125,7 +125,7 @@ impl<'a> Triangulation<'a> {
         }
     }
 
-    /// The share of each triangle in the surface: ½ where the surface is covered twice.
+    /// The share of each triangle in the surface: ½ if the surface is covered twice.
     pub fn share(&self) -> f64 {
         match self {
             Self::Surface(_) => 1.0,
@@ -133,7 +133,7 @@ impl<'a> Triangulation<'a> {
         }
     }
 
-    /// How many triangles were mollified.
+    /// The number of mollified triangles.
     pub fn mollified_faces(&self) -> usize {
         match self {
             Self::Surface(_) => 0,

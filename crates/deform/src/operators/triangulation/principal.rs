@@ -11,14 +11,14 @@ use pliant_mesh::{SurfaceVertex, face_area};
 use crate::numerical::eigen::eigenvectors;
 use crate::{Problem, Role};
 
-/// Axes along which the surface is thinner than this share of its longest are stretched as if it were that wide: a flat
-/// sheet's bumps don't count as width.
+/// Axes along which the surface is thinner than this share of its longest are stretched as if it were that wide: so
+/// that a flat sheet's bumps don't count as width.
 const THINNEST: f64 = 0.1;
 
 /// Stretches closer to 1 than this count as 1.
 const NEGLIGIBLE: f64 = 1e-9;
 
-/// The map of each component's edges for an anisotropy from 0, none, to 1, equal variation along all axes; empty where
+/// The map of each component's edges for an anisotropy from 0, none, to 1, equal variation along all axes; empty if
 /// none is stretched.
 ///
 /// The axes are those of the part that may move: the triangles at free and softly held vertices, by area.
@@ -45,7 +45,7 @@ pub(crate) fn stretches(problem: &Problem, anisotropy: f64) -> Vec<DMat3> {
     stretches
 }
 
-/// Area, first and second moments of triangles, about a point of theirs.
+/// Area, first and second moments of triangles, about one of their points.
 #[derive(Clone, Copy, Debug)]
 struct Moments {
     origin: Option<DVec3>,
@@ -55,7 +55,7 @@ struct Moments {
 }
 
 impl Moments {
-    /// Of nothing.
+    /// The moments of nothing.
     const NONE: Self = Self {
         origin: None,
         area: 0.0,
@@ -108,7 +108,7 @@ mod tests {
     use super::Moments;
     use glam::{DMat3, DQuat, DVec3};
 
-    /// A box of these half sides, turned and far away.
+    /// A box with these half sides, turned and far away.
     fn moments(half: DVec3, turn: DQuat) -> Moments {
         let mut moments = Moments::NONE;
         let corner = |k: usize| {

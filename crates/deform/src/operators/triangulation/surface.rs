@@ -8,7 +8,7 @@ use pliant_mesh::{Surface, Topology, edge_lengths};
 pub(crate) struct SurfaceTriangulation<'a> {
     pub surface: &'a Surface,
     pub topology: &'a Topology,
-    /// For each component the map that is applied to its edges before they are measured; empty: none.
+    /// The map applied to each component's edges before they are measured; empty if there is none.
     pub stretches: Vec<DMat3>,
 }
 
@@ -19,7 +19,7 @@ impl SurfaceTriangulation<'_> {
         let [a, b, c] = corners.map(|corner| self.surface.positions[corner.index()]);
         match self.stretches.get(self.topology.component(corners[0]) as usize) {
             None => edge_lengths([a, b, c]),
-            // Differences first: a map of positions far from the origin would cost digits.
+            // Differences are taken first: a map of positions far from the origin would cost digits.
             Some(stretch) => edge_lengths([DVec3::ZERO, *stretch * (b - a), *stretch * (c - a)]),
         }
     }

@@ -1,7 +1,7 @@
-//! The tufted cover [SC20, section 3]: every triangle twice, once for each of its faces, glued so that every
-//! edge has exactly two.
+//! The tufted cover [SC20, section 3]: every triangle twice, once for each of its sides, glued so that every edge has
+//! exactly two.
 //!
-//! Around an edge the triangles stand like the pages of a book; each one's back is glued to the next one's front. A
+//! Around an edge the triangles are like the pages of a book; each one's back is glued to the next one's front. A
 //! border's single triangle is glued to its own back, two triangles give the surface's outside and inside.
 
 use std::collections::BTreeMap;
@@ -12,7 +12,7 @@ use pliant_mesh::SurfaceVertex;
 use crate::operators::triangulation::flips::Sides;
 use crate::operators::triangulation::surface::SurfaceTriangulation;
 
-/// The sides of triangles, numbered 3 f + i for the one opposite corner i of triangle f, by the edge that they lie on.
+/// The sides of triangles, numbered 3 f + i for the one opposite corner i of triangle f, by their edge.
 pub(crate) fn edges(triangulation: &SurfaceTriangulation) -> impl Iterator<Item = Vec<u32>> + use<> {
     let mut keyed: Vec<([u32; 2], u32)> = Vec::with_capacity(3 * triangulation.surface.triangles.len());
     for (face, corners) in triangulation.surface.triangles.iter().enumerate() {
@@ -42,13 +42,13 @@ pub(crate) fn cover(triangulation: &SurfaceTriangulation, lengths: &[[f64; 3]]) 
     let turned = lengths.iter().map(|[a, b, c]| [*a, *c, *b]);
     let mut sides = Sides::new(corners, lengths.iter().copied().chain(turned).collect());
     let first_back = 3 * fronts.len() as u32;
-    // A side on the back lies opposite the same corner: 1 and 2 have changed places.
+    // A side on the back is opposite the same corner: 1 and 2 have changed places.
     let back = |side: u32| first_back + side - side % 3 + (3 - side % 3) % 3;
     for mut edge in edges(triangulation) {
         if edge.len() > 2 {
             sort_around(triangulation, &mut edge);
         }
-        // Of a triangle's two copies, the one that runs along the edge from its lower vertex, and the other.
+        // The one of a triangle's two copies that runs along the edge from its lower vertex, and the other.
         let copies = |side: u32| {
             let (face, i) = (side as usize / 3, side as usize % 3);
             let runs_up = fronts[face][(i + 1) % 3] < fronts[face][(i + 2) % 3];
@@ -66,7 +66,7 @@ pub(crate) fn cover(triangulation: &SurfaceTriangulation, lengths: &[[f64; 3]]) 
     sides
 }
 
-/// Sorts the sides on an edge by the angles at which their triangles stand around it.
+/// Sorts the sides on an edge by the angles of their triangles around it.
 fn sort_around(triangulation: &SurfaceTriangulation, edge: &mut [u32]) {
     let position = |vertex: SurfaceVertex| triangulation.surface.positions[vertex.index()];
     let corners = |side: u32| {

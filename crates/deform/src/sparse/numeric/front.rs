@@ -10,10 +10,10 @@ use crate::sparse::factor_error::FactorError;
 use crate::sparse::numeric::line::{LANES, Line, Shape, triangle};
 use crate::sparse::numeric::tiles::{finish_diagonal, finish_strips, square_strips};
 
-/// Strips of columns that are finished at once.
+/// The number of strips of columns that are finished at once.
 const BLOCK: usize = 8;
 
-/// Multiplications that are worth a task of their own.
+/// The number of multiplications that justify a separate task.
 const TASK: usize = 1 << 20;
 
 /// Factors a supernode's `panel`, which has this shape. The error is the column of the pivot that is not positive.
@@ -58,7 +58,7 @@ impl WithSimd for Diagonal<'_> {
     }
 }
 
-/// Finishes some columns of the strips `strips`, which are `rows`.
+/// Finishes some columns of `strips`, which are `rows`.
 fn finish_rows(
     arch: Arch,
     shape: Shape,
@@ -69,7 +69,7 @@ fn finish_rows(
 ) {
     let work = strips.len() * LANES * LANES * blocks.len() * LANES * blocks.end;
     if work > TASK && strips.len() >= 6 {
-        // In threes, as tiles are.
+        // Three at a time, like tiles.
         let middle = strips.start + (strips.len() / 6) * 3;
         let (upper, lower) = rows.split_at_mut(shape.start(middle) - shape.start(strips.start));
         rayon::join(
@@ -134,7 +134,7 @@ fn square_rows(
         return;
     }
     if target.len() * LANES * width > TASK && strips.len() >= 6 {
-        // Half of the lines on either side, in threes.
+        // Half of the lines are on either side, three at a time.
         let half = (triangle(strips.start) + triangle(strips.end)) / 2;
         let mut middle = strips.start + 3;
         while middle + 6 <= strips.end && triangle(middle) < half {

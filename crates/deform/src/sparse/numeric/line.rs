@@ -1,10 +1,10 @@
-//! Cache lines of numbers, and how a front is laid out in them.
+//! Cache lines of numbers, and the layout of a front in them.
 //!
 //! Rows are grouped in *strips* of eight. A strip holds one line per column: that column's numbers in its eight rows.
-//! So one instruction multiplies eight rows by a number of another row, nothing has to be copied before it is
-//! multiplied, and a factor is read in the order in which it is stored.
+//! So one instruction multiplies eight rows by a number of another row, nothing is copied before it is multiplied, and
+//! a factor is read in the order in which it is stored.
 
-/// Rows of a strip, numbers of a line.
+/// The number of rows of a strip, and of numbers in a line.
 pub(crate) const LANES: usize = 8;
 
 /// Numbers of eight rows in one column.
@@ -17,13 +17,13 @@ impl Line {
     pub const ZERO: Self = Self([0.0; LANES]);
 }
 
-/// Strips that hold so many rows.
+/// The number of strips for this many rows.
 #[inline(always)]
 pub(crate) fn strips(rows: usize) -> usize {
     rows.div_ceil(LANES)
 }
 
-/// Where a strip of a lower triangle begins: strip t has the columns up to its own last row.
+/// The start of a strip of a lower triangle: strip t has the columns up to its own last row.
 #[inline(always)]
 pub(crate) fn triangle(strip: usize) -> usize {
     LANES / 2 * strip * (strip + 1)
@@ -58,7 +58,7 @@ impl Shape {
         self.width.min(LANES * (strip + 1))
     }
 
-    /// Where a strip begins.
+    /// The start of a strip.
     #[inline(always)]
     pub fn start(self, strip: usize) -> usize {
         let own = self.own();
@@ -75,7 +75,7 @@ impl Shape {
         self.start(self.strips())
     }
 
-    /// The strip's start and the lane of a place: the supernode's own rows come first, then the rows of its pattern.
+    /// The strip's start and the lane of a row: the supernode's own rows come first, then the rows of its pattern.
     #[inline(always)]
     pub fn row(self, place: usize) -> (usize, usize) {
         if place < self.width {

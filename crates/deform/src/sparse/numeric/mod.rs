@@ -2,8 +2,7 @@
 //!
 //! A supernode assembles its columns of the matrix and the contributions of its children (extend-add), is factored
 //! densely (`front`), and passes its own contribution to its parent. The parts that `assembly_tree` cuts need nothing
-//! from each other but the children's contributions, so they run in parallel; large fronts are worked on by several
-//! threads.
+//! from each other but the children's contributions, so they run in parallel; several threads work on a large front.
 
 mod front;
 pub(crate) mod line;
@@ -32,7 +31,7 @@ pub(crate) struct Numbers {
 }
 
 impl Numbers {
-    /// How many numbers are kept of its contribution.
+    /// The number of stored entries of its contribution.
     #[cfg(test)]
     pub fn kept(&self) -> usize {
         self.contribution
@@ -41,7 +40,7 @@ impl Numbers {
     }
 }
 
-/// What is factored.
+/// The input of a factorisation.
 struct Job<'a> {
     matrix: &'a ScaledMatrix,
     shift: f64,
@@ -50,7 +49,7 @@ struct Job<'a> {
     cancel: &'a Cancel,
     done: Vec<OnceLock<Arc<Vec<Line>>>>,
     contributions: Vec<Mutex<Option<Arc<Vec<Line>>>>>,
-    /// Which parts' contributions are kept for the next factorisation; none if empty.
+    /// Whether each part's contribution is kept for the next factorisation; none if empty.
     kept: &'a [bool],
     rooms: Mutex<Vec<Room>>,
 }
@@ -99,7 +98,7 @@ pub(crate) fn factor(
             failures.lock().unwrap_or_else(PoisonError::into_inner).push(error);
         }
     });
-    // The first column that fails, whoever came to it first.
+    // The first failing column, independent of the order of threads.
     let failures = failures.into_inner().unwrap_or_else(PoisonError::into_inner);
     let of = |error: &FactorError| match error {
         FactorError::Pivot(column) => *column,
@@ -126,7 +125,7 @@ pub(crate) fn factor(
     Ok(numbers.collect())
 }
 
-/// Room for one supernode after the other.
+/// Scratch memory for one supernode after the other.
 #[derive(Default)]
 struct Room {
     /// A row's place in the present supernode.
@@ -138,8 +137,8 @@ struct Room {
 }
 
 impl Room {
-    /// This many lines with any content, from the smallest spare matrix that holds them. Sizes are powers of two, so
-    /// that allocations are rare.
+    /// This many lines with any content, from the smallest spare matrix that is large enough. Sizes are powers of two,
+    /// so that allocations are rare.
     fn take(&mut self, lines: usize) -> Result<Vec<Line>, FactorError> {
         let fitting = (0..self.spare.len())
             .filter(|&spare| self.spare[spare].capacity() >= lines)
@@ -199,7 +198,7 @@ impl Job<'_> {
             if s + 1 < supernodes.end {
                 room.pending.push((s, contribution));
             } else if !contribution.is_empty() {
-                // The allocation is larger than what it holds.
+                // The allocation is larger than its contents.
                 let contribution = if self.keeps(part) {
                     let mut exact = reserved(contribution.len())?;
                     exact.extend_from_slice(&contribution);

@@ -1,9 +1,9 @@
-//! Which parts of a factor are equal to those of another matrix's.
+//! The parts of a factor that are equal to those of another matrix's.
 //!
 //! A part's numbers depend only on its columns of the matrix and on its children's contributions. If these are the same
 //! to the bit, so are its numbers, and they are reused: after a stroke that changes which vertices are free, only the
-//! parts around the stroke and their ancestors are factored again (after [HA18], "Factor Once", with supernodes in
-//! place of columns).
+//! parts around the stroke and their ancestors are factored again (after [HA18], "Factor Once", with supernodes instead
+//! of columns).
 
 use std::collections::BTreeMap;
 
@@ -15,16 +15,16 @@ use crate::sparse::numeric::line::LANES;
 use crate::sparse::symbolic::assembly_tree::AssemblyTree;
 use crate::sparse::symbolic::{Symbolic, contribution_lines};
 
-/// The contributions that are kept take at most this many times the factor's own memory. On a mesh's own triangles all
-/// of them take about as much as the factor; if the ordering fits badly, as with flipped edges at order 3, they would
-/// take ten times that.
+/// The kept contributions need at most this many times the factor's own memory. On a mesh's own triangles all of them
+/// need about as much as the factor; if the ordering fits badly, as with flipped edges at order 3, they would need ten
+/// times that.
 const KEPT: usize = 1;
 
 /// For each part, whether its contribution is kept for the next factorisation: those that save the most operations per
 /// byte, up to [`KEPT`] times the factor.
 pub(crate) fn worth_keeping(symbolic: &Symbolic, assembly_tree: &AssemblyTree) -> Vec<bool> {
     let count = assembly_tree.parts.len();
-    // What is spared is the whole subtree's work.
+    // The saving is the work of the whole subtree.
     let mut work: Vec<f64> = vec![0.0; count];
     for (part, own) in assembly_tree.parts.iter().enumerate() {
         work[part] += own.supernodes.clone().map(|s| symbolic.work(s)).sum::<f64>();

@@ -8,7 +8,7 @@ use pulp::Simd;
 use crate::sparse::factor_error::FactorError;
 use crate::sparse::numeric::line::{LANES, Line, Shape, triangle};
 
-/// A tile's sums: of each column, of each strip, V vectors of rows.
+/// A tile's sums: for each column, for each strip, V vectors of rows.
 type Tile<T, const V: usize, const R: usize, const C: usize> = [[[T; V]; R]; C];
 
 #[inline(always)]
@@ -66,8 +66,8 @@ fn multiply<S: Simd, const V: usize, const R: usize, const C: usize>(
 }
 
 /// Finishes the columns from 8 `block` on of some strips, given the same of the block's own strip, `other`, whose
-/// diagonal has its inverses. What the columns before the block contribute is summed first and taken off at once; the
-/// block's own columns are taken off one by one. However few of them a tile has, this order stays.
+/// diagonal has its inverses. The contributions of earlier columns are summed first and subtracted at once; the block's
+/// own columns are subtracted one by one. This order is the same for any number of them in a tile.
 #[inline(always)]
 fn finish<S: Simd, const V: usize, const R: usize, const C: usize>(
     simd: S,
@@ -198,11 +198,11 @@ pub(crate) fn finish_diagonal<S: Simd>(simd: S, strip: &mut [Line], block: usize
                 sums[b].0[lane] -= column[lane] * factor;
             }
         }
-        // What every use of the diagonal wants.
+        // Every use of the diagonal needs its inverse.
         column[c] = inverse;
         own[c] = Line(column);
     }
-    // Rows that only fill the strip up stay zero.
+    // Rows that only pad the strip stay zero.
     for line in own.iter_mut() {
         for lane in count..LANES {
             line.0[lane] = 0.0;

@@ -2,22 +2,22 @@
 //!
 //! Multilevel [KK98]: vertices are matched in pairs along their heaviest edges until few are left, the coarsest graph
 //! is divided by growing one half from several seeds, and at every finer level the cut is improved by moving vertices
-//! across [FM82]. With planes or level sets of distances at the finest level instead, the factorisation took twice the
-//! work.
+//! across [FM82]. With cuts by planes or level sets of distances at the finest level instead, the factorisation needed
+//! twice the work.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// Graphs of at most so many vertices are divided without being coarsened.
+/// Graphs of at most this many vertices are divided without being coarsened.
 const COARSE: usize = 60;
 
-/// Seeds that a half is grown from.
+/// The number of seeds from which a half is grown.
 const SEEDS: usize = 4;
 
 /// Rounds of moves at each level.
 const ROUNDS: usize = 4;
 
-/// How many moves a round makes without finding a better cut before it ends.
+/// The number of moves without a better cut after which a round ends.
 const CLIMB: usize = 60;
 
 /// The least share of all weight in a half.
@@ -26,11 +26,11 @@ const LEAST_SHARE: f64 = 0.3;
 /// An undirected graph as compressed rows, each edge in both ends' rows.
 #[derive(Default)]
 pub(crate) struct WeightedGraph {
-    /// Where the rows begin, and their end.
+    /// The start of each row, and the end.
     pub starts: Vec<u32>,
     /// The other end of each edge, and its weight.
     pub edges: Vec<(u32, u32)>,
-    /// How many vertices each vertex stands for.
+    /// The number of original vertices behind each vertex.
     pub weights: Vec<u32>,
 }
 
@@ -44,7 +44,7 @@ impl WeightedGraph {
         let count = self.weights.len();
         if count > COARSE {
             let (coarse, coarse_of) = self.coarsened();
-            // Hardly anything can be matched, for example around one vertex that all others neighbour.
+            // Few pairs match, for example around one vertex that all others neighbour.
             if coarse.weights.len() * 20 < count * 19 {
                 let sides = coarse.bisect();
                 let rim: Vec<bool> = (0..sides.len()).map(|c| coarse.is_rim(&sides, c)).collect();
@@ -130,7 +130,7 @@ impl WeightedGraph {
         self.weights.iter().map(|&weight| u64::from(weight)).sum()
     }
 
-    /// A half of all weight around a seed, ring by ring.
+    /// Half of all weight around a seed, ring by ring.
     fn grown(&self, seed: usize) -> Vec<bool> {
         let half = self.total() / 2;
         let mut sides = vec![false; self.weights.len()];
@@ -139,7 +139,7 @@ impl WeightedGraph {
         let mut seeds = std::iter::once(seed).chain(0..self.weights.len());
         while weight < half {
             if next == queue.len() {
-                // A part of its own.
+                // A separate part.
                 match seeds.find(|&v| !sides[v]) {
                     Some(v) => {
                         sides[v] = true;
@@ -219,7 +219,7 @@ impl WeightedGraph {
             if best >= before || usize::from(round) >= rounds {
                 return best;
             }
-            // Where the cut can have gone.
+            // The vertices to which the cut can have moved.
             let beside = moves[..best_moves]
                 .iter()
                 .flat_map(|&v| self.row(v as usize))
@@ -232,8 +232,8 @@ impl WeightedGraph {
         f64::INFINITY
     }
 
-    /// Fills `heap` with those of the vertices `near` that are at the cut, each with what moving it across gains.
-    /// Returns the cut's weight.
+    /// Fills `heap` with the vertices among `near` that are at the cut, each with the gain of its move across. Returns
+    /// the cut's weight.
     fn gather_at_cut(&self, sides: &[bool], near: &[u32], heap: &mut BinaryHeap<(i64, Reverse<u32>)>) -> i64 {
         heap.clear();
         let mut cut = 0;
@@ -248,11 +248,11 @@ impl WeightedGraph {
                 heap.push((across - same, Reverse(v)));
             }
         }
-        // Both ends of each edge have counted it.
+        // Both ends of an edge count it.
         cut / 2
     }
 
-    /// By how much moving a vertex across shortens the cut.
+    /// The decrease of the cut by a vertex's move across.
     fn gain(&self, sides: &[bool], v: usize) -> i64 {
         let row = self.row(v).iter();
         row.map(|&(u, weight)| {
@@ -267,7 +267,7 @@ impl WeightedGraph {
 }
 
 /// The factorisation work after a cut: that of a part of n vertices grows as n to the power 1.5, that of the separator
-/// with the third power of the cut. When a round plane part is halved, the separator takes three tenths.
+/// with the third power of the cut. If a round plane part is halved, the separator's share is three tenths.
 fn cost_of(cut: i64, share: f64, total: f64) -> f64 {
     let part = |share: f64| share * share.max(0.0).sqrt();
     let relative = cut as f64 / (1.6 * total.sqrt());

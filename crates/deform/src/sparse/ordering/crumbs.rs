@@ -7,7 +7,7 @@ use pliant_mesh::SurfaceVertex;
 
 use crate::operators::triangulation::Graph;
 
-/// With this many small components they are packed; fewer are bisected like everything else, which costs little.
+/// This many small components are packed; fewer are bisected like everything else, which costs little.
 const MANY: usize = 10_000;
 
 /// Vertices in whole small components, and all others.
@@ -18,8 +18,7 @@ pub(crate) struct Crumbs {
     pub rest: Vec<u32>,
 }
 
-/// Packs the components of at most `size` vertices together among `vertices` (ascending, of `count`), if there are very
-/// many.
+/// Packs the components with at most `size` vertices among `vertices` (ascending, of `count`), if there are very many.
 pub(crate) fn crumbs<G: Graph>(graph: &G, count: usize, vertices: Vec<u32>, size: usize) -> Crumbs {
     let mut seen = vec![false; count];
     let mut is_crumb = vec![false; count];

@@ -1,7 +1,7 @@
 //! Nested dissection of a surface's graph: cut it in two, eliminate both halves first and the separator last [Geo73].
 //!
-//! `bisection` finds the cut, in the graph of L; its rim grows to a *separator* of the graph of Lᵏ: no walk of at most
-//! k edges leads from one half to the other but through it. So the graph of Lᵏ, several times larger, is never formed.
+//! `bisection` finds the cut, in the graph of L; its rim grows to a *separator* of the graph of Lᵏ: every walk of at
+//! most k edges from one half to the other goes through it. So the graph of Lᵏ, several times larger, is never formed.
 //! Parts of some hundred vertices are left to `leaf`.
 //!
 //! A bad cut costs only time: the fill is found exactly by `symbolic`.
@@ -19,10 +19,10 @@ use crate::sparse::ordering::hubs::{WithoutHubs, hubs};
 use crate::sparse::ordering::labels::{CUT_OUT, Labelled};
 use crate::sparse::ordering::leaf;
 
-/// Parts of at most so many vertices are not cut any more.
+/// Parts of at most this many vertices are not cut.
 const LEAF: usize = 250;
 
-/// Parts of more vertices are cut beside each other.
+/// Parts of more vertices are cut in parallel.
 const APART: usize = 2048;
 
 /// Orders a graph's `count` vertices for the graph of the `power`-th power of the Laplacian, its hubs last.
@@ -46,7 +46,7 @@ pub(crate) fn dissect<G: Graph>(
     Ok(piece)
 }
 
-/// Orders some of a graph's `count` vertices; the others have no neighbours.
+/// Orders some of a graph's `count` vertices; the other vertices have no neighbours.
 fn dissect_all<G: Graph>(
     graph: &G,
     count: usize,
@@ -70,7 +70,7 @@ fn dissect_all<G: Graph>(
     Ok(piece)
 }
 
-/// What all parts share.
+/// The common data of all parts.
 struct Dissection<'a, G> {
     parts: Labelled<'a, G>,
     power: u32,
@@ -119,7 +119,7 @@ impl<G: Graph> Dissection<'_, G> {
         piece
     }
 
-    /// Labels the vertices by the half that they come to.
+    /// Labels the vertices by their half.
     fn cut(&self, vertices: &[u32], id: u32, halves: [u32; 2]) {
         for (place, &v) in vertices.iter().enumerate() {
             self.places[v as usize].store(place as u32, Relaxed);
@@ -142,10 +142,10 @@ impl<G: Graph> Dissection<'_, G> {
         }
     }
 
-    /// Takes a separator out of the halves; returns it, ascending.
+    /// Removes a separator from the halves; returns it, ascending.
     fn separator(&self, vertices: &[u32], halves: [u32; 2]) -> Vec<u32> {
         let is = |n: &SurfaceVertex, label: u32| self.parts.label(n.0) == label;
-        // If L itself is factored, one side's rim is enough; each further power takes one more ring.
+        // If L itself is factored, one side's rim is enough; each further power needs one more ring.
         let rim = |own: u32, other: u32| {
             let touches = |v: &u32| self.parts.label(*v) == own && self.parts.ring(*v).iter().any(|n| is(n, other));
             vertices.iter().copied().filter(touches).collect::<Vec<u32>>()
@@ -168,7 +168,7 @@ impl<G: Graph> Dissection<'_, G> {
             rims[side] = beyond;
             separator.extend(taken);
         }
-        // Walks around the end of the cut, through vertices that are in no part any more.
+        // This walks around the end of the cut, through vertices that are no longer in a part.
         if self.power > 1 {
             for &v in vertices {
                 let own = self.parts.label(v);
@@ -210,7 +210,7 @@ mod tests {
     use super::dissect;
     use crate::operators::triangulation::Graph;
 
-    /// A graph that counts how many neighbours were asked for.
+    /// A graph that counts the requests for neighbours.
     struct Counted {
         topology: Topology,
         asked: AtomicUsize,
@@ -224,7 +224,7 @@ mod tests {
         }
     }
 
-    /// How many neighbours are asked for to order a shape.
+    /// The number of requests for neighbours during the ordering of a shape.
     fn asked(drawn: Drawn, power: u32) -> usize {
         let topology = Topology::of(&shapes::model(drawn).surface);
         let count = topology.vertex_count();

@@ -1,6 +1,6 @@
 //! An order of elimination, with its supernodes.
 
-/// Vertices in the order of elimination, and where each supernode, whose vertices are eliminated together, ends.
+/// Vertices in the order of elimination, and the end of each supernode, whose vertices are eliminated together.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
 pub(crate) struct Elimination {
     pub order: Vec<u32>,
@@ -8,7 +8,7 @@ pub(crate) struct Elimination {
 }
 
 impl Elimination {
-    /// The same order with the vertices for which `is_last` holds moved to a supernode of their own at the end.
+    /// The same order with the vertices for which `is_last` holds moved to a separate supernode at the end.
     pub fn with_last(self, is_last: impl Fn(u32) -> bool) -> Self {
         let (mut first, mut last) = (Self::default(), Vec::new());
         let mut start = 0;
@@ -35,7 +35,7 @@ impl Elimination {
         first
     }
 
-    /// What `other` orders comes behind.
+    /// Appends the order of `other`.
     pub fn append(&mut self, other: Self) {
         let first = self.order.len() as u32;
         self.ends.extend(other.ends.iter().map(|end| first + end));

@@ -18,8 +18,8 @@ impl Graph for Rows<'_> {
     }
 }
 
-/// The nodes of a symmetric graph, given as compressed rows of neighbours without themselves, in an order to eliminate
-/// them.
+/// The nodes of a symmetric graph, given as compressed rows of neighbours without themselves, in an order of
+/// elimination.
 ///
 /// # Errors
 /// [`Cancelled`] soon after `cancel` is raised.

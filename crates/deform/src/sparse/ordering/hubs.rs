@@ -1,17 +1,17 @@
 //! Hubs: vertices with very many neighbours, such as the tip of a fan of thousands of triangles.
 //!
-//! A quasi-dense row tells an ordering nothing and costs it the square of its length at every visit ([Dav06], section
-//! 7.1). So hubs are removed from the graph first and eliminated last.
+//! A quasi-dense row gives an ordering no information and costs it the square of its length at every visit ([Dav06],
+//! section 7.1). So hubs are removed from the graph first and eliminated last.
 
 use pliant_mesh::SurfaceVertex;
 
 use crate::operators::triangulation::Graph;
 
-/// The fewest neighbours of a hub, however few vertices there are. Below that all neighbours of a vertex are eliminated
-/// as one dense block at little cost.
+/// The fewest neighbours of a hub, for any number of vertices. Below that all neighbours of a vertex are eliminated as
+/// one dense block at little cost.
 const LEAST: usize = 512;
 
-/// The fewest neighbours of a hub among `vertex_count` vertices. It grows with the root of the count: a low-rank
+/// The fewest neighbours of a hub among `vertex_count` vertices. It grows with the square root of the count: a low-rank
 /// correction stores numbers in proportion to the count, a dense block in proportion to the square of the neighbours.
 pub(crate) fn hub_degree(vertex_count: usize) -> usize {
     LEAST.max((2.0 * vertex_count as f64).sqrt() as usize)

@@ -1,4 +1,4 @@
-//! A graph whose vertices are labelled by the part that each is in.
+//! A graph whose vertices are labelled by part.
 
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
@@ -6,13 +6,13 @@ use pliant_mesh::SurfaceVertex;
 
 use crate::operators::triangulation::Graph;
 
-/// The label of what stands in no part any more.
+/// The label of vertices that are no longer in a part.
 pub(crate) const CUT_OUT: u32 = 0;
 
 /// A graph and its vertices' labels: at first 1 everywhere, then halves of part i are 2 i and 2 i + 1.
 ///
-/// A part writes only the labels of its own vertices, and of others it reads only whether a vertex is its own, so the
-/// result does not depend on the order in which parts are cut.
+/// A part writes only the labels of its own vertices, and of other labels it reads only that they are not its own, so
+/// the result does not depend on the order in which parts are cut.
 pub(crate) struct Labelled<'a, G> {
     graph: &'a G,
     labels: Vec<AtomicU32>,
@@ -27,7 +27,7 @@ impl<'a, G: Graph> Labelled<'a, G> {
         }
     }
 
-    /// The part that a vertex is in.
+    /// The part of a vertex.
     pub fn label(&self, vertex: u32) -> u32 {
         self.labels[vertex as usize].load(Relaxed)
     }
@@ -37,12 +37,12 @@ impl<'a, G: Graph> Labelled<'a, G> {
         self.labels[vertex as usize].store(label, Relaxed);
     }
 
-    /// A vertex' neighbours, in whichever part.
+    /// A vertex' neighbours, in any part.
     pub fn ring(&self, vertex: u32) -> &[SurfaceVertex] {
         self.graph.neighbours(SurfaceVertex(vertex))
     }
 
-    /// Whether a walk of at most `edges` edges leads to this label.
+    /// Whether a walk of at most `edges` edges leads to a vertex with this label.
     pub fn reaches(&self, vertex: u32, edges: u32, label: u32) -> bool {
         let ring = self.ring(vertex);
         ring.iter().any(|n| self.label(n.0) == label)

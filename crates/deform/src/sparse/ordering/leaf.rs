@@ -1,18 +1,18 @@
 //! The order within a small part: minimum degree, exactly, on rows of bits.
 //!
 //! The graph is Lᵏ's on the part's vertices and on those around it that are eliminated later (its *halo*, Pellegrini et
-//! al. 2000): they count for the degrees, which spares the fill that a part ordered by itself has along its rim.
-//! Vertices with one pattern are eliminated at once, and supernodes that hardly differ are amalgamated, so what comes
-//! out is supernodes that are worth a dense factorisation.
+//! al. 2000): they count for the degrees, which avoids the fill along the rim of a part that is ordered alone. Vertices
+//! with one pattern are eliminated at once, and supernodes that hardly differ are amalgamated, so that the supernodes
+//! are worth a dense factorisation.
 
 use crate::operators::triangulation::Graph;
 use crate::sparse::ordering::elimination::Elimination;
 use crate::sparse::ordering::labels::Labelled;
 
-/// More vertices than this are left in their order: such a part is not like a surface.
+/// A part with more vertices than this keeps its order: such a part is not like a surface.
 const MOST: usize = 1024;
 
-/// Columns of a supernode if nothing is known about their patterns.
+/// The number of columns of a supernode if nothing is known about their patterns.
 const PLAIN: usize = 32;
 
 /// Orders the vertices with the label `id` for the graph of the `power`-th power of the Laplacian.
@@ -63,12 +63,12 @@ struct Rows {
     count: usize,
 }
 
-/// Columns that are eliminated at once, and how many rows they have below.
+/// Columns that are eliminated at once, and the number of rows below them.
 #[derive(Debug)]
 struct Supernode {
     columns: Vec<usize>,
     below: usize,
-    /// The supernode that holds the first of these rows, where that is in the part.
+    /// The supernode with the first of these rows, if that row is in the part.
     parent: Option<usize>,
 }
 
@@ -88,7 +88,7 @@ impl Rows {
         }
         let words = halo.div_ceil(64);
         let place = |v: u32| near.binary_search(&v).ok();
-        // Each vertex's ring as bits, then the union of its neighbours' rings, repeated as the power says.
+        // Each vertex's ring as bits, then the union of its neighbours' rings, repeated by the power.
         let mut rings = vec![0_u64; near.len() * words];
         for (i, &v) in near.iter().enumerate() {
             let row = &mut rings[i * words..(i + 1) * words];
@@ -116,7 +116,7 @@ impl Rows {
         &self.rows[v * self.words..(v + 1) * self.words]
     }
 
-    /// Eliminates a vertex of least degree, and all with the same pattern, until none is left.
+    /// Eliminates a vertex of least degree, and all with the same pattern, until none remains.
     fn eliminate(mut self) -> Vec<Supernode> {
         let words = self.words;
         let mut degree: Vec<u32> = (0..self.count).map(|v| ones(self.row(v))).collect();
@@ -167,7 +167,7 @@ impl Rows {
     }
 }
 
-/// row |= what is within `power` edges of `vertex`.
+/// row |= the vertices within `power` edges of `vertex`.
 fn gather<G: Graph>(
     parts: &Labelled<G>,
     rings: &[u64],
@@ -211,7 +211,7 @@ fn members(row: &[u64], count: usize) -> impl Iterator<Item = usize> + '_ {
 
 /// Amalgamation: merges supernodes with their parents if that stores few zeros, and puts children before parents.
 fn amalgamate(mut supernodes: Vec<Supernode>) -> Vec<Supernode> {
-    // How many zeros a supernode stores already.
+    // The number of zeros that a supernode already stores.
     let mut zeros = vec![0_usize; supernodes.len()];
     let mut amalgamated: Vec<Option<usize>> = vec![None; supernodes.len()];
     for child in 0..supernodes.len() {
@@ -237,7 +237,7 @@ fn amalgamate(mut supernodes: Vec<Supernode>) -> Vec<Supernode> {
             amalgamated[child] = Some(parent);
         }
     }
-    // Postorder, so that a subtree stays in one piece.
+    // The supernodes are in postorder, so that a subtree stays in one piece.
     let target = |mut supernode: usize| {
         while let Some(into) = amalgamated[supernode] {
             supernode = into;

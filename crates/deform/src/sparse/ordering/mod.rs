@@ -1,8 +1,8 @@
 //! One fill-reducing ordering per mesh and operator power.
 //!
 //! Ordering costs as much as factoring but depends only on the surface: it is made once per mesh and *restricted* to
-//! the vertices that are solved for, which takes next to no time. The graph must be that of the system, Lᵏ: an ordering
-//! made for L gives seven times the fill when used for L².
+//! the solved vertices, which takes almost no time. The graph must be that of the system, Lᵏ: an ordering made for L
+//! gives seven times the fill when used for L².
 
 mod bisection;
 mod crumbs;
@@ -28,13 +28,13 @@ pub struct Ordering {
     order: Vec<u32>,
     /// The place of each vertex in it.
     rank: Vec<u32>,
-    /// Where each block of it ends.
+    /// The end of each of its blocks.
     ends: Vec<u32>,
-    /// Of the Laplacian's own graph, once a binding whose factor does not fit has asked for it.
+    /// The ordering of the Laplacian's own graph, once a binding with a factor that does not fit has asked for it.
     of_laplacian: OnceLock<Box<Ordering>>,
 }
 
-/// Equal where they order alike, whatever is kept beside them.
+/// Two are equal if they give the same order, independent of the data kept beside them.
 impl PartialEq for Ordering {
     fn eq(&self, other: &Self) -> bool {
         (self.power, &self.order, &self.ends) == (other.power, &other.order, &other.ends)
@@ -67,8 +67,8 @@ impl Ordering {
         })
     }
 
-    /// The ordering of power 1 of the same surface: this one, or one that is made when first asked for and kept beside it,
-    /// so that the next binding finds it.
+    /// The ordering of power 1 of the same surface: this one, or one that is made on the first request and kept for the
+    /// next binding.
     ///
     /// # Errors
     /// [`Cancelled`] soon after `cancel` is raised.
@@ -80,7 +80,7 @@ impl Ordering {
         Ok(self.of_laplacian.get_or_init(|| Box::new(made)))
     }
 
-    /// As [`Ordering::of_laplacian`], where it needs not be made.
+    /// Like [`Ordering::of_laplacian`], if it exists already.
     pub(crate) fn known_of_laplacian(&self) -> Option<&Self> {
         match self.power {
             1 => Some(self),
@@ -93,17 +93,17 @@ impl Ordering {
         self.power
     }
 
-    /// How many vertices are ordered.
+    /// The number of ordered vertices.
     pub fn vertex_count(&self) -> usize {
         self.order.len()
     }
 
-    /// The vertices `solved` (each once) in the order to eliminate them.
+    /// The vertices `solved` (each once) in the order of elimination.
     pub fn restricted(&self, solved: &[u32]) -> Vec<u32> {
         self.elimination(solved).order
     }
 
-    /// As [`Ordering::restricted`], in blocks.
+    /// Like [`Ordering::restricted`], in blocks.
     pub(crate) fn elimination(&self, solved: &[u32]) -> Elimination {
         let mut wanted = vec![false; self.order.len()];
         for &vertex in solved {
@@ -152,7 +152,7 @@ mod tests {
         assert!(second.known_of_laplacian().is_none());
         let made = second.of_laplacian(&model.topology, &cancel).unwrap();
         assert_eq!(*made, first);
-        // Nothing is made again: a raised flag would end that.
+        // Nothing is made again: a raised flag would stop that.
         cancel.cancel();
         assert!(std::ptr::eq(
             second.of_laplacian(&model.topology, &cancel).unwrap(),

@@ -1,16 +1,16 @@
 //! A supernode's columns in blocks of up to four: their layout, and substitution through one block.
 //!
-//! A block holds the rows from its own diagonal down, row by row: a row's four numbers meet four finished values in
-//! registers, and what is below is read and written once for four columns.
+//! A block holds the rows from its own diagonal down, row by row: a row's four numbers are multiplied with four
+//! finished values in registers, and rows below are read and written once for four columns.
 
 use crate::numerical::prefetch::Prefetch;
 use crate::sparse::numeric::line::{Line, Shape};
 use crate::sparse::solve::rhs::{Real, Rhs, minus, plus, times};
 
-/// How far ahead the backward substitution prefetches, in numbers: some blocks of the usual size.
+/// The prefetch distance of the backward substitution, in numbers: some blocks of the usual size.
 const AHEAD: usize = 1024;
 
-/// The width of the next block of so many columns.
+/// The width of the next block of this many columns.
 #[inline(always)]
 pub(super) fn block(columns: usize) -> usize {
     match columns {
@@ -20,7 +20,7 @@ pub(super) fn block(columns: usize) -> usize {
     }
 }
 
-/// The width of the last block of so many columns, taken from the front.
+/// The width of the last block of this many columns, divided from the front.
 #[inline(always)]
 pub(super) fn last_block(columns: usize) -> usize {
     match columns % 4 {
@@ -30,7 +30,7 @@ pub(super) fn last_block(columns: usize) -> usize {
     }
 }
 
-/// How many numbers a supernode's blocks hold.
+/// The number of entries in a supernode's blocks.
 #[inline(always)]
 pub(super) fn numbers(width: usize, height: usize) -> usize {
     let (mut count, mut done) = (0, 0);

@@ -8,13 +8,13 @@ use crate::sparse::numeric::line::{LANES, Line, Shape};
 /// K right-hand sides of eight rows, each a line.
 pub(crate) type Strip<const K: usize> = [Line; K];
 
-/// Strips that are processed at once: their sums are independent, which hides the latency of an addition.
+/// The number of strips that are processed at once: their sums are independent, which hides the latency of an addition.
 const STRIPS: usize = 4;
 
-/// How far ahead lines are prefetched: some supernodes of the usual size.
+/// The prefetch distance in lines: some supernodes of the usual size.
 const AHEAD: usize = 128;
 
-/// Columns whose sums are kept in the cache: their lines are consecutive.
+/// The number of columns whose sums are kept in the cache: their lines are consecutive.
 const COLUMNS: usize = 64;
 
 /// Solves with a supernode's lower triangle for the first strips of `x`, its own rows, and writes the products of the
@@ -23,7 +23,7 @@ pub(crate) struct Forward<'a, const K: usize> {
     pub shape: Shape,
     pub panel: &'a [Line],
     pub x: &'a mut [Strip<K>],
-    /// The solution, row by row, as the rows below meet it.
+    /// The solution, row by row, for the rows below.
     pub rows: &'a mut Vec<[f64; K]>,
 }
 
@@ -42,7 +42,7 @@ fn vectors<S: Simd, const V: usize>(line: &Line) -> [S::f64s; V] {
     std::array::from_fn(|v| vectors[v])
 }
 
-/// Σ_k lines_k · rows_k of some strips.
+/// Σ_k lines_k · rows_k for some strips.
 #[inline(always)]
 fn gather<S: Simd, const V: usize, const R: usize, const K: usize>(
     simd: S,
@@ -103,7 +103,7 @@ fn forward<S: Simd, const V: usize, const K: usize>(
             }
             rows.push(row);
         }
-        // The solved rows stand; what later columns took from them again is put right here.
+        // The solved rows are final; this corrects what later columns subtracted from them.
         for (c, row) in rows[LANES * strip..].iter().enumerate() {
             for k in 0..K {
                 x[k].0[c] = row[k];
@@ -162,7 +162,7 @@ fn backward<S: Simd, const V: usize, const K: usize>(
     sums.resize(shape.width, [Line::ZERO; K]);
     let (own, below) = x.split_at_mut(shape.own());
     let start = shape.start(shape.own());
-    // So many columns that their sums stay near.
+    // The number of columns is chosen so that their sums stay in the cache.
     for first in (0..shape.width).step_by(COLUMNS).rev() {
         let until = (first + COLUMNS).min(shape.width);
         let sums = &mut sums[first..until];

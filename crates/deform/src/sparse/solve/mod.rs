@@ -21,7 +21,7 @@ use crate::sparse::solve::passes::forward_and_backward;
 use crate::sparse::symbolic::Symbolic;
 use crate::sparse::symbolic::assembly_tree::AssemblyTree;
 
-/// Room for one supernode's rows.
+/// Scratch memory for one supernode's rows.
 #[derive(Default)]
 struct Room<const K: usize> {
     x: Vec<Strip<K>>,
@@ -45,8 +45,8 @@ impl<const K: usize> Room<K> {
 /// The rows that each part of the assembly tree works on while K right-hand sides are solved for.
 pub(crate) type PartRows<const K: usize> = Vec<Vec<[f64; K]>>;
 
-/// Solves L Lᵀ x = b in place; `x` has one row per column of the factor. In parts that are not wanted it
-/// is left half solved; those above a wanted part are to be wanted, too. `part_rows` is scratch memory.
+/// Solves L Lᵀ x = b in place; `x` has one row per column of the factor. In parts that are not wanted it is left half
+/// solved; parts above a wanted one must be wanted too. `part_rows` is scratch memory.
 pub(crate) fn solve_in_place<const K: usize>(
     symbolic: &Symbolic,
     assembly_tree: &AssemblyTree,
@@ -113,7 +113,7 @@ fn forward<const K: usize>(
     room: &mut Room<K>,
 ) {
     let own = first..first + shape.width;
-    // Most rows of a handle's right-hand side are zero, and zero rows change nothing below.
+    // Most rows of a handle's right-hand side are zero, and zero rows do not change the rows below.
     if x[own.clone()].iter().all(|row| *row == [0.0; K]) {
         return;
     }

@@ -5,7 +5,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::sparse::symbolic::assembly_tree::AssemblyTree;
 
-/// What one part works on.
+/// The data of one part's work.
 struct PartRows<'a, R> {
     /// Its own columns of the right-hand sides.
     own: &'a mut [R],
@@ -14,7 +14,7 @@ struct PartRows<'a, R> {
 }
 
 /// Solves for `x`, which has one row per column, part by part. `forward` gets and changes a part's own rows and,
-/// starting from zero, the changes to its ancestors' rows; its children's changes are added before. `backward` gets the
+/// starting from zero, the changes to its ancestors' rows; its children's changes are added first. `backward` gets the
 /// solved rows of the ancestors.
 ///
 /// A part passes changes to its parent and gets solved rows from it, so nothing is shared, and nothing is summed in an

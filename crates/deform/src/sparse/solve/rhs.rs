@@ -2,11 +2,11 @@
 
 use std::ops::{Add, Mul, Sub};
 
-/// A precision to solve in.
+/// A precision for solving.
 pub(crate) trait Real:
     Copy + Default + Send + Sync + std::fmt::Debug + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + 'static
 {
-    /// Rounded to it.
+    /// The number rounded to it.
     fn of(value: f64) -> Self;
     /// The same number.
     fn wide(self) -> f64;

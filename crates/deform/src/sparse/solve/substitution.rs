@@ -2,7 +2,7 @@
 //!
 //! An iterative method solves once per step and only needs a direction, so single precision is enough. A row of
 //! right-hand sides has four numbers, x, y, z and a zero, which is one vector in single precision. The parts of the
-//! assembly tree run beside each other (`passes`).
+//! assembly tree run in parallel (`passes`).
 
 use std::sync::{Mutex, PoisonError};
 
@@ -18,7 +18,7 @@ use crate::sparse::solve::rhs::{Real, Rhs, minus, plus};
 use crate::sparse::symbolic::Symbolic;
 use crate::sparse::symbolic::assembly_tree::AssemblyTree;
 
-/// The factor, and where its parts lie.
+/// The factor, and the places of its parts.
 #[derive(Debug)]
 pub(crate) struct Substitution<T> {
     nodes: Vec<Node>,
@@ -31,12 +31,12 @@ struct Node {
     /// Its first column within its part.
     start: u32,
     width: u32,
-    /// Where its rows below begin among the tree's places, and how many they are.
+    /// The start of its rows below among the tree's places, and their number.
     pattern: (u32, u32),
     values: usize,
 }
 
-/// Room for a solve, kept from one to the next.
+/// Scratch memory for a solve, kept from one to the next.
 #[derive(Debug, Default)]
 pub(crate) struct Room<T> {
     part_rows: Vec<Rows<T>>,
@@ -76,7 +76,7 @@ impl<T: Real> Substitution<T> {
         })
     }
 
-    /// How many numbers it stores.
+    /// The number of stored entries.
     pub fn stored(&self) -> usize {
         self.values.len()
     }
@@ -151,7 +151,7 @@ impl<T: Real> Substitution<T> {
         let mut left = own.len();
         let mut behind = 0;
         while left > 0 {
-            // The same blocks as in forward substitution, from the last to the first.
+            // The blocks are those of forward substitution, from the last to the first.
             let width = last_block(left);
             let rows = behind + below.len();
             let (tail, numbers) = values.split_at(values.len() - width * (width + rows));
@@ -238,7 +238,7 @@ mod tests {
                     assert!(error < tolerance, "{error:e}");
                 }
             }
-            // Room that was used before changes nothing.
+            // Scratch memory that was used before changes nothing.
             let mut again = input;
             laid_out.solve(&mut again, room);
             assert!(

@@ -1,7 +1,7 @@
 //! The assembly tree of supernodes, cut into parts that can be processed in parallel.
 //!
 //! Columns are in postorder, so a subtree is a run of supernodes and its columns are a run of columns. A subtree of
-//! little work is one part; each supernode above, in the *top*, is a part of its own. The cut depends only on the work
+//! little work is one part; each supernode above, in the *top*, is a separate part. The cut depends only on the work
 //! below: neither on the number of threads nor on the rest of the surface.
 
 use std::ops::Range;
@@ -11,7 +11,7 @@ use rayon::Scope;
 
 use crate::sparse::symbolic::{ROOT, Symbolic};
 
-/// Multiplications and additions of a subtree that is one part.
+/// The number of multiplications and additions of a subtree that is one part.
 const PART: f64 = 3e7;
 
 /// The supernodes' tree and its cut.
@@ -19,7 +19,7 @@ const PART: f64 = 3e7;
 pub(crate) struct AssemblyTree {
     /// Runs of supernodes, ascending and without gaps, children before parents.
     pub parts: Vec<Part>,
-    /// The supernodes' patterns, one after the other as the factor has them, in the coordinates of their part: its own
+    /// The supernodes' patterns, one after the other in the factor's order, in the coordinates of their part: its own
     /// columns from 0 on, then the rows of its last supernode's pattern.
     pub places: Vec<u32>,
 }
@@ -29,7 +29,7 @@ pub(crate) struct AssemblyTree {
 pub(crate) struct Part {
     pub supernodes: Range<usize>,
     pub columns: Range<usize>,
-    /// The part that takes this one's contribution.
+    /// The part that receives this one's contribution.
     pub parent: Option<usize>,
     /// The parts whose contributions this one assembles, ascending.
     pub children: Vec<usize>,
@@ -57,7 +57,7 @@ impl AssemblyTree {
         for s in 0..count {
             let is_root_of_part = small(s) && (parent[s] == ROOT || !small(parent[s] as usize));
             if is_root_of_part && first[s] >= next && size[s] == s + 1 - first[s] {
-                // Supernodes before the subtree that are in no part yet are parts by themselves.
+                // Supernodes before the subtree that are in no part yet are separate parts.
                 runs.extend((next..first[s]).map(|s| s..s + 1));
                 runs.push(first[s]..s + 1);
                 next = s + 1;
@@ -133,7 +133,7 @@ fn parts(symbolic: &Symbolic, runs: Vec<Range<usize>>) -> Vec<Part> {
     for part in 0..parts.len() {
         let Some(above) = parts[part].parent else { continue };
         parts[above].children.push(part);
-        // Above a part there is only one supernode.
+        // There is only one supernode above a part.
         let (own, pattern) = (
             parts[above].columns.clone(),
             symbolic.pattern(parts[above].supernodes.end - 1),
@@ -208,7 +208,7 @@ mod tests {
                     let parent = symbolic.parent[s];
                     let is_root = s + 1 == range.end;
                     assert!(is_root || (parent as usize) < range.end, "{name}");
-                    // All rows outside of the part are in the pattern of its root.
+                    // All rows outside the part are in the pattern of its root.
                     let mut beyond = symbolic
                         .pattern(s)
                         .iter()

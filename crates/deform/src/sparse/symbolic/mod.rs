@@ -1,6 +1,6 @@
 //! Symbolic factorisation: the supernodes of a factor and the rows of each.
 //!
-//! The order of elimination comes with its supernodes (`dissection`, `leaf`), so none have to be detected. A
+//! The order of elimination comes with its supernodes (`dissection`, `leaf`), so none need to be detected. A
 //! supernode's rows are exactly those of its columns in the matrix and those of its children's contributions.
 
 pub(crate) mod assembly_tree;
@@ -15,7 +15,7 @@ use crate::sparse::numeric::line::{LANES, Line, Shape, strips, triangle};
 /// No parent: a root.
 pub(crate) const ROOT: u32 = u32::MAX;
 
-/// What a factorisation needs, supernode by supernode.
+/// The needs of a factorisation, supernode by supernode.
 #[derive(Default)]
 struct Needed {
     rows: usize,
@@ -37,7 +37,7 @@ impl Needed {
         self.operations += operations(width, below);
     }
 
-    /// In bytes.
+    /// The memory in bytes.
     fn bytes(&self) -> u64 {
         // The rows are stored twice: in the factor's columns and in their part's.
         let lines = self.panel_lines.saturating_add(self.most_waiting);
@@ -60,15 +60,15 @@ pub(crate) fn contribution_lines(below: usize) -> usize {
 /// The supernodes of a factor.
 #[derive(Debug)]
 pub(crate) struct Symbolic {
-    /// Where each supernode's columns end; begins with 0.
+    /// The end of each supernode's columns; begins with 0.
     starts: Vec<u32>,
-    /// Where each supernode's pattern begins among `rows`, and their end.
+    /// The start of each supernode's pattern among `rows`, and the end.
     row_starts: Vec<usize>,
     /// The rows below each supernode's own, ascending.
     pub rows: Vec<u32>,
-    /// The supernode that holds the first row of each supernode's pattern, [`ROOT`] where there is none.
+    /// The supernode with the first row of each supernode's pattern, [`ROOT`] if there is none.
     pub parent: Vec<u32>,
-    /// Of how many supernodes each is the parent.
+    /// The number of each supernode's children.
     pub child_counts: Vec<u32>,
 }
 
@@ -76,8 +76,8 @@ impl Symbolic {
     /// The factor of `matrix`, whose columns are grouped in supernodes that end at `ends`.
     ///
     /// # Errors
-    /// As soon as what was found of it exceeds the budget: its numbers, its rows, the contributions that wait at once,
-    /// or the operations of its factorisation.
+    /// Returned as soon as the known part exceeds the budget: its numbers, its rows, the contributions that wait at
+    /// once, or the operations of its factorisation.
     pub fn of(matrix: &ScaledMatrix, ends: &[u32], budget: Budget) -> Result<Self, FactorError> {
         let column_count = matrix.scale.len();
         let mut symbolic = Self {
@@ -91,7 +91,7 @@ impl Symbolic {
         for s in 0..ends.len() {
             supernode_of[symbolic.columns(s)].fill(s as u32);
         }
-        // The children of a supernode that are done, as a list: the last one, and the one before each.
+        // The finished children of a supernode, as a list: the last one, and the one before each.
         let (mut last_child, mut sibling) = (vec![ROOT; ends.len()], vec![ROOT; ends.len()]);
         let mut seen = vec![ROOT; column_count];
         let mut rows = Vec::new();
@@ -134,17 +134,17 @@ impl Symbolic {
         Ok(symbolic)
     }
 
-    /// How many supernodes there are.
+    /// The number of supernodes.
     pub fn supernode_count(&self) -> usize {
         self.parent.len()
     }
 
-    /// How many columns there are.
+    /// The number of columns.
     pub fn column_count(&self) -> usize {
         self.starts[self.parent.len()] as usize
     }
 
-    /// How many numbers the factor stores, padding of strips included.
+    /// The number of stored entries, padding of strips included.
     pub fn stored(&self) -> usize {
         (0..self.supernode_count()).map(|s| LANES * self.shape(s).lines()).sum()
     }
@@ -167,7 +167,7 @@ impl Symbolic {
         &self.rows[self.pattern_range(s)]
     }
 
-    /// Where a supernode's pattern stands among all of them.
+    /// The place of a supernode's pattern among all of them.
     pub fn pattern_range(&self, s: usize) -> Range<usize> {
         self.row_starts[s]..self.row_starts[s + 1]
     }

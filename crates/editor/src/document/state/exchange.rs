@@ -1,4 +1,4 @@
-//! How a document takes back what was changed, and takes over what another has.
+//! The document's exchanges: it restores earlier states, and takes over another document's.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -16,7 +16,7 @@ use crate::document::sparse::Sparse;
 use crate::document::version::{Aspect, Versions};
 
 impl Document {
-    /// Takes everything back to how it was, versions included.
+    /// Restores the earlier state, versions included.
     pub(crate) fn go_back_to(&mut self, before: Self) {
         let is_same = |aspect| !self.versions().differ(before.versions(), aspect);
         if !(is_same(Aspect::Paint) && is_same(Aspect::Stiffness)) {
@@ -26,15 +26,15 @@ impl Document {
         self.content = before.content;
     }
 
-    /// Takes the place of another document, of which nothing remains.
+    /// Replaces another document, of which nothing remains.
     pub(crate) fn replace(&mut self, mut by: Self) {
         by.marks.count_on_from(&self.marks);
         by.marks.mark(&Aspect::ALL);
         *self = by;
     }
 
-    /// Takes over what another document has, but for the method. `known` are its versions when that was done last. The
-    /// shape stays what this document's method has made, as long as the rest shape does, and is to be solved anew.
+    /// Takes over another document's content, except the method. `known` are its versions at the last time. The shape
+    /// stays that of this document's method, as long as the rest shape stays, and must be solved anew.
     pub(crate) fn follow(&mut self, leader: &Self, known: Option<&Versions>, method: &Method) {
         let is_new = |aspect| known.is_none_or(|known| leader.versions().differ(known, aspect));
         let is_own = |aspect| matches!(aspect, Aspect::Method | Aspect::Shape | Aspect::Drawn);
@@ -55,7 +55,7 @@ impl Document {
         }
         self.marks.mark(&changed);
         self.repainted = Repainted::All;
-        // What this method makes of the handles is to be compared, and not what was seen of the other.
+        // The comparison is about this method's solution for the handles, not about the other's visible shape.
         self.content.kept = None;
         self.content.corrections = None;
         self.content.settled = true;
@@ -80,7 +80,7 @@ impl Document {
         self.mark_handles(handles);
     }
 
-    /// `is_field` tells whether there is a field at all on the other side: without, it is 1 everywhere.
+    /// `is_field` says whether the other state has a field at all: without one, it is 1 everywhere.
     pub(in crate::document) fn swap_stiffness(&mut self, stiffness: &mut Sparse<f64>, is_field: &mut bool) {
         let was_field = self.content.stiffness.is_some();
         let count = self.content.paint.len();
@@ -113,7 +113,7 @@ impl Document {
         (*loose, *parts) = (former, former_parts);
     }
 
-    /// Another rest is another problem; points that are elsewhere are other targets.
+    /// Another rest shape is another problem; moved points are other targets.
     pub(in crate::document) fn swap_attachments(&mut self, attachments: &mut Arc<BTreeMap<&'static str, Attachment>>) {
         std::mem::swap(attachments, &mut self.content.attachments);
         let (before, after) = (&**attachments, &*self.content.attachments);
@@ -157,7 +157,7 @@ impl Document {
 
     pub(in crate::document) fn swap_settled(&mut self, settled: &mut bool) {
         std::mem::swap(settled, &mut self.content.settled);
-        // Solves that ended before are no answer any more.
+        // Solves that ended earlier no longer apply.
         if *settled && !self.content.settled {
             self.marks.mark(&[Aspect::Targets]);
         }

@@ -1,9 +1,9 @@
-//! What is saved and undone: the paint, the handles, the options, and the shape they have brought about.
+//! The saved and undone state: the paint, the handles, the options, and the resulting shape.
 //!
-//! The [`Document`] holds what a person has said and what has come of it. What follows from it alone, and can be
-//! computed again at any time (the region around the handles, the factorisation), is not in it.
+//! The [`Document`] has a person's input and the result. Data that follow from it alone, and can be recomputed at any
+//! time (the region around the handles, the factorisation), are not in it.
 //!
-//! Everybody may read a document's [`Content`]; only the functions here change it, and each says what it has changed
+//! All code may read a document's [`Content`]; only the functions here change it, and each records its change
 //! ([`Versions`]), undo and redo included. Cloning is cheap: the long vectors are shared until one side changes.
 
 mod exchange;
@@ -35,20 +35,20 @@ pub struct Document {
     repainted: Repainted,
 }
 
-/// On which vertices paint or stiffness has changed since somebody asked.
+/// The vertices whose paint or stiffness has changed since the last query.
 #[derive(Clone, PartialEq, Debug)]
 pub(crate) enum Repainted {
-    /// On these, with repeats.
+    /// These vertices, with repeats.
     Vertices(Vec<SurfaceVertex>),
-    /// Perhaps on all.
+    /// Perhaps all.
     All,
 }
 
-/// Above this share of the vertices all count as repainted: to tell so many apart costs more than it saves.
+/// Above this share of the vertices all count as repainted: distinguishing so many costs more than it saves.
 const MOST_TOLD: f64 = 0.125;
 
 impl Repainted {
-    /// Where to note `more` vertices, of `count` that there are; `None` where all count as repainted.
+    /// The list for `more` vertices, of `count` in all; `None` if all count as repainted.
     fn room_for(&mut self, more: usize, count: usize) -> Option<&mut Vec<SurfaceVertex>> {
         if let Self::Vertices(told) = self
             && (told.len() + more) as f64 > MOST_TOLD * count as f64
@@ -64,7 +64,7 @@ impl Repainted {
         }
     }
 
-    /// Notes vertices, of `count` that there are.
+    /// Notes vertices, of `count` in all.
     fn note(&mut self, vertices: impl ExactSizeIterator<Item = SurfaceVertex>, count: usize) {
         if let Some(told) = self.room_for(vertices.len(), count) {
             told.extend(vertices);
@@ -98,19 +98,19 @@ impl From<Content> for Document {
     }
 }
 
-/// What a document says of itself.
+/// The document's description of itself.
 impl Document {
-    /// A fresh document: everything is held still. It bends by ARAP, which turns and moves at once.
+    /// A fresh document: everything is fixed. It bends by ARAP, which turns and moves at once.
     pub fn new(vertex_count: usize) -> Self {
         Content::new(vertex_count).into()
     }
 
-    /// What was painted on each surface vertex.
+    /// The paint of each surface vertex.
     pub fn paint(&self) -> &[Paint] {
         &self.content.paint
     }
 
-    /// The handles, in the order in which they were made.
+    /// The handles, in the order of their making.
     pub fn handles(&self) -> &[Handle] {
         &self.content.handles
     }
@@ -125,7 +125,8 @@ impl Document {
         self.content.stiffness.as_ref().map(|field| field.as_slice())
     }
 
-    /// With which continuity the surface joins what holds it, per surface vertex; `None` is the highest everywhere.
+    /// The continuity with which the surface joins constrained vertices, per surface vertex; `None` is the highest
+    /// everywhere.
     pub fn continuity(&self) -> Option<&[f64]> {
         self.content.continuity.as_ref().map(|field| field.as_slice())
     }
@@ -135,12 +136,12 @@ impl Document {
         &self.content.method
     }
 
-    /// What methods take beside handles, by the names that they declare.
+    /// The methods' inputs beside handles.
     pub fn attachments(&self) -> &BTreeMap<&'static str, Attachment> {
         &self.content.attachments
     }
 
-    /// What of that the present method takes.
+    /// The inputs of the present method.
     pub fn attachment(&self) -> Option<(&'static str, &Attachment)> {
         let declared = self.content.method.declaration();
         let mut attachments = self.content.attachments.iter();
@@ -161,44 +162,44 @@ impl Document {
         self.examples().map_or(&[], |examples| &examples.weights)
     }
 
-    /// Whether an example that bends the surface is given a weight other than 0, or a control point was moved by hand.
+    /// Whether an example that bends the surface has a weight other than 0, or a control point was moved by hand.
     pub(crate) fn is_moved_without_handles(&self) -> bool {
         let mut weights = self.example_weights().iter().flatten();
         let are_weighed = self.content.method.examples_bend() && weights.any(|weight| *weight != 0.0);
         are_weighed || self.moved_controls().is_some()
     }
 
-    /// Whether the method can move the surface without handles: by control points, which it makes where none were
-    /// brought, or by examples.
+    /// Whether the method can move the surface without handles: by control points, which it makes if none were brought,
+    /// or by examples.
     pub(crate) fn bends_without_handles(&self) -> bool {
         let mut declared = self.content.method.declaration().attachments.iter();
         let bends_by_examples = self.content.method.examples_bend() && self.examples().is_some();
         declared.any(|own| own.kind != AttachmentKind::Shapes) || bends_by_examples
     }
 
-    /// Where its control points were moved to, if any of them was.
+    /// The moved positions of its control points, if any of them was moved.
     pub fn moved_controls(&self) -> Option<&Arc<Vec<DVec3>>> {
         let (_, attachment) = self.attachment()?;
         let moved = attachment.moved()?;
         (**moved != self.content.method.control_rest(attachment)).then_some(moved)
     }
 
-    /// Whether the parts that a reach cuts off from the body come along.
+    /// Whether tips are free.
     pub fn tips(&self) -> Tips {
         self.content.tips
     }
 
-    /// What components that nothing holds do.
+    /// The behaviour of components that nothing holds.
     pub fn loose(&self) -> Loose {
         self.content.loose
     }
 
-    /// What single components do that nothing holds, in place of [`Document::loose`].
+    /// The behaviour of single components that nothing holds, instead of [`Document::loose`].
     pub fn loose_parts(&self) -> &BTreeMap<u32, Loose> {
         &self.content.loose_parts
     }
 
-    /// The continuity per surface vertex, with that of handles which say one of their own; `None` is the highest
+    /// The continuity per surface vertex, with the own continuity of handles that have one; `None` is the highest
     /// everywhere.
     pub fn joints(&self) -> Option<Vec<f64>> {
         let handles = self.content.handles.iter();
@@ -222,7 +223,7 @@ impl Document {
         &self.content.inside_out
     }
 
-    /// What of the file is hidden and locked.
+    /// The file's hidden and locked parts.
     pub fn access(&self) -> &Access {
         &self.content.access
     }
@@ -237,18 +238,18 @@ impl Document {
         &self.content.from_rest
     }
 
-    /// The present shape's displacements from the file's shape, per surface vertex: what is drawn.
+    /// The present shape's displacements from the file's shape, per surface vertex, which are drawn.
     pub fn from_file(&self) -> &Arc<Vec<DVec3>> {
         &self.content.from_file
     }
 
-    /// What was seen when what holds the surface changed last, from which the next drag begins; `None` where the shape is
-    /// the one that the handles mean.
+    /// The shape at the last change of the constraints, from which the next drag begins; `None` if the shape is the
+    /// solution for the handles.
     pub fn kept(&self) -> Option<&KeptShape> {
         self.content.kept.as_deref()
     }
 
-    /// Whether a shape was applied, so that the rest shape is another than the file's.
+    /// Whether a shape was applied, so that the rest shape differs from the file's.
     pub fn is_applied(&self) -> bool {
         self.content.applied
     }
@@ -258,28 +259,28 @@ impl Document {
         self.content.settled
     }
 
-    /// Whether the present shape is another than the rest shape.
+    /// Whether the present shape differs from the rest shape.
     pub fn is_displaced(&self) -> bool {
         !self.content.settled || self.content.kept.is_some() || self.is_moved()
     }
 
-    /// Whether a handle or a control point is elsewhere than where it rests.
+    /// Whether a handle or a control point is away from its rest position.
     pub(crate) fn is_moved(&self) -> bool {
         self.content.handles.iter().any(Handle::is_displaced) || self.is_moved_without_handles()
     }
 
-    /// Which state of each aspect this is.
+    /// The version of each aspect.
     pub(crate) fn versions(&self) -> &Versions {
         self.marks.versions()
     }
 
-    /// The vertices whose paint or stiffness changed since this was asked last.
+    /// The vertices whose paint or stiffness changed since the last call.
     pub(crate) fn take_repainted(&mut self) -> Repainted {
         std::mem::take(&mut self.repainted)
     }
 }
 
-/// What is painted.
+/// Paint.
 impl Document {
     /// Paints vertices.
     pub(crate) fn paint_vertices(
@@ -301,7 +302,7 @@ impl Document {
         }
     }
 
-    /// Takes all paint and every handle away.
+    /// Removes all paint and every handle.
     pub(crate) fn clear_paint(&mut self) {
         self.marks.mark(&[Aspect::Paint]);
         self.repainted = Repainted::All;
@@ -316,7 +317,7 @@ impl Document {
         self.content.stiffness = stiffness.map(Arc::new);
     }
 
-    /// Changes the stiffness of some vertices, those that `change` gives back.
+    /// Changes the stiffness of some vertices, those that `change` returns.
     pub(crate) fn stiffen(&mut self, change: impl FnOnce(&mut [f64]) -> Vec<SurfaceVertex>) {
         let count = self.content.paint.len();
         let field = self.content.stiffness.get_or_insert_with(|| Arc::new(vec![1.0; count]));
@@ -325,7 +326,7 @@ impl Document {
         self.repainted.note(changed.into_iter(), count);
     }
 
-    /// Forgets a field of stiffness that is 1 everywhere. Where `before` had none, nothing has changed.
+    /// Forgets a field of stiffness that is 1 everywhere. If `before` had none, nothing has changed.
     pub(crate) fn drop_plain_stiffness(&mut self, before: &Self) {
         let field = self.content.stiffness.as_ref();
         if !field.is_some_and(|field| field.iter().all(|&value| value == 1.0)) {
@@ -350,7 +351,7 @@ impl Document {
         id
     }
 
-    /// Takes away the handles that were made since `before`; their numbers are given again.
+    /// Removes the handles that were made since `before`; their numbers are used again.
     pub(crate) fn drop_handles_made_since(&mut self, before: &Self) {
         self.change_handles(|handles| handles.retain(|handle| before.handle(handle.id).is_some()));
         self.content.next_handle = before.content.next_handle;
@@ -366,7 +367,7 @@ impl Document {
         }
     }
 
-    /// Changes one handle; `None` if it is gone.
+    /// Changes one handle; `None` if it no longer exists.
     pub(crate) fn change_handle<R>(&mut self, id: HandleId, change: impl FnOnce(&mut Handle) -> R) -> Option<R> {
         self.change_handles(|handles| handles.iter_mut().find(|handle| handle.id == id).map(change))
     }
@@ -379,7 +380,7 @@ impl Document {
         result
     }
 
-    /// Marks what about the handles is another than `before`.
+    /// Marks the aspects of the handles that differ from `before`.
     fn mark_handles(&mut self, before: &[Handle]) {
         let after = &self.content.handles;
         if before == after {
@@ -408,26 +409,26 @@ impl Document {
         if self.content.method != method {
             self.content.method = method;
             if !self.content.attachments.is_empty() {
-                // Other points and weights count now, or the same with other rests.
+                // Other points and weights apply now, or the same with other rest positions.
                 self.forget_strength();
             }
             self.marks.mark(&[Aspect::Method]);
         }
     }
 
-    /// Puts what methods take beside handles in the place of what there is.
+    /// Replaces the methods' inputs beside handles.
     pub(crate) fn set_attachments(&mut self, mut attachments: Arc<BTreeMap<&'static str, Attachment>>) {
         self.swap_attachments(&mut attachments);
     }
 
-    /// Chooses whether tips come along.
+    /// Chooses whether tips are free.
     pub(crate) fn set_tips(&mut self, mut tips: Tips) {
         if self.content.tips != tips {
             self.swap_tips(&mut tips);
         }
     }
 
-    /// Chooses what loose parts do: all, and single ones in place of that.
+    /// Chooses the behaviour of loose parts: of all, and of single ones instead.
     pub(crate) fn set_loose(&mut self, loose: Loose, parts: BTreeMap<u32, Loose>) {
         if self.content.loose != loose || *self.content.loose_parts != parts {
             (self.content.loose, self.content.loose_parts) = (loose, Arc::new(parts));
@@ -435,14 +436,14 @@ impl Document {
         }
     }
 
-    /// Chooses which parts are turned inside out.
+    /// Chooses the parts that are turned inside out.
     pub(crate) fn set_inside_out(&mut self, mut inside_out: Arc<BTreeSet<u32>>) {
         if self.content.inside_out != inside_out {
             self.swap_inside_out(&mut inside_out);
         }
     }
 
-    /// Chooses what is hidden and locked.
+    /// Chooses the hidden and locked parts.
     pub(crate) fn set_access(&mut self, mut access: Arc<Access>) {
         self.swap_access(&mut access);
     }

@@ -1,4 +1,4 @@
-//! The poses that a person keeps by their names.
+//! The kept poses, by their names.
 
 use std::sync::Arc;
 
@@ -6,12 +6,12 @@ use super::Document;
 use crate::document::pose::Pose;
 
 impl Document {
-    /// The poses that are kept, in the order in which they were.
+    /// The kept poses, in the order in which they were kept.
     pub fn poses(&self) -> &[Pose] {
         &self.content.poses
     }
 
-    /// Whether a pose is what handles, control points and weights show.
+    /// Whether handles, control points and weights show this pose.
     pub fn is_in_pose(&self, pose: &Pose) -> bool {
         let mut handles = self.content.handles.iter();
         handles.all(|handle| {
@@ -20,7 +20,7 @@ impl Document {
         }) && pose.attachments(&self.content.attachments) == self.content.attachments
     }
 
-    /// What is shown, as a pose.
+    /// The shown state, as a pose.
     pub(crate) fn present_pose(&self, name: String) -> Pose {
         let content = &self.content;
         Pose::of(name, &content.handles, &content.method, &content.attachments)
@@ -31,7 +31,8 @@ impl Document {
         change(Arc::make_mut(&mut self.content.poses));
     }
 
-    /// Puts handles where a pose has them, those that `may_move`, to be solved for; and control points and weights.
+    /// Moves the handles that `may_move` to a pose, along with control points and weights; the shape must then be
+    /// solved.
     pub(crate) fn take_pose(&mut self, pose: &Pose, may_move: impl Fn(crate::document::HandleId) -> bool) {
         if self.is_in_pose(pose) {
             return;

@@ -1,5 +1,5 @@
-//! A document on its mesh as it was read again: after another program has changed the file, or with its vertices joined
-//! otherwise.
+//! A document on its mesh when that is read again: after another program has changed the file, or with another joining
+//! of its vertices.
 
 use std::sync::Arc;
 
@@ -13,9 +13,9 @@ use crate::document::kept_shape::KeptShape;
 use crate::document::matching::Matching;
 
 impl Document {
-    /// The same regions, handles and shapes on the vertices that stand for its own; the others hold still. Where the file
-    /// was saved since it was opened, `saved` is what it was moved by then (an entry per surface vertex of this document),
-    /// and the rest shape is the file's without that.
+    /// The same regions, handles and shapes on the vertices that match its own; the others are fixed. If the file was
+    /// saved since it was opened, `saved` are the displacements at that time (an entry per surface vertex of this
+    /// document), and the rest shape is the file's without them.
     pub(crate) fn onto(&self, matching: &Matching, saved: Option<&[DVec3]>) -> Self {
         let map = Map(matching);
         let mut content = Content {
@@ -41,7 +41,7 @@ impl Document {
                 })
             }),
             applied: self.applied || saved.is_some(),
-            // The rest shape may be another one now.
+            // The rest shape may differ now.
             settled: false,
             ..Content::new(matching.of_new.len())
         };

@@ -1,4 +1,4 @@
-//! How the shapes change: the rest shape, and the present one over it.
+//! The changes of the shapes: the rest shape, and the present one over it.
 
 use std::sync::Arc;
 
@@ -11,8 +11,8 @@ use crate::document::kept_shape::KeptShape;
 use crate::document::version::Aspect;
 
 impl Document {
-    /// Makes the present shape the rest shape. No drawn vertex moves; the handles' pivots go along. Cages and lattices
-    /// fitted the former one and are taken away; examples stay the shapes that they are, with the weight 0.
+    /// Makes the present shape the rest shape. No drawn vertex moves; the handles' pivots move with the shape. Cages
+    /// and lattices fitted the former one and are removed; examples keep their shapes, with the weight 0.
     pub(crate) fn apply_shape(&mut self) {
         if !self.is_displaced() {
             return;
@@ -44,8 +44,8 @@ impl Document {
         });
     }
 
-    /// Has the present shape stay what is seen though what holds the surface is about to change: handles keep their
-    /// transforms, and the next drag begins from what is seen.
+    /// Keeps the visible shape before a change of the constraints: handles keep their transforms, and the next drag
+    /// begins from the visible shape.
     pub(crate) fn keep_shape(&mut self) {
         if !self.is_displaced() {
             return;
@@ -56,7 +56,7 @@ impl Document {
         }
     }
 
-    /// The shape that is seen, and where handles, control points and examples stand.
+    /// The visible shape, with the positions of handles, control points and examples.
     fn seen(&self) -> KeptShape {
         let controls = self.moved_controls().cloned();
         let content = &self.content;
@@ -69,7 +69,7 @@ impl Document {
         )
     }
 
-    /// Whether the kept shape is the one that is seen, with all in the same places.
+    /// Whether the kept shape is the visible one, with everything in the same places.
     fn shows_kept_shape(&self) -> bool {
         let (controls, weights, content) = (self.moved_controls(), self.example_weights(), &self.content);
         let is_seen = |kept: &Arc<KeptShape>| {
@@ -84,14 +84,14 @@ impl Document {
         content.kept.as_ref().is_some_and(is_seen)
     }
 
-    /// Whether handles and method alone may not lead back to the shape that is seen: where a descent ends can depend on
-    /// the way that it took.
+    /// Whether handles and method alone may not lead back to the visible shape: the end of a descent can depend on its
+    /// path.
     pub(crate) fn depends_on_way(&self) -> bool {
         self.content.settled && self.is_moved() && self.content.method.solve() != Solve::Direct
     }
 
-    /// The shape from which a solve that does not know the way goes on: the one that is seen where it
-    /// [depends on the way](Self::depends_on_way), else the kept one.
+    /// The shape from which a solve without knowledge of the path continues: the visible one if it [depends on the
+    /// way](Self::depends_on_way), else the kept one.
     pub(crate) fn to_go_on_from(&self) -> Option<Arc<KeptShape>> {
         match &self.content.kept {
             _ if self.depends_on_way() && !self.shows_kept_shape() => Some(Arc::new(self.seen())),
@@ -104,7 +104,7 @@ impl Document {
         self.depends_on_way() && self.shows_kept_shape()
     }
 
-    /// Keeps the shape that is seen where it depends on the way, so that the next drag begins from it.
+    /// Keeps the visible shape if it depends on the path, so that the next drag begins from it.
     pub(crate) fn keep_way(&mut self) {
         if self.depends_on_way() {
             self.keep_shape();
@@ -127,18 +127,18 @@ impl Document {
         self.content.kept = Some(Arc::new(self.seen()));
     }
 
-    /// Notes what a solve has left of the corrections by hand.
+    /// Notes the corrections by hand that a solve has left.
     pub(crate) fn see_corrections(&mut self, left: Option<Arc<Vec<DVec3>>>) {
         self.content.corrections = left;
     }
 
-    /// The corrections are those of the kept shape, as long as no solve tells what is left of them.
+    /// The corrections are those of the kept shape, as long as no solve changes them.
     pub(in crate::document) fn renew_corrections(&mut self) {
         let kept = self.content.kept.as_ref();
         self.content.corrections = kept.and_then(|kept| kept.corrections.clone());
     }
 
-    /// Shows a shape that the handles have brought about; `from_file` is its sum with the rest shape.
+    /// Shows the handles' solution; `from_file` is its sum with the rest shape.
     pub(crate) fn show(&mut self, from_rest: Arc<Vec<DVec3>>, from_file: Arc<Vec<DVec3>>) {
         (self.content.from_rest, self.content.from_file) = (from_rest, from_file);
         self.marks.mark(&[Aspect::Shape, Aspect::Drawn]);
@@ -151,7 +151,7 @@ impl Document {
         self.marks.mark(&[Aspect::Shape, Aspect::Drawn]);
     }
 
-    /// Shows a shape that was seen, to go on from.
+    /// Shows an earlier shape, to continue from it.
     pub(crate) fn go_on_from(&mut self, kept: KeptShape) {
         self.bend(kept.shape.to_vec());
         self.content.kept = Some(Arc::new(kept));
@@ -168,7 +168,7 @@ impl Document {
         self.settle();
     }
 
-    /// Takes the rest shape and the present one back to the file's; handles stay where they are put.
+    /// Takes the rest shape and the present one back to the file's; handles keep their transforms.
     pub(crate) fn forget_shapes(&mut self) {
         let content = &mut self.content;
         let before = Arc::clone(&content.rest);
@@ -184,8 +184,8 @@ impl Document {
         self.rebase_examples(&before);
     }
 
-    /// Takes some vertices back to the file's shape, the rest shape's and the present one's; the others stay where they
-    /// are seen.
+    /// Takes some vertices back to the file's shape, in the rest shape and the present one; the others keep their
+    /// visible positions.
     pub(crate) fn forget_shape_at(&mut self, is_taken: &[bool]) {
         let content = &mut self.content;
         let before = Arc::clone(&content.rest);
@@ -217,17 +217,17 @@ impl Document {
         }
     }
 
-    /// The shape is final for the handles' transforms.
+    /// Marks the shape as final for the handles' transforms.
     pub(crate) fn settle(&mut self) {
         self.content.settled = true;
     }
 
-    /// The shape is not final: there is something to be solved.
+    /// Marks the shape as not final: a solve is needed.
     pub(crate) fn unsettle(&mut self) {
         self.swap_settled(&mut false);
     }
 
-    /// Gives all examples whose weight is set the weight 0.
+    /// Sets the weight of every example with a set weight to 0.
     pub(crate) fn rest_examples(&mut self) {
         if !self.content.method.examples_bend() {
             return;
@@ -237,7 +237,7 @@ impl Document {
         });
     }
 
-    /// Has examples stay the shapes that they are though the rest shape's displacements from the file's were these
+    /// Keeps the examples' shapes after a change of the rest shape, whose displacements from the file's were these
     /// before.
     fn rebase_examples(&mut self, before: &Arc<Vec<DVec3>>) {
         let now = Arc::clone(&self.content.rest);
@@ -266,8 +266,8 @@ impl Document {
         }
     }
 
-    /// The same, if any handle is elsewhere than where it rests. What the surface is to be is solved from the rest shape
-    /// alone, and what was corrected by hand is carried along beside that.
+    /// Marks the shape as not final if any handle is away from its rest position. The solution is computed from the
+    /// rest shape alone, and corrections by hand are added to it.
     pub(crate) fn unsettle_if_displaced(&mut self) {
         if self.is_displaced() {
             let kept = self.content.kept.take();

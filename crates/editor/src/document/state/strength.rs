@@ -1,7 +1,7 @@
-//! How much of the edit is shown.
+//! The shown share of the edit.
 //!
-//! Handles and attachments always are what is shown, at whatever share; what they are a share of is remembered beside
-//! them, until something else moves one of them: then what is seen is the whole.
+//! Handles and attachments always have the shown values, at any share; their full values are stored beside them until
+//! something else moves one of them: then the shown values are the full ones.
 
 use std::sync::Arc;
 
@@ -10,12 +10,12 @@ use crate::document::handle::Handle;
 use crate::document::strength::{Stance, Strength};
 
 impl Document {
-    /// How much of what handles, control points and examples ask for is shown, 0 to 1.
+    /// The shown share of the motions of handles, control points and examples, 0 to 1.
     pub fn strength(&self) -> f64 {
         self.content.strength.as_ref().map_or(1.0, |strength| strength.share)
     }
 
-    /// Shows a share (0 to 1) of the whole edit, to be solved anew.
+    /// Shows a share (0 to 1) of the whole edit, which must be solved anew.
     pub(crate) fn set_strength(&mut self, share: f64) {
         if share != self.strength() {
             self.unsettle();
@@ -23,7 +23,8 @@ impl Document {
         }
     }
 
-    /// Takes handles and attachments to a share of their way, and remembers the whole. The shape stays as it is.
+    /// Moves handles and attachments to a share of their displacement, and stores the full values. The shape does not
+    /// change.
     pub(crate) fn take_part(&mut self, share: f64) {
         if share == self.strength() {
             return;
@@ -58,18 +59,18 @@ impl Document {
         document
     }
 
-    /// Whether the way of each handle from rest is the one that its transform alone tells.
+    /// Whether the path of each handle from rest follows from its transform alone.
     pub(crate) fn goes_the_short_way(&self) -> bool {
         let mut handles = self.content.handles.iter();
         handles.all(|handle| Stance::of(handle).goes_the_short_way())
     }
 
-    /// What is shown is the whole.
+    /// Makes the shown values the full ones.
     pub(crate) fn forget_strength(&mut self) {
         self.content.strength = None;
     }
 
-    /// The same, if a handle stands elsewhere than `before`, or no handle is left.
+    /// The same, if a handle differs from `before`, or no handle remains.
     pub(super) fn forget_strength_unless_handles_stay(&mut self, before: &[Handle]) {
         let stands = |handle: &Handle| (handle.pivot, Stance::of(handle));
         let stays = |handle: &Handle| match before.iter().find(|other| other.id == handle.id) {

@@ -1,4 +1,4 @@
-//! The camera, as a project stores it.
+//! The camera in a project.
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};

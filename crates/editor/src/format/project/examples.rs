@@ -1,4 +1,4 @@
-//! A document's examples as a project stores them.
+//! A document's examples in a project.
 
 use std::sync::Arc;
 
@@ -18,10 +18,10 @@ use crate::format::reader::read;
 #[serde(deny_unknown_fields)]
 struct StoredExample {
     name: String,
-    /// Without, it is found.
+    /// Without a weight, the solver finds it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     weight: Option<f64>,
-    /// From the rest shape.
+    /// The displacements from the rest shape.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     displacements: Option<Field>,
 }
@@ -43,7 +43,7 @@ pub(super) fn stored_examples(examples: &Examples, model: &Model) -> Value {
     json!(stored.collect::<Vec<_>>())
 }
 
-/// Reads what [`stored_examples`] has written.
+/// Reads the value of [`stored_examples`].
 pub(super) fn read_examples(value: &Value, model: &Model) -> Result<Attachment, EditError> {
     let stored: Vec<StoredExample> = read(value)?;
     let mut examples = Examples::default();
@@ -64,7 +64,7 @@ pub(super) fn read_examples(value: &Value, model: &Model) -> Result<Attachment, 
     Ok(Attachment::Shapes(examples))
 }
 
-/// Whether an example of the list is given a weight.
+/// Whether an example of the list has a set weight.
 pub(super) fn are_weighed(value: &Value) -> bool {
     let weight = |example: &Value| example.get("weight").and_then(Value::as_f64);
     let list = value.as_array();

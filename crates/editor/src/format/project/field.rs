@@ -1,8 +1,8 @@
-//! A field over the vertices as a project stores it: which vertices, as ranges of the file's drawn vertices, and their
-//! numbers as base64 of little-endian f64, since text would be three times as long and slow to read.
+//! A field over the vertices in a project: the vertices, as ranges of the file's drawn vertices, and their numbers as
+//! base64 of little-endian f64, because text would be three times as long and slow to read.
 //!
-//! Drawn vertices are the file's own order, so that a project stays readable when welding changes; twins that were
-//! welded share one value, which stands at the lowest of them.
+//! Drawn vertices have the file's own order, so that a project stays readable when welding changes; welded twins share
+//! one value, stored at the lowest of them.
 
 use std::ops::RangeInclusive;
 use std::sync::Arc;
@@ -28,7 +28,7 @@ pub(crate) struct Field {
 }
 
 impl Field {
-    /// The values, `N` numbers each, of the vertices that `value` gives some for; `None` if it gives none.
+    /// The values, `N` numbers each, of the vertices for which `value` returns some; `None` if it returns none.
     pub(crate) fn of<const N: usize>(
         model: &Model,
         mut value: impl FnMut(SurfaceVertex) -> Option<[f64; N]>,
@@ -55,7 +55,7 @@ impl Field {
     /// Gives every stored vertex and its numbers to `take`.
     ///
     /// # Errors
-    /// A vertex that the file does not have, too many or too few numbers, or one that is none.
+    /// A vertex that the file does not have, too many or too few numbers, or a NaN.
     fn read<const N: usize>(
         &self,
         name: &str,
@@ -96,10 +96,10 @@ impl Field {
         })
     }
 
-    /// One number for each surface vertex, `default` where none is stored.
+    /// One number for each surface vertex, `default` if none is stored.
     ///
     /// # Errors
-    /// As [`Self::read`], and a number outside of `range` that `is_beyond` does not allow.
+    /// Those of [`Self::read`], and a number outside `range` that `is_beyond` does not allow.
     pub(super) fn numbers(
         &self,
         name: &str,
@@ -127,10 +127,10 @@ impl Field {
         }
     }
 
-    /// A displacement for each surface vertex, zero where none is stored.
+    /// A displacement for each surface vertex, zero if none is stored.
     ///
     /// # Errors
-    /// As [`Self::read`].
+    /// Those of [`Self::read`].
     pub(super) fn displacements(&self, name: &str, model: &Model) -> Result<Arc<Vec<DVec3>>, EditError> {
         let mut displacements = vec![DVec3::ZERO; model.surface.positions.len()];
         self.read(name, model, f64::is_finite, |vertex, value| {

@@ -1,4 +1,4 @@
-//! A handle as a project stores it.
+//! A handle in a project.
 
 use glam::DVec3;
 use pliant_deform::CONTINUITY_RANGE;
@@ -20,7 +20,7 @@ pub(super) struct StoredHandle {
     pub(super) vertices: Ranges,
     #[serde(default, skip_serializing_if = "is_default")]
     transform: HandleTransform,
-    /// The turn as it is counted, in degrees about x, y and z.
+    /// The counted turn, in degrees about x, y and z.
     #[serde(default, skip_serializing_if = "is_no_turn")]
     turn_deg: [f64; 3],
     pivot: [f64; 3],
@@ -61,10 +61,10 @@ enum StoredReach {
 #[serde(deny_unknown_fields)]
 struct StoredTwin {
     handle: u16,
-    /// The axis of the world that the plane stands across.
+    /// The world axis that is normal to the plane.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     axis: Option<usize>,
-    /// Else its normal.
+    /// Otherwise its normal.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     normal: Option<[f64; 3]>,
     /// Its distance from the origin along either.
@@ -72,7 +72,7 @@ struct StoredTwin {
 }
 
 impl StoredTwin {
-    /// The plane that is stored, if it is one.
+    /// The stored plane, if it is valid.
     fn plane(&self) -> Option<MirrorPlane> {
         let normal = match (self.axis, self.normal) {
             (Some(axis), None) => *DVec3::AXES.get(axis)?,
@@ -116,7 +116,7 @@ impl StoredHandle {
         }
     }
 
-    /// Whether it is where it rests.
+    /// Whether it is at its rest position.
     pub(super) fn is_at_rest(&self) -> bool {
         is_default(&self.transform)
     }
@@ -137,7 +137,7 @@ impl StoredHandle {
         let counted = DVec3::from_array(self.turn_deg);
         Ok(Handle {
             colour: self.colour,
-            // What is counted means the rotation, whoever wrote it.
+            // The counted turn must be the rotation, even in a file from another program.
             turn_deg: match transform {
                 HandleTransform::Trs { rotation, .. } if !means(counted, rotation) => followed(DVec3::ZERO, rotation),
                 _ => counted,

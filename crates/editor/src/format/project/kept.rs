@@ -1,4 +1,4 @@
-//! The kept shape (see `document/kept_shape`), as a project stores it, and an edit.
+//! The kept shape (see `document/kept_shape`), in a project and in an edit.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -15,29 +15,29 @@ use crate::EditError;
 use crate::document::{Carries, HandleId, KeptShape, bits_equal};
 use crate::format::method::method_to_value;
 
-/// A kept shape: which shape was seen, and where handles, control points and examples' weights stood then.
+/// A kept shape: the visible shape, and the handles, control points and examples' weights at that time.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StoredKept {
-    /// The method, with its options, that has made the shape: another method takes only what was corrected by hand.
-    /// Without it every method takes all.
+    /// The method, with its options, that has made the shape: another method takes only the corrections by hand.
+    /// Without it every method takes the whole shape.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     method: Option<Value>,
     /// Each handle's map of rest positions, by its number: three columns and the translation.
     handles: BTreeMap<u32, [f64; 12]>,
-    /// Where control points were moved to.
+    /// The moved positions of control points.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     controls: Option<Vec<[f64; 3]>>,
-    /// The examples' weights, `null` where one was found.
+    /// The examples' weights, `null` for one that was found.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     weights: Vec<Option<f64>>,
     /// Displacements from the rest shape; `None` is the rest shape.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     shape: Option<Field>,
-    /// What of these was corrected by hand; `None`: nothing.
+    /// The part of these that was corrected by hand; `None` without any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     corrections: Option<Field>,
-    /// What is carried along beside the solution.
+    /// The residual beside the solution.
     #[serde(default, skip_serializing_if = "StoredCarries::is_default")]
     carries: StoredCarries,
 }
@@ -85,7 +85,7 @@ impl StoredKept {
         }
     }
 
-    /// What is left of it for another method; `None` where nothing was corrected by hand.
+    /// The remaining part for another method; `None` if nothing was corrected by hand.
     pub(crate) fn for_another_method(self) -> Option<Self> {
         self.corrections.as_ref()?;
         Some(Self {
@@ -98,7 +98,7 @@ impl StoredKept {
     /// The shape on its mesh; `name` is the member's, for messages.
     ///
     /// # Errors
-    /// As [`Field::displacements`].
+    /// Those of [`Field::displacements`].
     pub(crate) fn on(&self, model: &Model, name: &str) -> Result<KeptShape, EditError> {
         let shape = match &self.shape {
             Some(shape) => shape.displacements(&format!("{name}: shape"), model)?,
@@ -138,7 +138,7 @@ impl StoredKept {
         }
     }
 
-    /// What `method` takes of it; `None`: nothing.
+    /// The part of it that `method` takes; `None` for no part.
     pub(crate) fn taken_by(&self, method: &Method) -> Option<Cow<'_, Self>> {
         match &self.method {
             Some(by) if *by != method_to_value(method, &BTreeMap::new()) => {

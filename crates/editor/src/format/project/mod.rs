@@ -1,9 +1,9 @@
-//! A `.pliant` project: the document, which mesh it belongs to, and the camera.
+//! A `.pliant` project: the document, its mesh, and the camera.
 //!
-//! JSON, with a version. The mesh is named by its path (for finding it) and by a hash of its geometry (for knowing it):
-//! the hash takes what vertex numbers mean (positions, triangles and the file's order), so the kept original of a file
-//! that was saved over is known again whatever it is called. Regions are ranges of the file's drawn vertices; only
-//! fields of numbers stand as base64 ([`field`]).
+//! JSON, with a version. The mesh is named by its path (for finding it) and by a hash of its geometry (for recognising
+//! it): the hash covers the meaning of vertex numbers (positions, triangles and the file's order), so the kept original
+//! of a file that was saved over is recognised under any name. Regions are ranges of the file's drawn vertices; only
+//! fields of numbers are base64 ([`field`]).
 
 mod camera;
 mod examples;
@@ -44,7 +44,7 @@ use crate::document::{Content, Document, HandleId, Paint, Tips};
 use crate::jobs::{FileContacts, Region, region_input};
 use crate::{Camera, STIFFNESS_RANGE};
 
-/// The version of the project format that is read and written.
+/// The version of the project format for reading and writing.
 const PROJECT_VERSION: u64 = 1;
 
 /// A project, as stored.
@@ -54,14 +54,14 @@ pub struct Project {
     version: u64,
     mesh: MeshReference,
     method: Value,
-    /// What methods take beside handles, by the names that they declare.
+    /// The methods' inputs beside handles, by declared name.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     attachments: BTreeMap<String, Value>,
     loose: StoredLoose,
-    /// What single parts do in place of that, by their component's number.
+    /// The behaviour of single parts instead of that, by their component's number.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     loose_parts: BTreeMap<u32, StoredLoose>,
-    /// Whether tips are held; without, they come along.
+    /// Whether tips are fixed; without it, they are free.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     tips: Option<StoredTips>,
     /// Painted free.
@@ -80,10 +80,10 @@ pub struct Project {
     /// Objects that are hidden or locked.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     objects: Vec<StoredObject>,
-    /// The connected part that is shown alone, by its number.
+    /// The isolated connected part, by its number.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     isolated: Option<u32>,
-    /// Which parts are small, and what is done with them.
+    /// The size of small parts, and their treatment.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     small_parts: Option<StoredSmallParts>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -101,15 +101,15 @@ pub struct Project {
     /// The shape when the constraints last changed, from which the next drag begins.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     kept: Option<StoredKept>,
-    /// Whether that is what the handles' transforms mean; else it is computed on opening.
+    /// Whether that is the final solution for the handles' transforms; if not, it is computed on opening.
     settled: bool,
-    /// The distance within which the mesh's vertices are joined; without, it follows from the mesh.
+    /// The distance within which the mesh's vertices are joined; without it, it follows from the mesh.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     weld: Option<f64>,
-    /// How much of handles and attachments, which stand here in full, is shown; without, all of it.
+    /// The shown share of handles and attachments, which are stored in full; without it, all of it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     strength: Option<f64>,
-    /// Poses that a person keeps.
+    /// The kept poses.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     poses: Vec<StoredPose>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -124,21 +124,21 @@ enum StoredTips {
     Held,
 }
 
-/// Which mesh a project belongs to.
+/// The mesh of a project.
 #[derive(Clone, PartialEq, Eq, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MeshReference {
-    /// Its path, relative to the project's folder where it stands below that; `None` is the built-in sample.
+    /// Its path, relative to the project's folder if it is below that; `None` is the built-in sample.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub path: Option<String>,
-    /// What people call it, where its path doesn't tell: of a copy that was kept because the file was saved over.
+    /// Its name, if its path doesn't give it: for a copy that was kept because the file was saved over.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
-    /// What [`geometry_hash`] says of it.
+    /// Its [`geometry_hash`].
     pub geometry: String,
 }
 
-/// `sha256:` and the digest of what vertex numbers mean: the drawn positions' bits, the triangles and the file's
+/// `sha256:` and the digest of the meaning of vertex numbers: the drawn positions' bits, the triangles and the file's
 /// vertices behind the drawn ones.
 pub fn geometry_hash(model: &Model) -> String {
     let mut hash = Sha256::new();
@@ -168,7 +168,7 @@ impl Project {
     /// Reads a project's JSON text.
     ///
     /// # Errors
-    /// Whatever the format does not have, by its name and place.
+    /// Members that the format does not have, by name and place.
     pub fn parse(text: &str) -> Result<Self, EditError> {
         let value = parse(text).map_err(|error| match error {
             EditError::Json(error) => EditError::Project(error),
@@ -179,7 +179,7 @@ impl Project {
 
     /// Reads a project from a JSON value.
     pub(crate) fn from_value(value: &Value) -> Result<Self, EditError> {
-        // The version first: another one may have members that this one lacks.
+        // The version comes first: another one may have members that this one lacks.
         match value.get("version") {
             Some(version) if version.as_u64() == Some(PROJECT_VERSION) => {}
             Some(version) => return Err(EditError::ProjectVersion(shortened(&version.to_string()))),
@@ -196,7 +196,7 @@ impl Project {
         text
     }
 
-    /// The document as it stands.
+    /// The present document.
     pub fn of(document: &Document, model: &Model, camera: Option<&Camera>, mesh: MeshReference) -> Self {
         let painted = |paint: Paint| ranges_where(model, |vertex| document.paint[vertex.index()] == paint);
         let displacements = |field: &Arc<Vec<DVec3>>| {
@@ -249,7 +249,7 @@ impl Project {
             rest: document.applied.then(|| displacements(&document.rest)).flatten(),
             applied: document.applied,
             shape: displacements(&document.from_rest),
-            // What opening makes anew from the shape is not stored twice.
+            // Data that opening makes anew from the shape are not stored twice.
             kept: document
                 .kept
                 .as_ref()
@@ -263,14 +263,14 @@ impl Project {
         }
     }
 
-    /// How its mesh's vertices are joined.
+    /// The joining of its mesh's vertices.
     pub fn weld_options(&self) -> WeldOptions {
         WeldOptions {
             distance: self.weld.filter(|distance| *distance >= 0.0),
         }
     }
 
-    /// Which mesh it belongs to.
+    /// Its mesh.
     pub fn mesh(&self) -> &MeshReference {
         &self.mesh
     }
@@ -288,19 +288,19 @@ impl Project {
         hexadecimal(Sha256::new().chain_update(document.to_json()))
     }
 
-    /// Where the eye was, if that can be looked from.
+    /// The camera, if it is a valid view.
     pub(crate) fn camera(&self) -> Option<Camera> {
         self.camera.map(StoredCamera::camera).filter(Camera::is_usable)
     }
 
-    /// The name of its method; empty where it has none that can be read.
+    /// The name of its method; empty if it has none that can be read.
     pub(crate) fn method_name(&self) -> &str {
         self.method["name"].as_str().unwrap_or_default()
     }
 
     pub(crate) fn set_method(&mut self, method: &Method) {
         self.method = method_to_value(method, &BTreeMap::new());
-        // The shape is another method's; what was corrected by hand is not.
+        // The shape is another method's; the corrections by hand are not.
         self.kept = self.kept.take().and_then(StoredKept::for_another_method);
         self.settled = false;
     }
@@ -327,7 +327,7 @@ impl Project {
     /// The document on its mesh.
     ///
     /// # Errors
-    /// Another mesh; whatever can't be.
+    /// Another mesh; invalid values.
     pub(crate) fn document(&self, model: &Model) -> Result<Document, EditError> {
         let found = geometry_hash(model);
         if found != self.mesh.geometry {
@@ -397,7 +397,7 @@ impl Project {
             document.take_part(strength);
         }
         if !document.is_moved() && !document.settled {
-            // Nothing is moved by this method, so what another has made of it is gone.
+            // This method moves nothing, so the other method's shape is dropped.
             match document.kept {
                 Some(_) => document.settle(),
                 None => document.unbend(),
@@ -438,7 +438,7 @@ impl Project {
         Ok(())
     }
 
-    /// What the solver needs: the document's regions, from its own rest shape.
+    /// The solver's input: the document's regions, from its own rest shape.
     pub(crate) fn resolve(&self, model: &Model) -> Result<Setup, EditError> {
         let document = self.document(model)?;
         let input = region_input(&Arc::new(model.clone()), &document, &FileContacts::default());
@@ -447,7 +447,7 @@ impl Project {
     }
 }
 
-/// As much of a hash as tells it from others.
+/// A part of a hash that is long enough to distinguish it from others.
 fn hash_shown(hash: &str) -> String {
     hash.chars().take(19).chain("…".chars()).collect()
 }

@@ -1,15 +1,15 @@
-//! What is hidden and locked, as a project stores it.
+//! The hidden and locked parts in a project.
 
 use pliant_mesh::Model;
 use serde::{Deserialize, Serialize};
 
 use crate::{Access, EditError, SmallParts};
 
-/// An object that is hidden or locked.
+/// A hidden or locked object.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct StoredObject {
-    /// Its number, as the file names nodes and materials.
+    /// Its number, from the file's names of nodes and materials.
     object: u32,
     /// Its name, for a person.
     name: String,
@@ -19,7 +19,7 @@ pub(super) struct StoredObject {
     locked: bool,
 }
 
-/// Which parts are small, and what is done with them.
+/// The size of small parts, and their treatment.
 #[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct StoredSmallParts {
@@ -54,7 +54,7 @@ pub(super) fn stored_objects(access: &Access, model: &Model) -> Vec<StoredObject
         .collect()
 }
 
-/// What a project says of objects, of the part that is isolated and of small parts, on its mesh.
+/// A project's entries about objects, the isolated part and small parts, on its mesh.
 pub(super) fn access(
     objects: &[StoredObject],
     isolated: Option<u32>,

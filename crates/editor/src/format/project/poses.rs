@@ -1,4 +1,4 @@
-//! Poses as a project stores them.
+//! Poses in a project.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -14,13 +14,13 @@ use crate::document::{HandleId, Placed, Pose, Stance, followed, means};
 #[serde(deny_unknown_fields)]
 pub(super) struct StoredPose {
     name: String,
-    /// By the handles' numbers.
+    /// The stances, by the handles' numbers.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     handles: BTreeMap<u32, StoredPlace>,
-    /// Where control points were moved to, by the attachments' names.
+    /// The moved positions of control points, by the attachments' names.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     controls: BTreeMap<String, Vec<[f64; 3]>>,
-    /// Of examples, `null` where one was found.
+    /// The weights of examples, `null` for one that was found.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     weights: BTreeMap<String, Vec<Option<f64>>>,
 }
@@ -30,7 +30,7 @@ pub(super) struct StoredPose {
 struct StoredPlace {
     #[serde(default)]
     transform: HandleTransform,
-    /// The turn as it is counted, in degrees about x, y and z.
+    /// The counted turn, in degrees about x, y and z.
     #[serde(default)]
     turn_deg: [f64; 3],
     pivot: [f64; 3],
@@ -70,7 +70,7 @@ impl StoredPose {
             Placed {
                 stance: Stance {
                     transform: stored.transform,
-                    // What is counted means the rotation, whoever wrote it.
+                    // The counted turn must be the rotation, even in a file from another program.
                     turn_deg: match stored.transform {
                         HandleTransform::Trs { rotation, .. } if !means(counted, rotation) => {
                             followed(DVec3::ZERO, rotation)
@@ -89,14 +89,14 @@ impl StoredPose {
                 .iter()
                 .map(|(id, stored)| (HandleId(u16::try_from(*id).unwrap_or(u16::MAX)), placed(stored)))
                 .collect(),
-            // What no method declares is nothing that could be put there.
+            // An attachment that no method declares has no place.
             controls: known(&self.controls).map(|(name, own)| (name, points(own))).collect(),
             weights: known(&self.weights).map(|(name, own)| (name, own.clone())).collect(),
         }
     }
 }
 
-/// What is stored under the names of attachments.
+/// The values stored under the names of attachments.
 fn known<T>(stored: &BTreeMap<String, T>) -> impl Iterator<Item = (&'static str, &T)> {
     let declared = METHODS.iter().flat_map(|declaration| declaration.attachments);
     declared.filter_map(|declared| Some((declared.name, stored.get(declared.name)?)))

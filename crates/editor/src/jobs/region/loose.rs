@@ -1,10 +1,10 @@
-//! Which components that nothing holds go along with a handle.
+//! The components held by nothing that follow a handle.
 //!
-//! A part that touches larger ones belongs to them: it goes along where at least half of what touches lies on places
-//! that move, be it the free region, a handle or another part that goes along. So a rivet on a strap goes with the strap,
-//! and one that is near a moving hose but sits on the mask stays with the mask. A part never carries a larger one.
+//! A part that touches larger ones belongs to them: it follows if at least half of its contacts are on moving places,
+//! which are the free region, a handle or another part that follows. So a rivet on a strap moves with the strap, and
+//! one that is near a moving hose but sits on the mask stays with the mask. A part never carries a larger one.
 //!
-//! A part that touches nothing larger goes along if it lies wholly within what some handle reaches through space.
+//! A part that touches nothing larger follows if it is wholly within the ball of some handle's reach in space.
 
 use std::sync::{Arc, OnceLock};
 
@@ -16,21 +16,21 @@ use pliant_mesh::{
 
 use super::reach::centroid;
 
-/// What the components of a file touch. It depends on the file alone, so it is found once, when it is first needed.
+/// The contacts of a file's components. They depend on the file alone, so they are found once, at the first need.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct FileContacts(Arc<OnceLock<Touching>>);
 
-/// What each component touches of those that are larger.
+/// The contacts of each component with larger ones.
 #[derive(Debug)]
 pub(super) struct Touching {
     /// The components, larger ones first.
     order: Vec<u32>,
-    /// By component.
+    /// The places of contact, by component.
     contacts: Vec<Vec<Contact>>,
 }
 
 impl FileContacts {
-    /// What the components of this file touch, in its own shape.
+    /// The contacts of this file's components, in its own shape.
     pub(super) fn of(&self, model: &Model, cancel: &Cancel) -> Result<&Touching, Cancelled> {
         if let Some(found) = self.0.get() {
             return Ok(found);
@@ -56,8 +56,8 @@ fn touching(surface: &Surface, topology: &Topology, cancel: &Cancel) -> Result<T
 }
 
 impl Touching {
-    /// Whether each component goes along that is not `painted`, given the `roles` on those that are. What `told` says of
-    /// a component wins; one that touches nothing larger does as `within` says.
+    /// For each component that is not `painted`: whether it follows, given the `roles` on painted ones. A component's
+    /// setting in `told` has priority; one that touches nothing larger follows `within`.
     pub(super) fn going_along(
         &self,
         topology: &Topology,
@@ -87,14 +87,14 @@ impl Touching {
     }
 }
 
-/// What a handle reaches through space.
+/// The ball of a handle's reach in space.
 pub(super) struct Ball {
     centre: DVec3,
     radius: f64,
 }
 
 impl Ball {
-    /// As far from the farthest of a handle's vertices as its reach.
+    /// It extends from the farthest of a handle's vertices by its reach.
     pub(super) fn around(members: &[SurfaceVertex], reach: f64, surface: &Surface) -> Self {
         let centre = centroid(&surface.positions, members.iter().copied());
         let extent = members

@@ -1,12 +1,12 @@
-//! What each vertex does, as it follows from paint and handles: the region of influence around each handle.
+//! The role of each vertex, from paint and handles: the region of influence around each handle.
 //!
-//! A handle sets free what lies within its reach along the rest surface and carries no paint, and with it the tips that
-//! the reach cuts off from the body ([`tips`]). Everything else is held still. A component that carries no paint at all
-//! (an eye, a button, a strap's buckle) is left to the method as a loose part if what it touches moves ([`loose`]), and
-//! held still otherwise: nobody who moves a visor means the whole helmet.
+//! A handle sets free the unpainted vertices within its reach along the rest surface, and with them the tips that the
+//! reach cuts off from the body ([`tips`]). Everything else is fixed. A component without any paint (an eye, a button,
+//! a strap's buckle) is left to the method as a loose part if its contacts move ([`loose`]), and fixed otherwise: a
+//! person who moves a visor does not mean the whole helmet.
 //!
-//! A method with control points (a cage, a lattice) or examples bends without handles, too: then all is free that carries no paint,
-//! unless some of it was painted free.
+//! A method with control points (a cage, a lattice) or examples can also bend without handles: then all unpainted
+//! vertices are free, unless some vertices were painted free.
 
 mod loose;
 mod reach;
@@ -26,27 +26,27 @@ use self::tips::free_tips;
 use super::rim::rims;
 use crate::document::{Access, Document, HandleId, Paint, Reach, Tips};
 
-/// What the region follows from; shared with the job that measures it.
+/// The input of the region; shared with the job that measures it.
 #[derive(Clone, Debug)]
 pub(crate) struct RegionInput {
     pub(crate) model: Arc<Model>,
     pub(crate) paint: Arc<Vec<Paint>>,
     pub(crate) handles: Vec<(HandleId, Reach)>,
-    /// The rest shape's displacements from the file's; `None` where it is the file's.
+    /// The rest shape's displacements from the file's; `None` if it is the file's.
     pub(crate) rest: Option<Arc<Vec<DVec3>>>,
     pub(crate) tips: Tips,
     pub(crate) loose: Loose,
     pub(crate) loose_parts: Arc<BTreeMap<u32, Loose>>,
     pub(crate) access: Arc<Access>,
     pub(crate) contacts: FileContacts,
-    /// Whether the method has control points or examples, which move the surface without handles, too.
+    /// Whether the method has control points or examples, which move the surface even without handles.
     pub(crate) has_controls: bool,
 }
 
-/// The vertices' roles, and the surface that they hold on.
+/// The vertices' roles, and the surface in its rest shape.
 #[derive(Clone, Debug)]
 pub struct Region {
-    /// What each surface vertex does.
+    /// The role of each surface vertex.
     pub roles: Arc<Vec<Role>>,
     /// The handles that have vertices: [`Role::Handle`]'s number is the index.
     pub handles: Arc<Vec<HandleId>>,
@@ -54,16 +54,16 @@ pub struct Region {
     pub counts: Counts,
     /// The lines between roles.
     pub(crate) rims: Arc<Vec<ContourLine>>,
-    /// The components without paint that go along with what they touch, and those that a person has told what to do.
+    /// The unpainted components that follow their contacts, and those with a person's setting.
     pub loose: Arc<Vec<u32>>,
-    /// The rest shape, where it is another than the file's.
+    /// The rest shape, if it differs from the file's.
     pub(crate) rest_surface: Option<Arc<Surface>>,
 }
 
 /// Numbers of surface vertices by role.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub struct Counts {
-    /// Held still.
+    /// Fixed.
     pub fixed: usize,
     /// Free to bend.
     pub free: usize,
@@ -86,7 +86,7 @@ impl Counts {
 }
 
 impl Region {
-    /// Everything held still.
+    /// A region with everything fixed.
     pub(crate) fn still(vertex_count: usize) -> Self {
         Self {
             roles: Arc::new(vec![Role::Fixed; vertex_count]),
@@ -116,7 +116,7 @@ impl Region {
         let mut handles = Vec::new();
         let mut search = DistanceSearch::default();
         let position = |v: SurfaceVertex| surface.positions[v.index()];
-        // Per component: whether some handle's ball holds all of it.
+        // Per component: whether it is wholly in some handle's ball.
         let (mut within, mut within_this) = (vec![false; painted.len()], vec![true; painted.len()]);
         for ((id, reach), members) in input.handles.iter().zip(&members) {
             if members.is_empty() {
@@ -178,8 +178,8 @@ impl Region {
     }
 }
 
-/// Sets free the components without paint that go along. The ones that do, and those that a person has told what to do;
-/// bare points are not listed.
+/// Sets free the unpainted components that follow. Returns these, and those with a person's setting, without bare
+/// points.
 fn free_loose(
     roles: &mut [Role],
     input: &RegionInput,
@@ -190,7 +190,7 @@ fn free_loose(
     let topology = &input.model.topology;
     let touching = input.contacts.of(&input.model, cancel)?;
     let told = |component: usize| input.loose_parts.get(&(component as u32)).copied();
-    // Where all rest, the list still tells what would go along.
+    // If all rest, the list still shows the ones that would follow.
     let goes = touching.going_along(topology, roles, painted, within, |component| {
         told(component).map(|loose| loose != Loose::Rest)
     });
@@ -209,7 +209,7 @@ fn free_loose(
     Ok(loose)
 }
 
-/// The vertices of each handle that are not locked, and which components carry paint or a lock.
+/// The vertices of each handle that are not locked, and the components with paint or a lock.
 fn painted(input: &RegionInput, is_locked: impl Fn(usize) -> bool) -> (Vec<Vec<SurfaceVertex>>, Vec<bool>) {
     let topology = &input.model.topology;
     let mut members: Vec<Vec<SurfaceVertex>> = vec![Vec::new(); input.handles.len()];
@@ -244,7 +244,7 @@ pub(crate) fn displaced(surface: &Surface, displacements: &[DVec3]) -> Surface {
     }
 }
 
-/// Everything that the region follows from.
+/// The whole input of the region.
 pub(crate) fn region_input(model: &Arc<Model>, document: &Document, contacts: &FileContacts) -> RegionInput {
     RegionInput {
         model: Arc::clone(model),

@@ -1,4 +1,4 @@
-//! Where a handle is, and how far it reaches along the surface, in world units.
+//! The position and the reach of a handle along the surface, in world units.
 
 use std::f64::consts::PI;
 
@@ -15,10 +15,10 @@ pub(crate) fn reach_length(reach: Reach, surface: &Surface, topology: &Topology,
     }
 }
 
-/// A handle's radius: that of the disc with its area, and of bare points alone that of the disc over which they would
-/// be spread.
+/// A handle's radius: that of the disc with its area; for bare points alone, that of the disc over which they would be
+/// spread.
 ///
-/// Farthest distances or moments would do as well for one round patch, but a handle of two patches far apart would
+/// Farthest distances or moments would be equally good for one round patch, but a handle of two patches far apart would
 /// then reach across everything between them.
 fn handle_radius(surface: &Surface, topology: &Topology, members: &[SurfaceVertex]) -> f64 {
     let area_of = |face: u32| face_area(surface.triangles[face as usize].map(|v| surface.positions[v.index()]));
@@ -33,7 +33,7 @@ fn handle_radius(surface: &Surface, topology: &Topology, members: &[SurfaceVerte
     (area / PI).sqrt()
 }
 
-/// The radius of a disc whose points are as far from its middle as these, in the mean of squares.
+/// The radius of a disc whose points have this mean squared distance from its middle.
 fn radius_of_points(positions: &[DVec3], members: &[SurfaceVertex]) -> f64 {
     let middle = centroid(positions, members.iter().copied());
     let squared = |vertex: &SurfaceVertex| positions[vertex.index()].distance_squared(middle);

@@ -1,22 +1,22 @@
-//! The tips: what the reach cuts off from the body that stays.
+//! The tips: parts that the reach cuts off from the body that stays.
 //!
-//! A reach around a finger's middle, an upper arm or a face leaves pieces of the surface beyond it that hang on nothing
-//! but the free region: fingertips, hands, ears. Held in the air they would smear everything around them, so they come
-//! along, as topological masking does it: all of a limb beyond the cut. They are free and have no constraint of their
-//! own, so they keep their shape as well as the method lets them.
+//! A reach around a finger's middle, an upper arm or a face leaves pieces of the surface beyond it that are connected
+//! only to the free region: fingertips, hands, ears. If they were fixed in the air they would smear everything around
+//! them, so they move too, as in topological masking: all of a limb beyond the cut. They are free without a constraint
+//! of their own, so they keep their shape as well as the method allows.
 
 use pliant_deform::Role;
 use pliant_mesh::{Surface, SurfaceVertex, Topology, face_area};
 
-/// An island comes along if its area is less than this share of the largest's.
+/// An island is free if its area is less than this share of the largest one's.
 ///
-/// Where a cut parts the surface into halves nobody can say which of them is the body, and both stay. Measured against
-/// the largest island, ear tips, hands, lower legs, tails and a head on its neck have 0.001 to 0.12 of its area, a whole
-/// leg of a figure that is cut at its waist 0.30, and the shorter end of a bar that is cut at 40% of its length 0.36;
-/// the other half of a bar or of an animal that is cut in its middle has 0.82 to 0.99.
+/// If a cut divides the surface into halves, neither is clearly the body, and both stay. Measured against the largest
+/// island, ear tips, hands, lower legs, tails and a head on its neck have 0.001 to 0.12 of its area, a whole leg of a
+/// figure that is cut at its waist 0.30, and the shorter end of a bar that is cut at 40% of its length 0.36; the other
+/// half of a bar or of an animal that is cut in its middle has 0.82 to 0.99.
 const LARGEST_SHARE: f64 = 0.5;
 
-/// A connected part of what is held, beyond every reach.
+/// A connected fixed part, beyond every reach.
 #[derive(Clone, Copy, Debug)]
 struct Island {
     component: u32,
@@ -24,11 +24,11 @@ struct Island {
     is_tied: bool,
 }
 
-/// Sets free the islands of held vertices that are small beside the largest one of their component.
+/// Sets free the islands of fixed vertices that are small compared with the largest one of their component.
 ///
-/// An island stays where it `is_painted` or locked anywhere or borders on a handle itself: it was told what to do. In
-/// each component the largest island stays, of equal ones the one with the lowest vertex. Components without a free
-/// vertex stay as they are.
+/// An island stays if it `is_painted` or locked anywhere or borders on a handle itself: a person has decided about it.
+/// In each component the largest island stays; among equal ones, the one with the lowest vertex. Components without a
+/// free vertex do not change.
 pub(super) fn free_tips(
     roles: &mut [Role],
     surface: &Surface,
@@ -95,7 +95,7 @@ fn islands(
             is_tied,
         });
     }
-    // A single island is the largest, whatever its area is.
+    // A single island is the largest, for any area.
     let triangles = if islands.len() > 1 { &surface.triangles[..] } else { &[] };
     for corners in triangles {
         let share = face_area(corners.map(|corner| surface.positions[corner.index()])) / 3.0;

@@ -1,9 +1,9 @@
-//! The brush that corrects the shape: what it does, and how far.
+//! The brush that corrects the shape: its action and strength.
 
-/// What the brush does to the shape.
+/// The brush's action on the shape.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
 pub enum Correction {
-    /// Takes bumps and creases away, and keeps the volume.
+    /// Removes bumps and creases, and keeps the volume.
     #[default]
     Smooth,
     /// Evens out the triangles. The surface keeps its shape.
@@ -15,9 +15,9 @@ pub enum Correction {
 /// The brush that corrects the shape.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct CorrectionBrush {
-    /// What it does.
+    /// Its action.
     pub correction: Correction,
-    /// How far one dab goes, 0 to 1; a grab goes as far as the pointer.
+    /// The strength of one dab, 0 to 1; a grab always follows the pointer fully.
     pub strength: f64,
 }
 
@@ -31,7 +31,7 @@ impl Default for CorrectionBrush {
 }
 
 impl CorrectionBrush {
-    /// The brush with its strength within what it may be; `None` where that is no number.
+    /// The brush with its strength clamped to its range; `None` for NaN.
     pub(crate) fn clamped(self) -> Option<Self> {
         self.strength.is_finite().then(|| Self {
             strength: self.strength.clamp(0.0, 1.0),

@@ -1,4 +1,4 @@
-//! A drag that takes the surface along with the pointer, in the plane of the screen.
+//! A drag that moves the surface with the pointer, in the plane of the screen.
 
 use glam::{DMat3, DVec2, DVec3};
 use pliant_mesh::SurfaceVertex;
@@ -13,18 +13,17 @@ use crate::tool::stroke::{Stroke, StrokeGesture};
 use crate::view::Pick;
 use crate::workspace::Workspace;
 
-/// What is taken along.
+/// The grabbed part.
 #[derive(Debug)]
 pub(super) struct GrabShape {
     grip: DVec3,
     start_px: DVec2,
-    /// The vertices that go along, with where they were in the shape and what takes the grip's way to theirs.
+    /// The moving vertices, with their positions in the shape and the matrix from the grip's displacement to theirs.
     taken: Vec<(SurfaceVertex, DVec3, DMat3)>,
 }
 
 impl GrabShape {
-    /// Takes hold of the surface under the pointer: of the part that hangs together with it, and with symmetry of the other
-    /// side's.
+    /// Grabs the surface under the pointer: its connected part, and with symmetry that of the other side.
     pub fn begin(context: &mut Context<'_>, pointer: Pointer, pick: &Pick) -> StrokeGesture<Self> {
         let radius = context.settings.brush.radius_px
             * context
@@ -37,7 +36,7 @@ impl GrabShape {
         let mirrored = workspace.both_sides().map(|sides| {
             let plane = sides.plane;
             let other = Kelvinlet::new(plane.mirrored(pick.point), radius);
-            // Near the plane both sides pull at the grip, which is to go as far as the pointer.
+            // Near the plane both sides pull at the grip, which must follow the pointer.
             let within = plane.normal().any_orthonormal_vector();
             let share = 1.0 + within.dot(other.at(pick.point) * within);
             (other, plane.reflection(), share.recip())

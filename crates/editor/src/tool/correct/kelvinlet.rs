@@ -1,16 +1,16 @@
-//! A grab that keeps the volume: how an elastic solid without compression gives way to a force [DGJ17].
+//! A grab that keeps the volume: the response of an incompressible elastic solid to a force [DGJ17].
 //!
 //! With r from the force's place, r_ε = √(r² + ε²) and a solid that can't be compressed (ν = 1/2, so b = a/2), the
 //! regularised Kelvinlet of their equation 6 is
 //!
 //! u_ε(r) = [(a − b)/r_ε I + b/r_ε³ r rᵀ + a/2 ε²/r_ε³ I] f.
 //!
-//! Three of them of neighbouring radii fall off with the fifth power of the distance (their section 5), so that a grab stays
-//! where it is made.
+//! A combination of three of them with neighbouring radii falls off with the fifth power of the distance (their section
+//! 5), so that a grab stays local.
 
 use glam::{DMat3, DVec3};
 
-/// Each radius over the one before it.
+/// The ratio of each radius to the last one.
 const STEP: f64 = 1.1;
 
 /// A grab at a place.
@@ -19,12 +19,12 @@ pub(super) struct Kelvinlet {
     centre: DVec3,
     radii: [f64; 3],
     weights: [f64; 3],
-    /// What makes the place itself go as far as the pointer.
+    /// The factor with which the place itself follows the pointer.
     scale: f64,
 }
 
 impl Kelvinlet {
-    /// About as wide as `radius` (above 0).
+    /// A grab of about the width `radius` (above 0).
     pub fn new(centre: DVec3, radius: f64) -> Self {
         let radii = [radius, STEP * radius, STEP * STEP * radius];
         let [first, second, third] = radii.map(|radius| radius * radius);
@@ -43,7 +43,7 @@ impl Kelvinlet {
         own
     }
 
-    /// The matrix that takes the way of the place to the way of `point`.
+    /// The matrix from the displacement of the place to that of `point`.
     pub fn at(&self, point: DVec3) -> DMat3 {
         let r = point - self.centre;
         let outer = DMat3::from_cols(r * r.x, r * r.y, r * r.z);
@@ -76,7 +76,7 @@ mod tests {
         assert!(moved(CENTRE).distance(WAY) < 1e-12);
         let at = |distance: f64| moved(CENTRE + DVec3::new(0.6, 0.0, 0.8) * distance).length();
         assert!(at(0.2) < WAY.length() && at(0.4) < at(0.2));
-        // The fifth power: twice as far, a thirty-second of the way.
+        // The fifth power: at twice the distance, a thirty-second of the displacement.
         let ratio = at(20.0) / at(40.0);
         assert!((ratio - 32.0).abs() < 1.0, "{ratio}");
         assert!(at(4.0) < 2e-3 * WAY.length());

@@ -1,6 +1,6 @@
-//! Corrections by hand where a method's shape is not what one wants, such as armpits and creases: smooth, relax, grab.
+//! Corrections by hand of a method's shape, for example in armpits and creases: smooth, relax, grab.
 //!
-//! A stroke changes the shape that is seen, which the next drags carry along (see `document/kept_shape`).
+//! A stroke changes the visible shape, and the next drags keep the change (see `document/kept_shape`).
 
 mod brush;
 mod grab;
@@ -13,7 +13,7 @@ use crate::input::Pointer;
 use crate::view::Pick;
 pub use brush::{Correction, CorrectionBrush};
 
-/// Begins a stroke at a point of the surface; Shift smooths, whatever the brush does.
+/// Begins a stroke at a point of the surface; Shift smooths with every brush.
 pub(super) fn begin(context: &mut Context<'_>, pointer: Pointer, pick: &Pick) -> Box<dyn Gesture> {
     let mut brush = context.settings.correction_brush;
     if pointer.modifiers.shift {

@@ -1,7 +1,7 @@
 //! A stroke that smooths or relaxes the shape.
 //!
-//! Smoothing goes forth and back by a low-pass filter [Tau95], so that bumps go and the volume stays. Relaxing goes
-//! within the tangent plane alone.
+//! Smoothing goes forth and back by a low-pass filter [Tau95], so that bumps vanish and the volume stays. Relaxing
+//! moves vertices only within the tangent plane.
 
 use std::collections::BTreeMap;
 
@@ -15,14 +15,14 @@ use crate::tool::context::Context;
 use crate::tool::stroke::{Stroke, StrokeGesture, firmest};
 use crate::workspace::Workspace;
 
-/// How far the way back is longer than the way forth: what is smoother than the filter's pass band neither shrinks nor
-/// grows.
+/// The excess of the step back over the step forth: shapes smoother than the filter's pass band neither shrink nor
+/// grow.
 const BACK: f64 = 1.06;
 
-/// How often one dab filters: once is hardly seen.
+/// The number of filter passes of one dab: a single pass is hardly visible.
 const ROUNDS: usize = 3;
 
-/// What the stroke does.
+/// The stroke's action.
 #[derive(Debug)]
 pub(super) struct SmoothShape(CorrectionBrush);
 
@@ -97,7 +97,7 @@ fn mean_of_ring(model: &Model, vertex: SurfaceVertex, position: impl Fn(SurfaceV
     neighbours.iter().map(|&v| position(v)).sum::<DVec3>() / neighbours.len() as f64
 }
 
-/// The normal of the triangles around a vertex, weighted by area; zero where they cancel.
+/// The normal of the triangles around a vertex, weighted by area; zero if they cancel.
 fn normal_of_ring(model: &Model, vertex: SurfaceVertex, position: impl Fn(SurfaceVertex) -> DVec3) -> DVec3 {
     let triangles = &model.surface.triangles;
     let normal = |face: u32| {

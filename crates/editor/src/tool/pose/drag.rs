@@ -1,4 +1,4 @@
-//! A drag of the pose brush, from the press to where the limb is let go.
+//! A drag of the pose brush, from the press to the release of the limb.
 
 use glam::{DVec2, DVec3};
 use pliant_mesh::{Joint, SurfaceVertex};
@@ -20,7 +20,7 @@ use crate::workspace::{Workspace, count_turn, held_because, members, put_handle,
 /// The pointer must move this far before the limb follows.
 const THRESHOLD_PX: f64 = 3.0;
 
-/// What is said where there is no limb.
+/// The message if there is no limb.
 const NO_JOINT: &str =
     "No joint was found here: point at a limb that is narrower than the body, or paint a handle (1).";
 
@@ -35,13 +35,13 @@ pub(crate) struct PoseDrag {
 
 #[derive(Debug)]
 enum Phase {
-    /// The joint is still looked for; what the pointer does meanwhile waits.
+    /// The search for the joint is still running; the pointer's events wait.
     Looking,
     /// The limb follows the pointer.
     Posing(Box<Posing>),
 }
 
-/// A limb that is a handle now.
+/// A limb that has become a handle.
 #[derive(Debug)]
 struct Posing {
     transaction: Transaction,
@@ -54,7 +54,7 @@ struct Posing {
 }
 
 impl PoseDrag {
-    /// Begins at a point of the surface; `None`, with a sentence, where there is no limb or it is held.
+    /// Begins at a point of the surface; `None`, with a sentence, if there is no limb or it is locked.
     pub(crate) fn begin(context: &mut Context<'_>, pointer: Pointer, pick: Pick) -> Option<Self> {
         let mut drag = Self {
             pick,
@@ -66,7 +66,7 @@ impl PoseDrag {
         (drag.take_limb(context.workspace) == Next::Stay).then_some(drag)
     }
 
-    /// Takes the limb in hand, if it is known.
+    /// Grabs the limb, if it is known.
     fn take_limb(&mut self, workspace: &mut Workspace) -> Next {
         let posing = match limb_under(workspace, &self.pick) {
             Limb::Unknown => return Next::Stay,
@@ -103,7 +103,7 @@ impl PoseDrag {
 }
 
 impl Posing {
-    /// Takes the limb to the pointer; other modifiers go on from where it is.
+    /// Moves the limb to the pointer; other modifiers continue from its present place.
     fn follow(&mut self, context: &mut Context<'_>, last_px: DVec2, pointer: Pointer) {
         let pose = Pose::of(pointer.modifiers);
         if pose != self.motion.pose {
@@ -203,7 +203,7 @@ impl Gesture for PoseDrag {
         if button != Button::Primary || self.is_looking() {
             return Next::Stay;
         }
-        // Which modifiers are held no longer matters: the pointer's last way counts.
+        // The held modifiers no longer matter: the pointer's last movement counts.
         let modifiers = self.last.modifiers;
         self.moved(context, Pointer { modifiers, ..pointer });
         if let Phase::Posing(posing) = &self.phase {
@@ -226,10 +226,10 @@ impl Gesture for PoseDrag {
     }
 }
 
-/// What a drag begins with: the open step, the handle, and the limb's direction from its joint.
+/// The beginning of a drag: the open step, the handle, and the limb's direction from its joint.
 type Taken = (Transaction, Handle, DVec3);
 
-/// Takes a limb's handle in hand; `None`, with a sentence, if it is held.
+/// Grabs a limb's handle; `None`, with a sentence, if it is locked.
 fn take_again(workspace: &mut Workspace, id: HandleId) -> Option<Taken> {
     if let Some(why) = held_because(workspace, id) {
         workspace.refuse(why);
@@ -242,7 +242,7 @@ fn take_again(workspace: &mut Workspace, id: HandleId) -> Option<Taken> {
     Some((workspace.begin(format!("Pose {}", handle.name)), handle, axis))
 }
 
-/// Makes the far side of a joint a handle that reaches back across the falloff; `None`, with a sentence, where all of it
+/// Makes the far side of a joint a handle that reaches back across the falloff; `None`, with a sentence, if all of it
 /// is locked or hidden.
 fn make_handle(workspace: &mut Workspace, joint: &Joint) -> Option<Taken> {
     let access = &workspace.vertex_access;
@@ -271,7 +271,8 @@ fn make_handle(workspace: &mut Workspace, joint: &Joint) -> Option<Taken> {
     Some((transaction, handle, joint.axis))
 }
 
-/// With symmetry, gives a limb that was made a handle its twin on the other side, unless it lies across the plane.
+/// With symmetry, gives a limb that has become a handle its twin on the other side, unless it is on both sides of the
+/// plane.
 fn make_posed_twin(workspace: &mut Workspace, id: HandleId) {
     let Some(sides) = workspace.both_sides().cloned() else {
         return;

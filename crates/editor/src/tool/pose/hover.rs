@@ -1,4 +1,4 @@
-//! Which limb is under the pointer, and having its joint looked for.
+//! The limb under the pointer, and the search for its joint.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -10,20 +10,20 @@ use crate::jobs::{JobKind, JobOutcome};
 use crate::view::{Pick, View};
 use crate::workspace::Workspace;
 
-/// What the pose brush takes at a point of the surface.
+/// The limb under the pose brush at a point of the surface.
 #[derive(Clone, Debug)]
 pub(crate) enum Limb {
-    /// A limb that has a handle already.
+    /// A limb that already has a handle.
     Posed(HandleId),
-    /// One without.
+    /// A limb without one.
     Untouched(Arc<Joint>),
-    /// Its joint is being looked for.
+    /// The search for its joint is running.
     Unknown,
     /// There is no joint.
     None,
 }
 
-/// Has the joint of what is under the pointer looked for, if it is not known yet.
+/// Requests the joint of the limb under the pointer, if it is not known yet.
 pub(crate) fn hover(workspace: &mut Workspace, view: &View, pointer_px: Option<glam::DVec2>) {
     if !workspace.jobs.is_picking_current() {
         return;
@@ -57,8 +57,8 @@ pub(crate) fn hover(workspace: &mut Workspace, view: &View, pointer_px: Option<g
     );
 }
 
-/// The limb at a point of the surface: the handle there, or the limb of the joint that is shown, or of a handle on its
-/// far side.
+/// The limb at a point of the surface: the handle there, or the limb of the shown joint, or of a handle on its far
+/// side.
 pub(crate) fn limb_under(workspace: &Workspace, pick: &Pick) -> Limb {
     let document = &workspace.document;
     if let Some(id) = handle_at(document, pick) {
@@ -74,7 +74,7 @@ pub(crate) fn limb_under(workspace: &Workspace, pick: &Pick) -> Limb {
     }
 }
 
-/// The handle that a point of the surface belongs to; pins are none.
+/// The handle at a point of the surface, except pins.
 fn handle_at(document: &Document, pick: &Pick) -> Option<HandleId> {
     match document.paint()[pick.vertex.index()] {
         Paint::Handle(id) => document
@@ -85,7 +85,7 @@ fn handle_at(document: &Document, pick: &Pick) -> Option<HandleId> {
     }
 }
 
-/// The handle that has the most vertices on the far side of a joint.
+/// The handle with the most vertices on the far side of a joint.
 fn handle_on(document: &Document, joint: &Joint) -> Option<HandleId> {
     let mut counts: BTreeMap<HandleId, usize> = BTreeMap::new();
     for vertex in &joint.far_side {
@@ -95,7 +95,7 @@ fn handle_on(document: &Document, joint: &Joint) -> Option<HandleId> {
             *counts.entry(id).or_default() += 1;
         }
     }
-    // Of equal ones the first.
+    // The first of equal ones.
     let most = counts.into_iter().rev().max_by_key(|(_, count)| *count);
     most.map(|(id, _)| id)
 }

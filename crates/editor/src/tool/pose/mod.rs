@@ -1,8 +1,8 @@
 //! The pose brush: a limb under the pointer turns about its joint, in one gesture from an untouched scan.
 //!
-//! While the pointer rests over a limb a job looks for its joint ([`hover`]), which is shown with its falloff ([`shapes`]).
-//! A drag makes the limb beyond the falloff a handle that reaches back across it, with its pivot in the joint, and turns
-//! that. All of it is one step of the history, and a handle like any other afterwards.
+//! While the pointer rests over a limb a job searches for its joint ([`hover`]), which is shown with its falloff
+//! ([`shapes`]). A drag makes the limb beyond the falloff a handle that reaches back across it, with its pivot in the
+//! joint, and turns that. All of it is one step of the history, and a handle like any other afterwards.
 
 mod drag;
 mod hover;

@@ -1,4 +1,4 @@
-//! What a drag of the pose brush means: the limb turns after the pointer, twists about its axis, or grows.
+//! The motion of a drag of the pose brush: the limb turns after the pointer, twists about its axis, or grows.
 
 use glam::{DQuat, DVec2, DVec3};
 
@@ -7,22 +7,22 @@ use crate::input::Modifiers;
 use crate::tool::constraint::{on_plane, rotation};
 use crate::view::{ControlShape, View, arc_shapes};
 
-/// The smallest factor that the pointer can scale by.
+/// The smallest factor of scaling by the pointer.
 const MIN_FACTOR: f64 = 1e-3;
 
-/// What is done to the limb.
+/// The kind of motion of the limb.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum Pose {
-    /// The point that was grabbed goes after the pointer, about the joint.
+    /// A turn about the joint: the grabbed point follows the pointer.
     Turn,
-    /// About the limb's axis.
+    /// A twist about the limb's axis.
     Twist,
-    /// About the joint.
+    /// A scale about the joint.
     Scale,
 }
 
 impl Pose {
-    /// As the modifiers say it.
+    /// The kind for these modifiers.
     pub(super) fn of(modifiers: Modifiers) -> Self {
         match modifiers {
             Modifiers { ctrl: true, .. } => Self::Twist,
@@ -31,7 +31,7 @@ impl Pose {
         }
     }
 
-    /// As the history calls it.
+    /// Its name in the history.
     pub(super) fn verb(self) -> &'static str {
         match self {
             Self::Turn => "Turn",
@@ -41,21 +41,21 @@ impl Pose {
     }
 }
 
-/// A motion about a joint, from where the pointer was when it began.
+/// A motion about a joint, from the pointer's place at its beginning.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Motion {
     pub(super) pose: Pose,
-    /// Where the joint is seen.
+    /// The visible position of the joint.
     pub(super) centre: DVec3,
-    /// The limb's direction from the joint when it began, a unit vector.
+    /// The limb's direction from the joint at the beginning, a unit vector.
     pub(super) axis: DVec3,
-    /// The point of the limb that the pointer holds.
+    /// The grabbed point of the limb.
     pub(super) grip: DVec3,
-    /// The handle's transform and turn in degrees when it began.
+    /// The handle's transform and turn in degrees at the beginning.
     pub(super) start: (HandleTransform, DVec3),
 }
 
-/// How far a motion has come.
+/// The extent of a motion.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(super) enum Way {
     /// A turn about a unit axis by an angle in radians.
@@ -65,7 +65,7 @@ pub(super) enum Way {
 }
 
 impl Way {
-    /// As it is shown beside the joint.
+    /// The text beside the joint.
     pub(super) fn label(self) -> String {
         match self {
             Self::Turn(_, angle_rad) => format!("{:.0}°", angle_rad.to_degrees()),
@@ -81,7 +81,7 @@ impl Motion {
         on_plane(ray, self.grip, view.camera().forward()).unwrap_or(self.grip)
     }
 
-    /// How far the pointer has taken the limb.
+    /// The extent of the limb's motion by the pointer.
     pub(super) fn way(&self, view: &View, position_px: DVec2) -> Way {
         let (from, to) = (self.grip - self.centre, self.held(view, position_px) - self.centre);
         match self.pose {
@@ -95,7 +95,8 @@ impl Motion {
         }
     }
 
-    /// As a ball rolls under the pointer, where the axis lies across the sight; else as the pointer goes round it.
+    /// Like a ball that rolls under the pointer, if the axis is across the line of sight; else by the pointer's path
+    /// around it.
     fn twist_rad(&self, view: &View, from: DVec3, to: DVec3) -> f64 {
         let across = self.axis.cross(view.camera().towards_eye(self.centre));
         if across.length() > 0.4 {
@@ -126,7 +127,7 @@ impl Motion {
         }
     }
 
-    /// The handle's transform after that, about its pivot on the rest shape.
+    /// The handle's transform after this motion, about its pivot on the rest shape.
     pub(super) fn transform(&self, way: Way, pivot: DVec3) -> HandleTransform {
         match way {
             Way::Turn(axis, angle_rad) => self.start.0.turned_by(rotation(axis, angle_rad), pivot),
@@ -134,7 +135,7 @@ impl Motion {
         }
     }
 
-    /// The motion that goes on from there as another pose.
+    /// The motion that continues from there as another kind.
     pub(super) fn go_on(&self, pose: Pose, way: Way, held: DVec3, start: (HandleTransform, DVec3)) -> Self {
         let turn = match way {
             Way::Turn(axis, angle_rad) => rotation(axis, angle_rad),
@@ -150,7 +151,7 @@ impl Motion {
     }
 }
 
-/// The shortest turn from one direction to another; half a turn goes about the line of sight.
+/// The shortest turn from one direction to another; half a turn is about the line of sight.
 fn turn(from: DVec3, to: DVec3, forward: DVec3) -> Way {
     let normal = from.cross(to);
     let angle_rad = normal.length().atan2(from.dot(to));

@@ -1,4 +1,4 @@
-//! How a joint is shown: rings around the limb that fade with the falloff, and a dot where it turns.
+//! The display of a joint: rings around the limb that fade with the falloff, and a dot at the centre of the turn.
 
 use std::f64::consts::TAU;
 
@@ -13,7 +13,7 @@ const DOT_PX: f64 = 5.0;
 const RIM_PX: f64 = 1.5;
 const DOT_SEGMENTS: usize = 20;
 
-/// The shapes of a joint, or of the pivot alone where a limb was posed before.
+/// The shapes of a joint, or of the pivot alone if the limb was posed before.
 pub(crate) fn joint_shapes(
     centre: DVec3,
     joint: Option<&Joint>,
@@ -21,7 +21,7 @@ pub(crate) fn joint_shapes(
     viewport_px: DVec2,
 ) -> Vec<ControlShape> {
     let px = camera.world_per_px(centre, viewport_px);
-    // Moved towards the eye, so that the surface does not hide them.
+    // They are moved towards the eye, so that the surface does not hide them.
     let lifted = |point: DVec3| point + camera.towards_eye(point) * px;
     let mut shapes = Vec::new();
     let middle = JOINT_RINGS / 2;

@@ -1,11 +1,11 @@
-//! Which part of the gizmo is under the pointer.
+//! The part of the gizmo under the pointer.
 
 use glam::{DVec2, DVec3};
 
 use super::{GizmoPart, GizmoShape};
 use crate::view::camera::Camera;
 
-/// How far from a line the pointer may be to grab it.
+/// The pointer's distance to a line within which it grabs the line.
 const GRAB_PX: f64 = 7.0;
 
 /// The part under a point of the viewport: filled parts before lines, the nearer line before the farther.
@@ -23,7 +23,7 @@ pub fn hit_gizmo(shapes: &[GizmoShape], position_px: DVec2, camera: &Camera, vie
         }
         for line in &shape.lines {
             if let [Some(a), Some(b)] = line.map(project) {
-                // Lines stand behind what is filled.
+                // Lines are behind filled parts.
                 distance_px = distance_px.min(distance_to_segment(position_px, a, b).max(1e-3));
             }
         }

@@ -1,6 +1,6 @@
 //! The handles on a handle: arrows, squares, rings and boxes of constant size on the screen.
 //!
-//! The same lines and triangles are drawn and hit, so what is seen is what is grabbed.
+//! The same lines and triangles are drawn and hit, so the visible part is the grabbed one.
 
 mod hit;
 mod shapes;
@@ -12,7 +12,7 @@ pub use self::shapes::gizmo_shapes;
 use super::camera::Camera;
 use crate::document::HandleTransform;
 
-/// What the gizmo offers.
+/// The gizmo's mode.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
 pub enum GizmoMode {
     /// Everything at once.
@@ -26,19 +26,19 @@ pub enum GizmoMode {
     Scale,
 }
 
-/// Along which axes the gizmo stands.
+/// The axes of the gizmo.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
 pub enum GizmoOrientation {
-    /// The world's.
+    /// The world's axes.
     #[default]
     World,
-    /// The handle's own, turned along with it.
+    /// The handle's own axes, turned with it.
     Local,
-    /// The screen's: to the right, up, towards the eye.
+    /// The screen's axes: to the right, up, towards the eye.
     View,
 }
 
-/// How a gizmo is turned.
+/// The orientation of a gizmo.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct GizmoAxes {
     /// The axes of arrows, squares and rings.
@@ -54,7 +54,7 @@ impl GizmoAxes {
         own: DQuat::IDENTITY,
     };
 
-    /// Those of a handle that was put somewhere.
+    /// The axes of a moved handle.
     pub(crate) fn of(transform: &HandleTransform, orientation: GizmoOrientation, camera: &Camera) -> Self {
         let own = match *transform {
             HandleTransform::Trs { rotation, .. } => rotation,
@@ -71,7 +71,7 @@ impl GizmoAxes {
     }
 }
 
-/// What can be grabbed.
+/// A part that can be grabbed.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Hash)]
 pub enum GizmoPart {
     /// Moves in the plane of the screen.
@@ -86,10 +86,10 @@ pub enum GizmoPart {
     Box(usize),
 }
 
-/// A part as it is drawn, in world space.
+/// A drawn part, in world space.
 #[derive(Clone, PartialEq, Debug)]
 pub struct GizmoShape {
-    /// What it is.
+    /// Its kind.
     pub part: GizmoPart,
     /// Its colour, sRGB with alpha; brighter under the pointer.
     pub colour: [u8; 4],

@@ -22,9 +22,10 @@ const HEAD_SEGMENTS: usize = 12;
 const AXIS_COLOURS: [[u8; 3]; 3] = [[226, 62, 72], [106, 176, 48], [58, 122, 228]];
 const AXIS_BRIGHT: [[u8; 3]; 3] = [[255, 136, 140], [172, 236, 112], [140, 188, 255]];
 
-/// The gizmo of a handle whose pivot is at `centre`, turned as `axes` says.
+/// The gizmo of a handle whose pivot is at `centre`, with the orientation `axes`.
 ///
-/// Lengths are those of the screen: `viewport_px` is its size, and the shapes keep theirs wherever the eye is.
+/// Lengths are in points of the screen: `viewport_px` is its size, and the shapes keep their size for every position of
+/// the eye.
 pub fn gizmo_shapes(
     mode: GizmoMode,
     centre: DVec3,
@@ -94,7 +95,7 @@ pub fn gizmo_shapes(
     shapes
 }
 
-/// sRGB with alpha; squares let through what they lie on.
+/// sRGB with alpha; squares are translucent.
 fn colour(part: GizmoPart, highlighted: bool) -> [u8; 4] {
     let [red, green, blue] = match (part, highlighted) {
         (GizmoPart::Centre, false) => [222; 3],
@@ -121,7 +122,7 @@ fn ring(centre: DVec3, axis: DVec3, radius: f64, to_eye: DVec3) -> Vec<[DVec3; 2
     };
     (0..RING_SEGMENTS)
         .map(|step| [arm(step), arm(step + 1)])
-        // A ring seen from its axis is shown whole; of one seen from the side the far half would only confuse.
+        // A ring seen from its axis is shown whole; for one seen from the side the far half would only confuse.
         .filter(|[a, b]| edge_on > 0.9 || (*a + *b).dot(to_eye) > -0.02)
         .map(|arms| arms.map(|arm| centre + arm * radius))
         .collect()

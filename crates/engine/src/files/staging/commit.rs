@@ -15,15 +15,15 @@ impl Staged {
     /// Renames every file into place, in order, and syncs the folders.
     ///
     /// # Errors
-    /// If a rename fails. The files that were replaced before it are restored.
+    /// A rename fails. Then the files that were replaced before it are restored.
     pub fn commit(self) -> Result<(), FileError> {
         self.commit_watched(&mut || {})
     }
 
-    /// As [`Self::commit`]; `before_each` is called before each change of what stands in the folders.
+    /// Like [`Self::commit`]; `before_each` is called before each change in the folders.
     ///
     /// # Errors
-    /// As [`Self::commit`].
+    /// Those of [`Self::commit`].
     pub fn commit_watched(mut self, before_each: &mut dyn FnMut()) -> Result<(), FileError> {
         let staging = self.staging.clone();
         let mut state = staging.lock();
@@ -36,7 +36,7 @@ impl Staged {
                 second_name(&files[file].temporary, &path).map_err(|error| FileError::writing(&path, error))?;
                 passing.0.push(path);
             }
-            // The bridge must not last without what it names.
+            // The bridge must not become durable before the files that it names.
             sync_folder(&bridge.file.to.home);
             first.push(bridge.file);
         }
@@ -59,7 +59,7 @@ impl Staged {
                 });
             match renamed {
                 Ok(backup) => {
-                    // The next rename must not last without this one.
+                    // The next rename must not become durable before this one.
                     sync_folder(folder_of(&to.target));
                     done.other_names
                         .extend(other_names.here.into_iter().map(|name| (to.target.clone(), name)));
@@ -89,14 +89,14 @@ impl Staged {
     }
 }
 
-/// What a commit has changed so far.
+/// The changes of a commit so far.
 #[derive(Default)]
 struct Done {
-    /// Targets, and what stood there.
+    /// Targets, and their earlier files.
     replaced: Vec<(PathBuf, Option<TempPath>)>,
     /// Folders that were made, outer ones first.
     folders: Vec<PathBuf>,
-    /// Targets and other names of what stood there.
+    /// Targets and other names of their earlier files.
     other_names: Vec<(PathBuf, PathBuf)>,
 }
 
@@ -110,7 +110,7 @@ impl Done {
             };
         }
         for folder in self.folders.into_iter().rev() {
-            // One that somebody has put something into stays.
+            // A folder to which somebody has added a file stays.
             let _ = fs::remove_dir(folder);
         }
     }
@@ -129,13 +129,13 @@ fn make_folders(folder: &Path, made: &mut Vec<PathBuf>) -> io::Result<()> {
     Ok(())
 }
 
-/// Files under passing names, which go when this does.
+/// Files under passing names, removed when this is dropped.
 struct Passing(Vec<PathBuf>);
 
 impl Drop for Passing {
     fn drop(&mut self) {
         for path in &self.0 {
-            // One that can't be removed does no harm.
+            // A file that can't be removed does no harm.
             let _ = fs::remove_file(path);
         }
     }
@@ -180,7 +180,8 @@ fn second_name(file: &Path, path: &Path) -> io::Result<()> {
     }
 }
 
-/// Makes a rename survive a power cut. Not every system can open a folder for that, and the files are whole either way.
+/// Makes a rename survive a power cut. Not every system can open a folder for that, and the files are whole in any
+/// case.
 fn sync_folder(folder: &Path) {
     if let Ok(folder) = File::open(folder) {
         let _ = folder.sync_all();

@@ -1,14 +1,13 @@
-//! Saves several files at once, so that in the end either all of them are there or none was touched.
+//! Saves several files at once, so that in the end either all of them are written or none is changed.
 //!
 //! There are two steps. [`Staging::stage`] writes every file's bytes under a temporary name beside its target, with the
 //! attributes of the file that it replaces, and syncs them: a lack of space or rights shows here. [`Staged::commit`]
-//! then renames them into place, one after the other, and restores what it replaced if a rename fails after all.
+//! then renames them into place, one after the other, and restores the replaced files if a rename fails.
 //!
-//! The power may fail between two renames. A file that names others must not then be left with other neighbours than it
-//! was written with. So a [`Bridge`] is a version of the file that names its neighbours by passing names, under which
-//! their bytes are available for the time of the commit. It is renamed into place first, then the neighbours, then the
-//! file itself. At every moment the folder has the old state or the new one, whole, and leftovers can be recognised by
-//! their names.
+//! The power may fail between two renames. A file that names others must then still have the neighbours with which it
+//! was written. So a [`Bridge`] is a version of the file that names its neighbours by passing names, under which their
+//! bytes are available during the commit. It is renamed into place first, then the neighbours, then the file itself. At
+//! every moment the folder has the old state or the new one, whole, and leftovers can be recognised by their names.
 
 mod commit;
 
@@ -26,19 +25,18 @@ use super::lock::{FolderLock, Share};
 use super::{Destination, FileError, Stamp, shown};
 use crate::EngineError;
 
-/// Bytes written between two checks whether the save was cancelled.
+/// The number of bytes written between two checks whether the save was cancelled.
 const BLOCK: usize = 1 << 22;
 
-/// Bytes between two syncs. Without them the progress bar would stay at its end until the system has written its cache
-/// to the disk.
+/// The number of bytes between two syncs. Without syncs the progress bar would stay at its end until the system has
+/// written its cache to the disk.
 const LASTING: usize = 1 << 26;
 
-/// The temporary files and locks of a save that is under way, so that an interrupt can remove them. Cloning shares
-/// them.
+/// The temporary files and locks of a running save, so that an interrupt can remove them. Cloning shares them.
 #[derive(Clone, Debug)]
 pub struct Staging(Arc<Mutex<State>>);
 
-/// The saves of this process that are under way: the window has several at once, each by a thread of its own.
+/// The running saves of this process: the window has several at once, each on its own thread.
 static UNDER_WAY: UnderWay = UnderWay(Mutex::new(Vec::new()));
 
 #[derive(Debug, Default)]
@@ -52,20 +50,20 @@ struct State {
     readers: Readers,
 }
 
-/// Who may read the files that are made.
+/// The readers of the new files.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 enum Readers {
-    /// The readers of the file that is replaced; for new files the system's default.
+    /// The readers of the replaced file; for new files the system's default.
     #[default]
     AsUsual,
-    /// Their owner alone.
+    /// Only their owner.
     Owner,
 }
 
-/// A file to be written.
+/// A file to write.
 #[derive(Clone, Debug)]
 pub struct NewFile<'a> {
-    /// Where.
+    /// Its place.
     pub to: Destination,
     /// Its content.
     pub bytes: &'a [u8],
@@ -81,7 +79,7 @@ pub struct Staged {
     files: Vec<StagedFile>,
     bridges: Vec<StagedBridge>,
     staging: Staging,
-    /// Let go of last.
+    /// Dropped last.
     held: Held,
 }
 
@@ -92,22 +90,21 @@ struct StagedFile {
     other_names: OtherNames,
 }
 
-/// The version of a file that takes its place while its neighbours are replaced.
+/// The version of a file that replaces it while its neighbours are being replaced.
 #[derive(Clone, Debug)]
 pub struct Bridge<'a> {
-    /// The file, by its place among those that are staged.
+    /// The file, by its place among the staged ones.
     pub file: usize,
     /// Its content, naming the neighbours by their passing names.
     pub bytes: &'a [u8],
-    /// The neighbours that are written, by their places among those that are staged, and their passing names in the
-    /// file's folder.
+    /// The written neighbours, by their places among the staged ones, and their passing names in the file's folder.
     pub neighbours: Vec<(usize, String)>,
 }
 
 #[derive(Debug)]
 struct StagedBridge {
     file: StagedFile,
-    /// The files, by their place among the staged ones, and the paths at which they stand for the while.
+    /// The files, by their place among the staged ones, and their temporary paths.
     passing: Vec<(usize, PathBuf)>,
 }
 
@@ -126,7 +123,7 @@ impl UnderWay {
             all.iter().filter_map(Weak::upgrade).map(Staging).collect()
         };
         for staging in others.into_iter().filter(|staging| !Arc::ptr_eq(&staging.0, &own.0)) {
-            // Locked until the process is gone.
+            // These stay locked until the process has ended.
             let staging: &'static Staging = Box::leak(Box::new(staging));
             std::mem::forget(staging.discard());
         }
@@ -140,25 +137,25 @@ impl Default for Staging {
 }
 
 impl Staging {
-    /// Files that are staged here may be read only by their owner, whatever file they replace.
+    /// Only their owner may read files staged here, even if they replace another file.
     pub fn private() -> Self {
         let staging = Self::default();
         staging.lock().readers = Readers::Owner;
         staging
     }
 
-    /// Locks folders that are to be written to, after waiting for other saves there, and removes what killed saves have
-    /// left in them. All folders of a save must be locked in one call, so that two saves can't wait for each other.
+    /// Locks folders for writing, after waiting for other saves there, and removes leftovers of killed saves. All
+    /// folders of a save must be locked in one call, so that two saves can't wait for each other.
     ///
     /// # Errors
-    /// Where a folder can't be written; [`EngineError::Interrupted`] when `cancel` is raised.
+    /// A folder can't be written; [`EngineError::Interrupted`] when `cancel` is raised.
     pub fn hold<'a>(
         &self,
         folders: impl IntoIterator<Item = (&'a Destination, Share)>,
         cancel: &Cancel,
     ) -> Result<Held, EngineError> {
         let mut wanted: Vec<(&Destination, Share)> = folders.into_iter().collect();
-        // One order for all saves, and for each folder the stricter request.
+        // The order is the same for all saves, and each folder gets the stricter request.
         wanted.sort_by(|(a, of_a), (b, of_b)| a.home.cmp(&b.home).then(of_b.cmp(of_a)));
         wanted.dedup_by(|(a, _), (b, _)| a.home == b.home);
         let mut held = Held::default();
@@ -190,7 +187,7 @@ impl Staging {
     /// Writes and syncs `files` beside their targets, under temporary names.
     ///
     /// # Errors
-    /// Where a file can't be written; nothing is left behind then.
+    /// A file can't be written; nothing is left behind then.
     pub fn stage<'a>(&self, files: impl IntoIterator<Item = (PathBuf, &'a [u8])>) -> Result<Staged, EngineError> {
         let to = |(path, bytes): (PathBuf, &'a [u8])| {
             Ok(NewFile {
@@ -202,11 +199,11 @@ impl Staging {
         self.stage_watched(&files, None, &Progress::new(), &Cancel::new())
     }
 
-    /// As [`Self::stage`], telling how far it is. With a bridge, the files are committed over it.
+    /// Like [`Self::stage`], with progress. With a bridge, the files are committed over it.
     ///
     /// # Errors
-    /// As [`Self::stage`]; [`EngineError::Interrupted`] soon after `cancel` is raised, and nothing is left behind then
-    /// either.
+    /// Those of [`Self::stage`]; [`EngineError::Interrupted`] soon after `cancel` is raised, and nothing is left behind
+    /// then either.
     pub fn stage_watched(
         &self,
         files: &[NewFile<'_>],
@@ -249,15 +246,15 @@ impl Staging {
         Ok(staged)
     }
 
-    /// Removes what is staged and not committed, and prevents further staging and commits as long as the guard lives.
-    /// `None` if a commit is done already and its files are to stay.
+    /// Removes staged files that are not committed, and prevents further staging and commits as long as the guard
+    /// lives. `None` if a commit is already done and its files must stay.
     pub fn discard(&self) -> Option<Discarded<'_>> {
         let mut state = self.lock();
         if state.committed {
             return None;
         }
         for path in state.temporary.drain(..) {
-            // What can't be removed was removed already.
+            // A file that can't be removed was removed already.
             let _ = fs::remove_file(path);
         }
         state
@@ -268,13 +265,13 @@ impl Staging {
         Some(Discarded { _state: state })
     }
 
-    /// Removes what every other save of this process has staged and not committed, and keeps them from going on: for
-    /// the process's end.
+    /// Removes the staged, uncommitted files of every other save of this process, and stops those saves: for the end of
+    /// the process.
     pub fn discard_others(&self) {
         UNDER_WAY.discard_others(self);
     }
 
-    /// Writes and syncs one file. `go_on` gets the number of bytes that were written, and may end it.
+    /// Writes and syncs one file. `go_on` gets the number of written bytes, and may stop the writing.
     fn stage_one(
         &self,
         file: &NewFile<'_>,
@@ -283,12 +280,12 @@ impl Staging {
         let NewFile { to, bytes } = file;
         let refuse = |error| FileError::writing(&to.given, error);
         let existing = to.existing()?;
-        // A neighbour that is new is as private as the file that names it.
+        // A new neighbour is as private as the file that names it.
         let namer = to.namer.as_deref().filter(|_| existing.is_none());
         let like = namer.and_then(|namer| Some((fs::metadata(namer).ok()?, namer)));
         let like = existing.map(|existing| (existing, &*to.target)).or(like);
-        // A file that replaces another has no more rights than that one from its first byte on. Others get what any
-        // new file does: everybody's, less what the umask takes.
+        // A file that replaces another has no more rights than that one from its first byte on. Other files get the
+        // rights of any new file: everybody's, less the umask.
         let mut temporary = self.temporary_in(&to.home, like.is_some()).map_err(refuse)?;
         go_on(0)?;
         for lasting in bytes.chunks(LASTING) {
@@ -339,14 +336,14 @@ impl Staging {
     }
 }
 
-/// Nothing is staged or committed for as long as this lives.
+/// A guard: nothing is staged or committed while it lives.
 #[derive(Debug)]
 pub struct Discarded<'a> {
     _state: MutexGuard<'a, State>,
 }
 
 impl Staged {
-    /// Adds the files of `other`, to be committed after these.
+    /// Adds the files of `other`, for a commit after these.
     pub fn and(mut self, mut other: Self) -> Self {
         let before = self.files.len();
         for bridge in &mut other.bridges {
@@ -364,27 +361,27 @@ impl Staged {
         self
     }
 
-    /// Where the bytes of a file wait, by its place among those that were staged.
+    /// The temporary place of a file's bytes, by its place among the staged files.
     pub fn temporary(&self, file: usize) -> &Path {
         &self.files[file].temporary
     }
 
-    /// The places of the files, in the order in which they are written.
+    /// The places of the files, in the order of writing.
     pub fn targets(&self) -> impl Iterator<Item = &Path> {
         self.files.iter().map(|file| &*file.to.target)
     }
 
-    /// Each file's place, and its stamp: a rename takes length, time and identity along.
+    /// Each file's place, and its stamp: a rename keeps length, time and identity.
     ///
     /// # Errors
-    /// What the system says.
+    /// The system's error.
     pub fn stamps(&self) -> Result<Vec<(PathBuf, Stamp)>, FileError> {
         let files = self.files.iter();
         let stamps = files.map(|file| Ok((file.to.target.clone(), Stamp::of(&file.temporary)?)));
         stamps.collect()
     }
 
-    /// Sentences about what can't be kept of the files that are replaced.
+    /// Sentences about properties of the replaced files that can't be kept.
     pub fn notes(&self) -> Vec<String> {
         let with_more = self.files.iter().filter(|file| file.other_names.elsewhere > 0);
         let note = |file: &StagedFile| {
@@ -405,7 +402,7 @@ impl Staged {
 
 impl Drop for Staged {
     fn drop(&mut self) {
-        // Before the folders are let go of: what lies there is ours as long as we hold them.
+        // This must happen before the folders are unlocked: their temporary files are ours only while we hold them.
         self.files.clear();
         self.bridges.clear();
     }
@@ -435,7 +432,7 @@ mod tests {
             .map(|entry| entry.unwrap().file_name())
             .collect();
         assert_eq!(left, ["done"]);
-        // Neither a commit nor another temporary file gets its lock any more.
+        // Neither a commit nor another temporary file can get its lock now.
         assert!(waiting.0.try_lock().is_err());
         assert!(own.0.try_lock().is_ok() && done.0.try_lock().is_ok());
     }

@@ -22,7 +22,7 @@ const OTHER_MAPS: [&[&str]; 4] = [
     &["emissiveTexture"],
 ];
 
-/// Which texture coordinates each material's images take.
+/// The sets of texture coordinates of each material's images.
 pub(crate) fn of_materials(document: &Document) -> Vec<MaterialMaps> {
     (0..document.materials_at.len())
         .map(|material| MaterialMaps::of(document, material))
@@ -53,7 +53,7 @@ impl MaterialMaps {
     }
 }
 
-/// Sets in `out` what the text says about a material besides its base colour, factors and alpha.
+/// Sets in `out` the text's further members of a material: everything besides its base colour, factors and alpha.
 pub(crate) fn dress(document: &Document, material: usize, out: &mut Material) {
     let Some(&at) = document.materials_at.get(material) else {
         return;
@@ -85,7 +85,7 @@ pub(crate) fn dress(document: &Document, material: usize, out: &mut Material) {
 /// Extensions that name an image of a kind that plain glTF does not have.
 const IMAGE_EXTENSIONS: [&str; 2] = ["EXT_texture_webp", "KHR_texture_basisu"];
 
-/// The image of a texture and how it is wrapped.
+/// The image of a texture and its wrapping.
 pub(crate) fn image_of(document: &Document, texture: usize) -> Option<(usize, [Wrap; 2])> {
     let texture = document.textures.get(texture)?;
     let others = texture.extensions.as_ref().map(|extensions| &extensions.others);
@@ -123,7 +123,7 @@ struct Reference {
     transform: UvTransform,
 }
 
-/// All that a material names.
+/// All textures that a material names.
 struct References {
     base: Option<Reference>,
     others: [Option<Reference>; 4],
@@ -164,7 +164,7 @@ impl Reference {
     }
 }
 
-/// Where an image is looked up with the drawn vertices' coordinates; `None` for a missing image or a third set.
+/// The place of an image's look-up by the drawn vertices' coordinates; `None` for a missing image or a third set.
 fn map(document: &Document, sets: &MaterialMaps, reference: Reference) -> Option<Map> {
     let (image, wrap) = image_of(document, reference.texture)?;
     let own = reference.transform.matrix();

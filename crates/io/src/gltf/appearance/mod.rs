@@ -1,4 +1,4 @@
-//! How a glTF looks: attributes of its drawn vertices, materials and images.
+//! The appearance of a glTF: attributes of its drawn vertices, materials and images.
 
 pub(crate) mod maps;
 pub(crate) mod uv_sets;
@@ -21,7 +21,7 @@ use crate::gltf::geometry::primitive::{Mode, Primitive};
 use crate::gltf::geometry::{self, Instance, Piece, Pieces};
 use crate::scene::objects;
 
-/// Vertices that a thread handles at a time.
+/// The number of vertices for one task.
 const CHUNK: usize = 1 << 14;
 
 /// The appearance of the drawn set that `pieces` describe.
@@ -64,7 +64,7 @@ pub(crate) fn appearance(document: &Document, meshes: &[Vec<Primitive>], pieces:
             .map(|image| self::image(document, image))
             .collect(),
     };
-    // Primitives without a material share one that stands behind the file's own.
+    // Primitives without a material share one that comes after the file's own.
     let default_material = out.materials.len();
     if of_triangles(meshes, pieces).any(|piece| {
         of_piece(meshes, pieces, piece.instance, piece.primitive)
@@ -86,7 +86,7 @@ pub(crate) fn appearance(document: &Document, meshes: &[Vec<Primitive>], pieces:
     out
 }
 
-/// The vertices of triangles without normals, which glTF has shown flat.
+/// The vertices of triangles without normals, which glTF shows flat.
 fn flat(document: &Document, meshes: &[Vec<Primitive>], pieces: &Pieces) -> Vec<Range<u32>> {
     let mut flat: Vec<Range<u32>> = (of_triangles(meshes, pieces).map(|piece| &pieces.instances[piece.instance]))
         .filter(|instance| normals(document, instance, primitive(meshes, instance)).is_none())
@@ -97,7 +97,7 @@ fn flat(document: &Document, meshes: &[Vec<Primitive>], pieces: &Pieces) -> Vec<
     flat
 }
 
-/// The pieces that are made of triangles; lines and points have no groups and are no objects.
+/// The pieces that consist of triangles; lines and points have no groups and are not objects.
 fn of_triangles<'a>(meshes: &'a [Vec<Primitive>], pieces: &'a Pieces) -> impl Iterator<Item = &'a Piece> {
     pieces.pieces.iter().filter(|piece| {
         let mode = of_piece(meshes, pieces, piece.instance, piece.primitive).mode;
@@ -105,7 +105,7 @@ fn of_triangles<'a>(meshes: &'a [Vec<Primitive>], pieces: &'a Pieces) -> impl It
     })
 }
 
-/// The objects by node and material of the drawn set; a node without a name gets its mesh's.
+/// The objects of the drawn set by node and material; a node without a name gets its mesh's.
 pub(crate) fn objects(document: &Document, meshes: &[Vec<Primitive>], pieces: &Pieces) -> Vec<Object> {
     let mut names = Names::of(document);
     objects::gathered(of_triangles(meshes, pieces).map(|piece| {
@@ -146,7 +146,7 @@ impl<'a> Names<'a> {
     }
 }
 
-/// The rest normals of all drawn vertices in world space, of unit length, zero where there are none.
+/// The rest normals of all drawn vertices in world space, unit vectors, zero where there are none.
 pub(crate) fn world_normals(document: &Document, meshes: &[Vec<Primitive>], pieces: &Pieces) -> Vec<DVec3> {
     let mut out = Vec::new();
     for instance in &pieces.instances {
@@ -157,7 +157,7 @@ pub(crate) fn world_normals(document: &Document, meshes: &[Vec<Primitive>], piec
     out
 }
 
-/// An instance's normals in world space, of unit length; zero for those that its skin flattens.
+/// An instance's normals in world space, unit vectors; zero for those that its skin flattens.
 fn in_world<'a>(instance: &'a Instance, normals: &'a [[f32; 3]]) -> impl IndexedParallelIterator<Item = DVec3> + 'a {
     let linear = instance.pose.linear();
     normals
@@ -171,7 +171,7 @@ fn in_world<'a>(instance: &'a Instance, normals: &'a [[f32; 3]]) -> impl Indexed
         })
 }
 
-/// An instance's rest normals in its node's space, default morph targets applied; `None` where it has none.
+/// An instance's rest normals in its node's space, default morph targets applied; `None` if it has none.
 fn normals(document: &Document, instance: &Instance, primitive: &Primitive) -> Option<Vec<[f32; 3]>> {
     let mut normals = attribute::<3>(document, instance, primitive.normal)?;
     let targets = instance
@@ -183,7 +183,7 @@ fn normals(document: &Document, instance: &Instance, primitive: &Primitive) -> O
     Some(normals)
 }
 
-/// An attribute of an instance's vertices; `None` where it has none of the right count.
+/// An attribute of an instance's vertices; `None` if it has none with the right count.
 pub(crate) fn attribute<const N: usize>(
     document: &Document,
     instance: &Instance,
@@ -201,7 +201,7 @@ fn of_piece<'a>(meshes: &'a [Vec<Primitive>], pieces: &Pieces, instance: usize, 
     &meshes[pieces.instances[instance].mesh][primitive]
 }
 
-/// One attribute of all drawn vertices; `None` where no instance has it.
+/// One attribute of all drawn vertices; `None` if no instance has it.
 fn gather<T: Copy + Send>(
     pieces: &Pieces,
     missing: T,

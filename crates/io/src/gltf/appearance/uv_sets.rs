@@ -1,4 +1,4 @@
-//! Which texture coordinates a material's images use, and how they are transformed.
+//! The sets of texture coordinates of a material's images, and their transforms.
 
 use glam::{Mat3, Vec2};
 
@@ -6,7 +6,7 @@ use glam::{Mat3, Vec2};
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct UvTransform {
     pub offset: [f32; 2],
-    /// Counter-clockwise, radians.
+    /// Counterclockwise, radians.
     pub rotation: f32,
     pub scale: [f32; 2],
 }
@@ -18,7 +18,7 @@ impl UvTransform {
         scale: [1.0; 2],
     };
 
-    /// The texture coordinates that the image is looked up at.
+    /// The texture coordinates of the look-up in the image.
     pub fn apply(&self, [u, v]: [f32; 2]) -> [f32; 2] {
         if *self == Self::IDENTITY {
             return [u, v];
@@ -28,7 +28,7 @@ impl UvTransform {
         [cos * u + sin * v + self.offset[0], cos * v - sin * u + self.offset[1]]
     }
 
-    /// What tells it apart from others.
+    /// Its identity.
     pub fn bits(&self) -> [u32; 5] {
         let ([u, v], [s, t]) = (self.offset, self.scale);
         [u, v, self.rotation, s, t].map(f32::to_bits)
@@ -45,14 +45,14 @@ impl UvTransform {
     }
 }
 
-/// Which texture coordinates a material's images take.
+/// The sets of texture coordinates of a material's images.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct MaterialMaps {
     /// The set of the base colour's image; without one, of the first other image.
     pub base_set: u32,
-    /// How that set is transformed on the way to the drawn vertices.
+    /// The transform of that set on the way to the drawn vertices.
     pub base_transform: UvTransform,
-    /// The first other set that is asked for.
+    /// The first other set that an image uses.
     pub second_set: Option<u32>,
 }
 

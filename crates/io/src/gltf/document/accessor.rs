@@ -7,11 +7,11 @@ use rayon::prelude::*;
 use crate::gltf::document::Document;
 pub(crate) use crate::gltf::document::layout::{Layout, Sparse, Strided};
 
-/// Elements that a thread reads at a time.
+/// The number of elements that a task reads.
 const CHUNK: usize = 1 << 14;
 
 impl Document {
-    /// An accessor's layout, checked once, or a sentence that says what is wrong.
+    /// An accessor's layout, checked once, or a sentence about its fault.
     pub fn layout(&self, accessor: usize) -> Result<Layout, String> {
         match self.layouts.get(accessor) {
             Some(layout) => layout.get_or_init(|| Layout::of(self, accessor)).clone(),
@@ -21,8 +21,8 @@ impl Document {
 }
 
 impl Layout {
-    /// Checks an accessor against its buffer views and buffers; the error says what is wrong. [`Document::layout`]
-    /// caches the result.
+    /// Checks an accessor against its buffer views and buffers; the error names the fault. [`Document::layout`] caches
+    /// the result.
     pub fn of(document: &Document, index: usize) -> Result<Self, String> {
         Self::check(document, index).map_err(|reason| format!("accessor {index} {reason}"))
     }
@@ -86,7 +86,7 @@ impl Layout {
         Ok(layout)
     }
 
-    /// The elements that stand in the sparse values, in their order.
+    /// The elements in the sparse values, in their order.
     pub fn sparse_elements(&self, document: &Document) -> Vec<u32> {
         self.sparse.as_ref().map_or_else(Vec::new, |sparse| {
             let bytes = document.buffer(sparse.indices.buffer);
@@ -96,7 +96,8 @@ impl Layout {
         })
     }
 
-    /// All elements as f32, the first `N` numbers of each (missing ones 0); integers normalised where it says so.
+    /// All elements as f32, the first `N` numbers of each (missing ones 0); integers are normalised if the accessor
+    /// says so.
     pub fn floats<const N: usize>(&self, document: &Document) -> Vec<[f32; N]> {
         let read = |strided: &Strided, element: usize| -> [f32; N] {
             let bytes = &document.buffer(strided.buffer)[strided.element(element)];
@@ -125,7 +126,7 @@ impl Layout {
         out
     }
 
-    /// All elements as indices; the error says what is wrong.
+    /// All elements as indices; the error names the fault.
     pub fn indices(&self, document: &Document) -> Result<Vec<u32>, String> {
         let is_index = matches!(
             self.component,
@@ -152,7 +153,7 @@ impl Layout {
     }
 }
 
-/// Numbers in an element of an accessor; `None` of an unknown type.
+/// The count of numbers in an element of an accessor; `None` for an unknown type.
 pub(crate) fn lanes_of(accessor: &::gltf::json::Accessor) -> Option<usize> {
     match accessor.type_ {
         Checked::Valid(kind) => Some(lanes(kind)),
@@ -171,12 +172,12 @@ fn lanes(kind: Type) -> usize {
     }
 }
 
-/// How elements stand in their buffer view.
+/// The spacing of elements in their buffer view.
 #[derive(Clone, Copy, PartialEq)]
 enum Packing {
-    /// As the view's stride says, tight where it says nothing.
+    /// By the view's stride, or tight without one.
     ByView,
-    /// Without gaps, whatever the view says.
+    /// Without gaps, for any view.
     Tight,
 }
 

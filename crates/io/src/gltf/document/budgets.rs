@@ -1,29 +1,30 @@
-//! What a glTF may become in memory: a multiple of the bytes that were read.
+//! The memory that a glTF may take: a multiple of the bytes that were read.
 
 use std::collections::HashSet;
 
 use super::Document;
 use super::buffers::{Buffer, ImageFile};
 
-/// How many bytes of geometry a byte of the file may become.
+/// The bytes of geometry allowed for each byte of the file.
 const MOST_GROWTH: usize = 64;
 
-/// How many bytes of the drawn set a byte of geometry may become.
+/// The bytes of the drawn set allowed for each byte of geometry.
 const MOST_DRAWN: usize = 16;
 
-/// What the drawn set of the smallest of files may take: five million triangles.
+/// The allowance for the drawn set of the smallest files: five million triangles.
 const DRAWN_ANYWAY: usize = 64 << 20;
 
-/// What compressed geometry may become in the smallest of files.
+/// The allowance for compressed geometry in the smallest files.
 const DECODED_ANYWAY: usize = 1 << 20;
 
 impl Document {
-    /// How many bytes compressed geometry may become in all.
+    /// The bytes that compressed geometry may take in all.
     pub fn decoding_budget(&self) -> usize {
         self.loaded_bytes.saturating_mul(MOST_GROWTH).max(DECODED_ANYWAY)
     }
 
-    /// How many bytes of memory the drawn set may take: what the bytes justify, and small files with many instances.
+    /// The bytes of memory that the drawn set may take: enough for the file's bytes, and for small files with many
+    /// instances.
     ///
     /// No accessor seen through one node takes more than sixteen times its bytes (a strip of byte indices takes
     /// twelve). Welding takes eight times the drawn set again.
@@ -36,7 +37,7 @@ impl Document {
         bytes.saturating_mul(MOST_DRAWN).saturating_add(DRAWN_ANYWAY)
     }
 
-    /// How many bytes were read in all, neighbours included, each once.
+    /// The number of bytes that were read in all, neighbours included, each once.
     pub(super) fn count_loaded_bytes(&self) -> usize {
         let of_buffers = self.buffers.iter().filter_map(|buffer| match buffer {
             Buffer::Data(bytes) | Buffer::Neighbour { bytes, .. } => Some(bytes),

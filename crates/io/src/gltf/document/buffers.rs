@@ -1,4 +1,4 @@
-//! The bytes of buffers, buffer views and images, and those that were decoded for views and accessors.
+//! The bytes of buffers, buffer views and images, and the decoded bytes of views and accessors.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -9,7 +9,7 @@ use ::gltf::json::validation::USize64;
 use super::Document;
 use crate::Bytes;
 
-/// A buffer's bytes and where they came from.
+/// A buffer's bytes and their origin.
 #[derive(Debug)]
 pub(crate) enum Buffer {
     /// The GLB's BIN chunk: a range of the file.
@@ -18,23 +18,23 @@ pub(crate) enum Buffer {
     Data(Bytes),
     /// A file beside this one, by its decoded path.
     Neighbour { path: String, bytes: Bytes },
-    /// None at all: a placeholder that an extension fills.
+    /// None: a placeholder that an extension fills.
     Absent,
     /// The decoded bytes of a compressed buffer view or accessor: not a buffer of the file. These come after the file's
     /// own.
     Decoded(Bytes),
 }
 
-/// An image's bytes and where they came from.
+/// An image's bytes and their origin.
 #[derive(Debug)]
 pub(crate) enum ImageFile {
     /// A buffer view.
     View(usize),
     /// A data URI.
     Data(Bytes),
-    /// A file beside this one, by its decoded path; no bytes where it is missing.
+    /// A file beside this one, by its decoded path; no bytes if it is missing.
     Neighbour { path: String, bytes: Option<Bytes> },
-    /// Nowhere that is read.
+    /// A place that is not read.
     Absent,
 }
 
@@ -48,13 +48,13 @@ impl Document {
         }
     }
 
-    /// The bytes of a buffer view; `None` where they are not all there.
+    /// The bytes of a buffer view; `None` if they are not all there.
     pub fn view(&self, view: usize) -> Option<&[u8]> {
         let (buffer, range) = self.place_of_view(view)?;
         self.buffer(buffer).get(range)
     }
 
-    /// The encoded bytes of an image, shared with what holds them; `None` where they are missing.
+    /// The encoded bytes of an image, shared with their owner; `None` if they are missing.
     pub fn image(&self, image: usize) -> Option<Bytes> {
         match self.images.get(image)? {
             ImageFile::View(view) => {
@@ -73,7 +73,7 @@ impl Document {
         }
     }
 
-    /// The buffer that a view is of, and its bytes there.
+    /// A view's buffer, and its bytes there.
     pub fn place_of_view(&self, view: usize) -> Option<(usize, Range<usize>)> {
         let view = self.views.get(view)?;
         let start = usize::try_from(view.byte_offset.map_or(0, |offset| offset.0)).ok()?;
@@ -81,7 +81,7 @@ impl Document {
         Some((view.buffer.value(), start..start.checked_add(length)?))
     }
 
-    /// Makes a buffer view of the file refer to the bytes that were decoded from it.
+    /// Makes a buffer view of the file refer to its decoded bytes.
     pub fn redirect_view(&mut self, view: usize, bytes: Vec<u8>, stride: Option<usize>) {
         let (buffer, length) = (self.buffers.len() as u32, bytes.len() as u64);
         let Some(view) = self.views.get_mut(view) else { return };
@@ -92,7 +92,7 @@ impl Document {
         self.buffers.push(Buffer::Decoded(bytes.into()));
     }
 
-    /// Gives an accessor bytes of its own, elements tightly packed, in a buffer view that the file does not have.
+    /// Gives an accessor its own bytes, elements tightly packed, in a buffer view that the file does not have.
     pub fn fill_accessor(&mut self, accessor: usize, bytes: Vec<u8>) {
         let Some(accessor) = self.accessors.get_mut(accessor) else {
             return;
@@ -112,7 +112,7 @@ impl Document {
         self.buffers.push(Buffer::Decoded(bytes.into()));
     }
 
-    /// Whether an accessor's bytes came out of a compressed primitive.
+    /// Whether an accessor's bytes were decoded from a compressed primitive.
     pub fn is_filled(&self, accessor: usize) -> bool {
         let view = self.accessors.get(accessor).and_then(|accessor| accessor.buffer_view);
         view.is_some_and(|view| view.value() >= self.views_at.len())

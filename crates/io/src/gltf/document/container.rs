@@ -8,16 +8,16 @@ const BIN_CHUNK: u32 = 0x004e_4942;
 const HEADER_BYTES: usize = 12;
 const CHUNK_HEADER_BYTES: usize = 8;
 
-/// Where a GLB's parts stand in its bytes.
+/// The spans of a GLB's parts in its bytes.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub(crate) struct Container {
     /// The JSON chunk's content, padding included.
     pub json: Range<usize>,
     /// The BIN chunk's content, padding included.
     pub bin: Option<Range<usize>>,
-    /// Whatever chunks follow those two.
+    /// The chunks after those two.
     pub further_chunks: Range<usize>,
-    /// Bytes behind the length that the header tells.
+    /// Bytes beyond the length in the header.
     pub trailing: Range<usize>,
 }
 
@@ -26,7 +26,7 @@ pub(crate) fn is_glb(bytes: &[u8]) -> bool {
     bytes.starts_with(MAGIC)
 }
 
-/// Finds a GLB's parts; the error says what is wrong.
+/// Finds a GLB's parts; the error names the fault.
 pub(crate) fn split(bytes: &[u8]) -> Result<Container, String> {
     let word = |at: usize| -> Option<u32> { Some(u32::from_le_bytes(*bytes.get(at..)?.first_chunk()?)) };
     if !is_glb(bytes) {
@@ -73,7 +73,7 @@ pub(crate) fn split(bytes: &[u8]) -> Result<Container, String> {
     })
 }
 
-/// Writes a GLB. Chunks are padded to multiples of four; `None` where the result would be beyond 4 GiB.
+/// Writes a GLB. Chunks are padded to multiples of four; `None` if the result would be beyond 4 GiB.
 pub(crate) fn join(json: &[u8], bin: Option<&[u8]>, further_chunks: &[u8], trailing: &[u8]) -> Option<Vec<u8>> {
     let padded = |length: usize| length.next_multiple_of(4);
     let length = HEADER_BYTES

@@ -7,11 +7,11 @@ use crate::{Format, ReadError};
 /// A reason to refuse a glTF.
 #[derive(Debug)]
 pub(crate) enum Fault {
-    /// Something is not as glTF asks.
+    /// Something violates glTF.
     Malformed(String),
-    /// More is asked for than the bytes justify.
+    /// The file asks for more than its bytes justify.
     TooLarge(String),
-    /// A buffer's file can't be had.
+    /// A buffer's file can't be read.
     Neighbour {
         uri: String,
         reason: String,

@@ -1,4 +1,4 @@
-//! Fetching what buffers and images name: data within the JSON, and files beside this one.
+//! Fetching the data of buffers and images: within the JSON, and in files beside this one.
 
 use super::Document;
 use super::buffers::{Buffer, ImageFile};

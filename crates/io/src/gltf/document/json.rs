@@ -171,7 +171,7 @@ fn scan(text: &[u8]) -> Vec<Token> {
     tape
 }
 
-/// Behind the closing quote of the string that opens at `start`.
+/// The place after the closing quote of the string that opens at `start`.
 fn string_end(text: &[u8], start: usize) -> usize {
     let mut at = start + 1;
     while at < text.len() {
@@ -184,7 +184,7 @@ fn string_end(text: &[u8], start: usize) -> usize {
     text.len()
 }
 
-/// Behind the number or word that begins at `start`.
+/// The place after the number or word that begins at `start`.
 fn scalar_end(text: &[u8], start: usize) -> usize {
     let is_end = |byte: &u8| {
         matches!(
@@ -263,14 +263,14 @@ impl Edits {
         self.0.is_empty()
     }
 
-    /// `text[within]` with the replacements that lie in it.
+    /// `text[within]` with the replacements inside it.
     pub fn apply(&self, text: &[u8], within: Range<usize>) -> Vec<u8> {
         let mut edits: Vec<&(Range<usize>, String)> = self
             .0
             .iter()
             .filter(|(span, _)| span.start >= within.start && span.end <= within.end)
             .collect();
-        // A stable sort: insertions at one place stay in the order in which they were asked for.
+        // A stable sort: insertions at one place stay in the order of their requests.
         edits.sort_by_key(|(span, _)| span.start);
         let mut out = Vec::with_capacity(within.len() + edits.iter().map(|(_, new)| new.len()).sum::<usize>());
         let mut at = within.start;

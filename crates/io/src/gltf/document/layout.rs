@@ -21,7 +21,7 @@ pub(crate) struct Strided {
 #[derive(Clone, Debug)]
 pub(crate) struct Layout {
     pub component: ComponentType,
-    /// Numbers in an element.
+    /// The count of numbers in an element.
     pub lanes: usize,
     pub normalized: bool,
     pub count: usize,
@@ -30,7 +30,7 @@ pub(crate) struct Layout {
     pub sparse: Option<Sparse>,
 }
 
-/// Elements that stand elsewhere.
+/// Elements in other places.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sparse {
     pub index_type: ComponentType,
@@ -45,7 +45,7 @@ impl Strided {
         start..start + self.size
     }
 
-    /// Behind the last byte of the last element.
+    /// The place after the last byte of the last element.
     pub fn end(&self) -> usize {
         self.element(self.count.saturating_sub(1)).end
     }

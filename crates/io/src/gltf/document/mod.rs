@@ -1,9 +1,9 @@
-//! A glTF as read: its JSON, its buffers, and where its objects stand in the text.
+//! A glTF as read: its JSON, its buffers, and the places of its objects in the text.
 //!
 //! The `gltf` crate's types read accessors, buffer views, materials, textures, samplers and images, each section for
 //! itself and without validation. Nodes, meshes and scenes are read from the text: node transforms as f64 (the crate
-//! has f32, which moves scans at geographic coordinates by half a metre), attributes with whatever names, and scenes
-//! without nodes, which the crate refuses.
+//! has f32, which moves scans at geographic coordinates by half a metre), attributes with any names, and scenes without
+//! nodes, which the crate refuses.
 
 pub(crate) mod accessor;
 mod budgets;
@@ -36,7 +36,7 @@ use layout::Layout;
 pub(crate) struct Document {
     /// The whole file.
     pub file: Arc<Vec<u8>>,
-    /// Where a GLB's parts stand in it; `None` for a `.gltf`.
+    /// The spans of a GLB's parts in it; `None` for a `.gltf`.
     pub container: Option<Container>,
     /// A byte-order mark in front of a `.gltf`'s text.
     pub has_mark: bool,
@@ -48,7 +48,7 @@ pub(crate) struct Document {
     pub materials: Vec<Material>,
     pub textures: Vec<Texture>,
     pub samplers: Vec<Sampler>,
-    /// Where each object stands, by section.
+    /// The place of each object, by section.
     pub accessors_at: Vec<At>,
     pub views_at: Vec<At>,
     pub meshes_at: Vec<At>,
@@ -56,15 +56,15 @@ pub(crate) struct Document {
     pub buffers_at: Vec<At>,
     pub images_at: Vec<At>,
     pub materials_at: Vec<At>,
-    /// What was missing but not needed, as sentences.
+    /// Missing data that was not needed, as sentences.
     pub notes: Notes,
-    /// Compressed buffer views without bytes, and what is wrong with them.
+    /// Compressed buffer views without bytes, and their faults.
     pub undecoded_views: BTreeMap<usize, String>,
-    /// Compressed primitives whose accessors have no bytes, and what is wrong with them.
+    /// Compressed primitives whose accessors have no bytes, and their faults.
     pub undecoded_primitives: BTreeMap<At, String>,
-    /// How many bytes were read in all, neighbours included, each once.
+    /// The number of bytes that were read in all, neighbours included, each once.
     pub loaded_bytes: usize,
-    /// Which texture coordinates each material's images take.
+    /// The sets of texture coordinates of each material's images.
     pub material_maps: Vec<MaterialMaps>,
     /// Each accessor's layout, cached because checking it visits all its sparse elements.
     pub layouts: Vec<OnceLock<Result<Layout, String>>>,
@@ -152,7 +152,7 @@ impl Document {
         self.index_at(at, count, || format!("{} names {key}", what())).map(Some)
     }
 
-    /// A value that is an index below `count`; `what` says who names what in an error.
+    /// A value that is an index below `count`; `what` describes the reference in an error.
     pub fn index_at(&self, at: At, count: usize, what: impl Fn() -> String) -> Result<usize, String> {
         let number = self
             .json
@@ -177,7 +177,7 @@ impl Document {
         }
     }
 
-    /// A node's, mesh's or image's name; empty where it has none.
+    /// A node's, mesh's or image's name; empty if it has none.
     pub fn name(&self, object: At) -> String {
         self.json
             .member(object, "name")
@@ -200,7 +200,7 @@ fn objects(json: &Json, section: &str) -> Result<Vec<At>, String> {
     }
 }
 
-/// The plain material in place of one that can't be read; the file keeps its own.
+/// The plain material that replaces one that can't be read; the file keeps its own.
 fn dropped(number: usize, error: &str, notes: &mut Notes) -> Material {
     let error = quoted(error);
     let note = format!("Material {number} is broken ({error}), so what has it is drawn plain.");

@@ -5,7 +5,7 @@ use base64::alphabet::STANDARD;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use percent_encoding::{AsciiSet, CONTROLS, percent_decode_str, percent_encode, utf8_percent_encode};
 
-/// Where a URI points.
+/// The target of a URI.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub(crate) enum Address {
     /// Bytes written into the URI itself.
@@ -21,7 +21,7 @@ const BASE64: GeneralPurpose = GeneralPurpose::new(
     GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent),
 );
 
-/// What must be encoded in a path. A reader would take what is before a colon for a scheme.
+/// The characters that must be encoded in a path. A reader would take the text before a colon for a scheme.
 const ESCAPED: &AsciiSet = &CONTROLS
     .add(b' ')
     .add(b':')
@@ -33,7 +33,7 @@ const ESCAPED: &AsciiSet = &CONTROLS
     .add(b'<')
     .add(b'>');
 
-/// Reads a URI; the error says what is wrong with a data URI.
+/// Reads a URI; the error names the fault of a data URI.
 pub(crate) fn address(uri: &str) -> Result<Address, String> {
     if let Some(rest) = uri
         .get(..5)
@@ -87,7 +87,7 @@ pub(crate) fn inside(path: &str) -> Option<String> {
     (!steps.is_empty()).then(|| steps.join("/"))
 }
 
-/// A path as a URI. A name that is not UTF-8 is encoded already, see [`name_of_bytes`].
+/// A path as a URI. A name that is not UTF-8 is already encoded, see [`name_of_bytes`].
 pub(crate) fn encoded(path: &str) -> String {
     if percent_decode_str(path).decode_utf8().is_err() {
         return path.to_owned();
@@ -95,8 +95,7 @@ pub(crate) fn encoded(path: &str) -> String {
     utf8_percent_encode(path, ESCAPED).to_string()
 }
 
-/// A file's name as text. Where it is not UTF-8 its bytes stand percent-encoded, as a URI has them: no other text
-/// decodes to them.
+/// A file's name as text. If it is not UTF-8 its bytes are percent-encoded, as in a URI: no other text decodes to them.
 pub fn name_of_bytes(name: &[u8]) -> String {
     match std::str::from_utf8(name) {
         Ok(name) => name.to_owned(),

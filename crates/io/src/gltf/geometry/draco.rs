@@ -18,7 +18,7 @@ use crate::gltf::geometry::primitive::{Mode, Primitive};
 
 pub(crate) const EXTENSION: &str = "KHR_draco_mesh_compression";
 
-/// Where a primitive says how it is compressed.
+/// The place of a primitive's compression.
 pub(crate) fn extension_of(document: &Document, primitive: &Primitive) -> Option<At> {
     document.json.path(primitive.at, &["extensions", EXTENSION])
 }
@@ -120,10 +120,10 @@ pub(crate) fn decode(document: &mut Document, meshes: &[Vec<Primitive>], cancel:
 /// An accessor and its bytes.
 type FilledBytes = (usize, Vec<u8>);
 
-/// A primitive's accessors with their bytes, or what is wrong.
+/// A primitive's accessors with their bytes, or the fault.
 type DecodedPrimitive = Result<Vec<FilledBytes>, String>;
 
-/// What a primitive's compressed data holds, if that is no more than `budget` bytes.
+/// The contents of a primitive's compressed data, if they take no more than `budget` bytes.
 fn decoded_mesh(document: &Document, extension: At, budget: usize) -> Result<Mesh, String> {
     let view = document.index(extension, "bufferView", document.views.len(), || {
         "its Draco data".to_owned()
@@ -143,8 +143,8 @@ fn decoded_mesh(document: &Document, extension: At, budget: usize) -> Result<Mes
     Ok(mesh)
 }
 
-/// The bytes of each accessor that is `wanted`, elements tightly packed in the accessor's own type, as long as there is
-/// room `left` for them.
+/// The bytes of each accessor that is `wanted`, elements tightly packed in the accessor's own type, while there is room
+/// `left` for them.
 fn bytes_of_accessors(
     document: &Document,
     primitive: &Primitive,

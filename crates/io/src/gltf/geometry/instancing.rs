@@ -1,4 +1,4 @@
-//! `EXT_mesh_gpu_instancing`: a node that shows its mesh many times, each copy by a transform of its own.
+//! `EXT_mesh_gpu_instancing`: a node that shows its mesh many times, each copy by its own transform.
 
 use glam::{DAffine3, DQuat, DVec3};
 
@@ -7,7 +7,7 @@ use crate::gltf::document::json::At;
 
 pub(crate) const EXTENSION: &str = "EXT_mesh_gpu_instancing";
 
-/// Where a copy is, as seen from its node.
+/// The place of a copy relative to its node.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct CopyPlace {
     pub translation: DVec3,
@@ -28,7 +28,7 @@ impl CopyPlace {
     }
 }
 
-/// The copies of its mesh that a node shows; `None` where it shows the mesh once, without the extension.
+/// The copies of its mesh that a node shows; `None` if it shows the mesh once, without the extension.
 ///
 /// # Errors
 /// Attributes that can't be read, as the end of a sentence.

@@ -1,7 +1,7 @@
 //! Buffer views under `EXT_meshopt_compression` or `KHR_meshopt_compression`, decoded into buffers of their own.
 //!
-//! The views then point there, so that accessors are read as from any other buffer. The file's own bytes stay as they
-//! are: an edited accessor is saved as a new one, and the others stay compressed.
+//! The views then point there, so that accessors are read as from any other buffer. The file's own bytes do not change:
+//! an edited accessor is saved as a new one, and the others stay compressed.
 
 use meshoptimizer_rs::Workspace;
 use meshoptimizer_rs::codec::{
@@ -17,7 +17,7 @@ use crate::quote::quoted;
 
 const EXTENSIONS: [&str; 2] = ["KHR_meshopt_compression", "EXT_meshopt_compression"];
 
-/// A view's compressed bytes and how they are to be decoded.
+/// A view's compressed bytes and their decoding.
 struct Compressed<'a> {
     source: &'a [u8],
     mode: Mode,
@@ -25,11 +25,11 @@ struct Compressed<'a> {
     filter: Option<Filter>,
     count: usize,
     stride: usize,
-    /// What it becomes.
+    /// The decoded data.
     length: usize,
 }
 
-/// Where a buffer view says how it is compressed.
+/// The place of a buffer view's compression.
 pub(crate) fn extension_of(document: &Document, view: At) -> Option<At> {
     let json = &document.json;
     EXTENSIONS
@@ -38,7 +38,7 @@ pub(crate) fn extension_of(document: &Document, view: At) -> Option<At> {
 }
 
 /// Decodes every compressed view. One that can't be decoded keeps its place in its fallback buffer; if that has no
-/// bytes either, it is noted as undecoded with what is wrong.
+/// bytes either, it is noted as undecoded with its fault.
 pub(crate) fn decode(document: &mut Document, cancel: &Cancel) -> Result<(), Cancelled> {
     let views: Vec<(usize, At)> = document
         .views_at
@@ -123,7 +123,7 @@ impl<'a> Compressed<'a> {
         })
     }
 
-    /// Either version of the codec, whichever extension it is under.
+    /// Either version of the codec, under either extension.
     fn decoded(&self) -> Result<Vec<u8>, String> {
         let Self {
             source, count, stride, ..

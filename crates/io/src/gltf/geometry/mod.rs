@@ -1,13 +1,13 @@
 //! The drawn set of a glTF: every vertex of the default scene's triangles, lines and points, seen through its node.
 //!
 //! **Numbering.** File vertices are the elements of POSITION accessors. Accessors come in the order in which the
-//! file's primitives first name them: meshes in the file's order, a mesh's primitives in theirs, whether drawn or not
-//! and whatever their mode; one that several primitives name is counted once.
+//! file's primitives first name them: meshes in the file's order, a mesh's primitives in theirs, drawn or not, in any
+//! mode; one that several primitives name is counted once.
 //!
-//! Drawn vertices come node by node (depth first), copy by copy where a node shows several, primitive by primitive: those of triangles, then those of lines and
-//! points. Primitives of one mesh that name the same accessors share their drawn vertices, so that a mesh cut into a
-//! hundred materials is not multiplied by a hundred. Lines and points share those of any primitive with the same
-//! positions.
+//! Drawn vertices come node by node (depth first), copy by copy if a node shows several, primitive by primitive: those
+//! of triangles, then those of lines and points. Primitives of one mesh that name the same accessors share their drawn
+//! vertices, so that a mesh cut into a hundred materials is not multiplied by a hundred. Lines and points share those
+//! of any primitive with the same positions.
 
 pub(crate) mod draco;
 pub(crate) mod instancing;
@@ -42,7 +42,7 @@ use crate::source::notes::Notes;
 #[derive(Clone, PartialEq, Debug)]
 pub(crate) struct Instance {
     pub node: usize,
-    /// Which of its node's copies it is; 0 where there is one.
+    /// The number of its node's copy; 0 if there is one.
     pub copy: usize,
     pub mesh: usize,
     pub pose: Pose,
@@ -63,17 +63,17 @@ pub(crate) struct Piece {
     pub triangles: Range<u32>,
 }
 
-/// How the drawn set is made up.
+/// The composition of the drawn set.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub(crate) struct Pieces {
     pub instances: Vec<Instance>,
     pub pieces: Vec<Piece>,
 }
 
-/// What a piece takes besides its triangles: its own description, a group's and an object's.
+/// The memory of a piece besides its triangles: its own description, a group's and an object's.
 const PIECE_BYTES: usize = 256;
 
-/// Vertices that a thread handles at a time.
+/// The number of vertices for one task.
 const CHUNK: usize = 1 << 14;
 
 /// Reads the drawn set.
@@ -123,7 +123,7 @@ pub(crate) fn drawn(
             let here = || format!("mesh {} primitive {number}", place.mesh);
             match primitive.check_decoded(document) {
                 Err(what) if mode.makes_triangles() => return Err(format!("{} {what}", here()).into()),
-                // Lines and points that can't be read are kept and left alone.
+                // Lines and points that can't be read are kept and not drawn.
                 Err(_) => continue,
                 Ok(()) => {}
             }
@@ -151,14 +151,14 @@ pub(crate) fn drawn(
     Ok((gathering.drawn, gathering.pieces))
 }
 
-/// The drawn set while it is read.
+/// The drawn set during reading.
 struct Gathering<'a> {
     document: &'a Document,
     cancel: &'a Cancel,
     drawn: Drawn,
     pieces: Pieces,
     notes: &'a mut Notes,
-    /// The bytes that may still be spent.
+    /// The rest of the budget in bytes.
     budget: usize,
 }
 
@@ -217,7 +217,7 @@ impl Gathering<'_> {
         Ok(self.pieces.instances.len() - 1)
     }
 
-    /// Where the skin or the node puts the primitive's vertices. A skin that can't be read is noted.
+    /// The transforms of the primitive's vertices by its skin or node. A skin that can't be read is noted.
     fn pose(&mut self, place: &Placed, primitive: &Primitive, count: usize) -> Result<Pose, Fault> {
         let by_node = Pose::Node(place.world_from_node);
         let Some(skin) = &place.skin else {
@@ -292,7 +292,7 @@ impl Gathering<'_> {
     }
 }
 
-/// The first file vertex of each accessor that is a POSITION, and how many file vertices there are.
+/// The first file vertex of each accessor that is a POSITION, and the number of file vertices.
 fn number_file_vertices(document: &Document, meshes: &[Vec<Primitive>]) -> Result<(Vec<Option<u32>>, usize), Fault> {
     let mut first = vec![None; document.accessors.len()];
     let mut count = 0_u64;
@@ -393,14 +393,14 @@ enum Corners {
     Counted(u32),
 }
 
-/// Which way round a triangle is taken.
+/// The winding of a triangle.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Winding {
     AsStored,
     Flipped,
 }
 
-/// How many corners a primitive has, without reading them.
+/// The number of a primitive's corners, without reading them.
 fn corner_count(document: &Document, primitive: &Primitive, vertex_count: usize) -> Result<usize, String> {
     let Some(accessor) = primitive.indices else {
         return Ok(vertex_count);
@@ -408,7 +408,7 @@ fn corner_count(document: &Document, primitive: &Primitive, vertex_count: usize)
     Ok(document.layout(accessor)?.count)
 }
 
-/// At most how many triangles so many corners make.
+/// The largest number of triangles for so many corners.
 fn triangle_count(mode: Mode, corner_count: usize) -> usize {
     if mode == Mode::Triangles {
         corner_count / 3
@@ -446,7 +446,7 @@ impl Corners {
         }
     }
 
-    /// Appends the lines over drawn vertices that begin at `first`; points make none, nor do two equal corners.
+    /// Appends the lines over drawn vertices that begin at `first`; points and pairs of equal corners make none.
     fn lines(&self, mode: Mode, first: u32, out: &mut Vec<[DrawnVertex; 2]>) {
         let corner = |k: usize| match self {
             Self::Listed(indices) => indices[k],

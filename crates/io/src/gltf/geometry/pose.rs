@@ -1,13 +1,13 @@
-//! How the vertices of an instance get from the mesh's own space into the world.
+//! The transforms of an instance's vertices from the mesh's own space into the world.
 
 use glam::{DAffine3, DMat3};
 
 /// The transforms of an instance's vertices.
 #[derive(Clone, PartialEq, Debug)]
 pub(crate) enum Pose {
-    /// All of them by their node.
+    /// One by their node.
     Node(DAffine3),
-    /// Each by its own; glTF ignores the node's.
+    /// One for each vertex; glTF ignores the node's.
     Skin(SkinPose),
 }
 
@@ -41,7 +41,7 @@ pub(crate) struct Linear {
 }
 
 impl Pose {
-    /// The different transforms: a node's one, or each element's.
+    /// The different transforms: a node's single one, or each element's.
     pub fn transforms(&self) -> &[DAffine3] {
         match self {
             Self::Node(world_from_node) => std::slice::from_ref(world_from_node),
@@ -57,7 +57,7 @@ impl Pose {
         }
     }
 
-    /// The linear part of each element's transform; `None` where that can't be undone.
+    /// The linear part of each element's transform; `None` if it has no inverse.
     pub fn linear(&self) -> impl Fn(usize) -> Option<Linear> + '_ {
         let of = |transform: &DAffine3| {
             is_invertible(transform).then(|| Linear {
@@ -65,7 +65,7 @@ impl Pose {
                 mesh_from_world: transform.matrix3.inverse(),
             })
         };
-        // A node's is computed once.
+        // A node's transform is computed once.
         let of_node = match self {
             Self::Node(world_from_node) => of(world_from_node),
             Self::Skin(_) => None,
@@ -76,8 +76,8 @@ impl Pose {
         }
     }
 
-    /// Whether the triangles are seen wound the other way than they are stored: of a skin, whether more of its vertices
-    /// are mirrored than not.
+    /// Whether the triangles appear with the opposite winding to the stored one: for a skin, whether more of its
+    /// vertices are mirrored than not.
     pub fn is_mirrored(&self) -> bool {
         match self {
             Self::Node(world_from_node) => world_from_node.matrix3.determinant() < 0.0,
@@ -85,7 +85,7 @@ impl Pose {
         }
     }
 
-    /// The transform that undoes each element's.
+    /// The inverse transform for each element.
     pub fn inverse(&self) -> impl Fn(usize) -> DAffine3 + '_ {
         let of_node = match self {
             Self::Node(world_from_node) => world_from_node.inverse(),
@@ -97,7 +97,7 @@ impl Pose {
         }
     }
 
-    /// How many vertices a skin flattens, so that a move of them can't be undone.
+    /// The number of vertices that a skin flattens, whose moves can't be undone.
     pub fn flattened_count(&self) -> usize {
         match self {
             Self::Node(_) => 0,
@@ -113,7 +113,7 @@ impl Pose {
 /// A determinant below this share of the product of the axes' lengths is a transform that flattens to a plane or less.
 const FLAT: f64 = 1e-12;
 
-/// Whether a transform can be undone.
+/// Whether a transform has an inverse.
 pub(crate) fn is_invertible(transform: &DAffine3) -> bool {
     let DMat3 { x_axis, y_axis, z_axis } = transform.matrix3;
     let volume = x_axis.length() * y_axis.length() * z_axis.length();

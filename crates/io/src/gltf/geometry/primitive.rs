@@ -9,7 +9,7 @@ use crate::gltf::document::Document;
 use crate::gltf::document::fault::Fault;
 use crate::gltf::document::json::At;
 
-/// How a primitive's corners make shapes.
+/// The shapes that a primitive's corners make.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Mode {
     Points,
@@ -39,20 +39,20 @@ pub(crate) struct Primitive {
     pub tangent: Option<usize>,
     /// The first vertex colour.
     pub colour: Option<usize>,
-    /// The texture coordinates that the material's base colour image takes.
+    /// The texture coordinates of the material's base colour image.
     pub uv: Option<usize>,
-    /// How they are transformed on the way.
+    /// The transform of these on the way.
     pub uv_transform: UvTransform,
-    /// The second set of texture coordinates that the material's other images take.
+    /// The second set of texture coordinates, for the material's other images.
     pub second_uv: Option<usize>,
     pub indices: Option<usize>,
     pub material: Option<usize>,
     pub targets: Vec<Target>,
-    /// The accessors of joints and of their weights, set by set; empty where it isn't bound to joints.
+    /// The accessors of joints and of their weights, set by set; empty for a primitive that isn't bound to joints.
     pub influences: Vec<(usize, usize)>,
 }
 
-/// A morph target: the ways of the base's numbers.
+/// A morph target: displacements of the base's numbers.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub(crate) struct Target {
     pub position: Option<usize>,
@@ -154,13 +154,14 @@ impl Primitive {
         })
     }
 
-    /// Whether its vertices are where the other's are, whatever the weights of morph targets and the skin's pose.
+    /// Whether its vertices are in the same places as the other's, for any weights of morph targets and any pose of the
+    /// skin.
     pub fn moves_as(&self, other: &Self) -> bool {
         let is_bound_alike = self.influences == other.influences;
         self.position == other.position && self.targets == other.targets && is_bound_alike
     }
 
-    /// Everything that a primitive's drawn vertices are made of: equal for two whose drawn vertices are the same.
+    /// All inputs of a primitive's drawn vertices: equal for two whose drawn vertices are the same.
     fn attributes(&self) -> Attributes<'_> {
         let accessors = [
             self.position,

@@ -1,8 +1,8 @@
-//! How far a primitive's positions are from those that were rounded to them: integers, the grid of `Draco`, or single
-//! precision.
+//! The distance between a primitive's positions and those before rounding: to integers, to the grid of `Draco`, or to
+//! single precision.
 //!
-//! Draco does not hand on the grid that it decodes from. Its origin is the least coordinate of each axis and its width
-//! the largest extent, cut into 2^bits − 1 steps, so the fewest bits whose grid holds all coordinates are found here.
+//! Draco does not hand on its grid. The grid's origin is the least coordinate of each axis and its width the largest
+//! extent, cut into 2^bits − 1 steps, so the fewest bits whose grid holds all coordinates are found here.
 
 use ::gltf::json::accessor::ComponentType;
 use glam::{DAffine3, DMat3, DVec3, Vec3};
@@ -13,14 +13,14 @@ use crate::gltf::document::layout::Layout;
 /// Draco's largest number of bits.
 const MOST_BITS: u32 = 30;
 
-/// Whether positions came out of Draco's data.
+/// Whether positions were decoded from Draco's data.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Coding {
     Plain,
     Draco,
 }
 
-/// The largest distance in world units between a position and the one that was rounded to it.
+/// The largest distance in world units between a position and the one before rounding.
 pub(super) fn distance(layout: &Layout, coding: Coding, positions: &[[f32; 3]], pose: &Pose) -> f64 {
     let step = match layout.component {
         ComponentType::F32 if coding == Coding::Draco => {
@@ -37,7 +37,7 @@ pub(super) fn distance(layout: &Layout, coding: Coding, positions: &[[f32; 3]], 
     0.5 * step * transforms.iter().map(corner_distance).fold(0.0, f64::max)
 }
 
-/// How far a transform moves a corner of the cube of side 2 from its centre, at most.
+/// The largest distance by which a transform moves a corner of the cube of side 2 from its centre.
 fn corner_distance(transform: &DAffine3) -> f64 {
     let DMat3 { x_axis, y_axis, z_axis } = transform.matrix3;
     let corners = [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)];
@@ -56,7 +56,7 @@ fn step_of_floats(positions: &[[f32; 3]]) -> f64 {
     f64::from(largest) * f64::from(f32::EPSILON)
 }
 
-/// The step of Draco's grid; `None` where no grid holds the positions.
+/// The step of Draco's grid; `None` if the positions are on no such grid.
 fn draco_step(positions: &[[f32; 3]]) -> Option<f64> {
     let all = || positions.iter().map(|p| Vec3::from_array(*p).as_dvec3());
     let (min, max) = all().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(min, max), p| {
@@ -115,7 +115,7 @@ mod tests {
         assert!((of(ComponentType::U8, false, &stretched) - 2.5).abs() < 1e-12);
         let floats = of(ComponentType::F32, false, &identity);
         assert!((floats - half_diagonal * 4.0 * f64::from(f32::EPSILON)).abs() < 1e-12);
-        // In a skin the joint that enlarges most decides.
+        // In a skin the joint with the largest enlargement decides.
         let skin = Pose::Skin(SkinPose::of(vec![DAffine3::IDENTITY, stretched]));
         let by_skin = distance(&layout(ComponentType::U8, false), Coding::Plain, &positions, &skin);
         assert!((by_skin - 2.5).abs() < 1e-12);

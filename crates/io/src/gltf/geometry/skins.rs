@@ -1,7 +1,7 @@
-//! Skins: where joints put the vertices of a mesh, in the pose that the nodes are stored in.
+//! Skins: the places where joints put the vertices of a mesh, in the nodes' stored pose.
 //!
 //! A vertex's transform is Σ wⱼ Jⱼ Bⱼ / Σ wⱼ over its joints: J is the joint's world transform and B its inverse bind
-//! matrix. The node that shows the mesh has no say in it.
+//! matrix. The node that shows the mesh has no influence.
 
 use std::sync::Arc;
 
@@ -12,14 +12,13 @@ use crate::gltf::document::Document;
 use crate::gltf::document::json::At;
 use crate::gltf::geometry::primitive::Primitive;
 
-/// Vertices that a thread handles at a time.
+/// The number of vertices for one task.
 const CHUNK: usize = 1 << 13;
 
-/// A skin in its stored pose: of each joint, the transform of what is bound to it.
+/// A skin in its stored pose: for each joint, the transform of the vertices bound to it.
 pub(crate) type Skin = Arc<Vec<DAffine3>>;
 
-/// The skin that a node's mesh is shown by; `None` where the node names none. `world` has the world transform of each
-/// node.
+/// The skin of a node's mesh; `None` if the node names none. `world` has the world transform of each node.
 ///
 /// # Errors
 /// Why the skin can't be read, as the end of a sentence.
@@ -56,8 +55,8 @@ pub(crate) fn of_node(document: &Document, node: At, world: &[DAffine3]) -> Resu
     Ok(Some(Arc::new(bound.collect())))
 }
 
-/// The transform of each of a primitive's `count` vertices; `None` where the primitive isn't bound to joints. A vertex
-/// without a weight gets a transform that can't be undone: its mesh's origin, as glTF's formula has it.
+/// The transform of each of a primitive's `count` vertices; `None` if the primitive isn't bound to joints. A vertex
+/// without a weight gets a transform without inverse, to its mesh's origin, by glTF's formula.
 ///
 /// # Errors
 /// Joints and weights that can't be read, as the end of a sentence.
@@ -82,7 +81,7 @@ pub(crate) fn transforms(
         let (joints, weights) = (of_joints.floats::<4>(document), of_weights.floats::<4>(document));
         let wrong = joints.par_iter().zip(&weights).find_map_first(|(joints, weights)| {
             let mut pairs = joints.iter().zip(weights);
-            // What has no weight may name anything.
+            // A joint without a weight may be any number.
             pairs.find_map(|(joint, weight)| (*weight != 0.0 && *joint as usize >= skin.len()).then_some(*joint))
         });
         if let Some(joint) = wrong {

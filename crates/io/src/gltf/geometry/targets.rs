@@ -10,7 +10,7 @@ use crate::gltf::document::fault::Fault;
 use crate::gltf::geometry::Pieces;
 use crate::gltf::geometry::primitive::Primitive;
 
-/// The names of all meshes' targets, each once, as the meshes have them.
+/// The names of all meshes' targets, each once, in the meshes' order.
 pub(crate) fn names(document: &Document, meshes: &[Vec<Primitive>]) -> Vec<String> {
     let mut names = Vec::new();
     for mesh in 0..meshes.len() {
@@ -23,8 +23,8 @@ pub(crate) fn names(document: &Document, meshes: &[Vec<Primitive>]) -> Vec<Strin
     names
 }
 
-/// How far each of the drawn vertices is moved when the targets of this name are applied whole, in world space; `None`
-/// if no mesh has such a target.
+/// The displacement of each drawn vertex when the targets of this name are applied fully, in world space; `None` if no
+/// mesh has such a target.
 pub(crate) fn displacements(
     document: &Document,
     meshes: &[Vec<Primitive>],

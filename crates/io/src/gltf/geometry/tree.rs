@@ -17,18 +17,18 @@ use crate::source::notes::Notes;
 #[derive(Clone, PartialEq, Debug)]
 pub(crate) struct Placed {
     pub node: usize,
-    /// Which of the node's copies it is; 0 where there is one.
+    /// The number of the node's copy; 0 if there is one.
     pub copy: usize,
     pub mesh: usize,
-    /// A copy has its own.
+    /// A copy has its own transform.
     pub world_from_node: DAffine3,
-    /// The skin, which places bound vertices in the node's stead.
+    /// The skin, which places bound vertices instead of the node.
     pub skin: Option<Skin>,
 }
 
-/// The default scene's meshes in the order of its nodes, depth first; without a default scene those of all root
-/// nodes. Nodes whose world transform can't be inverted are left out and named in `notes`, but for those whose skin
-/// places their mesh.
+/// The default scene's meshes in the order of its nodes, depth first; without a default scene those of all root nodes.
+/// Nodes whose world transform can't be inverted are left out and named in `notes`, except those whose skin places
+/// their mesh.
 pub(crate) fn placed_meshes(document: &Document, notes: &mut Notes, cancel: &Cancel) -> Result<Vec<Placed>, Fault> {
     let json = &document.json;
     let node_count = document.nodes_at.len();
@@ -104,7 +104,7 @@ pub(crate) fn placed_meshes(document: &Document, notes: &mut Notes, cancel: &Can
     Ok(placed)
 }
 
-/// Tells of the meshes that are not drawn because the default scene does not show them, and of hidden ones that are.
+/// Reports the meshes that are not drawn because the default scene does not show them, and hidden ones that are drawn.
 fn note_unseen(document: &Document, seen: &[bool], notes: &mut Notes) {
     let json = &document.json;
     let has_mesh = |&node: &usize| json.member(document.nodes_at[node], "mesh").is_some();

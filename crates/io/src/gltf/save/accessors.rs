@@ -145,7 +145,7 @@ impl Patch<'_> {
         }
     }
 
-    /// The text of an accessor of its own bytes, put behind a buffer's others, that is `accessor` with the change.
+    /// The text of a copy of `accessor` with the change, its bytes appended to a buffer's others.
     fn new_accessor(
         &mut self,
         accessor: usize,
@@ -190,7 +190,7 @@ impl Patch<'_> {
     }
 }
 
-/// Bounds of elements, number by number; not finite where no element's number is.
+/// Bounds of elements, number by number; not finite if no element's number is.
 pub(crate) struct Bounds {
     pub min: [f32; 4],
     pub max: [f32; 4],
@@ -204,7 +204,7 @@ impl Bounds {
         };
         for element in elements {
             for lane in 0..4 {
-                // `min` and `max` pass over NaN.
+                // `min` and `max` ignore NaN.
                 bounds.min[lane] = bounds.min[lane].min(element[lane]);
                 bounds.max[lane] = bounds.max[lane].max(element[lane]);
             }
@@ -223,7 +223,7 @@ impl Bounds {
 /// An f32 as text that reads back as the same number, both as f32 and as f64: validators do either.
 pub(crate) fn number(value: f32) -> String {
     let value = f64::from(value);
-    // Rust writes no exponent by itself, and a bound may be 1e-38.
+    // Rust writes no exponent by default, and a bound may be 1e-38.
     if value == 0.0 || (1e-5..1e15).contains(&value.abs()) {
         format!("{value}")
     } else {

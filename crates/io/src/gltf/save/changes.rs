@@ -37,7 +37,7 @@ impl Semantic {
         }
     }
 
-    /// Numbers in an element.
+    /// The count of numbers in an element.
     pub const fn lanes(self) -> usize {
         match self {
             Self::Position | Self::Normal => 3,
@@ -55,16 +55,16 @@ impl Semantic {
     }
 }
 
-/// Elements whose stored bits change and what they become, ascending; numbers beyond an attribute's own are 0.
+/// Elements whose stored bits change, and their new values, ascending; numbers beyond an attribute's own are 0.
 pub(crate) type Change = Vec<(u32, [f32; 4])>;
 
-/// What becomes of an instance's attributes.
+/// The changes of an instance's attributes.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub(crate) struct InstanceChange {
     pub position: Change,
     pub normal: Change,
     pub tangent: Change,
-    /// The turn of each element's deltas in morph targets; `None` where these stay.
+    /// The turn of each element's deltas in morph targets; `None` if they stay.
     pub target_turns: Option<Vec<DMat3>>,
 }
 
@@ -82,10 +82,10 @@ impl InstanceChange {
     }
 }
 
-/// Vertices that a thread handles at a time.
+/// The number of vertices for one task.
 const CHUNK: usize = 1 << 13;
 
-/// Vertices between two checks whether the save was cancelled.
+/// The number of vertices between two checks for cancellation.
 const BLOCK: usize = 1 << 17;
 
 /// The changes of every instance, in their order.
@@ -144,7 +144,7 @@ fn instance_change(
         return Ok(InstanceChange::default());
     }
     let primitive = &meshes[instance.mesh][instance.primitive];
-    // What a skin flattens stays as it is: a move can't be brought back through it.
+    // Vertices that a skin flattens do not change: their moves can't be brought back through it.
     let linear = instance.pose.linear();
     let elements: Vec<u32> = elements.into_iter().filter(|&e| linear(e as usize).is_some()).collect();
     let stored = |accessor: Option<usize>| appearance::attribute::<4>(document, instance, accessor);
@@ -157,7 +157,7 @@ fn instance_change(
     let [of_positions, of_normals, of_tangents] =
         [(0.0, 0.3), (0.3, 0.6), (0.6, 1.0)].map(|(from, to)| course.part(from, to));
     let position = changed(&elements, &positions, &of_positions, |element, stored| {
-        // The displacement, not the position, is transformed back, so that far from the origin no digits are lost. f32
+        // The displacement, not the position, is transformed back, so that no digits are lost far from the origin. f32
         // begins here.
         let v = vertex(element).index();
         let way = moved.positions[v] - moved.drawn.positions[v];
@@ -216,7 +216,7 @@ fn instance_change(
     })
 }
 
-/// The elements for which `new` gives other bits than the stored ones, which may be none at all.
+/// The elements for which `new` gives other bits than the stored ones, perhaps none.
 fn changed(
     elements: &[u32],
     stored: &[[f32; 4]],
@@ -267,7 +267,8 @@ impl Rest {
                 .zip(b)
                 .all(|(x, y)| x.to_bits() == y.to_bits() || (x - y).abs() <= tolerance)
         };
-        // Both ascend: each step takes the next element of either or both, the other side's being the stored one.
+        // Both are ascending: each step takes the next element of either or both; the other side's value is the stored
+        // one.
         let (mut a, mut b) = (a.iter().peekable(), b.iter().peekable());
         loop {
             let next = |side: Option<&&(u32, [f32; 4])>| side.map_or(u32::MAX, |(element, _)| *element);

@@ -1,9 +1,10 @@
 //! The copy-on-write plan of a save: which meshes are cloned and which accessors are copied, so that unchanged parts
 //! stay shared.
 //!
-//! A mesh that several nodes, or several copies of one node, show is cloned if the edit makes them differ; those that did
-//! not move, or else the first ones, keep the original. What shows it without being drawn did not move. An accessor that several primitives use is copied if they differ; unchanged uses, and
-//! those that are no vertex attributes (morph targets, animations, skins), keep the original.
+//! A mesh that several nodes, or several copies of one node, show is cloned if the edit makes them differ; those that
+//! did not move, or else the first ones, keep the original. A node that shows it without being drawn did not move. An
+//! accessor that several primitives use is copied if they differ; unchanged uses, and those that are not vertex
+//! attributes (morph targets, animations, skins), keep the original.
 
 use std::collections::hash_map::Entry;
 use std::collections::{BTreeMap, HashMap};
@@ -24,17 +25,17 @@ use rayon::prelude::*;
 pub(crate) struct MeshCopy {
     pub mesh: usize,
     pub is_clone: bool,
-    /// Where it is drawn.
+    /// The places where it is drawn.
     pub uses: Vec<MeshUse>,
-    /// The instance that each primitive's attributes come from, where it is drawn.
+    /// The instance with each primitive's attributes, if it is drawn.
     pub instances: Vec<Option<usize>>,
 }
 
-/// A node that shows a mesh, and the number of the copy where it shows several.
+/// A node that shows a mesh, and the number of the copy if it shows several.
 pub(crate) type MeshUse = (usize, usize);
 
 impl MeshCopy {
-    /// Whether it is drawn: the file's own mesh may be left to what is not.
+    /// Whether it is drawn: the file's own mesh may be left to nodes that are not.
     pub fn is_drawn(&self) -> bool {
         !self.uses.is_empty()
     }
@@ -70,7 +71,7 @@ pub(crate) struct AccessorVersion<'a> {
     pub used_by: Vec<AttributeUse>,
 }
 
-/// What becomes of an accessor: the version that it takes itself, then those that need a new accessor.
+/// The versions of an accessor: the one that it takes itself, then those that need a new accessor.
 #[derive(Clone, PartialEq, Debug)]
 pub(crate) struct AccessorPlan<'a> {
     pub in_place: AccessorVersion<'a>,
@@ -83,7 +84,7 @@ static UNCHANGED: Change = Change::new();
 /// hash.
 const MOST_CLASSES_COMPARED: usize = 64;
 
-/// Elements that are hashed at a time.
+/// The number of elements that are hashed at a time.
 const BLOCK: usize = 1 << 13;
 
 /// A number for each instance's changes, by attribute; equal for equal ones.
@@ -91,7 +92,7 @@ pub(crate) fn hashes(changes: &[InstanceChange]) -> Vec<[u64; 3]> {
     let of_block = |block: &[(u32, [f32; 4])]| {
         let mut hasher = DefaultHasher::new();
         for (element, new) in block {
-            // Adding zero makes 0 of -0, which is equal to it.
+            // Adding zero turns -0 into 0, which is equal to it.
             (element, new.map(|number| (number + 0.0).to_bits())).hash(&mut hasher);
         }
         hasher.finish()
@@ -187,17 +188,17 @@ pub(crate) fn plan_meshes(
     Ok(copies)
 }
 
-/// Where a mesh is shown, and the instance of each primitive.
+/// The nodes that show a mesh, and the instance of each primitive.
 type DrawnUse = (MeshUse, Vec<Option<usize>>);
 
-/// By mesh: where it is shown, in the order of drawing, with the instance of each primitive.
+/// For each mesh, the nodes that show it, in drawing order, with the instance of each primitive.
 fn uses(meshes: &[Vec<Primitive>], pieces: &Pieces) -> BTreeMap<usize, Vec<DrawnUse>> {
     let mut uses: BTreeMap<usize, Vec<DrawnUse>> = BTreeMap::new();
     for piece in &pieces.pieces {
         let instance = &pieces.instances[piece.instance];
         let of_mesh = uses.entry(instance.mesh).or_default();
         let place = (instance.node, instance.copy);
-        // Pieces of one node, and of one copy, stand together.
+        // Pieces of one node, and of one copy, are adjacent.
         if of_mesh.last().is_none_or(|(last, _)| *last != place) {
             of_mesh.push((place, vec![None; meshes[instance.mesh].len()]));
         }
@@ -257,7 +258,7 @@ fn versions_of_accessors<'a>(
     course: &Course<'_>,
 ) -> Result<BTreeMap<usize, Vec<AccessorVersion<'a>>>, Cancelled> {
     let mut versions: BTreeMap<usize, Vec<AccessorVersion<'a>>> = BTreeMap::new();
-    // For each accessor and hash, which of the accessor's versions have it.
+    // For each accessor and hash, the accessor's versions with this hash.
     let mut known: HashMap<(usize, u64), Vec<usize>> = HashMap::new();
     for (copy, of_copy) in copies.iter().enumerate() {
         course.reach(0, 1)?;
@@ -320,5 +321,5 @@ fn leaders(primitives: &[Primitive], copy: &MeshCopy) -> HashMap<(usize, usize),
     leaders
 }
 
-/// Stands for the hash of what does not change.
+/// The hash of unchanged data.
 const UNCHANGED_HASH: u64 = 0;

@@ -1,4 +1,4 @@
-//! A patched glTF as files: its container, and the neighbours that have to go with it.
+//! A patched glTF as files: its container, and the neighbours that must go with it.
 
 use std::borrow::Cow;
 use std::collections::BTreeSet;
@@ -12,14 +12,14 @@ use crate::gltf::save::patch::Patched;
 use crate::save::{OutputFile, Placement, Role, Save, Saved, own_stem};
 use crate::{Format, SaveError, quoted};
 
-/// The files of a glTF saved as the kind it was read as.
+/// The files of a glTF saved in the format that it was read in.
 pub(crate) fn in_its_kind(document: &Document, patched: Patched<'_>, save: &Save<'_>) -> Result<Saved, SaveError> {
     let mut edits = Edits::default();
     let is_unchanged = patched.is_unchanged();
     let own_names = own_names(document, save.name);
     let mut gathered = Gathered::of(document);
     let mut warnings = patched.warnings;
-    // The patched text is parsed again only where it differs from the one that was read.
+    // The patched text is parsed again only if it differs from the input.
     let json = match &patched.text {
         Cow::Borrowed(_) => None,
         Cow::Owned(text) => Some(reparsed(text)?),
@@ -46,7 +46,7 @@ pub(crate) fn in_its_kind(document: &Document, patched: Patched<'_>, save: &Save
                     Placement::SameFile if !is_changed => continue,
                     Placement::SameFolder if is_unchanged => continue,
                     Placement::OtherFolder => inside(path)?,
-                    // Files of other names and in other folders may need what is called otherwise.
+                    // Files with other names and in other folders may need neighbours with other names.
                     Placement::SameFile => {
                         let name = inside(path)?;
                         let is_own = is_own_name(&name, save.name);
@@ -93,7 +93,7 @@ pub(crate) fn unpacked(document: &Document, patched: Patched<'_>, save: &Save<'_
     let list = json.member(json.root(), "buffers");
     let buffers_at: Vec<_> = list.into_iter().flat_map(|list| json.elements(list)).collect();
     for (buffer, bytes) in patched.buffers.iter().enumerate() {
-        // What was decoded is no buffer of the file.
+        // Decoded bytes are not a buffer of the file.
         let Some(&at) = buffers_at.get(buffer) else { break };
         let own = match &document.buffers[buffer] {
             Buffer::Data(_) if matches!(bytes, Cow::Borrowed(_)) => continue,
@@ -137,7 +137,7 @@ pub(crate) fn saved(save: &Save<'_>, bytes: Vec<u8>, neighbours: Vec<OutputFile>
     saved
 }
 
-/// A text that patches made, parsed again.
+/// A text after patching, parsed again.
 pub(crate) fn reparsed(text: &[u8]) -> Result<Json, SaveError> {
     Json::parse(text.to_vec()).map_err(|what| SaveError::CannotHold {
         what,
@@ -146,8 +146,8 @@ pub(crate) fn reparsed(text: &[u8]) -> Result<Json, SaveError> {
     })
 }
 
-/// The text in the container of the file that was read, with its BIN chunk taken from `buffers`; `None` if that is too
-/// large for a GLB.
+/// The text in the container of the input file, with its BIN chunk taken from `buffers`; `None` if that is too large
+/// for a GLB.
 fn contained(document: &Document, text: &[u8], buffers: &[Cow<'_, [u8]>]) -> Option<Vec<u8>> {
     let Some(instances) = &document.container else {
         return Some(with_mark(document, text));
@@ -157,7 +157,7 @@ fn contained(document: &Document, text: &[u8], buffers: &[Cow<'_, [u8]>]) -> Opt
         .iter()
         .position(|buffer| matches!(buffer, Buffer::Bin(_)));
     let bin = bin.map(|buffer| &buffers[buffer][..]);
-    // A BIN chunk that no buffer uses stays as it is.
+    // A BIN chunk that no buffer uses does not change.
     let bin = bin.or_else(|| instances.bin.clone().map(|range| &document.file[range]));
     let further = &document.file[instances.further_chunks.clone()];
     let trailing = &document.file[instances.trailing.clone()];
@@ -173,7 +173,7 @@ fn inside(path: &str) -> Result<String, SaveError> {
     uri::inside(path).ok_or_else(|| SaveError::NeighbourOutside { uri: path.to_owned() })
 }
 
-/// Writes a file of its own for each unchanged buffer and image that shared a file with a changed buffer. `uris` are the
+/// Writes a separate file for each unchanged buffer and image that shared a file with a changed buffer. `uris` are the
 /// places of the buffers' and the images' URIs in the text.
 fn separate_shared(
     document: &Document,
@@ -231,7 +231,7 @@ fn bring_images(
     Ok(())
 }
 
-/// Whether a buffer is called as OUT is, but for a number behind the stem and the extension.
+/// Whether a buffer has OUT's name, apart from a number after the stem and the extension.
 fn is_own_name(name: &str, out: &str) -> bool {
     let behind = name.strip_prefix(&own_stem(out));
     let number = behind
@@ -243,8 +243,8 @@ fn is_own_name(name: &str, out: &str) -> bool {
     })
 }
 
-/// A name for each buffer that is OUT's own: its stem, numbered from the second one on, and none that a neighbour of
-/// the file that was read already has.
+/// A name for each buffer that is OUT's own: its stem, numbered from the second one on, and different from all
+/// neighbours of the input file.
 fn own_names(document: &Document, out: &str) -> Vec<String> {
     let stem = own_stem(out);
     let mut taken: BTreeSet<String> = neighbours::paths(document).filter_map(uri::inside).collect();

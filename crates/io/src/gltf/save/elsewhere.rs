@@ -1,7 +1,7 @@
-//! Accessors and meshes that something besides the drawn set reads: an edit copies them instead of writing over them.
+//! Accessors and meshes with readers besides the drawn set: an edit copies them instead of writing over them.
 //!
-//! Whatever an extension may read counts: of extensions that aren't known to name none of these, every whole number may
-//! be an accessor or a buffer view, and every one behind a key that speaks of meshes a mesh.
+//! Everything that an extension may read counts: unless an extension is known to name none of these, every whole number
+//! in it may be an accessor or a buffer view, and every one under a key about meshes may be a mesh.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -13,7 +13,7 @@ use crate::gltf::geometry::Pieces;
 use crate::gltf::geometry::primitive::Primitive;
 use crate::gltf::save::changes::Semantic;
 
-/// Extensions that name neither accessors nor buffer views with plain bytes, nor meshes that an edit has to leave.
+/// Extensions that name neither accessors nor buffer views with plain bytes, nor meshes that an edit must not change.
 const HARMLESS: [&str; 19] = [
     "EXT_instance_features",
     "EXT_lights_ies",
@@ -56,7 +56,7 @@ impl Named {
     fn of(document: &Document) -> Self {
         let json = &document.json;
         let mut named = Self::default();
-        // Each value with whether an extension that may name something holds it, and whether its key speaks of meshes.
+        // Each value, with whether it is in an extension that may name something, and whether its key is about meshes.
         let mut open: Vec<(At, bool, bool)> = vec![(json.root(), false, false)];
         while let Some((at, is_foreign, is_mesh)) = open.pop() {
             if is_foreign && let Some(number) = whole_number(json.raw(at)) {
@@ -69,7 +69,7 @@ impl Named {
             for (key, value) in json.members(at) {
                 let key = json.string(key).unwrap_or_default();
                 match key.as_str() {
-                    // Nothing but the program that wrote them knows them, and a number there is any number.
+                    // Only the program that wrote them knows them, and a number there may mean anything.
                     "extras" => {}
                     "extensions" => {
                         let each = json.members(value);
@@ -89,13 +89,13 @@ fn is_harmless(document: &Document, name: At) -> bool {
     HARMLESS.contains(&&*name) || HARMLESS_FAMILIES.iter().any(|family| name.starts_with(family))
 }
 
-/// A number that is written as an index is.
+/// A number in the notation of an index.
 fn whole_number(text: &[u8]) -> Option<usize> {
     let is_whole = !text.is_empty() && text.iter().all(u8::is_ascii_digit);
     is_whole.then(|| std::str::from_utf8(text).ok()?.parse().ok()).flatten()
 }
 
-/// The meshes that something shows or reads which is not drawn: nodes of other scenes or of none, and extensions.
+/// The meshes that are shown or read without being drawn: by nodes of other scenes or of none, and by extensions.
 pub(crate) fn meshes(document: &Document, pieces: &Pieces) -> BTreeSet<usize> {
     let json = &document.json;
     let drawn: BTreeSet<usize> = pieces.instances.iter().map(|instance| instance.node).collect();
@@ -110,7 +110,7 @@ pub(crate) fn meshes(document: &Document, pieces: &Pieces) -> BTreeSet<usize> {
     meshes
 }
 
-/// Accessors that something else than a primitive's POSITION, NORMAL or TANGENT reads.
+/// Accessors with readers other than a primitive's POSITION, NORMAL or TANGENT.
 pub(crate) fn accessors(document: &Document, meshes: &[Vec<Primitive>]) -> BTreeSet<usize> {
     let json = &document.json;
     let section = |key: &str| {

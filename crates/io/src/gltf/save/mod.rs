@@ -1,4 +1,4 @@
-//! Saving a glTF: what moved becomes changes, the changes become a patch, and the patch is delivered as files.
+//! Saving a glTF: moved vertices become changes, the changes become a patch, and the patch is delivered as files.
 
 mod accessors;
 mod changes;
@@ -84,7 +84,7 @@ impl Stored {
         let document = &self.document;
         match (self.format, save.format) {
             (Format::Glb, Format::Gltf) => deliver::unpacked(document, patched, save),
-            // A GLB that is called .gltf goes through `in_its_kind`, which keeps its container.
+            // A GLB with the name .gltf goes through `in_its_kind`, which keeps its container.
             (Format::Gltf, Format::Glb) if document.container.is_none() => pack::packed(document, patched, save),
             _ => deliver::in_its_kind(document, patched, save),
         }

@@ -1,4 +1,4 @@
-//! An edit saved as one more morph target: the shape stays as it is, and each primitive of the edited meshes gets the
+//! An edit saved as one more morph target: the shape does not change, and each primitive of the edited meshes gets the
 //! displacements to the edited shape.
 //!
 //! Everything with one weight per target gets one more: the mesh's weights and names, the weights of its nodes, and
@@ -70,11 +70,11 @@ struct TargetMaker<'a, 'b> {
     changes: &'b [InstanceChange],
     target: &'b MorphTarget<'b>,
     format: Format,
-    /// The accessor of an instance's way, by attribute.
+    /// The accessor of an instance's displacements, by attribute.
     deltas: BTreeMap<(usize, usize), usize>,
     /// The accessor of this many zeros, by whether they are positions.
     zeros: BTreeMap<(usize, bool), usize>,
-    /// Samplers to be added to each animation, and where.
+    /// The samplers to add to each animation, and their places.
     samplers: BTreeMap<usize, (At, Vec<String>)>,
     animated: Animated,
 }
@@ -218,7 +218,7 @@ impl TargetMaker<'_, '_> {
         Ok(())
     }
 
-    /// A sampler whose output has one more weight in each key; `None` where it does not have `known` of them.
+    /// A sampler whose output has one more weight in each key; `None` if it does not have `known` of them.
     fn widened(&mut self, sampler: At, known: usize) -> Option<String> {
         let document = self.patch.document;
         let json = &document.json;
@@ -234,7 +234,7 @@ impl TargetMaker<'_, '_> {
         let weights = output.floats::<1>(document);
         let mut bytes = Vec::with_capacity(4 * rows * (known + 1));
         for (row, weights) in weights.chunks(known).enumerate() {
-            // A cubic key is its way in, its value and its way out.
+            // A cubic key has its in-tangent, its value and its out-tangent.
             let is_value = !is_cubic || row % 3 == 1;
             let added = if is_value { self.target.weight as f32 } else { 0.0 };
             let all = weights.iter().map(|[weight]| *weight).chain([added]);
@@ -252,12 +252,12 @@ impl TargetMaker<'_, '_> {
     }
 }
 
-/// What becomes of a list of weights that is not there.
+/// The treatment of a missing list of weights.
 #[derive(Clone, Copy, PartialEq)]
 enum Missing {
-    /// It is written, zeros for the targets there were.
+    /// It is written, with zeros for the earlier targets.
     Write,
-    /// It is left out: the mesh's own holds.
+    /// It is left out: the mesh's own applies.
     Leave,
 }
 
@@ -304,7 +304,7 @@ fn append_weight(document: &Document, edits: &mut Edits, object: At, known: usiz
     }
 }
 
-/// Adds the target's name to those of the mesh, where exporters keep them; whether there was a place for it.
+/// Adds the target's name to those of the mesh, where exporters keep them; returns whether there was a place for it.
 fn append_name(document: &Document, edits: &mut Edits, mesh: At, known: usize, name: &str) -> bool {
     let json = &document.json;
     let quoted = |name: &str| serde_json::Value::from(name).to_string();
@@ -346,12 +346,12 @@ fn nodes_of_copies(document: &Document, copies: &[MeshCopy]) -> Vec<Vec<usize>> 
     nodes
 }
 
-/// What animates weights, found once for all meshes.
+/// The animations of weights, found once for all meshes.
 struct Animated {
     /// The samplers of each animation.
     samplers: Vec<Samplers>,
     weights_of_node: HashMap<usize, Vec<Channel>>,
-    /// What `KHR_animation_pointer` points at, and by which animation.
+    /// The targets of `KHR_animation_pointer`, and their animations.
     pointers: HashMap<String, usize>,
 }
 
@@ -360,7 +360,7 @@ struct Samplers {
     elements: Vec<At>,
 }
 
-/// A channel of an animation, by its number in it, and where it names its sampler.
+/// A channel of an animation, by its number in it, and the place of its sampler's number.
 #[derive(Clone, Copy)]
 struct Channel {
     animation: usize,

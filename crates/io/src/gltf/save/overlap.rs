@@ -1,8 +1,8 @@
-//! Which accessors overlap in bytes, so that writing over one would change another.
+//! Accessors that overlap in bytes, so that writing over one would change another.
 //!
 //! A file has many accessors, and any two may overlap: comparing all pairs is quadratic. Here they are sorted by their
-//! beginnings, and only a limited number of those that may reach into an accessor are compared. Beyond that an accessor
-//! counts as overlapped: an edit then gives it bytes of its own, which is always right.
+//! starts, and only a limited number of those that may extend into an accessor are compared. Beyond that number an
+//! accessor counts as overlapped: an edit then gives it its own bytes, which is always correct.
 
 use std::cell::OnceCell;
 use std::collections::HashMap;
@@ -15,12 +15,12 @@ const MOST_COMPARED: usize = 256;
 
 /// The places of all accessors.
 pub(crate) struct Places {
-    /// The group of each accessor: those of one group stand at the very same places.
+    /// The group of each accessor: accessors of one group are at the very same places.
     group_of: Vec<usize>,
     groups: Vec<Group>,
-    /// Every place with its group, by buffer and then by beginning.
+    /// Every place with its group, by buffer and then by start.
     sorted: Vec<(Strided, usize)>,
-    /// The farthest end of the places of the same buffer up to each.
+    /// For each place, the farthest end of the places of the same buffer up to it.
     reach: Vec<usize>,
 }
 
@@ -75,7 +75,7 @@ impl Places {
         &self.groups[self.group_of[accessor]].places
     }
 
-    /// The accessors that stand exactly where this one does, itself among them, and the number of their group.
+    /// The accessors at exactly the same place, this one included, and the number of their group.
     pub fn twins(&self, accessor: usize) -> (usize, &[usize]) {
         let group = self.group_of[accessor];
         (group, &self.groups[group].accessors)

@@ -16,7 +16,7 @@ use crate::quote::quoted;
 use crate::save::{Save, Saved};
 use crate::{Bytes, SaveError};
 
-/// The GLB of a `.gltf`. Images whose bytes are missing or of no kind that glTF knows keep their address.
+/// The GLB of a `.gltf`. Images whose bytes are missing or of a kind unknown to glTF keep their address.
 pub(crate) fn packed(document: &Document, patched: Patched<'_>, save: &Save<'_>) -> Result<Saved, SaveError> {
     let json = reparsed(&patched.text)?;
     let mut warnings = patched.warnings;
@@ -41,12 +41,12 @@ pub(crate) fn packed(document: &Document, patched: Patched<'_>, save: &Save<'_>)
 #[derive(Default)]
 struct Chunk {
     bytes: Vec<u8>,
-    /// Where bytes that several buffers or images share were packed.
+    /// The packed places of bytes that several buffers or images share.
     start_of: HashMap<(usize, Range<usize>), usize>,
 }
 
 impl Chunk {
-    /// Appends bytes at the next multiple of four and returns where they begin.
+    /// Appends bytes at the next multiple of four and returns their start.
     fn append(&mut self, bytes: &[u8]) -> usize {
         let start = self.bytes.len().next_multiple_of(4);
         self.bytes.resize(start, 0);
@@ -54,7 +54,7 @@ impl Chunk {
         start
     }
 
-    /// Like [`Self::append`], but once only for bytes that are shared.
+    /// Like [`Self::append`], but only once for shared bytes.
     fn append_shared(&mut self, bytes: &Bytes) -> usize {
         if let Some(&start) = self.start_of.get(&bytes.place()) {
             return start;
@@ -65,7 +65,7 @@ impl Chunk {
     }
 }
 
-/// Packs the file's buffers. Returns where each of them goes.
+/// Packs the file's buffers. Returns the destination of each.
 fn pack_buffers(
     document: &Document,
     buffers: &[Cow<'_, [u8]>],
@@ -123,7 +123,7 @@ fn pack_images(
         if let ImageFile::Neighbour { path, .. } = &document.images[number]
             && uri::inside(path).is_none()
         {
-            // A file from a stranger may name anything there, and a private file would be copied as an image.
+            // A file from a stranger may name any file there, and a private file would be copied as an image.
             if !*sound.entry(bytes.place()).or_insert_with(|| decodes(bytes)) {
                 let path = quoted(path);
                 warnings.push(format!("{path} {NO_IMAGE}"));
@@ -160,7 +160,7 @@ fn pack_images(
     views
 }
 
-/// Refuses a buffer outside the file's folder that no accessor reads: a file from a stranger may name anything there,
+/// Refuses a buffer outside the file's folder that no accessor reads: a file from a stranger may name any file there,
 /// and a private file would be copied.
 fn refuse_unused(document: &Document, save: &Save<'_>) -> Result<(), SaveError> {
     let is_outside = |buffer: &Buffer| matches!(buffer, Buffer::Neighbour { path, .. } if uri::inside(path).is_none());
@@ -178,7 +178,8 @@ fn refuse_unused(document: &Document, save: &Save<'_>) -> Result<(), SaveError> 
         _ => None,
     });
     let views: BTreeSet<usize> = views.map(|view| view.value()).chain(images).collect();
-    // The place in the text, because a view that was decoded from compressed bytes refers to another buffer by now.
+    // This is the place in the text, because a view that was decoded from compressed bytes refers to another buffer by
+    // now.
     let mut used: BTreeSet<usize> = BTreeSet::new();
     for &at in views.iter().filter_map(|&view| document.views_at.get(view)) {
         let extensions = json.member(at, "extensions");
@@ -205,12 +206,12 @@ fn refuse_unused(document: &Document, save: &Save<'_>) -> Result<(), SaveError> 
     Ok(())
 }
 
-/// Where a buffer goes.
+/// The destination of a buffer.
 #[derive(Clone, Copy)]
 enum Home {
     /// Into the one buffer, from this byte on.
     Packed(usize),
-    /// It stays a buffer of its own, of this number.
+    /// It stays a separate buffer, with this number.
     Placeholder(usize),
 }
 
@@ -243,7 +244,7 @@ fn move_views(json: &Json, homes: &[Home], edits: &mut Edits) {
     }
 }
 
-/// Leaves one buffer without an address, the first one's other members kept, and behind it the placeholders.
+/// Leaves one buffer without an address, with the first one's other members, and after it the placeholders.
 fn set_buffers(json: &Json, length: usize, placeholders: &[usize], edits: &mut Edits) {
     let Some(list) = json.member(json.root(), "buffers") else {
         if length > 0 {

@@ -14,7 +14,7 @@ use crate::{Format, SaveError};
 pub(crate) struct Patched<'a> {
     /// Without a byte-order mark.
     pub text: Cow<'a, [u8]>,
-    /// By buffer; borrowed where nothing changed.
+    /// By buffer; borrowed if nothing changed.
     pub buffers: Vec<Cow<'a, [u8]>>,
     pub warnings: Vec<String>,
 }
@@ -39,7 +39,7 @@ impl<'a> Patched<'a> {
     }
 }
 
-/// Everything that is being put together.
+/// The parts of the new file.
 pub(crate) struct Patch<'a> {
     pub document: &'a Document,
     pub out: Patched<'a>,
@@ -49,14 +49,14 @@ pub(crate) struct Patch<'a> {
     new_accessors: Vec<String>,
     new_views: Vec<String>,
     pub(super) new_nodes: Vec<String>,
-    /// How many bytes buffers may yet take for themselves.
+    /// The number of bytes that buffers may still take for themselves.
     room: Option<usize>,
-    /// For each group of accessors at one place whether all of them become the same.
+    /// For each group of accessors at one place, whether all of them get the same change.
     pub(super) are_twins_alike: HashMap<usize, bool>,
 }
 
 impl<'a> Patch<'a> {
-    /// Nothing changed yet.
+    /// No change yet.
     pub fn new(document: &'a Document) -> Self {
         Self {
             document,
@@ -77,7 +77,7 @@ impl<'a> Patch<'a> {
         self.document.accessors_at.len() + self.new_accessors.len() - 1
     }
 
-    /// Why an accessor gets no view of its own.
+    /// The reason why an accessor gets no view of its own.
     pub(crate) fn why_no_view(&self, accessor: usize) -> String {
         match self.room {
             None => TOO_MANY_COPIES.to_owned(),
@@ -137,7 +137,7 @@ impl<'a> Patch<'a> {
             .replace(json.span(at), accessor.to_string());
     }
 
-    /// The edits of a mesh's own text, or of the text that its clone gets.
+    /// The edits of a mesh's own text, or of its clone's text.
     pub(crate) fn edits_of_copy(&mut self, copies: &[MeshCopy], number: usize) -> &mut Edits {
         match copies[number].is_clone {
             false => &mut self.edits,
@@ -148,11 +148,11 @@ impl<'a> Patch<'a> {
     /// Adds the clones after the meshes and makes their nodes refer to them.
     ///
     /// # Errors
-    /// Copies of one node that differ, where they can't become nodes.
+    /// Copies of one node that differ and can't become nodes.
     pub(crate) fn clone_meshes(&mut self, copies: &[MeshCopy], format: Format) -> Result<(), SaveError> {
         let json = &self.document.json;
         let mut clones = Vec::new();
-        // By node: the mesh that each of its copies shows.
+        // For each node, the mesh of each of its copies.
         let mut shown: BTreeMap<usize, Vec<(usize, usize)>> = BTreeMap::new();
         for (number, copy) in copies.iter().enumerate() {
             for &(node, copy_of_node) in &copy.uses {
@@ -182,7 +182,7 @@ impl<'a> Patch<'a> {
         Ok(())
     }
 
-    /// The whole, put together.
+    /// The complete new file.
     pub(crate) fn finished(mut self, format: Format) -> Result<Patched<'a>, SaveError> {
         if self.room.is_none() {
             return Err(cannot_hold(TOO_MANY_COPIES.to_owned(), format));
@@ -219,12 +219,12 @@ impl<'a> Patch<'a> {
     }
 }
 
-/// How many bytes a save may make for each that the drawn set may take.
+/// The bytes that a save may make for each byte that the drawn set may take.
 const MOST_SAVED: usize = 4;
 
 const TOO_MANY_COPIES: &str = "an edit that needs more copies of the same bytes than a file of its size justifies";
 
-/// The refusal of `what`, which the file's accessors can't hold.
+/// The refusal of `what`, which does not fit the file's accessors.
 pub(crate) fn cannot_hold(what: String, format: Format) -> SaveError {
     SaveError::CannotHold {
         what,

@@ -1,9 +1,8 @@
 //! Morph targets that turn with the surface.
 //!
-//! A target's deltas are ways from the surface as it was: where that turns far, a smile points through the cheek. So the
-//! deltas of a mesh turn with it if any of them would else be off by more than [`MOST_OFF`] degrees, unless the save asks
-//! otherwise. What is applied by
-//! default stays where it was put: the base takes up the difference.
+//! A target's deltas are displacements from the former surface: where that turns far, a smile points through the cheek.
+//! So the deltas of a mesh turn with it if any of them would otherwise be wrong by more than [`MOST_OFF`] degrees,
+//! unless the save chooses. Targets that are applied by default keep the shape: the base takes up the difference.
 
 use std::collections::BTreeSet;
 
@@ -18,10 +17,10 @@ use crate::save::MorphDeltas;
 use crate::save::frames::Frames;
 use crate::save::moved::Moved;
 
-/// By how many degrees deltas may be off.
+/// The largest error of deltas, in degrees.
 const MOST_OFF: f64 = 30.0;
 
-/// By instance: the turn of each element's deltas, in the mesh's space; `None` where they stay.
+/// For each instance, the turn of each element's deltas, in the mesh's space; `None` if they stay.
 pub(crate) fn turns(
     document: &Document,
     meshes: &[Vec<Primitive>],
@@ -63,7 +62,8 @@ fn turns_of_instance(instance: &Instance, moved: &Moved<'_>, frames: &Frames) ->
         let vertex = DrawnVertex(vertex);
         let gradient = frames.gradient(vertex).filter(|_| moved.moves(vertex))?;
         let linear = linear((vertex.0 - instance.vertices.start) as usize)?;
-        // Turned as it is seen: in the mesh's own space, which a skin or a node may shear, that is no rotation.
+        // The turn as seen in world space: in the mesh's own space, which a skin or a node may shear, it is not a
+        // rotation.
         Some(linear.mesh_from_world * rotation(gradient)? * linear.world_from_mesh)
     };
     let turns = instance.vertices.clone().into_par_iter();
@@ -72,7 +72,8 @@ fn turns_of_instance(instance: &Instance, moved: &Moved<'_>, frames: &Frames) ->
         .collect()
 }
 
-/// The rotation nearest to a gradient (its polar factor, by Newton's iteration); `None` where it mirrors or flattens.
+/// The rotation nearest to a gradient (its polar factor, by Newton's iteration); `None` if the gradient mirrors or
+/// flattens.
 fn rotation(gradient: DMat3) -> Option<DMat3> {
     if gradient.determinant() <= 0.0 {
         return None;
@@ -92,7 +93,7 @@ fn rotation(gradient: DMat3) -> Option<DMat3> {
     rotation.is_finite().then_some(rotation)
 }
 
-/// Whether some delta of the primitive's targets turns too far to stay.
+/// Whether a delta of the primitive's targets turns too far to stay.
 fn are_off(document: &Document, primitive: &Primitive, turns: &[DMat3]) -> bool {
     let least = 1.0 + 2.0 * MOST_OFF.to_radians().cos();
     let is_far = |turn: &DMat3| turn.x_axis.x + turn.y_axis.y + turn.z_axis.z < least;
@@ -108,8 +109,8 @@ fn are_off(document: &Document, primitive: &Primitive, turns: &[DMat3]) -> bool 
         })
 }
 
-/// How far the targets that an instance applies by default, once turned, would move each element: the base goes back by
-/// it.
+/// The distance by which the targets that an instance applies by default, once turned, would move each element: the
+/// base goes back by it.
 pub(crate) fn shifts(document: &Document, primitive: &Primitive, instance: &Instance, turns: &[DMat3]) -> Vec<DVec3> {
     let mut shifts = vec![DVec3::ZERO; turns.len()];
     for &(target, weight) in &instance.weights {

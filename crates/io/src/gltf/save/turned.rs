@@ -1,5 +1,5 @@
-//! Indices of triangles that are turned inside out: over their own bytes where these can hold them, else as a new list
-//! of triangles.
+//! Indices of triangles that are turned inside out: over their own bytes if these can hold them, otherwise as a new
+//! list of triangles.
 
 use std::collections::BTreeSet;
 
@@ -24,7 +24,7 @@ impl Patch<'_> {
         format: Format,
     ) -> Result<(), SaveError> {
         let mut written: BTreeSet<usize> = BTreeSet::new();
-        // What shows a mesh without being drawn is not turned.
+        // A mesh that is shown without being drawn is not turned.
         let is_shared = |mesh: usize| copies[..meshes.len()].get(mesh).is_some_and(|own| !own.is_drawn());
         for (&(mesh, number), triangles) in turned {
             let primitive = &meshes[mesh][number];

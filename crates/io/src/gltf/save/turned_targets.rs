@@ -21,7 +21,7 @@ impl Patch<'_> {
     ) -> Result<(), SaveError> {
         let document = self.document;
         let json = &document.json;
-        // By instance and accessor: the turned one, or `None` where it stays.
+        // For each instance and accessor, the turned one, or `None` if it stays.
         let mut turned: BTreeMap<(usize, usize), Option<usize>> = BTreeMap::new();
         for (number, copy) in copies.iter().enumerate() {
             let primitives = &meshes[copy.mesh];
@@ -54,7 +54,7 @@ impl Patch<'_> {
         Ok(())
     }
 
-    /// An accessor of an accessor's deltas, turned; `None` where none changes.
+    /// An accessor of an accessor's deltas, turned; `None` if none changes.
     fn turned_ways(
         &mut self,
         accessor: usize,

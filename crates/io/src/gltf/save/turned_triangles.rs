@@ -6,11 +6,11 @@ use crate::gltf::geometry::Pieces;
 use crate::save::moved::Moved;
 use crate::save::turned::triangle_wound_back;
 
-/// The triangles of a primitive, some of them wound the other way: elements of its attributes.
+/// The triangles of a primitive, some of them with reversed winding: elements of its attributes.
 pub(crate) type Turned = BTreeMap<(usize, usize), Vec<[u32; 3]>>;
 
-/// By mesh and primitive: the triangles of those of which some are turned. What shows a mesh through several nodes
-/// turns the same triangles in all of them.
+/// For each mesh and primitive with turned triangles, all its triangles. Nodes that show the same mesh turn the same
+/// triangles.
 pub(crate) fn turned(pieces: &Pieces, moved: &Moved<'_>) -> Turned {
     let mut turned = Turned::new();
     if !moved.turns_any() {
@@ -25,7 +25,7 @@ pub(crate) fn turned(pieces: &Pieces, moved: &Moved<'_>) -> Turned {
         }
         let is_mirrored = instance.pose.is_mirrored();
         let stored = triangles.iter().map(|&triangle| {
-            // A mirrored node winds what is stored the other way.
+            // A mirrored node reverses the stored winding.
             let is_as_drawn = is_mirrored == moved.turns(triangle[0]);
             let triangle = if is_as_drawn {
                 triangle

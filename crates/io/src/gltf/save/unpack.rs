@@ -21,7 +21,7 @@ use crate::{Format, SaveError};
 /// The role of an accessor that compressed data fills.
 #[derive(Clone, Copy, PartialEq)]
 enum Filling {
-    /// Numbers of a primitive's corners.
+    /// The numbers of a primitive's corners.
     Corners,
     /// An attribute of vertices.
     Attribute,
@@ -69,7 +69,7 @@ impl Patch<'_> {
             }
         }
         for accessor in plain {
-            // One whose own numbers changed was written anew already.
+            // An accessor whose own numbers changed is already written.
             let is_written = plans
                 .get(&accessor)
                 .is_some_and(|plan| !plan.in_place.change.is_empty());
@@ -87,8 +87,8 @@ impl Patch<'_> {
         Ok(())
     }
 
-    /// Gives an accessor the bytes that it was decoded to, and its min and max what these hold: they may say what was
-    /// compressed.
+    /// Gives an accessor its decoded bytes, and its min and max the bounds of these: the old ones may describe the data
+    /// before compression.
     fn write_out(&mut self, accessor: usize, role: Filling, format: Format) -> Result<(), SaveError> {
         let document = self.document;
         let layout = document.layout(accessor).map_err(|what| cannot_hold(what, format))?;
@@ -121,7 +121,7 @@ impl Patch<'_> {
         Ok(())
     }
 
-    /// Gives an accessor's min and max, where it has them, the least and the most of its numbers as they are stored.
+    /// Gives an accessor's min and max, if it has them, the least and the largest of its stored numbers.
     fn renew_bounds(&mut self, accessor: usize, layout: &Layout) {
         let json = &self.document.json;
         let at = self.document.accessors_at[accessor];
@@ -133,7 +133,7 @@ impl Patch<'_> {
             normalized: false,
             ..layout.clone()
         };
-        // f32 holds whole numbers of 16 bits, and corners that it doesn't hold are read by themselves.
+        // f32 represents whole numbers of 16 bits, and corners that exceed it are read separately.
         let numbers: Vec<[f64; 4]> = match stored.component {
             ComponentType::U32 => {
                 let corners = stored.indices(self.document).unwrap_or_default();

@@ -1,4 +1,4 @@
-//! Copies of a node (`EXT_mesh_gpu_instancing`) that an edit makes differ: each becomes a node of its own below it.
+//! Copies of a node (`EXT_mesh_gpu_instancing`) that differ after an edit: each becomes a node of its own below it.
 
 use glam::DVec3;
 
@@ -8,8 +8,8 @@ use crate::gltf::save::patch::Patch;
 use crate::{Format, SaveError};
 
 impl Patch<'_> {
-    /// Replaces a node's copies by children, which stand before its others so that all are drawn in the same order.
-    /// `meshes` is the mesh that each of the copies shows.
+    /// Replaces a node's copies by children, which come before its others so that all are drawn in the same order.
+    /// `meshes` is the mesh of each copy.
     ///
     /// # Errors
     /// Weights of morph targets on the node, which its children would not follow.

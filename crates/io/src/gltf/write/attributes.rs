@@ -49,7 +49,7 @@ pub(super) fn attributes(
     let position = out.accessor(position);
     course.reach(1, 4)?;
     let mut attributes = json!({ "POSITION": position });
-    // What has no normals is shown flat.
+    // Vertices without normals are shown flat.
     if !is_flat(mesh, vertices) {
         let numbers = each().flat_map(|v| normals[v].to_array());
         let view = out.view(numbers, f32::to_le_bytes, ARRAY_BUFFER);
@@ -64,7 +64,7 @@ pub(super) fn attributes(
     }
     course.reach(3, 4)?;
     if let Some(colours) = &looks.colours {
-        // 8 bits of light lose a quarter of the greys that 8 bits of sRGB have.
+        // Linear light in 8 bits would lose a quarter of the greys of sRGB in 8 bits.
         let view = out.view(each().flat_map(|v| colours[v]), u16::to_le_bytes, ARRAY_BUFFER);
         attributes["COLOR_0"] = out
             .accessor(json!({
@@ -76,7 +76,7 @@ pub(super) fn attributes(
     Ok(attributes)
 }
 
-/// Whether all of these vertices, which are in order, are of flat triangles or of none.
+/// Whether all of these vertices, which are in order, belong to flat triangles, or none does.
 fn is_flat(mesh: &NewMesh<'_>, vertices: &[u32]) -> bool {
     let flat = &mesh.appearance.flat;
     let is_in = |v: u32| {
@@ -94,8 +94,8 @@ fn is_flat(mesh: &NewMesh<'_>, vertices: &[u32]) -> bool {
     vertices.iter().all(|&v| is_in(v) || !is_used[v as usize])
 }
 
-/// Normals of unit length, as glTF requires: the file's own, or, if it has none, the area-weighted mean of the faces
-/// around; vertices of one file vertex share it.
+/// Normals as unit vectors, as glTF requires: the file's own, or else the area-weighted mean of the faces around; the
+/// drawn vertices of one file vertex share it.
 pub(super) fn unit_normals(mesh: &NewMesh<'_>, course: &Course<'_>) -> Result<Vec<Vec3>, Cancelled> {
     let count = mesh.positions.len();
     let (of_faces_around, of_vertices) = course.split(0.6);

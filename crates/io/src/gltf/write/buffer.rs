@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-/// A glTF that is being put together.
+/// A glTF under construction.
 #[derive(Default)]
 pub(super) struct Built {
     pub(super) root: Value,

@@ -13,7 +13,7 @@ use crate::images::decode::mime_type;
 use crate::images::decodes;
 use crate::quote::quoted;
 
-/// Materials, textures, samplers and images, those that are used.
+/// Materials, textures, samplers and images that are used.
 #[derive(Default)]
 pub(super) struct Looks {
     materials: Vec<Value>,
@@ -22,7 +22,7 @@ pub(super) struct Looks {
     textures: Vec<Value>,
     samplers: Vec<Value>,
     images: Vec<Value>,
-    /// The written image of each of the appearance's; `None` where it can't be held.
+    /// The written image of each of the appearance's; `None` if glTF can't hold it.
     image_of: BTreeMap<usize, Option<usize>>,
     /// The written texture of each image and wrapping.
     texture_of: HashMap<(usize, [Wrap; 2]), usize>,
@@ -103,7 +103,7 @@ impl Looks {
             return Some(same);
         }
         if found.origin == Origin::Outside && !decodes(&found.encoded) {
-            // A file from a stranger may name anything there, and a private file would be copied as an image.
+            // A file from a stranger may name any file there, and a private file would be copied as an image.
             out.warnings.push(format!("{name} {NO_IMAGE}"));
             self.image_of.insert(image, None);
             return None;

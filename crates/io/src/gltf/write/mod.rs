@@ -1,8 +1,8 @@
 //! A new glTF from another format: a node and a mesh for each named part, a primitive for each material in it.
 //!
-//! A file of one part keeps the order and number of the drawn vertices. Of several parts, each has the vertices that it
-//! uses, in their order, so that those between two parts occur twice. If the shape is so far from the origin that f32
-//! would round it, its vertices are relative to its centre, and the node has the translation.
+//! A file of one part keeps the order and number of the drawn vertices. If there are several parts, each has the
+//! vertices that it uses, in their order, so that vertices between two parts occur twice. If the shape is so far from
+//! the origin that f32 would round it, its vertices are relative to its centre, and the node has the translation.
 
 mod attributes;
 mod buffer;
@@ -132,7 +132,7 @@ fn about_centre(mesh: &NewMesh<'_>) -> (Vec<Vec3>, DVec3) {
     (mesh.positions.iter().map(relative).collect(), centre)
 }
 
-/// The numbers that vertices have in the part at hand.
+/// The numbers of vertices in the present part.
 struct Numbering {
     /// By the mesh's number; vertices of other parts keep earlier values.
     own: Vec<u32>,

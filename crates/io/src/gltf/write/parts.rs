@@ -1,4 +1,4 @@
-//! Which triangles become a node, and in which order.
+//! The division of triangles into nodes, and their order.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -8,10 +8,10 @@ use pliant_mesh::{Cancelled, DrawnVertex};
 use crate::convert::{NewMesh, Parting};
 use crate::save::course::Course;
 
-/// More parts than this are joined: viewers draw each by itself.
+/// More parts than this are joined: viewers draw each separately.
 const MOST_PARTS: usize = 1024;
 
-/// What becomes a node.
+/// The content of a node.
 pub(super) struct NamedPart<'a> {
     pub(super) name: &'a str,
     /// The numbers of its triangles, by material.
@@ -41,7 +41,7 @@ pub(super) fn order(parts: &[NamedPart<'_>], count: usize) -> Option<Vec<u32>> {
     (!is_old).then(|| written().collect())
 }
 
-/// The parts in the order in which the file first names them, triangles with a vertex that glTF can't hold left out.
+/// The parts in the order in which the file first names them, without triangles with a vertex that glTF can't hold.
 pub(super) fn parts<'a>(
     mesh: &'a NewMesh<'_>,
     positions: &[Vec3],

@@ -6,7 +6,7 @@ use crate::appearance::colour::linear_of_srgb;
 use crate::appearance::{AlphaMode, Material};
 use crate::text::{excerpt, mark_len};
 
-/// Unread statements that are named at most.
+/// The largest number of unread statements that are named.
 const MOST_UNREAD: usize = 12;
 
 /// The materials of a library.

@@ -30,13 +30,13 @@ pub(super) struct Materials {
     pub(super) notes: Notes,
     /// The libraries as read, by their paths.
     pub(super) libraries: Vec<(String, Bytes)>,
-    /// The path that each image was read at.
+    /// The path at which each image was read.
     pub(super) image_paths: Vec<String>,
-    /// The libraries' statements that say something and aren't read: maps other than the base colour's, what shines.
+    /// The libraries' statements with an effect that aren't read: maps other than the base colour's, shine.
     pub(super) unread: BTreeSet<String>,
 }
 
-/// Looks `names` up in the libraries (the rests of the `mtllib` lines; each may name several files).
+/// Looks up `names` in the libraries (the rests of the `mtllib` lines; each may name several files).
 pub(super) fn look_up(source: &Source<'_>, libraries: &[&[u8]], names: &[String]) -> Materials {
     let mut out = Materials::default();
     let mut known: HashMap<String, (tobj::Material, String)> = HashMap::new();
@@ -122,8 +122,8 @@ pub(super) fn look_up(source: &Source<'_>, libraries: &[&[u8]], names: &[String]
 /// The most libraries that are read: more than any real file has.
 const MOST_LIBRARIES: usize = 256;
 
-/// The bytes of libraries, with their paths, of the rest of a `mtllib` line: all of it as one name, or else as several,
-/// each ending at `.mtl` or at a blank.
+/// The bytes of libraries, with their paths, for the rest of a `mtllib` line: all of it as one name, or else as
+/// several, each ending at `.mtl` or at a blank.
 fn read_library(source: &Source<'_>, library: &[u8]) -> Result<Vec<(String, Bytes)>, String> {
     let whole = as_uri(&String::from_utf8_lossy(library));
     let read = |uri: &str| source.resolver.read(uri).map(|text| (uri.to_owned(), text));
@@ -159,7 +159,7 @@ fn names_by_extension(line: &str) -> Vec<String> {
 
 /// Reads an image at its path, or by its bare name beside the file (for paths of another computer).
 ///
-/// `known` says which image each place in memory is, so that one file is one image however its path is spelt.
+/// `known` maps each place in memory to its image, so that one file is one image for every spelling of its path.
 fn read_image(
     source: &Source<'_>,
     uri: &str,

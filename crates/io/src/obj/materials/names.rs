@@ -1,14 +1,14 @@
-//! The names of libraries and textures: behind a statement's options, and as paths.
+//! The names of libraries and textures: after a statement's options, and as paths.
 
 use crate::appearance::Wrap;
 
-/// The file name behind a `map_Kd`'s options, and how it continues beyond its edges.
+/// The file name after a `map_Kd`'s options, and its continuation beyond its edges.
 pub(in crate::obj) fn texture_file(texture: &str) -> (String, Wrap) {
     let (file, wrap) = behind_options(texture);
     (as_uri(file), wrap)
 }
 
-/// As [`texture_file`], the name as it is written.
+/// As [`texture_file`], with the name as written.
 pub(in crate::obj) fn behind_options(texture: &str) -> (&str, Wrap) {
     let mut rest = texture.trim();
     let mut wrap = Wrap::Repeat;

@@ -1,4 +1,4 @@
-//! Which libraries and textures are copied with a saved OBJ file, and which are not.
+//! The libraries and textures that are copied with a saved OBJ file, and those that are not.
 
 use super::Materials;
 use super::library::is_other_map;
@@ -48,7 +48,7 @@ pub(in crate::obj) fn unread_lost(materials: &Materials, kind: &str) -> Option<S
     })
 }
 
-/// Whether a path stays within the folder that it starts from, on every system.
+/// Whether a path stays within its starting folder, on every system.
 fn is_inside(path: &str) -> bool {
     !path.is_empty()
         && !path.contains([':', '\\', '\0'])

@@ -16,7 +16,7 @@ pub(crate) fn corner_list(element: &Element) -> Option<usize> {
     named.or_else(|| (0..element.properties.len()).find(is_list))
 }
 
-/// A corner's number; `None` for what can't be one.
+/// A corner's number; `None` if it can't be one.
 fn corner(value: f64) -> Option<u32> {
     (value >= 0.0 && value < f64::from(u32::MAX) && value.fract() == 0.0).then_some(value as u32)
 }
@@ -27,7 +27,7 @@ pub(super) fn read_faces(
     walk: &mut Walk<'_>,
     records: &mut Records,
 ) -> Result<(), ReadError> {
-    // Most faces are triangles. The count was checked against the bytes that are left.
+    // Most faces are triangles. The count was checked against the remaining bytes.
     records.face_ends.reserve_exact(element.count as usize);
     records
         .corners
@@ -84,9 +84,9 @@ pub(super) fn read_faces(
 /// The texture coordinates of a corner that has none.
 const NO_UV: [f32; 2] = [f32::NAN; 2];
 
-/// The properties of a face that say how it looks.
+/// The properties of a face that affect its appearance.
 struct Beside {
-    /// The list of a corner's u and v after the other.
+    /// The list of the corners' u and v, in turn.
     uvs: Option<usize>,
     /// The number of the texture.
     texture: Option<usize>,
@@ -108,7 +108,8 @@ pub(crate) const UV_LIST: &str = "texcoord";
 /// The name of the number of a face's texture.
 pub(crate) const TEXTURE_NUMBER: &str = "texnumber";
 
-/// Strips: each corner makes a triangle with the two before it, every other one turned; a negative number ends one.
+/// Strips: each corner makes a triangle with the two before it, every other one reversed; a negative number ends a
+/// strip.
 pub(super) fn read_strips(
     source: &Source<'_>,
     element: &Element,
@@ -124,7 +125,7 @@ pub(super) fn read_strips(
                 return true;
             }
             let corner = corner(value);
-            // Repeated corners only carry the strip on.
+            // Repeated corners only continue the strip.
             if let Some(triangle) = corner.and_then(|corner| strip.next(corner)) {
                 corners.extend(triangle);
                 face_ends.push(corners.len() as u32);
@@ -149,7 +150,7 @@ impl<'a> CornerLists<'a> {
     /// Reads every record by `read_one`, which reads one list by [`Self::read`].
     ///
     /// # Errors
-    /// Records that are cut short; the first number that can't be a corner.
+    /// Truncated records; the first number that can't be a corner.
     fn read_all(
         source: &'a Source<'a>,
         element: &'a Element,
@@ -169,7 +170,7 @@ impl<'a> CornerLists<'a> {
         })
     }
 
-    /// Reads one record. `take` gets each number of its list and returns whether that can be one.
+    /// Reads one record. `take` gets each number of its list and returns whether it can be a corner.
     fn read(&mut self, walk: &mut Walk<'_>, take: impl FnMut(f64) -> bool) -> Option<()> {
         self.read_beside(walk, take, |_, _| (), |_, _| ())
     }

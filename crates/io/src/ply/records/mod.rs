@@ -1,4 +1,4 @@
-//! The records behind the header: vertices with what is drawn of them, faces, and strips of triangles.
+//! The records after the header: vertices with the data for drawing them, faces, and strips of triangles.
 
 mod faces;
 mod record;
@@ -16,12 +16,12 @@ use record::pass_over;
 pub(super) use vertices::Columns;
 use vertices::read_vertices;
 
-/// Where the vertices' records are.
+/// The places of the vertices' records.
 #[derive(Clone, Debug)]
 pub(super) enum Places {
-    /// One after the other at the same distance.
+    /// At equal distances.
     Strided { first: usize, stride: usize },
-    /// Each where it begins.
+    /// The start of each.
     Each(Vec<usize>),
 }
 
@@ -34,35 +34,35 @@ impl Places {
     }
 }
 
-/// The records as far as they are drawn or moved.
+/// The parts of the records that are drawn or moved.
 #[derive(Debug)]
 pub(super) struct Records {
-    /// The element that holds the vertices.
+    /// The element with the vertices.
     pub(super) vertex_element: Option<usize>,
     pub(super) columns: Columns,
     pub(super) places: Places,
     pub(super) positions: Vec<DVec3>,
     /// Empty if the vertices have none. f32 is enough for drawing normals, and for rotating them on saving.
     pub(super) normals: Vec<[f32; 3]>,
-    /// From 0 to 1, as stored; empty where the vertices have none.
+    /// From 0 to 1, as stored; empty if the vertices have none.
     pub(super) colours: Vec<[f32; 4]>,
     pub(super) uvs: Vec<[f32; 2]>,
     /// Corners of all faces, then strips' triangles, one after the other.
     pub(super) corners: Vec<u32>,
-    /// Where each face's corners end.
+    /// The end of each face's corners.
     pub(super) face_ends: Vec<u32>,
-    /// The texture coordinates of each of `corners`; empty where no face has some, not a number where one has none.
+    /// The texture coordinates of each of `corners`; empty if no face has any, NaN for a face without.
     pub(super) corner_uvs: Vec<[f32; 2]>,
-    /// The texture of each face; empty where no face says one.
+    /// The texture of each face; empty if no face names one.
     pub(super) textures: Vec<u32>,
-    /// How many faces have fewer than three corners.
+    /// The number of faces with fewer than three corners.
     pub(super) left_out: usize,
 }
 
 /// Reads the records up to the last element that is drawn.
 ///
 /// # Errors
-/// Records that are cut short or aren't numbers, lists with impossible counts, faces that name missing vertices.
+/// Records that are truncated or aren't numbers, lists with impossible counts, faces that name missing vertices.
 pub(super) fn read(source: &Source<'_>, header: &Header) -> Result<Records, ReadError> {
     let mut records = Records {
         vertex_element: None,
@@ -107,9 +107,9 @@ pub(super) fn read(source: &Source<'_>, header: &Header) -> Result<Records, Read
     Ok(records)
 }
 
-/// Refuses a count that the bytes left can't hold, before anything is allocated for it.
+/// Refuses a count that the remaining bytes can't hold, before anything is allocated for it.
 fn check_count(source: &Source<'_>, header: &Header, element: &Element, walk: &Walk<'_>) -> Result<(), ReadError> {
-    // The last number of an ascii file needs no separator behind it.
+    // The last number of an ascii file needs no separator after it.
     let least = element.count.checked_mul(element.least_bytes(header.encoding));
     let fits = least.is_some_and(|least| least <= walk.left() + 1);
     let is_numbered = element.count < u64::from(u32::MAX) || element.properties.is_empty();

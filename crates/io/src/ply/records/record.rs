@@ -53,7 +53,7 @@ pub(super) fn read_record(
     Some(())
 }
 
-/// Reads all records of an element, `visit` before each of them.
+/// Reads all records of an element, calling `visit` before each of them.
 pub(super) fn read_all(
     source: &Source<'_>,
     element: &Element,

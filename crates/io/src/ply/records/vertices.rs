@@ -1,4 +1,4 @@
-//! The vertices' records: which properties are read of them, and what they hold.
+//! The vertices' records: the properties that are read of them, and their values.
 
 use glam::DVec3;
 
@@ -9,7 +9,7 @@ use crate::ply::scalar::{Encoding, Scalar, Walk, decode};
 use crate::source::Source;
 use crate::{Format, ReadError};
 
-/// What is read of a vertex, in the order of [`Columns`].
+/// The data of a vertex, in the order of [`Columns`].
 const COLUMN_NAMES: [&[&str]; 12] = [
     &["x"],
     &["y"],
@@ -25,8 +25,8 @@ const COLUMN_NAMES: [&[&str]; 12] = [
     &["t", "v", "texture_v", "texture_t"],
 ];
 
-/// The property that holds each thing that is read of a vertex, if any: x, y, z, the normal, red, green, blue, alpha,
-/// and the texture coordinates.
+/// The property with each datum of a vertex, if any: x, y, z, the normal, red, green, blue, alpha, and the texture
+/// coordinates.
 pub(in crate::ply) type Columns = [Option<usize>; COLUMN_NAMES.len()];
 
 pub(super) fn read_vertices(
@@ -61,9 +61,9 @@ pub(super) fn read_vertices(
     Ok(())
 }
 
-/// Takes stored colours to the range from 0 to 1. Bytes count to 255 and 16 bits without a sign to 65535. The other types
-/// hold more than any program counts to, so the largest channel tells: floating point counts to 1, whole numbers to 255
-/// and to 65535, whichever is enough. An alpha that is missing is infinite, and becomes 1.
+/// Scales stored colours to the range from 0 to 1. Bytes count to 255 and unsigned 16-bit numbers to 65535. The other
+/// types can hold more than any program's largest value, so the largest channel decides: floating point counts to 1,
+/// whole numbers to 255 or to 65535, whichever is enough. A missing alpha is infinite, and becomes 1.
 fn scale_colours(colours: &mut [[f32; 4]], scalar: Scalar) {
     let largest = colours
         .iter()
@@ -82,10 +82,10 @@ fn scale_colours(colours: &mut [[f32; 4]], scalar: Scalar) {
     }
 }
 
-/// The values of a vertex's columns; the value of a column that the file doesn't have is not read.
+/// The values of a vertex's columns; columns that the file doesn't have are not read.
 type Values = [f64; COLUMN_NAMES.len()];
 
-/// The records that vertices are appended to, and what the file has of each vertex.
+/// The records to which vertices are appended, and the columns that the file has.
 struct Vertices<'a> {
     records: &'a mut Records,
     has_normals: bool,
@@ -100,7 +100,7 @@ impl<'a> Vertices<'a> {
         let columns = records.columns;
         let has = |span: std::ops::Range<usize>| columns[span].iter().all(Option::is_some);
         let (has_normals, has_colours, has_uvs) = (has(3..6), has(6..9), has(10..12));
-        // The count was checked against the bytes that are left.
+        // The count was checked against the remaining bytes.
         let count = element.count as usize;
         records.positions.reserve_exact(count);
         records.normals.reserve_exact(if has_normals { count } else { 0 });
@@ -162,7 +162,7 @@ fn read_strided(
     Ok(Places::Strided { first, stride })
 }
 
-/// Reads records whose lengths differ: text, or records with lists.
+/// Reads records with different lengths: text, or records with lists.
 fn read_each(
     source: &Source<'_>,
     element: &Element,
@@ -191,7 +191,7 @@ fn read_each(
     Ok(Places::Each(starts))
 }
 
-/// Column, offset within a binary record and type of what is read of a vertex.
+/// Column, offset within a binary record and type of each datum of a vertex.
 fn wanted_offsets(element: &Element, columns: &Columns) -> Vec<(usize, usize, Scalar)> {
     let mut wanted = Vec::new();
     let mut offset = 0;

@@ -1,12 +1,13 @@
 //! The joint of a limb: the narrowest ring around the surface between a point and the body.
 //!
-//! Rings are level sets of the distance along the surface from the point ([`rings`]). The first of them that is narrower
-//! than what comes before and after it gives the limb; its farthest point is the tip. Rings around the tip run straight
-//! across the limb, where rings around a point on its side are askew. The narrowest of those gives a plane across the
-//! limb, and the joint is the narrowest ring at an even distance from that plane.
+//! Rings are level sets of the distance along the surface from the point ([`rings`]). The first ring that is narrower
+//! than the rings before and after it gives the limb; its farthest point is the tip. Rings around the tip run straight
+//! across the limb, while rings around a point on its side are askew. The narrowest ring around the tip gives a plane
+//! across the limb, and the joint is the narrowest ring at an even distance from that plane.
 //!
-//! Where a limb is as thick as it is long, no ring around a point on its side closes before it reaches the body. Its tip
-//! is looked for from the other end of the surface instead: the farthest of what lies beyond the point from there.
+//! If a limb is as thick as it is long, no ring around a point on its side closes before it reaches the body. Then the
+//! search for its tip begins at the other end of the surface: the tip is the farthest point beyond the seeds from
+//! there.
 
 mod level_set;
 mod rings;
@@ -20,17 +21,17 @@ use self::rings::{Body, End, Field, Narrowest, Rings, Source};
 use super::DistanceSearch;
 use crate::{Cancel, Cancelled, SurfaceVertex, Topology};
 
-/// The first search goes this share of the component's extent far; only where that is not enough does another go on to the
-/// end.
+/// The first search covers this share of the component's extent; only if that is not enough does another search cover
+/// all of it.
 const FIRST_SHARE: f64 = 0.35;
 
-/// How many radii from a ring the plane is from which a straighter one is looked for.
+/// The distance, in radii, between a ring and the plane from which a straighter ring is searched.
 const SECTION_RADII: f64 = 2.0;
 
-/// At how many distances across the joint's falloff there are rings, the joint's own in the middle.
+/// The number of distances across the joint's falloff at which there are rings, the joint's own in the middle.
 pub const JOINT_RINGS: usize = 7;
 
-/// Where a limb bends, and how far the bend reaches.
+/// The joint of a limb, and the reach of its bend.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Joint {
     /// The middle of the ring, in world space.
@@ -39,24 +40,25 @@ pub struct Joint {
     pub axis: DVec3,
     /// The radius of the circle that is as long as the ring, in world units.
     pub radius: f64,
-    /// How far the bend reaches along the surface to either side of the ring, in world units.
+    /// The reach of the bend along the surface to either side of the ring, in world units.
     pub falloff: f64,
     /// The limb: every vertex of the component on the point's side of the ring, ascending.
     pub limb: Vec<SurfaceVertex>,
-    /// Of those the ones beyond the falloff, ascending; never empty.
+    /// The vertices of the limb beyond the falloff, ascending; never empty.
     pub far_side: Vec<SurfaceVertex>,
-    /// Lines around the limb, in no order, at even distances from `-falloff` (on the limb) to `falloff` along the surface.
+    /// Lines around the limb, in any order, at even distances from `-falloff` (on the limb) to `falloff` along the
+    /// surface.
     pub rings: [Vec<[DVec3; 2]>; JOINT_RINGS],
 }
 
-/// A surface in some shape.
+/// A surface in a given shape.
 #[derive(Clone, Copy, Debug)]
 pub struct Shape<'a> {
     /// Its triangles.
     pub triangles: &'a [[SurfaceVertex; 3]],
-    /// Their neighbourhood.
+    /// Their connectivity.
     pub topology: &'a Topology,
-    /// Where the vertices stand, one a vertex, in world units.
+    /// The positions of the vertices, in world units.
     pub positions: &'a [DVec3],
 }
 
@@ -66,8 +68,8 @@ impl Shape<'_> {
     }
 }
 
-/// The joint between a point in a triangle and the body, which is what holds two fifths of the component's area or more;
-/// `None` where no ring around the point's side is markedly shorter than that of a disc, as on a ball or a sheet.
+/// The joint between a point in a triangle and the body, which has two fifths of the component's area or more; `None`
+/// if no ring around the point's side is clearly shorter than that of a disc, as on a ball or a sheet.
 ///
 /// # Errors
 /// [`Cancelled`] soon after `cancel` is raised.
@@ -97,7 +99,7 @@ pub fn joint_of(shape: &Shape<'_>, triangle: u32, point: DVec3, cancel: &Cancel)
     Ok(straight.unwrap_or(from_tip).joint(&mut search, shape))
 }
 
-/// The farthest of what lies beyond the seeds, seen from the place that is farthest from them: with a seed on a limb, that
+/// The farthest point beyond the seeds, seen from the place that is farthest from them: with a seed on a limb, that
 /// limb's tip.
 fn beyond(search: &mut DistanceSearch, shape: &Shape<'_>, seeds: &[(SurfaceVertex, f64); 3]) -> SurfaceVertex {
     let position = |v: SurfaceVertex| shape.positions[v.index()];
@@ -141,7 +143,7 @@ fn extent(shape: &Shape<'_>, of: SurfaceVertex) -> f64 {
     least.distance(most)
 }
 
-/// A ring, and what it cuts off.
+/// A ring, and the vertices that it cuts off.
 struct Cut {
     centre: DVec3,
     radius: f64,
@@ -152,8 +154,8 @@ struct Cut {
 }
 
 impl Cut {
-    /// The narrowest ring around `seeds` with the triangle of these corners on the limb. What is searched goes `near` far,
-    /// and on to the end if the rings have not widened again by then.
+    /// The narrowest ring around `seeds` with the triangle of these corners on the limb. The search first covers the
+    /// distance `near`, and everything if the rings have not widened again by then.
     fn narrowest(
         search: &mut DistanceSearch,
         shape: &Shape<'_>,
@@ -191,8 +193,8 @@ impl Cut {
         }
     }
 
-    /// The narrowest ring at even distances from a plane across the limb, a few radii away: those are straight where the
-    /// limb is. `None` where there is none with the triangle of these corners on the limb.
+    /// The narrowest ring at even distances from a plane across the limb, a few radii away: those rings are straight if
+    /// the limb is. `None` if there is none with the triangle of these corners on the limb.
     fn straightened(
         &self,
         search: &mut DistanceSearch,
@@ -240,7 +242,7 @@ impl Cut {
         farthest.copied().unwrap_or(self.beside[0].0)
     }
 
-    /// With its falloff; `None` where the limb has no vertex beyond that.
+    /// The joint with its falloff; `None` if the limb has no vertex beyond it.
     fn joint(self, search: &mut DistanceSearch, shape: &Shape<'_>) -> Option<Joint> {
         let tip = shape.positions[self.tip(shape).index()];
         let falloff = self.radius.min(0.5 * tip.distance(self.centre));

@@ -1,8 +1,9 @@
-//! Level sets of a distance field that part the body from the rest.
+//! Level sets of a distance field that separate the body from the rest.
 //!
-//! At a level r the *body* is the connected component of {distance ≥ r} that holds two fifths of the whole area or more;
-//! at a lower level it is the one that holds the body of the higher. So bodies are nested, and the ring of a level, the
-//! boundary of its body, always parts the surface, whatever holes and handles that has. The *limb* is all else.
+//! At a level r the *body* is the connected component of {distance ≥ r} that has two fifths of the whole area or more;
+//! at a lower level it is the one that contains the body of the higher level. So bodies are nested, and the ring of a
+//! level, the boundary of its body, always separates the surface, even one with holes and handles. The *limb* is the
+//! rest.
 
 use std::f64::consts::TAU;
 
@@ -13,31 +14,31 @@ use super::level_set::{Segments, crossing};
 use crate::geodesics::DistanceSearch;
 use crate::{SurfaceVertex, face_area};
 
-/// How many levels there are for the whole way.
+/// The number of levels for the whole distance.
 const LEVELS: u32 = 256;
-/// What the body holds of the area at least.
+/// The body's least share of the area.
 const BODY_SHARE: f64 = 0.4;
-/// A ring counts if it is shorter than this share of the circle of its distance: that is 0.64 for a sphere's equator and
-/// less than 0.32 around a tube that the circle has closed around.
+/// A ring counts if it is shorter than this share of the circle of its distance: the share is 0.64 for a sphere's
+/// equator and less than 0.32 around a tube, once the circle has closed around it.
 const ROUND_SHARE: f64 = 0.5;
-/// Nor does it count if it is this many times longer than the ring at half its distance: that is 2 for a disc and for
-/// the corner of a sheet.
+/// A ring does not count if it is this many times longer than the ring at half its distance: the ratio is 2 for a disc
+/// and for the corner of a sheet.
 const GROWS: f64 = 1.3;
 /// The same around a limb's tip, whose rings run across the limb: those of a thigh are longer than those of a shin.
 const GROWS_FROM_TIP: f64 = 1.7;
-/// A ring is the narrowest of its surroundings when a later one is this much longer.
+/// A ring is the narrowest of its surroundings if a later one is this much longer.
 const WIDENS: f64 = 1.25;
 
-/// Distances from a place over its component.
+/// Distances from a place within its component.
 pub(super) struct Field {
-    /// Per vertex of the surface; infinite beyond the search's limit.
+    /// One for each vertex of the surface; infinite beyond the search's limit.
     distance: Vec<f64>,
     component: u32,
     spacing: f64,
 }
 
 impl Field {
-    /// Measures from the nearest of `seeds`, which lie on one component, up to `limit`.
+    /// Measures from the nearest of `seeds`, which are on one component, up to `limit`.
     pub(super) fn measure(
         search: &mut DistanceSearch,
         shape: &Shape<'_>,
@@ -57,29 +58,29 @@ impl Field {
         }
     }
 
-    /// The distance of a level, between multiples of the spacing so that regular meshes have no vertex on one.
+    /// The distance of a level, between multiples of the spacing so that no vertex of a regular mesh is exactly on it.
     fn at_level(&self, level: usize) -> f64 {
         (level as f64 + 0.5) * self.spacing
     }
 
-    /// How many levels a vertex is beyond.
+    /// The number of levels that a vertex is beyond.
     fn levels_below(&self, v: SurfaceVertex) -> u32 {
         let levels = (self.distance[v.index()] / self.spacing + 0.5).floor();
-        // The cast takes what is infinite to the most, and 0/0 to 0.
+        // The cast turns infinity into the maximum, and 0/0 into 0.
         (levels as u32).min(LEVELS)
     }
 }
 
-/// Which part is the body.
+/// The choice of the body.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum Body {
-    /// The one that holds two fifths of the area or more.
+    /// The component that has two fifths of the area or more.
     Large,
-    /// The one with this vertex.
+    /// The component with this vertex.
     With(SurfaceVertex),
 }
 
-/// What distances are measured from.
+/// The origin of distances.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum Source {
     /// A point, whose rings begin as those of a disc.
@@ -96,7 +97,7 @@ pub(super) struct Narrowest {
     pub(super) end: End,
 }
 
-/// What comes behind the narrowest ring.
+/// The rings after the narrowest one.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum End {
     /// Wider ones.
@@ -105,11 +106,11 @@ pub(super) enum End {
     Open,
 }
 
-/// What each level cuts off.
+/// The vertices that each level cuts off.
 pub(super) struct Rings {
-    /// At how many levels, from the lowest on, each vertex belongs to the body.
+    /// The number of levels, from the lowest on, at which each vertex belongs to the body.
     in_body: Vec<u32>,
-    /// The ring's length by level, smoothed over three.
+    /// The ring's length for each level, smoothed over three.
     lengths: Vec<f64>,
     radii: Vec<f64>,
     vertices: Vec<SurfaceVertex>,
@@ -129,7 +130,7 @@ impl Rings {
             spread(shape, &levels, seed, highest, &mut in_body);
         }
         let mut raw = vec![0.0; LEVELS as usize];
-        // From here on the search's limit cuts rings off.
+        // The search's limit cuts off rings from here on.
         let mut complete = LEVELS;
         for &triangle in shape.triangles {
             let beyond = triangle.map(|v| in_body[v.index()]);
@@ -164,8 +165,8 @@ impl Rings {
         }
     }
 
-    /// The first ring with the point's triangle on the limb that is narrower than what comes before and after it; where
-    /// none widens again the narrowest of all.
+    /// The first ring with the point's triangle on the limb that is narrower than the rings before and after it; if
+    /// none widens again, the narrowest of all.
     pub(super) fn narrowest(&self, triangle: &[SurfaceVertex; 3], source: Source) -> Option<Narrowest> {
         let first = triangle.iter().map(|v| self.in_body[v.index()]).max()? as usize;
         let mut narrowest: Option<usize> = None;
@@ -214,7 +215,7 @@ impl Rings {
     }
 }
 
-/// The line of a level in a triangle; beyond the limit there is none.
+/// The line of a level in a triangle; there is none beyond the limit.
 fn cut(shape: &Shape<'_>, field: &Field, triangle: [SurfaceVertex; 3], level: usize) -> Option<[DVec3; 2]> {
     let values = triangle.map(|v| field.distance[v.index()] - field.at_level(level));
     if values.iter().any(|value| value.is_infinite()) {
@@ -223,7 +224,7 @@ fn cut(shape: &Shape<'_>, field: &Field, triangle: [SurfaceVertex; 3], level: us
     crossing(shape.corners(triangle), values)
 }
 
-/// A vertex of the body at the highest level that has one, and for how many levels it is in the body.
+/// A vertex of the body at the highest level that has one, and the number of levels at which it is in the body.
 fn innermost_body(shape: &Shape<'_>, vertices: &[SurfaceVertex], levels: &[u32]) -> Option<(SurfaceVertex, u32)> {
     let mut areas = vec![0.0; levels.len()];
     let mut whole = 0.0;
@@ -236,7 +237,7 @@ fn innermost_body(shape: &Shape<'_>, vertices: &[SurfaceVertex], levels: &[u32])
     }
     let mut falling = vertices.to_vec();
     falling.sort_by_key(|v| std::cmp::Reverse(levels[v.index()]));
-    // Parents of a forest of sets; a vertex is in it once its level was reached.
+    // Parents of a forest of sets; a vertex enters it when its level is reached.
     let mut parents: Vec<u32> = vec![u32::MAX; levels.len()];
     for &v in &falling {
         if levels[v.index()] == 0 {
@@ -260,7 +261,7 @@ fn innermost_body(shape: &Shape<'_>, vertices: &[SurfaceVertex], levels: &[u32])
     None
 }
 
-/// The set of a vertex, with the way to it halved.
+/// The set of a vertex, with the path to it halved.
 fn root(parents: &mut [u32], mut v: u32) -> u32 {
     while parents[v as usize] != v {
         let above = parents[parents[v as usize] as usize];
@@ -270,8 +271,8 @@ fn root(parents: &mut [u32], mut v: u32) -> u32 {
     v
 }
 
-/// For how many levels each vertex is in the body that `seed` is in for `highest` levels: the most, over all ways from
-/// there, of the least on the way.
+/// The number of levels at which each vertex is in the body that `seed` is in for `highest` levels: the largest value,
+/// over all paths from there, of the least on the path.
 fn spread(shape: &Shape<'_>, levels: &[u32], seed: SurfaceVertex, highest: u32, in_body: &mut [u32]) {
     let mut waiting: Vec<Vec<SurfaceVertex>> = vec![Vec::new(); highest as usize + 1];
     waiting[highest as usize].push(seed);

@@ -1,4 +1,4 @@
-//! What is shown of folders and what was typed, apart from how it is drawn: every act of a person is a function.
+//! The shown folder and the typed text, apart from the drawing: every act of a person is a function.
 
 use std::path::{Path, PathBuf};
 
@@ -7,36 +7,36 @@ use pliant_engine::files::shown;
 use super::listing::{Column, Entry, Order, shown_entries};
 use super::typed_path::{candidates, completed, folder_of, split, text_of};
 
-/// What a file is asked for.
+/// The purpose of asking for a file.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Asked {
-    /// One that is there.
+    /// To open an existing one.
     ToOpen,
-    /// A name to save under.
+    /// To save under a name.
     ToSave,
 }
 
-/// A folder that a person may want to go to at once.
+/// A folder for quick access.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct Place {
-    /// What it is called.
+    /// Its name.
     pub name: String,
-    /// Where it is.
+    /// Its path.
     pub folder: PathBuf,
 }
 
-/// What is known about the folder that is shown.
+/// The state of the shown folder.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub enum Contents {
     /// It is being read.
     Awaited,
-    /// What is in it.
+    /// Its contents.
     Read(Vec<Entry>),
-    /// Why it can't be read.
+    /// The reason why it can't be read.
     Refused(String),
 }
 
-/// Folders, one of which is shown, until a path is found.
+/// Folders, one of which is shown, until the person finds a path.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct FolderBrowser {
     asked: Asked,
@@ -51,9 +51,9 @@ pub struct FolderBrowser {
     is_new: bool,
     back: Vec<PathBuf>,
     forward: Vec<PathBuf>,
-    /// Whether the folder was come to letter by letter: the way back leads to where the typing began.
+    /// Whether the folder was reached letter by letter: the way back leads to the start of the typing.
     is_typed: bool,
-    /// The path as it is typed: the folder, and a part of a name that filters.
+    /// The typed path: the folder, and a part of a name that filters.
     path: String,
     /// The name to save under.
     name: String,
@@ -68,8 +68,8 @@ pub struct FolderBrowser {
 }
 
 impl FolderBrowser {
-    /// Begins where `suggested` leads: its folder is shown, and its name is the one to save under. Files with these
-    /// extensions are listed, all where there are none.
+    /// Begins at `suggested`: shows its folder, and takes its name as the one to save under. Lists files with these
+    /// extensions, or all if there are none.
     pub fn new(
         asked: Asked,
         endings: &'static [&'static str],
@@ -113,32 +113,32 @@ impl FolderBrowser {
         }
     }
 
-    /// What is asked for.
+    /// The purpose.
     pub fn asked(&self) -> Asked {
         self.asked
     }
 
-    /// The folder that is shown.
+    /// The shown folder.
     pub fn folder(&self) -> &Path {
         &self.folder
     }
 
-    /// What is known about it.
+    /// Its state.
     pub fn contents(&self) -> &Contents {
         &self.contents
     }
 
-    /// The extensions of the files that are listed; none where all are.
+    /// The extensions of the listed files; none if all are listed.
     pub fn endings(&self) -> &'static [&'static str] {
         self.endings
     }
 
-    /// Where to go at once.
+    /// The folders for quick access.
     pub fn places(&self) -> &[Place] {
         &self.places
     }
 
-    /// The path as it is typed.
+    /// The typed path.
     pub fn path(&self) -> &str {
         &self.path
     }
@@ -153,7 +153,7 @@ impl FolderBrowser {
         self.order
     }
 
-    /// Why the last Enter came to nothing.
+    /// The reason why the last Enter did nothing.
     pub fn problem(&self) -> Option<&str> {
         self.problem.as_deref()
     }
@@ -169,7 +169,7 @@ impl FolderBrowser {
         self.shown().iter().position(|entry| entry.path == *chosen)
     }
 
-    /// The folder that has to be read now, once.
+    /// The folder that must be read now, once.
     pub fn take_wanted(&mut self) -> Option<PathBuf> {
         std::mem::take(&mut self.is_wanted).then(|| self.folder.clone())
     }
@@ -179,12 +179,12 @@ impl FolderBrowser {
         std::mem::take(&mut self.is_new)
     }
 
-    /// The path that was found, once.
+    /// The result, once.
     pub fn take_found(&mut self) -> Option<PathBuf> {
         self.found.take()
     }
 
-    /// Takes what is in a folder; nothing happens if another one is shown by now.
+    /// Takes the contents of a folder; nothing happens if another one is shown by now.
     pub fn set_contents(&mut self, folder: &Path, contents: Result<Vec<Entry>, String>) {
         if folder != self.folder || self.contents != Contents::Awaited {
             return;
@@ -210,7 +210,7 @@ impl FolderBrowser {
         self.folder.parent().is_some()
     }
 
-    /// Goes to the folder above; where a file is to be opened, the folder that was left is chosen there.
+    /// Goes to the folder above; when opening a file, it selects the folder that was left.
     pub fn go_up(&mut self) {
         if let Some(above) = self.folder.parent().map(Path::to_owned) {
             let left = self.folder.clone();
@@ -219,7 +219,7 @@ impl FolderBrowser {
         }
     }
 
-    /// Whether there is a way back, and forward again.
+    /// Whether there is a way back, and a way forward.
     pub fn has_ways(&self) -> [bool; 2] {
         [!self.back.is_empty(), !self.forward.is_empty()]
     }
@@ -240,7 +240,7 @@ impl FolderBrowser {
         }
     }
 
-    /// Takes the path as it is typed now: up to its last separator it is the folder that is shown, and the rest filters.
+    /// Takes the present typed path: up to its last separator it is the shown folder, and the rest filters.
     pub fn set_path(&mut self, typed: String) {
         self.path = typed;
         self.problem = None;
@@ -260,13 +260,13 @@ impl FolderBrowser {
         self.choose_match();
     }
 
-    /// What Tab would make of the path; `None` where it adds nothing.
+    /// Tab's completion of the path; `None` if it adds nothing.
     pub fn completion(&self) -> Option<String> {
         let (head, rest) = split(&self.path);
         Some(format!("{head}{}", completed(rest, &self.shown())?))
     }
 
-    /// What begins as the path ends.
+    /// The entries that begin like the end of the path.
     pub fn candidates(&self) -> Vec<&Entry> {
         let rest = split(&self.path).1;
         let shown = self.shown();
@@ -277,19 +277,19 @@ impl FolderBrowser {
         }
     }
 
-    /// Takes the name as it is typed now.
+    /// Takes the present typed name.
     pub fn set_name(&mut self, name: String) {
         self.name = name;
         (self.chosen, self.problem) = (None, None);
         self.is_entered = false;
     }
 
-    /// Sorts by a column, or the other way round.
+    /// Sorts by a column, or reverses the order.
     pub fn sort(&mut self, column: Column) {
         self.order = self.order.after_click(column);
     }
 
-    /// Chooses what stands at this place of the list; a file's name becomes the one to save under.
+    /// Selects the entry at this place of the list; a file's name becomes the one to save under.
     pub fn choose(&mut self, place: usize) {
         let entry = self
             .shown()
@@ -302,7 +302,7 @@ impl FolderBrowser {
         }
     }
 
-    /// Chooses so many places further on, or back, from the chosen one; without one, the first or the last.
+    /// Selects the entry so many places further on, or back, from the selected one; without one, the first or the last.
     pub fn choose_next(&mut self, steps: isize) {
         let Some(last) = self.shown().len().checked_sub(1) else {
             return;
@@ -315,14 +315,14 @@ impl FolderBrowser {
         self.choose(place);
     }
 
-    /// Whether Enter would lead anywhere.
+    /// Whether Enter would do anything.
     pub fn can_enter(&self) -> bool {
         let is_named = self.asked == Asked::ToSave && !self.name.trim().is_empty();
         is_named || self.chosen().is_some() || !split(&self.path).1.is_empty()
     }
 
-    /// Goes into the chosen folder, or has found the chosen file or the name to save under. Before the folder is read
-    /// that waits.
+    /// Enters the selected folder, or returns the selected file or the name to save under. Before the folder is read,
+    /// this waits.
     pub fn enter(&mut self) {
         let is_name_path = self.asked == Asked::ToSave && !split(&self.name).0.is_empty();
         if is_name_path && self.chosen.is_none() {
@@ -347,7 +347,7 @@ impl FolderBrowser {
         };
         let chosen = self.chosen().and_then(|place| self.shown().get(place).copied());
         let entry = match self.asked {
-            // What is not listed, because it is hidden or of another kind, opens by its full name.
+            // Unlisted entries, hidden or of another kind, open by their full names.
             Asked::ToOpen => chosen.or_else(|| named(rest)),
             Asked::ToSave => chosen.or_else(|| named(name).filter(|entry| entry.is_folder)),
         };
@@ -363,7 +363,7 @@ impl FolderBrowser {
         }
     }
 
-    /// Goes into a folder, or has found a file.
+    /// Enters a folder, or returns a file.
     fn open(&mut self, entry: Entry) {
         match entry.is_folder {
             true => self.go(entry.path),
@@ -390,7 +390,8 @@ impl FolderBrowser {
         (self.chosen, self.problem) = (None, None);
     }
 
-    /// Chooses what is most likely meant by what was typed: what is called so, then what begins so, then what has it.
+    /// Selects the likeliest match of the typed text: the same name, then a name that begins so, then one that contains
+    /// it.
     fn choose_match(&mut self) {
         let (shown, rest) = (self.shown(), split(&self.path).1);
         if rest.is_empty() {
@@ -402,7 +403,7 @@ impl FolderBrowser {
         self.chosen = best.map(|entry| entry.path.clone());
     }
 
-    /// A name with the extension that goes without saying, if it has none.
+    /// A name with the default extension, if it has none.
     fn with_ending(&self, name: &str) -> String {
         match &self.ending {
             Some(ending) if Path::new(name).extension().is_none() => format!("{name}.{ending}"),

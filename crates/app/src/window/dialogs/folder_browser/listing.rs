@@ -1,4 +1,4 @@
-//! What is in a folder, as it is listed: folders first, then the files that are asked for, in the order of a column.
+//! The list of a folder's contents: folders first, then the wanted files, in the order of a column.
 
 use std::cmp::Ordering;
 use std::ffi::OsStr;
@@ -15,20 +15,20 @@ use pliant_io::quoted;
 pub struct Entry {
     /// Its name, for a person.
     pub name: String,
-    /// Where it is.
+    /// Its path.
     pub path: PathBuf,
     /// Whether it is a folder, or a link to one.
     pub is_folder: bool,
     /// A file's size in bytes.
     pub bytes: u64,
-    /// When it was last written, where the system tells.
+    /// The time of its last change, if the system reports it.
     pub modified: Option<SystemTime>,
 }
 
-/// What the list is sorted by.
+/// The key of the order.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Column {
-    /// Names, whatever the case of their letters, and numbers in them by their value.
+    /// Names, in any case, with numbers in them by value.
     Name,
     /// Sizes.
     Size,
@@ -39,14 +39,14 @@ pub enum Column {
 /// The order of the list.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Order {
-    /// By what.
+    /// The column.
     pub column: Column,
-    /// Whether the last comes first. Folders stay before files.
+    /// Whether it is reversed. Folders stay before files.
     pub is_reversed: bool,
 }
 
 impl Order {
-    /// The order after a click on a column's header: by that column, and the other way round if it is so already.
+    /// The order after a click on a column's header: by that column, or reversed if it already was.
     pub fn after_click(self, column: Column) -> Self {
         Self {
             column,
@@ -68,7 +68,7 @@ impl Order {
     }
 }
 
-/// Reads a folder. Links are followed; what is neither a folder nor a file is left out.
+/// Reads a folder. Links are followed; entries that are neither a folder nor a file are left out.
 ///
 /// # Errors
 /// A sentence that names the folder and the remedy.
@@ -85,7 +85,7 @@ pub fn read(folder: &Path) -> Result<Vec<Entry>, String> {
     let mut entries = Vec::new();
     for entry in fs::read_dir(folder).map_err(refused)? {
         let path = entry.map_err(refused)?.path();
-        // A link that leads nowhere, or a file that has gone meanwhile.
+        // A dangling link, or a file that was deleted meanwhile.
         let Ok(metadata) = fs::metadata(&path) else { continue };
         if metadata.is_dir() || metadata.is_file() {
             entries.push(Entry {
@@ -100,8 +100,8 @@ pub fn read(folder: &Path) -> Result<Vec<Entry>, String> {
     Ok(entries)
 }
 
-/// The entries to show, in order: those whose name has `filter` in it, folders and files with one of these extensions
-/// (all files where there are none). Hidden ones are left out unless the filter begins with a dot.
+/// The entries to show, in order: those whose name contains `filter`, folders and files with one of these extensions
+/// (all files if there are none). Hidden ones are left out unless the filter begins with a dot.
 pub fn shown_entries<'a>(entries: &'a [Entry], endings: &[&str], filter: &str, order: Order) -> Vec<&'a Entry> {
     let wanted = filter.to_lowercase();
     let is_shown = |entry: &&Entry| {
@@ -122,7 +122,7 @@ fn has_ending(path: &Path, endings: &[&str]) -> bool {
             .any(|ending| own.eq_ignore_ascii_case(OsStr::new(ending)))
 }
 
-/// Compares names as a person does: "scan 9" is before "scan 10", and "Ab" between "aa" and "ac".
+/// Compares names in natural order: "scan 9" is before "scan 10", and "Ab" between "aa" and "ac".
 fn compare_names(a: &str, b: &str) -> Ordering {
     let (a, b) = (a.to_lowercase(), b.to_lowercase());
     let (mut a, mut b) = (a.as_str(), b.as_str());
@@ -145,7 +145,7 @@ fn compare_names(a: &str, b: &str) -> Ordering {
     }
 }
 
-/// The digits, or what is none, that a text begins with.
+/// The digits, or the non-digits, with which a text begins.
 fn first_run(text: &str) -> &str {
     let is_digit = |letter: char| letter.is_ascii_digit();
     let is_number = text.starts_with(is_digit);

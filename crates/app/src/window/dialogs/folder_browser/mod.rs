@@ -1,8 +1,8 @@
-//! The window's own way to a file, where the system has no dialog: folders with sizes and dates, places to go to at
-//! once, a path that completes itself. `egui_file` reads folders on the window's thread and knows neither sizes, dates,
-//! completion nor recent places, and `egui-file-dialog` has no version for this egui.
+//! The window's own file dialog, if the system has none: folders with sizes and dates, places for quick access, a path
+//! that completes itself. `egui_file` reads folders on the window's thread and knows neither sizes, dates, completion
+//! nor recent places, and `egui-file-dialog` has no version for this egui.
 //!
-//! [`FolderBrowser`] says what is shown, a worker reads the folders ([`listing`]), and [`view`] draws.
+//! [`FolderBrowser`] has the state, a worker reads the folders ([`listing`]), and [`view`] draws.
 
 mod browser;
 pub(in crate::window) mod listing;

@@ -12,14 +12,14 @@ use crate::window::widgets::icon::{self, Glyph};
 pub const SIZE_WIDTH: f32 = 76.0;
 /// The width of the column of dates.
 pub const DATE_WIDTH: f32 = 124.0;
-/// The width of what is left of the names.
+/// The least width that is left for the names.
 pub const ICON_WIDTH: f32 = 26.0;
 /// The space at both ends of a row.
 pub const MARGIN: f32 = 6.0;
 
 /// Shows an entry on a whole row of this height.
 pub fn show(ui: &mut egui::Ui, entry: &Entry, is_chosen: bool, height: f32) -> egui::Response {
-    // Arrows go from row to row; a thousand stops for Tab would help nobody.
+    // Arrows go from row to row; a thousand stops for Tab would be useless.
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::CLICK);
     response.widget_info(|| WidgetInfo::selected(Role::ListBoxOption, true, is_chosen, &entry.name));
     if !ui.is_rect_visible(rect) {
@@ -70,7 +70,7 @@ pub fn show(ui: &mut egui::Ui, entry: &Entry, is_chosen: bool, height: f32) -> e
     }
 }
 
-/// A file's size in three digits, by the powers of 1000 that disks are sold in.
+/// A file's size in three digits, with powers of 1000, as disks are sold.
 pub fn size(bytes: u64) -> String {
     let units = ["kB", "MB", "GB", "TB", "PB", "EB"];
     let mut size = bytes as f64 / 1000.0;
@@ -78,7 +78,7 @@ pub fn size(bytes: u64) -> String {
         return format!("{bytes} B");
     }
     let mut unit = 0;
-    // What rounds to 1000 is 1.0 of the next.
+    // A value that rounds to 1000 is 1.0 of the next unit.
     while size >= 999.5 && unit + 1 < units.len() {
         size /= 1000.0;
         unit += 1;
@@ -87,7 +87,7 @@ pub fn size(bytes: u64) -> String {
     format!("{size:.digits$} {}", units[unit])
 }
 
-/// A date and time where the person is; nothing for what no calendar names.
+/// A date and time in the person's time zone; empty if no calendar has it.
 fn date(time: SystemTime) -> Option<String> {
     let seconds = i64::try_from(time.duration_since(SystemTime::UNIX_EPOCH).ok()?.as_secs()).ok()?;
     // Four digits of a year.

@@ -1,4 +1,4 @@
-//! Laws of the browser's state; nothing here is drawn or read from a disk but where a test says so.
+//! Laws of the browser's state; nothing here is drawn or read from a disk unless a test says so.
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::path::{Path, PathBuf};
@@ -127,7 +127,7 @@ fn browser(asked: Asked, suggested: &str) -> FolderBrowser {
     )
 }
 
-/// Hands in what the folder that is wanted now has.
+/// Hands in the contents of the folder that is wanted now.
 fn answer(browser: &mut FolderBrowser, names: &[&str]) {
     let folder = browser.take_wanted().unwrap();
     let contents = entries(&folder.to_string_lossy(), names);
@@ -209,7 +209,7 @@ fn enter_goes_into_folders_opens_what_is_typed_or_chosen_and_says_what_is_missin
     browser.enter();
     assert_eq!(browser.take_found(), None);
     assert!(browser.problem().unwrap().contains("none.ply"));
-    // What is hidden or of another kind opens by its full name.
+    // An entry that is hidden or of another kind opens by its full name.
     browser.set_path("/a/notes.txt".to_owned());
     answer(&mut browser, &NAMES);
     browser.enter();
@@ -244,7 +244,7 @@ fn a_name_to_save_under_gets_its_extension_may_be_a_path_and_may_be_taken_from_t
     browser.enter();
     answer(&mut browser, &[]);
     assert_eq!(browser.take_found(), Some("/a/Bones/toe.ply".into()));
-    // Going up chooses no folder that saving would go into again.
+    // After going up, no folder is selected that saving would enter again.
     browser.go_up();
     answer(&mut browser, &NAMES);
     browser.enter();

@@ -1,18 +1,18 @@
-//! A path as it is typed: the folder that it leads to so far, and what is typed after that.
+//! A typed path: the folder that it leads to so far, and the text after that.
 
 use std::path::{Component, MAIN_SEPARATOR, Path, PathBuf, is_separator};
 
 use super::listing::Entry;
 
-/// The folder's part of a typed path, up to the last separator, and the rest. A text without a separator has no folder's
-/// part.
+/// The folder's part of a typed path, up to the last separator, and the rest. A text without a separator has no
+/// folder's part.
 pub fn split(typed: &str) -> (&str, &str) {
     let end = typed.rfind(is_separator).map_or(0, |place| place + 1);
     typed.split_at(end)
 }
 
-/// The path that the folder's part of a text means: `~` is the home folder, and what does not begin at a root begins at
-/// `folder`. `..` is the folder above.
+/// The path that the folder's part of a text means: `~` is the home folder, and a part that does not begin at a root
+/// begins at `folder`. `..` is the folder above.
 pub fn folder_of(head: &str, folder: &Path, home: Option<&Path>) -> PathBuf {
     let of_home = head.strip_prefix('~').filter(|rest| rest.starts_with(is_separator));
     let path = match (of_home, home) {
@@ -30,7 +30,7 @@ pub fn folder_of(head: &str, folder: &Path, home: Option<&Path>) -> PathBuf {
     plain
 }
 
-/// A folder as text that more can be typed after.
+/// A folder as text that can be typed on.
 pub fn text_of(folder: &Path) -> String {
     let mut text = folder.to_string_lossy().into_owned();
     if !text.ends_with(is_separator) {
@@ -39,8 +39,8 @@ pub fn text_of(folder: &Path) -> String {
     text
 }
 
-/// What Tab makes of `rest`: as much as all these entries that begin so have in common; a folder that is alone gets its
-/// separator. `None` where that adds nothing.
+/// Tab's completion of `rest`: the common beginning of all entries that begin so; a single folder gets its separator.
+/// `None` if that adds nothing.
 pub fn completed(rest: &str, entries: &[&Entry]) -> Option<String> {
     let candidates = candidates(rest, entries);
     let [first, others @ ..] = candidates.as_slice() else {
@@ -58,7 +58,7 @@ pub fn completed(rest: &str, entries: &[&Entry]) -> Option<String> {
     (common != rest && !rest.is_empty() && common.chars().count() >= rest.chars().count()).then_some(common)
 }
 
-/// The entries whose names begin with what is typed, whatever the case of their letters.
+/// The entries whose names begin with the typed text, in any case.
 pub fn candidates<'a>(rest: &str, entries: &[&'a Entry]) -> Vec<&'a Entry> {
     let wanted = rest.to_lowercase();
     let begins = |entry: &&&Entry| entry.name.to_lowercase().starts_with(&wanted);

@@ -17,16 +17,16 @@ use crate::window::widgets::default_button::default_button;
 use crate::window::widgets::icon::{self, Glyph};
 use crate::window::widgets::row_label::row_label;
 
-/// How many rows a page is.
+/// The number of rows in a page.
 const PAGE: isize = 10;
 /// The width of the places beside the list.
 const PLACES_WIDTH: f32 = 132.0;
-/// After so many seconds it is said that a folder is slow.
+/// The number of seconds after which a folder is called slow.
 const SLOW: f64 = 0.5;
-/// How many names of what Tab may complete are told.
+/// The number of shown names that Tab may complete.
 const TOLD: usize = 4;
 
-/// Shows it under a title; true when the person gives it up.
+/// Shows it under a title; true when the person cancels.
 pub fn show(ui: &mut egui::Ui, title: &str, browser: &mut FolderBrowser) -> bool {
     let screen = ui.ctx().content_rect().size();
     ui.set_width((screen.x - 60.0).min(720.0));
@@ -34,7 +34,7 @@ pub fn show(ui: &mut egui::Ui, title: &str, browser: &mut FolderBrowser) -> bool
     let ids = [ui.scope_id().with("path"), ui.scope_id().with("name")];
     let is_new = browser.take_is_new();
     keys(ui, browser, ids);
-    // Before the fields are shown: one that has no focus forgets what is selected in it.
+    // This comes before the fields: a field without the focus forgets its selection.
     let main = ids[usize::from(browser.asked() == Asked::ToSave)];
     if is_new || ui.memory(|memory| memory.focused().is_none()) {
         ui.memory_mut(|memory| memory.request_focus(main));
@@ -57,7 +57,7 @@ pub fn show(ui: &mut egui::Ui, title: &str, browser: &mut FolderBrowser) -> bool
     buttons(ui, browser)
 }
 
-/// Takes the keys before the fields do: Enter and arrows, while nothing but a field has the focus.
+/// Takes the keys before the fields do: Enter and arrows, while only a field has the focus.
 fn keys(ui: &mut egui::Ui, browser: &mut FolderBrowser, ids: [Id; 2]) {
     let is_pressed = |modifiers, key| ui.input_mut(|input| input.consume_key(modifiers, key));
     if is_pressed(Modifiers::ALT, Key::ArrowUp) {
@@ -95,7 +95,7 @@ fn keys(ui: &mut egui::Ui, browser: &mut FolderBrowser, ids: [Id; 2]) {
     }
 }
 
-/// The ways between folders, and the path.
+/// The buttons between folders, and the path.
 fn top(ui: &mut egui::Ui, browser: &mut FolderBrowser, id: Id, is_new: bool) {
     ui.horizontal(|ui| {
         let [has_back, has_forward] = browser.has_ways();
@@ -108,7 +108,7 @@ fn top(ui: &mut egui::Ui, browser: &mut FolderBrowser, id: Id, is_new: bool) {
         if way(ui, Glyph::ArrowUp, "Up", "Alt+Up", browser.has_above()) {
             browser.go_up();
         }
-        // Tab goes on to the next widget where it has nothing to complete.
+        // Tab goes on to the next widget if it has nothing to complete.
         let takes_tab = browser.completion().is_some();
         let selected = is_new.then(|| {
             let end = browser.path().chars().count();
@@ -128,8 +128,8 @@ fn way(ui: &mut egui::Ui, glyph: Glyph, name: &str, key: &str, is_enabled: bool)
     button.on_hover_text(format!("{name} ({key})")).clicked()
 }
 
-/// A field as wide as there is room, with this part of its text selected; without one the text's end is, where another
-/// than the person has changed it.
+/// A field as wide as there is room, with this part of its text selected; without one, its end is visible if the
+/// program has changed it.
 fn field(
     ui: &mut egui::Ui,
     id: Id,
@@ -284,7 +284,7 @@ fn list(ui: &mut egui::Ui, browser: &mut FolderBrowser, height: f32) {
     }
 }
 
-/// What Enter came to, what Tab would complete, or how much there is.
+/// The result of Enter, the completions of Tab, or the number of entries.
 fn line(ui: &mut egui::Ui, browser: &FolderBrowser) {
     let candidates = browser.candidates();
     let text = match (browser.problem(), browser.contents()) {
@@ -324,7 +324,7 @@ fn counted((count, what): (usize, &str)) -> String {
 fn name(ui: &mut egui::Ui, browser: &mut FolderBrowser, id: Id, is_new: bool) {
     ui.horizontal(|ui| {
         let label = row_label(ui, "Name");
-        // What is typed replaces the name and leaves its extension.
+        // Typing replaces the name and leaves its extension.
         let selected = is_new.then(|| {
             let stem = browser.name().rsplit_once('.').map_or(browser.name(), |(stem, _)| stem);
             0..stem.chars().count()
@@ -337,7 +337,7 @@ fn name(ui: &mut egui::Ui, browser: &mut FolderBrowser, id: Id, is_new: bool) {
     });
 }
 
-/// True when the person gives up.
+/// True when the person cancels.
 fn buttons(ui: &mut egui::Ui, browser: &mut FolderBrowser) -> bool {
     ui.horizontal(|ui| {
         let verb = match browser.asked() {

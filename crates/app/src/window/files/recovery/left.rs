@@ -1,4 +1,4 @@
-//! What sessions have left that ended without saving.
+//! The remains of sessions that ended without saving.
 
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
@@ -9,7 +9,7 @@ use crate::window::files::project_file;
 use pliant_engine::EngineError;
 use pliant_engine::files::{self, Staging};
 
-/// What the note of the project that was open is called.
+/// The name of the note about the project that was open.
 const OPENED: &str = "opened";
 
 /// A session that ended without saving.
@@ -17,9 +17,9 @@ const OPENED: &str = "opened";
 pub struct Left {
     /// Its project.
     pub project: PathBuf,
-    /// What people call the model that was worked on, where that can be told.
+    /// The name of the model, if it is known.
     pub name: Option<String>,
-    /// When that was written.
+    /// The time when it was written.
     pub written: SystemTime,
 }
 
@@ -44,14 +44,14 @@ pub fn left_in(folder: &Path) -> Vec<Left> {
     left
 }
 
-/// Notes beside a session's work which project was open, if one was.
+/// Notes beside a session's work the open project, if there was one.
 ///
 /// # Errors
-/// Where that can't be written.
+/// If it can't be written.
 pub fn note_opened(project: &Path, opened: Option<&Path>) -> Result<(), EngineError> {
     let note = project.with_extension(OPENED);
     let Some(opened) = opened else {
-        // What is not there need not go.
+        // A missing file needs no deletion.
         let _ = fs::remove_file(note);
         return Ok(());
     };
@@ -60,8 +60,7 @@ pub fn note_opened(project: &Path, opened: Option<&Path>) -> Result<(), EngineEr
     Ok(())
 }
 
-/// The project that was open in a session which has left this work; `None` if none was, or if it is gone or was written
-/// since.
+/// The project that was open in the session with this work; `None` if none was, or if it is gone or was written since.
 pub fn opened_project(project: &Path) -> Option<PathBuf> {
     let text = files::read_text(&project.with_extension(OPENED)).ok()?;
     let opened = files::path_of_text(Path::new("/"), &text);
@@ -69,9 +68,9 @@ pub fn opened_project(project: &Path) -> Option<PathBuf> {
     (written(&opened)? <= written(project)?).then_some(opened)
 }
 
-/// Deletes what a session has left.
+/// Deletes the remains of a session.
 pub fn remove(project: &Path) {
-    // What is not there need not go.
+    // A missing file needs no deletion.
     let _ = fs::remove_file(project);
     let _ = fs::remove_file(project.with_extension(OPENED));
     for mesh in sources_of(project) {

@@ -1,8 +1,8 @@
-//! What a session leaves for the next one should it end without saving: a project, written every few seconds while
-//! there is unsaved work, and taken away when the work is saved or the window is closed.
+//! The work that a session leaves for the next one if it ends without saving: a project, written every few seconds
+//! while there is unsaved work, and deleted when the work is saved or the window is closed.
 //!
-//! Each session holds a lock on a file of its own. The system lets go of it however the process ends, so a project
-//! whose lock can be had belongs to a session that is gone.
+//! Each session holds a lock on a file of its own. The system releases it however the process ends, so a project whose
+//! lock is free belongs to a session that has ended.
 
 pub mod left;
 
@@ -18,8 +18,8 @@ use super::project_file;
 use super::rest_mesh::RestMesh;
 use pliant_engine::files::shown;
 
-/// How often unsaved work is kept. A write takes less than a second even on a large mesh, so no more than twice this
-/// can be lost.
+/// The interval between writes of unsaved work. A write takes less than a second even on a large mesh, so no more than
+/// twice this time can be lost.
 const EVERY: Duration = Duration::from_secs(8);
 
 /// The keeper of one session's work.
@@ -28,23 +28,23 @@ pub struct Recovery {
     project: PathBuf,
     lock_path: PathBuf,
     _lock: File,
-    /// The state that was kept last, and the one that is being written.
+    /// The state that was written last, and the one that is being written.
     kept: Option<SnapshotKey>,
     writing: Option<SnapshotKey>,
     last: Instant,
     every: Duration,
-    /// Whether the last write failed: it is said once.
+    /// Whether the last write failed, which is reported once.
     failed: bool,
 }
 
-/// What is to be kept.
+/// The work to be written.
 #[derive(Clone)]
 pub struct Work {
     snapshot: Snapshot,
     mesh: RestMesh,
-    /// Where the model stands that is worked on, for who recovers it.
+    /// The path of the open model, for the person who recovers the work.
     model: Option<PathBuf>,
-    /// The project that is open, likewise.
+    /// The path of the open project, likewise.
     opened: Option<PathBuf>,
     project: PathBuf,
 }
@@ -56,7 +56,7 @@ impl Recovery {
     /// Begins to keep a session's work in `folder`.
     ///
     /// # Errors
-    /// Where the folder or the lock can't be made, in a sentence.
+    /// If the folder or the lock can't be made, in a sentence.
     pub fn begin(folder: &Path) -> Result<Self, String> {
         let refuse =
             |error: std::io::Error| format!("unsaved work can't be kept in {} ({error}): save often", shown(folder));
@@ -81,8 +81,8 @@ impl Recovery {
         Err(refuse(std::io::Error::other("a thousand sessions are there")))
     }
 
-    /// Takes note of the present state: what is to be written now, if anything is, for [`Work::write`] elsewhere. The last
-    /// argument is the model that is worked on, and the project that is open.
+    /// Takes the present state and returns the work to be written now, if any, for [`Work::write`] on another thread.
+    /// The last argument is the open model and the open project.
     pub fn note(
         &mut self,
         key: SnapshotKey,
@@ -113,12 +113,12 @@ impl Recovery {
         Some(work)
     }
 
-    /// Whether this state was kept.
+    /// Whether this state was written.
     pub fn has(&self, key: SnapshotKey) -> bool {
         self.kept == Some(key) && !self.failed
     }
 
-    /// When the window should look again though nothing happens; `None` while nothing waits.
+    /// The time when the window should check again even if nothing happens; `None` while nothing waits.
     pub fn wait(&self, key: SnapshotKey, unsaved: bool) -> Option<Duration> {
         (unsaved && self.kept != Some(key)).then(|| self.every.saturating_sub(self.last.elapsed()))
     }
@@ -127,7 +127,7 @@ impl Recovery {
     pub fn written(&mut self, key: SnapshotKey, result: Result<(), String>) -> Option<String> {
         self.writing = None;
         self.last = Instant::now();
-        // A failed one counts as well: the disk is asked again when something changes.
+        // A failed write counts as well: the next one comes after another change.
         self.kept = Some(key);
         match result {
             Ok(()) => {
@@ -155,7 +155,7 @@ impl Recovery {
 }
 
 impl Drop for Recovery {
-    /// The window closes in good order: whoever closed it was asked about unsaved work.
+    /// The window closes normally: the person was asked about unsaved work.
     fn drop(&mut self) {
         if std::thread::panicking() {
             return;
@@ -170,7 +170,7 @@ impl Work {
     /// Writes it, with a copy of its mesh: the file may be changed, moved or deleted before anybody recovers it.
     ///
     /// # Errors
-    /// What stands in the way, in a sentence.
+    /// The obstacle, in a sentence.
     pub fn write(&self) -> Result<(), String> {
         let write = || {
             left::note_opened(&self.project, self.opened.as_deref())?;
@@ -180,20 +180,20 @@ impl Work {
     }
 }
 
-/// Writes the newest state at once, in the middle of a panic; where to, if there was one.
+/// Writes the newest state at once, in the middle of a panic; returns the path, if there was one.
 pub fn write_latest() -> Option<PathBuf> {
-    // Whoever holds it may be the one that panics.
+    // The thread that holds it may be the one that panics.
     let work = LATEST.try_lock().ok()?.clone()?;
     work.write().ok().map(|()| work.project)
 }
 
-/// Makes the folder of a user's unsaved work, which is nobody else's business.
+/// Makes the folder of a user's unsaved work, which is private.
 fn make_private_folder(folder: &Path) -> std::io::Result<()> {
     #[cfg(unix)]
     {
         use std::os::unix::fs::{DirBuilderExt, PermissionsExt};
         fs::DirBuilder::new().recursive(true).mode(0o700).create(folder)?;
-        // One that an earlier version made may be open to all.
+        // A folder from an earlier version may be readable by everyone.
         fs::set_permissions(folder, fs::Permissions::from_mode(0o700))
     }
     #[cfg(not(unix))]

@@ -32,7 +32,7 @@ fn loaded(path: &Path) -> Arc<Loaded> {
     Arc::new(pliant_engine::load(path, &WeldOptions::default(), &Watch::default()).unwrap())
 }
 
-/// Works without an end, keeping every state, until it is killed. Does nothing where no folder is named.
+/// Works without an end, keeping every state, until it is killed. Does nothing if no folder is named.
 #[test]
 fn child() {
     let Some(folder) = std::env::var_os(FOLDER).map(PathBuf::from) else {
@@ -54,7 +54,7 @@ fn child() {
     });
     for round in 0_u32.. {
         while let Some(done) = jobs.run_next() {
-            // A drag that goes on has a solve waiting: every other state is kept before it.
+            // A continuing drag has a waiting solve: every second state is written before it.
             let is_last = done.kind == JobKind::Solve;
             editor.handle(Event::JobDone(done));
             if is_last {
@@ -117,7 +117,7 @@ fn killed_at_random_moments_it_leaves_a_whole_project_of_its_last_states() {
             .spawn()
             .unwrap();
         let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
-        // At least one state is kept; then it dies anywhere.
+        // At least one state is written; then the process dies anywhere.
         let mut said: Vec<String> = Vec::new();
         while !said.iter().any(|line| line == "kept true") {
             said.push(lines.next().unwrap().unwrap());
@@ -159,7 +159,7 @@ fn what_is_kept_can_be_read_by_its_owner_alone() {
     let folder = tempfile::tempdir().unwrap();
     let file = mesh(folder.path());
     let kept = folder.path().join("kept");
-    // As an earlier version left it.
+    // The folder as an earlier version made it.
     fs::create_dir(&kept).unwrap();
     fs::set_permissions(&kept, fs::Permissions::from_mode(0o755)).unwrap();
     let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode() & 0o777;
@@ -214,7 +214,7 @@ fn work_is_recovered_though_its_scan_is_gone_replaced_or_oddly_called() {
             let key = editor.snapshot_key();
             let work = recovery.note(key, true, || editor.snapshot(), &mesh, [Some(&file), None]);
             work.unwrap().write().unwrap();
-            // The file as it is on the disk goes first, wherever the project names it.
+            // The file on the disk comes first, wherever the project names it.
             let opened = project_file::read(&recovery.project, &Watch::default()).unwrap();
             assert_eq!(opened.source, MeshSource::File(file.clone()), "{}", file.display());
             if is_replaced {
