@@ -66,6 +66,9 @@ class Session:
         mesh.loop_triangles.foreach_get("vertices", corners.ravel())
         self.places = {handle.group: place_of(handle) for handle in obj.pliant.handles}
         self.bound = pliant.bind(others, corners, method=method_of(obj.pliant), **region_of(obj))
+        # A step with transforms (here those of rest) adds the warnings about parts that nothing holds: positions could
+        # hold them.
+        self.bound.step({}, iterations=1)
         self.shape = others.copy()
         self.counts = counts(mesh)
         self.seen = None

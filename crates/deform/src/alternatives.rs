@@ -23,6 +23,12 @@ pub(crate) fn heeding(constraint: ConstraintKind) -> String {
     either(METHODS.iter().filter(|declaration| declaration.heeds(constraint)))
 }
 
+/// All methods in which each vertex of a handle can have its own target position.
+pub(crate) fn taking_places() -> String {
+    let takes = |declaration: &&&MethodDeclaration| (declaration.default)().implementation().takes_places();
+    either(METHODS.iter().filter(takes))
+}
+
 fn either<'a>(declarations: impl Iterator<Item = &'a &'static MethodDeclaration>) -> String {
     joined(declarations.map(|declaration| declaration.name.to_owned()), "or")
 }

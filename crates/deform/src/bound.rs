@@ -7,6 +7,7 @@ use pliant_mesh::{Cancel, Progress};
 use rayon::prelude::*;
 
 use crate::budget::bytes_of;
+use crate::handles::offsets::Offsets;
 use crate::handles::residual::HandleResidual;
 use crate::handles::turns::TurnLimit;
 use crate::handles::{FRAME_CHUNK, Handle, Motion, clear};
@@ -25,9 +26,14 @@ pub struct Bound {
     vertex_count: usize,
     free_count: usize,
     handles: Vec<Handle>,
+    /// The handles' rest positions, if the method takes places.
+    world_rest: Vec<Vec<DVec3>>,
     motions: Vec<Motion>,
+    /// The offsets of handles' vertices from the motions.
+    offsets: Arc<Offsets>,
     iteration: u32,
     solve: Solve,
+    name: &'static str,
     method: Box<dyn BoundMethod>,
     /// The attachment with the method's control points: its name, and its label for a person.
     attachment: Option<(&'static str, &'static str)>,
@@ -39,7 +45,10 @@ pub struct Bound {
     turn_limit: Option<TurnLimit>,
     /// The residual of hard handles that the method only fits.
     residual: HandleResidual,
-    /// Those of the binding first, then those about targets that the method can't follow.
+    /// The binding's warnings.
+    of_binding: Vec<Warning>,
+    /// The binding's warnings that apply with the present targets first, then those about targets that the method can't
+    /// follow.
     warnings: Vec<Warning>,
     binding_warnings: usize,
     /// The number of warnings before those about the last step.
@@ -59,6 +68,15 @@ impl ReusableFactor {
     pub fn share_of(&self, other: &Self) -> f64 {
         self.0.share_of(&other.0)
     }
+}
+
+/// A handle's target, from rest.
+#[derive(Clone, PartialEq, Debug)]
+pub enum Target {
+    /// An affine map of world positions.
+    Map(DAffine3),
+    /// A world position for each of the handle's vertices, in the order of [`Bound::handle_vertices`].
+    Places(Vec<DVec3>),
 }
 
 /// Whether a method may take its short cut, if it has one.
@@ -119,6 +137,7 @@ impl Bound {
         bound.rigid = rigid.map(Box::new);
         // Those about the last step and its targets come after those of the binding.
         bound.warnings.extend(softened.warning());
+        bound.of_binding.clone_from(&bound.warnings);
         bound.binding_warnings = bound.warnings.len();
         bound.target_warnings = bound.warnings.len();
         Ok(bound)
@@ -180,6 +199,9 @@ impl Bound {
             followed,
             is_held: partition.held.contains(&true),
         });
+        let takes_places = problem.method.implementation().takes_places();
+        let rest = |handle: &Handle| handle.vertices.iter().map(|&own| positions[own as usize]).collect();
+        let world_rest = handles.iter().filter(|_| takes_places).map(rest).collect();
         let mut warnings = partition.warnings;
         warnings.extend(method.warnings().into_iter().map(Warning::from));
         Ok(Self {
@@ -187,9 +209,12 @@ impl Bound {
             vertex_count: positions.len(),
             free_count: partition.free_count,
             motions: vec![Motion::default(); handles.len()],
+            offsets: Arc::default(),
+            world_rest,
             handles,
             iteration: 0,
             solve: problem.method.solve(),
+            name: declaration.name,
             method,
             attachment: attachment.map(|declared| (declared.name, declared.title)),
             weights,
@@ -203,6 +228,7 @@ impl Bound {
             rigid: None,
             turn_limit,
             residual,
+            of_binding: warnings.clone(),
             binding_warnings: warnings.len(),
             target_warnings: warnings.len(),
             warnings,
@@ -235,14 +261,74 @@ impl Bound {
             .zip(world_targets)
             .map(|(handle, target)| handle.motion(target))
             .collect();
+        self.aim(motions, Offsets::default(), &[]);
+        Ok(())
+    }
+
+    /// Like [`Bound::set_targets`], but a handle's target may be places for all its vertices instead of a map: every
+    /// vertex of a hard handle then goes exactly to its place, and every vertex of a soft handle is pulled there.
+    ///
+    /// # Errors
+    /// Those of [`Bound::set_targets`], and [`SolveError::NoPlaces`] for a method that takes no places; the previous
+    /// targets stay.
+    pub fn set_places(&mut self, targets: &[Target]) -> Result<(), SolveError> {
+        let expected = self.handles.len();
+        if targets.len() != expected {
+            let found = targets.len();
+            return Err(SolveError::TargetCount { found, expected });
+        }
+        let mut offsets = Offsets::default();
+        let mut placed = vec![false; expected];
+        let mut motions = Vec::with_capacity(expected);
+        for (number, target) in targets.iter().enumerate() {
+            let handle = &self.handles[number];
+            motions.push(match target {
+                Target::Map(map) if !map.is_finite() => return Err(SolveError::TargetNotFinite { handle: number }),
+                Target::Map(map) => handle.motion(map),
+                Target::Places(places) => {
+                    let world_rest = self.world_rest.get(number);
+                    let world_rest = world_rest.ok_or(SolveError::NoPlaces { method: self.name })?;
+                    let displacements = displacements_to(places, number, handle, world_rest)?;
+                    placed[number] = true;
+                    offsets.take(handle, world_rest, &displacements)
+                }
+            });
+        }
+        self.aim(motions, offsets.sorted(), &placed);
+        Ok(())
+    }
+
+    /// The surface vertices of a handle, ascending; empty for a number that no handle has.
+    pub fn handle_vertices(&self, handle: usize) -> &[u32] {
+        self.handles.get(handle).map_or(&[], |handle| &handle.vertices)
+    }
+
+    /// Sets motions and offsets, and updates the warnings for these targets. `placed` tells for each handle whether its
+    /// vertices have places.
+    fn aim(&mut self, motions: Vec<Motion>, offsets: Offsets, placed: &[bool]) {
+        if offsets != *self.offsets {
+            self.put_offsets(Arc::new(offsets));
+        }
         self.put_motions(motions);
-        self.warnings.truncate(self.binding_warnings);
+        let of_binding = self.of_binding.iter();
+        self.warnings.clear();
+        self.warnings
+            .extend(of_binding.filter(|warning| !warning.is_void(placed)).cloned());
+        self.binding_warnings = self.warnings.len();
         self.warnings.extend(self.method.blind_to(&self.motions));
         let limit = self.turn_limit.as_ref();
         self.warnings
             .extend(limit.and_then(|limit| limit.warning(&self.handles, &self.motions)));
         self.target_warnings = self.warnings.len();
-        Ok(())
+    }
+
+    fn put_offsets(&mut self, offsets: Arc<Offsets>) {
+        self.iteration = 0;
+        self.method.set_offsets(&offsets);
+        if let Some(rigid) = &mut self.rigid {
+            rigid.bound.put_offsets(Arc::clone(&offsets));
+        }
+        self.offsets = offsets;
     }
 
     /// Sets the handles' motions. An iterative method continues from its present shape.
@@ -332,7 +418,7 @@ impl Bound {
     fn is_at_rest(&self) -> bool {
         let are_moved = self.method.controls().is_some_and(|controls| controls.are_moved());
         let are_weighed = self.weights.iter().flatten().any(|weight| *weight != 0.0);
-        !are_moved && !are_weighed && self.motions.iter().all(Motion::is_rest)
+        !are_moved && !are_weighed && self.offsets.is_empty() && self.motions.iter().all(Motion::is_rest)
     }
 
     /// One step towards the targets: fills `displacements`, one per surface vertex, in world units.
@@ -518,6 +604,36 @@ impl Bound {
     pub fn revision(&self) -> u64 {
         self.revision
     }
+}
+
+/// The displacements that take a handle's vertices to these places.
+///
+/// # Errors
+/// A wrong count, or a place that is not finite.
+fn displacements_to(
+    places: &[DVec3],
+    number: usize,
+    handle: &Handle,
+    world_rest: &[DVec3],
+) -> Result<Vec<DVec3>, SolveError> {
+    if places.len() != world_rest.len() {
+        return Err(SolveError::PlaceCount {
+            handle: number,
+            found: places.len(),
+            expected: world_rest.len(),
+        });
+    }
+    if let Some(at) = places.iter().position(|place| !place.is_finite()) {
+        return Err(SolveError::PlaceNotFinite {
+            handle: number,
+            vertex: handle.vertices[at],
+        });
+    }
+    Ok(places
+        .iter()
+        .zip(world_rest)
+        .map(|(place, rest)| *place - *rest)
+        .collect())
 }
 
 /// Every result passes through here, so that none with a non-finite displacement is returned.

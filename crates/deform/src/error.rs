@@ -325,6 +325,33 @@ pub enum SolveError {
         /// The handle.
         handle: usize,
     },
+    /// A handle's vertices have places, and the method takes no places.
+    #[error(
+        "{method} moves all of a handle by one map and takes no positions for its vertices: give a transform, or take {}",
+        alternatives::taking_places()
+    )]
+    NoPlaces {
+        /// The method.
+        method: &'static str,
+    },
+    /// The number of places is not the number of the handle's vertices.
+    #[error("{found} positions came for the {expected} surface vertices of handle {handle}: give one for each")]
+    PlaceCount {
+        /// The handle.
+        handle: usize,
+        /// How many came.
+        found: usize,
+        /// How many vertices there are.
+        expected: usize,
+    },
+    /// A place holds a NaN or an infinity.
+    #[error("the position of vertex {vertex} of handle {handle} is not finite: give a finite one")]
+    PlaceNotFinite {
+        /// The handle.
+        handle: usize,
+        /// The vertex.
+        vertex: u32,
+    },
     /// The moved control points do not fit those of the binding.
     #[error("the {title} {refused}")]
     Controls {

@@ -97,7 +97,7 @@ mod wrinkles;
 
 pub use arap::{Arap, ArapEnergy};
 pub use bilaplacian::{Bilaplacian, BilaplacianOrder, Detail, Discretisation, TriangulationKind};
-pub use bound::{Bound, ReusableFactor, Step};
+pub use bound::{Bound, ReusableFactor, Step, Target};
 pub use budget::{Budget, Limit};
 pub use cage::{Cage, CageCoordinates};
 pub use embedded::Embedded;

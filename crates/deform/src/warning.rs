@@ -10,7 +10,13 @@ pub struct Warning {
     sentence: String,
     /// The handle that it is about, and the bytes of the sentence that name it.
     handle: Option<(usize, Range<usize>)>,
+    /// For each component that nothing holds: its handles, and the number of its vertices in each. Empty for other
+    /// warnings.
+    unheld: Vec<Vec<(usize, usize)>>,
 }
+
+/// The number of vertices with places that hold a component.
+const HOLDING: usize = 3;
 
 impl Warning {
     /// The sentence that `word` makes with the handle's designation, which it uses once.
@@ -21,7 +27,31 @@ impl Warning {
         Self {
             handle: start.map(|start| (handle, start..start + designation.len())),
             sentence,
+            unheld: Vec::new(),
         }
+    }
+
+    /// A sentence on components that nothing holds; `unheld` gives each component's handles, and the number of its
+    /// vertices in each.
+    pub(crate) fn of_unheld(sentence: String, unheld: Vec<Vec<(usize, usize)>>) -> Self {
+        Self {
+            sentence,
+            handle: None,
+            unheld,
+        }
+    }
+
+    /// Whether the warning is that nothing holds a component that handles move. Vertices with places hold a component,
+    /// so targets can make the warning void.
+    pub fn is_of_unheld(&self) -> bool {
+        !self.unheld.is_empty()
+    }
+
+    /// Whether vertices of the handles in `placed`, which have places, hold every component that the warning names.
+    pub(crate) fn is_void(&self, placed: &[bool]) -> bool {
+        let is_placed = |&&(handle, _): &&(usize, usize)| placed.get(handle).is_some_and(|placed| *placed);
+        let count = |handles: &Vec<(usize, usize)>| handles.iter().filter(is_placed).map(|(_, count)| count).sum();
+        self.is_of_unheld() && self.unheld.iter().map(count).all(|count: usize| count >= HOLDING)
     }
 
     /// The number of the handle that it is about, if it is about one.
@@ -41,7 +71,11 @@ impl Warning {
 
 impl From<String> for Warning {
     fn from(sentence: String) -> Self {
-        Self { sentence, handle: None }
+        Self {
+            sentence,
+            handle: None,
+            unheld: Vec::new(),
+        }
     }
 }
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use pliant_editor::{Beginning, ExampleSource};
-use pliant_io::{Scene, SceneAndDrawn};
+use pliant_io::Scene;
 use pliant_mesh::{Drawn, Model};
 
 use crate::EngineError;
@@ -55,7 +55,7 @@ pub fn from_morph_target(target: &str, loaded: &Loaded, watch: &Watch) -> Result
 fn displacements_to(path: &Path, loaded: &Loaded, watch: &Watch) -> Result<Vec<DVec3>, EngineError> {
     let other = open(path, watch)?;
     let own = loaded.model.rest();
-    let positions = positions_in_pose((path, &other), (&loaded.path, &loaded.scene, &own))?;
+    let positions = positions_in_pose((path, &other.scene, &other.drawn), (&loaded.path, &loaded.scene, &own))?;
     if let Some(vertex) = positions.iter().position(|position| !position.is_finite()) {
         let shown = shown(path);
         let sentence = format!("{shown}: vertex {vertex} has no finite position: give an example without gaps");
@@ -70,16 +70,16 @@ fn displacements_to(path: &Path, loaded: &Loaded, watch: &Watch) -> Result<Vec<D
 /// # Errors
 /// [`EngineError::Example`] if it has other vertices or faces than the file.
 pub fn positions_in_pose(
-    (path, pose): (&Path, &SceneAndDrawn),
+    (path, posed_scene, posed): (&Path, &Scene, &Drawn),
     (file, scene, own): (&Path, &Scene, &Drawn),
 ) -> Result<Vec<DVec3>, EngineError> {
-    let found = pliant_io::positions_in_pose((scene, own), (&pose.scene, &pose.drawn));
+    let found = pliant_io::positions_in_pose((scene, own), (posed_scene, posed));
     found.ok_or_else(|| {
         let counts = |drawn: &Drawn| {
             let (vertices, triangles) = (drawn.file_vertex_count, drawn.triangles.len());
             format!("{vertices} vertices and {triangles} triangles")
         };
-        let (found, expected) = (counts(&pose.drawn), counts(own));
+        let (found, expected) = (counts(posed), counts(own));
         EngineError::Example {
             example: path.to_owned(),
             what: match found == expected {

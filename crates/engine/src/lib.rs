@@ -48,6 +48,7 @@
 
 mod apply;
 pub mod control_mesh;
+mod difference;
 mod edit;
 mod error;
 pub mod examples;
@@ -60,7 +61,10 @@ mod transfer;
 pub mod watch;
 
 pub use apply::{Apply, Prepared, Solved, apply, bind, check_bends, check_not_empty, order, prepare, settle, solved};
+pub use difference::{Compared, differences};
 pub use edit::read_edit;
 pub use error::EngineError;
 pub use loading::{Loaded, is_project, load, load_bytes, open};
-pub use transfer::{Transfer, transfer};
+pub use transfer::{Transfer, transfer, transferred};
+
+pub use pliant_io::{Difference, What};

@@ -2,6 +2,8 @@
 
 use std::time::Instant;
 
+use glam::DVec3;
+use pliant_mesh::{Model, mean_curvatures, mixed_voronoi_areas};
 use serde::Serialize;
 
 /// The effect of an edit. Every number is finite.
@@ -118,6 +120,23 @@ impl Report {
         // A struct of numbers, strings and lists always serialises.
         serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
     }
+}
+
+/// The change of the surface's details as seen from the surface: the root of ∫ (H' − H)² dA over the rest shape, with
+/// the mean curvatures H and H' before and after. It has no unit, and neither a rigid motion nor a turn of a detail
+/// with its surroundings changes it; the edit's own bend counts equally for all methods. `bent` has a position for each
+/// surface vertex.
+pub fn detail_error(model: &Model, bent: &[DVec3]) -> f64 {
+    let (surface, topology) = (&model.surface, &model.topology);
+    let curvatures = |positions: &[DVec3]| mean_curvatures(surface, topology, positions);
+    let areas = mixed_voronoi_areas(surface);
+    let (before, after) = (curvatures(&surface.positions), curvatures(bent));
+    let squared: f64 = areas
+        .iter()
+        .zip(before.iter().zip(&after))
+        .map(|(area, (before, after))| area * (after - before).powi(2))
+        .sum();
+    finite_or(squared.sqrt(), f64::MAX)
 }
 
 /// JSON has no infinity and no NaN: they become `instead`.

@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
+use glam::DVec3;
 use pliant_deform::{DeformationTransfer, Ordering, PosedShape, SolveError};
 use pliant_io::{MorphDeltas, MorphTarget};
-use pliant_mesh::{Drawn, SurfaceVertex, WeldOptions};
+use pliant_mesh::{Drawn, Model, SurfaceVertex, WeldOptions};
 use serde_json::Value;
 
 use crate::apply::{check_not_empty, refused};
@@ -46,35 +47,23 @@ pub fn transfer(job: &Transfer<'_>, watch: &Watch, staging: &Staging) -> Result<
     let inputs = inputs.chain(job.correspondences.map(|path| ("--correspondences", path)));
     files::refuse_shared(("--output", job.output), inputs)?;
     let (source, pose) = (open(job.source, watch)?, open(job.pose, watch)?);
-    let posed = positions_in_pose((job.pose, &pose), (job.source, &source.scene, &source.drawn))?;
+    let posed = positions_in_pose(
+        (job.pose, &pose.scene, &pose.drawn),
+        (job.source, &source.scene, &source.drawn),
+    )?;
     let source = source.drawn;
     let loaded = load(job.target, &job.weld, watch)?;
     let model = &loaded.model;
     check_not_empty(job.target, model)?;
-    let (partners, mut warnings) = partners(job, &source, &loaded, watch)?;
+    let partners = partners(job, &source, &loaded, watch)?;
     watch.refuse_outputs(&[("--output", job.output)], Some(job.target))?;
-
-    let progress = watch.begin("ordering");
-    let ordering = Ordering::of(&model.topology, 1, &progress, &watch.cancel).map_err(|_| EngineError::Interrupted)?;
-    watch.begin("binding");
-    let (surface, topology) = (&model.surface, &model.topology);
-    let bound = DeformationTransfer::bind(surface, topology, &ordering, memory::budget(), &watch.cancel)
-        .map_err(|error| refused(job.target, model, error))?;
-    watch.begin("bending");
     let triangles: Vec<[usize; 3]> = source.triangles.iter().map(|own| own.map(|v| v.index())).collect();
     let posed = PosedShape {
         rest: &source.positions,
         posed: &posed,
         triangles: &triangles,
     };
-    let displacements = bound
-        .pose(&posed, &partners)
-        .map_err(|error: SolveError| EngineError::Solve {
-            file: job.target.to_owned(),
-            source: error.renumbered(|vertex| model.first_file_vertex(SurfaceVertex(vertex)).0),
-        })?;
-    let mut positions = Vec::new();
-    model.drawn_positions(&displacements, &mut positions);
+    let (positions, mut warnings) = transferred(job.target, model, &posed, &partners, watch)?;
 
     let progress = watch.begin("saving");
     let save = SaveAs {
@@ -92,18 +81,49 @@ pub fn transfer(job: &Transfer<'_>, watch: &Watch, staging: &Staging) -> Result<
     Ok(warnings)
 }
 
+/// The positions of a model's drawn vertices in the pose, and warnings as sentences. `partners` gives the triangle of
+/// `posed` for each drawn triangle of the model; refusals name `name`.
+///
+/// # Errors
+/// A surface that can't be bound, or a solution that stays too inaccurate.
+pub fn transferred(
+    name: &Path,
+    model: &Model,
+    posed: &PosedShape<'_>,
+    partners: &[Option<usize>],
+    watch: &Watch,
+) -> Result<(Vec<DVec3>, Vec<String>), EngineError> {
+    let (partners, warnings) = on_surface(partners, model);
+    let progress = watch.begin("ordering");
+    let ordering = Ordering::of(&model.topology, 1, &progress, &watch.cancel).map_err(|_| EngineError::Interrupted)?;
+    watch.begin("binding");
+    let (surface, topology) = (&model.surface, &model.topology);
+    let bound = DeformationTransfer::bind(surface, topology, &ordering, memory::budget(), &watch.cancel)
+        .map_err(|error| refused(name, model, error))?;
+    watch.begin("bending");
+    let displacements = bound
+        .pose(posed, &partners)
+        .map_err(|error: SolveError| EngineError::Solve {
+            file: name.to_owned(),
+            source: error.renumbered(|vertex| model.first_file_vertex(SurfaceVertex(vertex)).0),
+        })?;
+    let mut positions = Vec::new();
+    model.drawn_positions(&displacements, &mut positions);
+    Ok((positions, warnings))
+}
+
 /// The source's triangle for each triangle of the target's surface.
 fn partners(
     job: &Transfer<'_>,
     source: &Drawn,
     loaded: &Loaded,
     watch: &Watch,
-) -> Result<(Vec<Option<usize>>, Vec<String>), EngineError> {
+) -> Result<Vec<Option<usize>>, EngineError> {
     let target = loaded.model.rest();
     if let Some(path) = job.correspondences {
         watch.note_read("--correspondences", path);
     }
-    let of_drawn = match job.correspondences {
+    Ok(match job.correspondences {
         Some(path) => read_correspondences(path, source.triangles.len(), target.triangles.len())?,
         None if target.triangles == source.triangles => (0..source.triangles.len()).map(Some).collect(),
         None => {
@@ -115,19 +135,17 @@ fn partners(
                 source.triangles.len(),
             )));
         }
-    };
-    let of_surface = loaded.model.drawn.triangle_of_surface().iter();
+    })
+}
+
+/// The partner of each triangle of the surface, and a warning about parts without partners.
+fn on_surface(of_drawn: &[Option<usize>], model: &Model) -> (Vec<Option<usize>>, Vec<String>) {
+    let of_surface = model.drawn.triangle_of_surface().iter();
     let partners: Vec<Option<usize>> = of_surface.map(|&drawn| of_drawn[drawn as usize]).collect();
-    let mut has_partner = vec![false; loaded.model.topology.components().len()];
-    for (corners, _) in loaded
-        .model
-        .surface
-        .triangles
-        .iter()
-        .zip(&partners)
-        .filter(|(_, partner)| partner.is_some())
-    {
-        has_partner[loaded.model.topology.component(corners[0]) as usize] = true;
+    let mut has_partner = vec![false; model.topology.components().len()];
+    let paired = model.surface.triangles.iter().zip(&partners);
+    for (corners, _) in paired.filter(|(_, partner)| partner.is_some()) {
+        has_partner[model.topology.component(corners[0]) as usize] = true;
     }
     let resting = has_partner.iter().filter(|has| !**has).count();
     let warnings = (resting > 0).then(|| {
@@ -136,7 +154,7 @@ fn partners(
             has_partner.len()
         )
     });
-    Ok((partners, warnings.into_iter().collect()))
+    (partners, warnings.into_iter().collect())
 }
 
 /// `{"triangles": [[source, target], ..]}`, both numbered from 0 as in the files: for each of the target's triangles that

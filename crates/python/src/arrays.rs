@@ -1,4 +1,4 @@
-//! numpy's arrays in and out. What has the right type is read where it lies and written where it will stay.
+//! numpy's arrays in and out. Arrays of the right type are read and written without a copy.
 
 use bytemuck::{cast_slice, cast_vec};
 use glam::DVec3;
@@ -10,16 +10,16 @@ use pyo3::prelude::*;
 
 use crate::refusal::refused;
 
-/// Whatever numpy makes an array of, as one.
+/// Any value that numpy can make an array of, as an array.
 ///
 /// # Errors
-/// `ValueError` naming `place`, for what it makes none of.
+/// `ValueError` naming `place`, for any other value.
 pub fn array<'py>(any: &Bound<'py, PyAny>, place: &str) -> PyResult<Bound<'py, PyAny>> {
     let array = any.py().import("numpy")?.call_method1("asarray", (any,));
     array.map_err(|error| refused(format!("{place} is no array ({}): give numbers", error.value(any.py()))))
 }
 
-/// The kind of an array's elements, as numpy's `dtype.kind` has it.
+/// The kind of an array's elements, numpy's `dtype.kind`.
 pub fn kind(array: &Bound<'_, PyAny>) -> PyResult<char> {
     array.getattr("dtype")?.getattr("kind")?.extract()
 }
@@ -28,7 +28,7 @@ fn shape(array: &Bound<'_, PyAny>) -> PyResult<Vec<usize>> {
     array.getattr("shape")?.extract()
 }
 
-/// The array with elements of the type `name`, itself where it has them already.
+/// The array with elements of the type `name`; the same array if it already has them.
 fn of_type<'py>(array: &Bound<'py, PyAny>, name: &str) -> PyResult<Bound<'py, PyAny>> {
     let options = pyo3::types::PyDict::new(array.py());
     options.set_item("copy", false)?;
@@ -47,7 +47,7 @@ pub fn points(any: &Bound<'_, PyAny>, place: &str) -> PyResult<Vec<DVec3>> {
     }
     let array = of_type(&array, "float64")?;
     let double: PyReadonlyArray2<'_, f64> = array.extract()?;
-    // A slice alone would do for columns that lie in a row, too.
+    // `as_slice` also succeeds for an array in column order.
     match double.as_slice() {
         Ok(numbers) if double.is_c_contiguous() => Ok(cast_slice::<f64, DVec3>(numbers).to_vec()),
         _ => Ok(rows(double.as_array(), |number| number)),
@@ -102,7 +102,55 @@ fn check(array: &Bound<'_, PyAny>, place: &str, columns: usize, kinds: &str, wha
     )))
 }
 
-/// Numbers of vertices, as they stand: a flat array of them, or a mask of `vertex_count` switches.
+/// A sentence on positions that are not finite, if there are any: the parts that use them can't be solved.
+pub fn not_finite(positions: &[DVec3], place: &str) -> Option<String> {
+    let mut rows = (0..).zip(positions).filter(|(_, position)| !position.is_finite());
+    let (first, DVec3 { x, y, z }) = rows.next()?;
+    let stays = match 1 + rows.count() {
+        1 => ": it stays as it is, without the triangles that use it".to_owned(),
+        count => {
+            format!(", the first of {count} such rows: they stay as they are, without the triangles that use them")
+        }
+    };
+    Some(format!("{place}[{first}] is not finite ({x}, {y}, {z}){stays}"))
+}
+
+/// Refuses positions that are not finite.
+///
+/// # Errors
+/// `ValueError` naming `place` and the first such row.
+pub fn check_finite(positions: &[DVec3], place: &str) -> PyResult<()> {
+    match positions.iter().position(|position| !position.is_finite()) {
+        None => Ok(()),
+        Some(row) => {
+            let DVec3 { x, y, z } = positions[row];
+            Err(refused(format!(
+                "{place}[{row}] is not finite ({x}, {y}, {z}): give finite positions"
+            )))
+        }
+    }
+}
+
+/// An array of the shape `[p, 2]` of whole numbers.
+///
+/// # Errors
+/// `ValueError` naming `place`, for another shape or other elements.
+pub fn pairs(any: &Bound<'_, PyAny>, place: &str) -> PyResult<Vec<[i64; 2]>> {
+    let array = array(any, place)?;
+    if shape(&array)?.contains(&0) {
+        return Ok(Vec::new());
+    }
+    check(&array, place, 2, "iu", "whole numbers")?;
+    let array = of_type(&array, "int64")?;
+    let numbers: PyReadonlyArray2<'_, i64> = array.extract()?;
+    let rows = numbers.as_array();
+    Ok(rows.rows().into_iter().map(|row| [row[0], row[1]]).collect())
+}
+
+/// Numbers of vertices in the given order: from a flat array of them, or from a mask of `vertex_count` switches.
+///
+/// Whole numbers are also a mask if there is one for each vertex and all are 0 or 1: as numbers of vertices they would
+/// name two vertices again and again. For up to two vertices they are numbers.
 ///
 /// # Errors
 /// `ValueError` naming `place`.
@@ -125,13 +173,26 @@ pub fn numbers(any: &Bound<'_, PyAny>, place: &str, vertex_count: usize) -> PyRe
         ([_], 'i' | 'u') => {
             let array = of_type(&array, "int64")?;
             let numbers: PyReadonlyArray1<'_, i64> = array.extract()?;
-            Ok(numbers.as_array().to_vec())
+            let numbers = numbers.as_array();
+            let is_mask =
+                numbers.len() == vertex_count && vertex_count > 2 && numbers.iter().all(|n| matches!(n, 0 | 1));
+            if is_mask {
+                let selected = numbers.iter().zip(0..).filter(|(is, _)| **is == 1);
+                return Ok(selected.map(|(_, number)| number).collect());
+            }
+            Ok(numbers.to_vec())
         }
         _ => Err(refused(format!(
             "{place} is an array of the shape {shape:?} and type {}: give numbers of vertices, a mask, or a selector",
             array.getattr("dtype")?
         ))),
     }
+}
+
+/// Whether a flat list or array has names among its elements, such as "rigid".
+pub fn has_names(any: &Bound<'_, PyAny>) -> PyResult<bool> {
+    let array = array(any, "")?;
+    Ok("UO".contains(kind(&array)?) && shape(&array)?.len() == 1)
 }
 
 /// Real numbers in any shape, in C order, and the shape.
@@ -151,10 +212,10 @@ pub fn reals(any: &Bound<'_, PyAny>, place: &str) -> PyResult<(Vec<usize>, Vec<f
     Ok((shape(&array)?, flat.as_array().to_vec()))
 }
 
-/// Points as an array of the shape `[n, 3]`, in their own memory.
+/// Points as an array of the shape `[n, 3]`, without a copy.
 ///
 /// # Errors
-/// Where numpy is not there.
+/// If numpy is missing.
 pub fn of_points(py: Python<'_>, points: Vec<DVec3>) -> PyResult<Bound<'_, PyArray2<f64>>> {
     let count = points.len();
     PyArray1::from_vec(py, cast_vec::<DVec3, f64>(points)).reshape([count, 3])
@@ -163,13 +224,13 @@ pub fn of_points(py: Python<'_>, points: Vec<DVec3>) -> PyResult<Bound<'_, PyArr
 /// Triangles as an array of the shape `[m, 3]`.
 ///
 /// # Errors
-/// Where numpy is not there.
+/// If numpy is missing.
 pub fn of_triangles<'py>(py: Python<'py>, triangles: &[[DrawnVertex; 3]]) -> PyResult<Bound<'py, PyArray2<u32>>> {
     let corners: Vec<u32> = triangles.iter().flatten().map(|vertex| vertex.0).collect();
     PyArray1::from_vec(py, corners).reshape([triangles.len(), 3])
 }
 
-/// Writes points into an array of the shape `[n, 3]` that is there already, of f64 or f32.
+/// Writes points into an existing array of the shape `[n, 3]`, of f64 or f32.
 ///
 /// # Errors
 /// `ValueError` for another shape or type, or an array that can't be written to.
@@ -190,7 +251,7 @@ pub fn write(points: &[DVec3], out: &Bound<'_, PyAny>) -> PyResult<()> {
     )))
 }
 
-/// Whether the array has the points' shape, and then takes them.
+/// Writes the points into the array if it has their shape; returns whether it has.
 fn fill<T: Element + Copy>(points: &[DVec3], mut out: PyReadwriteArray2<'_, T>, number: impl Fn(f64) -> T) -> bool {
     let mut out = out.as_array_mut();
     if out.dim() != (points.len(), 3) {

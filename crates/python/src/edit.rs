@@ -1,6 +1,6 @@
-//! Arguments as an edit: what `bind` takes are the edit format's members, with arrays of vertices as selections.
+//! Arguments as an edit: those of `bind` are the edit format's members, with arrays of vertices as selections.
 
-use pliant_deform::Method;
+use pliant_deform::Arap;
 use pliant_editor::{EDIT_VERSION, EditFile};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList, PyString, PyTuple};
@@ -10,7 +10,7 @@ use crate::arrays;
 use crate::refusal::refused;
 use crate::values::value;
 
-/// What `bind` takes beside the mesh. All that is `None` has the edit format's default.
+/// The arguments of `bind` beside the mesh. `None` stands for the edit format's default.
 pub struct Arguments<'py> {
     /// A name, or a name and options.
     pub method: Option<Bound<'py, PyAny>>,
@@ -28,16 +28,26 @@ pub struct Arguments<'py> {
     pub loose: Option<Bound<'py, PyAny>>,
 }
 
+/// An edit, and the order of its handles' vertices.
+pub struct Edit {
+    /// The edit in the edit format.
+    pub file: EditFile,
+    /// Each handle's vertices in the order of the array that named them; `None` for a selector.
+    pub orders: Vec<Option<Vec<i64>>>,
+}
+
 impl Arguments<'_> {
-    /// The edit that they describe, on a mesh of `vertex_count` vertices.
+    /// The arguments' edit on a mesh of `vertex_count` vertices.
     ///
     /// # Errors
-    /// `ValueError`, as the edit format refuses.
-    pub fn edit(&self, vertex_count: usize) -> PyResult<EditFile> {
+    /// `ValueError` with the edit format's refusal.
+    pub fn edit(&self, vertex_count: usize) -> PyResult<Edit> {
         let mut members = Map::new();
+        let mut orders = Vec::new();
         members.insert("version".to_owned(), EDIT_VERSION.into());
         let method = match &self.method {
-            None => json!({ "name": Method::default().name() }),
+            // The options follow.
+            None => json!({ "name": "arap" }),
             Some(method) => match method.cast::<PyString>() {
                 Ok(name) => json!({ "name": name.to_cow()? }),
                 Err(_) => value(method, "method")?,
@@ -50,7 +60,10 @@ impl Arguments<'_> {
             }
         }
         if let Some(handles) = &self.handles {
-            members.insert("handles".to_owned(), handle_entries(handles, vertex_count)?);
+            members.insert(
+                "handles".to_owned(),
+                handle_entries(handles, vertex_count, &mut orders)?,
+            );
         }
         for (name, field) in [("stiffness", &self.stiffness), ("continuity", &self.continuity)] {
             if let Some(field) = field {
@@ -61,12 +74,15 @@ impl Arguments<'_> {
             members.insert("loose".to_owned(), value(loose, "loose")?);
         }
         let mut edit = EditFile::from_value(&Value::Object(members)).map_err(refused)?;
+        if self.method.is_none() {
+            edit.method = Arap::first_choice().into();
+        }
         refuse_files(&mut edit)?;
-        Ok(edit)
+        Ok(Edit { file: edit, orders })
     }
 }
 
-/// Cages and examples come as numbers: a file that a name would lead to has no folder to be sought in.
+/// Refuses names of files: cages and examples are given as numbers, because a name has no folder to start from.
 fn refuse_files(edit: &mut EditFile) -> PyResult<()> {
     let named = edit.attachment_files().into_iter().map(|(name, _)| name).next();
     let examples = edit.examples_mut().any(|example| {
@@ -83,27 +99,41 @@ fn refuse_files(edit: &mut EditFile) -> PyResult<()> {
 
 /// A selection: the edit format's selector, or an array of vertices or of switches.
 fn selector(any: &Bound<'_, PyAny>, place: &str, vertex_count: usize) -> PyResult<Value> {
-    if any.is_instance_of::<PyString>() || any.is_instance_of::<PyDict>() {
-        return value(any, place);
-    }
-    Ok(json!({ "vertices": arrays::numbers(any, place, vertex_count)? }))
+    Ok(match numbers(any, place, vertex_count)? {
+        Some(numbers) => json!({ "vertices": numbers }),
+        None => value(any, place)?,
+    })
 }
 
-/// Handles by name, or in a row.
-fn handle_entries(handles: &Bound<'_, PyAny>, vertex_count: usize) -> PyResult<Value> {
+/// The vertices that an array names, in its order; `None` for a selector.
+fn numbers(any: &Bound<'_, PyAny>, place: &str, vertex_count: usize) -> PyResult<Option<Vec<i64>>> {
+    if any.is_instance_of::<PyString>() || any.is_instance_of::<PyDict>() {
+        return Ok(None);
+    }
+    arrays::numbers(any, place, vertex_count).map(Some)
+}
+
+/// Handles by name, or in a row; adds the order of each handle's vertices.
+fn handle_entries(
+    handles: &Bound<'_, PyAny>,
+    vertex_count: usize,
+    orders: &mut Vec<Option<Vec<i64>>>,
+) -> PyResult<Value> {
     let mut entries = Vec::new();
     if let Ok(named) = handles.cast::<PyDict>() {
         for (name, handle) in named {
             let name: String = name
                 .extract()
                 .map_err(|_| refused(format!("handles has the key {name}: a handle's name is a string")))?;
-            let mut entry = handle_entry(&handle, &format!("handles[{name:?}]"), vertex_count)?;
+            let (mut entry, order) = handle_entry(&handle, &format!("handles[{name:?}]"), vertex_count)?;
+            orders.push(order);
             entry.insert("name".to_owned(), name.into());
             entries.push(Value::Object(entry));
         }
     } else if handles.is_instance_of::<PyList>() || handles.is_instance_of::<PyTuple>() {
         for (number, handle) in handles.try_iter()?.enumerate() {
-            let entry = handle_entry(&handle?, &format!("handles[{number}]"), vertex_count)?;
+            let (entry, order) = handle_entry(&handle?, &format!("handles[{number}]"), vertex_count)?;
+            orders.push(order);
             entries.push(Value::Object(entry));
         }
     } else {
@@ -115,9 +145,13 @@ fn handle_entries(handles: &Bound<'_, PyAny>, vertex_count: usize) -> PyResult<V
     Ok(Value::Array(entries))
 }
 
-/// A selection, or a dict with `select` and what else a handle has.
-fn handle_entry(handle: &Bound<'_, PyAny>, place: &str, vertex_count: usize) -> PyResult<Map<String, Value>> {
+/// A handle's members, and its vertices if an array names them.
+type HandleEntry = (Map<String, Value>, Option<Vec<i64>>);
+
+/// A selection, or a dict with `select` and a handle's other members.
+fn handle_entry(handle: &Bound<'_, PyAny>, place: &str, vertex_count: usize) -> PyResult<HandleEntry> {
     let mut entry = Map::new();
+    let mut order = None;
     match handle.cast::<PyDict>() {
         Ok(members) if members.contains("select")? => {
             for (name, member) in members {
@@ -126,7 +160,10 @@ fn handle_entry(handle: &Bound<'_, PyAny>, place: &str, vertex_count: usize) -> 
                     .map_err(|_| refused(format!("{place} has the member {name}: names are strings")))?;
                 let at = format!("{place}.{name}");
                 let member = match &*name {
-                    "select" => selector(&member, &at, vertex_count)?,
+                    "select" => {
+                        order = numbers(&member, &at, vertex_count)?;
+                        selector(&member, &at, vertex_count)?
+                    }
                     "transform" => {
                         return Err(refused(format!(
                             "{place} has a `transform`: leave it out, and give it to `step`"
@@ -138,10 +175,11 @@ fn handle_entry(handle: &Bound<'_, PyAny>, place: &str, vertex_count: usize) -> 
             }
         }
         _ => {
+            order = numbers(handle, place, vertex_count)?;
             entry.insert("select".to_owned(), selector(handle, place, vertex_count)?);
         }
     }
-    Ok(entry)
+    Ok((entry, order))
 }
 
 /// The edit format's list or number, or an array with a value for each vertex.
@@ -152,6 +190,12 @@ fn field_entries(field: &Bound<'_, PyAny>, place: &str) -> PyResult<Value> {
     };
     if is_list_of_entries {
         return value(field, place);
+    }
+    if place == "stiffness" && field.cast::<PyString>().is_ok_and(|name| name == "rigid") {
+        return Ok(json!([{ "select": "all", "value": "rigid" }]));
+    }
+    if place == "stiffness" && arrays::has_names(field)? {
+        return Ok(json!([{ "per_vertex": value(field, place)? }]));
     }
     let (shape, numbers) = arrays::reals(field, place)?;
     match shape[..] {
@@ -178,7 +222,7 @@ fn field_value(number: f64, field: &str, place: &str) -> PyResult<Value> {
     finite(number, place).map(|number| json!(number))
 }
 
-/// JSON has no other numbers.
+/// JSON has only finite numbers.
 fn finite(number: f64, place: &str) -> PyResult<f64> {
     match number.is_finite() {
         true => Ok(number),

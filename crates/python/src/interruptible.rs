@@ -1,4 +1,4 @@
-//! Long work without Python's lock, so that other threads run on, and which Ctrl-C stops.
+//! Long work without Python's lock: other threads run meanwhile, and Ctrl-C stops it.
 
 use std::panic;
 use std::sync::mpsc::{RecvTimeoutError, channel};
@@ -11,21 +11,21 @@ use rayon::ThreadPool;
 
 use crate::pool::pool;
 
-/// How often Python is asked whether a signal has come.
+/// The interval between checks for signals.
 const PATIENCE: Duration = Duration::from_millis(50);
 
 /// Runs a short job without Python's lock. It gets the pool for its loops, and is not on it: a lock that it takes must
 /// not be held on the pool, where a thread that waits for a loop's end may begin another job.
 ///
 /// # Errors
-/// Where there are no threads.
+/// If there are no threads.
 pub fn detached<T: Send>(py: Python<'_>, job: impl FnOnce(&ThreadPool) -> T + Send) -> PyResult<T> {
     let pool = pool()?;
     Ok(py.detach(|| job(&pool)))
 }
 
-/// Runs a long job in a thread of its own, without Python's lock; like [`detached`] it gets the pool. Meanwhile Python's
-/// main thread sees signals: Ctrl-C raises the flag that the job gets, and once the job has ended its exception goes on.
+/// Runs a long job in its own thread, without Python's lock; like [`detached`] it gets the pool. Meanwhile Python's
+/// main thread checks signals: Ctrl-C sets the job's flag, and the exception is raised after the job has ended.
 ///
 /// # Errors
 /// The exception of a signal's handler, `KeyboardInterrupt` by default.
@@ -38,7 +38,7 @@ pub fn interruptible<T: Send>(py: Python<'_>, job: impl FnOnce(&ThreadPool, &Can
             let (pool, flag) = (&*pool, &cancel);
             let worker = scope.spawn(move || {
                 let result = job(pool, flag);
-                // Whoever waits is there until this thread ends.
+                // The receiver lives until this thread ends.
                 let _ = done.send(());
                 result
             });

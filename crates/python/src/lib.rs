@@ -2,23 +2,31 @@
 //!
 //! # This crate
 //!
-//! What is here the package `pliant` re-exports, and its docstrings and stubs (`python/pliant/__init__.pyi`) say it to
-//! those who write Python.
+//! The package `pliant` re-exports this module, and its docstrings and stubs (`python/pliant/__init__.pyi`) document it
+//! for people who write Python.
 //!
-//! An edit is put together as the edit format has it (`edit`), so that methods, options, selections and refusals are
-//! the same; only the handles' transforms come later, with every step. Whatever takes long runs without Python's lock
-//! and stops at Ctrl-C (`interruptible`).
+//! `edit` builds an edit in the edit format, so that methods, options, selections and refusals are the same; only the
+//! handles' targets come later, with every step. Long calls run without Python's lock and stop at Ctrl-C
+//! (`interruptible`).
 
 mod arrays;
 mod bound;
+mod compare;
+mod compared;
 mod edit;
 mod interruptible;
 mod mesh;
 mod methods;
+mod origin;
 mod pool;
 mod refusal;
-mod transforms;
+mod rows;
+mod shape;
+mod targets;
+mod transfer;
 mod values;
+mod warned;
+mod welded;
 
 use pyo3::pymodule;
 
@@ -27,9 +35,16 @@ mod native {
     #[pymodule_export]
     use super::bound::{BoundMesh, bind};
     #[pymodule_export]
+    use super::compare::compare;
+    #[pymodule_export]
+    use super::compared::{diff, distortion};
+    #[pymodule_export]
     use super::mesh::{Mesh, load, save};
     #[pymodule_export]
     use super::methods::methods;
+
+    #[pymodule_export]
+    use super::transfer::transfer;
 
     #[pymodule_export]
     #[expect(non_upper_case_globals, reason = "Python's name for it")]

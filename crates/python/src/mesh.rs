@@ -1,4 +1,4 @@
-//! Files: read with everything in them, and saved with new positions.
+//! Files, read with their whole contents and saved with new positions.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -16,45 +16,51 @@ use crate::arrays;
 use crate::bound::{BoundMesh, bind_model};
 use crate::edit::Arguments;
 use crate::interruptible::interruptible;
+use crate::origin::Origin;
 use crate::refusal::{of_engine, refused};
 use crate::values::weld_options;
 
-/// A file that was read: its shape as arrays, and all else that is in it, kept for `save`.
+#[doc = include_str!(concat!(env!("OUT_DIR"), "/Mesh.txt"))]
 #[pyclass(frozen, module = "pliant")]
 pub struct Mesh {
     loaded: Arc<Loaded>,
 }
 
+impl Mesh {
+    /// The file.
+    pub fn loaded(&self) -> &Arc<Loaded> {
+        &self.loaded
+    }
+}
+
 #[pymethods]
 impl Mesh {
-    /// The vertices in world space, an array of the shape (n, 3). A glTF's vertex that several nodes show stands here
-    /// once for each.
+    #[doc = include_str!(concat!(env!("OUT_DIR"), "/Mesh.vertices.txt"))]
     #[getter]
     fn vertices<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         arrays::of_points(py, self.loaded.model.rest_positions())
     }
 
-    /// The triangles, an array of the shape (m, 3): rows of `vertices`. Polygons are cut into triangles.
+    #[doc = include_str!(concat!(env!("OUT_DIR"), "/Mesh.faces.txt"))]
     #[getter]
     fn faces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u32>>> {
         arrays::of_triangles(py, &self.loaded.model.drawn_triangles())
     }
 
-    /// The file's own number of each row of `vertices`: what selections name. They count up unless a glTF shows a
-    /// vertex several times.
+    #[doc = include_str!(concat!(env!("OUT_DIR"), "/Mesh.file_vertices.txt"))]
     #[getter]
     fn file_vertices<'py>(&self, py: Python<'py>) -> Bound<'py, numpy::PyArray1<u32>> {
         let numbers = self.loaded.model.drawn.file_vertices().map(|vertex| vertex.0);
         numpy::PyArray1::from_iter(py, numbers)
     }
 
-    /// Where it was read from.
+    #[doc = include_str!(concat!(env!("OUT_DIR"), "/Mesh.path.txt"))]
     #[getter]
     fn path(&self) -> PathBuf {
         self.loaded.path.clone()
     }
 
-    /// What is wrong with the mesh, in sentences; none for a clean, closed, connected one.
+    #[doc = include_str!(concat!(env!("OUT_DIR"), "/Mesh.findings.txt"))]
     #[getter]
     fn findings(&self) -> Vec<String> {
         let mut said = self.loaded.scene.notes().to_vec();
@@ -62,7 +68,7 @@ impl Mesh {
         said
     }
 
-    /// Binds the file's mesh, as `pliant.bind` does with arrays.
+    #[doc = include_str!(concat!(env!("OUT_DIR"), "/Mesh.bind.txt"))]
     #[pyo3(signature = (*, handles=None, fixed=None, region=None, stiffness=None, continuity=None, loose=None, method=None))]
     #[expect(clippy::too_many_arguments, reason = "they are the edit format's members, by name")]
     fn bind<'py>(
@@ -88,7 +94,7 @@ impl Mesh {
         let edit = arguments.edit(self.loaded.model.drawn.file_vertex_count())?;
         let loaded = &*self.loaded;
         interruptible(py, |pool, cancel| {
-            pool.install(|| bind_model(&loaded.path, Arc::clone(&loaded.model), &edit, cancel))
+            pool.install(|| bind_model(Origin::File(&loaded.path), Arc::clone(&loaded.model), &edit, cancel))
         })?
     }
 
@@ -100,8 +106,7 @@ impl Mesh {
     }
 }
 
-/// Reads a mesh from a glTF, GLB, OBJ, PLY, STL or OFF file. Vertices closer than `weld`, in the file's units, are
-/// joined; without it, the distance follows from the mesh.
+#[doc = include_str!(concat!(env!("OUT_DIR"), "/load.txt"))]
 #[pyfunction]
 #[pyo3(signature = (path, *, weld=None))]
 pub fn load(py: Python<'_>, path: PathBuf, weld: Option<f64>) -> PyResult<Mesh> {
@@ -115,11 +120,7 @@ pub fn load(py: Python<'_>, path: PathBuf, weld: Option<f64>) -> PyResult<Mesh> 
     })
 }
 
-/// Saves a mesh with new positions of its vertices, in the format that the path's extension names.
-///
-/// Only the numbers of moved vertices differ from the file that was read. The file is written beside its place and read
-/// back before it replaces anything, so that on any error the old one is still there. Returns what a person should
-/// know, as sentences.
+#[doc = include_str!(concat!(env!("OUT_DIR"), "/save.txt"))]
 #[pyfunction]
 #[pyo3(signature = (path, mesh, vertices=None))]
 pub fn save(

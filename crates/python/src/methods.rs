@@ -1,12 +1,10 @@
-//! The methods as Python sees them: their declarations as dicts.
+//! The methods' declarations as dicts.
 
 use pliant_deform::{METHODS, MethodDeclaration, OptionKind, OptionValue};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// The methods by name, each with its title, when to take it, and its options with defaults, values, units and help.
-///
-/// The names are those of the edit format: `bind(method={"name": "arap", "energy": "smooth"})`.
+#[doc = include_str!(concat!(env!("OUT_DIR"), "/methods.txt"))]
 #[pyfunction]
 pub fn methods(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     let all = PyDict::new(py);

@@ -1,4 +1,4 @@
-//! The threads that long loops run on.
+//! The threads of long loops.
 
 use std::mem;
 use std::process;
@@ -8,16 +8,16 @@ use pyo3::PyResult;
 use pyo3::exceptions::PyRuntimeError;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-/// The pool of the process of this number.
+/// A pool, and the number of its process.
 static POOL: Mutex<Option<(u32, Arc<ThreadPool>)>> = Mutex::new(None);
 
-/// The process's pool: as many threads as the machine has processors, or as the variable `RAYON_NUM_THREADS` says.
+/// The process's pool: a thread for each processor, or as many as the variable `RAYON_NUM_THREADS` says.
 ///
 /// Rayon's own global pool would hang in a process that Python's `multiprocessing` forked, because no thread lives on
 /// there: such a process gets a pool of its own.
 ///
 /// # Errors
-/// `RuntimeError` where the system gives no threads.
+/// `RuntimeError` if the system gives no threads.
 pub fn pool() -> PyResult<Arc<ThreadPool>> {
     let own = process::id();
     let mut held = POOL.lock().unwrap_or_else(PoisonError::into_inner);
@@ -32,7 +32,7 @@ pub fn pool() -> PyResult<Arc<ThreadPool>> {
         ))
     })?;
     let pool = Arc::new(pool);
-    // The threads of a pool from before a fork can't be told to end: they are not here.
+    // The threads of a pool from before a fork can't be ended: this process does not have them.
     mem::forget(held.replace((own, Arc::clone(&pool))));
     Ok(pool)
 }

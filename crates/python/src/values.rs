@@ -1,4 +1,4 @@
-//! Python's values as the edit format's: numbers, names, lists and objects.
+//! Python's values as values of the edit format: numbers, names, lists and objects.
 
 use pliant_mesh::WeldOptions;
 use pyo3::prelude::*;
@@ -7,13 +7,13 @@ use serde_json::{Map, Number, Value};
 
 use crate::refusal::refused;
 
-/// What the edit format nests, and a little more. A list that holds itself ends here.
+/// The depth of the edit format's values, and a little more. It stops a list that contains itself.
 const DEPTH: usize = 32;
 
 /// The value at `place`, e.g. `fixed`. Arrays and numpy's numbers become lists and numbers.
 ///
 /// # Errors
-/// `ValueError` for what has no counterpart.
+/// `ValueError` for a value without a counterpart.
 pub fn value(any: &Bound<'_, PyAny>, place: &str) -> PyResult<Value> {
     at_depth(any, place, DEPTH)
 }
@@ -71,10 +71,10 @@ fn at_depth(any: &Bound<'_, PyAny>, place: &str, depth: usize) -> PyResult<Value
     )))
 }
 
-/// How vertices are joined, if a distance is given.
+/// The welding of vertices, with the distance if one is given.
 ///
 /// # Errors
-/// `ValueError` if it is none.
+/// `ValueError` if it is not a distance.
 pub fn weld_options(weld: Option<f64>) -> PyResult<WeldOptions> {
     if weld.is_some_and(|distance| !(distance.is_finite() && distance >= 0.0)) {
         return Err(refused("weld is not a distance: give a number from 0"));

@@ -53,7 +53,10 @@ def test_transforms_mean_the_same_in_every_form(mesh, ends):
         matrix.tolist(),
         [matrix],
         {"top": matrix},
+        matrix[:3],
+        {"top": matrix[:3].tolist()},
         (matrix[:3, :3], matrix[:3, 3]),
+        (matrix[:3, :3], matrix[:3, 3:]),
         {"top": (matrix[:3, :3], matrix[:3, 3])},
         {"matrix": matrix.T.ravel()},
         {"top": {"matrix": matrix.T.ravel().tolist()}},
@@ -61,13 +64,17 @@ def test_transforms_mean_the_same_in_every_form(mesh, ends):
         assert np.array_equal(bound.step(form), expected), form
     turned = bound.step({"rotation": [0, 0, 1, 1], "pivot": [0, 0, 0], "translation": [0.3, 0.1, 0]})
     assert np.abs(turned - expected).max() < 1e-12
+    moved = np.eye(4)
+    moved[:3, 3] = [0.1, 0, 0.2]
+    for form in [moved[:3, 3], moved[:3, 3:], [0.1, 0, 0.2], {"top": [0.1, 0, 0.2]}, {"translation": [0.1, 0, 0.2]}]:
+        assert np.array_equal(bound.step(form), bound.step(moved)), form
 
 
 def test_selections_mean_the_same_in_every_form(mesh, ends):
     vertices = mesh[0]
     mask = vertices[:, 1] < 0.1
     expected = pliant.bind(*mesh, **ends).step(quarter_turn())
-    for fixed in [mask, list(ends["fixed"]), ends["fixed"].astype(np.uint8), {"slab": {"axis": "y", "from": 0, "to": 0.1}}]:
+    for fixed in [mask, mask.astype(int), mask.astype(np.uint8).tolist(), list(ends["fixed"]), ends["fixed"].astype(np.uint8), {"slab": {"axis": "y", "from": 0, "to": 0.1}}]:
         bent = pliant.bind(*mesh, handles=ends["handles"], fixed=fixed).step(quarter_turn())
         assert np.array_equal(bent, expected)
 
@@ -136,7 +143,7 @@ def test_infinite_stiffness_moves_as_one_body(mesh, ends, method):
 
 def test_stiffness_soft_handles_continuity_and_loose_parts_change_the_shape(mesh, ends):
     vertices, faces = mesh
-    plain = pliant.bind(*mesh, **ends).step(quarter_turn())
+    plain = pliant.bind(*mesh, **ends, method="bilaplacian").step(quarter_turn())
     stiffness = np.where(vertices[:, 1] > 0.5, 50.0, 1.0)
     top = ends["handles"]["top"]
     for change in [
@@ -147,7 +154,7 @@ def test_stiffness_soft_handles_continuity_and_loose_parts_change_the_shape(mesh
         {"handles": [{"select": top, "continuity": 0}]},
         {"region": vertices[:, 1] > 0.4},
     ]:
-        bent = pliant.bind(*mesh, **{**ends, **change}).step([quarter_turn()])
+        bent = pliant.bind(*mesh, **{**ends, **change}, method="bilaplacian").step([quarter_turn()])
         assert np.abs(bent - plain).max() > 1e-3, change
     both = np.concatenate([vertices, vertices + [0.5, 0, 0]])
     twice = np.concatenate([faces, faces + len(vertices)])
@@ -155,6 +162,49 @@ def test_stiffness_soft_handles_continuity_and_loose_parts_change_the_shape(mesh
     assert np.array_equal(rests[len(vertices):], both[len(vertices):])
     follows = pliant.bind(both, twice, **ends).step(quarter_turn())
     assert np.abs(follows[len(vertices):] - both[len(vertices):]).max() > 0.1
+
+
+def test_without_a_method_it_is_the_window_s_first_choice(mesh, ends):
+    first_choice = {name: own["first_choice"] for name, own in pliant.methods()["arap"]["options"].items()}
+    bound = pliant.bind(*mesh, **ends)
+    assert bound.method == "arap" and first_choice["energy"] == "smooth"
+    expected = pliant.bind(*mesh, **ends, method={"name": "arap", **first_choice}).step(quarter_turn())
+    assert np.array_equal(bound.step(quarter_turn()), expected)
+
+
+def test_rigid_is_a_stiffness(mesh, ends):
+    middle = np.abs(mesh[0][:, 1] - 0.5) < 0.15
+    expected = pliant.bind(*mesh, **ends, stiffness=np.where(middle, np.inf, 1.0)).step(quarter_turn())
+    for stiffness in (["rigid" if is_in else 1 for is_in in middle], [{"select": {"vertices": np.flatnonzero(middle)}, "value": "rigid"}]):
+        assert np.array_equal(pliant.bind(*mesh, **ends, stiffness=stiffness).step(quarter_turn()), expected)
+    everything = pliant.bind(*mesh, handles=ends["handles"], stiffness="rigid").step(quarter_turn())
+    assert np.abs(everything - (mesh[0] @ quarter_turn()[:3, :3].T + quarter_turn()[:3, 3])).max() < 1e-12
+
+
+def test_a_mask_of_whole_numbers_is_one_only_where_it_can_be_no_list(mesh, ends):
+    triangle = np.eye(3)
+    moved = pliant.bind(triangle, [], handles=[[0, 1]], method="mls").step([[1.0, 0, 0]])
+    assert np.allclose(moved, triangle + [1, 0, 0])
+    by_mask = pliant.bind(triangle, [], handles=[[1, 1, 0]], method="mls")
+    assert np.array_equal(by_mask.step([[1.0, 0, 0]]), moved)
+    two = pliant.bind(triangle[:2], [], handles=[[0, 1]], method="mls").step([[1.0, 0, 0]])
+    assert np.allclose(two, triangle[:2] + [1, 0, 0])
+
+
+def test_positions_that_are_not_finite_are_told_by_array_and_row(mesh, ends):
+    vertices, faces = mesh
+    points = np.concatenate([vertices, np.full((2, 3), [0, np.nan, 1])])
+    with pytest.warns(UserWarning, match=r"vertices\[480\] is not finite \(0, NaN, 1\), the first of 2 such rows: they stay"):
+        bound = pliant.bind(points, faces, **ends)
+    assert np.isfinite(bound.step(quarter_turn())[:480]).all()
+    targets = vertices[ends["handles"]["top"]].copy()
+    targets[7, 1] = np.nan
+    with pytest.raises(ValueError, match=r'transforms\["top"\] is not finite at row 7'):
+        bound.step({"top": targets})
+    stiffness = np.ones(len(vertices))
+    stiffness[5] = np.nan
+    with pytest.raises(ValueError, match=r"stiffness\[5\] is NaN"):
+        pliant.bind(vertices, faces, **ends, stiffness=stiffness)
 
 
 def test_points_without_faces_are_bent_by_methods_of_space(mesh, ends):
@@ -188,7 +238,7 @@ NAN = float("nan")
         ({"method": {"name": "arap", "energie": "smooth"}}, "did you mean `energy`"),
         ({"method": {"name": "arap", "tolerance": 7}}, "method.tolerance is 7"),
         ({"method": 3}, "method"),
-        ({"handles": {"top": [9999]}}, "names vertex 9999, but the file has 480 vertices"),
+        ({"handles": {"top": [9999]}}, "names vertex 9999, but there are 480 vertices"),
         ({"handles": {"top": [-1]}}, "handles.*-1"),
         ({"handles": {"top": [0.5]}}, "float64.*give numbers of vertices"),
         ({"handles": {"top": np.ones(7, bool)}}, "a mask of 7 values, but there are 480"),
@@ -200,7 +250,7 @@ NAN = float("nan")
         ({"handles": {"top": {"select": [470], "soft": -1}}}, "soft is -1"),
         ({"fixed": {"slap": {}}}, "slap"),
         ({"fixed": object()}, "fixed is an array"),
-        ({"stiffness": np.ones(7)}, "7 values, but the file has 480 vertices"),
+        ({"stiffness": np.ones(7)}, "7 values, but there are 480 vertices"),
         ({"stiffness": np.zeros(480)}, "stiffness"),
         ({"stiffness": np.full(480, NAN)}, r"stiffness\[0\] is NaN"),
         ({"stiffness": "hard"}, "stiffness is of the type"),
@@ -223,7 +273,7 @@ def test_what_is_refused_is_named_with_its_remedy(mesh, ends, change, said):
         (np.eye(4)[:, :3], [[0, 1, -1]], "names vertex -1"),
         (np.eye(4)[:, :3], [[0, 1, 2, 3]], r"faces is an array of the shape \[1, 4\]"),
         (np.eye(4)[:, :3], [[0.0, 1.0, 2.0]], "give whole numbers"),
-        (np.zeros((0, 3)), [], "nothing to edit|selects no vertex"),
+        (np.zeros((0, 3)), [], "vertices has no rows, so there is nothing to bend"),
     ],
 )
 def test_meshes_that_are_none_are_refused(vertices, faces, said):
@@ -235,7 +285,8 @@ def test_meshes_that_are_none_are_refused(vertices, faces, said):
     "transforms, said",
     [
         ({"bottom": np.eye(4)}, '"bottom", which there is not: known are "top"'),
-        ({"top": np.eye(3)}, r'transforms\["top"\] is no transform'),
+        ({"top": np.eye(3)}, r'transforms\["top"\] has 3 positions, but the handle has 48 vertices'),
+        ({"top": np.eye(2)}, r'transforms\["top"\] is no transform .*\[2, 2\].*a 3×4 or 4×4 matrix'),
         ([np.eye(4), np.eye(4)], "2 entries, but there are 1 handles"),
         ([], "0 entries"),
         ({"top": np.zeros((4, 4))}, "last row"),
@@ -299,8 +350,8 @@ def test_other_threads_run_while_a_mesh_is_bound():
 
 def test_threads_may_share_a_bound_mesh(mesh, ends):
     bound = pliant.bind(*mesh, **ends, method="arap")
-    expected = {way: pliant.bind(*mesh, **ends).step(quarter_turn((way, 0, 0))) for way in (0.1, 0.2)}
-    linear = pliant.bind(*mesh, **ends)
+    expected = {way: pliant.bind(*mesh, **ends, method="bilaplacian").step(quarter_turn((way, 0, 0))) for way in (0.1, 0.2)}
+    linear = pliant.bind(*mesh, **ends, method="bilaplacian")
     wrong = []
 
     def work(way):

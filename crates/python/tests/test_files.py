@@ -1,5 +1,6 @@
 """Files: read, bent like on the command line, and saved with their whole content."""
 
+import errno
 import json
 import os
 import subprocess
@@ -76,8 +77,14 @@ def test_other_formats_are_written_and_read(tmp_path, extension):
 
 
 def test_files_that_are_none_are_refused_and_nothing_is_replaced(tmp_path):
-    with pytest.raises(OSError, match="no such file"):
+    with pytest.raises(FileNotFoundError, match="no such file") as missing:
         pliant.load(tmp_path / "none.glb")
+    assert missing.value.filename == os.fspath(tmp_path / "none.glb")
+    assert missing.value.errno == errno.ENOENT
+    with pytest.raises(IsADirectoryError):
+        (tmp_path / "folder.glb").mkdir()
+        pliant.load(tmp_path / "folder.glb")
+    (tmp_path / "folder.glb").rmdir()
     (tmp_path / "broken.glb").write_bytes(b"nothing")
     with pytest.raises(ValueError, match="broken.glb"):
         pliant.load(tmp_path / "broken.glb")
@@ -94,7 +101,7 @@ def test_files_that_are_none_are_refused_and_nothing_is_replaced(tmp_path):
         with pytest.raises(ValueError, match=said):
             pliant.save(kept, mesh, wrong)
         assert kept.read_bytes() == b"kept"
-    with pytest.raises(OSError, match="no such file or folder"):
+    with pytest.raises(FileNotFoundError, match="no such file or folder"):
         pliant.save(tmp_path / "no" / "folder.glb", mesh)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["broken.glb", "kept.glb"]
 

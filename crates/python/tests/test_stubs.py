@@ -2,10 +2,35 @@
 
 import ast
 import inspect
+import json
+import pydoc
+import shutil
+import subprocess
 from pathlib import Path
+
+import pytest
 
 import pliant
 from conftest import METHODS
+
+USE = """
+import numpy as np
+
+import pliant
+
+vertices, faces = np.zeros((4, 3)), np.array([[0, 1, 2]])
+bound = pliant.bind(
+    vertices, faces, handles={"tip": [0], "side": {"select": np.array([1, 0, 0, 0]), "soft": 1.0}}, stiffness="rigid"
+)
+bent = bound.step({"tip": np.zeros((1, 3)), "side": (np.eye(3), [0, 0, 1])})
+single = bound.step([np.eye(4)[:3], [0.0, 1.0, 0.0]], out=np.empty((4, 3), np.float32))
+mesh = (vertices, faces)
+posed = pliant.transfer(mesh, bent, pliant.load("target.glb"), correspondences=[[0, 0]])
+stretch = pliant.distortion(mesh, bent)["edge_stretch_mean"] + 1.0
+sentences = [one["sentence"] for one in pliant.diff("a.glb", pliant.load("b.glb"))]
+outcomes = pliant.compare(mesh, {"tip": np.eye(4)}, methods=["arap", {"name": "rbf"}], handles={"tip": [0]})
+ratio = outcomes["arap"].get("detail_error_ratio")
+"""
 
 STUBS = ast.parse((Path(pliant.__file__).parent / "__init__.pyi").read_text())
 
@@ -35,6 +60,45 @@ def test_every_function_and_member_is_in_the_stubs_with_its_parameters():
             assert parameters(stubs[name]) == list(inspect.signature(found).parameters), name
         if name != "__version__":
             assert inspect.getdoc(found), name
+
+
+def documented(body, of=""):
+    """Every docstring of the stubs, by its function's, class's or member's name."""
+    for node in body:
+        if isinstance(node, (ast.FunctionDef, ast.ClassDef)):
+            if ast.get_docstring(node):
+                yield of + node.name, ast.get_docstring(node)
+            if isinstance(node, ast.ClassDef):
+                yield from documented(node.body, f"{node.name}.")
+
+
+def test_help_shows_the_stub_s_text():
+    said = dict(documented(STUBS.body))
+    for name, text in said.items():
+        found = pliant
+        for part in name.split("."):
+            found = getattr(found, part, None)
+        if found is not None:
+            assert inspect.getdoc(found) == text, name
+    for name in ("bind", "load", "save", "transfer", "compare", "distortion", "diff", "Mesh.bind", "Bound.step"):
+        assert said[name].count(":param") >= 2 or name in ("load", "save", "Mesh.bind"), name
+    shown = pydoc.render_doc(pliant.bind, renderer=pydoc.plaintext)
+    for part in ("vertices, faces, *, handles=None", ":param stiffness:", "shape (n, 3)", "By default {"):
+        assert part in shown
+
+
+@pytest.mark.parametrize("checker", [["mypy", "--strict"], ["pyright"]])
+def test_the_stubs_are_clean_under_type_checkers(checker, tmp_path):
+    if not shutil.which(checker[0]):
+        pytest.skip(f"{checker[0]} is not installed: pip install {checker[0]}")
+    (tmp_path / "use.py").write_text(USE)
+    (tmp_path / "pyrightconfig.json").write_text(json.dumps({"typeCheckingMode": "strict", "include": ["use.py"]}))
+    package = tmp_path / "pliant"
+    package.mkdir()
+    for name in ("__init__.pyi", "py.typed"):
+        shutil.copy(Path(pliant.__file__).parent / name, package)
+    checked = subprocess.run([*checker, "use.py", "pliant/__init__.pyi"], cwd=tmp_path, capture_output=True, text=True)
+    assert checked.returncode == 0, checked.stdout + checked.stderr
 
 
 def test_the_stubs_name_every_method():

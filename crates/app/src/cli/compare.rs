@@ -8,7 +8,7 @@ use glam::{DVec2, DVec3};
 use pliant_deform::{METHODS, Method};
 use pliant_editor::{Beginning, Camera, Look};
 use pliant_io::quoted;
-use pliant_mesh::{Model, SurfaceVertex, mean_curvatures, mixed_voronoi_areas};
+use pliant_mesh::{Model, SurfaceVertex};
 use pliant_render::{Background, Frame, Headless, Image, Samples};
 use serde::Serialize;
 
@@ -20,7 +20,7 @@ use crate::drawing::{self, Drawing};
 use crate::sheet::{self, Caption, Cell, Layout};
 use crate::{legend, painting, picture_file};
 use pliant_engine::files::Destination;
-use pliant_engine::report::Report;
+use pliant_engine::report::{Report, detail_error};
 use pliant_engine::watch::Watch;
 use pliant_engine::{EngineError, Loaded, Solved, examples, files, read_edit};
 
@@ -274,22 +274,6 @@ fn table(methods: &[Asked], outcomes: &[Outcome]) -> String {
         cells.collect::<Vec<_>>().join("  ") + "\n"
     };
     rows.iter().map(line).collect::<String>() + &refusals
-}
-
-/// The change of the surface's details as seen from the surface: the root of ∫ (H' − H)² dA over the rest shape, with
-/// the mean curvatures H and H' before and after. It has no unit, and neither a rigid motion nor a turn of a detail
-/// with its surroundings changes it; the edit's own bend counts equally for all methods.
-fn detail_error(model: &Model, bent: &[DVec3]) -> f64 {
-    let (surface, topology) = (&model.surface, &model.topology);
-    let curvatures = |positions: &[DVec3]| mean_curvatures(surface, topology, positions);
-    let areas = mixed_voronoi_areas(surface);
-    let (before, after) = (curvatures(&surface.positions), curvatures(bent));
-    let squared: f64 = areas
-        .iter()
-        .zip(before.iter().zip(&after))
-        .map(|(area, (before, after))| area * (after - before).powi(2))
-        .sum();
-    pliant_engine::report::finite_or(squared.sqrt(), f64::MAX)
 }
 
 /// Divides each method's detail error by the least of them.

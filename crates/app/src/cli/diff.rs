@@ -7,14 +7,13 @@ use serde_json::{Value, json};
 
 use super::arguments::{ComputeArguments, DiffArguments};
 use super::{Console, on_threads, print, print_json};
-use pliant_engine::EngineError;
+use pliant_engine::{Compared, EngineError, differences};
 
 pub(super) fn run(arguments: &DiffArguments, console: &mut Console<'_>) -> Result<(), EngineError> {
     let watch = &console.watch;
     let differences = on_threads(ComputeArguments::default(), || {
-        let [first, second] = [&arguments.first, &arguments.second].map(|path| pliant_engine::open(path, watch));
-        let (first, second) = (first?, second?);
-        Ok::<_, EngineError>(first.scene.differences(&first.drawn, &second.scene, &second.drawn))
+        let [first, second] = [&arguments.first, &arguments.second].map(|path| Compared::File(path));
+        differences(first, second, watch)
     })??;
     let text = if arguments.json {
         let all: Vec<Value> = differences.iter().map(as_json).collect();

@@ -16,6 +16,7 @@ use super::history::Field;
 use super::shape::{Guesses, IDENTITY, Rotation, Shape, wide};
 use super::{ArapSolver, State};
 use crate::handles::blend::Origin;
+use crate::handles::offsets::Offsets;
 use crate::handles::{Handle, Motion};
 use crate::operators::CHUNK;
 use crate::region::clustered::{Share, Shares, on_clusters, shares, transposed};
@@ -42,6 +43,9 @@ pub(crate) struct Coarse {
     members: Vec<Share>,
     /// The fine local vertex at each solved coarse vertex.
     fine_of: Vec<u32>,
+    /// Each coarse vertex's surface vertex.
+    centres: Vec<u32>,
+    next_offsets: Option<Offsets>,
     /// The coarse rotations that were last prolongated.
     followed: Vec<Rotation>,
 }
@@ -92,6 +96,8 @@ impl Coarse {
             offsets,
             members,
             fine_of,
+            centres: clusters.centres,
+            next_offsets: None,
         })
     }
 
@@ -103,6 +109,19 @@ impl Coarse {
     /// The number of entries that its factor stores.
     pub fn factor_len(&self) -> usize {
         self.solver.factor_len()
+    }
+
+    /// Sets the offsets of handles' vertices from the motions. They take effect with [`Coarse::aim`], because a
+    /// restriction before it still uses the offsets of the fine shape.
+    pub fn set_offsets(&mut self, offsets: &Offsets) {
+        self.next_offsets = Some(offsets.of((0..).zip(self.centres.iter().copied())));
+    }
+
+    /// Passes the offsets that were set last to the solver.
+    pub fn aim(&mut self) {
+        if let Some(offsets) = self.next_offsets.take() {
+            self.solver.set_offsets(&offsets);
+        }
     }
 
     /// Returns to the rest shape.

@@ -1,8 +1,11 @@
 //! ARAP as one of the methods.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
 use super::{Arap, ArapSolver};
+use crate::handles::offsets::Offsets;
 use crate::handles::turns::Followed;
 use crate::handles::{Motion, clear};
 use crate::method::{
@@ -52,6 +55,10 @@ impl DeformMethod for Arap {
         750
     }
 
+    fn takes_places(&self) -> bool {
+        true
+    }
+
     fn bind(&self, input: &BindInput<'_>) -> Result<Box<dyn BoundMethod>, BindError> {
         let (ordering, handles) = (input.ordering()?, input.handles);
         let solver = ArapSolver::bind(
@@ -72,7 +79,7 @@ impl BoundMethod for ArapSolver {
         clear(displacements);
         for (own, motion) in self.prescribed.iter().zip(motions) {
             for vertex in own {
-                displacements[vertex.surface_vertex as usize] = motion.displace(vertex.coordinates);
+                displacements[vertex.surface_vertex as usize] = vertex.goes(motion);
             }
         }
         let (converged, energy) = ArapSolver::step(self, motions, displacements);
@@ -82,6 +89,10 @@ impl BoundMethod for ArapSolver {
             energy,
             finite: Finite::Unknown,
         })
+    }
+
+    fn set_offsets(&mut self, offsets: &Arc<Offsets>) {
+        ArapSolver::set_offsets(self, offsets);
     }
 
     fn rest(&mut self) {

@@ -49,7 +49,7 @@ impl Default for Corrections {
 impl ArapSolver {
     /// A step towards `motions`, led by `coarse`.
     pub(super) fn step_led(&mut self, coarse: &mut Coarse, motions: &[Motion]) {
-        if self.motions != motions {
+        if self.takes_other(motions) {
             self.start_led(coarse, motions);
         } else if self.state == State::Descending && self.corrections.left == 0 {
             self.correct(coarse);
@@ -68,6 +68,7 @@ impl ArapSolver {
     fn start_led(&mut self, coarse: &mut Coarse, motions: &[Motion]) {
         self.corrections = Corrections::default();
         if self.motions.iter().all(Motion::is_rest) {
+            coarse.aim();
             self.start(motions);
             self.corrections.left = 0;
             return;
@@ -75,6 +76,7 @@ impl ArapSolver {
         self.finish_step();
         coarse.restrict(&self.current, self.unit, &self.motions);
         let Screws { from_rest, onwards } = Screws::of(&self.handles, &self.motions, motions);
+        coarse.aim();
         let screws = match coarse.start(motions, STEPS) {
             Origin::Current => onwards,
             Origin::Rest => {
@@ -134,15 +136,28 @@ impl ArapSolver {
     /// Prolongates the coarse level's rotations since the current shape to the trial shape's cells, and takes one
     /// global step to the minimum of the energy with these rotations.
     fn prolongate(&mut self, coarse: &mut Coarse) {
+        coarse.turn(&self.current.rotations, &mut self.trial.rotations);
+        self.relax_trial();
         let Self {
-            current,
             trial,
             scratch,
             cells,
             springs,
             ..
         } = self;
-        coarse.turn(&current.rotations, &mut trial.rotations);
+        cells.measure(trial, Guesses::Own, scratch);
+        springs.add_energy(trial);
+    }
+
+    /// Takes the trial shape to the minimum of the energy for its present rotations: one global step.
+    pub(super) fn relax_trial(&mut self) {
+        let Self {
+            trial,
+            scratch,
+            cells,
+            springs,
+            ..
+        } = self;
         cells.find_pull(trial, scratch);
         springs.add_gradient(trial);
         let unit = self.unit;
@@ -159,8 +174,6 @@ impl ArapSolver {
                     }
                 }
             });
-        cells.measure(trial, Guesses::Own, scratch);
-        springs.add_energy(trial);
     }
 
     /// Ends the present descent and begins one for `motions`, with the present shape.

@@ -52,6 +52,7 @@ use self::precondition::{MapRoom, Preconditioner, WeightInput};
 use self::shape::{Guesses, IDENTITY, Scratch, Shape};
 use self::springs::Springs;
 use crate::handles::blend::HandleFrame;
+use crate::handles::offsets::Offsets;
 use crate::handles::{Handle, Motion};
 use crate::numerical::sums::CHUNKS_A_TASK;
 use crate::operators::CHUNK;
@@ -87,6 +88,10 @@ pub(crate) struct ArapSolver {
     unit: f64,
     /// The motions of the `current` shape.
     motions: Vec<Motion>,
+    /// Whether vertices of handles have offsets from the motions.
+    has_offsets: bool,
+    /// Whether the offsets changed since the last step.
+    has_other_offsets: bool,
     state: State,
     /// The number of further targets without a try of the blend from the rest shape, and the number of targets to skip
     /// after the blend loses.
@@ -115,6 +120,15 @@ struct Prescribed {
     /// The local vertex of each surface vertex; [`domain::ABSENT`] if no cell sees it.
     local: u32,
     coordinates: [f64; 4],
+    /// The offset of its target from its handle's motion.
+    offset: DVec3,
+}
+
+impl Prescribed {
+    /// The displacement to its target.
+    fn goes(&self, motion: &Motion) -> DVec3 {
+        motion.displace(self.coordinates) + self.offset
+    }
 }
 
 impl ArapSolver {
@@ -187,6 +201,8 @@ impl ArapSolver {
             end: End::Known,
             unit,
             motions: vec![Motion::default(); handles.len()],
+            has_offsets: false,
+            has_other_offsets: false,
             state: State::Converged,
             until_blend: 0,
             patience: 1,
@@ -219,6 +235,24 @@ impl ArapSolver {
         springs.aim(motions);
         springs.add_energy(&mut shape);
         self.relative(shape.energy)
+    }
+
+    /// Sets the offsets of handles' vertices from their handles' motions.
+    pub fn set_offsets(&mut self, offsets: &Offsets) {
+        for vertex in self.prescribed.iter_mut().flatten() {
+            vertex.offset = offsets.at(vertex.surface_vertex);
+        }
+        self.springs.set_offsets(&self.domain, offsets);
+        self.has_offsets = !offsets.is_empty();
+        self.has_other_offsets = true;
+        if let Some(coarse) = &mut self.coarse {
+            coarse.set_offsets(offsets);
+        }
+    }
+
+    /// Whether these motions or the offsets differ from the last step's.
+    fn takes_other(&mut self, motions: &[Motion]) -> bool {
+        std::mem::take(&mut self.has_other_offsets) || self.motions != motions
     }
 
     /// Returns to the rest shape.
@@ -255,7 +289,7 @@ impl ArapSolver {
                 self.coarse = Some(coarse);
                 return;
             }
-            if self.motions != motions {
+            if self.takes_other(motions) {
                 self.start(motions);
             }
             if self.state == State::Descending {
@@ -335,6 +369,7 @@ fn prescribed(problem: &Problem, partition: &Partition, handles: &[Handle], doma
             surface_vertex,
             local: domain.local_of[surface_vertex as usize],
             coordinates: handle.coordinates(problem.surface.positions[surface_vertex as usize]),
+            offset: DVec3::ZERO,
         };
         handle.vertices.iter().map(of).collect()
     };

@@ -4,10 +4,13 @@
 //! [`crate::Constraints`]: the resistance of a membrane of stiffness 1 and, if the energy is smooth, of a plate of
 //! stiffness κ A. This term is already quadratic, so the majorising quadratic has the same W on its diagonal.
 
+use glam::DVec3;
+
 use super::cells::{Quad, minus, quad};
 use super::domain::Domain;
 use super::history::Field;
 use super::shape::Shape;
+use crate::handles::offsets::Offsets;
 use crate::handles::{Handle, Motion};
 use crate::region::partition::Partition;
 use crate::{Laplacian, Problem};
@@ -33,6 +36,8 @@ pub(crate) struct Spring {
     pub strength: f64,
     handle: usize,
     coordinates: [f64; 4],
+    /// The offset of its target from the handle's motion.
+    offset: DVec3,
 }
 
 impl Springs {
@@ -62,6 +67,7 @@ impl Springs {
                 strength: weight * resistance * area,
                 handle: number,
                 coordinates: handle.coordinates(problem.surface.positions[vertex as usize]),
+                offset: DVec3::ZERO,
             }));
         }
         let wanted = vec![[0.0; 4]; springs.len()];
@@ -78,10 +84,17 @@ impl Springs {
         &self.springs
     }
 
+    /// Sets the targets' offsets from the handles' motions, for the next aim.
+    pub fn set_offsets(&mut self, domain: &Domain, offsets: &Offsets) {
+        for spring in &mut self.springs {
+            spring.offset = offsets.at(domain.vertices[spring.local as usize]);
+        }
+    }
+
     /// Sets the targets to the handles' motions.
     pub fn aim(&mut self, motions: &[Motion]) {
         for (wanted, spring) in self.wanted.iter_mut().zip(&self.springs) {
-            *wanted = quad(motions[spring.handle].displace(spring.coordinates), 0.0);
+            *wanted = quad(motions[spring.handle].displace(spring.coordinates) + spring.offset, 0.0);
         }
     }
 

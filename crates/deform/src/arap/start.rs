@@ -60,6 +60,9 @@ impl ArapSolver {
     /// and evaluates it.
     fn carry(&mut self, screws: &[Screw], origin: Origin) {
         self.carry_unmeasured(screws, origin);
+        if self.has_offsets {
+            self.relax_trial();
+        }
         self.cells.evaluate(&mut self.trial, Guesses::Own, &mut self.scratch);
         self.springs.add_energy(&mut self.trial);
         self.springs.add_gradient(&mut self.trial);
@@ -103,7 +106,7 @@ impl Shape {
         self.displacements[self.gradient.len()..].fill([0.0; 4]);
         for (own, motion) in prescribed.iter().zip(motions) {
             for vertex in own.iter().filter(|vertex| vertex.local != ABSENT) {
-                self.displacements[vertex.local as usize] = quad(motion.displace(vertex.coordinates), 0.0);
+                self.displacements[vertex.local as usize] = quad(vertex.goes(motion), 0.0);
             }
         }
     }

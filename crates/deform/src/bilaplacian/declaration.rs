@@ -7,6 +7,7 @@ use glam::DVec3;
 use crate::bilaplacian::detail::Multiresolution;
 use crate::bilaplacian::solver::BilaplacianSolver;
 use crate::handles::Motion;
+use crate::handles::offsets::Offsets;
 use crate::handles::turns::Followed;
 use crate::method::{
     BindInput, BoundMethod, ConstraintKind, DeformMethod, Finite, MethodDeclaration, Needs, OptionRefused, Solve,
@@ -95,6 +96,10 @@ impl DeformMethod for Bilaplacian {
         }
     }
 
+    fn takes_places(&self) -> bool {
+        true
+    }
+
     fn bind(&self, input: &BindInput<'_>) -> Result<Box<dyn BoundMethod>, BindError> {
         Ok(match self.detail {
             Detail::None => Box::new(BilaplacianSolver::<f32>::bind(self, input)?),
@@ -105,6 +110,9 @@ impl DeformMethod for Bilaplacian {
 
 impl BoundMethod for BilaplacianSolver {
     fn step(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> Result<Stepped, SolveError> {
+        if !self.is_affine() {
+            return self.step_by_back_substitution(motions, displacements);
+        }
         let finite = self.frame(motions, displacements);
         Ok(Stepped::at_once(self.energy(motions), finite))
     }
@@ -119,6 +127,10 @@ impl BoundMethod for BilaplacianSolver {
             BilaplacianSolver::energy_of(self, motions, displacements),
             Finite::Unknown,
         ))
+    }
+
+    fn set_offsets(&mut self, offsets: &Arc<Offsets>) {
+        BilaplacianSolver::set_offsets(self, offsets);
     }
 
     fn energy_of(&self, motions: &[Motion], displacements: &[DVec3]) -> Option<f64> {

@@ -15,6 +15,7 @@ use crate::bilaplacian::operator::BilaplacianOperator;
 use crate::bilaplacian::refine::Outcome;
 use crate::bilaplacian::setup::{Boundaries, Prescribed, operator};
 use crate::bilaplacian::system_error::SystemError;
+use crate::handles::offsets::Offsets;
 use crate::handles::{FRAME_CHUNK, Motion, clear};
 use crate::method::BindInput;
 use crate::operators::repairs;
@@ -29,6 +30,8 @@ pub(crate) struct LoadedSystem {
     system: BilaplacianSystem,
     /// Each handle's places in a field, at its vertices or, if it is soft, at their springs, and their coordinates.
     pub prescribed: Vec<Prescribed>,
+    /// The offsets of handles' vertices from their handles' motions.
+    offsets: Arc<Offsets>,
 }
 
 /// The allowed error of a solution, relative to its largest value.
@@ -66,7 +69,11 @@ impl LoadedSystem {
         let mut constant = vec![[1.0]; system.operator.field_len()];
         system.check(&mut constant, cancel).map_err(refuse)?;
         system.settle();
-        Ok(Self { system, prescribed })
+        Ok(Self {
+            system,
+            prescribed,
+            offsets: Arc::default(),
+        })
     }
 
     /// A and its Laplacian.
@@ -101,13 +108,25 @@ impl LoadedSystem {
         Err(refused(SystemError::Inaccurate { vertex, error }, input))
     }
 
+    /// Sets the offsets of handles' vertices from their handles' motions.
+    pub fn set_offsets(&mut self, offsets: &Arc<Offsets>) {
+        self.offsets = Arc::clone(offsets);
+    }
+
     /// Sets the handles' rows of a field to their targets.
     pub fn prescribe(&self, motions: &[Motion], field: &mut [[f64; 3]]) {
         for (own, motion) in self.prescribed.iter().zip(motions) {
             for &(place, coordinates) in own {
-                field[place as usize] = motion.displace(coordinates).to_array();
+                field[place as usize] = self.wanted(motion, place, coordinates);
             }
         }
+    }
+
+    /// The target of a handle's row.
+    fn wanted(&self, motion: &Motion, place: u32, coordinates: [f64; 4]) -> [f64; 3] {
+        let operator = self.operator();
+        let vertex = self.vertices()[operator.local_of(place as usize) as usize];
+        (motion.displace(coordinates) + self.offsets.at(vertex)).to_array()
     }
 
     /// Fills in the solved rows of a field of displacements from its other rows and the load.
@@ -133,7 +152,7 @@ impl LoadedSystem {
         let first_spring = self.vertices().len();
         for (own, motion) in self.prescribed.iter().zip(motions) {
             for &(place, coordinates) in own.iter().filter(|(place, _)| *place as usize >= first_spring) {
-                field[place as usize] = motion.displace(coordinates).to_array();
+                field[place as usize] = self.wanted(motion, place, coordinates);
             }
         }
         field

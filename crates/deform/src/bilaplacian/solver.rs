@@ -14,6 +14,7 @@ use crate::bilaplacian::plate::{PLAIN, Plate};
 use crate::bilaplacian::setup::Prescribed;
 use crate::bilaplacian::system_error::SystemError;
 use crate::handles::bases::{Stored, frame};
+use crate::handles::offsets::Offsets;
 use crate::handles::{Motion, clear};
 use crate::method::{BindInput, Finite};
 use crate::operators::repairs;
@@ -31,6 +32,8 @@ pub(crate) struct BilaplacianSolver<T = f32> {
     /// then those of stiff parts.
     prescribed: Vec<Prescribed>,
     parts: StiffParts,
+    /// The offsets of handles' vertices from their handles' motions.
+    offsets: Arc<Offsets>,
     /// Whether natural boundaries were left out.
     is_plain: bool,
     /// E = ½ Σ_hk tr(X_hᵀ G_hk X_k) over the motions' 4×3 matrices X; row-major, one 4×4 block a pair of handles.
@@ -101,6 +104,7 @@ impl<T: Stored> BilaplacianSolver<T> {
             bases,
             prescribed,
             parts,
+            offsets: Arc::default(),
             is_plain,
             energy_blocks,
         })
@@ -112,6 +116,16 @@ impl<T: Stored> BilaplacianSolver<T> {
             0 => motions.into(),
             _ => self.parts.motions(motions).into(),
         }
+    }
+
+    /// Sets the offsets of handles' vertices from their handles' motions.
+    pub fn set_offsets(&mut self, offsets: &Arc<Offsets>) {
+        self.offsets = Arc::clone(offsets);
+    }
+
+    /// Whether no vertex has an offset, so that the bases give the frame.
+    pub fn is_affine(&self) -> bool {
+        self.offsets.is_empty()
     }
 
     /// The data that the binding of a nearly equal problem can reuse.
@@ -186,7 +200,8 @@ impl<T: Stored> BilaplacianSolver<T> {
         let first_spring = self.system.operator.laplacian.vertices().len();
         for (own, motion) in self.prescribed.iter().zip(&*all) {
             for &(place, coordinates) in own.iter().filter(|(place, _)| *place as usize >= first_spring) {
-                d[place as usize] = motion.displace(coordinates).to_array();
+                let offset = self.offsets.at(self.vertex(place));
+                d[place as usize] = (motion.displace(coordinates) + offset).to_array();
             }
         }
         let of_parts = &all[motions.len()..];
@@ -214,10 +229,18 @@ impl<T: Stored> BilaplacianSolver<T> {
         clear(displacements);
         for (handle, motion) in motions.iter().enumerate() {
             for (vertex, coordinates) in self.prescribed(handle) {
-                displacements[vertex as usize] = motion.displace(coordinates);
+                displacements[vertex as usize] = motion.displace(coordinates) + self.offsets.at(vertex);
             }
         }
         let of_parts = self.all(motions)[motions.len()..].to_vec();
+        if of_parts.is_empty() || self.is_affine() {
+            return self.substitute(&of_parts, displacements);
+        }
+        // The bases do not contain the offsets, so the stiff parts follow the surface.
+        let targets = displacements.to_vec();
+        self.substitute(&of_parts, displacements)?;
+        let of_parts = self.parts.fitted(displacements);
+        displacements.copy_from_slice(&targets);
         self.substitute(&of_parts, displacements)
     }
 

@@ -1,8 +1,11 @@
 //! Rotation-invariant coordinates as one of the methods.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
 use super::{Frames, FramesSolver};
+use crate::handles::offsets::Offsets;
 use crate::handles::turns::Followed;
 use crate::handles::{Motion, only_moved};
 use crate::method::{
@@ -52,6 +55,10 @@ impl DeformMethod for Frames {
         }
     }
 
+    fn takes_places(&self) -> bool {
+        true
+    }
+
     fn bind(&self, input: &BindInput<'_>) -> Result<Box<dyn BoundMethod>, BindError> {
         Ok(Box::new(FramesSolver::bind(self, input)?))
     }
@@ -66,6 +73,11 @@ impl BoundMethod for FramesSolver {
             energy: self.shape.energy,
             finite: Finite::Unknown,
         })
+    }
+
+    fn set_offsets(&mut self, offsets: &Arc<Offsets>) {
+        self.system.set_offsets(offsets);
+        self.has_other_offsets = true;
     }
 
     fn rest(&mut self) {

@@ -46,6 +46,8 @@ pub(crate) struct FramesSolver {
     is_held: bool,
     /// The motions that the shape is for.
     motions: Vec<Motion>,
+    /// Whether the offsets changed since the last step.
+    has_other_offsets: bool,
     shape: Shape,
     room: Room,
 }
@@ -90,6 +92,7 @@ impl FramesSolver {
             handles: input.handles.to_vec(),
             is_held: input.partition.held.contains(&true),
             motions: vec![Motion::default(); input.handles.len()],
+            has_other_offsets: false,
             shape: Shape {
                 frames: vec![Frame::default(); system.vertices().len()],
                 field: system.field(),
@@ -105,7 +108,8 @@ impl FramesSolver {
     fn advance(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> Result<bool, SolveError> {
         /// An iteration that lowers the energy by less than this share of it was the last one.
         const TOLERANCE: f64 = 1e-9;
-        let before = if self.options.iterations > 0 && self.motions == motions {
+        let is_same = !std::mem::take(&mut self.has_other_offsets) && self.motions == motions;
+        let before = if self.options.iterations > 0 && is_same {
             fit_to(
                 &self.gradients,
                 self.system.columns(),

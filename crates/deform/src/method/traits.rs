@@ -2,6 +2,7 @@
 
 use std::any::Any;
 use std::fmt::Debug;
+use std::sync::Arc;
 
 use glam::{DVec3, Mat3};
 use pliant_mesh::{Cancel, Progress};
@@ -9,6 +10,7 @@ use pliant_mesh::{Cancel, Progress};
 use super::{
     Attachment, AttachmentRefused, ControlLattice, MethodDeclaration, Needs, OptionRefused, OptionValue, Solve,
 };
+use crate::handles::offsets::Offsets;
 use crate::handles::turns::Followed;
 use crate::handles::{Handle, Motion};
 use crate::operators::triangulation::Triangulation;
@@ -94,6 +96,11 @@ pub(crate) trait DeformMethod: Options {
     /// Whether it can be bound with an ordering of power 1 instead of its own, by the Laplacian's factor, which takes
     /// less memory and more time.
     fn takes_first_power(&self) -> bool {
+        false
+    }
+
+    /// Whether each vertex of a handle can have its own place, by an offset from the handle's motion ([`Offsets`]).
+    fn takes_places(&self) -> bool {
         false
     }
 
@@ -229,6 +236,10 @@ pub(crate) trait BoundMethod: Debug + Send + Sync {
             .map(|controls| controls.positions(motions))
             .unwrap_or_default()
     }
+
+    /// Sets the offsets of handles' vertices from their handles' motions, for a method that
+    /// [takes places](DeformMethod::takes_places). The next step has new targets then.
+    fn set_offsets(&mut self, _offsets: &Arc<Offsets>) {}
 
     /// Sets the weights of the brought examples, `None` for one to be found.
     fn set_weights(&mut self, _weights: &[Option<f64>]) {}

@@ -1,9 +1,12 @@
 //! Gradient-based editing as one of the methods.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
 use super::{Poisson, PoissonSolver};
 use crate::handles::Motion;
+use crate::handles::offsets::Offsets;
 use crate::handles::polar::Polar;
 use crate::method::{
     BindInput, BoundMethod, ConstraintKind, DeformMethod, Finite, MethodDeclaration, Needs, Solve, Stepped,
@@ -39,6 +42,10 @@ impl DeformMethod for Poisson {
         Solve::Direct
     }
 
+    fn takes_places(&self) -> bool {
+        true
+    }
+
     fn bind(&self, input: &BindInput<'_>) -> Result<Box<dyn BoundMethod>, BindError> {
         Ok(Box::new(PoissonSolver::bind(self, input)?))
     }
@@ -48,6 +55,10 @@ impl BoundMethod for PoissonSolver {
     fn step(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> Result<Stepped, SolveError> {
         let energy = self.frame(motions, displacements)?;
         Ok(Stepped::at_once(energy, Finite::Unknown))
+    }
+
+    fn set_offsets(&mut self, offsets: &Arc<Offsets>) {
+        self.system.set_offsets(offsets);
     }
 
     fn rest(&mut self) {

@@ -83,7 +83,7 @@ impl<'a> Partition<'a> {
             // If nothing needs to be connected, only distant components are loose.
             Needs::Points => {
                 let loose = strays(problem, &driven, &held);
-                let warnings = warnings(problem, &loose, &loose_of, &[]);
+                let warnings = warnings(problem, &loose, &loose_of);
                 (loose, warnings.into_iter().map(Warning::from).collect())
             }
             Needs::Surface { .. } => {
@@ -92,10 +92,12 @@ impl<'a> Partition<'a> {
                 // Components of one vertex come last.
                 let bare = loose.partition_point(|&component| has_faces(component));
                 let unheld = indices(&|c| driven[c] && !held[c] && has_faces(c as u32));
-                let warnings = warnings(problem, &loose[..bare], &loose_of, &unheld);
-                let of_points = warning_of_points(problem, &loose[bare..], &loose_of);
-                let warnings = warnings.into_iter().chain(of_points);
-                (loose, warnings.map(Warning::from).collect())
+                let of_loose = warnings(problem, &loose[..bare], &loose_of)
+                    .into_iter()
+                    .map(Warning::from);
+                let of_unheld = warnings_of_unheld(problem, &unheld, &handles);
+                let of_points = warning_of_points(problem, &loose[bare..], &loose_of).map(Warning::from);
+                (loose, of_loose.chain(of_unheld).chain(of_points).collect())
             }
         };
         let follows = |component: u32| match loose_of[component as usize] {
@@ -370,7 +372,8 @@ fn warning_of_points(problem: &Problem, points: &[u32], loose_of: &[Loose]) -> O
 /// The number of components to name; more are only counted.
 const NAMED: usize = 4;
 
-fn warnings(problem: &Problem, loose: &[u32], loose_of: &[Loose], unheld: &[u32]) -> Vec<String> {
+/// Sentences on components without a handle and a fixed vertex.
+fn warnings(problem: &Problem, loose: &[u32], loose_of: &[Loose]) -> Vec<String> {
     let mut sentences = Vec::new();
     if problem.handle_count == 0 {
         return sentences;
@@ -417,20 +420,42 @@ fn warnings(problem: &Problem, loose: &[u32], loose_of: &[Loose], unheld: &[u32]
             ));
         }
     }
+    sentences
+}
+
+/// Sentences on components with a handle and without a fixed vertex.
+fn warnings_of_unheld(problem: &Problem, unheld: &[u32], handles: &[Vec<u32>]) -> Vec<Warning> {
+    let size = |component: u32| problem.topology.components()[component as usize].vertex_count;
+    let mut holders = vec![Vec::new(); unheld.len()];
+    if !unheld.is_empty() {
+        for (handle, vertices) in handles.iter().enumerate() {
+            for &vertex in vertices {
+                let component = problem.topology.component(SurfaceVertex(vertex));
+                let Ok(place) = unheld.binary_search(&component) else {
+                    continue;
+                };
+                match holders[place].last_mut() {
+                    Some((last, count)) if *last == handle => *count += 1,
+                    _ => holders[place].push((handle, 1)),
+                }
+            }
+        }
+    }
     if unheld.len() <= NAMED {
-        for &component in unheld {
-            sentences.push(format!(
+        let one = |(&component, holders): (&u32, Vec<(usize, usize)>)| {
+            let sentence = format!(
                 "component {component} ({} vertices) holds a handle but no fixed vertex: nothing holds it back",
                 size(component)
-            ));
-        }
-    } else {
-        sentences.push(format!(
-            "{} components ({} vertices, from component {} on) hold a handle but no fixed vertex: nothing holds them back",
-            unheld.len(),
-            sum(unheld),
-            unheld[0]
-        ));
+            );
+            Warning::of_unheld(sentence, vec![holders])
+        };
+        return unheld.iter().zip(holders).map(one).collect();
     }
-    sentences
+    let sentence = format!(
+        "{} components ({} vertices, from component {} on) hold a handle but no fixed vertex: nothing holds them back",
+        unheld.len(),
+        unheld.iter().map(|&component| size(component)).sum::<usize>(),
+        unheld[0]
+    );
+    vec![Warning::of_unheld(sentence, holders)]
 }

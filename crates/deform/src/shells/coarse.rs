@@ -20,6 +20,7 @@ use super::{Shells, ShellsSolver};
 use crate::arap::clusters::Clusters;
 use crate::arap::domain::Domain;
 use crate::handles::blend::Origin;
+use crate::handles::offsets::Offsets;
 use crate::handles::{Handle, Motion};
 use crate::numerical::sums::Field;
 use crate::operators::CHUNK;
@@ -44,6 +45,9 @@ pub(super) struct Coarse {
     members: Vec<Share>,
     /// Of each solved coarse vertex: the fine local vertex that it is.
     fine_of: Vec<u32>,
+    /// Each coarse vertex's surface vertex.
+    centres: Vec<u32>,
+    next_offsets: Option<Offsets>,
     /// The coarse positions that were last followed.
     followed: Vec<DVec3>,
 }
@@ -101,6 +105,8 @@ impl Coarse {
         let fine_local = fine.local_of(problem.roles.len());
         let centre = |&cluster: &u32| fine_local[clusters.centres[cluster as usize] as usize];
         Some(Self {
+            centres: clusters.centres.clone(),
+            next_offsets: None,
             fine_of: elements.vertices[..elements.solved_count].iter().map(centre).collect(),
             followed: elements.rest.clone(),
             solver: Box::new(solver),
@@ -113,6 +119,11 @@ impl Coarse {
     /// How many numbers its factor stores.
     pub fn stored(&self) -> usize {
         self.solver.stored()
+    }
+
+    /// Sets the offsets of handles' vertices from the motions; the next start uses them.
+    pub fn set_offsets(&mut self, offsets: &Offsets) {
+        self.next_offsets = Some(offsets.of((0..).zip(self.centres.iter().copied())));
     }
 
     /// Sets the weights of the examples; the next start heeds them.
@@ -171,6 +182,9 @@ impl Coarse {
     /// Starts for new motions and takes `steps` steps. Returns where it started: if from rest, the fine shape must
     /// start from rest too.
     pub fn start(&mut self, motions: &[Motion], steps: u32) -> Origin {
+        if let Some(offsets) = self.next_offsets.take() {
+            self.solver.set_offsets(&offsets);
+        }
         let origin = self.solver.start(motions);
         if origin == Origin::Rest {
             self.followed.clone_from(&self.solver.energy.elements.rest);

@@ -1,8 +1,11 @@
 //! Discrete shells as one of the methods.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
 use super::{Descent, Shells, ShellsSolver};
+use crate::handles::offsets::Offsets;
 use crate::handles::turns::Followed;
 use crate::handles::{Motion, clear};
 use crate::method::{
@@ -69,6 +72,10 @@ impl DeformMethod for Shells {
         1500
     }
 
+    fn takes_places(&self) -> bool {
+        true
+    }
+
     fn bind(&self, input: &BindInput<'_>) -> Result<Box<dyn BoundMethod>, BindError> {
         let solver = ShellsSolver::bind(
             input.problem,
@@ -87,7 +94,7 @@ impl BoundMethod for ShellsSolver {
         clear(displacements);
         for (own, motion) in self.prescribed.iter().zip(motions) {
             for vertex in own {
-                displacements[vertex.surface_vertex as usize] = motion.displace(vertex.coordinates);
+                displacements[vertex.surface_vertex as usize] = vertex.goes(motion);
             }
         }
         let mut outcome = (true, 0.0);
@@ -107,6 +114,10 @@ impl BoundMethod for ShellsSolver {
             energy,
             finite: Finite::Unknown,
         })
+    }
+
+    fn set_offsets(&mut self, offsets: &Arc<Offsets>) {
+        ShellsSolver::set_offsets(self, offsets);
     }
 
     fn rest(&mut self) {

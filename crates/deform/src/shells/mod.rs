@@ -68,6 +68,7 @@ use self::system::{Pattern, System};
 use self::unfolded::{Preconditioner, Unfolded};
 use crate::budget::bytes_of;
 use crate::handles::blend::HandleFrame;
+use crate::handles::offsets::Offsets;
 use crate::handles::{Handle, Motion};
 use crate::numerical::lbfgs::Memory;
 use crate::region::partition::Partition;
@@ -106,6 +107,8 @@ pub(crate) struct ShellsSolver {
     has_stalled: bool,
     /// Whether other weights of examples were set since the last step.
     has_other_weights: bool,
+    /// Whether the offsets of handles' vertices changed since the last step.
+    has_other_offsets: bool,
     tolerance: f64,
     warnings: Vec<String>,
 }
@@ -135,6 +138,15 @@ struct Prescribed {
     /// [`elements::ABSENT`] where nothing of the energy sees it.
     local: u32,
     coordinates: [f64; 4],
+    /// The offset of its target from its handle's motion.
+    offset: DVec3,
+}
+
+impl Prescribed {
+    /// The displacement to its target.
+    fn goes(&self, motion: &Motion) -> DVec3 {
+        motion.displace(self.coordinates) + self.offset
+    }
 }
 
 impl ShellsSolver {
@@ -228,6 +240,7 @@ impl ShellsSolver {
             has_converged: true,
             has_stalled: false,
             has_other_weights: false,
+            has_other_offsets: false,
             tolerance: options.tolerance,
             warnings: warnings(options, &energy),
             descent: Some(descent),
@@ -240,7 +253,8 @@ impl ShellsSolver {
     /// One step towards `motions`. Whether it converged, and the energy.
     pub fn advance(&mut self, motions: &[Motion]) -> (bool, f64) {
         let has_other_weights = std::mem::take(&mut self.has_other_weights);
-        if self.motions != motions || has_other_weights {
+        let has_other_offsets = std::mem::take(&mut self.has_other_offsets);
+        if self.motions != motions || has_other_weights || has_other_offsets {
             self.has_stalled = false;
             self.head_for(motions);
         } else if !self.has_converged && !self.has_stalled {
@@ -260,6 +274,19 @@ impl ShellsSolver {
         self.has_other_weights = true;
         if let Some(Descent::Led(led)) = &mut self.descent {
             led.coarse.set_weights(weights);
+        }
+    }
+
+    /// Sets the offsets of handles' vertices from the motions; the next step has new targets then.
+    pub fn set_offsets(&mut self, offsets: &Offsets) {
+        for vertex in self.prescribed.iter_mut().flatten() {
+            vertex.offset = offsets.at(vertex.surface_vertex);
+        }
+        let elements = &self.energy.elements;
+        self.energy.springs.set_offsets(&elements.vertices, offsets);
+        self.has_other_offsets = true;
+        if let Some(Descent::Led(led)) = &mut self.descent {
+            led.coarse.set_offsets(offsets);
         }
     }
 
@@ -338,6 +365,7 @@ fn prescribed(
             surface_vertex,
             local: local_of[surface_vertex as usize],
             coordinates: handle.coordinates(problem.surface.positions[surface_vertex as usize]),
+            offset: DVec3::ZERO,
         };
         let hard = handle.vertices.iter().filter(|_| soft.is_none());
         hard.map(of).collect()

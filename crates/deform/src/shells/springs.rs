@@ -9,6 +9,7 @@ use glam::DVec3;
 use super::Shells;
 use super::elements::Elements;
 use crate::Problem;
+use crate::handles::offsets::Offsets;
 use crate::handles::{Handle, Motion};
 use crate::numerical::sums::Field;
 use crate::primo::edges::area;
@@ -33,6 +34,8 @@ pub(super) struct Spring {
     /// W_i.
     pub strength: f64,
     coordinates: [f64; 4],
+    /// The offset of its target from the handle's motion.
+    offset: DVec3,
 }
 
 impl Springs {
@@ -67,6 +70,7 @@ impl Springs {
                 handle: number,
                 strength: weight * resistance * areas[vertex as usize],
                 coordinates: handle.coordinates(surface.positions[vertex as usize]),
+                offset: DVec3::ZERO,
             }));
         }
         springs.retain(|spring| (spring.local as usize) < elements.solved_count && spring.strength.is_finite());
@@ -89,10 +93,18 @@ impl Springs {
         each.map(|(spring, wanted)| (spring.local as usize, *wanted))
     }
 
-    /// The handles are to go so.
+    /// Sets the targets' offsets from the handles' motions, for the next aim; `vertices` has the surface vertex of each
+    /// local vertex.
+    pub fn set_offsets(&mut self, vertices: &[u32], offsets: &Offsets) {
+        for spring in &mut self.springs {
+            spring.offset = offsets.at(vertices[spring.local as usize]);
+        }
+    }
+
+    /// Sets the targets to the handles' motions.
     pub fn aim(&mut self, motions: &[Motion]) {
         for (wanted, spring) in self.wanted.iter_mut().zip(&self.springs) {
-            *wanted = motions[spring.handle].displace(spring.coordinates);
+            *wanted = motions[spring.handle].displace(spring.coordinates) + spring.offset;
         }
     }
 

@@ -173,7 +173,7 @@ impl ShellsSolver {
         trial.displacements[solved_count..].fill(DVec3::ZERO);
         for (own, motion) in self.prescribed.iter().zip(&self.motions) {
             for vertex in own.iter().filter(|vertex| vertex.local != ABSENT) {
-                trial.displacements[vertex.local as usize] = motion.displace(vertex.coordinates);
+                trial.displacements[vertex.local as usize] = vertex.goes(motion);
             }
         }
     }

@@ -6,6 +6,7 @@ use glam::DVec3;
 
 use super::{Wrinkled, Wrinkles};
 use crate::bilaplacian::solver::BilaplacianSolver;
+use crate::handles::offsets::Offsets;
 use crate::handles::turns::Followed;
 use crate::handles::{Motion, clear};
 use crate::method::{
@@ -71,6 +72,10 @@ impl DeformMethod for Wrinkles {
         64
     }
 
+    fn takes_places(&self) -> bool {
+        true
+    }
+
     fn bind(&self, input: &BindInput<'_>) -> Result<Box<dyn BoundMethod>, BindError> {
         match input.attachment {
             Some(Attachment::Shapes(examples)) if !examples.shapes.is_empty() => {
@@ -83,6 +88,9 @@ impl DeformMethod for Wrinkles {
 
 impl BoundMethod for Wrinkled {
     fn step(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> Result<Stepped, SolveError> {
+        if !self.bending.is_affine() {
+            return self.step_by_back_substitution(motions, displacements);
+        }
         if motions.iter().all(Motion::is_rest) {
             clear(displacements);
         } else {
@@ -96,12 +104,16 @@ impl BoundMethod for Wrinkled {
         motions: &[Motion],
         displacements: &mut [DVec3],
     ) -> Result<Stepped, SolveError> {
-        self.frame_by_back_substitution(motions, displacements)?;
-        Ok(Stepped::at_once(self.bending.energy(motions), Finite::Unknown))
+        let energy = self.frame_by_back_substitution(motions, displacements)?;
+        Ok(Stepped::at_once(energy, Finite::Unknown))
     }
 
     fn reusable_factor(&self) -> Option<ReusableFactor> {
         Some(ReusableFactor(Arc::clone(self.bending.factored())))
+    }
+
+    fn set_offsets(&mut self, offsets: &Arc<Offsets>) {
+        self.bending.set_offsets(offsets);
     }
 
     fn set_weights(&mut self, weights: &[Option<f64>]) {

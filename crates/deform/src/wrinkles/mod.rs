@@ -169,15 +169,19 @@ impl Wrinkled {
         self.wrinkle(displacements);
     }
 
-    /// Like [`Wrinkled::frame`], with the factor instead of the bases.
+    /// Like [`Wrinkled::frame`], with the factor instead of the bases; returns the energy of the coarse shape.
     fn frame_by_back_substitution(
         &mut self,
         motions: &[Motion],
         displacements: &mut [DVec3],
-    ) -> Result<(), SolveError> {
+    ) -> Result<f64, SolveError> {
         self.bending.frame_by_back_substitution(motions, displacements)?;
+        let energy = match self.bending.is_affine() {
+            true => self.bending.energy(motions),
+            false => self.bending.energy_of(motions, displacements),
+        };
         self.wrinkle(displacements);
-        Ok(())
+        Ok(energy)
     }
 }
 

@@ -27,6 +27,7 @@ mod mls;
 mod nonlinear;
 mod operators;
 mod ordering;
+mod places;
 mod plate;
 mod poisson;
 mod primo;

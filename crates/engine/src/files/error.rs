@@ -31,6 +31,16 @@ impl FileError {
         }
     }
 
+    /// The file that caused the error.
+    pub fn file(&self) -> &Path {
+        &self.file
+    }
+
+    /// The system's kind of error.
+    pub fn kind(&self) -> ErrorKind {
+        self.source.kind()
+    }
+
     /// The system's message, with the remedy.
     pub fn reason(&self) -> String {
         reason(&self.source)

@@ -31,39 +31,50 @@ Method = Union[MethodName, Mapping[str, Any]]
 
 Selection = Union[npt.ArrayLike, Literal["all", "none"], Mapping[str, Any]]
 """Numbers of vertices, a mask with a value for each vertex, or a selector of the edit format: `"all"`,
-`{"sphere": {"center": [0, 0, 0], "radius": 1}}` and so on. A vertex takes along those in the same place."""
+`{"sphere": {"center": [0, 0, 0], "radius": 1}}` and so on. Vertices in the same place are selected together.
+
+A mask holds booleans, or whole numbers that are all 0 or 1 and as many as there are vertices (more than two)."""
 
 class HandleEntry(TypedDict, total=False):
-    """A handle with more than its vertices."""
+    """A handle with further members."""
 
     select: Selection
     """Its vertices; required."""
     soft: float
-    """The weight, 1e-6 to 1e6, of a handle that only pulls. Left out, it holds exactly."""
+    """The weight, 1e-6 to 1e6, of a handle that only pulls. Without it, the handle holds exactly."""
     continuity: float
-    """How the surface joins it, 0 to 2, in place of the mesh's."""
+    """The continuity of the surface at the handle, 0 to 2, instead of the mesh's."""
 
 Handles = Union[Mapping[str, Union[Selection, HandleEntry]], Sequence[Union[Selection, HandleEntry]]]
 """Handles by name, or in a row; those in a row are called "handle 1", "handle 2", ..."""
 
 Field = Union[npt.ArrayLike, Sequence[Mapping[str, Any]]]
-"""One number, an array with one for each vertex, or the edit format's list of selections and values."""
+"""One number, an array with one for each vertex, or the edit format's list of selections and values. The stiffness
+"rigid" is the same as infinity."""
 
 Loose = Union[Literal["follow", "bend", "rest"], Sequence[Mapping[str, Any]]]
-"""What parts do that nothing holds, or the edit format's list of selections and what they do."""
+"""The behaviour of parts that nothing holds, or the edit format's list of selections and behaviours."""
 
 Transform = Union[npt.ArrayLike, tuple[npt.ArrayLike, npt.ArrayLike], Mapping[str, Any]]
-"""A map of world positions from rest: a 4x4 matrix whose last row is 0, 0, 0, 1; a pair (R, t) of a 3x3 matrix and a
-translation, which takes p to R p + t; or the edit format's dict of `translation`, `rotation`, `scale` and `pivot`."""
+"""A map of world positions from rest: a 3x4 matrix; a 4x4 matrix whose last row is 0, 0, 0, 1; a translation of the
+shape (3,) or (3, 1); a pair (R, t) of a 3x3 matrix and a translation, which takes p to R p + t; or the edit format's
+dict of `translation`, `rotation`, `scale` and `pivot`."""
 
-Transforms = Union[npt.ArrayLike, Sequence[Transform], Mapping[str, Transform], Transform]
-"""One transform for each handle: an array of the shape (handles, 4, 4), a list, or a dict by names, where a handle that
-is not named is at rest. The only handle's may stand alone."""
+Positions = npt.ArrayLike
+"""World positions of a handle's vertices, shape (k, 3): a row for each, in the order of the array that named them at
+`bind`; for a mask or a selector the vertices ascend."""
+
+Transforms = Union[Transform, Positions, Sequence[Any], Mapping[str, Union[Transform, Positions]]]
+"""One transform, or positions, for each handle: an array of the shape (handles, 4, 4), a list, or a dict by names;
+a handle that is not named is at rest. The only handle's target needs no list."""
+
+Shape = Union["Mesh", tuple[npt.ArrayLike, npt.ArrayLike]]
+"""A mesh from a file, or a pair (vertices, faces) like those of `bind`."""
 
 Out = TypeVar("Out", npt.NDArray[np.float64], npt.NDArray[np.float32])
 
 class OptionValues(TypedDict, total=False):
-    """What an option takes: a number within `range`, or one of `choices`; a switch has neither."""
+    """The values of an option: a number within `range`, or one of `choices`; a switch has neither."""
 
     range: list[float]
     choices: Union[list[str], list[int]]
@@ -72,9 +83,9 @@ class OptionInfo(OptionValues):
     """An option of a method."""
 
     default: Union[float, int, str, bool]
-    """Its value where nothing is said."""
+    """The value of an option that is left out."""
     first_choice: Union[float, int, str, bool]
-    """Its value where a person chooses the method in Pliant's window."""
+    """The value when a person chooses the method in Pliant's window."""
     allowed: str
     unit: str
     help: str
@@ -86,7 +97,7 @@ class MethodInfo(TypedDict):
     attachments: list[str]
 
 def methods() -> dict[MethodName, MethodInfo]:
-    """The methods by name: title, when to take it, and its options with defaults, values, units and help."""
+    """The methods by name: title, when to use it, and its options with defaults, values, units and help."""
 
 def bind(
     vertices: npt.ArrayLike,
@@ -101,65 +112,177 @@ def bind(
     method: Method | None = None,
     weld: float | None = None,
 ) -> Bound:
-    """Binds a mesh: factors and solves everything that does not depend on where the handles go.
+    """Binds a mesh: factors and solves everything that does not depend on the handles' targets.
 
-    :param vertices: positions, shape (n, 3).
-    :param faces: triangles, whole numbers, shape (m, 3); none for points alone, which methods that bend space take.
-    :param handles: what moves; handles win over `fixed` and `region`.
-    :param fixed: what is held still; by default nothing.
-    :param region: what may move; the rest is held still. By default everything.
-    :param stiffness: 0.001 to 1000; by default 1.
-    :param continuity: how the surface joins what is held, 0 to 2; by default 2.
-    :param loose: what parts do that nothing holds: "follow" (the default), "bend" or "rest".
-    :param method: by default "bilaplacian" with its defaults.
-    :param weld: the distance within which vertices are joined, 0 for equal ones alone. Without it, the distance follows
-        from the mesh's edges.
+    :param vertices: positions, shape (n, 3). Rows that are not finite stay unchanged, with a warning.
+    :param faces: triangles, whole numbers, shape (m, 3); none for bare points, with a method that bends space.
+    :param handles: the moved vertices, by name or in a row; handles win over `fixed` and `region`. Each is numbers of
+        vertices, a mask of the shape (n,), a selector, or a dict with `select` and `soft` or `continuity`.
+    :param fixed: the vertices that are held still: numbers of vertices, a mask or a selector; by default none.
+    :param region: the vertices that may move, given likewise; the rest is held still. By default all.
+    :param stiffness: one number or one for each vertex, shape (n,), from 0.001 to 1000; "rigid", or infinity, moves as
+        one body. By default 1.
+    :param continuity: the continuity at held vertices, one number or one for each vertex, 0 to 2; by default 2.
+    :param loose: the behaviour of parts that nothing holds: "follow" (the default), "bend" or "rest".
+    :param method: a name, or a dict of its `name` and options. By default {"name": "arap", "energy": "smooth"}, as in
+        Pliant's window. A name alone has the edit format's defaults, for "arap" the energy "spokes-and-rims".
+    :param weld: the distance within which vertices are joined; 0 joins only equal ones. Without it, the distance
+        follows from the mesh's edges.
     :raises ValueError: one sentence that names the culprit and the remedy.
     """
 
 def load(path: str | os.PathLike[str], *, weld: float | None = None) -> Mesh:
     """Reads a mesh from a glTF, GLB, OBJ, PLY, STL or OFF file.
 
-    :param weld: the distance within which vertices are joined, in the file's units; 0 joins equal ones alone. Without
-        it, the distance follows from the mesh's edges and from how the file rounds its numbers.
-    :raises OSError: if the file can't be read.
-    :raises ValueError: if it is no such file.
+    :param weld: the distance within which vertices are joined, in the file's units; 0 joins only equal ones. Without
+        it, the distance follows from the mesh's edges and from the file's rounding of numbers.
+    :raises OSError: if the file can't be read: `FileNotFoundError` if there is none, with its `filename`.
+    :raises ValueError: if it is not such a file.
     """
 
 def save(path: str | os.PathLike[str], mesh: Mesh, vertices: npt.ArrayLike | None = None) -> list[str]:
     """Saves a mesh with new positions of its vertices, in the format that the path's extension names.
 
-    In the format that was read only the numbers of moved vertices differ, and if nothing moved the bytes are the same.
-    The file is written beside its place and read back before it replaces anything, so on any error the old one is still
-    there.
+    In the format of the file that was read, only the numbers of moved vertices differ, and if nothing moved the bytes
+    are the same. `save` writes a new file beside the old one and reads it back before it replaces anything, so that the
+    old one stays on any error.
 
     :param vertices: the rows of `mesh.vertices`, moved; shape (n, 3).
-    :return: what a person should know, as sentences.
+    :return: warnings, as sentences.
     :raises OSError: if the file can't be written.
     :raises ValueError: if the format can't hold it.
     """
 
+class Distortion(TypedDict):
+    """The distortion of a shape: the figures of the command line's report."""
+
+    edge_stretch_mean: float
+    """The mean over the edges of the larger of new by old length and old by new: 1 for a rigid motion."""
+    edge_stretch_max: float
+    """The largest of these ratios; infinite if an edge shrank to a point."""
+    flipped_faces: int
+    """Faces that turned over against the faces around them."""
+    volume_ratio: float
+    """The enclosed volume, new by old; 1 if the surface encloses none."""
+
+def distortion(mesh: Shape, bent: npt.ArrayLike) -> Distortion:
+    """The distortion of a mesh whose vertices are moved: the figures of the command line's report.
+
+    :param mesh: the mesh at rest: a result of `load`, or a pair (vertices, faces).
+    :param bent: its vertices, moved; shape (n, 3).
+    :return: `edge_stretch_mean` and `edge_stretch_max` (1 for a rigid motion), `flipped_faces` and `volume_ratio`.
+    :raises ValueError: one sentence that names the culprit and the remedy.
+    """
+
+class DifferencePlace(TypedDict):
+    """The place and the kind of a difference between two files."""
+
+    place: str
+    """The place, for example "mesh 0, primitive 1, POSITION"."""
+    sentence: str
+    """The difference in words."""
+
+class Difference(DifferencePlace, total=False):
+    """A difference between two files. A difference between numbers of a list has further members."""
+
+    elements: list[int]
+    """The elements that differ, ascending."""
+    of: int
+    """The number of elements."""
+    largest: float
+    """The largest difference of two numbers; infinite if one of them is not finite."""
+
+def diff(first: str | os.PathLike[str] | Mesh, second: str | os.PathLike[str] | Mesh) -> list[Difference]:
+    """The differences of two files, as in `pliant diff --json`; an empty list if they hold the same.
+
+    :param first: a path, or a result of `load`: the file as it was read.
+    :param second: the other file, given likewise.
+    :return: dicts with `place` and `sentence`; if numbers of a list differ, also with `elements`, `of` and `largest`.
+    :raises OSError: if a file can't be read.
+    """
+
+def transfer(
+    source: Shape, pose: Mesh | npt.ArrayLike, target: Shape, *, correspondences: npt.ArrayLike | None = None
+) -> npt.NDArray[np.float64]:
+    """Puts a pose of one mesh onto another, like `pliant transfer`.
+
+    :param source: the mesh that has the pose, at rest: a result of `load`, or a pair (vertices, faces).
+    :param pose: the same vertices in the pose: a result of `load`, or positions of the shape (n, 3).
+    :param target: the mesh that takes the pose: a result of `load`, or a pair (vertices, faces).
+    :param correspondences: pairs of a triangle of `source` and its partner in `target`, whole numbers, shape (p, 2).
+        Without them, both meshes must have the same triangles.
+    :return: the target's vertices in the pose, shape (k, 3); `save` writes them into its file. Warnings come as
+        `UserWarning`.
+    :raises ValueError: one sentence that names the culprit and the remedy.
+    """
+
+class Outcome(TypedDict, total=False):
+    """One method's result: its shape and figures, or only `refused`."""
+
+    vertices: npt.NDArray[np.float64]
+    """The positions of all vertices, shape (n, 3)."""
+    distortion: Distortion
+    detail_error: float
+    """The change of the details as seen from the surface, without unit; the edit's own bend counts equally for all
+    methods."""
+    detail_error_ratio: float | None
+    """The detail error divided by the best method's; `None` if the best is 0."""
+    method: MethodName
+    free_vertices: int
+    iterations: int
+    converged: bool
+    energy: float
+    handle_residual: float
+    warnings: list[str]
+    refused: str
+    """The reason why the method can't do the edit."""
+
+def compare(
+    mesh: Shape,
+    transforms: Transforms,
+    *,
+    methods: Method | Sequence[Method] | Mapping[str, Method] | None = None,
+    handles: Handles | None = None,
+    fixed: Selection | None = None,
+    region: Selection | None = None,
+    stiffness: Field | None = None,
+    continuity: Field | None = None,
+    loose: Loose | None = None,
+) -> dict[str, Outcome]:
+    """One edit by several methods: the figures of `pliant compare` and the shapes.
+
+    :param mesh: a result of `load`, or a pair (vertices, faces).
+    :param transforms: the handles' targets, as in `Bound.step`.
+    :param methods: names, or dicts of a `name` and options, in a row or by your own labels. By default every method
+        with its defaults.
+    :param handles: the same as in `bind`, and so are `fixed`, `region`, `stiffness`, `continuity` and `loose`.
+    :return: by name or label a dict with `vertices`, `distortion`, `detail_error` and its ratio to the best method's,
+        `method`, `free_vertices`, `iterations`, `converged`, `energy`, `handle_residual` and `warnings`; or with
+        `refused`, a sentence, if a method can't do the edit.
+    :raises ValueError: if `mesh` is not a mesh.
+    """
+
 @final
 class Mesh:
-    """A file that was read: its shape as arrays, and all else that is in it, kept for `save`."""
+    """A file that was read: its shape as arrays, and its other contents, which `save` keeps."""
 
     @property
     def vertices(self) -> npt.NDArray[np.float64]:
         """The vertices in world space, shape (n, 3), a new array each time. A glTF's vertex that several nodes show
-        stands here once for each."""
+        has a row for each."""
     @property
     def faces(self) -> npt.NDArray[np.uint32]:
         """The triangles, rows of `vertices`, shape (m, 3). Polygons are cut into triangles."""
     @property
     def file_vertices(self) -> npt.NDArray[np.uint32]:
-        """The file's own number of each row of `vertices`: what selections name. They count up unless a glTF shows a
-        vertex several times."""
+        """The file's own number of each row of `vertices`, which selections use. The numbers count up unless a glTF
+        shows a vertex several times."""
     @property
     def path(self) -> os.PathLike[str]:
-        """Where it was read from."""
+        """The file's path."""
     @property
     def findings(self) -> list[str]:
-        """What is wrong with the mesh, in sentences; none for a clean, closed, connected one."""
+        """The mesh's faults, as sentences; empty for a clean, closed, connected mesh."""
     def bind(
         self,
         *,
@@ -171,54 +294,66 @@ class Mesh:
         loose: Loose | None = None,
         method: Method | None = None,
     ) -> Bound:
-        """Binds the file's mesh, as `pliant.bind` does with arrays. Masks and fields are by the file's vertices."""
+        """Binds the file's mesh: factors and solves everything that does not depend on the handles' targets.
+
+        The parameters are those of `pliant.bind`, with the same defaults. Numbers of vertices, masks and fields use
+        the file's own numbers (`file_vertices`).
+
+        :raises ValueError: one sentence that names the culprit and the remedy.
+        """
 
 @final
 class Bound:
-    """A mesh that is bound to a method: transforms of the handles in, positions of all vertices out.
+    """A mesh that is bound to a method: it takes the handles' targets and gives the positions of all vertices.
 
-    Threads may share it; their steps wait for one another.
+    Threads may share it; their steps wait for each other.
     """
 
     @overload
     def step(
         self, transforms: Transforms, *, iterations: int | None = None, out: None = None
-    ) -> npt.NDArray[np.float64]: ...
-    @overload
-    def step(self, transforms: Transforms, *, iterations: int | None = None, out: Out) -> Out: ...
-    def step(self, transforms: Transforms, *, iterations: int | None = None, out: Any = None) -> Any:
+    ) -> npt.NDArray[np.float64]:
         """Moves the handles and returns the positions of all vertices, shape (n, 3).
 
-        :param iterations: how many steps a method that iterates takes at most. By default it goes on until it has
-            converged or met the limit of its options. Fewer follow a moving hand; calls with the same transforms go on.
-        :param out: an array that is filled and returned in place of a new one.
+        :param transforms: for each handle a transform from rest (a 3x4 or 4x4 matrix, a translation of the shape (3,)
+            or (3, 1), a pair of a 3x3 matrix and a translation, or the edit format's dict), or a position for each of
+            its vertices, shape (k, 3): its i-th vertex goes to row i, in the order of the array that named the
+            vertices; for a mask or a selector they ascend. The targets are an array or a list in the order of
+            `handles`, or a dict by names; a handle that is not named is at rest. The only handle's target needs no
+            list. "arap", "bilaplacian", "shells", "poisson", "frames" and "wrinkles" take positions.
+        :param iterations: the largest number of steps of an iterative method. By default it goes on until it has
+            converged or reached the limit in its options. Fewer steps follow a moving hand; calls with the same
+            transforms go on from the last step.
+        :param out: an array that is filled and returned instead of a new one.
         :raises ValueError: one sentence that names the culprit and the remedy.
         """
+    @overload
+    def step(self, transforms: Transforms, *, iterations: int | None = None, out: Out) -> Out: ...
     @property
     def handles(self) -> list[str]:
-        """The handles' names, in the order that `step` takes transforms in."""
+        """The handles' names, in the order of the transforms in `step`."""
     @property
     def method(self) -> MethodName:
         """The method's name."""
     @property
     def free_count(self) -> int:
-        """How many vertices are solved for, once those in the same place are joined."""
+        """The number of solved vertices, after vertices in the same place are joined."""
     @property
     def warnings(self) -> list[str]:
-        """What a person should know about the binding and the last step, as sentences."""
+        """The warnings about the binding and the last step, as sentences."""
     @property
     def findings(self) -> list[str]:
-        """What is wrong with the mesh, in sentences; none for a clean, closed, connected one."""
+        """The mesh's faults, as sentences; empty for a clean, closed, connected mesh."""
     @property
     def converged(self) -> bool:
         """Whether further steps with the same transforms would change nothing."""
     @property
     def iterations(self) -> int:
-        """How many iterations were taken towards the last transforms."""
+        """The number of iterations towards the last transforms."""
     @property
     def energy(self) -> float:
         """The method's energy after the last step, 0 at rest, without unit."""
     @property
     def handle_residual(self) -> float:
-        """The largest distance of a handle's vertex from where its transform takes it, after the last step, in world
-        units: 0 for methods that hold handles exactly."""
+        """The largest distance of a handle's vertex from its target, after the last step, in world units: 0 for methods
+        that hold handles exactly."""

@@ -16,6 +16,8 @@ mod sheets;
 mod transfer;
 mod volumes;
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
 use self::base::{Base, Faired};
@@ -25,6 +27,7 @@ use self::transfer::{Transfer, left_by};
 use self::volumes::Volumes;
 use crate::bilaplacian::solver::BilaplacianSolver;
 use crate::handles::Motion;
+use crate::handles::offsets::Offsets;
 use crate::method::{BindInput, BoundMethod, Finite, Stepped};
 use crate::{Bilaplacian, BindError, Detail, ReusableFactor, SolveError};
 
@@ -129,6 +132,9 @@ fn write(base: &Base, posed: &[DVec3], displacements: &mut [DVec3], change: impl
 
 impl BoundMethod for Multiresolution {
     fn step(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> Result<Stepped, SolveError> {
+        if !self.bending.is_affine() {
+            return self.step_by_back_substitution(motions, displacements);
+        }
         self.bending.frame(motions, displacements);
         self.reconstruct(motions, displacements)?;
         Ok(Stepped::at_once(self.bending.energy(motions), Finite::Unknown))
@@ -145,6 +151,10 @@ impl BoundMethod for Multiresolution {
         Ok(Stepped::at_once(energy, Finite::Unknown))
     }
 
+    fn set_offsets(&mut self, offsets: &Arc<Offsets>) {
+        self.bending.set_offsets(offsets);
+    }
+
     fn rest(&mut self) {
         self.posed.clone_from(&self.base.patch.rest);
     }
@@ -155,7 +165,7 @@ impl BoundMethod for Multiresolution {
     }
 
     fn reusable_factor(&self) -> Option<ReusableFactor> {
-        Some(ReusableFactor(std::sync::Arc::clone(self.bending.factored())))
+        Some(ReusableFactor(Arc::clone(self.bending.factored())))
     }
 
     fn solved_count(&self) -> usize {

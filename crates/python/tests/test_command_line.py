@@ -1,0 +1,145 @@
+"""Functions with the names and results of the command line's commands."""
+
+import json
+import subprocess
+
+import numpy as np
+import pytest
+
+import pliant
+from conftest import METHODS, ROOT, bar, quarter_turn
+
+CREATURE = ROOT / "assets" / "creature.glb"
+
+
+def run(program, *words):
+    command = [str(word) for word in (program, *words)]
+    return subprocess.run(command, check=True, capture_output=True, text=True).stdout
+
+
+@pytest.fixture
+def creature(tmp_path):
+    """Files of the creature and of the creature with a wave in it."""
+    mesh = pliant.load(CREATURE)
+    bent = mesh.vertices + 0.1 * np.sin(3 * mesh.vertices[:, ::-1])
+    pliant.save(tmp_path / "pose.glb", mesh, bent)
+    return mesh, pliant.load(tmp_path / "pose.glb"), tmp_path
+
+
+def test_transfer_gives_the_command_line_s_bytes(program, creature):
+    source, pose, folder = creature
+    scaled = folder / "target.glb"
+    pliant.save(scaled, source, source.vertices * [1.2, 1, 0.9])
+    target = pliant.load(scaled)
+    posed = pliant.transfer(source, pose, target)
+    pliant.save(folder / "own.glb", target, posed)
+    run(program, "transfer", CREATURE, folder / "pose.glb", scaled, "--output", folder / "expected.glb")
+    assert (folder / "own.glb").read_bytes() == (folder / "expected.glb").read_bytes()
+    pairs = [(mesh.vertices, mesh.faces) for mesh in (source, target)]
+    assert np.array_equal(pliant.transfer(pairs[0], pose.vertices, pairs[1]), posed)
+
+
+def test_a_rigid_pose_is_transferred_rigidly_by_correspondences(mesh):
+    vertices, faces = mesh
+    fine = bar(24, 60)
+    matrix = quarter_turn((0, 0, 0))
+    pose = vertices @ matrix[:3, :3].T
+    pairs = np.c_[np.zeros(40, int), np.arange(40) * 70]
+    posed = pliant.transfer(mesh, pose, fine, correspondences=pairs)
+    expected = fine[0] @ matrix[:3, :3].T
+    assert np.abs((posed - posed.mean(0)) - (expected - expected.mean(0))).max() < 1e-6
+    for wrong, said in [
+        ([[0, 10**6]], r"correspondences\[0\] is \[0, 1000000\], and source has"),
+        ([[0, 1], [1, 1]], r"correspondences\[1\] names target's triangle 1 once more"),
+        ([[0, 1, 2]], r"shape \[1, 3\]"),
+        ([], "correspondences is empty"),
+        (None, "give correspondences"),
+    ]:
+        with pytest.raises(ValueError, match=said):
+            pliant.transfer(mesh, pose, fine, correspondences=wrong)
+    with pytest.raises(ValueError, match="pose has 479 rows, but source has 480"):
+        pliant.transfer(mesh, pose[1:], mesh)
+    with pytest.raises(ValueError, match="target is no mesh: give what `load` returned"):
+        pliant.transfer(mesh, pose, vertices)
+
+
+def test_diff_tells_what_the_command_line_tells(program, creature):
+    source, pose, folder = creature
+    told = pliant.diff(CREATURE, folder / "pose.glb")
+    assert told == json.loads(run(program, "diff", CREATURE, folder / "pose.glb", "--json"))["differences"]
+    assert told and all(one["place"] and one["sentence"] for one in told)
+    assert pliant.diff(source, pose) == told
+    assert pliant.diff(source, str(CREATURE)) == []
+    with pytest.raises(FileNotFoundError):
+        pliant.diff(CREATURE, folder / "none.glb")
+
+
+def test_distortion_is_the_report_s(program, tmp_path):
+    edit = json.loads((ROOT / "assets" / "creature.edit.json").read_text())
+    paths = {name: tmp_path / name for name in ("edit.json", "bent.glb", "report.json")}
+    paths["edit.json"].write_text(json.dumps({**edit, "method": {"name": "poisson"}}))
+    run(program, "apply", CREATURE, "--edit", paths["edit.json"], "--output", paths["bent.glb"], "--report", paths["report.json"])
+    expected = json.loads(paths["report.json"].read_text())["distortion"]
+    mesh = pliant.load(CREATURE)
+    found = pliant.distortion(mesh, pliant.load(paths["bent.glb"]).vertices)
+    assert list(found) == list(expected)
+    # The saved positions are rounded to single precision.
+    assert np.allclose(list(found.values()), list(expected.values()), rtol=1e-4)
+
+
+def test_a_rigid_motion_distorts_nothing_and_a_stretch_does(mesh):
+    vertices, _ = mesh
+    matrix = quarter_turn()
+    rigid = pliant.distortion(mesh, vertices @ matrix[:3, :3].T + matrix[:3, 3])
+    assert rigid["flipped_faces"] == 0
+    assert np.allclose([rigid["edge_stretch_mean"], rigid["edge_stretch_max"], rigid["volume_ratio"]], 1)
+    doubled = pliant.distortion(mesh, 2 * vertices)
+    assert np.allclose([doubled["edge_stretch_mean"], doubled["volume_ratio"]], [2, 8])
+    with pytest.raises(ValueError, match="bent has 479 rows, but the mesh has 480"):
+        pliant.distortion(mesh, vertices[1:])
+    with pytest.raises(ValueError, match=r"bent\[3\] is not finite"):
+        pliant.distortion(mesh, np.where(np.arange(480)[:, None] == 3, np.nan, vertices))
+
+
+def test_compare_bends_by_every_method_as_bind_does(mesh, ends):
+    outcomes = pliant.compare(mesh, quarter_turn(), **ends)
+    assert [name for name in outcomes if name != "identity"] == METHODS
+    for name in ("arap", "rbf", "poisson"):
+        bound = pliant.bind(*mesh, **ends, method=name)
+        own = outcomes[name]
+        assert np.array_equal(own["vertices"], bound.step(quarter_turn()))
+        assert (own["energy"], own["converged"], own["method"]) == (bound.energy, bound.converged, name)
+        assert own["distortion"] == pliant.distortion(mesh, own["vertices"])
+    assert min(own["detail_error_ratio"] for own in outcomes.values()) == 1
+
+
+def test_compare_takes_labels_and_tells_refusals(mesh, ends):
+    vertices, top = mesh[0], ends["handles"]["top"]
+    methods = {"smooth": {"name": "arap", "energy": "smooth"}, "plain": "arap", "space": "mls"}
+    outcomes = pliant.compare(mesh, {"top": vertices[top] + 0.1}, methods=methods, **ends)
+    assert list(outcomes) == ["smooth", "plain", "space"]
+    assert "takes no positions" in outcomes["space"]["refused"] and len(outcomes["space"]) == 1
+    assert np.array_equal(outcomes["smooth"]["vertices"][top], vertices[top] + 0.1)
+    with pytest.raises(ValueError, match="methods names arap twice"):
+        pliant.compare(mesh, np.eye(4), methods=["arap", {"name": "arap", "energy": "smooth"}], **ends)
+
+
+def test_compare_has_the_command_line_s_figures(program, tmp_path):
+    edit = json.loads((ROOT / "assets" / "creature.edit.json").read_text())
+    (tmp_path / "edit.json").write_text(json.dumps(edit))
+    sheet, report = tmp_path / "sheet.png", tmp_path / "report.json"
+    words = ["compare", CREATURE, "--edit", tmp_path / "edit.json", "--methods", "poisson,mls", "--report", report]
+    try:
+        run(program, *words, "--output", sheet, "--size", "200x200")
+    except subprocess.CalledProcessError as error:
+        pytest.skip(f"no picture can be drawn here: {error.stderr}")
+    expected = json.loads(report.read_text())["methods"]
+    members = {name: own for name, own in edit.items() if name not in ("version", "handles", "method")}
+    handles = {own["name"]: {k: v for k, v in own.items() if k not in ("name", "transform")} for own in edit["handles"]}
+    transforms = {own["name"]: own.get("transform", {}) for own in edit["handles"]}
+    found = pliant.compare(pliant.load(CREATURE), transforms, methods=["poisson", "mls"], handles=handles, **members)
+    for name, own in found.items():
+        assert np.isclose(own["detail_error"], expected[name]["detail_error"])
+        assert np.isclose(own["detail_error_ratio"], expected[name]["detail_error_ratio"])
+        for figure, value in own["distortion"].items():
+            assert np.isclose(value, expected[name]["distortion"][figure])
