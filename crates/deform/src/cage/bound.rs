@@ -4,6 +4,7 @@ use glam::{DVec3, Mat3};
 
 use super::by_hand::ByHand;
 use super::conformal::Conformal;
+use super::green_steps::Progressed;
 use crate::SolveError;
 use crate::handles::Motion;
 use crate::method::{BoundMethod, Finite, Stepped};
@@ -29,7 +30,7 @@ pub(super) enum Field {
 
 impl BoundMethod for BoundCage {
     fn step(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> Result<Stepped, SolveError> {
-        let finite = match &self.field {
+        let finite = match &mut self.field {
             Field::Linear(field, by_hand) => {
                 let finite = field.frame(motions, displacements);
                 match (by_hand, self.controls.corrected()) {
@@ -41,11 +42,22 @@ impl BoundMethod for BoundCage {
                 }
             }
             Field::Conformal(conformal) => {
-                conformal.frame(&self.controls, motions, displacements);
-                Finite::Unknown
+                let state = conformal.step(&self.controls, motions, displacements);
+                return Ok(Stepped {
+                    converged: state == Progressed::Converged,
+                    stalled: state == Progressed::Stalled,
+                    energy: conformal.energy(),
+                    finite: Finite::Unknown,
+                });
             }
         };
         Ok(Stepped::at_once(0.0, finite))
+    }
+
+    fn rest(&mut self) {
+        if let Field::Conformal(conformal) = &mut self.field {
+            conformal.rest();
+        }
     }
 
     fn jacobians(&self, motions: &[Motion], out: &mut [Mat3]) -> bool {

@@ -1,105 +1,125 @@
-//! The bound cage of Green coordinates. Its faces' normals are not linear in the handles' motions, so each frame moves
-//! the cage's vertices, corrects them a few times where the field misses the handles, and sums up vertices and normals
-//! at each point.
+//! The bound cage of Green coordinates. Its faces' normals are not linear in the handles' motions, so steps fit the
+//! cage's vertices to the handles, and each sums up vertices and normals at each point.
 
-use faer::Mat;
 use glam::{DMat3, DVec3, Mat3};
 use pliant_mesh::{Cancel, Progress};
 
 use super::green::Green;
-use super::green_table::{GreenTable, green_rows};
-use super::lane_rows::{LaneRows, by_blocks};
+use super::green_fit::{Asked, GreenFit};
+use super::green_steps::{Descent, Progressed};
+use super::green_table::GreenTable;
+use super::lane_rows::by_blocks;
 use super::linear::Unit;
 use super::mesh::CageMesh;
+use super::moved_cage::{MovedCage, RestCage};
+use super::rows::green_rows;
 use crate::BindError;
 use crate::handles::Motion;
 use crate::numerical::lanes::LANES;
-use crate::numerical::rigid_fit::RigidMotion;
+use crate::space::affine::AffineParts;
 use crate::space::controls::Controls;
 use crate::space::falloff::Falloff;
 use crate::space::fit_samples::Sample;
 use crate::space::hand_field::outer;
 
-/// How often a frame corrects the cage.
-const CORRECTIONS: usize = 8;
-
 /// The bound form.
 #[derive(Debug)]
 pub(super) struct Conformal {
     unit: Unit,
-    cage: CageMesh,
+    fit: GreenFit,
+    affine: AffineParts,
     /// The vertices that move, ascending, where they rest, and how they fade.
     vertices: Vec<u32>,
     points: Vec<DVec3>,
     falloff: Falloff,
     table: GreenTable,
     samples: Vec<Sample>,
-    sample_points: Vec<DVec3>,
-    sample_rows: LaneRows<f64>,
-    /// How each vertex moves as each sample misses its target by a unit.
-    response: LaneRows<f64>,
-}
-
-/// A moved cage: a rigid motion and what differs from it.
-struct MovedCage {
-    rigid: Option<RigidMotion>,
-    turn: DMat3,
-    /// Of each vertex, then of each face's stretched normal.
-    differences: Vec<DVec3>,
+    /// What `descent` is for: the handles' motions, and what the hand does.
+    motions: Vec<Motion>,
+    by_hand: Vec<DVec3>,
+    descent: Option<Descent>,
 }
 
 impl Conformal {
-    /// Computes the coordinates of the vertices that move. `response` has a row a vertex of the cage and a column a
-    /// sample.
+    /// Computes the coordinates of the vertices that move.
     #[expect(clippy::too_many_arguments, reason = "its parts, each made by another function")]
     pub fn bind(
         unit: Unit,
         cage: CageMesh,
         samples: Vec<Sample>,
-        response: &Mat<f64>,
+        affine: AffineParts,
         (vertices, falloff): (Vec<u32>, Falloff),
         positions: &[DVec3],
         progress: &Progress,
         cancel: &Cancel,
     ) -> Result<Self, BindError> {
-        let free_count = vertices.len();
-        let out_of_memory = |_| BindError::OutOfMemory { free_count };
         let points: Vec<DVec3> = vertices
             .iter()
             .map(|&vertex| unit.local(positions[vertex as usize]))
             .collect();
-        let sample_points: Vec<DVec3> = samples.iter().map(|sample| unit.local(sample.world_point)).collect();
         let green = Green::new(&cage);
-        let sample_rows = green_rows(&green, &sample_points, cancel)?;
+        let sample_points: Vec<DVec3> = samples.iter().map(|sample| unit.local(sample.world_point)).collect();
+        let rows = green_rows(&green, &sample_points);
+        let fit = GreenFit::bind(RestCage::new(cage.clone()), sample_points, &samples, &rows)?;
+        cancel.check()?;
         progress.set(0.3);
         let table = GreenTable::of(&green, &points, cancel)?;
-        let response = LaneRows::of(response.nrows(), response.ncols(), |vertex, sample| {
-            response[(vertex, sample)]
-        });
         progress.set(1.0);
         Ok(Self {
             unit,
-            response: response.map_err(out_of_memory)?,
-            cage,
+            fit,
+            affine,
             vertices,
             points,
             falloff,
             table,
             samples,
-            sample_points,
-            sample_rows,
+            motions: Vec::new(),
+            by_hand: Vec::new(),
+            descent: None,
         })
     }
 
-    /// Fills all of `displacements`. The corrections begin at where `controls` say that the cage's vertices go.
-    pub fn frame(&self, controls: &Controls, motions: &[Motion], displacements: &mut [DVec3]) {
-        let (moved, _) = self.moved_cage(controls, motions);
+    /// One step towards these motions, and what it did; fills all of `displacements`.
+    pub fn step(&mut self, controls: &Controls, motions: &[Motion], displacements: &mut [DVec3]) -> Progressed {
+        if motions.is_empty() {
+            self.fill(&self.fit.cage.moved(&self.linear(controls, motions)), displacements);
+            return Progressed::Converged;
+        }
+        if !self.is_for(controls, motions) {
+            let last = self.descent.take().map(|descent| descent.current.shifts);
+            let start = self.linear(controls, motions);
+            self.descent = Some(Descent::new(&self.fit, self.asked(controls, motions), start, last));
+            self.motions = motions.to_vec();
+            self.by_hand = controls.corrected().unwrap_or_default().to_vec();
+        }
+        let Some(descent) = &mut self.descent else {
+            return Progressed::Converged;
+        };
+        descent.step(&self.fit);
+        let state = descent.state;
+        let Some(descent) = &self.descent else { return state };
+        self.fill(&descent.current.moved, displacements);
+        state
+    }
+
+    /// The energy of the last step.
+    pub fn energy(&self) -> f64 {
+        self.descent.as_ref().map_or(0.0, |descent| descent.current.energy)
+    }
+
+    /// Back to rest.
+    pub fn rest(&mut self) {
+        self.descent = None;
+    }
+
+    fn fill(&self, moved: &MovedCage, displacements: &mut [DVec3]) {
         let own = |block: usize| self.table.block_product(block, &moved.differences);
         displacements.fill(DVec3::ZERO);
         by_blocks(&self.vertices, displacements, |block, entries| {
             for (lane, (out, sum)) in entries.zip(own(block)).enumerate() {
                 let number = block * LANES + lane;
-                let shift = displaced(moved.rigid.as_ref(), self.points[number]) + sum;
+                let shift = moved.displaced(self.points[number]) + sum;
                 *out = shift * (self.falloff.at(number).0 * self.unit.length);
             }
         });
@@ -110,7 +130,7 @@ impl Conformal {
         let GreenTable::Small(rows, gradients) = &self.table else {
             return false;
         };
-        let (moved, _) = self.moved_cage(controls, motions);
+        let moved = self.fit.cage.moved(&self.shifts(controls, motions));
         let shifts = moved.at(&self.points, rows);
         let [x, y, z] = gradients.each_ref().map(|axis| axis.product(&moved.differences));
         out.fill(Mat3::ZERO);
@@ -125,99 +145,58 @@ impl Conformal {
 
     /// Where the cage's vertices are, in world units.
     pub fn control_positions(&self, controls: &Controls, motions: &[Motion]) -> Vec<DVec3> {
-        let (_, shifts) = self.moved_cage(controls, motions);
+        let shifts = self.shifts(controls, motions);
         let places = controls.rest.iter().zip(shifts);
         places.map(|(rest, shift)| *rest + shift * self.unit.length).collect()
     }
 
-    /// Moves the cage so that the field meets the handles as well as it can; with it the displacements of its vertices.
-    fn moved_cage(&self, controls: &Controls, motions: &[Motion]) -> (MovedCage, Vec<DVec3>) {
-        let by_hand = controls.corrected();
-        let mut shifts: Vec<DVec3> = (0..self.cage.vertices.len())
-            .map(|vertex| {
-                let by_hand = by_hand.map_or(DVec3::ZERO, |by_hand| by_hand[vertex]);
-                (controls.driven(vertex, motions) + by_hand) / self.unit.length
-            })
-            .collect();
-        if motions.is_empty() {
-            return (MovedCage::new(&self.cage, &shifts), shifts);
+    /// Whether the descent is for these motions and what the hand does.
+    fn is_for(&self, controls: &Controls, motions: &[Motion]) -> bool {
+        let is_for = self.motions == motions && self.by_hand == controls.corrected().unwrap_or_default();
+        self.descent.is_some() && is_for
+    }
+
+    /// The displacements of the cage's vertices: those of the last step or, before there is one, the linear ones.
+    fn shifts(&self, controls: &Controls, motions: &[Motion]) -> Vec<DVec3> {
+        match &self.descent {
+            Some(descent) if self.is_for(controls, motions) => descent.current.shifts.clone(),
+            _ => self.linear(controls, motions),
         }
+    }
+
+    /// The displacements of the cage's vertices that are linear in what handles and hand do.
+    fn linear(&self, controls: &Controls, motions: &[Motion]) -> Vec<DVec3> {
+        let corrected = controls.corrected();
+        let shift = |vertex: usize| {
+            let by_hand = corrected.map_or(DVec3::ZERO, |by_hand| by_hand[vertex]);
+            (controls.driven(vertex, motions) + by_hand) / self.unit.length
+        };
+        (0..controls.rest.len()).map(shift).collect()
+    }
+
+    /// What handles and hand ask of the cage.
+    fn asked(&self, controls: &Controls, motions: &[Motion]) -> Asked {
+        let local = |shift: DVec3| shift / self.unit.length;
         // Handles are fitted by what the hand leaves; so what is fixed has the hand's displacement for its target.
-        let by_hand = controls.displacements().map(|by_hand| {
-            let shifts: Vec<DVec3> = by_hand.iter().map(|shift| *shift / self.unit.length).collect();
-            MovedCage::new(&self.cage, &shifts)
+        let by_hand = controls.displacements();
+        let of_hand = by_hand.map(|by_hand| {
+            let shifts: Vec<DVec3> = by_hand.iter().map(|shift| local(*shift)).collect();
+            self.fit.at_samples(&self.fit.cage.moved(&shifts))
         });
-        let of_hand = by_hand.map(|by_hand| by_hand.at(&self.sample_points, &self.sample_rows));
         let target = |(number, sample): (usize, &Sample)| match (sample.handle, &of_hand) {
-            (Some((handle, coordinates)), _) => motions[handle].displace(coordinates) / self.unit.length,
+            (Some((handle, coordinates)), _) => local(motions[handle].displace(coordinates)),
             (None, Some(of_hand)) => of_hand[number],
             (None, None) => DVec3::ZERO,
         };
-        let targets: Vec<DVec3> = self.samples.iter().enumerate().map(target).collect();
-        let mut best = (f64::INFINITY, (MovedCage::new(&self.cage, &shifts), shifts.clone()));
-        for _ in 0..CORRECTIONS {
-            let moved = MovedCage::new(&self.cage, &shifts);
-            let mut misses = moved.at(&self.sample_points, &self.sample_rows);
-            for (miss, target) in misses.iter_mut().zip(&targets) {
-                *miss = *target - *miss;
-            }
-            let squares = misses.iter().zip(&self.samples);
-            let error: f64 = squares
-                .map(|(miss, sample)| miss.length_squared() * sample.weight)
-                .sum();
-            // Not less by a hundredth: this is as good as it gets.
-            let is_better = error < 0.99 * best.0;
-            if error < best.0 {
-                best = (error, (moved, shifts.clone()));
-            }
-            if !is_better {
-                break;
-            }
-            for (shift, correction) in shifts.iter_mut().zip(self.response.product(&misses)) {
-                *shift += correction;
-            }
-        }
-        best.1
-    }
-}
-
-impl MovedCage {
-    /// Of the vertices' displacements.
-    fn new(cage: &CageMesh, shifts: &[DVec3]) -> Self {
-        let green = Green::new(cage);
-        let rigid = RigidMotion::fit(&cage.vertices, shifts);
-        let turn = rigid.map_or(DMat3::IDENTITY, |rigid| DMat3::from_quat(rigid.rotation()));
-        let moved: Vec<DVec3> = cage
-            .vertices
-            .iter()
-            .zip(shifts)
-            .map(|(rest, shift)| *rest + *shift)
-            .collect();
-        let of_vertices = cage.vertices.iter().zip(shifts);
-        let of_vertices = of_vertices.map(|(rest, shift)| *shift - displaced(rigid.as_ref(), *rest));
-        let normals = green.stretched_normals(&moved);
-        let of_faces = normals
-            .iter()
-            .zip(green.normals())
-            .map(|(moved, rest)| *moved - turn * rest);
-        let differences = of_vertices.chain(of_faces).collect();
-        Self {
-            rigid,
-            turn,
-            differences,
+        let base = |(vertex, world_rest): (usize, &DVec3)| {
+            let affine = motions.iter().enumerate();
+            let affine = affine.map(|(handle, motion)| motion.displace(self.affine.at(handle, *world_rest)));
+            let by_hand = by_hand.map_or(DVec3::ZERO, |by_hand| by_hand[vertex]);
+            local(affine.sum::<DVec3>() + by_hand)
+        };
+        Asked {
+            targets: self.samples.iter().enumerate().map(target).collect(),
+            base: controls.rest.iter().enumerate().map(base).collect(),
         }
     }
-
-    /// The displacements of points with these coordinates. A rigid motion of the whole cage moves every point with it.
-    fn at(&self, points: &[DVec3], rows: &LaneRows<f64>) -> Vec<DVec3> {
-        let mut sums = rows.product(&self.differences);
-        for (sum, point) in sums.iter_mut().zip(points) {
-            *sum += displaced(self.rigid.as_ref(), *point);
-        }
-        sums
-    }
-}
-
-fn displaced(rigid: Option<&RigidMotion>, point: DVec3) -> DVec3 {
-    rigid.map_or(DVec3::ZERO, |rigid| rigid.displace(point))
 }

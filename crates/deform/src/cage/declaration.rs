@@ -7,7 +7,8 @@ use super::bound::{BoundCage, Field};
 use super::by_hand::{ByHand, kept_bytes};
 use super::chosen::ChosenCage;
 use super::conformal::Conformal;
-use super::fit::{controls, fit_bytes, response, soft_unit};
+use super::fit::{controls, fit_bytes, soft_unit};
+use super::green_fit::green_fit_bytes;
 use super::green_table::green_bytes;
 use super::harmonic::Harmonic;
 use super::linear::{HarmonicMap, MeanValueMap, Unit};
@@ -57,6 +58,9 @@ const SAMPLES: [usize; 2] = [3000, 50];
 /// As [`SAMPLES`], for coordinates whose frames evaluate each sample.
 const SAMPLES_A_FRAME: [usize; 2] = [600, 20];
 
+/// The most steps of a frame by Green coordinates.
+const MOST_STEPS: u32 = 1000;
+
 impl DeformMethod for Cage {
     fn declaration(&self) -> &'static MethodDeclaration {
         &DECLARATION
@@ -72,7 +76,12 @@ impl DeformMethod for Cage {
     }
 
     fn solve(&self) -> Solve {
-        Solve::Direct
+        match self.coordinates {
+            CageCoordinates::MeanValue | CageCoordinates::Harmonic => Solve::Direct,
+            CageCoordinates::Green => Solve::Iterative {
+                max_iterations: MOST_STEPS,
+            },
+        }
     }
 
     fn handle_fit(&self) -> HandleFit {
@@ -171,15 +180,17 @@ impl DeformMethod for Cage {
                 (Field::Linear(Box::new(field), by_hand), rows, driven)
             }
             CageCoordinates::Green => {
-                budget.without(green_bytes(cage, vertices.len())).map_err(over)?;
+                let of_fit = green_fit_bytes(cage.vertices.len(), cage.faces.len(), samples.len());
+                let bytes = of_fit + green_bytes(cage, vertices.len());
+                budget.without(bytes).map_err(over)?;
                 let rows = mean_value_rows(&MeanValue::new(cage), &samples, unit);
-                let (response, driven) = (response(cage, &rows, &samples), controls_of(&rows));
+                let driven = controls_of(&rows);
                 input.progress.set(0.2);
                 let conformal = Conformal::bind(
                     unit,
                     cage.clone(),
                     samples.clone(),
-                    &response,
+                    affine.clone(),
                     (vertices, falloff),
                     positions,
                     input.progress,

@@ -15,7 +15,7 @@ use crate::space::fit_samples::Sample;
 const REGULARISATION: f64 = 1e-6;
 
 /// Where these differences leave a choice, least displacements decide, with this factor.
-const RIDGE: f64 = 1e-3;
+pub(super) const RIDGE: f64 = 1e-3;
 
 /// The weight of a soft handle of weight 1: about as much as the cage resists.
 pub(super) fn soft_unit(cage: &CageMesh) -> f64 {
@@ -37,24 +37,23 @@ fn normal_equations(cage: &CageMesh, rows: &Mat<f64>, samples: &[Sample]) -> (Ma
     });
     let mut matrix = Mat::<f64>::zeros(count, count);
     multiply(&mut matrix, &weighted, rows);
+    add_differences(&mut matrix, cage, REGULARISATION);
+    (matrix, weighted)
+}
+
+/// Adds `factor` (Lᵀ L + ε).
+pub(super) fn add_differences(matrix: &mut Mat<f64>, cage: &CageMesh, factor: f64) {
     for (vertex, neighbours) in cage.neighbours().iter().enumerate() {
         let share = -1.0 / neighbours.len() as f64;
         let own = neighbours.iter().map(|&other| (other as usize, share));
         let terms: Vec<(usize, f64)> = own.chain([(vertex, 1.0)]).collect();
         for &(row, a) in &terms {
             for &(column, b) in &terms {
-                matrix[(row, column)] += REGULARISATION * a * b;
+                matrix[(row, column)] += factor * a * b;
             }
         }
-        matrix[(vertex, vertex)] += REGULARISATION * RIDGE;
+        matrix[(vertex, vertex)] += factor * RIDGE;
     }
-    (matrix, weighted)
-}
-
-/// How each vertex moves as each sample misses its target by a unit: a row a vertex and a column a sample.
-pub(super) fn response(cage: &CageMesh, rows: &Mat<f64>, samples: &[Sample]) -> Mat<f64> {
-    let (matrix, weighted) = normal_equations(cage, rows, samples);
-    solved(matrix, weighted)
 }
 
 /// The vertices' displacements that are linear in the handles' motions: a row a vertex and four columns a handle.

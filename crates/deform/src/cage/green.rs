@@ -129,24 +129,6 @@ impl<'a> Green<'a> {
     pub fn normals(&self) -> impl Iterator<Item = DVec3> {
         self.planes.iter().map(|plane| plane.normal)
     }
-
-    /// Each face's normal as the vertices move, times how much the face is stretched [LLC08, equation 9].
-    pub fn stretched_normals(&self, moved: &[DVec3]) -> Vec<DVec3> {
-        let stretched = |face: &[u32; 3]| {
-            let edges = |vertices: &[DVec3]| {
-                let [a, b, c] = face.map(|vertex| vertices[vertex as usize]);
-                [b - a, c - a]
-            };
-            let ([u, v], [u_moved, v_moved]) = (edges(&self.cage.vertices), edges(moved));
-            let area = u.cross(v).length();
-            let square = u_moved.length_squared() * v.length_squared() - 2.0 * u_moved.dot(v_moved) * u.dot(v)
-                + v_moved.length_squared() * u.length_squared();
-            // √8 times the face's area below.
-            let stretch = (square.max(0.0) / 2.0).sqrt() / area.max(f64::MIN_POSITIVE);
-            u_moved.cross(v_moved).normalize_or_zero() * stretch
-        };
-        self.cage.faces.iter().map(stretched).collect()
-    }
 }
 
 /// Of an edge between two vertices, given from the point with their distances.

@@ -3,7 +3,8 @@
 //! the least-squares sense, and of these the smoothest ones.
 //!
 //! `voxels` and `offset` make the cage, and `brought` checks one that a person gives. The coordinates are those of `mean_value` [JSW05], of `harmonic` functions
-//! [JMD+07] and of `green` [LLC08]; `fit` solves for the cage's vertices.
+//! [JMD+07] and of `green` [LLC08]; `fit` solves for the cage's vertices, and
+//! `green_fit` and `green_steps` where the faces' normals follow them.
 
 mod balance;
 mod bound;
@@ -15,6 +16,8 @@ mod crossings;
 mod declaration;
 mod fit;
 mod green;
+mod green_fit;
+mod green_steps;
 mod green_table;
 mod harmonic;
 mod lane_rows;
@@ -22,12 +25,14 @@ mod linear;
 mod mean_value;
 mod mean_value_at;
 mod mesh;
+mod moved_cage;
 mod offset;
 mod options;
 mod outside;
 pub mod parts;
 mod rows;
 mod stored_field;
+mod stretched;
 mod voxels;
 
 pub(crate) use self::declaration::DECLARATION;

@@ -9,6 +9,7 @@ use super::harmonic::Harmonic;
 use super::mean_value::MeanValue;
 use super::mesh::CageMesh;
 use super::offset::offset_cage;
+use super::stretched::RestFace;
 use crate::Budget;
 
 /// Vertices and faces of a mesh.
@@ -44,9 +45,12 @@ pub fn green_moved(mesh: &Mesh, moved: &[DVec3], point: DVec3) -> DVec3 {
     let green = Green::new(&cage);
     let mut values = vec![0.0; green.count()];
     green.at(point, &mut values, None);
-    let normals = green.stretched_normals(moved);
-    let targets = moved.iter().chain(&normals);
-    targets.zip(&values).map(|(target, value)| *target * *value).sum()
+    let normals = mesh
+        .1
+        .iter()
+        .map(|corners| RestFace::of(*corners, &mesh.0).stretched_normal(moved));
+    let targets = moved.iter().copied().chain(normals);
+    targets.zip(&values).map(|(target, value)| target * *value).sum()
 }
 
 /// The harmonic coordinates of points in a cage, by a grid of this step; `None` where it can't be solved.

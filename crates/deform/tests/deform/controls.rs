@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::cage::cage;
-use crate::rig::{Scene, apart, step, turned};
+use crate::rig::{Scene, apart, settle, step, turned};
 use glam::{DAffine3, DMat3, DVec3};
 use pliant_deform::{
     Attachment, AttachmentRefused, BindError, CageCoordinates, ControlLattice, ControlMesh, Method, OptionValue, Role,
@@ -99,14 +99,16 @@ fn moved_there_and_back_everything_rests_to_the_bit_and_unmoved_the_handles_do_w
     for (name, method) in methods() {
         let plain = bar(&method);
         let target = [turned(plain.positions()[0], 0.4, DVec3::Y)];
-        let without = plain.moved(&target);
+        let (without, _) = settle(&mut plain.bind(), &target);
         let scene = brought(plain);
         let mut bound = scene.bind();
-        assert_eq!(step(&mut bound, &target), without, "{name}");
+        assert_eq!(settle(&mut bound, &target).0, without, "{name}");
         bound.set_controls(&moved(&scene, bent)).unwrap();
-        assert_ne!(step(&mut bound, &target), without, "{name}");
+        assert_ne!(settle(&mut bound, &target).0, without, "{name}");
         bound.set_controls(&moved(&scene, |_, p| p)).unwrap();
-        assert_eq!(step(&mut bound, &target), without, "{name}");
+        // What iterates goes on from where it was, and forgets that at rest.
+        step(&mut bound, &[DAffine3::IDENTITY]);
+        assert_eq!(settle(&mut bound, &target).0, without, "{name}");
         let rest = step(&mut bound, &[DAffine3::IDENTITY]);
         assert!(rest.iter().all(|d| *d == DVec3::ZERO), "{name}");
         assert!(
@@ -196,7 +198,10 @@ fn jacobians_are_the_derivative_with_moved_controls() {
             scene.attachments = attachment.clone();
             let mut bound = scene.bind();
             bound.set_controls(&moved(&scene, bent)).unwrap();
-            let displacements = step(&mut bound, &[turned(DVec3::ZERO, 0.3, DVec3::Y)]);
+            let mut displacements = vec![DVec3::ZERO; scene.roles.len()];
+            bound.set_targets(&[turned(DVec3::ZERO, 0.3, DVec3::Y)]).unwrap();
+            // One step: how many there are to the end may differ between two shapes that hardly do.
+            bound.step(&mut displacements).unwrap();
             (displacements[probe], bound.jacobians().unwrap()[probe])
         };
         let jacobian = displaced(DVec3::ZERO).1.as_dmat3();

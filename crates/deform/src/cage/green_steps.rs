@@ -1,0 +1,130 @@
+//! How a cage of Green coordinates comes to fit its handles: Gauss–Newton steps with Levenberg's damping from the better
+//! of the linear shape and the last one. A step is solved for by conjugate gradients. What damps is the cage's own
+//! resistance, so that a step is as smooth as the shape.
+
+use glam::DVec3;
+
+use super::green_fit::{Asked, Derivatives, GreenFit, Tried, add, dot};
+
+/// A step that lowers the energy by less than this share of it was the last one.
+const TOLERANCE: f64 = 1e-3;
+
+/// Energies below this are rounding.
+const NOTHING: f64 = 1e-24;
+
+/// The most conjugate directions of a step, and the share of the first residual's square that they leave.
+const DIRECTIONS: usize = 60;
+const LEFT: f64 = 0.01;
+
+/// How often a step is damped more before there is none to take, and by what factor.
+const TRIALS: usize = 9;
+const MORE: f64 = 5.0;
+
+/// A step must bring this share of what the linear model promises; one that brings the second share lets the next be
+/// damped less.
+const SUFFICIENT: f64 = 0.1;
+const GOOD: f64 = 0.6;
+
+/// What a step did.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Progressed {
+    /// There may be more to gain.
+    Descends,
+    /// It gained next to nothing.
+    Converged,
+    /// No step lowers the energy, though the model promises one.
+    Stalled,
+}
+
+/// A cage on its way.
+#[derive(Debug)]
+pub(super) struct Descent {
+    pub asked: Asked,
+    pub current: Tried,
+    pub state: Progressed,
+    damping: f64,
+}
+
+impl Descent {
+    /// From the better of these displacements.
+    pub fn new(fit: &GreenFit, asked: Asked, start: Vec<DVec3>, last: Option<Vec<DVec3>>) -> Self {
+        let mut current = fit.tried(&asked, start);
+        if let Some(last) = last.map(|last| fit.tried(&asked, last))
+            && last.energy < current.energy
+        {
+            current = last;
+        }
+        Self {
+            asked,
+            current,
+            state: Progressed::Descends,
+            damping: 1.0,
+        }
+    }
+
+    /// One step, unless it has converged or stalled.
+    pub fn step(&mut self, fit: &GreenFit) {
+        if self.state != Progressed::Descends {
+            return;
+        }
+        let before = self.current.energy;
+        if before <= NOTHING {
+            self.state = Progressed::Converged;
+            return;
+        }
+        let derivatives = fit.derivatives(&self.current);
+        let downhill = fit.downhill(&derivatives, &self.current);
+        for _ in 0..TRIALS {
+            let direction = direction(fit, &derivatives, self.damping, &downhill);
+            let promised = dot(&downhill, &direction);
+            let mut shifts = self.current.shifts.clone();
+            add(&mut shifts, 1.0, &direction);
+            let tried = fit.tried(&self.asked, shifts);
+            let gained = before - tried.energy;
+            if gained > SUFFICIENT * promised && gained > 0.0 {
+                if gained > GOOD * promised {
+                    self.damping /= MORE;
+                }
+                if gained < TOLERANCE * before {
+                    self.state = Progressed::Converged;
+                }
+                self.current = tried;
+                return;
+            }
+            if promised < TOLERANCE * before {
+                self.state = Progressed::Converged;
+                return;
+            }
+            self.damping *= MORE;
+        }
+        self.state = Progressed::Stalled;
+    }
+}
+
+/// The damped Gauss–Newton step, by conjugate gradients.
+fn direction(fit: &GreenFit, derivatives: &Derivatives, damping: f64, downhill: &[DVec3]) -> Vec<DVec3> {
+    let mut direction = vec![DVec3::ZERO; downhill.len()];
+    let mut left = downhill.to_vec();
+    let mut conjugate = fit.preconditioned(&left);
+    let first = dot(&left, &conjugate);
+    let mut square = first;
+    for _ in 0..DIRECTIONS {
+        let product = fit.product(derivatives, damping, &conjugate);
+        let length = square / dot(&conjugate, &product);
+        if !length.is_finite() {
+            break;
+        }
+        add(&mut direction, length, &conjugate);
+        add(&mut left, -length, &product);
+        let mapped = fit.preconditioned(&left);
+        let next = dot(&left, &mapped);
+        if next <= LEFT * first {
+            break;
+        }
+        for (own, mapped) in conjugate.iter_mut().zip(&mapped) {
+            *own = *own * (next / square) + *mapped;
+        }
+        square = next;
+    }
+    direction
+}
