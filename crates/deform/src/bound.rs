@@ -155,6 +155,12 @@ impl Bound {
         cancel.check()?;
         let mut partition = Partition::of(problem)?;
         partition.take_budget(problem, budget)?;
+        let takes_places = problem.method.implementation().takes_places();
+        if takes_places {
+            let held = partition.handles.iter().map(Vec::len).sum();
+            let budget = partition.budget.without(bytes_of(held, size_of::<DVec3>()));
+            partition.budget = budget.map_err(|limit| BindError::budget(partition.free_count, limit))?;
+        }
         let positions = &problem.surface.positions;
         let handles: Vec<Handle> = partition
             .handles
@@ -199,7 +205,6 @@ impl Bound {
             followed,
             is_held: partition.held.contains(&true),
         });
-        let takes_places = problem.method.implementation().takes_places();
         let rest = |handle: &Handle| handle.vertices.iter().map(|&own| positions[own as usize]).collect();
         let world_rest = handles.iter().filter(|_| takes_places).map(rest).collect();
         let mut warnings = partition.warnings;

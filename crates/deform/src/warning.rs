@@ -2,6 +2,7 @@
 
 use std::fmt;
 use std::ops::{Deref, Range};
+use std::sync::Arc;
 
 /// A sentence for a person. If it is about a handle, it has the handle's number, which only the problem knows;
 /// [`Warning::naming`] replaces it by the name that a person knows.
@@ -12,7 +13,7 @@ pub struct Warning {
     handle: Option<(usize, Range<usize>)>,
     /// For each component that nothing holds: its handles, and the number of its vertices in each. Empty for other
     /// warnings.
-    unheld: Vec<Vec<(usize, usize)>>,
+    unheld: Arc<[Box<[(usize, usize)]>]>,
 }
 
 /// The number of vertices with places that hold a component.
@@ -27,7 +28,7 @@ impl Warning {
         Self {
             handle: start.map(|start| (handle, start..start + designation.len())),
             sentence,
-            unheld: Vec::new(),
+            unheld: Arc::default(),
         }
     }
 
@@ -37,7 +38,7 @@ impl Warning {
         Self {
             sentence,
             handle: None,
-            unheld,
+            unheld: unheld.into_iter().map(Vec::into_boxed_slice).collect(),
         }
     }
 
@@ -50,8 +51,9 @@ impl Warning {
     /// Whether vertices of the handles in `placed`, which have places, hold every component that the warning names.
     pub(crate) fn is_void(&self, placed: &[bool]) -> bool {
         let is_placed = |&&(handle, _): &&(usize, usize)| placed.get(handle).is_some_and(|placed| *placed);
-        let count = |handles: &Vec<(usize, usize)>| handles.iter().filter(is_placed).map(|(_, count)| count).sum();
-        self.is_of_unheld() && self.unheld.iter().map(count).all(|count: usize| count >= HOLDING)
+        let count =
+            |handles: &[(usize, usize)]| handles.iter().filter(is_placed).map(|(_, count)| count).sum::<usize>();
+        self.is_of_unheld() && self.unheld.iter().all(|handles| count(handles) >= HOLDING)
     }
 
     /// The number of the handle that it is about, if it is about one.
@@ -74,7 +76,7 @@ impl From<String> for Warning {
         Self {
             sentence,
             handle: None,
-            unheld: Vec::new(),
+            unheld: Arc::default(),
         }
     }
 }

@@ -233,7 +233,7 @@ const MOST_CROSSINGS: usize = 20_000;
 ///
 /// # Errors
 /// [`EngineError::Interrupted`].
-fn faults(model: &Model, solution: &Solution, watch: &Watch) -> Result<Vec<String>, EngineError> {
+fn faults(model: &Model, method: &Method, solution: &Solution, watch: &Watch) -> Result<Vec<String>, EngineError> {
     if solution.surface_positions == model.surface.positions {
         return Ok(Vec::new());
     }
@@ -246,11 +246,15 @@ fn faults(model: &Model, solution: &Solution, watch: &Watch) -> Result<Vec<Strin
     let crossings = crossings.map_err(|_| EngineError::Interrupted)?;
     let mut sentences = Intersections::of(&crossings, damage).sentences();
     if !solution.converged {
-        sentences.push(
-            "the shape had not settled when the steps ended: raise `max_iterations`, lower the strength, or take \
-             another method"
-                .to_owned(),
-        );
+        let is_limited = method
+            .declaration()
+            .options
+            .iter()
+            .any(|option| option.name == "max_iterations");
+        let more = if is_limited { "raise `max_iterations`, " } else { "" };
+        sentences.push(format!(
+            "the shape had not settled when the steps ended: {more}lower the strength, or take another method"
+        ));
     }
     Ok(sentences)
 }
@@ -264,7 +268,7 @@ fn report(
     watch: &Watch,
 ) -> Result<Report, EngineError> {
     let model = &loaded.model;
-    let faults = faults(model, &solution, watch)?;
+    let faults = faults(model, &setup.method, &solution, watch)?;
     let distortion = pliant_mesh::Distortion::of(&model.surface, &model.topology, &solution.surface_positions);
     let mut warnings = loaded.scene.notes().to_vec();
     warnings.extend(solution.warnings);

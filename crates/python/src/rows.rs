@@ -19,6 +19,8 @@ pub struct Rows {
     drawn: Vec<(u32, u32)>,
     /// Rows of vertices in the same place, which must be equal.
     alike: Vec<(u32, u32)>,
+    /// Rows of vertices that stand apart but are welded, which must move together.
+    welded: Vec<(u32, u32)>,
 }
 
 impl Rows {
@@ -58,6 +60,7 @@ impl Rows {
             of_surface: Vec::new(),
             drawn: Vec::new(),
             alike: Vec::new(),
+            welded: Vec::new(),
             numbers,
         };
         let mut first_of_surface: HashMap<u32, u32> = HashMap::new();
@@ -79,7 +82,10 @@ impl Rows {
             let rest = model.rest_position(place);
             rows.rest.push(rest);
             if let Some(surface) = drawn.surface_vertex(place) {
-                first_of_surface.entry(surface.0).or_insert(row);
+                let first = *first_of_surface.entry(surface.0).or_insert(row);
+                if bits(rows.rest[first as usize]) != bits(rest) {
+                    rows.welded.push((first, row));
+                }
             }
             let same = *first_in_place.entry(bits(rest)).or_insert(row);
             if same != row {
@@ -130,6 +136,20 @@ impl Rows {
             return Err(format!(
                 "sends the vertices {} and {} apart (rows {first} and {second}), which are in the same place and so are one: \
                  give both the same position",
+                number(first),
+                number(second)
+            ));
+        }
+        let moved = |row: u32| at(row) - self.rest[row as usize];
+        let is_torn = |&&(first, second): &&(u32, u32)| {
+            let apart = self.rest[first as usize].distance(self.rest[second as usize]);
+            moved(first).distance(moved(second)) > apart
+        };
+        if let Some(&(first, second)) = self.welded.iter().find(is_torn) {
+            let number = |row: u32| self.numbers[row as usize];
+            return Err(format!(
+                "tears the vertices {} and {} apart (rows {first} and {second}), which are welded: move both by the same, or \
+                 give a smaller `weld`",
                 number(first),
                 number(second)
             ));

@@ -118,6 +118,23 @@ def test_vertices_in_the_same_place_go_together(mesh, ends):
         both.step({"top": rows})
 
 
+def test_rows_of_welded_vertices_move_together(mesh, ends):
+    vertices, faces = mesh[0].copy(), mesh[1].copy()
+    top = ends["handles"]["top"]
+    twin = vertices[top[0]] + [0, 0, 1e-4]
+    # One of the triangles at the first vertex of the handle ends at its twin.
+    row, corner = np.argwhere(faces == top[0])[0]
+    faces[row, corner] = len(vertices)
+    vertices = np.vstack([vertices, twin])
+    both = np.r_[top, len(vertices) - 1]
+    bound = pliant.bind(vertices, faces, handles={"top": both}, fixed=ends["fixed"], weld=1e-3)
+    rows = vertices[both] + [0, 0.1, 0]
+    assert np.array_equal(bound.step({"top": rows})[both], rows)
+    rows[-1] += [0.1, 0, 0]
+    with pytest.raises(ValueError, match="which are welded: move both by the same"):
+        bound.step({"top": rows})
+
+
 def test_rows_that_do_not_fit_are_refused(mesh, ends):
     vertices, top = mesh[0], ends["handles"]["top"]
     bound = pliant.bind(*mesh, **ends)

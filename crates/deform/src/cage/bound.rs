@@ -88,6 +88,14 @@ impl BoundMethod for BoundCage {
         }
     }
 
+    /// Twenty thousand multiplications take about as long as a vertex of a cheap step.
+    fn step_cost(&self) -> usize {
+        match &self.field {
+            Field::Linear(..) => self.solved_count,
+            Field::Conformal(conformal) => self.solved_count + conformal.work() / 20_000,
+        }
+    }
+
     fn warnings(&self) -> Vec<String> {
         self.warnings.clone()
     }

@@ -6,7 +6,7 @@ use pliant_mesh::{Cancel, Progress};
 
 use super::green::Green;
 use super::green_fit::{Asked, GreenFit};
-use super::green_steps::{Descent, Progressed};
+use super::green_steps::{DIRECTIONS, Descent, Progressed};
 use super::green_table::GreenTable;
 use super::lane_rows::by_blocks;
 use super::linear::Unit;
@@ -78,6 +78,11 @@ impl Conformal {
             by_hand: Vec::new(),
             descent: None,
         })
+    }
+
+    /// The most multiplications of a step.
+    pub fn work(&self) -> usize {
+        DIRECTIONS.saturating_mul(self.fit.work())
     }
 
     /// One step towards these motions, and what it did; fills all of `displacements`.

@@ -102,6 +102,13 @@ impl GreenFit {
         })
     }
 
+    /// Multiplications of a step's product with a direction, and of its preconditioner.
+    pub fn work(&self) -> usize {
+        let vertices = self.neighbours.len();
+        let columns = vertices + self.shear_weights.len();
+        6 * self.points.len() * columns + 3 * vertices * vertices
+    }
+
     /// The field of a moved cage at the samples.
     pub fn at_samples(&self, moved: &MovedCage) -> Vec<DVec3> {
         moved.at(&self.points, &self.rows)

@@ -13,7 +13,7 @@ const TOLERANCE: f64 = 1e-3;
 const NOTHING: f64 = 1e-24;
 
 /// The most conjugate directions of a step, and the share of the first residual's square that they leave.
-const DIRECTIONS: usize = 60;
+pub(super) const DIRECTIONS: usize = 60;
 const LEFT: f64 = 0.01;
 
 /// How often a step is damped more before there is none to take, and by what factor.

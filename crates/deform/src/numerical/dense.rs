@@ -1,6 +1,7 @@
 //! Small dense systems, by faer.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::llt;
 use faer::linalg::lu::partial_pivoting::{factor, solve};
 use faer::perm::PermRef;
 use faer::{Mat, Par};
@@ -51,6 +52,15 @@ impl Lu {
         );
         b
     }
+}
+
+/// Whether a symmetric matrix is positive definite: whether it has a Cholesky factor.
+pub(crate) fn is_positive_definite(mut a: Mat<f64>) -> bool {
+    let scratch = llt::factor::cholesky_in_place_scratch::<f64>(a.nrows(), Par::Seq, Default::default());
+    let mut room = MemBuffer::new(scratch);
+    let room = MemStack::new(&mut room);
+    let (a, none) = (a.as_mut(), Default::default());
+    llt::factor::cholesky_in_place(a, none, Par::Seq, room, Default::default()).is_ok()
 }
 
 /// A⁻¹ B for a square matrix, as [`Lu`] solves it.

@@ -8,7 +8,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::shape::{Energy, Slopes};
-use crate::numerical::dense::Lu;
+use crate::numerical::dense::{Lu, is_positive_definite};
 use crate::numerical::sums::{Field, add, dot};
 use crate::operators::CHUNK;
 use faer::Mat;
@@ -21,7 +21,8 @@ pub(super) struct Leaning {
 }
 
 impl Leaning {
-    /// For the gradients `slopes`, `solve` applying K⁻¹; none if no weight is free, or rounding leaves nothing of S.
+    /// For the gradients `slopes`, `solve` applying K⁻¹; none if no weight is free, or S is not positive definite: K alone
+    /// leads downhill then.
     pub fn of(energy: &Energy, slopes: &Slopes, solve: impl Fn(&mut Field)) -> Option<Self> {
         let examples = &energy.examples;
         if !examples.are_free() {
@@ -41,8 +42,7 @@ impl Leaning {
                 small[(row, other)] -= 0.5 * (dot(source, column) + dot(&sources[other], &columns[row]));
             }
         }
-        let is_positive = (0..columns.len()).all(|row| small[(row, row)] > 0.0);
-        is_positive.then(|| Self {
+        is_positive_definite(small.clone()).then(|| Self {
             columns,
             small: Lu::of(small),
         })

@@ -305,7 +305,14 @@ impl ShellsSolver {
 
     /// Whether neither a handle nor an example moves the present shape.
     fn is_at_rest(&self) -> bool {
-        self.motions.iter().all(Motion::is_rest) && self.current.weights.iter().all(|weight| *weight == 0.0)
+        let has_places = self
+            .prescribed
+            .iter()
+            .flatten()
+            .any(|vertex| vertex.offset != DVec3::ZERO);
+        !has_places
+            && self.motions.iter().all(Motion::is_rest)
+            && self.current.weights.iter().all(|weight| *weight == 0.0)
     }
 
     /// How many numbers its factors store.

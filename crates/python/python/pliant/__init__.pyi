@@ -340,7 +340,10 @@ class Bound:
         """The number of solved vertices, after vertices in the same place are joined."""
     @property
     def warnings(self) -> list[str]:
-        """The warnings about the binding and the last step, as sentences."""
+        """The warnings about the binding and the last step, as sentences.
+
+        A component that nothing holds is named from the first step on: three positions of its vertices hold it.
+        """
     @property
     def findings(self) -> list[str]:
         """The mesh's faults, as sentences; empty for a clean, closed, connected mesh."""
