@@ -13,8 +13,11 @@ pub struct Warning {
     handle: Option<(usize, Range<usize>)>,
     /// For each component that nothing holds: its handles, and the number of its vertices in each. Empty for other
     /// warnings.
-    unheld: Arc<[Box<[(usize, usize)]>]>,
+    unheld: Arc<[Holders]>,
 }
+
+/// Handles, and the number of a component's vertices in each.
+type Holders = Box<[(usize, usize)]>;
 
 /// The number of vertices with places that hold a component.
 const HOLDING: usize = 3;
