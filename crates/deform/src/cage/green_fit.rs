@@ -75,7 +75,7 @@ pub(super) struct Derivatives {
 }
 
 impl GreenFit {
-    /// Of samples at these points with these coordinates, a row a sample.
+    /// Binds the fit for samples at these points with these coordinates, a row a sample.
     ///
     /// # Errors
     /// There is no memory.

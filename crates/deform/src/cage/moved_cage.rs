@@ -13,7 +13,7 @@ use crate::numerical::rigid_fit::RigidMotion;
 pub(super) struct MovedCage {
     pub rigid: Option<RigidMotion>,
     pub turn: DMat3,
-    /// Of each vertex, then of each face's stretched normal.
+    /// The coefficients of each vertex, then of each face's stretched normal.
     pub differences: Vec<DVec3>,
 }
 
@@ -26,7 +26,7 @@ pub(super) struct RestCage {
 }
 
 impl RestCage {
-    /// Of this mesh.
+    /// The rest cage of this mesh.
     pub fn new(mesh: CageMesh) -> Self {
         let faces = mesh.faces.iter();
         Self {

@@ -69,7 +69,7 @@ impl RestFace {
         let area = across.length().max(COLLAPSED * COLLAPSED * self.area);
         let stretch = self.stretch([u, v]).max(COLLAPSED);
         let q = (stretch / (area / self.area).sqrt()).max(1.0);
-        // Of log q.
+        // The derivative of log q.
         let [of_u, of_v] = self.stretching([u, v]).map(|own| own / stretch);
         let of_u = of_u - v.cross(normal) * (0.5 / area);
         let of_v = of_v - normal.cross(u) * (0.5 / area);

@@ -227,8 +227,14 @@ impl Energy {
     pub fn hinge_at(&self, shape: &Shape, place: usize) -> ([DVec3; 4], f64) {
         let hinge = &self.elements.hinges[place];
         let corners = hinge.corners.map(|local| self.position(shape, local));
+        (corners, self.moment_at(shape, place))
+    }
+
+    /// The derivative of a hinge's energy by its angle.
+    fn moment_at(&self, shape: &Shape, place: usize) -> f64 {
+        let hinge = &self.elements.hinges[place];
         let bent = shape.angles_rad[place] - hinge.angle_rad - self.examples.angle_rad(place, &shape.weights);
-        (corners, hinge.weight * bent)
+        hinge.weight * bent
     }
 
     fn position(&self, shape: &Shape, local: u32) -> DVec3 {
@@ -353,7 +359,7 @@ impl Energy {
                 }
                 for &entry in self.hinges_at(vertex) {
                     let (place, corner) = (entry as usize / 4, entry as usize % 4);
-                    sum += turning[place][corner] * self.hinge_at(shape, place).1;
+                    sum += turning[place][corner] * self.moment_at(shape, place);
                 }
                 for &entry in self.faces_at(vertex) {
                     let (place, corner) = (entry as usize / 4, entry as usize % 4);

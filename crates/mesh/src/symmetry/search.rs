@@ -29,7 +29,7 @@ const COUNTED: f64 = 0.8;
 /// A shape has a plane if the samples' images are on average this close to the surface, as a share of the samples' mean
 /// distance from the centroid.
 const NEAR: f64 = 0.04;
-/// Of planes that fit equally well, as for a ball, the one across the world's first axis counts.
+/// If several planes fit equally well, as for a ball, the one across the world's first axis counts.
 const ALIKE: f64 = 1.2;
 
 /// The input of the fit.
