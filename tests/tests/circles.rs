@@ -1,4 +1,5 @@
-//! No file of a crate depends on itself through other files: understanding a file requires only those below it.
+//! No file of a crate depends on itself through other files, and no folder through other folders: understanding a file
+//! requires only those below it, and understanding a folder only the folders and files beside it that are below it.
 //!
 //! The paths that a file names (`crate::…`, `super::…`, `self::…`, in `use` lines and elsewhere) are resolved to the
 //! file that defines the item, through folders' `mod.rs` and their `pub use` re-exports. Unit tests and comments are
@@ -10,7 +11,10 @@ use std::path::{Path, PathBuf};
 
 /// The crates in which every dependency counts. In the others any file may use the names that the crate's root exports,
 /// and a folder's own file (`mod.rs`) counts as one with the files below it.
-const STRICT: &[&str] = &["editor"];
+const STRICT: &[&str] = &["editor", "engine", "io", "mesh", "python"];
+
+/// The crates whose folders are checked.
+const STRICT_FOLDERS: &[&str] = &["engine", "io", "mesh", "python"];
 
 /// The dependencies that count.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -31,10 +35,15 @@ struct Module {
     paths: Vec<Vec<String>>,
     /// Every word outside `use` lines.
     words: BTreeSet<String>,
+    /// Those that do more than declare a module.
+    used: BTreeSet<String>,
 }
 
 /// The modules of a crate by path; the crate's root has the empty path.
 type Modules = BTreeMap<Vec<String>, Module>;
+
+/// The files, or folders, that each depends on.
+type Arrows = BTreeMap<PathBuf, BTreeSet<PathBuf>>;
 
 #[test]
 fn no_file_needs_itself_through_others() {
@@ -62,6 +71,16 @@ fn no_file_needs_itself_through_others() {
         assert!(count > 0 || modules.len() < 3, "{} has arrows", folder.display());
         for circle in circles(&arrows) {
             found.push(told(&circle, &arrows, &crates));
+        }
+        if STRICT_FOLDERS
+            .iter()
+            .any(|name| folder.ends_with(Path::new(name).join("src")))
+        {
+            for arrows in arrows_of_folders(&arrows, &folder).values() {
+                for circle in circles(arrows) {
+                    found.push(told(&circle, arrows, &crates));
+                }
+            }
         }
     }
     assert!(found.is_empty(), "circles of files:\n{}", found.join("\n"));
@@ -107,6 +126,22 @@ fn the_scan_sees_grouped_paths_and_follows_what_is_handed_on() {
     assert_eq!(names[0], ["a/inner.rs", "a.rs", "b.rs"].map(PathBuf::from));
 }
 
+/// The dependencies between the files and folders of each folder under `root`: one depends on another if a file in it
+/// depends on a file in the other.
+fn arrows_of_folders(arrows: &Arrows, root: &Path) -> BTreeMap<PathBuf, Arrows> {
+    let mut of_folders: BTreeMap<PathBuf, Arrows> = BTreeMap::new();
+    for (from, to) in arrows
+        .iter()
+        .flat_map(|(from, all)| all.iter().map(move |to| (from, to)))
+    {
+        let shared = from.ancestors().find(|folder| to.starts_with(folder)).unwrap_or(root);
+        let child = |file: &Path| shared.join(file.strip_prefix(shared).unwrap().iter().next().unwrap());
+        let of_folder = of_folders.entry(shared.to_owned()).or_default();
+        of_folder.entry(child(from)).or_default().insert(child(to));
+    }
+    of_folders
+}
+
 /// The modules under a `src` folder.
 fn modules_of(source: &Path) -> Modules {
     let mut modules = Modules::new();
@@ -121,7 +156,11 @@ fn modules_of(source: &Path) -> Modules {
                 let within = path.strip_prefix(source).unwrap().with_extension("");
                 let mut name: Vec<String> = within.iter().map(|part| part.to_str().unwrap().to_owned()).collect();
                 // A binary beside a library is a crate of its own, which uses the library from outside.
-                if name == ["main"] && source.join("lib.rs").exists() {
+                let is_binary = name == ["main"] && source.join("lib.rs").exists();
+                let is_test = name
+                    .last()
+                    .is_some_and(|name| name == "tests" || name.ends_with("_tests"));
+                if is_binary || is_test {
                     continue;
                 }
                 if matches!(name.last().map(String::as_str), Some("mod" | "lib" | "main")) {
@@ -137,7 +176,7 @@ fn modules_of(source: &Path) -> Modules {
 /// Reads one file.
 fn module(file: PathBuf, own: &[String], text: &str) -> Module {
     let code = without_comments_and_texts(text);
-    let code = code.split("#[cfg(test)]").next().unwrap_or_default();
+    let code: &str = &without_visibility(without_tests(&code));
     let mut module = Module {
         file,
         ..Module::default()
@@ -163,11 +202,44 @@ fn module(file: PathBuf, own: &[String], text: &str) -> Module {
     for path in paths_in(&rest) {
         module.paths.push(absolute(&path, own));
     }
-    module.words = rest
+    let words: Vec<&str> = rest
         .split(|letter: char| !letter.is_alphanumeric() && letter != '_')
-        .map(str::to_owned)
+        .filter(|word| !word.is_empty())
         .collect();
+    let used = words
+        .iter()
+        .enumerate()
+        .filter(|(place, _)| *place == 0 || words[place - 1] != "mod");
+    module.used = used.map(|(_, word)| (*word).to_owned()).collect();
+    module.words = words.into_iter().map(str::to_owned).collect();
     module
+}
+
+/// The code before its unit tests.
+fn without_tests(code: &str) -> &str {
+    let opens_tests = |start: &usize| {
+        let (condition, mut rest) = code[*start..].split_once(']').unwrap_or_default();
+        while let Some(attribute) = rest.trim_start().strip_prefix("#[") {
+            rest = attribute.split_once(']').unwrap_or_default().1;
+        }
+        let name = rest.trim_start().strip_prefix("mod ").unwrap_or(";");
+        let name = name.trim_start_matches(|letter: char| letter.is_alphanumeric() || letter == '_');
+        ["#[cfg(test", "#[cfg(all(test"]
+            .iter()
+            .any(|test| condition.starts_with(test))
+            && name.starts_with(" {")
+    };
+    let mut starts = code.match_indices("#[cfg(").map(|(start, _)| start);
+    starts.find(opens_tests).map_or(code, |start| &code[..start])
+}
+
+/// The code with `pub(crate)` for each `pub(in …)`, whose path names no dependency.
+fn without_visibility(code: &str) -> String {
+    let mut parts = code.split("pub(in ");
+    let first = parts.next().unwrap_or_default().to_owned();
+    parts.fold(first, |code, part| {
+        code + "pub(crate)" + part.split_once(')').map_or("", |(_, behind)| behind)
+    })
 }
 
 /// The start of the next `use` statement.
@@ -281,13 +353,13 @@ fn definer<'a>(modules: &'a Modules, path: &[String], counted: Counted, depth: u
 }
 
 /// The dependencies of each file.
-fn arrows(modules: &Modules, counted: Counted) -> BTreeMap<PathBuf, BTreeSet<PathBuf>> {
-    let mut arrows: BTreeMap<PathBuf, BTreeSet<PathBuf>> = BTreeMap::new();
+fn arrows(modules: &Modules, counted: Counted) -> Arrows {
+    let mut arrows = Arrows::new();
     for (own, module) in modules {
         let used = module
             .imports
             .iter()
-            .filter(|(name, _)| module.words.contains(*name))
+            .filter(|(name, _)| module.used.contains(*name))
             .map(|(_, path)| path);
         for path in module.paths.iter().chain(used) {
             // Naming a child module does not make a dependency on it.
@@ -309,7 +381,7 @@ fn arrows(modules: &Modules, counted: Counted) -> BTreeMap<PathBuf, BTreeSet<Pat
 }
 
 /// The groups of files that reach each other, each in sorted order.
-fn circles(arrows: &BTreeMap<PathBuf, BTreeSet<PathBuf>>) -> Vec<Vec<PathBuf>> {
+fn circles(arrows: &Arrows) -> Vec<Vec<PathBuf>> {
     let reached = |start: &PathBuf| {
         let (mut seen, mut stack) = (BTreeSet::new(), vec![start.clone()]);
         while let Some(file) = stack.pop() {
@@ -333,7 +405,7 @@ fn circles(arrows: &BTreeMap<PathBuf, BTreeSet<PathBuf>>) -> Vec<Vec<PathBuf>> {
 }
 
 /// A circle in words: each of its files with the others of the circle that it depends on.
-fn told(circle: &[PathBuf], arrows: &BTreeMap<PathBuf, BTreeSet<PathBuf>>, crates: &Path) -> String {
+fn told(circle: &[PathBuf], arrows: &Arrows, crates: &Path) -> String {
     let short = |file: &PathBuf| file.strip_prefix(crates).unwrap_or(file).display().to_string();
     let lines = circle.iter().map(|file| {
         let to: Vec<String> = arrows[file]

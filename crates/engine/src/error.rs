@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use crate::files::{FileError, shown};
+use crate::file_error::FileError;
+use crate::path_text::shown;
 
 /// A refusal. Its text is one line for the person; [`EngineError::status`] is the program's exit status.
 #[derive(Debug, thiserror::Error)]

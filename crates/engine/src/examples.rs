@@ -10,8 +10,8 @@ use pliant_mesh::{Drawn, Model};
 
 use crate::EngineError;
 use crate::control_mesh::OF_EDIT;
-use crate::files::shown;
 use crate::loading::{Loaded, open};
+use crate::path_text::shown;
 use crate::watch::Watch;
 
 /// Reads the files and the morph targets that the edit's examples name.

@@ -4,14 +4,6 @@ use pliant_mesh::Cancelled;
 
 use crate::{Format, quoted};
 
-/// A name whose extension is that of no known format.
-#[derive(Clone, PartialEq, Eq, Debug, thiserror::Error)]
-#[error("\"{}\" has no extension of a known kind: name it .glb, .gltf, .obj, .ply, .stl or .off", quoted(.name))]
-pub struct UnknownFormat {
-    /// The file's name.
-    pub name: String,
-}
-
 /// Why a file could not be read.
 #[derive(Clone, PartialEq, Eq, Debug, thiserror::Error)]
 pub enum ReadError {

@@ -2,7 +2,15 @@
 
 use std::fmt;
 
-use crate::UnknownFormat;
+use crate::quote::quoted;
+
+/// A name whose extension is that of no known format.
+#[derive(Clone, PartialEq, Eq, Debug, thiserror::Error)]
+#[error("\"{}\" has no extension of a known kind: name it .glb, .gltf, .obj, .ply, .stl or .off", quoted(.name))]
+pub struct UnknownFormat {
+    /// The file's name.
+    pub name: String,
+}
 
 /// A file format, recognised by the extension of the file's name.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]

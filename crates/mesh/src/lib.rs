@@ -34,10 +34,13 @@
 //! ```
 
 mod bvh;
+mod contacts;
+mod drawn;
 mod findings;
 mod geodesics;
 pub mod geometry;
 mod ids;
+mod inspection;
 mod model;
 mod progress;
 pub mod shapes;
@@ -48,7 +51,9 @@ mod vectors;
 mod weld;
 
 pub use bvh::{Bvh, Hit, SelfIntersection, SelfIntersections};
-pub use findings::{Example, Finding, FindingKind, Findings, Inspection, LocatedFinding, Named};
+pub use contacts::{Contact, component_areas, contacts};
+pub use drawn::{Drawn, DrawnSet, Object, Rounding};
+pub use findings::{Finding, FindingKind, Findings, Named};
 pub use geodesics::{DistanceSearch, JOINT_RINGS, Joint, Shape, distances_along_surface, joint_of};
 pub use geometry::{
     Bounds, Damage, Damaged, Distortion, Vector3, area_of_lengths, bounding_box, cotangents, edge_lengths, face_area,
@@ -56,11 +61,11 @@ pub use geometry::{
     point_in_words, vertex_normals,
 };
 pub use ids::{DrawnVertex, FileVertex, SurfaceVertex};
-pub use model::{Drawn, DrawnSet, LOOSE_BIT, Model, Object, Rounding, SurfaceOfFile, WeldOptions};
+pub use inspection::{Example, Inspection, LocatedFinding};
+pub use model::{LOOSE_BIT, Model, SurfaceOfFile};
 pub use progress::{Cancel, Cancelled, Progress};
 pub use surface::Surface;
 pub use symmetry::{Counterparts, MirrorPlane, image_of, mirror_planes, symmetry_plane};
-pub use topology::{
-    Component, Contact, ContourLine, Crossing, Faces, FanKind, Topology, component_areas, contacts, contours,
-};
+pub use topology::{Component, ContourLine, Crossing, Faces, FanKind, Topology, contours};
 pub use vectors::{Vectors, vectors};
+pub use weld::WeldOptions;

@@ -13,6 +13,8 @@ use std::fs::{File, Metadata};
 use std::io;
 use std::path::{Path, PathBuf};
 
+use crate::path_text::folder_of;
+
 /// The other names of a replaced file.
 #[derive(Debug, Default)]
 pub(super) struct OtherNames {
@@ -101,10 +103,7 @@ pub(super) fn other_names(existing: &Metadata, target: &Path) -> OtherNames {
         return OtherNames::default();
     }
     let node = (existing.dev(), existing.ino());
-    let entries = std::fs::read_dir(super::folder_of(target))
-        .into_iter()
-        .flatten()
-        .flatten();
+    let entries = std::fs::read_dir(folder_of(target)).into_iter().flatten().flatten();
     // This is the entry's own metadata, which follows no link.
     let same = entries.filter(|entry| entry.metadata().is_ok_and(|other| (other.dev(), other.ino()) == node));
     let here: Vec<PathBuf> = same.map(|entry| entry.path()).filter(|path| path != target).collect();

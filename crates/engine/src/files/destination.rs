@@ -5,8 +5,9 @@ use std::fs::{self, Metadata};
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use super::error::{FileError, in_words};
-use super::{folder_of, follow};
+use super::follow;
+use crate::file_error::{FileError, in_words};
+use crate::path_text::folder_of;
 
 /// The place to which a path leads, found without opening anything.
 #[derive(Clone, Debug)]

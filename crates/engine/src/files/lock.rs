@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 
 use pliant_mesh::Cancel;
 
-use super::error::in_words;
+use crate::file_error::in_words;
 
 /// The lock's name in its folder.
 const NAME: &str = ".pliant.lock";

@@ -11,9 +11,10 @@ use std::path::{Path, PathBuf};
 
 use pliant_io::{Bytes, Resolver};
 
-use super::error::{in_words, reason};
+use super::follow;
 use super::stamp::Stamp;
-use super::{folder_of, follow, neighbour_path};
+use crate::file_error::{in_words, reason};
+use crate::path_text::{folder_of, neighbour_path};
 
 /// The limit of all neighbours of a file, unless the caller gives another: 16 GiB, several times the size of the
 /// largest scans.

@@ -21,8 +21,10 @@ use pliant_io::{Format, Placement, Role, Saved, is_same_document, neighbours_nam
 use super::leftovers::{is_passing, real_name};
 use super::named::names_in_folder;
 use super::same_file::FileSet;
-use super::{Destination, FileError, folder_of, follow, holds, is_same, neighbour_path};
+use super::{Destination, follow, holds, is_same};
 use crate::EngineError;
+use crate::file_error::FileError;
+use crate::path_text::{folder_of, neighbour_path, shown};
 
 /// The place of `output`, relative to `source`.
 pub fn placement(source: &Path, output: &Destination) -> Placement {
@@ -91,7 +93,7 @@ pub fn settle(saved: &mut Saved, format: Format, output: &Destination) -> Result
         let Some((there, name)) = found else {
             return Err(EngineError::System(format!(
                 "{}: no name is free for {}: choose another folder",
-                super::shown(&output.given),
+                shown(&output.given),
                 quoted(&wanted)
             )));
         };

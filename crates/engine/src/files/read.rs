@@ -4,8 +4,8 @@ use std::fs::{self, File, Metadata};
 use std::io::{ErrorKind, Read};
 use std::path::Path;
 
-use super::error::{FileError, in_words};
 use super::stamp::Stamp;
+use crate::file_error::{FileError, in_words};
 
 /// Reads a whole file. Anything except an ordinary file is refused: reading a pipe could block for ever.
 ///

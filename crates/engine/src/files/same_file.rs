@@ -6,9 +6,9 @@ use std::fs;
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
-use super::error::in_words;
-use super::{folder_of, shown};
 use crate::EngineError;
+use crate::file_error::in_words;
+use crate::path_text::{folder_of, shown};
 
 /// The most links to links that are followed, as in the system.
 const MOST_LINKS: usize = 40;

@@ -12,7 +12,8 @@ use std::time::SystemTime;
 use sha2::{Digest, Sha256};
 
 use super::same_file::{Identity, identity};
-use super::{FileError, follow, is_same};
+use super::{follow, is_same};
+use crate::file_error::FileError;
 
 /// The number of bytes hashed at a time.
 const BLOCK: usize = 1 << 20;

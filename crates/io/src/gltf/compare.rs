@@ -6,10 +6,10 @@
 use std::collections::{BTreeSet, HashMap, HashSet};
 use std::ops::Range;
 
+use crate::difference::{self, Difference, What};
 use crate::gltf::document::Document;
 use crate::gltf::document::accessor::Layout;
 use crate::gltf::document::json::{At, Json};
-use crate::scene::difference::{self, Difference, What};
 
 /// The differences, in the order of the first file's text.
 pub(crate) fn differences(a: &Document, b: &Document) -> Vec<Difference> {

@@ -7,6 +7,7 @@ mod geometry;
 mod neighbours;
 mod remarks;
 mod save;
+mod uv_sets;
 pub(crate) mod write;
 
 use std::ops::Range;
@@ -22,8 +23,8 @@ use document::{Document, container, uri};
 use geometry::primitive::{self, Primitive};
 use geometry::{Linear, Pieces, Pose, draco, meshopt, targets, tree};
 
-use crate::scene::summary::Summary;
 use crate::source::Source;
+use crate::summary::Summary;
 use crate::{Appearance, Difference, Format, ReadError};
 
 /// A glTF as read, and the description of its drawn set.

@@ -7,7 +7,7 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use crate::scene::objects::short_name;
+use crate::objects::short_name;
 use crate::source::{Looks, Source};
 use crate::text::{Cursor, excerpt, malformed_at, mark_len};
 use crate::{Format, ReadError};

@@ -16,8 +16,8 @@ use crate::convert::Polygons;
 use crate::polygon::{cut_faces, left_out_note};
 use crate::save::course::Course;
 use crate::save::moved::Moved;
-use crate::scene::summary::Summary;
 use crate::source::Source;
+use crate::summary::Summary;
 use crate::{Appearance, ReadError, SaveError};
 use records::Records;
 

@@ -4,7 +4,6 @@ pub(crate) mod bits;
 pub(crate) mod course;
 pub(crate) mod frames;
 pub(crate) mod moved;
-mod rename;
 pub(crate) mod turned;
 mod twins;
 

@@ -6,10 +6,8 @@
 //! which converts a mesh of any other format.
 
 mod check;
-pub(crate) mod difference;
-pub(crate) mod objects;
 pub(crate) mod pose;
-pub(crate) mod summary;
+mod rename;
 
 use std::sync::Arc;
 
@@ -18,13 +16,13 @@ use pliant_mesh::{Cancel, Drawn, Object, Progress};
 
 use crate::convert::faces::{lost, lost_where};
 use crate::convert::{NewMesh, Parting, Polygons};
+use crate::difference::{self, Difference};
 use crate::save::bits::bit_equal;
 use crate::save::course::Course;
 use crate::save::moved::Moved;
 use crate::save::{MorphDeltas, MorphTarget, OutputFile, Placement, Save, Saved};
-use crate::scene::difference::Difference;
-use crate::scene::summary::Summary;
 use crate::source::{Resolver, Source};
+use crate::summary::Summary;
 use crate::{Appearance, Bytes, Format, ReadError, SaveError, gltf, obj, off, ply, stl};
 
 /// The result of [`read`].

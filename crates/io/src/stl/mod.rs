@@ -14,8 +14,8 @@ use pliant_mesh::{Drawn, DrawnVertex};
 
 use crate::save::course::Course;
 use crate::save::moved::Moved;
-use crate::scene::summary::Summary;
 use crate::source::Source;
+use crate::summary::Summary;
 use crate::text::{mark_len, shortest_f32};
 use crate::{Appearance, ReadError, SaveError};
 

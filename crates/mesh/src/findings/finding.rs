@@ -2,18 +2,19 @@
 
 use rayon::prelude::*;
 
-use crate::Findings;
-
 /// The count of a fault, and a few places.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Finding {
     /// The count.
     pub count: usize,
-    /// The first few faults or their vertices, at most [`Findings::EXAMPLES`].
+    /// The first few faults or their vertices, at most [`Self::EXAMPLES`].
     pub examples: Vec<u32>,
 }
 
 impl Finding {
+    /// The number of examples that are kept.
+    pub const EXAMPLES: usize = 8;
+
     const NONE: Self = Self {
         count: 0,
         examples: Vec::new(),
@@ -23,22 +24,22 @@ impl Finding {
     pub(crate) fn of(found: &[u32]) -> Self {
         Self {
             count: found.len(),
-            examples: found[..found.len().min(Findings::EXAMPLES)].to_vec(),
+            examples: found[..found.len().min(Self::EXAMPLES)].to_vec(),
         }
     }
 
     /// One fault at each of `vertices`; the examples are the lowest of them, each once.
     pub(crate) fn at_vertices(vertices: impl Iterator<Item = u32>) -> Self {
         let mut count = 0;
-        let mut lowest: Vec<u32> = Vec::with_capacity(Findings::EXAMPLES + 1);
+        let mut lowest: Vec<u32> = Vec::with_capacity(Self::EXAMPLES + 1);
         for vertex in vertices {
             count += 1;
-            if lowest.len() == Findings::EXAMPLES && vertex >= lowest[Findings::EXAMPLES - 1] {
+            if lowest.len() == Self::EXAMPLES && vertex >= lowest[Self::EXAMPLES - 1] {
                 continue;
             }
             if let Err(place) = lowest.binary_search(&vertex) {
                 lowest.insert(place, vertex);
-                lowest.truncate(Findings::EXAMPLES);
+                lowest.truncate(Self::EXAMPLES);
             }
         }
         Self {
@@ -63,14 +64,14 @@ impl Finding {
     /// Adds the faults that were found further on.
     pub(crate) fn extend(&mut self, later: &Self) {
         self.count += later.count;
-        let room = Findings::EXAMPLES - self.examples.len();
+        let room = Self::EXAMPLES - self.examples.len();
         self.examples.extend(later.examples.iter().take(room));
     }
 
     /// Adds one more.
     pub(crate) fn push(&mut self, example: u32) {
         self.count += 1;
-        if self.examples.len() < Findings::EXAMPLES {
+        if self.examples.len() < Self::EXAMPLES {
             self.examples.push(example);
         }
     }
@@ -131,7 +132,7 @@ mod tests {
     #[test]
     fn many_are_counted_and_few_kept() {
         let finding = collect(200_000, |i| i % 3 == 1);
-        assert_eq!((finding.count, finding.examples.len()), (66_667, Findings::EXAMPLES));
+        assert_eq!((finding.count, finding.examples.len()), (66_667, Finding::EXAMPLES));
         assert_eq!(finding.examples[..3], [1, 4, 7]);
         let [even, odd] = sort_out(200_000, |i| (i % 3 > 0).then_some(i % 2));
         assert_eq!((even.count, odd.count), (66_666, 66_667));

@@ -1,15 +1,9 @@
 //! The faults that loading found in a mesh, as numbers with examples and as sentences for a person.
 
 pub(crate) mod finding;
-mod inspection;
-mod located;
-mod nearly_joined;
 mod sentences;
-pub(crate) mod topological;
 
 pub use finding::Finding;
-pub use inspection::Inspection;
-pub use located::{Example, LocatedFinding};
 
 /// The faults that loading found in a mesh. Vertices are named by their file vertex, triangles by their drawn triangle.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -131,9 +125,6 @@ impl FindingKind {
 }
 
 impl Findings {
-    /// The number of examples that a finding keeps.
-    pub const EXAMPLES: usize = 8;
-
     /// The finding of a kind.
     pub fn of(&self, kind: FindingKind) -> &Finding {
         match kind {

@@ -1,33 +1,19 @@
 //! A file's geometry, welded: the drawn set, the surface, and the tables from one to the other.
 
-mod drawn;
-pub(crate) mod drawn_set;
-pub(crate) mod drawn_triangles;
-mod object;
+mod objects;
+mod rest;
 
 use std::collections::BTreeSet;
 
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::findings::topological::{Parts, of_triangles};
+use crate::inspection::topological::{Parts, of_triangles};
 use crate::weld::weld;
 use crate::{
-    Bounds, Cancel, Cancelled, Component, FileVertex, Findings, Progress, Surface, SurfaceVertex, Topology,
-    bounding_box,
+    Bounds, Cancel, Cancelled, Component, Drawn, DrawnSet, FileVertex, Findings, LocatedFinding, Object, Progress,
+    Surface, SurfaceVertex, Topology, WeldOptions, bounding_box,
 };
-
-pub use drawn::{Drawn, Rounding};
-pub use drawn_set::DrawnSet;
-pub use object::Object;
-
-/// The choice of vertices that count as one.
-#[derive(Clone, Copy, PartialEq, Debug, Default)]
-pub struct WeldOptions {
-    /// Vertices closer than this are joined, in world units, 0 (only equal ones) or more; near triangles less than
-    /// twice as long, half their length. `None` derives the distance from the mesh: see [`Model::weld`].
-    pub distance: Option<f64>,
-}
 
 /// A part with less than this share of the largest part's vertices is a loose bit.
 pub const LOOSE_BIT: f64 = 0.01;
@@ -173,18 +159,15 @@ impl Model {
         self.drawn.first_file_vertices(vertex.index()..vertex.index() + 1)[0]
     }
 
+    /// The faults of the mesh, each with the places of its first examples, in the order of [`Findings::sentences`].
+    /// This reads every vertex, so it is made on request.
+    pub fn located_findings(&self) -> Vec<LocatedFinding> {
+        self.findings.located_findings(&self.drawn, &self.surface)
+    }
+
     /// The table from the file's vertices to the surface's.
     pub fn surface_of_file(&self) -> SurfaceOfFile {
         SurfaceOfFile::of_drawn(&self.drawn)
-    }
-}
-
-/// As [`Model::main_positions`], with bare points from `first_bare` on.
-pub(crate) fn main_positions(positions: &[DVec3], first_bare: usize) -> &[DVec3] {
-    if first_bare == 0 {
-        positions
-    } else {
-        &positions[..first_bare]
     }
 }
 

@@ -2,13 +2,11 @@
 
 pub(crate) mod boundary;
 pub(crate) mod components;
-mod contacts;
 mod contours;
 mod faces;
 pub(crate) mod rings;
 
 pub use components::Component;
-pub use contacts::{Contact, component_areas, contacts};
 pub use contours::{ContourLine, Crossing, contours};
 pub use faces::Faces;
 pub use rings::FanKind;
@@ -22,7 +20,6 @@ use rings::{TopologyFindings, rings};
 
 use glam::DVec3;
 
-use crate::model::main_positions;
 use crate::{Cancel, Cancelled, FileVertex, Surface, SurfaceVertex};
 
 /// The connectivity of a [`Surface`].
@@ -239,4 +236,13 @@ impl Topology {
 #[inline]
 fn row(offsets: &[u32], v: SurfaceVertex) -> Range<usize> {
     offsets[v.index()] as usize..offsets[v.index() + 1] as usize
+}
+
+/// As [`Topology::main_positions`], with bare points from `first_bare` on.
+pub(crate) fn main_positions(positions: &[DVec3], first_bare: usize) -> &[DVec3] {
+    if first_bare == 0 {
+        positions
+    } else {
+        &positions[..first_bare]
+    }
 }

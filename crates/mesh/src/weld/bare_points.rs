@@ -11,8 +11,8 @@ use super::closeness::Closeness;
 use super::joining::{Joined, join_equal};
 use super::nearby::{MayJoin, join_nearest};
 use crate::Bounds;
+use crate::drawn::drawn_set::NONE;
 use crate::geometry::bounds_of;
-use crate::model::drawn_set::NONE;
 
 /// Gives the drawn vertices `bare`, which have finite positions, a surface vertex each. `positions` has those of the
 /// triangles' vertices, whose distances are in `closeness`; new ones are appended in Morton order, and

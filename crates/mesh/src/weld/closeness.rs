@@ -9,8 +9,8 @@ use glam::DVec3;
 
 use super::nearby::MayJoin;
 use crate::Rounding;
-use crate::model::drawn_set::NONE;
-use crate::model::drawn_triangles::Corners;
+use crate::drawn::drawn_set::NONE;
+use crate::drawn::drawn_triangles::Corners;
 
 /// Vertices on borders are joined within this share of their size: exporters that cut a mesh apart compute its corners
 /// again, with the errors of single precision.

@@ -5,22 +5,23 @@ mod closeness;
 mod joining;
 mod morton;
 pub(crate) mod nearby;
+mod options;
 
 use glam::DVec3;
 use rayon::prelude::*;
 
+use crate::drawn::drawn_set::{DrawnSet, FileVertices, NONE};
+use crate::drawn::drawn_triangles::Corners;
 use crate::findings::finding::{collect, sort_out};
 use crate::geometry::{bounds_of, is_without_area};
-use crate::model::drawn_set::{DrawnSet, FileVertices, NONE};
-use crate::model::drawn_triangles::Corners;
 use crate::topology::components::Components;
 use crate::{
     Bounds, Cancel, Cancelled, Drawn, DrawnVertex, FileVertex, Finding, Findings, Progress, Surface, SurfaceVertex,
-    WeldOptions,
 };
 use closeness::Closeness;
 use joining::{Joined, join_equal};
 use nearby::join_nearest;
+pub use options::WeldOptions;
 
 /// Larger coordinates count as not finite, because areas and volumes of such a mesh would overflow.
 const LARGEST_COORDINATE: f64 = 1e60;

@@ -7,9 +7,11 @@ use std::path::{Path, PathBuf};
 use tempfile::TempPath;
 
 use super::{Staged, StagedFile};
+use crate::file_error::FileError;
+use crate::files::Destination;
 use crate::files::leftovers::{self, PREFIX, REPLACED, TEMPORARY};
 use crate::files::lock::Share;
-use crate::files::{Destination, FileError, folder_of};
+use crate::path_text::folder_of;
 
 impl Staged {
     /// Renames every file into place, in order, and syncs the folders.

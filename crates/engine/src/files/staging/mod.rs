@@ -22,8 +22,10 @@ use tempfile::{NamedTempFile, TempPath};
 use super::attributes::{self, OtherNames};
 use super::leftovers::{self, PREFIX, TEMPORARY};
 use super::lock::{FolderLock, Share};
-use super::{Destination, FileError, Stamp, shown};
+use super::{Destination, Stamp};
 use crate::EngineError;
+use crate::file_error::FileError;
+use crate::path_text::shown;
 
 /// The number of bytes written between two checks whether the save was cancelled.
 const BLOCK: usize = 1 << 22;

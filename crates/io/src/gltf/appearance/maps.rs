@@ -10,9 +10,9 @@ use ::gltf::json::validation::Checked;
 use glam::Mat3;
 
 use crate::appearance::{Lighting, Map, Material, UvSet, Wrap};
-pub(crate) use crate::gltf::appearance::uv_sets::{MaterialMaps, UvTransform};
 use crate::gltf::document::Document;
 use crate::gltf::document::json::At;
+pub(crate) use crate::gltf::uv_sets::{MaterialMaps, UvTransform};
 
 /// The images beside the base colour's, by their paths in a material.
 const OTHER_MAPS: [&[&str]; 4] = [

@@ -1,7 +1,6 @@
 //! The appearance of a glTF: attributes of its drawn vertices, materials and images.
 
 pub(crate) mod maps;
-pub(crate) mod uv_sets;
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -19,7 +18,7 @@ use crate::gltf::document::uri;
 use crate::gltf::document::{Document, ImageFile};
 use crate::gltf::geometry::primitive::{Mode, Primitive};
 use crate::gltf::geometry::{self, Instance, Piece, Pieces};
-use crate::scene::objects;
+use crate::objects;
 
 /// The number of vertices for one task.
 const CHUNK: usize = 1 << 14;

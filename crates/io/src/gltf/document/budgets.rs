@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use super::Document;
-use super::buffers::{Buffer, ImageFile};
+use super::origin::{Buffer, ImageFile};
 
 /// The bytes of geometry allowed for each byte of the file.
 const MOST_GROWTH: usize = 64;

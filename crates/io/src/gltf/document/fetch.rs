@@ -1,8 +1,8 @@
 //! Fetching the data of buffers and images: within the JSON, and in files beside this one.
 
 use super::Document;
-use super::buffers::{Buffer, ImageFile};
 use super::fault::Fault;
+use super::origin::{Buffer, ImageFile};
 use super::uri::{self, Address};
 use crate::quote::quoted;
 use crate::source::Source;

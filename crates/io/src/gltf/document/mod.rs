@@ -13,6 +13,7 @@ pub(crate) mod fault;
 mod fetch;
 pub(crate) mod json;
 pub(crate) mod layout;
+mod origin;
 pub(crate) mod uri;
 
 use std::collections::BTreeMap;
@@ -21,15 +22,15 @@ use std::sync::{Arc, OnceLock};
 use ::gltf::json::{self as schema, Accessor, Material, Texture, texture::Sampler};
 
 use crate::Format;
-use crate::gltf::appearance::uv_sets::MaterialMaps;
+use crate::gltf::uv_sets::MaterialMaps;
 use crate::quote::quoted;
 use crate::source::Source;
 use crate::source::notes::Notes;
-pub(crate) use buffers::{Buffer, ImageFile};
 use container::Container;
 use fault::Fault;
 use json::{At, Json};
 use layout::Layout;
+pub(crate) use origin::{Buffer, ImageFile};
 
 /// A glTF as read.
 #[derive(Debug)]

@@ -34,8 +34,7 @@ use crate::gltf::geometry::pose::SkinPose;
 pub(crate) use crate::gltf::geometry::pose::{Linear, Pose};
 use crate::gltf::geometry::primitive::{Mode, Primitive};
 use crate::gltf::geometry::rounding::Coding;
-use crate::gltf::geometry::tree::Placed;
-use crate::quote::quoted;
+use crate::gltf::geometry::tree::{Placed, unread_skin};
 use crate::source::notes::Notes;
 
 /// The drawn vertices of one attribute set seen through one node.
@@ -369,12 +368,6 @@ pub(crate) fn apply_targets(
         }
     }
     Ok(())
-}
-
-/// The note about a skin that can't be read.
-fn unread_skin(called: &str, reason: &str) -> String {
-    let reason = quoted(reason);
-    format!("The skin of {called} can't be read ({reason}), so its mesh is placed by its node.")
 }
 
 fn place_vertices(positions: &[[f32; 3]], pose: &Pose, first_file_vertex: Option<u32>, drawn: &mut Drawn) {

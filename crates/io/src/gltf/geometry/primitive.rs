@@ -4,10 +4,10 @@ use std::collections::HashMap;
 
 use pliant_mesh::Cancel;
 
-use crate::gltf::appearance::maps::{MaterialMaps, UvTransform};
 use crate::gltf::document::Document;
 use crate::gltf::document::fault::Fault;
 use crate::gltf::document::json::At;
+use crate::gltf::uv_sets::{MaterialMaps, UvTransform};
 
 /// The shapes that a primitive's corners make.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

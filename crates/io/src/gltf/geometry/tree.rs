@@ -9,7 +9,6 @@ use crate::gltf::document::json::At;
 use crate::gltf::geometry::instancing;
 use crate::gltf::geometry::pose::is_invertible;
 use crate::gltf::geometry::skins::{self, Skin};
-use crate::gltf::geometry::unread_skin;
 use crate::quote::quoted;
 use crate::source::notes::Notes;
 
@@ -216,4 +215,10 @@ fn numbers<const N: usize>(document: &Document, object: At, key: &str) -> Option
         *slot = json.number(elements.next()?)?;
     }
     Some(out)
+}
+
+/// The note about a skin that can't be read.
+pub(super) fn unread_skin(called: &str, reason: &str) -> String {
+    let reason = quoted(reason);
+    format!("The skin of {called} can't be read ({reason}), so its mesh is placed by its node.")
 }

@@ -1,6 +1,6 @@
 //! The records of faces and of strips of triangles.
 
-use super::Records;
+use super::drawn_records::Records;
 use super::record::{read_all, read_record};
 use crate::ply::header::{Element, Kind};
 use crate::ply::scalar::Walk;

@@ -1,83 +1,26 @@
 //! The records after the header: vertices with the data for drawing them, faces, and strips of triangles.
 
+mod drawn_records;
 mod faces;
 mod record;
 mod vertices;
-
-use glam::DVec3;
 
 use super::header::{Element, Header};
 use super::scalar::Walk;
 use crate::source::Source;
 use crate::{Format, ReadError, quoted};
+pub(super) use drawn_records::{Columns, Places, Records};
 pub(super) use faces::{TEXTURE_NUMBER, UV_LIST, corner_list};
 use faces::{read_faces, read_strips};
 use record::pass_over;
-pub(super) use vertices::Columns;
 use vertices::read_vertices;
-
-/// The places of the vertices' records.
-#[derive(Clone, Debug)]
-pub(super) enum Places {
-    /// At equal distances.
-    Strided { first: usize, stride: usize },
-    /// The start of each.
-    Each(Vec<usize>),
-}
-
-impl Places {
-    pub(super) fn of(&self, vertex: usize) -> usize {
-        match self {
-            Self::Strided { first, stride } => first + vertex * stride,
-            Self::Each(starts) => starts[vertex],
-        }
-    }
-}
-
-/// The parts of the records that are drawn or moved.
-#[derive(Debug)]
-pub(super) struct Records {
-    /// The element with the vertices.
-    pub(super) vertex_element: Option<usize>,
-    pub(super) columns: Columns,
-    pub(super) places: Places,
-    pub(super) positions: Vec<DVec3>,
-    /// Empty if the vertices have none. f32 is enough for drawing normals, and for rotating them on saving.
-    pub(super) normals: Vec<[f32; 3]>,
-    /// From 0 to 1, as stored; empty if the vertices have none.
-    pub(super) colours: Vec<[f32; 4]>,
-    pub(super) uvs: Vec<[f32; 2]>,
-    /// Corners of all faces, then strips' triangles, one after the other.
-    pub(super) corners: Vec<u32>,
-    /// The end of each face's corners.
-    pub(super) face_ends: Vec<u32>,
-    /// The texture coordinates of each of `corners`; empty if no face has any, NaN for a face without.
-    pub(super) corner_uvs: Vec<[f32; 2]>,
-    /// The texture of each face; empty if no face names one.
-    pub(super) textures: Vec<u32>,
-    /// The number of faces with fewer than three corners.
-    pub(super) left_out: usize,
-}
 
 /// Reads the records up to the last element that is drawn.
 ///
 /// # Errors
 /// Records that are truncated or aren't numbers, lists with impossible counts, faces that name missing vertices.
 pub(super) fn read(source: &Source<'_>, header: &Header) -> Result<Records, ReadError> {
-    let mut records = Records {
-        vertex_element: None,
-        columns: Columns::default(),
-        places: Places::Each(Vec::new()),
-        positions: Vec::new(),
-        normals: Vec::new(),
-        colours: Vec::new(),
-        uvs: Vec::new(),
-        corners: Vec::new(),
-        face_ends: Vec::new(),
-        corner_uvs: Vec::new(),
-        textures: Vec::new(),
-        left_out: 0,
-    };
+    let mut records = Records::default();
     let is_drawn = |element: &Element| matches!(element.name.as_str(), "vertex" | "face" | "tristrips");
     let last = header.elements.iter().rposition(is_drawn).map_or(0, |last| last + 1);
     let mut walk = Walk::new(source.bytes, header.data_at, header.encoding);

@@ -2,32 +2,12 @@
 
 use glam::DVec3;
 
+use super::drawn_records::{COLUMN_NAMES, Columns, Places, Records};
 use super::record::{cut_short, read_all, read_record};
-use super::{Places, Records};
 use crate::ply::header::{Element, Header, Kind};
 use crate::ply::scalar::{Encoding, Scalar, Walk, decode};
 use crate::source::Source;
 use crate::{Format, ReadError};
-
-/// The data of a vertex, in the order of [`Columns`].
-const COLUMN_NAMES: [&[&str]; 12] = [
-    &["x"],
-    &["y"],
-    &["z"],
-    &["nx", "normal_x"],
-    &["ny", "normal_y"],
-    &["nz", "normal_z"],
-    &["red", "r", "diffuse_red"],
-    &["green", "g", "diffuse_green"],
-    &["blue", "b", "diffuse_blue"],
-    &["alpha", "a", "diffuse_alpha"],
-    &["s", "u", "texture_u", "texture_s"],
-    &["t", "v", "texture_v", "texture_t"],
-];
-
-/// The property with each datum of a vertex, if any: x, y, z, the normal, red, green, blue, alpha, and the texture
-/// coordinates.
-pub(in crate::ply) type Columns = [Option<usize>; COLUMN_NAMES.len()];
 
 pub(super) fn read_vertices(
     source: &Source<'_>,

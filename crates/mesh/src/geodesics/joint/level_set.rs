@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::Shape;
+use super::shape::Shape;
 
 /// Pieces of lines, one a triangle.
 pub(super) type Segments = Vec<[DVec3; 2]>;

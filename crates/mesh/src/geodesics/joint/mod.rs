@@ -11,6 +11,7 @@
 
 mod level_set;
 mod rings;
+mod shape;
 
 use std::f64::consts::TAU;
 
@@ -18,8 +19,9 @@ use glam::DVec3;
 
 use self::level_set::Segments;
 use self::rings::{Body, End, Field, Narrowest, Rings, Source};
+pub use self::shape::Shape;
 use super::DistanceSearch;
-use crate::{Cancel, Cancelled, SurfaceVertex, Topology};
+use crate::{Cancel, Cancelled, SurfaceVertex};
 
 /// The first search covers this share of the component's extent; only if that is not enough does another search cover
 /// all of it.
@@ -49,23 +51,6 @@ pub struct Joint {
     /// Lines around the limb, in any order, at even distances from `-falloff` (on the limb) to `falloff` along the
     /// surface.
     pub rings: [Vec<[DVec3; 2]>; JOINT_RINGS],
-}
-
-/// A surface in a given shape.
-#[derive(Clone, Copy, Debug)]
-pub struct Shape<'a> {
-    /// Its triangles.
-    pub triangles: &'a [[SurfaceVertex; 3]],
-    /// Their connectivity.
-    pub topology: &'a Topology,
-    /// The positions of the vertices, in world units.
-    pub positions: &'a [DVec3],
-}
-
-impl Shape<'_> {
-    fn corners(&self, triangle: [SurfaceVertex; 3]) -> [DVec3; 3] {
-        triangle.map(|v| self.positions[v.index()])
-    }
 }
 
 /// The joint between a point in a triangle and the body, which has two fifths of the component's area or more; `None`

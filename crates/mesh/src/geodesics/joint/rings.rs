@@ -9,8 +9,8 @@ use std::f64::consts::TAU;
 
 use glam::DVec3;
 
-use super::Shape;
 use super::level_set::{Segments, crossing};
+use super::shape::Shape;
 use crate::geodesics::DistanceSearch;
 use crate::{SurfaceVertex, face_area};
 

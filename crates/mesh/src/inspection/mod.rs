@@ -1,11 +1,17 @@
 //! A file's geometry inspected: its counts and findings, without the tables that an edit needs.
 
-use crate::findings::topological::{Parts, of_triangles};
-use crate::model::main_positions;
+mod located;
+mod nearly_joined;
+pub(crate) mod topological;
+
+pub use located::{Example, LocatedFinding};
+
+use crate::inspection::topological::{Parts, of_triangles};
 use crate::topology::components::Component;
+use crate::topology::main_positions;
 use crate::topology::rings::topology_findings;
 use crate::weld::{Welded, weld};
-use crate::{Bounds, Cancel, Cancelled, Drawn, Findings, LocatedFinding, Progress, WeldOptions, bounding_box};
+use crate::{Bounds, Cancel, Cancelled, Drawn, Findings, Progress, WeldOptions, bounding_box};
 
 /// The counts and findings of [`Model::weld`](crate::Model::weld), in less memory and time, for callers that don't
 /// edit.

@@ -1,19 +1,6 @@
-//! An object of a file: the triangles that one node shows in one material.
+//! The triangles and vertices of a file's objects.
 
-use std::ops::Range;
-
-use crate::{Model, SurfaceVertex};
-
-/// Triangles that share node and material.
-#[derive(Clone, PartialEq, Eq, Debug, Default)]
-pub struct Object {
-    /// The node's, object's or group's name; empty if the file gives none.
-    pub name: String,
-    /// The material's name; empty if the file gives none.
-    pub material: String,
-    /// Runs of [`crate::Drawn::triangles`], ascending.
-    pub triangles: Vec<Range<u32>>,
-}
+use crate::{Model, Object, SurfaceVertex};
 
 impl Model {
     /// The same with the file's objects. A model without any is one object.

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 
-use crate::{DrawnSet, DrawnVertex, FindingKind, Findings, Model, Named, Surface};
+use crate::{DrawnSet, DrawnVertex, FindingKind, Findings, Named, Surface};
 
 /// A finding with its sentence and the positions of its first examples.
 #[derive(Clone, PartialEq, Debug)]
@@ -27,14 +27,6 @@ pub struct Example {
     /// Its position at rest, in world space (for a triangle, its centre); `None` if it has no finite position or is not
     /// drawn.
     pub position: Option<DVec3>,
-}
-
-impl Model {
-    /// The faults of the mesh, each with the places of its first examples, in the order of [`Findings::sentences`].
-    /// This reads every vertex, so it is made on request.
-    pub fn located_findings(&self) -> Vec<LocatedFinding> {
-        self.findings.located_findings(&self.drawn, &self.surface)
-    }
 }
 
 impl Findings {

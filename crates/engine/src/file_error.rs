@@ -3,7 +3,7 @@
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
-use super::shown;
+use crate::path_text::shown;
 
 /// A file could not be read or written.
 #[derive(Debug, thiserror::Error)]
@@ -11,11 +11,11 @@ use super::shown;
 pub struct FileError {
     file: PathBuf,
     verb: &'static str,
-    pub(super) source: io::Error,
+    pub(crate) source: io::Error,
 }
 
 impl FileError {
-    pub(super) fn reading(file: &Path, source: io::Error) -> Self {
+    pub(crate) fn reading(file: &Path, source: io::Error) -> Self {
         Self {
             file: file.to_owned(),
             verb: "read",
@@ -23,7 +23,7 @@ impl FileError {
         }
     }
 
-    pub(super) fn writing(file: &Path, source: io::Error) -> Self {
+    pub(crate) fn writing(file: &Path, source: io::Error) -> Self {
         Self {
             file: file.to_owned(),
             verb: "written",
@@ -53,12 +53,12 @@ impl FileError {
 struct Words(String);
 
 /// An error whose reason is this sentence.
-pub(super) fn in_words(sentence: impl Into<String>) -> io::Error {
+pub(crate) fn in_words(sentence: impl Into<String>) -> io::Error {
     io::Error::other(Words(sentence.into()))
 }
 
 /// The system's message, with the remedy.
-pub(super) fn reason(error: &io::Error) -> String {
+pub(crate) fn reason(error: &io::Error) -> String {
     match error.kind() {
         ErrorKind::NotFound => "there is no such file or folder; check the path".to_owned(),
         ErrorKind::PermissionDenied => "permission is denied; check the rights of the file and its folder".to_owned(),

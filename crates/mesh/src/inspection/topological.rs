@@ -3,7 +3,7 @@
 
 use glam::DVec3;
 
-use crate::findings::nearly_joined::nearly_joined;
+use crate::inspection::nearly_joined::nearly_joined;
 use crate::topology::boundary::trace_loops;
 use crate::topology::components::Components;
 use crate::topology::rings::TopologyFindings;

@@ -7,32 +7,32 @@ use std::ops::Range;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::model::drawn_triangles::{Corners, DrawnTriangles};
-use crate::{Drawn, DrawnVertex, FileVertex, Model, Surface, SurfaceVertex};
+use crate::drawn::drawn_triangles::{Corners, DrawnTriangles};
+use crate::{DrawnVertex, FileVertex, Surface, SurfaceVertex};
 
 /// No surface vertex.
 pub(crate) const NONE: u32 = u32::MAX;
 
 /// The number of drawn vertices for one task.
-const CHUNK: usize = 8192;
+pub(crate) const CHUNK: usize = 8192;
 
-/// The drawn vertices and triangles of a file, in about a fifth of [`Drawn`]'s bytes. Positions and triangles can only
-/// be restored with the surface: see [`Model`].
+/// The drawn vertices and triangles of a file, in about a fifth of [`Drawn`](crate::Drawn)'s bytes. Positions and triangles can only
+/// be restored with the surface: see [`Model`](crate::Model).
 #[derive(Clone, Debug, Default)]
 pub struct DrawnSet {
     /// [`NONE`] for a drawn vertex without a finite position.
-    surface_vertices: Vec<u32>,
-    strays: Strays,
+    pub(crate) surface_vertices: Vec<u32>,
+    pub(crate) strays: Strays,
     file_vertices: FileVertices,
-    triangles: DrawnTriangles,
-    triangle_of_surface: Vec<u32>,
-    lines: Vec<[DrawnVertex; 2]>,
+    pub(crate) triangles: DrawnTriangles,
+    pub(crate) triangle_of_surface: Vec<u32>,
+    pub(crate) lines: Vec<[DrawnVertex; 2]>,
 }
 
 /// Drawn vertices whose position differs in a bit from their surface vertex's: joined within the tolerance, −0 for 0,
 /// or not finite.
 #[derive(Clone, Debug, Default)]
-struct Strays {
+pub(crate) struct Strays {
     /// Ascending.
     vertices: Vec<u32>,
     positions: Vec<DVec3>,
@@ -90,7 +90,7 @@ impl Strays {
     }
 
     /// Those in a run of `count` drawn vertices, by their place in it.
-    fn within(&self, first: usize, count: usize) -> impl Iterator<Item = (usize, DVec3)> + '_ {
+    pub(crate) fn within(&self, first: usize, count: usize) -> impl Iterator<Item = (usize, DVec3)> + '_ {
         let place = |vertex: usize| self.vertices.partition_point(|&v| (v as usize) < vertex);
         (place(first)..place(first + count)).map(move |k| (self.vertices[k] as usize - first, self.positions[k]))
     }
@@ -214,105 +214,6 @@ impl DrawnSet {
 }
 
 #[inline]
-fn known(surface_vertex: u32) -> Option<SurfaceVertex> {
+pub(crate) fn known(surface_vertex: u32) -> Option<SurfaceVertex> {
     (surface_vertex != NONE).then_some(SurfaceVertex(surface_vertex))
-}
-
-impl Model {
-    /// The geometry that the file shows, as before welding: the same to the bit.
-    pub fn rest(&self) -> Drawn {
-        Drawn {
-            positions: self.rest_positions(),
-            triangles: self.drawn_triangles(),
-            lines: self.drawn.lines.clone(),
-            file_vertex: self.drawn.file_vertices().collect(),
-            file_vertex_count: self.drawn.file_vertex_count(),
-            roundings: Vec::new(),
-        }
-    }
-
-    /// The position of a drawn vertex at rest.
-    pub fn rest_position(&self, vertex: DrawnVertex) -> DVec3 {
-        self.drawn.position(vertex, &self.surface)
-    }
-
-    /// The position of each drawn vertex at rest.
-    pub fn rest_positions(&self) -> Vec<DVec3> {
-        let mut out = Vec::new();
-        let rest = &self.surface.positions;
-        self.spread(|v| rest[v.index()], |stray, _| stray, &mut out);
-        out
-    }
-
-    /// The drawn triangles, in the file's order: see [`Drawn::triangles`].
-    pub fn drawn_triangles(&self) -> Vec<[DrawnVertex; 3]> {
-        let drawn = &self.drawn;
-        drawn.triangles.listed(&self.surface, &drawn.triangle_of_surface)
-    }
-
-    /// The corners of a drawn triangle; `None` beyond the last. Found by a linear search: for many triangles use
-    /// [`Self::drawn_triangles`].
-    pub fn drawn_triangle(&self, triangle: u32) -> Option<[DrawnVertex; 3]> {
-        self.drawn.triangle(triangle, &self.surface)
-    }
-
-    /// The corners of the drawn triangle behind one of the surface's, corner for corner.
-    #[inline]
-    pub fn drawn_corners(&self, surface_triangle: usize) -> [DrawnVertex; 3] {
-        let number = self.drawn.triangle_of_surface[surface_triangle];
-        let corners = self.surface.triangles[surface_triangle];
-        self.drawn.triangles.behind(corners, number)
-    }
-
-    /// Each drawn vertex's rest position plus the displacement of its surface vertex (`displacements`, one each), into
-    /// `out`. If the displacement is zero, or if there is no surface vertex, the result has the rest position's own
-    /// bits.
-    pub fn drawn_positions(&self, displacements: &[DVec3], out: &mut Vec<DVec3>) {
-        let rest = &self.surface.positions[..];
-        let displacements = &displacements[..rest.len()];
-        self.spread(
-            |v| displaced(rest[v.index()], displacements[v.index()]),
-            |stray, v| v.map_or(stray, |v| displaced(stray, displacements[v.index()])),
-            out,
-        );
-    }
-
-    /// For each drawn vertex the value of `of_surface` for its surface vertex, into `out`. A drawn vertex whose rest
-    /// position differs in a bit from its surface vertex's, or that has no surface vertex, gets the value of `of_stray`
-    /// for that position.
-    #[inline]
-    pub fn spread<T: Copy + Default + Send>(
-        &self,
-        of_surface: impl Fn(SurfaceVertex) -> T + Sync,
-        of_stray: impl Fn(DVec3, Option<SurfaceVertex>) -> T + Sync,
-        out: &mut Vec<T>,
-    ) {
-        let DrawnSet {
-            surface_vertices,
-            strays,
-            ..
-        } = &self.drawn;
-        out.resize(surface_vertices.len(), T::default());
-        let chunks = out.par_chunks_mut(CHUNK).zip(surface_vertices.par_chunks(CHUNK));
-        chunks.enumerate().for_each(|(chunk, (out, surface_vertices))| {
-            for (moved, &v) in out.iter_mut().zip(surface_vertices) {
-                if let Some(v) = known(v) {
-                    *moved = of_surface(v);
-                }
-            }
-            for (place, stray) in strays.within(chunk * CHUNK, out.len()) {
-                out[place] = of_stray(stray, known(surface_vertices[place]));
-            }
-        });
-    }
-}
-
-#[inline]
-fn displaced(rest: DVec3, displacement: DVec3) -> DVec3 {
-    // Adding zero would turn −0 into 0.
-    if displacement == DVec3::ZERO {
-        rest
-    } else {
-        rest + displacement
-    }
 }

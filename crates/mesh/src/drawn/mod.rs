@@ -1,10 +1,17 @@
 //! The geometry that a file shows: every vertex seen through its node, in world space.
 
+pub(crate) mod drawn_set;
+pub(crate) mod drawn_triangles;
+mod object;
+
 use std::ops::Range;
 
 use glam::DVec3;
 
 use crate::{DrawnVertex, FileVertex};
+
+pub use drawn_set::DrawnSet;
+pub use object::Object;
 
 /// Drawn vertices whose positions are on one grid, like integers or single-precision numbers.
 #[derive(Clone, PartialEq, Debug)]
