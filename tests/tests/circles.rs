@@ -11,10 +11,10 @@ use std::path::{Path, PathBuf};
 
 /// The crates in which every dependency counts. In the others any file may use the names that the crate's root exports,
 /// and a folder's own file (`mod.rs`) counts as one with the files below it.
-const STRICT: &[&str] = &["editor", "engine", "io", "mesh", "python"];
+const STRICT: &[&str] = &["editor", "engine", "io", "mesh", "python", "render", "xtask"];
 
 /// The crates whose folders are checked.
-const STRICT_FOLDERS: &[&str] = &["engine", "io", "mesh", "python"];
+const STRICT_FOLDERS: &[&str] = &["engine", "io", "mesh", "python", "render", "xtask"];
 
 /// The dependencies that count.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

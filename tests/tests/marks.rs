@@ -115,9 +115,9 @@ impl Stage {
         let mut colours = Vec::new();
         self.editor.region_colours(&mut colours);
         let colours = drawing::drawn_colours(&self.model, &colours);
-        surface.update_regions(&self.renderer, &colours).unwrap();
+        surface.update_regions(self.renderer.gpu(), &colours).unwrap();
         let outlines = drawing::outlines(&self.editor, &self.model);
-        surface.update_lines(&self.renderer, &outlines).unwrap();
+        surface.update_lines(self.renderer.gpu(), &outlines).unwrap();
         let frame = Frame {
             view: &drawing::view(view.camera, view.viewport_px, drawing.centre()),
             style: &drawing::style(&view.look, PIXELS_PER_POINT as f32),

@@ -49,7 +49,7 @@ fn ids(renderer: &mut Renderer, model: &Model, displacements: &[DVec3], camera: 
     let rest = vec![DVec3::ZERO; displacements.len()];
     let mut surface = drawing.upload(renderer, &drawing.pose(model, &rest)).unwrap();
     surface
-        .update_shape(renderer, &drawing.pose(model, displacements).data())
+        .update_shape(renderer.gpu(), &drawing.pose(model, displacements).data())
         .unwrap();
     let [width, height] = SIZE_PX;
     let frame = Frame {

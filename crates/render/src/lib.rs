@@ -1,6 +1,6 @@
 //! Rendering with wgpu: slices of numbers go in, a texture or picked triangle ids come out.
 //!
-//! A [`Renderer`] owns the pipelines of one device. A [`Surface`] is a triangle mesh in GPU buffers, made from the
+//! A [`Renderer`] draws on one device, its [`Gpu`]. A [`Surface`] is a triangle mesh in GPU buffers, made from the
 //! slices of a [`SurfaceData`] and updated in place while it moves. A [`Frame`] says what to draw and from where.
 //! [`Renderer::draw`] draws it into a [`Target`], an offscreen texture that a window shows as an image;
 //! [`Renderer::draw_to_image`] draws the same frame into memory. [`Renderer::pick`] finds the triangles in a rectangle
@@ -28,7 +28,7 @@
 //!     triangles: &[[0, 1, 2]],
 //!     ..Default::default()
 //! };
-//! let surface = Surface::new(&headless.renderer, &triangle)?;
+//! let surface = Surface::new(headless.renderer.gpu(), &triangle)?;
 //! let eye = View::look_at(Vec3::new(0.0, 0.0, 4.0), Vec3::ZERO, Vec3::Y);
 //! let frame = Frame {
 //!     view: &View::perspective(0.8, 1.5, 0.01, eye),
@@ -46,29 +46,37 @@
 
 mod device;
 mod frame;
+mod gpu;
+mod headless;
 mod materials;
 mod pick;
 mod pipelines;
 mod renderer;
 mod surface;
+mod target;
+mod texture;
+mod uniforms;
 
 pub use device::error::{NoGpu, RenderError};
-pub use device::headless::{Headless, device_descriptor};
+pub use device::opening::device_descriptor;
 pub use frame::grid::Grid;
 pub use frame::image::Image;
 pub use frame::overlay::{Overlay, OverlayLine, OverlayTriangle};
 pub use frame::palette::{border, region};
-pub use frame::target::{Samples, Target};
+pub use frame::style::{Background, Borders, Detail, Faces, Outlines, Shading, Shadows, Style, Wireframe};
 pub use frame::view::View;
-pub use frame::{Background, Borders, Detail, Faces, Frame, Outlines, Shading, Shadows, Style, Wireframe};
+pub use gpu::Gpu;
+pub use headless::Headless;
 pub use materials::Materials;
 pub use materials::matcap::Matcap;
-pub use materials::material::{AlphaMode, Lighting, Map, Material, MaterialGroup, UvSet, Wrap};
-pub use materials::texture::{Encoding, TextureData};
+pub use materials::material::{AlphaMode, Lighting, Map, Material, MaterialGroup, UvSet};
 pub use pick::{IdTarget, PickRequest, Picked, PickedIds, PixelRect};
 pub use renderer::Renderer;
+pub use renderer::frame::Frame;
 pub use surface::Surface;
 pub use surface::chunks::{ChunkBounds, Chunks};
 pub use surface::data::{ColourSpace, SurfaceData};
 pub use surface::lines::{EdgePoint, SurfaceLine};
 pub use surface::update::ShapeData;
+pub use target::{Samples, Target};
+pub use texture::{Encoding, TextureData, Wrap};

@@ -7,11 +7,11 @@ use std::sync::Arc;
 
 use crate::device::guard::guarded;
 use crate::device::readback::Readback;
-use crate::frame::target::cleared_depth;
 use crate::pipelines::{ID_FORMAT, Pipeline};
 use crate::renderer::WHOLE_BACKGROUND;
 use crate::surface::draw_calls::Batching;
-use crate::{Chunks, Frame, RenderError, Renderer, Samples, Target};
+use crate::target::cleared_depth;
+use crate::{Chunks, Frame, Gpu, RenderError, Renderer, Samples, Target};
 
 /// The id buffer. [`Renderer::pick`] resizes it as needed; keep it between picks.
 #[derive(Debug, Default)]
@@ -184,26 +184,34 @@ impl Renderer {
                 readback: None,
             });
         }
-        let limit = self.device().limits().max_texture_dimension_2d;
+        let limit = self.gpu.device.limits().max_texture_dimension_2d;
         if size_px.iter().any(|&side| side > limit) {
             let [width, height] = size_px;
             return Err(RenderError::PictureTooLarge { width, height });
         }
-        self.write_frame(frame, size_px, WHOLE_BACKGROUND)?;
-        let device = self.device().clone();
-        self.pipelines.prepare(&device, Pipeline::Id, Samples::One)?;
-        let readback = guarded(&device, "while picking", || {
+        self.resources
+            .write_frame(&self.gpu, frame, size_px, WHOLE_BACKGROUND)?;
+        self.gpu
+            .pipelines
+            .prepare(&self.gpu.device, Pipeline::Id, Samples::One)?;
+        let Gpu {
+            device,
+            queue,
+            pipelines,
+            ..
+        } = &self.gpu;
+        let readback = guarded(device, "while picking", || {
             for (surface, &base) in frame.surfaces.iter().zip(&bases) {
-                surface.set_id_base(self.queue(), base);
+                surface.set_id_base(queue, base);
             }
-            let attachments = target.resize(&device, size_px);
+            let attachments = target.resize(device, size_px);
             let mut encoder = device.create_command_encoder(&Default::default());
             let mut pass = begin_ids(&mut encoder, attachments);
             pass.set_scissor_rect(rect.x, rect.y, rect.width, rect.height);
-            if let Some(pipeline) = self.pipelines.get(Pipeline::Id, Samples::One) {
+            if let Some(pipeline) = pipelines.get(Pipeline::Id, Samples::One) {
                 pass.set_pipeline(pipeline);
             }
-            pass.set_bind_group(0, self.frame_group(), &[]);
+            pass.set_bind_group(0, &self.resources.frame_group, &[]);
             for surface in frame.surfaces {
                 surface.bind(&mut pass);
                 for call in surface.draw_calls(frame.view, Batching::Any) {
@@ -215,7 +223,8 @@ impl Renderer {
             drop(pass);
             let origin = [rect.x, rect.y];
             Ok(Readback::submit(
-                self,
+                device,
+                queue,
                 encoder,
                 &attachments.ids,
                 origin,
@@ -252,7 +261,7 @@ impl PickRequest {
     /// The result if it has arrived; does not wait. Returns it only once.
     pub fn poll(&mut self, renderer: &Renderer) -> Option<Result<PickedIds, RenderError>> {
         let bytes = match &self.readback {
-            Some(readback) => readback.poll(renderer)?,
+            Some(readback) => readback.poll(renderer.device())?,
             None => Ok(Vec::new()),
         };
         Some(bytes.map(|bytes| self.decoded(&bytes)))
@@ -264,7 +273,7 @@ impl PickRequest {
     /// [`RenderError::Lost`] if the device does not respond.
     pub fn wait(self, renderer: &Renderer) -> Result<PickedIds, RenderError> {
         let bytes = match &self.readback {
-            Some(readback) => readback.wait(renderer)?,
+            Some(readback) => readback.wait(renderer.device())?,
             None => Vec::new(),
         };
         Ok(self.decoded(&bytes))

@@ -64,7 +64,7 @@ fn a_mesh_spread_over_several_buffers_looks_and_picks_the_same() {
     let renderer = &mut headless.renderer;
     let shape = large();
     let mut whole = shape.upload(renderer);
-    let mut spread = Surface::spread(renderer, &shape.data(), 20_000, 60_000).unwrap();
+    let mut spread = Surface::spread(renderer.gpu(), &shape.data(), 20_000, 60_000).unwrap();
     assert_eq!(whole.page_count(), 1);
     assert!(spread.page_count() >= 4, "{}", spread.page_count());
     let bent: Vec<[f32; 3]> = shape
@@ -79,8 +79,8 @@ fn a_mesh_spread_over_several_buffers_looks_and_picks_the_same() {
             assert!(a[0] == b[0] && a[1] == b[1], "round {round}");
             assert_eq!(ids(renderer, &whole, &view), ids(renderer, &spread, &view));
         }
-        whole.update_positions(renderer, &bent).unwrap();
-        spread.update_positions(renderer, &bent).unwrap();
+        whole.update_positions(renderer.gpu(), &bent).unwrap();
+        spread.update_positions(renderer.gpu(), &bent).unwrap();
     }
 }
 
@@ -106,7 +106,7 @@ fn culling_leaves_out_only_invisible_triangles() {
                 triangles,
                 ..shape.data()
             };
-            Surface::new(renderer, &data).unwrap()
+            Surface::new(renderer.gpu(), &data).unwrap()
         })
         .collect();
     let parts: Vec<&Surface> = parts.iter().collect();
@@ -202,7 +202,7 @@ fn the_reduced_level_looks_nearly_the_same_and_follows_the_shape() {
         .map(|&[x, y, z]| [x, y + 0.3 * x * x, z])
         .collect();
     for positions in [shape.positions.clone(), bent] {
-        surface.update_positions(renderer, &positions).unwrap();
+        surface.update_positions(renderer.gpu(), &positions).unwrap();
         let [full, few] = [Style::default(), reduced].map(|style| draw(renderer, &view, &style, &[&surface], &[]));
         let pixels = full.rgba.chunks_exact(4).zip(few.rgba.chunks_exact(4));
         let (mut differ, mut off) = (0, 0);
@@ -217,7 +217,7 @@ fn the_reduced_level_looks_nearly_the_same_and_follows_the_shape() {
     assert!(!surface.has_reduced(&close_view()), "from near their size would show");
     // Hidden triangles stay hidden.
     let half: Vec<bool> = (0..shape.triangles.len()).map(|t| t % 2000 < 1000).collect();
-    surface.show(renderer, Some(Arc::new(half))).unwrap();
+    surface.show(renderer.gpu(), Some(Arc::new(half))).unwrap();
     let [full, few] = [Style::default(), reduced].map(|style| draw(renderer, &view, &style, &[&surface], &[]));
     assert!(full.rgba == few.rgba);
 }

@@ -84,7 +84,7 @@ fn the_nearer_surface_hides_the_farther_one_in_either_order() {
             colours: Some(&colours),
             ..square.data()
         };
-        Surface::new(&headless.renderer, &data).unwrap()
+        Surface::new(headless.renderer.gpu(), &data).unwrap()
     };
     let (near, far) = (painted(0.004, [255, 0, 0, 255]), painted(0.0, [0, 0, 255, 255]));
     let (from_near, from_afar) = (painted(-3000.0, [255, 0, 0, 255]), painted(-3010.0, [0, 0, 255, 255]));
@@ -134,7 +134,7 @@ fn region_colours_show_in_regions_only_and_change_in_place() {
     );
     assert_eq!(clay, plain, "no regions are clay");
     surface
-        .update_regions(&headless.renderer, &[region::HANDLE; 4])
+        .update_regions(headless.renderer.gpu(), &[region::HANDLE; 4])
         .unwrap();
     let gold = draw(
         &mut headless.renderer,
@@ -156,7 +156,9 @@ fn region_colours_show_in_regions_only_and_change_in_place() {
     assert_eq!(clay, still_clay);
     let [red, green, blue, _] = pixel_at(&gold, &view, [0.1; 3]);
     assert!(red > green && green > blue + 40, "a handle is golden");
-    surface.update_regions(&headless.renderer, &[region::FREE; 4]).unwrap();
+    surface
+        .update_regions(headless.renderer.gpu(), &[region::FREE; 4])
+        .unwrap();
     let free = draw(
         &mut headless.renderer,
         &view,
@@ -232,7 +234,7 @@ fn a_shadow_is_darker_under_what_is_nearer_to_the_ground_and_ends_beside_it() {
     let view = parallel_front_view();
     let mut surface = Shape::square(0.0, 0.0, 0.5).upload(renderer);
     let mut at_height = |height: f32, position: [f32; 3]| {
-        surface.update_shadow(renderer, &ground(-height)).unwrap();
+        renderer.update_shadow(&mut surface, &ground(-height)).unwrap();
         let [off, on] = [&lit, &shaded].map(|style| draw(renderer, &view, style, &[&surface], &[]));
         brightness(pixel_at(&off, &view, position)) - brightness(pixel_at(&on, &view, position))
     };
@@ -250,7 +252,9 @@ fn vertices_move_in_place_and_a_wrong_count_is_refused() {
     let view = front_view();
     let (here, there) = (Shape::square(-0.6, 0.0, 0.3), Shape::square(0.6, 0.0, 0.3));
     let mut surface = here.upload(&headless.renderer);
-    surface.update_positions(&headless.renderer, &there.positions).unwrap();
+    surface
+        .update_positions(headless.renderer.gpu(), &there.positions)
+        .unwrap();
     let moved = draw(
         &mut headless.renderer,
         &view,
@@ -268,7 +272,7 @@ fn vertices_move_in_place_and_a_wrong_count_is_refused() {
     );
     assert_eq!(moved, expected);
     let error = surface
-        .update_normals(&headless.renderer, &there.normals[1..])
+        .update_normals(headless.renderer.gpu(), &there.normals[1..])
         .unwrap_err();
     assert_eq!(
         error,
@@ -350,7 +354,7 @@ fn textures_show_upright_and_masks_cut_holes() {
             }],
             ..square.data()
         };
-        let surface = Surface::new(renderer, &data).unwrap();
+        let surface = Surface::new(renderer.gpu(), &data).unwrap();
         draw(renderer, &view, &style(Shading::Material), &[&surface], &[])
     };
     let empty = draw(&mut headless.renderer, &view, &style(Shading::Material), &[], &[]);
@@ -407,7 +411,7 @@ fn mipmaps_keep_the_mean_light() {
             }],
             ..square.data()
         };
-        let surface = Surface::new(&headless.renderer, &data).unwrap();
+        let surface = Surface::new(headless.renderer.gpu(), &data).unwrap();
         let image = draw(
             &mut headless.renderer,
             &view,
@@ -469,13 +473,13 @@ fn an_empty_size_draws_nothing_and_a_too_large_size_is_rejected() {
     let mut target = Target::new();
     renderer.draw(&target, &frame).unwrap();
     assert_eq!(renderer.read(&target), Ok(None));
-    assert_eq!(target.resize(renderer, [0, 7], Samples::Four), Ok(false));
-    assert_eq!(target.resize(renderer, [1, 1], Samples::Four), Ok(true));
-    assert_eq!(target.resize(renderer, [1, 1], Samples::Four), Ok(false));
+    assert_eq!(target.resize(renderer.device(), [0, 7], Samples::Four), Ok(false));
+    assert_eq!(target.resize(renderer.device(), [1, 1], Samples::Four), Ok(true));
+    assert_eq!(target.resize(renderer.device(), [1, 1], Samples::Four), Ok(false));
     renderer.draw(&target, &frame).unwrap();
     assert_eq!(
         target
-            .resize(renderer, [1 << 30, 8], Samples::Four)
+            .resize(renderer.device(), [1 << 30, 8], Samples::Four)
             .map_err(|error| error.to_string())
             .err()
             .map(|text| text.starts_with("a picture of 1073741824 by 8 pixels is too large")),

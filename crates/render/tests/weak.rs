@@ -55,7 +55,7 @@ fn pictures(renderer: &mut Renderer, surface: &mut Surface) -> Vec<Image> {
         colour: [255, 0, 0, 255],
         width_points: 3.0,
     };
-    surface.update_lines(renderer, &[seam]).unwrap();
+    surface.update_lines(renderer.gpu(), &[seam]).unwrap();
     let mark = OverlayLine {
         ends: [[-1.0, -1.0, 0.0], [1.0, 1.0, 0.5]],
         colours: [[0, 200, 0, 255]; 2],

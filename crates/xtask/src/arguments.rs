@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::bench::Scale;
+use crate::bench::scale::Scale;
 use crate::install::Consent;
 
 /// Printed for `--help` and for unknown commands.

@@ -56,7 +56,7 @@ pub fn read(file: &Path) -> Result<Vec<u8>, String> {
 /// # Errors
 /// One sentence naming the file.
 pub fn text(path: &str) -> Result<String, String> {
-    let file = crate::root().join(path);
+    let file = crate::root::root().join(path);
     String::from_utf8(read(&file)?).map_err(|e| format!("{} is not UTF-8: {e}.", file.display()))
 }
 

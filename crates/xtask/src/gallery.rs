@@ -34,7 +34,7 @@ const SIZE: &str = "1200x640";
 /// One sentence naming the failed build, picture or file.
 pub fn gallery() -> Result<(), String> {
     build_program()?;
-    let root = crate::root();
+    let root = crate::root::root();
     let page = root.join("docs/methods.md");
     let mut text = fs::read_to_string(&page).map_err(|e| format!("{} can't be read: {e}.", page.display()))?;
     let folder = root.join("docs/gallery");
@@ -71,7 +71,7 @@ pub fn gallery() -> Result<(), String> {
 
 /// Draws an edit of a sample by these methods into `docs/gallery/PICTURE.png`; returns the table of its figures.
 fn sheet(picture: &str, sample: &str, edit: &str, methods: &str, look: &[&str]) -> Result<String, String> {
-    let root = crate::root();
+    let root = crate::root::root();
     let mut command = Command::new(target_folder().join("release/pliant"));
     command.current_dir(&root);
     command.args(["compare", &format!("assets/{sample}.glb"), "--methods", methods]);

@@ -123,7 +123,8 @@ pub fn prepare_toolchain() -> Result<(), String> {
             .is_ok_and(|status| status.success());
         if !there {
             let mut add = Command::new("rustup");
-            add.args(["component", "add", component]).current_dir(crate::root());
+            add.args(["component", "add", component])
+                .current_dir(crate::root::root());
             process::succeed(&mut add).map_err(|sentence| {
                 format!("{sentence} Add {component} to the Rust toolchain by hand and start again.")
             })?;

@@ -21,6 +21,7 @@ mod package;
 mod process;
 mod python;
 mod requirement;
+mod root;
 mod run;
 mod system;
 mod test;
@@ -28,7 +29,6 @@ mod tool;
 mod validation;
 mod verdict;
 
-use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use arguments::Command;
@@ -64,10 +64,4 @@ fn main() -> ExitCode {
             ExitCode::FAILURE
         }
     }
-}
-
-/// The workspace's folder.
-pub fn root() -> PathBuf {
-    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
-    here.ancestors().nth(2).unwrap_or(here).to_path_buf()
 }

@@ -30,7 +30,10 @@ pub fn make_assets(order: &Order) -> Result<(), String> {
             .unwrap_or_else(|| crate::process::target_folder().join("assets"));
         return make(&folder, &format!("creature-{triangles}"), || creature_of(triangles));
     }
-    let folder = order.output.clone().unwrap_or_else(|| crate::root().join("assets"));
+    let folder = order
+        .output
+        .clone()
+        .unwrap_or_else(|| crate::root::root().join("assets"));
     for sample in &SAMPLES {
         if order.names.is_empty() || order.names.iter().any(|name| name == sample.name) {
             make(&folder, sample.name, sample.make)?;

@@ -68,7 +68,7 @@ fn book(program: &Path) -> Result<PathBuf, String> {
     let folder = target_folder().join("manual");
     let (source, generated, book) = (folder.join("source"), folder.join("generated"), folder.join("book"));
     files::fresh_folder(&folder)?;
-    files::copy_folder(&crate::root().join("docs"), &source)?;
+    files::copy_folder(&crate::root::root().join("docs"), &source)?;
     succeed(Command::new(program).arg("generate").arg(&generated))?;
     for page in ["command-line.md", "commands.md"] {
         files::copy(&generated.join(page), &source.join(page))?;

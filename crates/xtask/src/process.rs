@@ -32,7 +32,7 @@ pub fn output(program: &str, arguments: &[&str]) -> Option<String> {
 pub fn cargo(arguments: &[&str]) -> Command {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let mut command = Command::new(cargo);
-    command.args(arguments).current_dir(crate::root());
+    command.args(arguments).current_dir(crate::root::root());
     if std::env::var_os("CI").is_some() {
         // Incremental compilation only costs time and disk on a machine that builds once.
         command.env("CARGO_INCREMENTAL", "0");
@@ -68,7 +68,7 @@ pub fn cargo_home() -> PathBuf {
 
 /// Cargo's target folder.
 pub fn target_folder() -> PathBuf {
-    let root = crate::root();
+    let root = crate::root::root();
     std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), |folder| root.join(folder))
 }
 

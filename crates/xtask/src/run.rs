@@ -21,7 +21,7 @@ pub fn run(file: Option<&Path>, consent: Consent) -> Result<(), String> {
             println!("{sentence}");
         }
         build()?;
-        let sample = crate::root().join("assets/creature.glb");
+        let sample = crate::root::root().join("assets/creature.glb");
         let file = file.map_or(Ok(sample), std::path::absolute);
         let file = file.map_err(|e| format!("The file's path can't be completed: {e}."))?;
         return pliant(&[&file.display().to_string()]);

@@ -21,7 +21,7 @@ pub fn rows(
     surface: &mut Surface,
 ) -> Result<Vec<String>, RenderError> {
     let rest = vec![DVec3::ZERO; model.surface.positions.len()];
-    surface.update_shape(renderer, &drawing.pose(model, &rest).data())?;
+    surface.update_shape(renderer.gpu(), &drawing.pose(model, &rest).data())?;
     let jobs = InlineExecutor::new();
     let mut editor = Editor::new(Box::new(jobs.clone()));
     let size_px = DVec2::new(f64::from(SIZE_PX[0]), f64::from(SIZE_PX[1]));
@@ -48,7 +48,7 @@ pub fn rows(
             let mut by_surface = Vec::new();
             editor.region_colours(&mut by_surface);
             let mut colours = drawing::drawn_colours(model, &by_surface);
-            surface.update_regions(renderer, &colours)?;
+            surface.update_regions(renderer.gpu(), &colours)?;
             let (mut handling, mut colouring, mut whole) = (Vec::new(), Vec::new(), Vec::new());
             let mut vertices = 0;
             for event in stroke(&editor, model) {
@@ -59,12 +59,12 @@ pub fn rows(
                     Some(recoloured) => {
                         vertices += recoloured.len();
                         let ranges = drawing::recolour(model, recoloured, editor.region_colour(), &mut colours);
-                        surface.update_some_regions(renderer, &colours, &ranges)
+                        surface.update_some_regions(renderer.gpu(), &colours, &ranges)
                     }
                     None => {
                         editor.region_colours(&mut by_surface);
                         colours = drawing::drawn_colours(model, &by_surface);
-                        surface.update_regions(renderer, &colours)
+                        surface.update_regions(renderer.gpu(), &colours)
                     }
                 });
                 uploaded?;

@@ -54,7 +54,7 @@ fn measure(triangles: usize) -> Result<(), Box<dyn std::error::Error>> {
     });
     let pose_ms = median(poses.collect());
     let moves = (0..FRAMES).map(|_| {
-        let (ms, moved) = timed(|| surface.update_shape(&renderer, &pose.data()));
+        let (ms, moved) = timed(|| surface.update_shape(renderer.gpu(), &pose.data()));
         moved?;
         renderer.queue().submit([]);
         renderer.finish()?;
@@ -84,12 +84,12 @@ fn measure(triangles: usize) -> Result<(), Box<dyn std::error::Error>> {
     for row in brush::rows(&model, &drawing, &renderer, &mut surface)? {
         println!("{{\"triangles\": {triangles}, {row}}}");
     }
-    surface.update_shape(&renderer, &pose.data())?;
+    surface.update_shape(renderer.gpu(), &pose.data())?;
     let view = |camera: &Camera| drawing::view(camera, size_px, drawing.centre());
     let ground = drawing::ground(&camera, size_px, rest_height(&model), drawing.centre());
     let made = (0..FRAMES).map(|_| {
         let (ms, made) = timed(|| {
-            surface.update_shadow(&mut renderer, &ground)?;
+            renderer.update_shadow(&mut surface, &ground)?;
             renderer.finish()
         });
         made.map(|()| ms)
@@ -158,7 +158,7 @@ fn measure_looks(
                 continue;
             }
             let mut target = Target::new();
-            target.resize(renderer, SIZE_PX, samples)?;
+            target.resize(renderer.device(), SIZE_PX, samples)?;
             let view = view(&camera);
             let style = Style {
                 detail: if name == "clay, moving" {

@@ -176,7 +176,7 @@ fn pictures(arguments: &RenderArguments, paths: &[PathBuf], watch: &Watch) -> Re
     };
     if look.shadow {
         let ground = drawing::ground(&camera, size_px, low, drawing.centre());
-        surface.update_shadow(&mut renderer, &ground).map_err(refuse)?;
+        renderer.update_shadow(&mut surface, &ground).map_err(refuse)?;
     }
     let count = arguments.turntable.unwrap_or(1);
     let mut pngs = Vec::new();
@@ -236,10 +236,10 @@ pub(super) fn upload(
         None => shape.region_colours.clone(),
     };
     let colours = drawing::drawn_colours(model, &colours);
-    surface.update_regions(renderer, &colours).map_err(refuse)?;
+    surface.update_regions(renderer.gpu(), &colours).map_err(refuse)?;
     let wires = drawing::wires(model, &colours);
-    surface.update_wires(renderer, &wires).map_err(refuse)?;
-    surface.update_lines(renderer, &shape.outlines).map_err(refuse)?;
+    surface.update_wires(renderer.gpu(), &wires).map_err(refuse)?;
+    surface.update_lines(renderer.gpu(), &shape.outlines).map_err(refuse)?;
     let mut notes = Vec::new();
     if look.shading == Shading::Material {
         let decoded = drawing.materials.decode(cancel);

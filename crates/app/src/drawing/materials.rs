@@ -214,7 +214,7 @@ impl DecodedMaterials {
                 }
             })
             .collect();
-        Materials::new(renderer, &self.materials, &textures)
+        Materials::new(renderer.gpu(), &self.materials, &textures)
     }
 }
 

@@ -125,7 +125,7 @@ impl Drawing {
     /// See [`Surface::new`].
     pub fn upload(&self, renderer: &Renderer, pose: &Pose) -> Result<Surface, RenderError> {
         Surface::new(
-            renderer,
+            renderer.gpu(),
             &SurfaceData {
                 positions: &pose.positions,
                 normals: &pose.normals,

@@ -4,6 +4,6 @@ pub(crate) mod bindings;
 pub(crate) mod buffers;
 pub(crate) mod error;
 pub(crate) mod guard;
-pub(crate) mod headless;
+pub(crate) mod opening;
 pub(crate) mod readback;
 pub(crate) mod timer;

@@ -1,6 +1,6 @@
 //! The ground grid.
 
-use crate::frame::uniforms::GridUniform;
+use crate::uniforms::GridUniform;
 
 /// A ground grid with lines `step` apart, every tenth stronger, and the two world axes in colour. It fades out towards
 /// `reach` and is drawn from both sides.

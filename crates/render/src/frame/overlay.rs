@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::frame::uniforms::{OverlayLineInstance, OverlayVertex};
+use crate::uniforms::{OverlayLineInstance, OverlayVertex};
 
 /// An overlay, drawn after the surfaces: triangles first, then lines, each in order. Parts behind a surface are drawn
 /// fainter, so that a gizmo inside a body can still be grabbed.

@@ -3,10 +3,10 @@
 use crate::device::bindings::bind_group;
 use crate::device::buffers::filled;
 use crate::device::guard::guarded;
-use crate::frame::uniforms::EnvironmentUniform;
-use crate::materials::fullscreen;
+use crate::pipelines::fullscreen;
 use crate::pipelines::shaders::Shader;
-use crate::{RenderError, Renderer};
+use crate::uniforms::EnvironmentUniform;
+use crate::{Gpu, RenderError};
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 /// The prefiltered environment map: 64 pixels a side at roughness 0, down to 4 at roughness 1, as `material.wgsl`
@@ -29,14 +29,14 @@ const FACES: [[[f32; 3]; 3]; 6] = [
 ];
 
 /// The bind group of the two cube maps.
-pub(crate) fn environment(renderer: &Renderer) -> Result<wgpu::BindGroup, RenderError> {
-    let device = renderer.device();
+pub(crate) fn environment(gpu: &Gpu) -> Result<wgpu::BindGroup, RenderError> {
+    let device = &gpu.device;
     guarded(device, "while drawing the environment maps", || {
         let prefiltered = cube(device, "prefiltered environment", PREFILTERED_PX, PREFILTERED_LEVELS);
         let irradiance = cube(device, "irradiance map", IRRADIANCE_PX, 1);
         let [prefilter, irradiate] = pipelines(device);
-        fill(renderer, &prefilter, &prefiltered, PREFILTERED_SAMPLES)?;
-        fill(renderer, &irradiate, &irradiance, IRRADIANCE_SAMPLES)?;
+        fill(gpu, &prefilter, &prefiltered, PREFILTERED_SAMPLES)?;
+        fill(gpu, &irradiate, &irradiance, IRRADIANCE_SAMPLES)?;
         let view = |texture: &wgpu::Texture| {
             texture.create_view(&wgpu::TextureViewDescriptor {
                 dimension: Some(wgpu::TextureViewDimension::Cube),
@@ -55,7 +55,7 @@ pub(crate) fn environment(renderer: &Renderer) -> Result<wgpu::BindGroup, Render
             wgpu::BindingResource::TextureView(&view(&irradiance)),
             wgpu::BindingResource::Sampler(&sampler),
         ];
-        let layout = &renderer.pipelines.environment_layout;
+        let layout = &gpu.pipelines.environment_layout;
         Ok(bind_group(device, "environment", layout, &resources))
     })
 }
@@ -88,13 +88,8 @@ fn cube(device: &wgpu::Device, label: &str, side_px: u32, levels: u32) -> wgpu::
 }
 
 /// Draws every face of every mip level; roughness rises evenly from 0 to 1 with the level.
-fn fill(
-    renderer: &Renderer,
-    pipeline: &wgpu::RenderPipeline,
-    texture: &wgpu::Texture,
-    samples: u32,
-) -> Result<(), RenderError> {
-    let (device, queue) = (renderer.device(), renderer.queue());
+fn fill(gpu: &Gpu, pipeline: &wgpu::RenderPipeline, texture: &wgpu::Texture, samples: u32) -> Result<(), RenderError> {
+    let (device, queue) = (&gpu.device, &gpu.queue);
     let layout = pipeline.get_bind_group_layout(0);
     let levels = texture.mip_level_count();
     let mut encoder = device.create_command_encoder(&Default::default());

@@ -8,7 +8,7 @@
 
 use glam::{Vec3, Vec4};
 
-use crate::frame::uniforms::MatcapUniform;
+use crate::uniforms::MatcapUniform;
 
 /// A clay with its lighting.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]

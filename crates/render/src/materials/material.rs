@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-use crate::frame::uniforms::{MapUniform, MaterialUniform};
+use crate::texture::Wrap;
+use crate::uniforms::{MapUniform, MaterialUniform};
 
 /// A material of glTF's metallic-roughness model. Construct it with `..Material::default()`, as members may be added.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -93,18 +94,6 @@ pub enum UvSet {
     First,
     /// [`crate::SurfaceData::second_uvs`].
     Second,
-}
-
-/// A wrap mode: how a texture continues beyond its edges.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Wrap {
-    /// Repeated.
-    #[default]
-    Repeat,
-    /// Repeated, every other time mirrored.
-    Mirror,
-    /// Clamped to the edge.
-    Clamp,
 }
 
 /// Whether a material is lit.

@@ -4,6 +4,8 @@ mod bind_group_layouts;
 mod description;
 #[cfg(test)]
 mod driver_tests;
+pub(crate) mod fullscreen;
+pub(crate) mod pipeline;
 pub(crate) mod shaders;
 pub(crate) mod vertex_layouts;
 
@@ -11,15 +13,10 @@ use std::collections::HashMap;
 
 use self::bind_group_layouts::{layout, sampler_entry, storage_entry, texture_entry, uniform_entry};
 use self::description::PipelineDescription;
+pub(crate) use self::pipeline::{Alpha, ID_FORMAT, MaterialAttributes, OCCLUSION_FORMAT, Pipeline, Visibility};
 use self::shaders::Shader;
 use crate::device::guard::guarded;
 use crate::{RenderError, Samples};
-
-/// The format of the id buffer.
-pub(crate) const ID_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
-
-/// The format of the picture of the surface's height above the ground.
-pub(crate) const OCCLUSION_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg8Unorm;
 
 /// The bind group layouts, and the pipelines created so far.
 #[derive(Debug)]
@@ -33,52 +30,6 @@ pub(crate) struct Pipelines {
     pub(crate) shadow_layout: wgpu::BindGroupLayout,
     modules: HashMap<Shader, wgpu::ShaderModule>,
     made: HashMap<(Pipeline, Samples), wgpu::RenderPipeline>,
-}
-
-/// A render pipeline: one of a picture, or that of the id buffer.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(crate) enum Pipeline {
-    Matcap,
-    Painted,
-    Zebra,
-    Normals,
-    Material(Alpha, MaterialAttributes),
-    Wireframe,
-    SurfaceLines(Visibility),
-    Background,
-    Grid,
-    Occlusion,
-    Shadow,
-    OverlayTriangles(Visibility),
-    OverlayLines(Visibility),
-    Id,
-}
-
-/// How a material's alpha is used.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(crate) enum Alpha {
-    Opaque,
-    Mask,
-    Blend,
-}
-
-/// Whether texture coordinates and colours differ per vertex or are the same for all.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(crate) enum MaterialAttributes {
-    PerVertex,
-    Shared,
-}
-
-/// Lines and overlays are drawn twice: fainter where a surface hides them, and where they are visible.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(crate) enum Visibility {
-    Hidden,
-    Visible,
-}
-
-impl Visibility {
-    /// Both, in draw order.
-    pub(crate) const BOTH: [Self; 2] = [Self::Hidden, Self::Visible];
 }
 
 impl Pipelines {

@@ -7,13 +7,13 @@ use std::mem::offset_of;
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 
 use super::Shader;
-use crate::frame::uniforms::{
-    EnvironmentUniform, FrameUniform, GridUniform, MapUniform, MatcapUniform, MaterialUniform, MaterialVertex,
-    OverlayLineInstance, OverlayVertex, ShadowUniform, SurfaceLineInstance, SurfaceUniform,
-};
 use crate::pipelines::MaterialAttributes;
 use crate::pipelines::vertex_layouts::{
     OVERLAY_LINE_BUFFER, OVERLAY_TRIANGLE_BUFFER, SHAPE_BUFFERS, SURFACE_LINE_BUFFER, material_buffers,
+};
+use crate::uniforms::{
+    EnvironmentUniform, FrameUniform, GridUniform, MapUniform, MatcapUniform, MaterialUniform, MaterialVertex,
+    OverlayLineInstance, OverlayVertex, ShadowUniform, SurfaceLineInstance, SurfaceUniform,
 };
 
 #[test]

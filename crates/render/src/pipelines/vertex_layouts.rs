@@ -1,7 +1,7 @@
 //! The vertex buffers that shaders read. A test compares them with the shaders' vertex structs.
 
 use super::MaterialAttributes;
-use crate::frame::uniforms::{MaterialVertex, OverlayLineInstance, OverlayVertex, SurfaceLineInstance};
+use crate::uniforms::{MaterialVertex, OverlayLineInstance, OverlayVertex, SurfaceLineInstance};
 
 const POSITION: [wgpu::VertexAttribute; 1] = wgpu::vertex_attr_array![0 => Float32x3];
 const NORMAL: [wgpu::VertexAttribute; 1] = wgpu::vertex_attr_array![1 => Float32x3];

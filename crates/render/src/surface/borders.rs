@@ -3,7 +3,7 @@
 use super::Surface;
 use super::edges::{IrregularEdge, irregular_edges};
 use super::lines::LineSet;
-use crate::{EdgePoint, RenderError, Renderer, SurfaceLine, border};
+use crate::{EdgePoint, Gpu, RenderError, SurfaceLine, border};
 
 /// Factor of alpha for the parts of borders that are behind a surface.
 const HIDDEN_BORDERS: f32 = 0.22;
@@ -15,7 +15,7 @@ impl Surface {
     }
 
     /// Finds the borders if they are not known yet.
-    pub(crate) fn prepare_borders(&self, renderer: &Renderer) -> Result<(), RenderError> {
+    pub(crate) fn prepare_borders(&self, gpu: &Gpu) -> Result<(), RenderError> {
         if self.borders.get().is_some() {
             return Ok(());
         }
@@ -34,7 +34,7 @@ impl Surface {
                 ends.iter().all(|&end| of_shown[end as usize])
             });
         }
-        let made = (self.pages.iter()).map(|page| LineSet::new(renderer, page, border_lines(&edges), HIDDEN_BORDERS));
+        let made = (self.pages.iter()).map(|page| LineSet::new(gpu, page, border_lines(&edges), HIDDEN_BORDERS));
         let _ = self.borders.set(made.collect::<Result<Vec<_>, _>>()?);
         Ok(())
     }

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::materials::textures_exist;
 use crate::{Chunks, Material, MaterialGroup, RenderError, TextureData};
 
 /// The slices from which a [`crate::Surface`] is made. All per-vertex slices have one entry per vertex.
@@ -105,14 +106,6 @@ pub(crate) fn checked(data: &SurfaceData<'_>) -> Result<(), RenderError> {
             expected: data.triangles.len(),
             found: chunks.all().last().map_or(0, |chunk| chunk.triangles.end as usize),
         });
-    }
-    Ok(())
-}
-
-/// Rejects materials with a texture index out of range.
-pub(crate) fn textures_exist(materials: &[Material], texture_count: usize) -> Result<(), RenderError> {
-    for map in materials.iter().flat_map(|material| material.maps()).flatten() {
-        in_range("texture", map.texture, texture_count)?;
     }
     Ok(())
 }

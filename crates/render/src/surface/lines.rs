@@ -3,9 +3,9 @@
 use crate::device::bindings::bind_group;
 use crate::device::buffers::filled;
 use crate::device::guard::guarded;
-use crate::frame::uniforms::SurfaceLineInstance;
 use crate::surface::pages::Page;
-use crate::{RenderError, Renderer};
+use crate::uniforms::SurfaceLineInstance;
+use crate::{Gpu, RenderError};
 
 /// A line segment inside one triangle or along an edge.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -49,12 +49,12 @@ impl LineSet {
     /// Uploads those of `lines` whose vertices are all on the page; `None` if there are none. `hidden_share` is the
     /// factor of alpha for parts behind a surface.
     pub(crate) fn new(
-        renderer: &Renderer,
+        gpu: &Gpu,
         page: &Page,
         lines: impl Iterator<Item = SurfaceLine>,
         hidden_share: f32,
     ) -> Result<Option<Self>, RenderError> {
-        let (device, queue) = (renderer.device(), renderer.queue());
+        let (device, queue) = (&gpu.device, &gpu.queue);
         let instance = |line: SurfaceLine| {
             let [start, end] = line.ends;
             let on_page = |[a, b]: [u32; 2]| Some([page.vertex(a)?, page.vertex(b)?]);
@@ -72,7 +72,7 @@ impl LineSet {
             return Ok(None);
         }
         let positions = guarded(device, "while making bind groups", || {
-            let layout = &renderer.pipelines.positions_layout;
+            let layout = &gpu.pipelines.positions_layout;
             Ok(bind_group(
                 device,
                 "positions",

@@ -18,9 +18,9 @@ use self::data::checked;
 use self::lines::LineSet;
 use self::pages::{Attributes, Page, PageLimits, page_chunks};
 use crate::device::buffers::filled;
-use crate::frame::uniforms::{MaterialVertex, SurfaceUniform};
 use crate::pipelines::MaterialAttributes;
-use crate::{ColourSpace, Detail, RenderError, Renderer, SurfaceData};
+use crate::uniforms::{MaterialVertex, SurfaceUniform};
+use crate::{ColourSpace, Detail, Gpu, Materials, RenderError, SurfaceData};
 
 /// A triangle mesh in GPU buffers. Its topology is fixed; its vertices can move, and their colours can change.
 #[derive(Debug)]
@@ -54,8 +54,8 @@ impl Surface {
     ///
     /// # Errors
     /// Slices of different lengths, indices out of range, textures of the wrong size, or out of memory.
-    pub fn new(renderer: &Renderer, data: &SurfaceData<'_>) -> Result<Self, RenderError> {
-        Self::paged(renderer, data, PageLimits::of(renderer.device()))
+    pub fn new(gpu: &Gpu, data: &SurfaceData<'_>) -> Result<Self, RenderError> {
+        Self::paged(gpu, data, PageLimits::of(&gpu.device))
     }
 
     /// [`Surface::new`] as if the device's buffers held at most `vertices` and `triangles`, to test meshes that need
@@ -63,18 +63,13 @@ impl Surface {
     ///
     /// # Errors
     /// As [`Surface::new`].
-    pub fn spread(
-        renderer: &Renderer,
-        data: &SurfaceData<'_>,
-        vertices: usize,
-        triangles: usize,
-    ) -> Result<Self, RenderError> {
-        Self::paged(renderer, data, PageLimits { vertices, triangles })
+    pub fn spread(gpu: &Gpu, data: &SurfaceData<'_>, vertices: usize, triangles: usize) -> Result<Self, RenderError> {
+        Self::paged(gpu, data, PageLimits { vertices, triangles })
     }
 
-    fn paged(renderer: &Renderer, data: &SurfaceData<'_>, limits: PageLimits) -> Result<Self, RenderError> {
+    fn paged(gpu: &Gpu, data: &SurfaceData<'_>, limits: PageLimits) -> Result<Self, RenderError> {
         checked(data)?;
-        let (device, queue) = (renderer.device(), renderer.queue());
+        let (device, queue) = (&gpu.device, &gpu.queue);
         let count = data.positions.len();
         let chunks = match data.chunks {
             Some(chunks) => Arc::clone(chunks),
@@ -98,9 +93,8 @@ impl Surface {
             mean_edge: mean_edge(data),
             padding: 0,
         };
-        let uniforms = wgpu::BufferUsages::UNIFORM;
-        let uniform_buffer = filled(device, queue, "surface uniform", uniforms, &[uniform])?;
-        let group = renderer.uniform_group(&renderer.pipelines.surface_layout, &uniform_buffer)?;
+        let uniform_buffer = gpu.uniform("surface uniform", uniform)?;
+        let group = gpu.uniform_group(&gpu.pipelines.surface_layout, &uniform_buffer)?;
         let white = MaterialVertex {
             uvs: [0.0; 4],
             colour: [255; 4],
@@ -126,7 +120,7 @@ impl Surface {
             )?,
             uniform_buffer,
             group,
-            materials: renderer.material_groups(data.materials, data.textures)?,
+            materials: Materials::new(gpu, data.materials, data.textures)?.groups,
             shown: None,
             borders: OnceLock::new(),
             outlines: Vec::new(),
@@ -212,8 +206,8 @@ impl Surface {
     }
 
     /// Creates the edges of all pages if they do not exist yet.
-    pub(crate) fn prepare_edges(&self, renderer: &Renderer) -> Result<(), RenderError> {
-        let (device, queue) = (renderer.device(), renderer.queue());
+    pub(crate) fn prepare_edges(&self, gpu: &Gpu) -> Result<(), RenderError> {
+        let (device, queue) = (&gpu.device, &gpu.queue);
         let is_shown = |triangle| self.is_shown(triangle);
         self.pages
             .iter()

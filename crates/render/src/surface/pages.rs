@@ -8,11 +8,11 @@ use bytemuck::NoUninit;
 
 use crate::RenderError;
 use crate::device::buffers::{filled, refill};
-use crate::device::headless::is_software;
-use crate::frame::uniforms::MaterialVertex;
+use crate::device::opening::is_software;
 use crate::surface::chunks::Chunks;
 use crate::surface::edges::unique_edges;
 use crate::surface::lod::{REDUCED_FROM_TRIANGLES, reduced_triangles};
+use crate::uniforms::MaterialVertex;
 
 /// The buffers of some of a mesh's chunks.
 #[derive(Debug)]

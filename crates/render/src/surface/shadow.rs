@@ -7,15 +7,14 @@
 use glam::{Mat4, Vec3, Vec4};
 
 use crate::device::bindings::bind_group;
-use crate::device::buffers::filled;
 use crate::device::guard::guarded;
-use crate::frame::target::cleared_depth;
-use crate::frame::uniforms::{FrameUniform, ShadowUniform};
-use crate::materials::fullscreen;
+use crate::pipelines::fullscreen;
 use crate::pipelines::shaders::Shader;
 use crate::pipelines::{OCCLUSION_FORMAT, Pipeline};
 use crate::surface::draw_calls::Batching;
-use crate::{Grid, RenderError, Renderer, Samples, Surface, Target, View};
+use crate::target::cleared_depth;
+use crate::uniforms::{FrameUniform, ShadowUniform};
+use crate::{Gpu, Grid, RenderError, Samples, Surface, Target, View};
 
 /// The side of the picture, in pixels.
 const SIDE_PX: u32 = 192;
@@ -68,10 +67,15 @@ impl Surface {
     /// plane of `ground`. It does not change when the surface moves, until it is made again.
     ///
     /// # Errors
-    /// As [`Renderer::draw`].
-    pub fn update_shadow(&mut self, renderer: &mut Renderer, ground: &Grid) -> Result<(), RenderError> {
+    /// As [`crate::Renderer::draw`].
+    pub(crate) fn update_shadow(
+        &mut self,
+        gpu: &mut Gpu,
+        tools: &mut Option<ShadowTools>,
+        ground: &Grid,
+    ) -> Result<(), RenderError> {
         self.shadow = match Place::of(self, ground) {
-            Some(place) => Some(drawn(self, renderer, &place)?),
+            Some(place) => Some(drawn(self, gpu, tools, &place)?),
             None => None,
         };
         Ok(())
@@ -133,20 +137,25 @@ impl Place {
 }
 
 /// The bind group of the shadow's square, with its picture.
-fn drawn(surface: &Surface, renderer: &mut Renderer, place: &Place) -> Result<wgpu::BindGroup, RenderError> {
-    let (device, queue) = (renderer.device().clone(), renderer.queue().clone());
-    renderer.pipelines.prepare(&device, Pipeline::Occlusion, Samples::One)?;
-    let uniform = wgpu::BufferUsages::UNIFORM;
+fn drawn(
+    surface: &Surface,
+    gpu: &mut Gpu,
+    tools: &mut Option<ShadowTools>,
+    place: &Place,
+) -> Result<wgpu::BindGroup, RenderError> {
+    gpu.pipelines.prepare(&gpu.device, Pipeline::Occlusion, Samples::One)?;
+    let gpu = &*gpu;
+    let device = &gpu.device;
     let below = FrameUniform {
         clip_from_world: place.from_below.clip_from_world.to_cols_array_2d(),
         ..bytemuck::Zeroable::zeroed()
     };
-    let below = filled(&device, &queue, "shadow frame uniform", uniform, &[below])?;
-    let below = renderer.uniform_group(&renderer.pipelines.frame_layout, &below)?;
-    let square = filled(&device, &queue, "shadow uniform", uniform, &[place.uniform])?;
-    guarded(&device, "while drawing the shadow", || {
-        let tools = renderer.shadow_tools.get_or_insert_with(|| ShadowTools::new(&device));
-        let texture = |format| picture(&device, format);
+    let below = gpu.uniform("shadow frame uniform", below)?;
+    let below = gpu.uniform_group(&gpu.pipelines.frame_layout, &below)?;
+    let square = gpu.uniform("shadow uniform", place.uniform)?;
+    guarded(device, "while drawing the shadow", || {
+        let tools = tools.get_or_insert_with(|| ShadowTools::new(device));
+        let texture = |format| picture(device, format);
         let (occlusion, across, depth) = (
             texture(OCCLUSION_FORMAT),
             texture(OCCLUSION_FORMAT),
@@ -167,7 +176,7 @@ fn drawn(surface: &Surface, renderer: &mut Renderer, place: &Place) -> Result<wg
             depth_stencil_attachment: Some(cleared_depth(&depth)),
             ..Default::default()
         });
-        if let Some(pipeline) = renderer.pipelines.get(Pipeline::Occlusion, Samples::One) {
+        if let Some(pipeline) = gpu.pipelines.get(Pipeline::Occlusion, Samples::One) {
             pass.set_pipeline(pipeline);
         }
         pass.set_bind_group(0, &below, &[]);
@@ -184,17 +193,17 @@ fn drawn(surface: &Surface, renderer: &mut Renderer, place: &Place) -> Result<wg
         for (blur, [from, to]) in tools.blurs.iter().zip([[&occlusion, &across], [&across, &occlusion]]) {
             let layout = blur.get_bind_group_layout(0);
             let from = [wgpu::BindingResource::TextureView(from)];
-            let group = bind_group(&device, "shadow blur", &layout, &from);
+            let group = bind_group(device, "shadow blur", &layout, &from);
             fullscreen::draw(&mut encoder, blur, &group, to);
         }
-        queue.submit([encoder.finish()]);
+        gpu.queue.submit([encoder.finish()]);
         let resources = [
             square.as_entire_binding(),
             wgpu::BindingResource::TextureView(&occlusion),
             wgpu::BindingResource::Sampler(&tools.sampler),
         ];
-        let layout = &renderer.pipelines.shadow_layout;
-        Ok(bind_group(&device, "shadow", layout, &resources))
+        let layout = &gpu.pipelines.shadow_layout;
+        Ok(bind_group(device, "shadow", layout, &resources))
     })
 }
 

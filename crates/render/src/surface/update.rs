@@ -8,7 +8,7 @@ use super::chunks::ChunkBounds;
 use super::lines::LineSet;
 use super::pages::Page;
 use crate::device::guard::guarded;
-use crate::{Materials, RenderError, Renderer, SurfaceLine};
+use crate::{Gpu, Materials, RenderError, SurfaceLine};
 
 /// A new shape for a [`Surface`]. All of it can be computed beforehand on another thread.
 #[derive(Debug, Clone, Copy)]
@@ -26,8 +26,8 @@ impl Surface {
     ///
     /// # Errors
     /// [`RenderError::Length`] unless there is one entry per vertex; out of memory.
-    pub fn update_positions(&mut self, renderer: &Renderer, positions: &[[f32; 3]]) -> Result<(), RenderError> {
-        self.update(renderer, "positions", |page| &page.positions, positions)?;
+    pub fn update_positions(&mut self, gpu: &Gpu, positions: &[[f32; 3]]) -> Result<(), RenderError> {
+        self.update(gpu, "positions", |page| &page.positions, positions)?;
         self.bounds = self.chunks.all_bounds(positions);
         Ok(())
     }
@@ -36,23 +36,23 @@ impl Surface {
     ///
     /// # Errors
     /// As [`Surface::update_positions`].
-    pub fn update_shape(&mut self, renderer: &Renderer, shape: &ShapeData<'_>) -> Result<(), RenderError> {
+    pub fn update_shape(&mut self, gpu: &Gpu, shape: &ShapeData<'_>) -> Result<(), RenderError> {
         if shape.bounds.len() != self.chunks.count() {
             let (expected, found) = (self.chunks.count(), shape.bounds.len());
             let what = "chunk bounds";
             return Err(RenderError::Length { what, expected, found });
         }
-        self.update(renderer, "positions", |page| &page.positions, shape.positions)?;
+        self.update(gpu, "positions", |page| &page.positions, shape.positions)?;
         self.bounds.copy_from_slice(shape.bounds);
-        self.update_normals(renderer, shape.normals)
+        self.update_normals(gpu, shape.normals)
     }
 
     /// Updates the normals (unit vectors).
     ///
     /// # Errors
     /// As [`Surface::update_positions`].
-    pub fn update_normals(&self, renderer: &Renderer, normals: &[[f32; 3]]) -> Result<(), RenderError> {
-        self.update(renderer, "normals", |page| &page.normals, normals)
+    pub fn update_normals(&self, gpu: &Gpu, normals: &[[f32; 3]]) -> Result<(), RenderError> {
+        self.update(gpu, "normals", |page| &page.normals, normals)
     }
 
     /// Updates the region colours that [`crate::Style::region_share`] shows: sRGB, and in the fourth byte the share of
@@ -60,8 +60,8 @@ impl Surface {
     ///
     /// # Errors
     /// As [`Surface::update_positions`].
-    pub fn update_regions(&self, renderer: &Renderer, regions: &[[u8; 4]]) -> Result<(), RenderError> {
-        self.update(renderer, "region colours", |page| &page.regions, regions)
+    pub fn update_regions(&self, gpu: &Gpu, regions: &[[u8; 4]]) -> Result<(), RenderError> {
+        self.update(gpu, "region colours", |page| &page.regions, regions)
     }
 
     /// Updates the region colours of some ranges of vertices; `regions` has one entry for every vertex.
@@ -70,20 +70,18 @@ impl Surface {
     /// As [`Surface::update_positions`].
     pub fn update_some_regions(
         &self,
-        renderer: &Renderer,
+        gpu: &Gpu,
         regions: &[[u8; 4]],
         ranges: &[Range<usize>],
     ) -> Result<(), RenderError> {
         let Some(page) = self.whole_page().filter(|_| regions.len() == self.vertex_count) else {
-            return self.update_regions(renderer, regions);
+            return self.update_regions(gpu, regions);
         };
-        guarded(renderer.device(), "while uploading", || {
+        guarded(&gpu.device, "while uploading", || {
             for range in ranges {
                 if let Some(some) = regions.get(range.clone()) {
                     let start = size_of_val(&regions[..range.start]) as u64;
-                    renderer
-                        .queue()
-                        .write_buffer(&page.regions, start, bytemuck::cast_slice(some));
+                    gpu.queue.write_buffer(&page.regions, start, bytemuck::cast_slice(some));
                 }
             }
             Ok(())
@@ -94,8 +92,8 @@ impl Surface {
     ///
     /// # Errors
     /// [`RenderError::NoSuch`] for a vertex out of range; out of memory.
-    pub fn update_lines(&mut self, renderer: &Renderer, lines: &[SurfaceLine]) -> Result<(), RenderError> {
-        self.outlines = self.line_sets(renderer, lines)?;
+    pub fn update_lines(&mut self, gpu: &Gpu, lines: &[SurfaceLine]) -> Result<(), RenderError> {
+        self.outlines = self.line_sets(gpu, lines)?;
         Ok(())
     }
 
@@ -104,19 +102,19 @@ impl Surface {
     ///
     /// # Errors
     /// As [`Surface::update_lines`].
-    pub fn update_wires(&mut self, renderer: &Renderer, lines: &[SurfaceLine]) -> Result<(), RenderError> {
-        self.wires = self.line_sets(renderer, lines)?;
+    pub fn update_wires(&mut self, gpu: &Gpu, lines: &[SurfaceLine]) -> Result<(), RenderError> {
+        self.wires = self.line_sets(gpu, lines)?;
         Ok(())
     }
 
-    fn line_sets(&self, renderer: &Renderer, lines: &[SurfaceLine]) -> Result<Vec<Option<LineSet>>, RenderError> {
+    fn line_sets(&self, gpu: &Gpu, lines: &[SurfaceLine]) -> Result<Vec<Option<LineSet>>, RenderError> {
         let mut vertices = lines.iter().flat_map(|line| line.ends).flat_map(|end| end.vertices);
         let count = self.vertex_count;
         if let Some(vertex) = vertices.find(|&vertex| vertex as usize >= count) {
             let (what, number) = ("vertex", vertex as usize);
             return Err(RenderError::NoSuch { what, number, count });
         }
-        let sets = (self.pages.iter()).map(|page| LineSet::new(renderer, page, lines.iter().copied(), 0.0));
+        let sets = (self.pages.iter()).map(|page| LineSet::new(gpu, page, lines.iter().copied(), 0.0));
         sets.collect()
     }
 
@@ -124,14 +122,14 @@ impl Surface {
     ///
     /// # Errors
     /// [`RenderError::Length`] unless there is one flag per triangle; out of memory.
-    pub fn show(&mut self, renderer: &Renderer, shown: Option<Arc<Vec<bool>>>) -> Result<(), RenderError> {
+    pub fn show(&mut self, gpu: &Gpu, shown: Option<Arc<Vec<bool>>>) -> Result<(), RenderError> {
         if let Some(flags) = shown.as_ref().filter(|flags| flags.len() != self.triangles.len()) {
             let (what, expected, found) = ("shown triangles", self.triangles.len(), flags.len());
             return Err(RenderError::Length { what, expected, found });
         }
         let is_shown = |triangle: u32| shown.as_ref().is_none_or(|shown| shown[triangle as usize]);
         for page in &mut self.pages {
-            page.show(renderer.device(), renderer.queue(), &self.chunks, &is_shown)?;
+            page.show(&gpu.device, &gpu.queue, &self.chunks, &is_shown)?;
         }
         self.borders = OnceLock::new();
         self.shown = shown;
@@ -158,7 +156,7 @@ impl Surface {
 
     fn update<T: bytemuck::NoUninit>(
         &self,
-        renderer: &Renderer,
+        gpu: &Gpu,
         what: &'static str,
         buffer: impl Fn(&Page) -> &wgpu::Buffer,
         contents: &[T],
@@ -168,7 +166,7 @@ impl Surface {
             return Err(RenderError::Length { what, expected, found });
         }
         for page in &self.pages {
-            page.refill(renderer.device(), renderer.queue(), buffer(page), contents)?;
+            page.refill(&gpu.device, &gpu.queue, buffer(page), contents)?;
         }
         Ok(())
     }

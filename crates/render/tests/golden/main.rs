@@ -77,5 +77,5 @@ fn painted_ring(renderer: &Renderer) -> Surface {
         regions: Some(&regions),
         ..ring.data()
     };
-    Surface::new(renderer, &data).unwrap()
+    Surface::new(renderer.gpu(), &data).unwrap()
 }

@@ -41,7 +41,7 @@ fn ball(renderer: &Renderer, material: Material, textures: &[TextureData<'_>]) -
         textures,
         ..sphere.data()
     };
-    Surface::new(renderer, &data).unwrap()
+    Surface::new(renderer.gpu(), &data).unwrap()
 }
 
 fn image_of(side: u32, pixel: impl Fn(f32, f32) -> [u8; 4]) -> Vec<u8> {

@@ -55,13 +55,13 @@ fn hidden() {
     let ring = Shape::open_ring(48, 20);
     let is_shown = |triangle: &[u32; 3]| ring.positions[triangle[0] as usize][1] < 0.3;
     let shown: Vec<bool> = ring.triangles.iter().map(is_shown).collect();
-    surface.show(renderer, Some(Arc::new(shown))).unwrap();
+    surface.show(renderer.gpu(), Some(Arc::new(shown))).unwrap();
     let mut shot = Shot::default();
     shot.style.wireframe = Wireframe::On;
     shot.style.borders = Borders::On;
     shot.compare(renderer, "hidden", &surface);
     let all = Shot::default();
-    surface.show(renderer, None).unwrap();
+    surface.show(renderer.gpu(), None).unwrap();
     all.compare(renderer, "clay", &surface);
 }
 
@@ -89,7 +89,7 @@ fn outlines() {
     let lines: Vec<SurfaceLine> = lines([24, 25, 28, 255], 6.0)
         .chain(lines([232, 184, 48, 255], 3.4))
         .collect();
-    surface.update_lines(renderer, &lines).unwrap();
+    surface.update_lines(renderer.gpu(), &lines).unwrap();
     let mut shot = Shot::default();
     shot.style.outlines = Outlines::On;
     shot.compare(renderer, "outlines", &surface);
@@ -100,7 +100,7 @@ fn outlines() {
         }; 2],
         ..lines[0]
     };
-    assert!(surface.update_lines(renderer, &[missing]).is_err());
+    assert!(surface.update_lines(renderer.gpu(), &[missing]).is_err());
 }
 
 #[test]
@@ -159,7 +159,7 @@ fn shadow() {
         colour: [168, 176, 190, 110],
         axis_colours: [[84, 126, 196, 200], [190, 84, 90, 200]],
     };
-    surface.update_shadow(renderer, &ground).unwrap();
+    renderer.update_shadow(&mut surface, &ground).unwrap();
     let view_from_world = View::look_at(Vec3::new(1.6, 3.0, 5.0), Vec3::new(0.0, -0.5, 0.0), Vec3::Y);
     let view = View::perspective(0.62, 1.5, 0.01, view_from_world);
     let background = Background::Gradient {
@@ -235,7 +235,7 @@ fn irregular_edges_are_marked() {
         welded: Some(&welded),
         ..cross.data()
     };
-    let surface = Surface::new(&headless.renderer, &data).unwrap();
+    let surface = Surface::new(headless.renderer.gpu(), &data).unwrap();
     let style = Style {
         borders: Borders::On,
         ..Style::default()

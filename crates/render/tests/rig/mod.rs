@@ -134,7 +134,7 @@ impl Shape {
     }
 
     pub fn upload(&self, renderer: &Renderer) -> Surface {
-        Surface::new(renderer, &self.data()).expect("the shape is sound")
+        Surface::new(renderer.gpu(), &self.data()).expect("the shape is sound")
     }
 
     /// The first triangle that a ray hits, and the hit's distance from its edges (in barycentric coordinates).

@@ -1,8 +1,8 @@
 //! The cactus: a ribbed trunk with two arms in a pot and a flower on top, with strongly protruding parts to bend.
 
-use super::Solid;
 use super::limb::Limb;
 use super::noise::{fractal, gradient};
+use super::solid::Solid;
 use super::solid::{ellipsoid, mix, round_cone, smooth_difference, smooth_union, sphere, srgb, step};
 use super::vector::{Vec3, v};
 

@@ -3,9 +3,9 @@
 //! A unit is a metre. The creature stands on y = 0, faces +z and is a smooth union of round cones. Legs, ears and eyes
 //! are modelled at x > 0 and mirrored; skin and tail differ between the sides.
 
-use super::Solid;
 use super::limb::{Limb, smooth_knots};
 use super::noise::{fractal, gradient, scales, white};
+use super::solid::Solid;
 use super::solid::{chain, ellipsoid, mix, round_cone, smooth_difference, smooth_union, sphere, srgb, step};
 use super::vector::{Vec3, v};
 

@@ -3,8 +3,8 @@
 //! The head is about one unit high, is centred on the origin and looks to +z. Everything except hair and skin is
 //! modelled at x > 0 and mirrored.
 
-use super::Solid;
 use super::noise::{fractal, gradient};
+use super::solid::Solid;
 use super::solid::{chain, ellipsoid, mix, round_cone, smooth_difference, smooth_union, sphere, srgb, step};
 use super::vector::{Vec3, v};
 

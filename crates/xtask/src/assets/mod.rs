@@ -19,22 +19,8 @@ pub mod surface_nets;
 pub mod vector;
 
 use mesh::{Mesh, in_parallel};
+use solid::Solid;
 use vector::Vec3;
-
-/// A closed shape, given by its signed distance and its colour.
-pub trait Solid: Sync {
-    /// Approximate signed distance to the surface at `p`, negative inside, with a slope near one.
-    fn distance(&self, p: Vec3) -> f64;
-    /// A bounding box of the surface.
-    fn bounds(&self) -> (Vec3, Vec3);
-    /// Linear colour of the surface at `p`, in [0, 1].
-    fn colour(&self, p: Vec3, normal: Vec3) -> Vec3;
-    /// Simulated scanner noise along the normal of a vertex, from -1 to 1.
-    fn scanner_noise(&self, vertex: usize, p: Vec3) -> f64 {
-        let _ = p;
-        noise::white(vertex as u64, 7)
-    }
-}
 
 /// A sample that ships.
 pub struct Sample {
@@ -140,7 +126,7 @@ mod tests {
     #[test]
     fn the_committed_samples_are_what_the_generator_makes() {
         for sample in SAMPLES {
-            let path = crate::root().join("assets").join(format!("{}.glb", sample.name));
+            let path = crate::root::root().join("assets").join(format!("{}.glb", sample.name));
             let committed = std::fs::read(&path).expect("the sample is committed");
             let made = glb::write(&(sample.make)().unwrap(), sample.name);
             assert!(made == committed, "{}: run `cargo xtask assets`", path.display());

@@ -1,7 +1,7 @@
 //! Remeshing for better triangles: tangential smoothing, Delaunay edge flips, and projection back onto the surface.
 
-use super::Solid;
 use super::mesh::{BOUNDARY, Mesh, in_parallel, next, previous};
+use super::solid::Solid;
 use super::vector::{Vec3, v};
 
 /// `rounds` of smoothing and flipping; `size` is the mesh's edge length.

@@ -3,7 +3,23 @@
 //! Some distances are only bounds, where exactness is not worth its cost (ellipsoids): extraction needs only the sign
 //! and a slope near one.
 
+use super::noise;
 use super::vector::{Vec3, v};
+
+/// A closed shape, given by its signed distance and its colour.
+pub trait Solid: Sync {
+    /// Approximate signed distance to the surface at `p`, negative inside, with a slope near one.
+    fn distance(&self, p: Vec3) -> f64;
+    /// A bounding box of the surface.
+    fn bounds(&self) -> (Vec3, Vec3);
+    /// Linear colour of the surface at `p`, in [0, 1].
+    fn colour(&self, p: Vec3, normal: Vec3) -> Vec3;
+    /// Simulated scanner noise along the normal of a vertex, from -1 to 1.
+    fn scanner_noise(&self, vertex: usize, p: Vec3) -> f64 {
+        let _ = p;
+        noise::white(vertex as u64, 7)
+    }
+}
 
 /// Distance to a sphere.
 pub fn sphere(p: Vec3, centre: Vec3, radius: f64) -> f64 {

@@ -7,8 +7,8 @@
 
 use std::collections::HashMap;
 
-use super::Solid;
 use super::mesh::{Mesh, in_parallel};
+use super::solid::Solid;
 use super::vector::{Vec3, v};
 
 /// Cells per block side. Blocks that the surface can't cross are skipped after one evaluation.

@@ -6,8 +6,8 @@
 
 use std::path::{Path, PathBuf};
 
-use super::Scale;
 use super::beside::{data, peers};
+use super::scale::Scale;
 use super::table::{Row, folder, measured};
 use crate::process::output;
 
@@ -26,7 +26,7 @@ pub fn rows(scale: Scale) -> Result<Vec<Row>, String> {
     if scale == Scale::Full {
         scenes.extend(scan(&peers, &data, 1));
     }
-    let script = crate::root().join("tests/peer/arap.py").display().to_string();
+    let script = crate::root::root().join("tests/peer/arap.py").display().to_string();
     let all = std::thread::available_parallelism().map_or(1, usize::from);
     let mut rows = Vec::new();
     for off in scenes {

@@ -1,7 +1,7 @@
 //! The thin plate by its own factor and by the Laplacian's, with the example `capacitance` of `deform`.
 
-use super::Scale;
 use super::meshes::creature_off;
+use super::scale::Scale;
 use super::table::{Row, measured};
 
 /// Two rows for each size, on all threads: the own factor and the Laplacian's. Only one if the own factor is not

@@ -6,8 +6,8 @@
 
 use std::path::Path;
 
-use super::Scale;
 use super::meshes::creature_off;
+use super::scale::Scale;
 use super::table::{Row, rows_of};
 use crate::process::cargo;
 

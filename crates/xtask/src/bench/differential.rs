@@ -1,7 +1,7 @@
 //! The differential methods and the kinds of detail during a drag, with the example `differential` of `deform`.
 
-use super::Scale;
 use super::meshes::{creature_off, sizes};
+use super::scale::Scale;
 use super::table::{Row, measured};
 
 /// One row per size and method, with all threads.

@@ -1,8 +1,8 @@
 //! The editor on 400k triangles: the time of each event without a window and the memory of a hundred strokes, with the
 //! example `editor_times` of `app`; and the window's longest frames without drawing, with `window_times`.
 
-use super::Scale;
 use super::meshes::creature_glb;
+use super::scale::Scale;
 use super::table::{Row, measured};
 
 /// One row per kind of event and of work in the window; one size at every scale.

@@ -1,7 +1,7 @@
 //! Reading and saving files, with the example `files` of `io`.
 
-use super::Scale;
 use super::meshes::creature_glb;
+use super::scale::Scale;
 use super::table::{Row, measured};
 
 /// One row per size and kind of file. Reading uses all threads.

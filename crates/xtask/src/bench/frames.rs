@@ -3,8 +3,8 @@
 use std::path::Path;
 use std::process::Stdio;
 
-use super::Scale;
 use super::meshes::{creature_glb, sizes};
+use super::scale::Scale;
 use super::table::{Row, folder, release};
 use crate::process::succeed;
 

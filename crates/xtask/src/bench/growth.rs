@@ -1,10 +1,10 @@
 //! The growth of binding with the mesh, by the thin plate's own factor and by the Laplacian's, with the example
 //! `capacitance` of `deform`: a table, and with the large meshes the picture `bench/growth.svg`.
 
-use super::Scale;
 use super::chart::{Limit, Line, Panel, chart};
 use super::machine::machine;
 use super::meshes::creature_off;
+use super::scale::Scale;
 use super::table::{self, Row, measured};
 
 /// The meshes: vertices, and the number of subdivisions of each.
@@ -54,7 +54,7 @@ pub fn rows(scale: Scale) -> Result<Vec<Row>, String> {
     }
     rows.sort_by(|a, b| number(a, "free").total_cmp(&number(b, "free")));
     if scale == Scale::Full {
-        table::write(&crate::root().join("bench/growth.svg"), picture(&rows).as_bytes())?;
+        table::write(&crate::root::root().join("bench/growth.svg"), picture(&rows).as_bytes())?;
     }
     Ok(rows)
 }

@@ -1,7 +1,7 @@
 //! The bi-Laplacian, step by step, with the example `linear` of `deform`.
 
-use super::Scale;
 use super::meshes::{creature_off, sizes};
+use super::scale::Scale;
 use super::table::{Row, measured};
 
 /// One row per size, for one and for all threads.

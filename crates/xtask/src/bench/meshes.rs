@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::path::PathBuf;
 
-use super::Scale;
+use super::scale::Scale;
 use super::table::{folder, write};
 use crate::assets::{creature_of, glb};
 

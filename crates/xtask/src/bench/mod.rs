@@ -19,6 +19,7 @@ mod machine;
 mod meshes;
 mod peers;
 mod primo;
+pub mod scale;
 mod shells;
 mod space;
 mod start;
@@ -26,16 +27,8 @@ mod table;
 mod vectors;
 mod view;
 
+use scale::Scale;
 use table::Row;
-
-/// Sizes of the meshes.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Scale {
-    /// Up to 200 thousand vertices.
-    Usual,
-    /// Up to a million and more.
-    Full,
-}
 
 /// A section: one table.
 struct Section {

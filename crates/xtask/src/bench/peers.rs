@@ -4,8 +4,8 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use super::Scale;
 use super::beside;
+use super::scale::Scale;
 use super::table::{Row, folder, measured};
 use crate::process::output;
 

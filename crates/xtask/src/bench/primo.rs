@@ -1,7 +1,7 @@
 //! Coupled prisms on the survey's scenes, with the example `primo` of `deform`.
 
-use super::Scale;
 use super::beside::data;
+use super::scale::Scale;
 use super::table::{Row, measured};
 
 /// One row per scene, on all threads; none if the survey's scenes are missing.

@@ -4,9 +4,9 @@
 //! Both start from a blend of the handle's motion, Pliant's with its own weights, the peer's with harmonic ones, and
 //! end when a step gains less than 10⁻⁷ of the energy, the peer after 40 steps at the latest: compare their energies.
 
-use super::Scale;
 use super::arap::copied;
 use super::beside::data;
+use super::scale::Scale;
 use super::table::{Row, measured};
 use crate::process::output;
 
@@ -16,7 +16,7 @@ pub fn rows(_: Scale) -> Result<Vec<Row>, String> {
     if !survey.is_dir() {
         return Ok(vec![Row::default().text("says", "not here: the folder PLIANT_DATA")]);
     }
-    let script = crate::root().join("tests/peer/shells.py").display().to_string();
+    let script = crate::root::root().join("tests/peer/shells.py").display().to_string();
     let all = std::thread::available_parallelism().map_or(1, usize::from).to_string();
     let mut rows = Vec::new();
     for scene in ["bar", "cylinder", "cactus"] {

@@ -1,7 +1,7 @@
 //! The methods that bend space, with the example `space` of `deform`, against Blender's modifiers of the same kind on
 //! the same shape (`tests/peer/blender_space.py`).
 
-use super::Scale;
+use super::scale::Scale;
 use super::table::{Row, measured};
 use crate::process::output;
 
@@ -29,7 +29,10 @@ pub fn rows(scale: Scale) -> Result<Vec<Row>, String> {
         Scale::Usual => &["200000"],
         Scale::Full => &["200000", "1000000"],
     };
-    let script = crate::root().join("tests/peer/blender_space.py").display().to_string();
+    let script = crate::root::root()
+        .join("tests/peer/blender_space.py")
+        .display()
+        .to_string();
     let mut rows = Vec::new();
     for &vertices in sizes {
         for method in METHODS {

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use super::Scale;
 use super::meshes::creature_glb;
+use super::scale::Scale;
 use super::table::{Row, folder};
 use crate::display::{Display, Screen};
 use crate::process::{build_program, target_folder};
@@ -27,7 +27,7 @@ const NEAR: f64 = 0.25;
 /// One row per file.
 pub fn rows(scale: Scale) -> Result<Vec<Row>, String> {
     build_program()?;
-    let mut files = vec![(30_000, crate::root().join("assets/creature.glb"))];
+    let mut files = vec![(30_000, crate::root::root().join("assets/creature.glb"))];
     files.push((1_000_000, creature_glb(1_000_000)?));
     if scale == Scale::Full {
         files.push((5_000_000, creature_glb(5_000_000)?));

@@ -4,8 +4,8 @@
 //! The variable `PLIANT_VECTORS` does the same for any other section, for example
 //! `PLIANT_VECTORS=avx2 cargo xtask bench peers`.
 
-use super::Scale;
 use super::meshes::{creature_off, sizes};
+use super::scale::Scale;
 use super::table::{Row, release, rows_of};
 
 /// The names for `PLIANT_VECTORS`.

@@ -1,6 +1,6 @@
 //! The view: CPU and GPU time of frames, shape updates and picks, with the example `view_times` of `app`.
 
-use super::Scale;
+use super::scale::Scale;
 use super::table::{Row, measured};
 
 /// Rows for each size, including the largest, because large scans matter most.

@@ -35,7 +35,7 @@ pub fn archive(release: &Release, tree: &Path, folder: &Path) -> Result<Vec<Path
         ("LICENSE-APACHE", "LICENSE-APACHE"),
         ("LICENSE-MIT", "LICENSE-MIT"),
     ] {
-        files::copy(&crate::root().join(from), &unpacked.join(to))?;
+        files::copy(&crate::root::root().join(from), &unpacked.join(to))?;
     }
     plain_permissions(&unpacked)?;
     let packed = folder.join(format!("{name}.tar"));

@@ -9,7 +9,7 @@ pub const SIZES: [u32; 8] = [16, 24, 32, 48, 64, 128, 256, 512];
 
 /// A picture as PNG.
 fn picture(size: u32) -> Result<Vec<u8>, String> {
-    files::read(&crate::root().join(format!("packaging/icons/{size}.png")))
+    files::read(&crate::root::root().join(format!("packaging/icons/{size}.png")))
 }
 
 /// Puts the pictures and the drawing into an icon theme, in the layout of the freedesktop specification.

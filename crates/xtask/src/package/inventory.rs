@@ -68,7 +68,7 @@ pub fn bill_of_materials(release: &Release, folder: &str, name: &str) -> Result<
     let made = succeed(cyclonedx.env("SOURCE_DATE_EPOCH", release.epoch.to_string()));
     // The tool writes beside every manifest of the workspace. One is read, and all are removed.
     let bill = made.and_then(|()| files::text(&format!("{folder}/{name}.cdx.json")));
-    let crates = crate::root().join("crates");
+    let crates = crate::root::root().join("crates");
     for left in files::all_files(&crates)? {
         if left.to_string_lossy().ends_with(".cdx.json") {
             files::remove_file(&crates.join(left))?;

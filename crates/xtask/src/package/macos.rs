@@ -48,7 +48,7 @@ pub fn image(release: &Release, folder: &Path) -> Result<Vec<PathBuf>, String> {
     files::write(&inside.join("Info.plist"), about)?;
     files::write(&inside.join("Resources/pliant.icns"), icons::icns()?)?;
     for name in ["LICENSE-MIT", "LICENSE-APACHE"] {
-        files::copy(&crate::root().join(name), &content.join(name))?;
+        files::copy(&crate::root::root().join(name), &content.join(name))?;
     }
     files::copy(&papers.licences, &content.join("licences-of-dependencies.txt"))?;
     // Changing a program breaks its signature by the linker, and macOS starts no program without one.

@@ -68,7 +68,7 @@ pub fn neutral_paths() -> String {
     let flags = [
         given,
         neutral(&cargo_home(), "/cargo"),
-        neutral(&crate::root(), "/pliant"),
+        neutral(&crate::root::root(), "/pliant"),
     ];
     flags.join(" ").trim().to_owned()
 }

@@ -24,7 +24,7 @@ impl Release {
         let commit = |format: &str| {
             let mut git = Command::new("git");
             git.args(["log", "-1", &format!("--format={format}")]);
-            process::said(git.current_dir(crate::root())).map(|line| line.trim().to_owned())
+            process::said(git.current_dir(crate::root::root())).map(|line| line.trim().to_owned())
         };
         let epoch = match variable("SOURCE_DATE_EPOCH") {
             Some(epoch) => epoch,

@@ -35,11 +35,11 @@ pub fn grow(release: &Release, built: &Program, papers: &Papers, folder: &Path) 
     from_the_command_line(&tree)?;
     let documents = tree.join(DOCUMENTS);
     for name in ["README.md", "LICENSE-MIT"] {
-        files::copy(&crate::root().join(name), &documents.join(name))?;
+        files::copy(&crate::root::root().join(name), &documents.join(name))?;
     }
-    files::copy(&crate::root().join("CHANGELOG.md"), &documents.join("changelog"))?;
+    files::copy(&crate::root::root().join("CHANGELOG.md"), &documents.join("changelog"))?;
     files::copy(
-        &crate::root().join("packaging/linux/copyright"),
+        &crate::root::root().join("packaging/linux/copyright"),
         &documents.join("copyright"),
     )?;
     files::copy(&papers.licences, &documents.join("licences-of-dependencies.txt"))?;

@@ -37,7 +37,7 @@ pub fn zip(release: &Release, folder: &Path) -> Result<Vec<PathBuf>, String> {
     let unpacked = folder.join(&name);
     files::copy(&built, &unpacked.join("pliant.exe"))?;
     for name in ["LICENSE-MIT", "LICENSE-APACHE", "README.md"] {
-        files::copy(&crate::root().join(name), &unpacked.join(name))?;
+        files::copy(&crate::root::root().join(name), &unpacked.join(name))?;
     }
     files::copy(&papers.licences, &unpacked.join("licences-of-dependencies.txt"))?;
     let zip = folder.join(format!("{name}.zip"));

@@ -6,11 +6,12 @@ pub mod unpacked;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use crate::files;
 use crate::package::release::Release;
 use crate::package::{inventory, program};
 use crate::process::{said, succeed, target_folder};
+use crate::root::root;
 use crate::tool::Tool;
-use crate::{files, root};
 
 const PYTHON: Tool = Tool {
     program: "python3",

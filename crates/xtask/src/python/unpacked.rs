@@ -6,9 +6,10 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
 
+use crate::files;
 use crate::process::{cargo, output, program, succeed, target_folder};
+use crate::root::root;
 use crate::verdict::Verdict;
-use crate::{files, root};
 
 /// Builds the module in the development profile and runs the package's tests on it, except the notebook's, which
 /// measure. If no Python has the needed packages, they are named as skipped.

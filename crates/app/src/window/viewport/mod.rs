@@ -242,11 +242,11 @@ impl Viewport {
             return Ok(());
         }
         let renderer = self.gpu.read();
-        shown.surface.update_shape(&renderer, &posed.pose.data())?;
+        shown.surface.update_shape(renderer.gpu(), &posed.pose.data())?;
         shown.displacements = posed.displacements;
         shown.drawing.put_back(posed.pose);
         if let Some(painted) = posed.painted {
-            shown.surface.update_regions(&renderer, &painted.colours)?;
+            shown.surface.update_regions(renderer.gpu(), &painted.colours)?;
             shown.colours = Colours::Field(painted.field);
             shown.scale = Some(painted.scale);
         }
@@ -372,7 +372,7 @@ impl Viewport {
         let Some(mut renderer) = gpu.try_write() else {
             return Ok(false);
         };
-        if self.target.resize(&renderer, key.size_px, key.samples)? {
+        if self.target.resize(renderer.device(), key.size_px, key.samples)? {
             self.register();
         }
         let centre = self

@@ -60,7 +60,7 @@ impl Shown {
     /// Makes the shadow `wanted`.
     ///
     /// # Errors
-    /// As [`Surface::update_shadow`].
+    /// As [`Renderer::update_shadow`].
     pub fn update_shadow(
         &mut self,
         renderer: &mut Renderer,
@@ -70,7 +70,7 @@ impl Shown {
         if self.shadow != wanted {
             if wanted.is_some() {
                 let ground = self.ground(view);
-                self.surface.update_shadow(renderer, &ground)?;
+                renderer.update_shadow(&mut self.surface, &ground)?;
             }
             self.shadow = wanted;
         }
@@ -87,7 +87,7 @@ impl Shown {
         let wanted_triangles = editor.shown_triangles();
         if address(self.shown.as_ref()) != address(wanted_triangles) {
             let wanted_triangles = wanted_triangles.cloned();
-            self.surface.show(&gpu.read(), wanted_triangles.clone())?;
+            self.surface.show(gpu.read().gpu(), wanted_triangles.clone())?;
             self.shown = wanted_triangles;
         }
         let stiffness = editor.document().stiffness();
@@ -123,7 +123,7 @@ impl Shown {
             };
             let ranges = drawing::recolour(model, vertices, colour, &mut self.drawn_colours);
             let colours = &self.drawn_colours;
-            self.surface.update_some_regions(&renderer, colours, &ranges)?;
+            self.surface.update_some_regions(renderer.gpu(), colours, &ranges)?;
         } else {
             let mut colours = Vec::new();
             let values = match wanted {
@@ -139,10 +139,10 @@ impl Shown {
                 editor.region_colours(&mut colours);
             }
             self.drawn_colours = drawing::drawn_colours(model, &colours);
-            self.surface.update_regions(&renderer, &self.drawn_colours)?;
+            self.surface.update_regions(renderer.gpu(), &self.drawn_colours)?;
         }
         let wires = drawing::wires(model, &self.drawn_colours);
-        self.surface.update_wires(&renderer, &wires)?;
+        self.surface.update_wires(renderer.gpu(), &wires)?;
         self.weights = view.weights.filter(|_| matches!(wanted, Colours::Weights(_))).cloned();
         self.colours = wanted;
         Ok(())
@@ -157,7 +157,7 @@ impl Shown {
         let Some(model) = view.model else { return Ok(()) };
         if self.rims != Some(view.rims_revision) && view.look.outlines {
             let lines = drawing::outlines(editor, model);
-            self.surface.update_lines(&gpu.read(), &lines)?;
+            self.surface.update_lines(gpu.read().gpu(), &lines)?;
             self.rims = Some(view.rims_revision);
         }
         Ok(())

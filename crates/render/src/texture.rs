@@ -2,12 +2,12 @@
 
 use std::borrow::Cow;
 
+use crate::RenderError;
 use crate::device::bindings::bind_group;
 use crate::device::guard::guarded;
-use crate::device::headless::is_software;
-use crate::materials::fullscreen;
+use crate::device::opening::is_software;
+use crate::pipelines::fullscreen;
 use crate::pipelines::shaders::Shader;
-use crate::{RenderError, Wrap};
 
 /// An image with four bytes per pixel (straight alpha), rows from the top.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,6 +30,18 @@ pub enum Encoding {
     Srgb,
     /// Linear data: normals, roughness, occlusion.
     Linear,
+}
+
+/// A wrap mode: how a texture continues beyond its edges.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Wrap {
+    /// Repeated.
+    #[default]
+    Repeat,
+    /// Repeated, every other time mirrored.
+    Mirror,
+    /// Clamped to the edge.
+    Clamp,
 }
 
 /// Uploads textures and generates their mipmaps.

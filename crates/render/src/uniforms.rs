@@ -2,8 +2,6 @@
 
 use bytemuck::{Pod, Zeroable};
 
-use crate::{Background, Faces, Frame};
-
 /// `Frame` in `shaders/lib/frame.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
@@ -21,35 +19,6 @@ pub(crate) struct FrameUniform {
     pub(crate) pixels_per_point: f32,
     pub(crate) padding: f32,
     pub(crate) padding_to_16: [f32; 2],
-}
-
-impl FrameUniform {
-    /// The uniform of a frame of `size_px`; `background_span` is a tile's part of the background.
-    pub(crate) fn of(frame: &Frame<'_>, size_px: [u32; 2], background_span: [f32; 2]) -> Self {
-        let view = frame.view;
-        let colour = |[r, g, b]: [u8; 3]| [r, g, b, 255].map(|byte| f32::from(byte) / 255.0);
-        let (top, bottom) = match frame.style.background {
-            Background::Gradient { top, bottom } => (colour(top), colour(bottom)),
-            Background::Transparent => ([0.0; 4], [0.0; 4]),
-        };
-        Self {
-            clip_from_world: view.clip_from_world.to_cols_array_2d(),
-            view_from_world: view.view_from_world.to_cols_array_2d(),
-            background_top: top,
-            background_bottom: bottom,
-            size_px: size_px.map(|side| side as f32),
-            background_span,
-            region_share: frame.style.region_share.clamp(0.0, 1.0),
-            scale_px: view.clip_from_world.row(1).truncate().length() * 0.5 * size_px[1] as f32,
-            perspective: if view.is_perspective() { 1.0 } else { 0.0 },
-            flatness: match frame.style.faces {
-                Faces::Smooth => 0.0,
-                Faces::Flat => 1.0,
-            },
-            pixels_per_point: frame.style.pixels_per_point,
-            ..Zeroable::zeroed()
-        }
-    }
 }
 
 /// `Surface` in `shaders/lib/surface_vertex.wgsl`.

@@ -1,29 +1,27 @@
 //! A frame as GPU commands: draw calls, their order and their pipelines.
 
+use super::prepared::{PreparedFrame, matcap_of, shading_pipeline};
+use super::resources::Resources;
 use crate::frame::overlay::OverlayBatch;
-use crate::frame::target::{Attachments, cleared_depth};
-use crate::pipelines::{Alpha, Pipeline, Visibility};
+use crate::pipelines::{Alpha, Pipeline, Pipelines, Visibility};
 use crate::surface::draw_calls::DrawCall;
 use crate::surface::lines::LineSet;
-use crate::{
-    Background, Borders, Frame, Matcap, Outlines, Renderer, Samples, Shading, Shadows, Style, Surface, Wireframe,
-};
+use crate::target::{Attachments, cleared_depth};
+use crate::{Background, Borders, Outlines, Samples, Shading, Shadows, Style, Surface, Wireframe};
 
-/// A frame whose buffers and pipelines are prepared on the device.
-pub(crate) struct PreparedFrame<'a> {
-    pub(crate) frame: &'a Frame<'a>,
-    pub(crate) overlays: OverlayBatch,
-    /// The draw calls of every surface.
-    pub(crate) draw_calls: Vec<(&'a Surface, Vec<DrawCall>)>,
+/// Records prepared frames.
+pub(super) struct Recorder<'a> {
+    pub(super) pipelines: &'a Pipelines,
+    pub(super) resources: &'a Resources,
 }
 
-impl Renderer {
+impl Recorder<'_> {
     /// Records opaque triangles, the background, the ground, shadows, transparent triangles, lines on surfaces, and
     /// overlays, in that order.
     pub(crate) fn record(&self, pass: &mut wgpu::RenderPass<'_>, prepared: &PreparedFrame<'_>, samples: Samples) {
         let style = prepared.frame.style;
         let set = |pass: &mut wgpu::RenderPass<'_>, pipeline| self.set_pipeline(pass, pipeline, samples);
-        pass.set_bind_group(0, &self.frame_group, &[]);
+        pass.set_bind_group(0, &self.resources.frame_group, &[]);
         let is_material = style.shading == Shading::Material;
         let draw_surfaces = |pass: &mut wgpu::RenderPass<'_>, is_wanted: &dyn Fn(&DrawCall) -> bool| {
             for (surface, draw_calls) in &prepared.draw_calls {
@@ -44,11 +42,11 @@ impl Renderer {
             }
         };
         if is_material {
-            pass.set_bind_group(3, self.environment.as_ref(), &[]);
+            pass.set_bind_group(3, self.resources.environment.as_ref(), &[]);
             draw_surfaces(pass, &|call| call.alpha != Alpha::Blend);
         } else {
             set(pass, shading_pipeline(style.shading));
-            pass.set_bind_group(2, self.matcaps.get(&matcap_of(style.shading)), &[]);
+            pass.set_bind_group(2, self.resources.matcaps.get(&matcap_of(style.shading)), &[]);
             draw_surfaces(pass, &|_| true);
         }
         if matches!(style.background, Background::Gradient { .. }) {
@@ -57,7 +55,7 @@ impl Renderer {
         }
         if prepared.frame.grid.is_some() {
             set(pass, Pipeline::Grid);
-            pass.set_bind_group(1, &self.grid_group, &[]);
+            pass.set_bind_group(1, &self.resources.grid_group, &[]);
             pass.draw(0..4, 0..1);
         }
         if style.shadows == Shadows::On {
@@ -113,14 +111,14 @@ impl Renderer {
 
     fn record_overlays(&self, pass: &mut wgpu::RenderPass<'_>, overlays: &OverlayBatch, samples: Samples) {
         for layer in &overlays.layers {
-            if let (Some(buffer), false) = (self.overlay_triangles.buffer(), layer.vertices.is_empty()) {
+            if let (Some(buffer), false) = (self.resources.overlay_triangles.buffer(), layer.vertices.is_empty()) {
                 pass.set_vertex_buffer(0, buffer.slice(..));
                 for visibility in Visibility::BOTH {
                     self.set_pipeline(pass, Pipeline::OverlayTriangles(visibility), samples);
                     pass.draw(layer.vertices.clone(), 0..1);
                 }
             }
-            if let (Some(buffer), false) = (self.overlay_lines.buffer(), layer.lines.is_empty()) {
+            if let (Some(buffer), false) = (self.resources.overlay_lines.buffer(), layer.lines.is_empty()) {
                 pass.set_vertex_buffer(0, buffer.slice(..));
                 for visibility in Visibility::BOTH {
                     self.set_pipeline(pass, Pipeline::OverlayLines(visibility), samples);
@@ -135,69 +133,6 @@ impl Renderer {
             Some(pipeline) => pass.set_pipeline(pipeline),
             None => debug_assert!(false, "{pipeline:?} was not prepared"),
         }
-    }
-}
-
-impl PreparedFrame<'_> {
-    /// The pipelines that recording the frame needs.
-    pub(crate) fn pipelines(&self) -> Vec<Pipeline> {
-        let style = self.frame.style;
-        let mut pipelines = Vec::new();
-        if style.shading == Shading::Material {
-            for (surface, draw_calls) in &self.draw_calls {
-                pipelines.extend(
-                    draw_calls
-                        .iter()
-                        .map(|call| Pipeline::Material(call.alpha, surface.material_attributes())),
-                );
-            }
-            pipelines.dedup();
-        } else {
-            pipelines.push(shading_pipeline(style.shading));
-        }
-        if matches!(style.background, Background::Gradient { .. }) {
-            pipelines.push(Pipeline::Background);
-        }
-        if self.frame.grid.is_some() {
-            pipelines.push(Pipeline::Grid);
-        }
-        if style.shadows == Shadows::On {
-            pipelines.push(Pipeline::Shadow);
-        }
-        if style.wireframe == Wireframe::On {
-            pipelines.push(Pipeline::Wireframe);
-        }
-        for visibility in Visibility::BOTH {
-            let has_wires = |(surface, _): &(&Surface, Vec<DrawCall>)| surface.wires().iter().any(Option::is_some);
-            if style.borders == Borders::On || style.outlines == Outlines::On || self.draw_calls.iter().any(has_wires) {
-                pipelines.push(Pipeline::SurfaceLines(visibility));
-            }
-            if !self.overlays.vertices.is_empty() {
-                pipelines.push(Pipeline::OverlayTriangles(visibility));
-            }
-            if !self.overlays.lines.is_empty() {
-                pipelines.push(Pipeline::OverlayLines(visibility));
-            }
-        }
-        pipelines
-    }
-}
-
-/// The pipeline of a shading other than the file's materials.
-fn shading_pipeline(shading: Shading) -> Pipeline {
-    match shading {
-        Shading::Matcap(_) | Shading::Material => Pipeline::Matcap,
-        Shading::Painted => Pipeline::Painted,
-        Shading::Zebra => Pipeline::Zebra,
-        Shading::Normals => Pipeline::Normals,
-    }
-}
-
-/// The matcap that lights a shading.
-pub(crate) fn matcap_of(shading: Shading) -> Matcap {
-    match shading {
-        Shading::Matcap(matcap) => matcap,
-        _ => Matcap::Plaster,
     }
 }
 

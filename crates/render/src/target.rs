@@ -1,7 +1,7 @@
 //! The offscreen texture that a frame is drawn into, with its depth and multisample attachments.
 
+use crate::RenderError;
 use crate::device::guard::guarded;
-use crate::{RenderError, Renderer};
 
 /// Samples per pixel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -61,7 +61,7 @@ impl Target {
     /// # Errors
     /// [`RenderError::PictureTooLarge`] beyond the device's limit and [`RenderError::OutOfMemory`]; the target is
     /// then empty.
-    pub fn resize(&mut self, renderer: &Renderer, size_px: [u32; 2], samples: Samples) -> Result<bool, RenderError> {
+    pub fn resize(&mut self, device: &wgpu::Device, size_px: [u32; 2], samples: Samples) -> Result<bool, RenderError> {
         if size_px.contains(&0) {
             return Ok(self.attachments.take().is_some());
         }
@@ -73,13 +73,13 @@ impl Target {
             return Ok(false);
         }
         self.attachments = None;
-        let limit = renderer.device().limits().max_texture_dimension_2d;
+        let limit = device.limits().max_texture_dimension_2d;
         if size_px.iter().any(|&side| side > limit) {
             let [width, height] = size_px;
             return Err(RenderError::PictureTooLarge { width, height });
         }
-        self.attachments = Some(guarded(renderer.device(), "while making the view's texture", || {
-            Ok(Attachments::new(renderer.device(), size_px, samples))
+        self.attachments = Some(guarded(device, "while making the view's texture", || {
+            Ok(Attachments::new(device, size_px, samples))
         })?);
         Ok(true)
     }
