@@ -48,7 +48,7 @@ fn no_file_of_the_program_but_its_folder_its_module_and_the_list_names_it() {
     let ends = [
         "deform/src/identity/mod.rs",
         "deform/src/lib.rs",
-        "deform/src/method/mod.rs",
+        "deform/src/registry.rs",
     ];
     assert_eq!(found.len(), ends.len(), "{found:?}");
     for (path, end) in found.iter().zip(ends) {

@@ -6,18 +6,23 @@ use glam::{DAffine3, DVec3, Mat3};
 use pliant_mesh::{Cancel, Progress};
 use rayon::prelude::*;
 
+use crate::attachment::{check_weights, finite};
 use crate::budget::bytes_of;
+use crate::handles::finite::Finite;
 use crate::handles::offsets::Offsets;
 use crate::handles::residual::HandleResidual;
 use crate::handles::turns::TurnLimit;
 use crate::handles::{FRAME_CHUNK, Handle, Motion, clear};
-use crate::method::attachment::{check_weights, finite};
-use crate::method::{BindInput, BoundMethod, Finite, HandleFit, Solve};
+use crate::method::{BindInput, BoundMethod};
+use crate::needs::{HandleFit, Solve};
 use crate::region::follow::{Followers, followers};
 use crate::region::partition::Partition;
 use crate::rigid::{RigidParts, Softened};
-use crate::sparse::refactorisation::{Refactorisation, RenewableFactor};
-use crate::{Attachment, AttachmentRefused, BindError, Budget, HandleBases, Ordering, Problem, SolveError, Warning};
+use crate::sparse::refactorisation::Refactorisation;
+use crate::{
+    Attachment, AttachmentRefused, BindError, Budget, HandleBases, Ordering, Problem, ReusableFactor, SolveError,
+    Warning,
+};
 
 /// A bound problem: everything that does not depend on the handles' transforms is solved.
 #[derive(Debug)]
@@ -53,21 +58,6 @@ pub struct Bound {
     binding_warnings: usize,
     /// The number of warnings before those about the last step.
     target_warnings: usize,
-}
-
-/// The factor of a bound linear method. [`Problem::rebind`] reuses the parts of it that are unchanged. Cheap to clone.
-#[derive(Clone, Debug)]
-pub struct ReusableFactor(pub(crate) Arc<RenewableFactor>);
-
-impl ReusableFactor {
-    pub(crate) fn factored(&self) -> &RenewableFactor {
-        &self.0
-    }
-
-    /// The share of the factor's numbers that were reused from `other`, 0 to 1.
-    pub fn share_of(&self, other: &Self) -> f64 {
-        self.0.share_of(&other.0)
-    }
 }
 
 /// A handle's target, from rest.

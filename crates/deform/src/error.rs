@@ -2,7 +2,7 @@
 
 use pliant_mesh::{Cancelled, SurfaceVertex, Topology};
 
-use crate::{AttachmentRefused, Budget, Limit, alternatives};
+use crate::{AttachmentRefused, Budget, Limit, Remedy};
 
 /// A problem could not be bound. Vertices are the surface's, until they are [`BindError::renumbered`].
 #[derive(Clone, PartialEq, Debug, thiserror::Error)]
@@ -84,7 +84,7 @@ pub enum BindError {
     /// The surface has only points, and the method bends surfaces.
     #[error(
         "there is no triangle, and {method} bends surfaces: take {}, which bend points and lines",
-        alternatives::of_space()
+        Remedy::OfSpace
     )]
     NoTriangles {
         /// The method's name.
@@ -119,7 +119,7 @@ pub enum BindError {
     /// The system is not positive definite, even with a little regularisation.
     #[error(
         "component {component} cannot be solved for at vertex {vertex}: fix vertices around it, repair the triangles there, or take {}",
-        alternatives::of_space()
+        Remedy::OfSpace
     )]
     NotPositiveDefinite {
         /// The component, as numbered in the edit format (`docs/edit-format.md`).
@@ -130,7 +130,7 @@ pub enum BindError {
     /// The factor does not reproduce a constant.
     #[error(
         "component {component} is solved only to {error:.1e} near vertex {vertex}: fix vertices around it, repair the triangles there, or take {}",
-        alternatives::of_space()
+        Remedy::OfSpace
     )]
     Inaccurate {
         /// The component, as numbered in the edit format (`docs/edit-format.md`).
@@ -153,7 +153,7 @@ pub enum BindError {
         "vertex {vertex} lies {edges} edges from all that holds it, too far to be solved for: fix vertices on the way, make \
          the mesh coarser, {}or take {}",
         .order.map_or(String::new(), |order| format!("lower the method's `order` from {order}, ")),
-        alternatives::of_space()
+        Remedy::OfSpace
     )]
     Slender {
         /// The vertex that is farthest.
@@ -176,7 +176,7 @@ pub enum BindError {
     /// The handles' tables together would exceed the [`crate::Budget`].
     #[error(
         "{handle_count} handles over {free_count} free vertices take more memory than allowed: join handles, make the region smaller, or take {}",
-        alternatives::of_space_for_many_handles()
+        Remedy::OfSpaceForManyHandles
     )]
     Handles {
         /// The number of handles.
@@ -187,7 +187,7 @@ pub enum BindError {
     /// The factor does not fit.
     #[error(
         "the factor of {free_count} free vertices does not fit into memory: make the region smaller, or take {}",
-        alternatives::of_space()
+        Remedy::OfSpace
     )]
     OutOfMemory {
         /// The number of solved vertices.
@@ -215,18 +215,18 @@ fn over_budget(free_count: usize, limit: Limit, crowded: Option<&Crowded>) -> St
     };
     let remedy = match (crowded, limit) {
         (Some(Crowded { vertex, neighbours }), _) => {
-            let space = alternatives::of_space();
+            let space = Remedy::OfSpace;
             format!(
                 "split vertex {vertex}, which has {neighbours} neighbours, make the region smaller, or take {space}"
             )
         }
         (None, Limit::Bytes(_)) => format!(
             "make the region smaller or the mesh coarser, or take {}",
-            alternatives::of_space()
+            Remedy::OfSpace
         ),
         (None, Limit::Operations(_)) => format!(
             "make the region smaller or the mesh coarser, move apart vertices that coincide by accident, or take {}",
-            alternatives::of_space()
+            Remedy::OfSpace
         ),
     };
     format!("solving for {free_count} free vertices takes more than the {allowed} allowed: {remedy}")
@@ -328,7 +328,7 @@ pub enum SolveError {
     /// A handle's vertices have places, and the method takes no places.
     #[error(
         "{method} moves all of a handle by one map and takes no positions for its vertices: give a transform, or take {}",
-        alternatives::taking_places()
+        Remedy::TakingPlaces
     )]
     NoPlaces {
         /// The method.
@@ -374,7 +374,7 @@ pub enum SolveError {
     /// The solution did not settle.
     #[error(
         "the surface was solved only to {error:.1e} of its motion: fix more vertices, repair its triangles, or take {}",
-        alternatives::of_space()
+        Remedy::OfSpace
     )]
     Inaccurate {
         /// An estimate of the error, relative to the largest displacement.

@@ -60,8 +60,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-pub mod alternatives;
 mod arap;
+mod attachment;
+mod attachment_refused;
 mod bilaplacian;
 mod bound;
 mod budget;
@@ -72,18 +73,24 @@ mod frames;
 mod handles;
 #[cfg(feature = "identity-method")]
 mod identity;
+mod iteration;
 mod laplacian;
 mod lattice;
 mod method;
 mod mls;
+mod needs;
 mod numerical;
 mod operators;
+mod option;
 mod poisson;
 mod primo;
 mod problem;
 mod rbf;
 mod region;
+mod registry;
+mod remedy;
 mod rigid;
+mod role;
 mod shells;
 mod size;
 mod space;
@@ -96,8 +103,13 @@ mod warning;
 mod wrinkles;
 
 pub use arap::{Arap, ArapEnergy};
-pub use bilaplacian::{Bilaplacian, BilaplacianOrder, Detail, Discretisation, TriangulationKind};
-pub use bound::{Bound, ReusableFactor, Step, Target};
+pub use attachment::{
+    Attachment, AttachmentDeclaration, AttachmentKind, ControlLattice, ControlMesh, ExampleShape, Examples,
+    LARGEST_WEIGHT,
+};
+pub use attachment_refused::AttachmentRefused;
+pub use bilaplacian::{Bilaplacian, BilaplacianOrder, Detail};
+pub use bound::{Bound, Step, Target};
 pub use budget::{Budget, Limit};
 pub use cage::{Cage, CageCoordinates};
 pub use embedded::Embedded;
@@ -106,22 +118,25 @@ pub use frames::Frames;
 pub use handles::bases::HandleBases;
 pub use laplacian::{LaplacianEditing, LocalScale, Transforms};
 pub use lattice::{Lattice, LatticeBasis, LatticeNorm};
-pub use method::{
-    Attachment, AttachmentDeclaration, AttachmentKind, AttachmentRefused, ConstraintKind, ControlLattice, ControlMesh,
-    ExampleShape, Examples, HandleFit, LARGEST_WEIGHT, METHODS, Method, MethodDeclaration, Needs, OptionDeclaration,
-    OptionKind, OptionRefused, OptionValue, Solve,
-};
+pub use method::{Method, MethodDeclaration};
 pub use mls::{Mls, MlsTransforms};
+pub use needs::{ConstraintKind, HandleFit, Needs, Solve};
 pub use numerical::rigid_fit::RigidMotion;
 pub use operators::Laplacian;
+pub use operators::discretisation::{Discretisation, TriangulationKind};
+pub use option::{OptionDeclaration, OptionKind, OptionRefused, OptionValue};
 pub use poisson::{Poisson, Propagation};
 pub use primo::Primo;
-pub use problem::{Loose, Problem, Role};
+pub use problem::Problem;
 pub use rbf::Rbf;
 pub use region::constraints::{CONTINUITY_RANGE, Constraints};
+pub use registry::METHODS;
+pub use remedy::Remedy;
+pub use role::{Loose, Role};
 pub use shells::Shells;
 pub use space_primo::SpacePrimo;
 pub use sparse::Ordering;
+pub use sparse::refactorisation::ReusableFactor;
 pub use transfer::{DeformationTransfer, PosedShape};
 pub use warning::Warning;
 pub use wrinkles::Wrinkles;

@@ -8,7 +8,7 @@ use glam::DVec3;
 use pliant_mesh::{Cancel, Progress, SurfaceVertex};
 
 use crate::handles::{Handle, Motion};
-use crate::method::ConstraintKind;
+use crate::needs::ConstraintKind;
 use crate::numerical::rigid_fit::RigidMotion;
 use crate::sparse::refactorisation::Refactorisation;
 use crate::{BindError, Bound, Budget, Ordering, Problem, Role, SolveError, Step, Warning};

@@ -33,7 +33,7 @@ use super::bend::Bend;
 use super::cells::Cells;
 use super::domain::Domain;
 use crate::numerical::eigen::eigenvectors;
-use crate::operators::CHUNK;
+use crate::numerical::rows::CHUNK;
 
 /// ν. Without it a bent cylinder flattens, because affine maps hide its curvature; with 0.1 it flattens a little. With
 /// 10 or 100 the shape is that of 1, but turning bumpy cells costs energy again: a scan of 43k vertices takes 26 and 42

@@ -18,7 +18,7 @@ use super::{ArapSolver, State};
 use crate::handles::blend::Origin;
 use crate::handles::offsets::Offsets;
 use crate::handles::{Handle, Motion};
-use crate::operators::CHUNK;
+use crate::numerical::rows::CHUNK;
 use crate::region::clustered::{Share, Shares, on_clusters, shares, transposed};
 use crate::{Arap, Method, Ordering, Problem};
 

@@ -5,12 +5,12 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::{Arap, ArapSolver};
+use crate::handles::finite::Finite;
 use crate::handles::offsets::Offsets;
 use crate::handles::turns::Followed;
 use crate::handles::{Motion, clear};
-use crate::method::{
-    BindInput, BoundMethod, ConstraintKind, DeformMethod, Finite, MethodDeclaration, Needs, Solve, Stepped,
-};
+use crate::method::{BindInput, BoundMethod, DeformMethod, MethodDeclaration, Stepped};
+use crate::needs::{ConstraintKind, Needs, Solve};
 use crate::operators::repairs;
 use crate::{BindError, SolveError};
 

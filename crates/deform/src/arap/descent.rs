@@ -6,8 +6,8 @@ use super::history::Field;
 use super::shape::{Guesses, Shape};
 use super::{ArapSolver, State};
 use crate::numerical::line_search::Trial;
+use crate::numerical::rows::CHUNK;
 use crate::numerical::sums::CHUNKS_A_TASK;
-use crate::operators::CHUNK;
 
 /// Lengths that a line search tries.
 const TRIALS: u32 = 10;

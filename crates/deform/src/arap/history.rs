@@ -15,8 +15,8 @@ use pliant_mesh::vectors;
 use pulp::{Simd, WithSimd};
 use rayon::prelude::*;
 
+use crate::numerical::rows::CHUNK;
 use crate::numerical::sums::CHUNKS_A_TASK;
-use crate::operators::CHUNK;
 
 /// The number of remembered steps. On the bar, cylinder and cactus of [BS08] and a 43k scan, 5, 8, 14 and 24 took the
 /// same iterations within 4%, and 3 a fifth to two fifths more.

@@ -13,7 +13,7 @@ use super::shape::{Guesses, IDENTITY};
 use super::{ArapSolver, State};
 use crate::handles::Motion;
 use crate::handles::blend::{Origin, Screws};
-use crate::operators::CHUNK;
+use crate::numerical::rows::CHUNK;
 
 /// Coarse steps for new targets: along a drag of 60 frames more than 4 did not get closer to the minimum, and 2 fell
 /// behind.

@@ -9,7 +9,7 @@ use super::domain::Domain;
 use super::spokes::{floored, largest_weights};
 use super::springs::Spring;
 use crate::budget::reserved;
-use crate::operators::CHUNK;
+use crate::numerical::rows::CHUNK;
 use crate::sparse::factor_error::FactorError;
 use crate::sparse::matrix::ScaledMatrix;
 use crate::sparse::ordering::hubs::hub_degree;

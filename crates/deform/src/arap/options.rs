@@ -1,7 +1,7 @@
 //! The options of ARAP.
 
-use crate::method::iteration;
-use crate::method::option::{Choice, Number, named_choices, options};
+use crate::iteration;
+use crate::option::{Choice, Number, named_choices, options};
 
 options! {
     /// Options of the as-rigid-as-possible method.

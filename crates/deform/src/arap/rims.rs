@@ -13,8 +13,8 @@ use rayon::prelude::*;
 
 use super::cells::{Cells, Entry, Solved, add_square};
 use super::domain::{ABSENT, Domain};
+use crate::numerical::rows::{CHUNK, place_in};
 use crate::operators::face_terms::Metric;
-use crate::operators::{CHUNK, place_in};
 
 struct Face {
     corners: [u32; 3],

@@ -12,7 +12,7 @@ use super::fit_pass::{FitPass, Out, Turning};
 use super::gradient_pass::{GradientPass, Laplacians, Turn, turn_of};
 use super::history::Field;
 pub(crate) use super::rotation::{IDENTITY, Rotation, narrow, wide};
-use crate::operators::CHUNK;
+use crate::numerical::rows::CHUNK;
 
 /// A shape. Rotations and energy are valid after a measurement of the displacements, the gradient after it was
 /// computed.

@@ -9,7 +9,7 @@ use super::shape::{Guesses, Shape, narrow, wide};
 use super::{ArapSolver, Prescribed, State};
 use crate::handles::Motion;
 use crate::handles::blend::{Origin, Screw, Screws, carried};
-use crate::operators::CHUNK;
+use crate::numerical::rows::CHUNK;
 
 /// The blend from the rest shape is skipped for at most this many targets: it costs as much as a step and rarely wins
 /// along a drag, but a drag may turn back.

@@ -12,7 +12,7 @@ use crate::Laplacian;
 use crate::bilaplacian::hubs::Hubs;
 use crate::bilaplacian::operator::BilaplacianOperator;
 use crate::budget::{Budget, Limit, filled};
-use crate::operators::CHUNK;
+use crate::numerical::rows::CHUNK;
 use crate::sparse::factor_error::FactorError;
 use crate::sparse::matrix::{CONSTRAINED, ScaledMatrix};
 

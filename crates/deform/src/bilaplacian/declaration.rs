@@ -7,13 +7,13 @@ use glam::DVec3;
 use crate::bilaplacian::detail::Multiresolution;
 use crate::bilaplacian::solver::BilaplacianSolver;
 use crate::handles::Motion;
+use crate::handles::finite::Finite;
 use crate::handles::offsets::Offsets;
 use crate::handles::turns::Followed;
-use crate::method::{
-    BindInput, BoundMethod, ConstraintKind, DeformMethod, Finite, MethodDeclaration, Needs, OptionRefused, Solve,
-    Stepped,
-};
+use crate::method::{BindInput, BoundMethod, DeformMethod, MethodDeclaration, Stepped};
+use crate::needs::{ConstraintKind, Needs, Solve};
 use crate::operators::triangulation::Triangulation;
+use crate::option::OptionRefused;
 use crate::{Bilaplacian, BindError, Detail, HandleBases, Problem, ReusableFactor, SolveError};
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {

@@ -18,7 +18,7 @@ use crate::bilaplacian::operator::BilaplacianOperator;
 use crate::bilaplacian::solution::Solution;
 use crate::bilaplacian::system_error::SystemError;
 use crate::budget::{Budget, Limit, bytes_of};
-use crate::operators::CHUNK;
+use crate::numerical::rows::CHUNK;
 use crate::sparse::Elimination;
 use crate::sparse::low_rank::LowRank;
 use crate::sparse::matrix::CONSTRAINED;

@@ -27,4 +27,4 @@ pub(crate) mod system_error;
 
 pub(crate) use declaration::DECLARATION;
 pub(crate) use options::STRETCHING;
-pub use options::{Bilaplacian, BilaplacianOrder, Detail, Discretisation, TriangulationKind};
+pub use options::{Bilaplacian, BilaplacianOrder, Detail};

@@ -15,7 +15,7 @@ use rayon::prelude::*;
 
 use crate::bilaplacian::natural::NaturalTerm;
 use crate::bilaplacian::springs::Springs;
-use crate::operators::CHUNK;
+use crate::numerical::rows::CHUNK;
 use crate::sparse::ordering::hubs::hub_degree;
 use crate::{Bilaplacian, BilaplacianOrder, Laplacian};
 

@@ -20,9 +20,10 @@ use crate::bilaplacian::operator::BilaplacianOperator;
 use crate::bilaplacian::setup::Prescribed;
 use crate::handles::{Handle, Motion};
 use crate::numerical::dense::Lu;
+use crate::numerical::graph::Graph;
 use crate::numerical::rigid_fit::RigidMotion;
 use crate::operators::hessian::RingKind;
-use crate::operators::triangulation::{Graph, Triangulation};
+use crate::operators::triangulation::Triangulation;
 use crate::{Problem, Role};
 use pliant_mesh::SurfaceVertex;
 

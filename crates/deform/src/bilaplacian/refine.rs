@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 use crate::bilaplacian::factored::BilaplacianSystem;
 use crate::bilaplacian::system_error::SystemError;
-use crate::operators::CHUNK;
+use crate::numerical::rows::CHUNK;
 use crate::sparse::matrix::CONSTRAINED;
 
 /// The most corrections of a solve, the first one included.

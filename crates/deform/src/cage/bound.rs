@@ -7,7 +7,8 @@ use super::conformal::Conformal;
 use super::green_steps::Progressed;
 use crate::SolveError;
 use crate::handles::Motion;
-use crate::method::{BoundMethod, Finite, Stepped};
+use crate::handles::finite::Finite;
+use crate::method::{BoundMethod, Stepped};
 use crate::space::controls::Controls;
 use crate::space::field::LinearField;
 

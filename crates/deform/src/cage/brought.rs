@@ -7,8 +7,9 @@ use rayon::prelude::*;
 
 use super::crossings::met;
 use super::mesh::CageMesh;
-use crate::method::attachment::finite;
-use crate::method::{Attachment, AttachmentRefused, ControlMesh};
+use crate::attachment::finite;
+use crate::attachment::{Attachment, ControlMesh};
+use crate::attachment_refused::AttachmentRefused;
 
 /// The fewest and the most vertices: the equations that the handles drive a cage by are dense.
 const VERTICES: [usize; 2] = [4, 3000];

@@ -8,7 +8,8 @@ use super::brought::outward_faces;
 use super::linear::Unit;
 use super::mesh::CageMesh;
 use super::offset::{offset_cage, voxel_size};
-use crate::method::{Attachment, BindInput, ControlMesh};
+use crate::attachment::{Attachment, ControlMesh};
+use crate::method::BindInput;
 use crate::space::fit_samples::RegionBox;
 use crate::space::shaping::shaping;
 

@@ -18,12 +18,12 @@ use super::rows::{harmonic_rows, mean_value_rows};
 use super::stored_field::stored_bytes;
 use super::{Cage, CageCoordinates, brought};
 use crate::BindError;
+use crate::attachment::{Attachment, AttachmentDeclaration, AttachmentKind};
+use crate::attachment_refused::AttachmentRefused;
 use crate::budget::{Limit, bytes_of};
 use crate::handles::turns::Followed;
-use crate::method::{
-    Attachment, AttachmentDeclaration, AttachmentKind, AttachmentRefused, BindInput, BoundMethod, ConstraintKind,
-    DeformMethod, HandleFit, MethodDeclaration, Needs, Solve,
-};
+use crate::method::{BindInput, BoundMethod, DeformMethod, MethodDeclaration};
+use crate::needs::{ConstraintKind, HandleFit, Needs, Solve};
 use crate::space::affine::AffineParts;
 use crate::space::controls::{Controls, Hand, hand_bytes};
 use crate::space::falloff::Falloff;

@@ -1,6 +1,6 @@
 //! The options of the cage.
 
-use crate::method::option::{Choice, Number, Whole, named_choices, options};
+use crate::option::{Choice, Number, Whole, named_choices, options};
 
 options! {
     /// Options of the cage.

@@ -7,7 +7,7 @@ use super::brought::are_outside;
 use super::harmonic::Harmonic;
 use super::linear::Unit;
 use super::mesh::CageMesh;
-use crate::method::AttachmentRefused;
+use crate::attachment_refused::AttachmentRefused;
 
 /// Of vertices outside the cage: mean value coordinates are defined there, the others are not.
 ///

@@ -9,10 +9,10 @@ use super::solver::Solver;
 use super::system::System;
 use crate::budget::bytes_of;
 use crate::handles::Motion;
+use crate::handles::finite::Finite;
 use crate::handles::turns::Followed;
-use crate::method::{
-    BindInput, BoundMethod, ConstraintKind, DeformMethod, Finite, MethodDeclaration, Needs, Solve, Stepped,
-};
+use crate::method::{BindInput, BoundMethod, DeformMethod, MethodDeclaration, Stepped};
+use crate::needs::{ConstraintKind, Needs, Solve};
 use crate::region::nodes::spread_alike;
 use crate::space::blend::{Affine, Blend, Share};
 use crate::space::shaping::shaping;

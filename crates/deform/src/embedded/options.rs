@@ -1,7 +1,7 @@
 //! The options of embedded deformation.
 
-use crate::method::iteration::{MAX_ITERATIONS, TOLERANCE};
-use crate::method::option::{Whole, options};
+use crate::iteration::{MAX_ITERATIONS, TOLERANCE};
+use crate::option::{Whole, options};
 
 options! {
     /// Options of embedded deformation.

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use crate::handles::polar::Polar;
 use crate::numerical::rotation::fit;
-use crate::operators::CHUNK;
+use crate::numerical::rows::CHUNK;
 use crate::operators::gradients::Gradients;
 
 /// A vertex' frame.

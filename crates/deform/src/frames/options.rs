@@ -1,6 +1,6 @@
 //! The options of rotation-invariant coordinates.
 
-use crate::method::option::{Whole, options};
+use crate::option::{Whole, options};
 
 options! {
     /// Options of rotation-invariant coordinates.

@@ -15,8 +15,8 @@ use pulp::{Simd, WithSimd};
 use rayon::prelude::*;
 
 use crate::budget::filled;
+use crate::handles::finite::Finite;
 use crate::handles::{FRAME_CHUNK, Motion};
-use crate::method::Finite;
 
 /// The precision in which bases are stored.
 pub(crate) trait Stored: Copy + Default + Into<f64> + Send + Sync {

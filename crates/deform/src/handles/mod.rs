@@ -5,6 +5,7 @@
 
 pub(crate) mod bases;
 pub(crate) mod blend;
+pub(crate) mod finite;
 pub(crate) mod offsets;
 pub(crate) mod polar;
 pub(crate) mod residual;

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::{Handle, Motion};
-use crate::{Problem, alternatives};
+use crate::{Problem, Remedy};
 
 /// Handles that are missed by less than this share of the size of the bending part look met.
 const UNSEEN: f64 = 1e-3;
@@ -51,7 +51,7 @@ impl HandleResidual {
                  or take {}, which meets them",
                 self.method,
                 100.0 * share,
-                alternatives::of_space()
+                Remedy::OfSpace
             )
         })
     }

@@ -5,9 +5,11 @@
 
 use glam::DVec3;
 
+use crate::handles::finite::Finite;
 use crate::handles::{Motion, clear};
-use crate::method::option::{Number, options};
-use crate::method::{BindInput, BoundMethod, DeformMethod, Finite, MethodDeclaration, Needs, Solve, Stepped};
+use crate::method::{BindInput, BoundMethod, DeformMethod, MethodDeclaration, Stepped};
+use crate::needs::{Needs, Solve};
+use crate::option::{Number, options};
 use crate::{BindError, SolveError};
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {

@@ -11,7 +11,7 @@ use crate::bilaplacian::system_error::SystemError;
 use crate::budget::{bytes_of, filled};
 use crate::handles::Motion;
 use crate::method::BindInput;
-use crate::operators::CHUNK;
+use crate::numerical::rows::CHUNK;
 use crate::sparse::factor_error::FactorError;
 
 /// The number of solutions that are computed at once.

@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use super::similarity::Similarity;
 use crate::bilaplacian::operator::BilaplacianOperator;
 use crate::budget::{Budget, Limit, bytes_of, reserved};
-use crate::operators::{CHUNK, place_in};
+use crate::numerical::rows::{CHUNK, place_in};
 use crate::sparse::factor_error::FactorError;
 use crate::sparse::matrix::{CONSTRAINED, ScaledMatrix};
 

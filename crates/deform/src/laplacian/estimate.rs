@@ -13,7 +13,7 @@ use super::similarity::Similarity;
 use crate::Laplacian;
 use crate::numerical::lane_fits::Fits;
 use crate::numerical::lanes::LANES;
-use crate::operators::CHUNK;
+use crate::numerical::rows::CHUNK;
 
 /// The data for estimating transformations.
 #[derive(Clone, Copy)]

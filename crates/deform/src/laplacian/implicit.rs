@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use super::coupled::{CoupledEnergy, DOF};
 use crate::bilaplacian::refine::{Outcome, Refined, missed_constant, solve_for_frames, solve_fully};
 use crate::budget::Budget;
-use crate::operators::{CHUNK, place_in};
+use crate::numerical::rows::{CHUNK, place_in};
 use crate::sparse::Elimination;
 use crate::sparse::cholesky::Factor;
 use crate::sparse::factor_error::FactorError;

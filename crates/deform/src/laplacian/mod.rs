@@ -32,7 +32,7 @@ use crate::bilaplacian::loaded::LoadedSystem;
 use crate::handles::polar::{Polar, polars_of};
 use crate::handles::{Handle, Motion};
 use crate::method::BindInput;
-use crate::operators::CHUNK;
+use crate::numerical::rows::CHUNK;
 use crate::{Bilaplacian, BindError, Laplacian, SolveError};
 
 /// The bound method.

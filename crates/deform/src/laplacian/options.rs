@@ -1,6 +1,6 @@
 //! The options of Laplacian editing.
 
-use crate::method::option::{Choice, Whole, named_choices, options};
+use crate::option::{Choice, Whole, named_choices, options};
 
 options! {
     /// Options of Laplacian editing.

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use crate::Laplacian;
-use crate::operators::CHUNK;
+use crate::numerical::rows::CHUNK;
 
 /// The rings of the vertices with full rows, in local vertices; empty if they are the Laplacian's own.
 #[derive(Debug, Default)]

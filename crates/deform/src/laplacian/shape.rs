@@ -10,7 +10,7 @@ use super::{Implicit, LaplacianSolver, LocalScale, Room, Transforms};
 use crate::SolveError;
 use crate::handles::polar::{Blend, Polar, polars_of};
 use crate::handles::{Handle, Motion};
-use crate::operators::CHUNK;
+use crate::numerical::rows::CHUNK;
 
 impl LaplacianSolver {
     /// Moves the handles in the options' steps: at each the transformations are estimated from a first shape, and the

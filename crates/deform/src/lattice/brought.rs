@@ -6,7 +6,8 @@ use std::sync::Arc;
 use super::basis::{Axis, MOST};
 use super::grid::Grid;
 use super::{Lattice, LatticeBasis};
-use crate::method::{Attachment, AttachmentRefused, ControlLattice};
+use crate::attachment::{Attachment, ControlLattice};
+use crate::attachment_refused::AttachmentRefused;
 use crate::space::fit_samples::RegionBox;
 
 /// The most cells of a brought lattice along an axis.
@@ -79,7 +80,7 @@ pub(super) fn check(options: &Lattice, attachment: &Attachment) -> Result<(), At
             most: POINTS,
         });
     }
-    crate::method::attachment::finite(&[lattice.low, lattice.high])?;
+    crate::attachment::finite(&[lattice.low, lattice.high])?;
     let extent = (lattice.high - lattice.low).to_array();
     let flat = ['x', 'y', 'z']
         .into_iter()

@@ -5,12 +5,13 @@ use glam::{DVec3, Mat3};
 use super::fit::{fit_bytes, fitted, soft_unit};
 use super::grid::Grid;
 use super::{Lattice, brought};
+use crate::attachment::{Attachment, AttachmentDeclaration, AttachmentKind, ControlLattice};
+use crate::attachment_refused::AttachmentRefused;
 use crate::handles::Motion;
+use crate::handles::finite::Finite;
 use crate::handles::turns::Followed;
-use crate::method::{
-    Attachment, AttachmentDeclaration, AttachmentKind, AttachmentRefused, BindInput, BoundMethod, ConstraintKind,
-    ControlLattice, DeformMethod, Finite, HandleFit, MethodDeclaration, Needs, Solve, Stepped,
-};
+use crate::method::{BindInput, BoundMethod, DeformMethod, MethodDeclaration, Stepped};
+use crate::needs::{ConstraintKind, HandleFit, Needs, Solve};
 use crate::space::affine::AffineParts;
 use crate::space::controls::{Controls, Hand, hand_bytes};
 use crate::space::falloff::Falloff;

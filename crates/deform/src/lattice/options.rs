@@ -1,6 +1,6 @@
 //! The options of the lattice.
 
-use crate::method::option::{Choice, Number, Whole, named_choices, options};
+use crate::option::{Choice, Number, Whole, named_choices, options};
 
 /// The help of one axis' resolution.
 const fn of_axis(help: &'static str) -> Whole {

@@ -1,12 +1,8 @@
-//! The methods: their declarations and implementations, and the list of them all.
+//! A method: its declaration, its options and their binding.
 //!
 //! `README.md` beside the sources explains the addition of a method and the needs of later ones.
 
-pub(crate) mod attachment;
-mod attachment_refused;
 mod declaration;
-pub(crate) mod iteration;
-pub(crate) mod option;
 mod traits;
 
 use std::fmt;
@@ -14,37 +10,13 @@ use std::fmt;
 use glam::DVec3;
 use pliant_mesh::{Cancel, Cancelled, Progress, Surface, Topology};
 
-pub use self::attachment::{
-    Attachment, AttachmentDeclaration, AttachmentKind, ControlLattice, ControlMesh, ExampleShape, Examples,
-    LARGEST_WEIGHT,
-};
-pub use self::attachment_refused::AttachmentRefused;
-pub use self::declaration::{ConstraintKind, MethodDeclaration, Needs, Solve};
-pub use self::option::{OptionDeclaration, OptionKind, OptionRefused, OptionValue};
-pub use self::traits::HandleFit;
-pub(crate) use self::traits::{BindInput, BoundMethod, DeformMethod, Finite, Options, Stepped};
+pub use self::declaration::MethodDeclaration;
+pub(crate) use self::traits::{BindInput, BoundMethod, DeformMethod, Options, Stepped};
 use crate::budget::plate_bytes;
-use crate::{BindError, Budget, Ordering};
-
-/// Every method, in the order of the window. A new method adds its line here.
-pub const METHODS: &[&MethodDeclaration] = &[
-    &crate::bilaplacian::DECLARATION,
-    &crate::arap::DECLARATION,
-    &crate::primo::DECLARATION,
-    &crate::shells::DECLARATION,
-    &crate::wrinkles::DECLARATION,
-    &crate::poisson::DECLARATION,
-    &crate::laplacian::DECLARATION,
-    &crate::frames::DECLARATION,
-    &crate::rbf::DECLARATION,
-    &crate::mls::DECLARATION,
-    &crate::embedded::DECLARATION,
-    &crate::lattice::DECLARATION,
-    &crate::cage::DECLARATION,
-    &crate::space_primo::DECLARATION,
-    #[cfg(feature = "identity-method")]
-    &crate::identity::DECLARATION,
-];
+use crate::option::joined;
+use crate::{
+    Attachment, AttachmentRefused, BindError, Budget, HandleFit, Needs, OptionRefused, OptionValue, Ordering, Solve,
+};
 
 /// A method with its options: the law by which a surface follows its handles.
 pub struct Method(Box<dyn DeformMethod>);
@@ -52,12 +24,6 @@ pub struct Method(Box<dyn DeformMethod>);
 impl Method {
     pub(crate) fn of(options: impl DeformMethod) -> Self {
         Self(Box::new(options))
-    }
-
-    /// The method `name`, with its defaults.
-    pub fn from_name(name: &str) -> Option<Self> {
-        let declaration = METHODS.iter().find(|declaration| declaration.name == name)?;
-        Some((declaration.default)())
     }
 
     /// Its declaration.
@@ -190,7 +156,7 @@ impl Method {
                 let names = options.iter().map(|option| format!("`{}`", option.name));
                 return Err(OptionRefused {
                     option: name.to_owned(),
-                    allowed: format!("nothing: {} has {}", self.name(), option::joined(names, "and")),
+                    allowed: format!("nothing: {} has {}", self.name(), joined(names, "and")),
                 });
             };
             if !option.kind.takes(value) {
@@ -213,13 +179,6 @@ impl Method {
     }
 }
 
-impl Default for Method {
-    /// The method of an edit that names none.
-    fn default() -> Self {
-        (METHODS[0].default)()
-    }
-}
-
 impl Clone for Method {
     fn clone(&self) -> Self {
         Self(self.0.boxed_clone())
@@ -235,107 +194,5 @@ impl PartialEq for Method {
 impl fmt::Debug for Method {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.0.fmt(f)
-    }
-}
-
-#[cfg(test)]
-#[allow(clippy::unwrap_used, reason = "tests")]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_declaration_is_complete_and_its_defaults_are_its_own() {
-        for (number, declaration) in METHODS.iter().enumerate() {
-            let name = declaration.name;
-            assert!(METHODS[..number].iter().all(|other| other.name != name), "{name} twice");
-            for method in [(declaration.default)(), (declaration.first_choice)()] {
-                assert_eq!(method.name(), name);
-            }
-            assert_eq!(Method::from_name(name), Some((declaration.default)()));
-            assert!(
-                !declaration.title.is_empty() && declaration.when_to_use.ends_with('.'),
-                "{name}"
-            );
-            assert_eq!(declaration.keywords, declaration.keywords.to_lowercase());
-            for attachment in declaration.attachments {
-                let is_option = declaration.options.iter().any(|option| option.name == attachment.name);
-                assert!(!is_option && attachment.name != "name", "{name}: {}", attachment.name);
-                assert_eq!(declaration.attachment(attachment.name), Some(attachment), "{name}");
-            }
-        }
-        assert_eq!(Method::from_name("no such method"), None);
-        assert_ne!(Method::from_name("arap"), Method::from_name("primo"));
-    }
-
-    #[test]
-    fn an_option_without_effect_says_which_choice_would_give_it_one() {
-        for declaration in METHODS {
-            let method = (declaration.default)();
-            for option in declaration.options {
-                let Some((other, names)) = option.only_with else {
-                    assert_eq!(option.idle_because(|name| method.value(name)), None);
-                    continue;
-                };
-                let declared = declaration.options.iter().find(|option| option.name == other);
-                let OptionKind::Named { choices } = declared.unwrap().kind else {
-                    panic!("{other} has no names")
-                };
-                assert!(names.iter().all(|name| choices.contains(name)) && names.len() < choices.len());
-                for choice in choices {
-                    let set = method.with([(other, OptionValue::Name(choice))]).unwrap();
-                    let idle = option.idle_because(|name| set.value(name));
-                    assert_eq!(idle.is_none(), names.contains(choice), "{}: {choice}", option.name);
-                    assert!(idle.is_none_or(|why| why.contains(other) && why.contains(names[0])));
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn every_option_takes_its_default_and_the_ends_of_its_range_and_refuses_what_lies_beyond() {
-        for declaration in METHODS {
-            let method = (declaration.default)();
-            for option in declaration.options {
-                let name = option.name;
-                let default = method.value(name).unwrap();
-                assert_eq!(method.with([(name, default)]).unwrap(), method, "{name}");
-                let (taken, refused) = match option.kind {
-                    OptionKind::Number {
-                        range: [least, most], ..
-                    } => (
-                        vec![OptionValue::Number(most), OptionValue::Number((least + most) / 2.0)],
-                        [least - 1.0, most * 1.01, f64::NAN].map(OptionValue::Number).to_vec(),
-                    ),
-                    OptionKind::Whole { range: [least, most] } => (
-                        [least, most].map(OptionValue::Whole).to_vec(),
-                        vec![OptionValue::Whole(most + 1)],
-                    ),
-                    OptionKind::Numbered { choices } => (
-                        choices.iter().map(|(number, _)| OptionValue::Whole(*number)).collect(),
-                        vec![OptionValue::Whole(77)],
-                    ),
-                    OptionKind::Named { choices } => (
-                        choices.iter().map(|name| OptionValue::Name(name)).collect(),
-                        vec![OptionValue::Name("banana")],
-                    ),
-                    OptionKind::Switch => ([true, false].map(OptionValue::Switch).to_vec(), Vec::new()),
-                };
-                for value in taken {
-                    let set = method.with([(name, value)]).unwrap();
-                    assert_eq!(set.value(name), Some(value), "{name}");
-                    assert_eq!(set == method, value == default, "{name}");
-                }
-                let other_kind = match option.kind {
-                    OptionKind::Switch => OptionValue::Number(1.0),
-                    _ => OptionValue::Switch(true),
-                };
-                for value in refused.into_iter().chain([other_kind]) {
-                    let said = method.with([(name, value)]).unwrap_err().to_string();
-                    assert!(said.contains(name) && said.contains(&option.kind.allowed()), "{said}");
-                }
-            }
-            let said = method.with([("no such option", OptionValue::Switch(true))]);
-            assert!(said.unwrap_err().to_string().contains("no such option"));
-        }
     }
 }

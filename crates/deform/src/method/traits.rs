@@ -7,13 +7,17 @@ use std::sync::Arc;
 use glam::{DVec3, Mat3};
 use pliant_mesh::{Cancel, Progress};
 
-use super::{
-    Attachment, AttachmentRefused, ControlLattice, MethodDeclaration, Needs, OptionRefused, OptionValue, Solve,
-};
+use super::MethodDeclaration;
+use crate::HandleFit;
+use crate::attachment::{Attachment, ControlLattice};
+use crate::attachment_refused::AttachmentRefused;
+use crate::handles::finite::Finite;
 use crate::handles::offsets::Offsets;
 use crate::handles::turns::Followed;
 use crate::handles::{Handle, Motion};
+use crate::needs::{Needs, Solve};
 use crate::operators::triangulation::Triangulation;
+use crate::option::{OptionRefused, OptionValue};
 use crate::region::partition::Partition;
 use crate::space::controls::Controls;
 use crate::sparse::refactorisation::Refactorisation;
@@ -273,15 +277,6 @@ pub(crate) trait BoundMethod: Debug + Send + Sync {
     }
 }
 
-/// The way in which hard handles hold their vertices.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum HandleFit {
-    /// Exactly at the targets of the handle's transform.
-    Exact,
-    /// As near to the targets as the method can.
-    LeastSquares,
-}
-
 /// The result of a step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Stepped {
@@ -306,11 +301,4 @@ impl Stepped {
             finite,
         }
     }
-}
-
-/// Sets whether a shape was found to be finite during its computation.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(crate) enum Finite {
-    Yes,
-    Unknown,
 }

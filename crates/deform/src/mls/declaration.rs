@@ -7,7 +7,8 @@ use super::points::Points;
 use super::{Mls, MlsTransforms};
 use crate::BindError;
 use crate::handles::turns::Followed;
-use crate::method::{BindInput, BoundMethod, ConstraintKind, DeformMethod, MethodDeclaration, Needs, Solve};
+use crate::method::{BindInput, BoundMethod, DeformMethod, MethodDeclaration};
+use crate::needs::{ConstraintKind, Needs, Solve};
 use crate::space::field::FIELD_ROW;
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {

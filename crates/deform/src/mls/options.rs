@@ -1,6 +1,6 @@
 //! The options of moving least squares.
 
-use crate::method::option::{Choice, Number, named_choices, options};
+use crate::option::{Choice, Number, named_choices, options};
 
 options! {
     /// Options of moving least squares.

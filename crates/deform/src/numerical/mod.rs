@@ -3,6 +3,7 @@
 
 pub(crate) mod dense;
 pub(crate) mod eigen;
+pub(crate) mod graph;
 pub(crate) mod lane_fits;
 pub(crate) mod lanes;
 pub(crate) mod lbfgs;
@@ -10,4 +11,5 @@ pub(crate) mod line_search;
 pub(crate) mod prefetch;
 pub(crate) mod rigid_fit;
 pub(crate) mod rotation;
+pub(crate) mod rows;
 pub(crate) mod sums;

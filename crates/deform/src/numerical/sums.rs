@@ -3,7 +3,7 @@
 
 use rayon::prelude::*;
 
-use crate::operators::CHUNK;
+use crate::numerical::rows::CHUNK;
 
 /// A vector field, one vector per column of the factor.
 pub(crate) type Field = Vec<[f64; 3]>;

@@ -4,7 +4,7 @@ use pliant_mesh::{SurfaceVertex, area_of_lengths, cotangents, mixed_corner_areas
 use rayon::prelude::*;
 
 use crate::Discretisation;
-use crate::operators::CHUNK;
+use crate::numerical::rows::CHUNK;
 use crate::operators::mollification::lack;
 use crate::operators::triangulation::Triangulation;
 

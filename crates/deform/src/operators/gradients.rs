@@ -14,7 +14,8 @@ use pliant_mesh::{Surface, SurfaceVertex, Topology, edge_lengths};
 use rayon::prelude::*;
 
 use super::face_terms::Metric;
-use super::{ABSENT, CHUNK, Laplacian};
+use super::{ABSENT, Laplacian};
+use crate::numerical::rows::CHUNK;
 
 /// The faces around the solved vertices.
 #[derive(Debug)]

@@ -14,9 +14,10 @@
 use pliant_mesh::{SurfaceVertex, cotangents};
 use rayon::prelude::*;
 
+use super::Laplacian;
 use super::mollification::lack;
 use super::triangulation::Triangulation;
-use super::{CHUNK, Laplacian, place_in};
+use crate::numerical::rows::{CHUNK, place_in};
 
 /// The surroundings of a vertex.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]

@@ -12,6 +12,7 @@
 //! negative weight do no harm. Areas are bounded below by a millionth of their component's mean. Stiffness scales each
 //! *face* by the mean of its corners, which keeps that property; scaling edges would break it.
 
+pub(crate) mod discretisation;
 pub(crate) mod face_terms;
 pub(crate) mod gradients;
 pub(crate) mod hessian;
@@ -24,11 +25,11 @@ use rayon::prelude::*;
 pub(crate) use self::mollification::repairs;
 
 use crate::Discretisation;
+use crate::numerical::graph::Graph;
+use crate::numerical::rows::CHUNK;
+use crate::numerical::rows::place_in;
 use crate::operators::face_terms::{FaceTerms, Metric};
-use crate::operators::triangulation::{Graph, Triangulation};
-
-/// The rows or faces of one task: fixed, so that results don't depend on the number of threads.
-pub(crate) const CHUNK: usize = 1024;
+use crate::operators::triangulation::Triangulation;
 
 /// The least area of a vertex, in units of the mean over its component.
 const AREA_FLOOR: f64 = 1e-6;
@@ -60,15 +61,6 @@ fn row_chunks<'a, T: Send>(entries: &'a mut [T], offsets: &[u32]) -> rayon::vec:
         rest = tail;
     }
     chunks.into_par_iter()
-}
-
-/// The place of `number` in an ascending row. Most rows are short, so a linear search is faster.
-pub(crate) fn place_in<T: Ord>(row: &[T], number: &T) -> Option<usize> {
-    if row.len() <= 32 {
-        row.iter().position(|own| own == number)
-    } else {
-        row.binary_search(number).ok()
-    }
 }
 
 /// A surface vertex that has no local number.

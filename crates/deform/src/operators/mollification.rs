@@ -1,6 +1,6 @@
 //! Intrinsic mollification [SC20, section 4.5]: edges made longer if a triangle is too flat for cotangents.
 
-use crate::alternatives;
+use crate::Remedy;
 
 /// The excess of two edges of a triangle over the third after mollification, in units of the longest.
 const MOLLIFICATION: f64 = 1e-5;
@@ -15,7 +15,7 @@ pub(crate) fn lack(lengths: [f64; 3]) -> f64 {
 
 /// The sentence about triangles too flat for cotangents.
 pub(crate) fn repairs(mollified_faces: usize) -> Option<String> {
-    let space = alternatives::of_space();
+    let space = Remedy::OfSpace;
     let done = match mollified_faces {
         0 => return None,
         1 => "1 degenerate triangle was given the smallest safe shape".to_owned(),

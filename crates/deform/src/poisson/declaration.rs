@@ -6,11 +6,11 @@ use glam::DVec3;
 
 use super::{Poisson, PoissonSolver};
 use crate::handles::Motion;
+use crate::handles::finite::Finite;
 use crate::handles::offsets::Offsets;
 use crate::handles::polar::Polar;
-use crate::method::{
-    BindInput, BoundMethod, ConstraintKind, DeformMethod, Finite, MethodDeclaration, Needs, Solve, Stepped,
-};
+use crate::method::{BindInput, BoundMethod, DeformMethod, MethodDeclaration, Stepped};
+use crate::needs::{ConstraintKind, Needs, Solve};
 use crate::{BindError, ReusableFactor, SolveError, Warning};
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {

@@ -1,6 +1,6 @@
 //! The options of gradient-based editing.
 
-use crate::method::option::{Choice, named_choices, options};
+use crate::option::{Choice, named_choices, options};
 
 options! {
     /// Options of gradient-based editing.

@@ -3,11 +3,11 @@
 use glam::DVec3;
 
 use super::{Primo, PrimoSolver};
+use crate::handles::finite::Finite;
 use crate::handles::turns::Followed;
 use crate::handles::{Motion, clear};
-use crate::method::{
-    BindInput, BoundMethod, ConstraintKind, DeformMethod, Finite, MethodDeclaration, Needs, Solve, Stepped,
-};
+use crate::method::{BindInput, BoundMethod, DeformMethod, MethodDeclaration, Stepped};
+use crate::needs::{ConstraintKind, Needs, Solve};
 use crate::{BindError, SolveError};
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {

@@ -5,8 +5,8 @@ use rayon::prelude::*;
 use super::bodies::{Bodies, State};
 use super::hierarchy::Preconditioner;
 use crate::numerical::line_search::Trial;
+use crate::numerical::rows::CHUNK;
 use crate::numerical::sums::{Field, dot};
-use crate::operators::CHUNK;
 
 /// Lengths that a line search tries.
 const TRIALS: u32 = 12;

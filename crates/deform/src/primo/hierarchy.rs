@@ -15,7 +15,7 @@ use super::joints::Joints;
 use super::pose::Pose;
 use super::system::{Block, own_block};
 use crate::budget::Budget;
-use crate::operators::CHUNK;
+use crate::numerical::rows::CHUNK;
 use crate::sparse::factor_error::FactorError;
 use crate::sparse::ordering::graph::elimination;
 

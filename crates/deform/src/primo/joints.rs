@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use super::edges::{Edges, area, sides as sides_of};
 use super::prisms::{NONE, Prisms};
 use super::quad::Quad;
-use crate::operators::CHUNK;
+use crate::numerical::rows::CHUNK;
 
 /// The least weight of a coupling: even an edge without length holds its prisms together.
 const WEIGHT_FLOOR: f64 = 1e-9;

@@ -1,7 +1,7 @@
 //! The options of the coupled prisms.
 
-use crate::method::iteration;
-use crate::method::option::{Number, options};
+use crate::iteration;
+use crate::option::{Number, options};
 
 options! {
     /// Options of the coupled prisms.

@@ -10,8 +10,8 @@ use rayon::prelude::*;
 
 use super::joints::{Joints, Side};
 use super::springs::Springs;
+use crate::numerical::rows::CHUNK;
 use crate::numerical::sums::Field;
-use crate::operators::CHUNK;
 
 /// The bodies' motions from rest.
 #[derive(Clone, Debug)]

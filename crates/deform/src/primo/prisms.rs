@@ -12,7 +12,7 @@ use pliant_mesh::SurfaceVertex;
 
 use super::edges::{Edges, sides};
 use crate::Role;
-use crate::operators::place_in;
+use crate::numerical::rows::place_in;
 
 /// No body.
 pub(crate) const NONE: u32 = u32::MAX;

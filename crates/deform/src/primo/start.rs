@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::bodies::Bodies;
 use crate::handles::Motion;
 use crate::handles::blend::{Origin, Screw, Screws, carried};
-use crate::operators::CHUNK;
+use crate::numerical::rows::CHUNK;
 
 impl Bodies {
     /// Makes the better of two starts the current pose for `motions`.

@@ -12,7 +12,7 @@ use super::colours::Colours;
 use super::joints::Joints;
 use super::pose::Pose;
 use crate::numerical::rotation::fit;
-use crate::operators::CHUNK;
+use crate::numerical::rows::CHUNK;
 
 /// The most sweeps before Newton's method continues with the present pose.
 const SWEEPS: u32 = 200;

@@ -17,7 +17,7 @@ use rayon::prelude::*;
 use super::joints::{Joints, Side};
 use super::pose::Pose;
 use crate::budget::reserved;
-use crate::operators::CHUNK;
+use crate::numerical::rows::CHUNK;
 use crate::sparse::factor_error::FactorError;
 use crate::sparse::matrix::ScaledMatrix;
 

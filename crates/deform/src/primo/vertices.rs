@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::pose::Pose;
 use super::prisms::{NONE, Prisms, ground_of};
 use crate::Role;
-use crate::operators::CHUNK;
+use crate::numerical::rows::CHUNK;
 
 /// The free vertices of solved prisms.
 #[derive(Debug)]

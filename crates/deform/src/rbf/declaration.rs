@@ -9,7 +9,8 @@ use super::kernel::{Sum, Weights};
 use crate::BindError;
 use crate::budget::bytes_of;
 use crate::handles::turns::Followed;
-use crate::method::{BindInput, BoundMethod, DeformMethod, MethodDeclaration, Needs, Solve};
+use crate::method::{BindInput, BoundMethod, DeformMethod, MethodDeclaration};
+use crate::needs::{Needs, Solve};
 use crate::space::field::{Coefficients, FIELD_ROW, SpaceMap};
 use crate::space::linear::BoundLinear;
 

@@ -1,6 +1,6 @@
 //! The options of radial basis functions.
 
-use crate::method::option::{Number, Whole, options};
+use crate::option::{Number, Whole, options};
 
 options! {
     /// Options of radial basis functions.

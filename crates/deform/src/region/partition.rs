@@ -10,8 +10,9 @@ use pliant_mesh::SurfaceVertex;
 
 use super::strays::strays;
 use crate::budget::bytes_of;
-use crate::operators::triangulation::{Graph, Triangulation};
-use crate::{BindError, Budget, CONTINUITY_RANGE, ConstraintKind, Loose, Needs, Problem, Role, Warning, alternatives};
+use crate::numerical::graph::Graph;
+use crate::operators::triangulation::Triangulation;
+use crate::{BindError, Budget, CONTINUITY_RANGE, ConstraintKind, Loose, Needs, Problem, Remedy, Role, Warning};
 
 /// The vertices by role, all lists ascending.
 #[derive(Debug)]
@@ -329,7 +330,7 @@ fn unheeded(problem: &Problem) -> Vec<Warning> {
     let is_painted = problem.stiffness.iter().any(|&value| value != 1.0);
     let declaration = problem.method.declaration();
     let name = declaration.name;
-    let remedy = |kind: ConstraintKind, purpose: &str| format!("take {} for {purpose}", alternatives::heeding(kind));
+    let remedy = |kind: ConstraintKind, purpose: &str| format!("take {} for {purpose}", Remedy::Heeding(kind));
     let is_unheeded = |kind: ConstraintKind, is_asked: bool| is_asked && !declaration.heeds(kind);
     let mut warnings = Vec::new();
     if let Some(handle) = soft.filter(|_| is_unheeded(ConstraintKind::SoftHandles, true)) {
@@ -365,7 +366,7 @@ fn warning_of_points(problem: &Problem, points: &[u32], loose_of: &[Loose]) -> O
     Some(format!(
         "points that no triangle uses ({}) {does}: {} bends them with the space around",
         points.len(),
-        alternatives::of_space()
+        Remedy::OfSpace
     ))
 }
 
@@ -409,7 +410,7 @@ fn warnings(problem: &Problem, loose: &[u32], loose_of: &[Loose]) -> Vec<String>
                 alike.len(),
                 sum(&alike),
                 alike[0],
-                alternatives::of_space(),
+                Remedy::OfSpace,
             ));
             continue;
         }

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use crate::Problem;
 use crate::handles::FRAME_CHUNK;
-use crate::operators::CHUNK;
+use crate::numerical::rows::CHUNK;
 
 /// *Local* vertices: the solved ones and their neighbours on the surface, ascending; and a *row* for each solved one.
 #[derive(Debug)]

@@ -7,7 +7,8 @@
 use pliant_mesh::SurfaceVertex;
 
 use crate::BindError;
-use crate::operators::triangulation::{Graph, Triangulation};
+use crate::numerical::graph::Graph;
+use crate::operators::triangulation::Triangulation;
 
 /// The largest allowed distance of a vertex from all constrained ones at this order of the bi-Laplacian, in edges.
 ///

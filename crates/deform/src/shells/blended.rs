@@ -16,7 +16,7 @@ use rayon::prelude::*;
 use super::elements::Elements;
 use super::shape::Energy;
 use crate::numerical::rotation::fit;
-use crate::operators::CHUNK;
+use crate::numerical::rows::CHUNK;
 
 /// A rotation by less than this, in radians, has no axis.
 const NO_TURN: f64 = 1e-6;

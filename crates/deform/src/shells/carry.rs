@@ -14,8 +14,8 @@ use rayon::prelude::*;
 use super::blended::Turns;
 use super::hinge::flat;
 use super::shape::{Energy, Shape};
+use crate::numerical::rows::CHUNK;
 use crate::numerical::sums::Field;
-use crate::operators::CHUNK;
 
 /// What is kept for it.
 #[derive(Debug)]

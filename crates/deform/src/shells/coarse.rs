@@ -22,8 +22,8 @@ use crate::arap::domain::Domain;
 use crate::handles::blend::Origin;
 use crate::handles::offsets::Offsets;
 use crate::handles::{Handle, Motion};
+use crate::numerical::rows::CHUNK;
 use crate::numerical::sums::Field;
-use crate::operators::CHUNK;
 use crate::region::clustered::{Share, Shares, on_clusters, shares, transposed};
 use crate::{Attachment, Budget, ExampleShape, Examples, Method, Problem};
 

@@ -5,13 +5,13 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::{Descent, Shells, ShellsSolver};
+use crate::attachment::{AttachmentDeclaration, AttachmentKind};
+use crate::handles::finite::Finite;
 use crate::handles::offsets::Offsets;
 use crate::handles::turns::Followed;
 use crate::handles::{Motion, clear};
-use crate::method::{
-    AttachmentDeclaration, AttachmentKind, BindInput, BoundMethod, ConstraintKind, DeformMethod, Finite,
-    MethodDeclaration, Needs, Solve, Stepped,
-};
+use crate::method::{BindInput, BoundMethod, DeformMethod, MethodDeclaration, Stepped};
+use crate::needs::{ConstraintKind, Needs, Solve};
 use crate::{BindError, SolveError};
 
 /// The attachment's name.

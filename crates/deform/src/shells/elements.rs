@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use super::Shells;
 use super::hinge::angle_rad;
-use crate::operators::CHUNK;
+use crate::numerical::rows::CHUNK;
 use crate::primo::edges::{CROWD, area};
 use crate::sparse::Elimination;
 use crate::sparse::ordering::graph::elimination;

@@ -10,8 +10,8 @@ use rayon::prelude::*;
 use super::Shells;
 use super::elements::Elements;
 use crate::Problem;
+use crate::numerical::rows::CHUNK;
 use crate::numerical::sums::CHUNKS_A_TASK;
-use crate::operators::CHUNK;
 
 /// A component whose volume is below this share of what its area could enclose encloses nothing.
 const NOTHING: f64 = 1e-6;

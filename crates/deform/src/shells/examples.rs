@@ -19,8 +19,8 @@ use super::elements::{Edge, Elements, Face, Hinge};
 use super::enclosed::Enclosed;
 use super::hinge::{angle_rad, unwrapped};
 use crate::numerical::dense::{Lu, solved};
+use crate::numerical::rows::CHUNK;
 use crate::numerical::sums::CHUNKS_A_TASK;
-use crate::operators::CHUNK;
 
 /// ε.
 const MILD: f64 = 1e-6;

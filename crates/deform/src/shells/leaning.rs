@@ -9,8 +9,8 @@ use rayon::prelude::*;
 
 use super::shape::{Energy, Slopes};
 use crate::numerical::dense::{Lu, is_positive_definite};
+use crate::numerical::rows::CHUNK;
 use crate::numerical::sums::{Field, add, dot};
-use crate::operators::CHUNK;
 use faer::Mat;
 
 /// U and S, which turn K⁻¹ into the inverse of the reduced matrix.

@@ -1,7 +1,7 @@
 //! The options of discrete shells.
 
-use crate::method::iteration::{MAX_ITERATIONS, TOLERANCE};
-use crate::method::option::{Number, options};
+use crate::iteration::{MAX_ITERATIONS, TOLERANCE};
+use crate::option::{Number, options};
 
 options! {
     /// Options of discrete shells.

@@ -14,8 +14,8 @@ use super::hinge;
 use super::springs::Springs;
 use crate::Problem;
 use crate::handles::Handle;
+use crate::numerical::rows::CHUNK;
 use crate::numerical::sums::{CHUNKS_A_TASK, Field};
-use crate::operators::CHUNK;
 use crate::region::partition::Partition;
 
 /// How much a rigid motion by the diagonal is resisted within a step where nothing else does, in units of stretching.

@@ -10,7 +10,7 @@ use super::shape::Energy;
 use super::{Blending, Descent, Prescribed, ShellsSolver};
 use crate::handles::Motion;
 use crate::handles::blend::{Origin, Screw, Screws, carried};
-use crate::operators::CHUNK;
+use crate::numerical::rows::CHUNK;
 
 /// Solutions with a factor in single precision for a blended shape, each correcting the last.
 const ROUNDS: u32 = 2;

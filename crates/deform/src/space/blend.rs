@@ -14,7 +14,8 @@ use super::moving::Moving;
 use super::neighbours::Neighbours;
 use super::shaping::shaping;
 use crate::handles::Motion;
-use crate::method::{BindInput, Finite};
+use crate::handles::finite::Finite;
+use crate::method::BindInput;
 use crate::{BindError, Role};
 
 /// An affine motion: a point p is displaced by `linear (p − world_centre) + shift`.

@@ -11,8 +11,8 @@ use std::sync::Arc;
 use faer::Mat;
 use glam::{DMat3, DVec3};
 
+use crate::attachment::Attachment;
 use crate::handles::Motion;
-use crate::method::Attachment;
 use crate::numerical::dense::Lu;
 
 /// The control points of a bound method.

@@ -8,8 +8,10 @@ use rayon::prelude::*;
 use super::falloff::Falloff;
 use crate::budget::filled;
 use crate::handles::bases::frame;
+use crate::handles::finite::Finite;
 use crate::handles::{FRAME_CHUNK, Motion, clear};
-use crate::method::{BindInput, Finite, HandleFit};
+use crate::method::BindInput;
+use crate::needs::HandleFit;
 use crate::{BindError, HandleBases};
 
 /// A handle's coefficients at a point, as in [`HandleBases`], and their gradients per world unit.

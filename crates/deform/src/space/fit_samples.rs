@@ -7,7 +7,8 @@ use super::field::moving;
 use super::samples::thinned;
 use super::shaping::shaping;
 use crate::Role;
-use crate::method::{BindInput, HandleFit};
+use crate::method::BindInput;
+use crate::needs::HandleFit;
 
 /// Fixed vertices are near the region up to this share of the moving part's diagonal outside its box.
 const NEAR: f64 = 0.25;

@@ -5,7 +5,8 @@ use glam::{DVec3, Mat3};
 use super::falloff::Falloff;
 use super::field::{LinearField, SpaceMap};
 use crate::handles::Motion;
-use crate::method::{BindInput, BoundMethod, HandleFit, Stepped};
+use crate::method::{BindInput, BoundMethod, Stepped};
+use crate::needs::HandleFit;
 use crate::{BindError, SolveError};
 
 /// A frame is a product with the map's coefficients.

@@ -3,8 +3,9 @@
 use glam::{DVec3, Mat3};
 use rayon::prelude::*;
 
+use crate::handles::finite::Finite;
 use crate::handles::{FRAME_CHUNK, Motion};
-use crate::method::{BindInput, Finite};
+use crate::method::BindInput;
 
 /// The vertices of a frame. All others rest.
 #[derive(Debug)]

@@ -8,10 +8,10 @@ use super::octree::{CELL, Octree};
 use super::weights::weigh;
 use crate::budget::bytes_of;
 use crate::handles::Motion;
+use crate::handles::finite::Finite;
 use crate::handles::turns::Followed;
-use crate::method::{
-    BindInput, BoundMethod, ConstraintKind, DeformMethod, Finite, MethodDeclaration, Needs, Solve, Stepped,
-};
+use crate::method::{BindInput, BoundMethod, DeformMethod, MethodDeclaration, Stepped};
+use crate::needs::{ConstraintKind, Needs, Solve};
 use crate::primo::bodies::Bodies;
 use crate::space::blend::{Affine, Blend, Share};
 use crate::space::neighbours::Neighbours;

@@ -6,7 +6,7 @@
 use rayon::prelude::*;
 
 use crate::budget::filled;
-use crate::operators::CHUNK;
+use crate::numerical::rows::CHUNK;
 use crate::sparse::cholesky::Factor;
 use crate::sparse::factor_error::FactorError;
 

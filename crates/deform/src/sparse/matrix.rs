@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::operators::CHUNK;
+use crate::numerical::rows::CHUNK;
 
 /// The scaled matrix S A S: the values on and below its diagonal.
 #[derive(Debug)]

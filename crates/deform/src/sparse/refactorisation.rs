@@ -124,6 +124,21 @@ impl RenewableFactor {
     }
 }
 
+/// The factor of a bound linear method. [`crate::Problem::rebind`] reuses the parts of it that are unchanged. Cheap to clone.
+#[derive(Clone, Debug)]
+pub struct ReusableFactor(pub(crate) Arc<RenewableFactor>);
+
+impl ReusableFactor {
+    pub(crate) fn factored(&self) -> &RenewableFactor {
+        &self.0
+    }
+
+    /// The share of the factor's numbers that were reused from `other`, 0 to 1.
+    pub fn share_of(&self, other: &Self) -> f64 {
+        self.0.share_of(&other.0)
+    }
+}
+
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "tests")]
 mod tests {

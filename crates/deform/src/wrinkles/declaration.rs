@@ -5,14 +5,14 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::{Wrinkled, Wrinkles};
+use crate::attachment::{Attachment, AttachmentDeclaration, AttachmentKind};
 use crate::bilaplacian::solver::BilaplacianSolver;
+use crate::handles::finite::Finite;
 use crate::handles::offsets::Offsets;
 use crate::handles::turns::Followed;
 use crate::handles::{Motion, clear};
-use crate::method::{
-    Attachment, AttachmentDeclaration, AttachmentKind, BindInput, BoundMethod, DeformMethod, Finite, MethodDeclaration,
-    Needs, Solve, Stepped,
-};
+use crate::method::{BindInput, BoundMethod, DeformMethod, MethodDeclaration, Stepped};
+use crate::needs::{Needs, Solve};
 use crate::operators::triangulation::Triangulation;
 use crate::{BindError, Problem, ReusableFactor, SolveError};
 

@@ -16,7 +16,7 @@ use rayon::prelude::*;
 
 use super::strain::Strain;
 use crate::numerical::dense::solved;
-use crate::operators::CHUNK;
+use crate::numerical::rows::CHUNK;
 
 /// The examples' details, and the functions that interpolate them. Tables of rows have one entry per example in each
 /// row.

@@ -31,7 +31,7 @@ use crate::bilaplacian::solver::BilaplacianSolver;
 use crate::budget::bytes_of;
 use crate::handles::Motion;
 use crate::method::BindInput;
-use crate::operators::CHUNK;
+use crate::numerical::rows::CHUNK;
 use crate::region::patch::Patch;
 use crate::{BindError, Examples, Role, SolveError};
 

@@ -2,7 +2,7 @@
 
 use crate::Bilaplacian;
 use crate::bilaplacian::STRETCHING;
-use crate::method::option::{Whole, options};
+use crate::option::{Whole, options};
 
 options! {
     /// Options of wrinkles learnt from examples.

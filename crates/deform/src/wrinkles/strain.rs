@@ -18,7 +18,7 @@ use pliant_mesh::SurfaceVertex;
 use rayon::prelude::*;
 
 use crate::Problem;
-use crate::operators::CHUNK;
+use crate::numerical::rows::CHUNK;
 use crate::region::nodes::{NO_NODE, spread};
 use crate::region::patch::Patch;
 use crate::space::neighbours::Neighbours;

@@ -6,7 +6,7 @@
 
 use rayon::prelude::*;
 
-use crate::operators::CHUNK;
+use crate::numerical::rows::CHUNK;
 
 /// vᵢᵀ S vⱼ = δᵢⱼ.
 #[derive(Debug, Default)]

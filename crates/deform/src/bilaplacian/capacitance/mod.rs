@@ -31,7 +31,7 @@ use self::near_rim::NearRim;
 use self::rows::CapacitanceRows;
 use crate::bilaplacian::operator::BilaplacianOperator;
 use crate::budget::{Budget, bytes_of};
-use crate::operators::CHUNK;
+use crate::numerical::rows::CHUNK;
 use crate::sparse::refactorisation::RenewableFactor;
 use crate::sparse::solve::PartRows;
 

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use crate::bilaplacian::operator::BilaplacianOperator;
-use crate::operators::CHUNK;
+use crate::numerical::rows::CHUNK;
 use crate::sparse::matrix::CONSTRAINED;
 
 /// Compressed rows over the columns of the factor.

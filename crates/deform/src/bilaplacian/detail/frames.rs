@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 use super::base::Base;
 use super::donors::{NONE, nearest};
-use crate::operators::CHUNK;
+use crate::numerical::rows::CHUNK;
 use crate::region::patch::Patch;
 
 /// The rows' displacements from the base, in its frames.

@@ -27,8 +27,9 @@ use self::transfer::{Transfer, left_by};
 use self::volumes::Volumes;
 use crate::bilaplacian::solver::BilaplacianSolver;
 use crate::handles::Motion;
+use crate::handles::finite::Finite;
 use crate::handles::offsets::Offsets;
-use crate::method::{BindInput, BoundMethod, Finite, Stepped};
+use crate::method::{BindInput, BoundMethod, Stepped};
 use crate::{Bilaplacian, BindError, Detail, ReusableFactor, SolveError};
 
 /// The bound bi-Laplacian with details.

@@ -17,7 +17,7 @@ use super::base::Base;
 use super::frames::RingFrames;
 use crate::Problem;
 use crate::method::BindInput;
-use crate::operators::CHUNK;
+use crate::numerical::rows::CHUNK;
 use crate::region::patch::Patch;
 
 /// A sheet is thinner than this, in sizes of the bending part.

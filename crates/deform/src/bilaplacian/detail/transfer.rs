@@ -17,7 +17,7 @@ use crate::bilaplacian::operator::BilaplacianOperator;
 use crate::bilaplacian::setup::bent_rows;
 use crate::budget::{Budget, bytes_of};
 use crate::method::BindInput;
-use crate::operators::CHUNK;
+use crate::numerical::rows::CHUNK;
 use crate::operators::gradients::{EdgeChanges, Face, Gradients};
 use crate::operators::triangulation::Triangulation;
 use crate::sparse::ordering::hubs::hub_degree;

@@ -19,7 +19,7 @@ use super::donors::NONE;
 use super::frames::Frames;
 use super::sheets::Sheets;
 use crate::Problem;
-use crate::operators::CHUNK;
+use crate::numerical::rows::CHUNK;
 
 /// The prisms over the base, and the frames that the iteration begins with.
 #[derive(Debug)]

@@ -11,10 +11,11 @@ mod tufted;
 
 use pliant_mesh::{Surface, SurfaceVertex, Topology};
 
+use crate::numerical::graph::Graph;
 use crate::operators::triangulation::intrinsic::Intrinsic;
 use crate::operators::triangulation::principal::stretches;
 use crate::operators::triangulation::surface::SurfaceTriangulation;
-use crate::{Bilaplacian, Problem, TriangulationKind, alternatives};
+use crate::{Bilaplacian, Problem, Remedy, TriangulationKind};
 
 /// Triangles with edge lengths over the surface's vertices.
 #[derive(Clone, Debug)]
@@ -23,18 +24,6 @@ pub(crate) enum Triangulation<'a> {
     Surface(SurfaceTriangulation<'a>),
     /// Intrinsic triangles on its vertices.
     Intrinsic(Box<Intrinsic>, &'a Topology),
-}
-
-/// A graph over the surface's vertices.
-pub(crate) trait Graph: Sync {
-    /// The vertices that share an edge with this one, ascending.
-    fn neighbours(&self, vertex: SurfaceVertex) -> &[SurfaceVertex];
-}
-
-impl Graph for Topology {
-    fn neighbours(&self, vertex: SurfaceVertex) -> &[SurfaceVertex] {
-        Topology::neighbours(self, vertex)
-    }
 }
 
 impl Graph for Triangulation<'_> {
@@ -147,7 +136,7 @@ impl<'a> Triangulation<'a> {
             Self::Intrinsic(triangulation, _) if !triangulation.is_delaunay() => Some(format!(
                 "the intrinsic triangulation could not be made Delaunay throughout, so some weights stay negative: where \
                  the surface folds, take {}, which needs no triangles",
-                alternatives::of_space()
+                Remedy::OfSpace
             )),
             _ => None,
         }

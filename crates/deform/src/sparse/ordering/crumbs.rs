@@ -5,7 +5,7 @@
 
 use pliant_mesh::SurfaceVertex;
 
-use crate::operators::triangulation::Graph;
+use crate::numerical::graph::Graph;
 
 /// This many small components are packed; fewer are bisected like everything else, which costs little.
 const MANY: usize = 10_000;

@@ -11,7 +11,7 @@ use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 use pliant_mesh::{Cancel, Cancelled, SurfaceVertex};
 use rayon::prelude::*;
 
-use crate::operators::triangulation::Graph;
+use crate::numerical::graph::Graph;
 use crate::sparse::ordering::bisection::WeightedGraph;
 use crate::sparse::ordering::crumbs::{Crumbs, crumbs};
 use crate::sparse::ordering::elimination::Elimination;
@@ -208,7 +208,7 @@ mod tests {
     use pliant_mesh::{Cancel, Drawn, DrawnVertex, SurfaceVertex, Topology, shapes};
 
     use super::dissect;
-    use crate::operators::triangulation::Graph;
+    use crate::numerical::graph::Graph;
 
     /// A graph that counts the requests for neighbours.
     struct Counted {

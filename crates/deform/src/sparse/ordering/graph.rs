@@ -2,7 +2,7 @@
 
 use pliant_mesh::{Cancel, Cancelled, SurfaceVertex};
 
-use crate::operators::triangulation::Graph;
+use crate::numerical::graph::Graph;
 use crate::sparse::Elimination;
 use crate::sparse::ordering::dissection::dissect;
 

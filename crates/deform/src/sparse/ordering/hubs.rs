@@ -5,7 +5,7 @@
 
 use pliant_mesh::SurfaceVertex;
 
-use crate::operators::triangulation::Graph;
+use crate::numerical::graph::Graph;
 
 /// The fewest neighbours of a hub, for any number of vertices. Below that all neighbours of a vertex are eliminated as
 /// one dense block at little cost.

@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 use pliant_mesh::SurfaceVertex;
 
-use crate::operators::triangulation::Graph;
+use crate::numerical::graph::Graph;
 
 /// The label of vertices that are no longer in a part.
 pub(crate) const CUT_OUT: u32 = 0;

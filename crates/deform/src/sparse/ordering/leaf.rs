@@ -5,7 +5,7 @@
 //! with one pattern are eliminated at once, and supernodes that hardly differ are amalgamated, so that the supernodes
 //! are worth a dense factorisation.
 
-use crate::operators::triangulation::Graph;
+use crate::numerical::graph::Graph;
 use crate::sparse::ordering::elimination::Elimination;
 use crate::sparse::ordering::labels::Labelled;
 

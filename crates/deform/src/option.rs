@@ -314,7 +314,7 @@ macro_rules! named_choices {
             }
         }
 
-        impl $crate::method::option::OptionType for $type {
+        impl $crate::option::OptionType for $type {
             fn to_value(self) -> $crate::OptionValue {
                 $crate::OptionValue::Name(self.name())
             }
@@ -327,7 +327,7 @@ macro_rules! named_choices {
             }
         }
 
-        impl $crate::method::option::Choices for $type {
+        impl $crate::option::Choices for $type {
             const KIND: $crate::OptionKind = $crate::OptionKind::Named { choices: &[$($name),+] };
         }
     };
@@ -371,7 +371,7 @@ macro_rules! options {
         impl $crate::method::Options for $type {
             fn value(&self, option: &str) -> Option<$crate::OptionValue> {
                 match option {
-                    $(stringify!($option) => Some($crate::method::option::OptionType::to_value(self.$option)),)*
+                    $(stringify!($option) => Some($crate::option::OptionType::to_value(self.$option)),)*
                     _ => None,
                 }
             }
@@ -379,7 +379,7 @@ macro_rules! options {
             fn set(&mut self, option: &str, value: $crate::OptionValue) -> Option<()> {
                 match option {
                     $(stringify!($option) => {
-                        self.$option = $crate::method::option::OptionType::of_value(value)?;
+                        self.$option = $crate::option::OptionType::of_value(value)?;
                         Some(())
                     })*
                     _ => {
