@@ -92,7 +92,6 @@ mod remedy;
 mod rigid;
 mod role;
 mod shells;
-mod size;
 mod space;
 mod space_primo;
 mod sparse;

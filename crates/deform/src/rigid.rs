@@ -5,13 +5,12 @@
 //! its surroundings join it like any handle.
 
 use glam::DVec3;
-use pliant_mesh::{Cancel, Progress, SurfaceVertex};
+use pliant_mesh::SurfaceVertex;
 
 use crate::handles::{Handle, Motion};
 use crate::needs::ConstraintKind;
 use crate::numerical::rigid_fit::RigidMotion;
-use crate::sparse::refactorisation::Refactorisation;
-use crate::{BindError, Bound, Budget, Ordering, Problem, Role, SolveError, Step, Warning};
+use crate::{BindError, Problem, Role, Warning};
 
 /// The stiffness of the parts during the search for their motions. With more stiffness iterative methods converge more
 /// slowly: on a bar ARAP takes 76 steps at 30, 129 at 100 and 550 at 1000, and the parts' motions differ from those at
@@ -141,21 +140,11 @@ impl Softened {
         })
     }
 
-    /// Binds the problem of [`Softened::problem`] once more, with a handle for each part; `None` if every part belongs
-    /// to a handle or is fixed.
-    ///
-    /// # Errors
-    /// Those of any binding.
-    pub fn bind_parts(
-        &self,
-        problem: &Problem,
-        ordering: Option<&Ordering>,
-        budget: Budget,
-        progress: &Progress,
-        cancel: &Cancel,
-    ) -> Result<Option<RigidParts>, BindError> {
+    /// The tables in which each part is a handle after the problem's own; `None` if every part belongs to a handle or is
+    /// fixed.
+    pub fn bodies(&self, problem: &Problem) -> Option<Bodies> {
         if self.parts.is_empty() {
-            return Ok(None);
+            return None;
         }
         let mut roles = self.roles.clone();
         for (number, part) in (problem.handle_count..).zip(&self.parts) {
@@ -167,64 +156,59 @@ impl Softened {
         if !soft.is_empty() {
             soft.resize(problem.handle_count + self.parts.len(), None);
         }
-        let mut problem = self.problem(problem);
-        problem.roles = &roles;
-        problem.handle_count += self.parts.len();
-        problem.constraints.soft = &soft;
         let positions = &problem.surface.positions;
         let part = |vertices: &Vec<u32>| Part {
             rest: vertices.iter().map(|&vertex| positions[vertex as usize]).collect(),
             handle: Handle::new(vertices.clone(), positions),
         };
-        let bound = Bound::bind_plain(&problem, ordering, Refactorisation::Never, budget, progress, cancel)?;
-        Ok(Some(RigidParts {
+        Some(Bodies {
+            roles,
+            soft,
             parts: self.parts.iter().map(part).collect(),
-            moved: Vec::new(),
-            bound,
-        }))
+        })
+    }
+}
+
+/// The parts as bodies, and the tables of the problem in which they are handles.
+#[derive(Debug)]
+pub(crate) struct Bodies {
+    roles: Vec<Role>,
+    soft: Vec<Option<f64>>,
+    pub parts: Vec<Part>,
+}
+
+impl Bodies {
+    /// The problem of [`Softened::problem`] with these tables.
+    pub fn problem<'a>(&'a self, softened: &Problem<'a>) -> Problem<'a> {
+        let mut problem = *softened;
+        problem.roles = &self.roles;
+        problem.handle_count += self.parts.len();
+        problem.constraints.soft = &self.soft;
+        problem
     }
 }
 
 /// A part that moves as one body.
 #[derive(Debug)]
-struct Part {
+pub(crate) struct Part {
     handle: Handle,
     rest: Vec<DVec3>,
 }
 
-/// The parts, and the problem in which they are handles.
-#[derive(Debug)]
-pub(crate) struct RigidParts {
-    parts: Vec<Part>,
-    /// Displacements of a part, kept from frame to frame.
-    moved: Vec<DVec3>,
-    pub bound: Bound,
-}
+impl Part {
+    /// The rigid motion that fits the part's displacements best; `moved` is scratch.
+    pub fn motion(&self, displacements: &[DVec3], moved: &mut Vec<DVec3>) -> Motion {
+        moved.clear();
+        let vertices = self.handle.vertices.iter();
+        moved.extend(vertices.map(|&vertex| displacements[vertex as usize]));
+        let fit = RigidMotion::fit(&self.rest, moved);
+        fit.map_or(Motion::default(), |fit| self.handle.rigid_motion(&fit))
+    }
 
-impl RigidParts {
-    /// Replaces a shape in which the parts are very stiff by one in which they are rigid.
-    ///
-    /// # Errors
-    /// Those of a step.
-    pub fn step(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> Result<Step, SolveError> {
-        let mut all = motions.to_vec();
-        for part in &self.parts {
-            self.moved.clear();
-            let vertices = part.handle.vertices.iter();
-            self.moved
-                .extend(vertices.map(|&vertex| displacements[vertex as usize]));
-            let fit = RigidMotion::fit(&part.rest, &self.moved);
-            all.push(fit.map_or(Motion::default(), |fit| fit.motion_of(&part.handle)));
+    /// Moves the part as one body.
+    pub fn place(&self, motion: &Motion, displacements: &mut [DVec3]) {
+        for (&vertex, &position) in self.handle.vertices.iter().zip(&self.rest) {
+            displacements[vertex as usize] = motion.displace(self.handle.coordinates(position));
         }
-        let of_parts = all[motions.len()..].to_vec();
-        self.bound.follow(all);
-        let step = self.bound.step(displacements)?;
-        // A method that only fits handles bends the parts a little.
-        for (part, motion) in self.parts.iter().zip(&of_parts) {
-            for (&vertex, &position) in part.handle.vertices.iter().zip(&part.rest) {
-                displacements[vertex as usize] = motion.displace(part.handle.coordinates(position));
-            }
-        }
-        Ok(step)
     }
 }

@@ -9,7 +9,6 @@ use crate::bilaplacian::hubs::Hubs;
 use crate::bilaplacian::operator::BilaplacianOperator;
 use crate::bilaplacian::setup::{Boundaries, operator};
 use crate::handles::Handle;
-use crate::region::partition::Partition;
 use crate::sparse::Elimination;
 use crate::sparse::cholesky::Factor;
 use crate::sparse::matrix::{CONSTRAINED, ScaledMatrix};
@@ -33,12 +32,13 @@ pub struct Factored(Factor);
 impl Operator {
     /// The operator of a problem that can be bound.
     pub fn of(problem: &Problem, options: &Bilaplacian, ordering: &Ordering) -> Option<Self> {
-        let partition = Partition::of(problem).ok()?;
+        let boundary = problem.boundary();
+        let partition = problem.method.partition(&boundary).ok()?;
         let positions = &problem.surface.positions;
         let handle = |vertices: &Vec<u32>| Handle::new(vertices.clone(), positions);
         let handles: Vec<Handle> = partition.handles.iter().map(handle).collect();
         Some(Self {
-            operator: operator(problem, options, &partition, &handles, Boundaries::Natural).0,
+            operator: operator(&boundary, options, &partition, &handles, Boundaries::Natural).0,
             elimination: ordering.elimination(&partition.solved),
         })
     }

@@ -8,8 +8,9 @@
 use pliant_mesh::{DistanceSearch, Surface, SurfaceVertex, Topology};
 
 use super::domain::{ABSENT, Domain};
+use crate::Role;
 use crate::handles::Handle;
-use crate::{Problem, Role};
+use crate::region::boundary_problem::BoundaryProblem;
 
 /// The number of centres at a distance of 1 from each other per unit of area: 0.81 was found on scans.
 const DENSITY: f64 = 0.81;
@@ -29,8 +30,8 @@ pub(crate) struct Clusters {
 
 impl Clusters {
     /// Clusters of about `size` vertices of `domain`, and at least one of each handle.
-    pub fn of(problem: &Problem, domain: &Domain, handles: &[Handle], size: f64) -> Self {
-        let Problem { surface, roles, .. } = *problem;
+    pub fn of(problem: &BoundaryProblem, domain: &Domain, handles: &[Handle], size: f64) -> Self {
+        let BoundaryProblem { surface, roles, .. } = *problem;
         let mut is_wanted: Vec<bool> = domain.local_of.iter().map(|&local| local != ABSENT).collect();
         for first in handles.iter().filter_map(|handle| handle.vertices.first()) {
             is_wanted[*first as usize] = true;
@@ -104,7 +105,8 @@ mod tests {
     use super::Clusters;
     use crate::arap::domain::{ABSENT, Domain};
     use crate::handles::Handle;
-    use crate::{Arap, Constraints, Loose, Method, Problem, Role};
+    use crate::region::boundary_problem::BoundaryProblem;
+    use crate::{Constraints, Loose, Role};
 
     #[test]
     fn clusters_keep_to_one_role_and_have_their_centre() {
@@ -123,7 +125,7 @@ mod tests {
             let roles: Vec<Role> = (0..count).map(role).collect();
             let order: Vec<u32> = (0..count).filter(|&v| role(v) == Role::Free).collect();
             let handle = Handle::new((0..count).filter(|v| v % 7 == 1).collect(), &model.surface.positions);
-            let problem = Problem {
+            let problem = BoundaryProblem {
                 surface: &model.surface,
                 topology: &model.topology,
                 roles: &roles,
@@ -131,9 +133,7 @@ mod tests {
                 stiffness: &vec![1.0; roles.len()],
                 constraints: Constraints::default(),
                 loose: Loose::Rest,
-                method: &Method::from(Arap::default()),
-                attachments: &[],
-                revision: 0,
+                examples: None,
             };
             let domain = Domain::of(&model.surface, &model.topology, &order);
             let clusters = Clusters::of(&problem, &domain, &[handle], 6.0);

@@ -19,8 +19,9 @@ use crate::handles::blend::Origin;
 use crate::handles::offsets::Offsets;
 use crate::handles::{Handle, Motion};
 use crate::numerical::rows::CHUNK;
+use crate::region::boundary_problem::BoundaryProblem;
 use crate::region::clustered::{Share, Shares, on_clusters, shares, transposed};
-use crate::{Arap, Method, Ordering, Problem};
+use crate::{Arap, Method, Ordering};
 
 /// The fewest vertices of a cluster: smaller clusters are less stiff against bending and closer to the fine surface,
 /// but more expensive. At the end of a drag of a scan of 173k vertices the energy is 4% above the minimum with 12, 5%
@@ -52,7 +53,13 @@ pub(crate) struct Coarse {
 
 impl Coarse {
     /// The level for the bound `fine` domain of `problem`; `None` if no coarse level can be made.
-    pub fn of(problem: &Problem, options: &Arap, handles: &[Handle], fine: &Domain, cancel: &Cancel) -> Option<Self> {
+    pub fn of(
+        problem: &BoundaryProblem,
+        options: &Arap,
+        handles: &[Handle],
+        fine: &Domain,
+        cancel: &Cancel,
+    ) -> Option<Self> {
         let size = CLUSTER.max(fine.vertices.len() as f64 / MOST);
         let clusters = Clusters::of(problem, fine, handles, size);
         let mut own = options.clone();
@@ -64,7 +71,7 @@ impl Coarse {
             problem,
             &clusters,
             &method,
-            &[],
+            None,
             handles,
             |coarse, partition, handles| {
                 ArapSolver::bind(coarse, &own, &partition, handles, &ordering, &progress, cancel).ok()

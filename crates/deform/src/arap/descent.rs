@@ -139,8 +139,8 @@ mod tests {
 
     use super::super::ArapSolver;
     use crate::handles::Handle;
-    use crate::region::partition::Partition;
-    use crate::{Arap, ArapEnergy, Constraints, Loose, Method, Problem, Role};
+    use crate::region::boundary_problem::BoundaryProblem;
+    use crate::{Arap, ArapEnergy, Constraints, Loose, Method, Role};
 
     #[test]
     fn a_shape_from_which_no_step_leads_down_has_stalled_and_not_converged() {
@@ -157,7 +157,7 @@ mod tests {
                 ..Arap::default()
             };
             let method = Method::from(options.clone());
-            let problem = Problem {
+            let problem = BoundaryProblem {
                 surface: &model.surface,
                 topology: &model.topology,
                 roles: &roles,
@@ -165,13 +165,11 @@ mod tests {
                 stiffness: &vec![1.0; roles.len()],
                 constraints: Constraints::default(),
                 loose: Loose::Rest,
-                method: &method,
-                attachments: &[],
-                revision: 0,
+                examples: None,
             };
             let (progress, cancel) = (Progress::new(), Cancel::new());
             let ordering = method.ordering(&model.topology, &progress, &cancel).unwrap().unwrap();
-            let partition = Partition::of(&problem).unwrap();
+            let partition = method.partition(&problem).unwrap();
             let handles = [Handle::new(partition.handles[0].clone(), &model.surface.positions)];
             let mut solver =
                 ArapSolver::bind(&problem, &options, &partition, &handles, &ordering, &progress, &cancel).unwrap();

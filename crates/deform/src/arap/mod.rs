@@ -56,9 +56,10 @@ use crate::handles::offsets::Offsets;
 use crate::handles::{Handle, Motion};
 use crate::numerical::rows::CHUNK;
 use crate::numerical::sums::CHUNKS_A_TASK;
+use crate::region::boundary_problem::BoundaryProblem;
 use crate::region::partition::Partition;
 use crate::sparse::Elimination;
-use crate::{BindError, Laplacian, Ordering, Problem, Role};
+use crate::{BindError, Laplacian, Ordering, Role};
 
 /// The bound method, with its present shape.
 #[derive(Debug)]
@@ -134,7 +135,7 @@ impl Prescribed {
 impl ArapSolver {
     /// Numbers the vertices, factors, and solves for the weights of `handles`.
     pub fn bind(
-        problem: &Problem,
+        problem: &BoundaryProblem,
         options: &Arap,
         partition: &Partition,
         handles: &[Handle],
@@ -320,7 +321,7 @@ impl ArapSolver {
 
 /// Factors the system, checks the factor, and solves for the handles' weights.
 fn preconditioner(
-    problem: &Problem,
+    problem: &BoundaryProblem,
     partition: &Partition,
     domain: &Domain,
     system: &System,
@@ -344,7 +345,7 @@ fn preconditioner(
 }
 
 /// The cells of the options' energy, and the stiffness κ A of its bending term, 0 without one.
-fn cells_of(problem: &Problem, options: &Arap, laplacian: &Laplacian, domain: &Domain) -> (Cells, f64) {
+fn cells_of(problem: &BoundaryProblem, options: &Arap, laplacian: &Laplacian, domain: &Domain) -> (Cells, f64) {
     let (surface, topology, stiffness) = (problem.surface, problem.topology, problem.stiffness);
     match options.energy {
         ArapEnergy::Spokes => (spokes::cells(surface, laplacian, domain), 0.0),
@@ -360,7 +361,12 @@ fn cells_of(problem: &Problem, options: &Arap, laplacian: &Laplacian, domain: &D
 }
 
 /// Each handle's vertices that move exactly with it; none for a soft handle.
-fn prescribed(problem: &Problem, partition: &Partition, handles: &[Handle], domain: &Domain) -> Vec<Vec<Prescribed>> {
+fn prescribed(
+    problem: &BoundaryProblem,
+    partition: &Partition,
+    handles: &[Handle],
+    domain: &Domain,
+) -> Vec<Vec<Prescribed>> {
     let one = |(handle, soft): (&Handle, &Option<f64>)| {
         if soft.is_some() {
             return Vec::new();

@@ -10,10 +10,11 @@ use super::cells::{Quad, minus, quad};
 use super::domain::Domain;
 use super::history::Field;
 use super::shape::Shape;
+use crate::Laplacian;
 use crate::handles::offsets::Offsets;
 use crate::handles::{Handle, Motion};
+use crate::region::boundary_problem::BoundaryProblem;
 use crate::region::partition::Partition;
-use crate::{Laplacian, Problem};
 
 /// The springs of all soft handles, and the dead loads.
 #[derive(Clone, Debug)]
@@ -44,7 +45,7 @@ impl Springs {
     /// The springs of the soft handles of `partition`; `laplacian` has rows for their vertices, and the energy bends
     /// with the stiffness `bending`; gradients are measured in `unit`.
     pub fn of(
-        problem: &Problem,
+        problem: &BoundaryProblem,
         partition: &Partition,
         handles: &[Handle],
         domain: &Domain,

@@ -2,18 +2,18 @@
 
 use pliant_mesh::SurfaceVertex;
 
-use crate::Problem;
 use crate::bilaplacian::natural::NaturalTerm;
 use crate::bilaplacian::operator::BilaplacianOperator;
 use crate::operators::hessian::{RingHessian, RingKind};
 use crate::operators::triangulation::Triangulation;
+use crate::region::boundary_problem::BoundaryProblem;
 use crate::region::partition::Partition;
 
 /// Adds natural boundaries to the operator of order 2 at the surface's free borders and changes of stiffness.
 pub(crate) fn make_natural(
     operator: &mut BilaplacianOperator,
     triangulation: &Triangulation,
-    problem: &Problem,
+    problem: &BoundaryProblem,
     partition: &Partition,
 ) {
     let laplacian = &operator.laplacian;

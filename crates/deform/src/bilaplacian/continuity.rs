@@ -13,14 +13,15 @@ use pliant_mesh::{SurfaceVertex, area_of_lengths};
 
 use crate::bilaplacian::operator::BilaplacianOperator;
 use crate::operators::triangulation::Triangulation;
-use crate::{Bilaplacian, Laplacian, Problem, Role};
+use crate::region::boundary_problem::BoundaryProblem;
+use crate::{Bilaplacian, Laplacian, Role};
 
 /// Damps the operator at constrained vertices according to [`crate::Constraints::continuity`]; `rows` are its full
 /// rows.
 pub(crate) fn join(
     operator: &mut BilaplacianOperator,
     triangulation: &Triangulation,
-    problem: &Problem,
+    problem: &BoundaryProblem,
     options: &Bilaplacian,
     rows: &[u32],
     diagonal: f64,

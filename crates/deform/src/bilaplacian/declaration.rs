@@ -14,7 +14,8 @@ use crate::method::{BindInput, BoundMethod, DeformMethod, MethodDeclaration, Ste
 use crate::needs::{ConstraintKind, Needs, Solve};
 use crate::operators::triangulation::Triangulation;
 use crate::option::OptionRefused;
-use crate::{Bilaplacian, BindError, Detail, HandleBases, Problem, ReusableFactor, SolveError};
+use crate::region::boundary_problem::BoundaryProblem;
+use crate::{Bilaplacian, BindError, Detail, HandleBases, ReusableFactor, SolveError};
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "bilaplacian",
@@ -71,8 +72,10 @@ impl DeformMethod for Bilaplacian {
         })
     }
 
-    fn triangulation<'a>(&self, problem: &Problem<'a>) -> Triangulation<'a> {
-        Triangulation::of_options(problem, self)
+    fn triangulation<'a>(&self, problem: &BoundaryProblem<'a>) -> Triangulation<'a> {
+        let may_move = |vertex| problem.may_move(vertex);
+        let (surface, topology) = (problem.surface, problem.topology);
+        Triangulation::stretched(surface, topology, self.triangulation, self.anisotropy, &may_move)
     }
 
     fn takes_first_power(&self) -> bool {

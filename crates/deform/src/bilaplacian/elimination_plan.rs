@@ -23,7 +23,7 @@ impl<'a> EliminationPlan<'a> {
     /// # Errors
     /// There is no ordering of the method's power, or of power 1 in its place, or it is another mesh's.
     pub fn of(input: &BindInput<'a>) -> Result<Self, BindError> {
-        let takes_first_power = input.problem.method.implementation().takes_first_power();
+        let takes_first_power = input.takes_first_power;
         let ordering = match input.ordering_of(1) {
             Ok(first) if takes_first_power => first,
             _ => input.ordering()?,

@@ -224,9 +224,9 @@ mod tests {
     use crate::bilaplacian::factored::BilaplacianSystem;
     use crate::bilaplacian::setup::{Boundaries, operator};
     use crate::handles::Handle;
-    use crate::region::partition::Partition;
+    use crate::region::boundary_problem::BoundaryProblem;
     use crate::sparse::refactorisation::Refactorisation;
-    use crate::{Bilaplacian, BilaplacianOrder, Budget, Constraints, Loose, Method, Ordering, Problem, Role};
+    use crate::{Bilaplacian, BilaplacianOrder, Budget, Constraints, Loose, Method, Ordering, Role};
 
     /// Rings of `count` vertices around one in the middle, on a bumpy dish.
     fn wheel(count: usize, rings: usize) -> Surface {
@@ -298,7 +298,7 @@ mod tests {
         let roles: Vec<Role> = surface.positions.iter().map(role).collect();
         let stiffness: Vec<f64> = (0..roles.len()).map(|v| 1.0 + (v % 4) as f64).collect();
         let method = Method::from(options.clone());
-        let problem = Problem {
+        let problem = BoundaryProblem {
             surface,
             topology: &topology,
             roles: &roles,
@@ -306,11 +306,9 @@ mod tests {
             stiffness: &stiffness,
             constraints: Constraints::default(),
             loose: Loose::Rest,
-            method: &method,
-            attachments: &[],
-            revision: 0,
+            examples: None,
         };
-        let partition = Partition::of(&problem).unwrap();
+        let partition = method.partition(&problem).unwrap();
         let handles = [Handle::new(partition.handles[0].clone(), &surface.positions)];
         let (progress, cancel) = (Progress::new(), Cancel::new());
         let ordering = Ordering::of(&topology, options.operator_power(), &progress, &cancel).unwrap();

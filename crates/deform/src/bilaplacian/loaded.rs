@@ -19,9 +19,10 @@ use crate::handles::offsets::Offsets;
 use crate::handles::{FRAME_CHUNK, Motion, clear};
 use crate::method::BindInput;
 use crate::operators::repairs;
+use crate::region::boundary_problem::BoundaryProblem;
 use crate::region::slender;
 use crate::sparse::refactorisation::Refactorisation;
-use crate::{Bilaplacian, BindError, Problem, ReusableFactor, SolveError};
+use crate::{Bilaplacian, BindError, ReusableFactor, SolveError};
 
 /// The factored system, and the data for setting up and reading its fields: one row for each local vertex of its
 /// Laplacian, then one for each spring.
@@ -49,7 +50,7 @@ impl LoadedSystem {
         input: &BindInput<'_>,
     ) -> Result<Self, BindError> {
         let &BindInput { partition, cancel, .. } = input;
-        let problem = Problem {
+        let problem = BoundaryProblem {
             stiffness,
             ..*input.problem
         };

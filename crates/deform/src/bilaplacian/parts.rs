@@ -15,6 +15,7 @@
 use faer::Mat;
 use glam::DVec3;
 
+use crate::Role;
 use crate::bilaplacian::natural::NaturalTerm;
 use crate::bilaplacian::operator::BilaplacianOperator;
 use crate::bilaplacian::setup::Prescribed;
@@ -24,7 +25,7 @@ use crate::numerical::graph::Graph;
 use crate::numerical::rigid_fit::RigidMotion;
 use crate::operators::hessian::RingKind;
 use crate::operators::triangulation::Triangulation;
-use crate::{Problem, Role};
+use crate::region::boundary_problem::BoundaryProblem;
 use pliant_mesh::SurfaceVertex;
 
 /// The most parts with their own motion: each needs the columns of a handle.
@@ -81,7 +82,7 @@ impl StiffParts {
     pub fn attach(
         operator: &mut BilaplacianOperator,
         triangulation: &Triangulation,
-        problem: &Problem,
+        problem: &BoundaryProblem,
         handles: &[Handle],
         may_turn: impl Fn(u32) -> bool,
     ) -> (Self, Vec<Prescribed>) {
@@ -289,7 +290,7 @@ impl StiffParts {
 impl StiffPart {
     fn rigid(&self, moved: &[DVec3]) -> Motion {
         let fit = RigidMotion::fit(&self.rest, moved);
-        fit.map_or(Motion::default(), |fit| fit.motion_of(&self.handle))
+        fit.map_or(Motion::default(), |fit| self.handle.rigid_motion(&fit))
     }
 }
 
@@ -305,7 +306,7 @@ fn hessian<const K: usize>(
 }
 
 /// s₁ of each surface vertex.
-fn least_stiffness(operator: &BilaplacianOperator, problem: &Problem) -> Vec<f64> {
+fn least_stiffness(operator: &BilaplacianOperator, problem: &BoundaryProblem) -> Vec<f64> {
     let laplacian = &operator.laplacian;
     let mut of_component = vec![f64::INFINITY; problem.topology.components().len()];
     let component = |vertex: u32| problem.topology.component(SurfaceVertex(vertex)) as usize;
@@ -324,7 +325,7 @@ fn least_stiffness(operator: &BilaplacianOperator, problem: &Problem) -> Vec<f64
 fn components(
     operator: &BilaplacianOperator,
     triangulation: &Triangulation,
-    problem: &Problem,
+    problem: &BoundaryProblem,
     least: &[f64],
 ) -> Vec<(Vec<u32>, Guide)> {
     let is_stiff = |vertex: usize| problem.stiffness[vertex] > least[vertex];
@@ -368,7 +369,7 @@ fn components(
 /// Springs from a part's moving vertices to the part: their places in a field and the part's coordinates there.
 fn hang(
     operator: &mut BilaplacianOperator,
-    problem: &Problem,
+    problem: &BoundaryProblem,
     part: &Handle,
     wave_number: f64,
     excess: &impl Fn(u32) -> f64,
@@ -398,7 +399,7 @@ fn hang(
 }
 
 /// The mean of |κ₁ + κ₂| over the vertices of a part inside its triangles.
-fn mean_curvature(operator: &BilaplacianOperator, problem: &Problem, part: &Handle) -> f64 {
+fn mean_curvature(operator: &BilaplacianOperator, problem: &BoundaryProblem, part: &Handle) -> f64 {
     let (laplacian, Some(natural)) = (&operator.laplacian, &operator.natural) else {
         return 0.0;
     };
@@ -422,7 +423,12 @@ fn mean_curvature(operator: &BilaplacianOperator, problem: &Problem, part: &Hand
 }
 
 /// The Hessians within a part.
-fn rows(operator: &BilaplacianOperator, problem: &Problem, part: &Handle, excess: &impl Fn(u32) -> f64) -> Vec<Row> {
+fn rows(
+    operator: &BilaplacianOperator,
+    problem: &BoundaryProblem,
+    part: &Handle,
+    excess: &impl Fn(u32) -> f64,
+) -> Vec<Row> {
     let (laplacian, Some(natural)) = (&operator.laplacian, &operator.natural) else {
         return Vec::new();
     };

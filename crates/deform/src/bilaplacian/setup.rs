@@ -8,9 +8,10 @@ use crate::bilaplacian::operator::BilaplacianOperator;
 use crate::handles::Handle;
 use crate::numerical::graph::Graph;
 use crate::operators::triangulation::Triangulation;
+use crate::region::boundary_problem::BoundaryProblem;
 use crate::region::partition::Partition;
 use crate::sparse::ordering::hubs::hub_degree;
-use crate::{Bilaplacian, Laplacian, Problem};
+use crate::{Bilaplacian, Laplacian};
 
 /// A handle's places in a field, at its vertices or, if it is soft, at their springs, and their coordinates.
 pub(crate) type Prescribed = Vec<(u32, [f64; 4])>;
@@ -26,7 +27,7 @@ pub(crate) enum Boundaries {
 
 /// The problem's operator, and each handle's places in a field and their coordinates.
 pub(crate) fn operator(
-    problem: &Problem,
+    problem: &BoundaryProblem,
     options: &Bilaplacian,
     partition: &Partition,
     handles: &[Handle],
@@ -79,7 +80,7 @@ pub(crate) fn bent_rows(triangulation: &Triangulation, solved: &[u32], handles: 
 /// Each handle's places in a field and their coordinates; soft handles get springs.
 fn prescribe(
     operator: &mut BilaplacianOperator,
-    problem: &Problem,
+    problem: &BoundaryProblem,
     partition: &Partition,
     handles: &[Handle],
 ) -> Vec<Vec<(u32, [f64; 4])>> {

@@ -19,10 +19,11 @@ use crate::handles::offsets::Offsets;
 use crate::handles::{Motion, clear};
 use crate::method::BindInput;
 use crate::operators::repairs;
+use crate::region::boundary_problem::BoundaryProblem;
 use crate::region::partition::Partition;
 use crate::region::slender;
 use crate::sparse::refactorisation::RenewableFactor;
-use crate::{Bilaplacian, BindError, HandleBases, Problem, SolveError};
+use crate::{Bilaplacian, BindError, HandleBases, SolveError};
 
 /// The bound bi-Laplacian, with handle bases of the precision `T`.
 #[derive(Debug)]
@@ -314,7 +315,7 @@ fn of_order(options: &Bilaplacian, refused: BindError) -> BindError {
 }
 
 /// The lowest handle of each component in which nothing is fixed.
-fn reference_handles(problem: &Problem, partition: &Partition) -> Vec<Option<u16>> {
+fn reference_handles(problem: &BoundaryProblem, partition: &Partition) -> Vec<Option<u16>> {
     let mut reference = vec![None; partition.held.len()];
     for (handle, vertices) in partition.handles.iter().enumerate().rev() {
         for &vertex in vertices {

@@ -7,9 +7,9 @@ use super::conformal::Conformal;
 use super::green_steps::Progressed;
 use crate::SolveError;
 use crate::handles::Motion;
+use crate::handles::controls::Controls;
 use crate::handles::finite::Finite;
 use crate::method::{BoundMethod, Stepped};
-use crate::space::controls::Controls;
 use crate::space::field::LinearField;
 
 /// The bound method.

@@ -7,8 +7,8 @@ use super::graph::Graph;
 use crate::Role;
 use crate::handles::Motion;
 use crate::method::BindInput;
-use crate::space::nearest::NearestPoints;
-use crate::space::samples::{EQUAL, farthest, thinned};
+use crate::numerical::nearest::NearestPoints;
+use crate::numerical::samples::{EQUAL, farthest, thinned};
 use crate::space::shaping::shaping;
 use rayon::prelude::*;
 

@@ -264,9 +264,9 @@ mod tests {
     use super::{Solver, moved};
     use crate::handles::{Handle, Motion};
     use crate::method::BindInput;
-    use crate::region::partition::Partition;
+    use crate::region::boundary_problem::BoundaryProblem;
     use crate::sparse::refactorisation::Refactorisation;
-    use crate::{Constraints, Embedded, Loose, Method, Problem, Role};
+    use crate::{Constraints, Embedded, Loose, Method, Role};
 
     fn noise(k: usize) -> f64 {
         2.0 * ((k as f64 * 12.9898).sin() * 43_758.545).fract()
@@ -289,7 +289,7 @@ mod tests {
             ..Embedded::default()
         };
         let method = Method::from(options.clone());
-        let problem = Problem {
+        let problem = BoundaryProblem {
             surface: &model.surface,
             topology: &model.topology,
             roles: &roles,
@@ -297,16 +297,16 @@ mod tests {
             stiffness: &stiffness,
             constraints: Constraints::default(),
             loose: Loose::Rest,
-            method: &method,
-            attachments: &[],
-            revision: 0,
+            examples: None,
         };
-        let partition = Partition::of(&problem).unwrap();
+        let partition = method.partition(&problem).unwrap();
         let handles = [Handle::new(partition.handles[0].clone(), positions)];
         let target = DAffine3::from_translation(DVec3::new(0.4, 0.1, 0.3)) * DAffine3::from_rotation_x(1.0);
         let motions = vec![handles[0].motion(&target)];
         let input = BindInput {
             problem: &problem,
+            needs: method.needs(),
+            takes_first_power: false,
             partition: &partition,
             handles: &handles,
             attachment: None,

@@ -5,6 +5,7 @@
 
 pub(crate) mod bases;
 pub(crate) mod blend;
+pub(crate) mod controls;
 pub(crate) mod finite;
 pub(crate) mod offsets;
 pub(crate) mod polar;
@@ -15,6 +16,7 @@ use glam::{DAffine3, DMat3, DVec3};
 use rayon::prelude::*;
 
 use crate::Warning;
+use crate::numerical::rigid_fit::RigidMotion;
 
 /// The number of surface vertices that one task displaces.
 pub(crate) const FRAME_CHUNK: usize = 4096;
@@ -86,6 +88,14 @@ impl Handle {
         Motion {
             linear: change * self.radius,
             shift: change * self.world_centre + world_target.translation,
+        }
+    }
+
+    /// A rigid motion in the handle's coordinates.
+    pub fn rigid_motion(&self, rigid: &RigidMotion) -> Motion {
+        Motion {
+            linear: rigid.turn * self.radius,
+            shift: rigid.displace(self.world_centre),
         }
     }
 }

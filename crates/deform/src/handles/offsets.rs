@@ -41,7 +41,7 @@ impl Offsets {
         let Some(fit) = RigidMotion::fit(world_rest, displacements) else {
             return Motion::default();
         };
-        let motion = fit.motion_of(handle);
+        let motion = handle.rigid_motion(&fit);
         let each = handle.vertices.iter().zip(world_rest).zip(displacements);
         let left = each.map(|((&vertex, &rest), &wanted)| (vertex, wanted - motion.displace(handle.coordinates(rest))));
         self.of_vertices.extend(left);

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::{Handle, Motion};
-use crate::{Problem, Remedy};
+use crate::Remedy;
 
 /// Handles that are missed by less than this share of the size of the bending part look met.
 const UNSEEN: f64 = 1e-3;
@@ -18,8 +18,8 @@ pub(crate) struct HandleResidual {
 
 impl HandleResidual {
     /// The residual of handles that are not soft.
-    pub fn new(problem: &Problem, handles: &[Handle], soft: &[Option<f64>]) -> Self {
-        let positions = &problem.surface.positions;
+    /// `size` is that of the bending part.
+    pub fn new(method: &'static str, size: f64, positions: &[DVec3], handles: &[Handle], soft: &[Option<f64>]) -> Self {
         let own = |(handle, soft): (&Handle, &Option<f64>)| {
             let vertices = handle.vertices.iter().filter(|_| soft.is_none());
             vertices
@@ -28,8 +28,8 @@ impl HandleResidual {
         };
         Self {
             handles: handles.iter().zip(soft).map(own).collect(),
-            method: problem.method.name(),
-            size: problem.size(),
+            method,
+            size,
         }
     }
 

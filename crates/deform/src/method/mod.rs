@@ -2,24 +2,26 @@
 //!
 //! `README.md` beside the sources explains the addition of a method and the needs of later ones.
 
-mod declaration;
-mod traits;
+mod bind_input;
+mod bound_method;
+mod deform_method;
 
 use std::fmt;
 
 use glam::DVec3;
 use pliant_mesh::{Cancel, Cancelled, Progress, Surface, Topology};
 
-pub use self::declaration::MethodDeclaration;
-pub(crate) use self::traits::{BindInput, BoundMethod, DeformMethod, Options, Stepped};
+pub(crate) use self::bind_input::BindInput;
+pub(crate) use self::bound_method::{BoundMethod, Stepped};
+pub(crate) use self::deform_method::{DeformMethod, Options};
+pub use self::deform_method::{Method, MethodDeclaration};
 use crate::budget::plate_bytes;
 use crate::option::joined;
+use crate::region::boundary_problem::BoundaryProblem;
+use crate::region::partition::{Demands, Partition, check};
 use crate::{
     Attachment, AttachmentRefused, BindError, Budget, HandleFit, Needs, OptionRefused, OptionValue, Ordering, Solve,
 };
-
-/// A method with its options: the law by which a surface follows its handles.
-pub struct Method(Box<dyn DeformMethod>);
 
 impl Method {
     pub(crate) fn of(options: impl DeformMethod) -> Self {
@@ -171,6 +173,31 @@ impl Method {
     /// The options as the method's own type, if it is that method.
     pub fn options<T: 'static>(&self) -> Option<&T> {
         (&*self.0 as &dyn std::any::Any).downcast_ref()
+    }
+
+    /// Checks a problem and sorts its vertices for this method.
+    ///
+    /// # Errors
+    /// The fault of a table, or of the surface.
+    pub(crate) fn partition<'a>(&self, problem: &BoundaryProblem<'a>) -> Result<Partition<'a>, BindError> {
+        check(problem)?;
+        let declaration = self.declaration();
+        if let Some(examples) = problem.examples {
+            let title = declaration.attachments.first().map_or("examples", |own| own.title);
+            let checked = examples.check_fits(problem.surface.positions.len());
+            checked.map_err(|refused| BindError::Attachment { title, refused })?;
+        }
+        // An empty surface needs no refusal.
+        if !problem.surface.positions.is_empty() {
+            self.check_bends(problem.surface)?;
+        }
+        let demands = Demands {
+            method: declaration.name,
+            needs: self.needs(),
+            heeds: declaration.heeds,
+            examples_bend: self.examples_bend(),
+        };
+        Partition::of(problem, &demands, self.0.triangulation(problem))
     }
 
     /// The trait behind it.

@@ -4,8 +4,8 @@ use glam::DVec3;
 
 use crate::Role;
 use crate::method::BindInput;
-use crate::space::nearest::NearestPoints;
-use crate::space::samples::{farthest, thinned};
+use crate::numerical::nearest::NearestPoints;
+use crate::numerical::samples::{farthest, thinned};
 use crate::space::unit::Unit;
 
 /// The most samples of a handle.

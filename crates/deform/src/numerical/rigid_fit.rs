@@ -5,7 +5,6 @@
 
 use glam::{DMat3, DQuat, DVec3};
 
-use crate::handles::{Handle, Motion};
 use crate::numerical::eigen::jacobi;
 
 /// A rigid motion about a point: `p ↦ centre + rotation * (p − centre) + shift`.
@@ -13,7 +12,7 @@ use crate::numerical::eigen::jacobi;
 pub struct RigidMotion {
     centre: DVec3,
     /// The rotation less the identity, so that small motions keep their digits far from the origin.
-    turn: DMat3,
+    pub(crate) turn: DMat3,
     shift: DVec3,
 }
 
@@ -46,14 +45,6 @@ impl RigidMotion {
     /// The rotation, a unit quaternion.
     pub fn rotation(&self) -> DQuat {
         DQuat::from_mat3(&(self.turn + DMat3::IDENTITY)).normalize()
-    }
-
-    /// The same for a handle's vertices.
-    pub(crate) fn motion_of(&self, handle: &Handle) -> Motion {
-        Motion {
-            linear: self.turn * handle.radius,
-            shift: self.displace(handle.world_centre),
-        }
     }
 
     /// The displacement of a point.

@@ -5,12 +5,14 @@
 //! `operators::gradients` makes the right-hand side, and `bilaplacian::loaded` solves.
 
 mod declaration;
+mod membrane;
 mod options;
 pub(crate) mod propagation;
 
 use glam::DVec3;
 
 pub(crate) use self::declaration::DECLARATION;
+pub(crate) use self::membrane::{membrane, stiffness_of};
 pub use self::options::{Poisson, Propagation};
 
 use self::propagation::weights;
@@ -19,7 +21,7 @@ use crate::handles::polar::{Blend, Polar, polars_of};
 use crate::handles::{Handle, Motion};
 use crate::method::BindInput;
 use crate::operators::gradients::{EdgeChanges, Gradients};
-use crate::{Bilaplacian, BilaplacianOrder, BindError, SolveError};
+use crate::{BindError, SolveError};
 
 /// The bound method.
 #[derive(Debug)]
@@ -125,17 +127,4 @@ impl PoissonSolver {
             weights[vertex as usize] = row[handle];
         }
     }
-}
-
-/// −L as a bi-Laplacian of order 1.
-pub(crate) fn membrane() -> Bilaplacian {
-    Bilaplacian {
-        order: BilaplacianOrder::Membrane,
-        ..Bilaplacian::default()
-    }
-}
-
-/// k in A = −k L, also a factor of loads.
-pub(crate) fn stiffness_of(system: &LoadedSystem) -> f64 {
-    system.operator().stretching + system.operator().bending
 }

@@ -3,7 +3,8 @@
 use pliant_mesh::{SurfaceVertex, distances_along_surface};
 use rayon::prelude::*;
 
-use super::{Propagation, membrane};
+use super::Propagation;
+use super::membrane::membrane;
 use crate::bilaplacian::loaded::LoadedSystem;
 use crate::budget::filled;
 use crate::method::BindInput;

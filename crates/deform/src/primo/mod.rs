@@ -51,13 +51,14 @@ use self::edges::Edges;
 use self::joints::{Joints, Material};
 use self::prisms::Prisms;
 use self::vertices::Vertices;
+use crate::BindError;
 use crate::handles::{Handle, Motion};
+use crate::region::boundary_problem::BoundaryProblem;
 use crate::region::partition::Partition;
 use crate::region::slender;
 use crate::sparse::Elimination;
 use crate::sparse::factor_error::FactorError;
 use crate::sparse::ordering::graph::elimination;
-use crate::{BindError, Problem};
 
 /// The bound method, with its present pose.
 #[derive(Debug)]
@@ -71,7 +72,7 @@ pub(crate) struct PrimoSolver {
 impl PrimoSolver {
     /// Sorts the prisms, joins them, factors, and solves for the weights of `handles`.
     pub fn bind(
-        problem: &Problem,
+        problem: &BoundaryProblem,
         options: &Primo,
         partition: &Partition,
         handles: &[Handle],
@@ -182,8 +183,8 @@ mod tests {
     use super::pose::tests::noise;
     use super::{Primo, PrimoSolver};
     use crate::handles::{Handle, Motion};
-    use crate::region::partition::Partition;
-    use crate::{Constraints, Loose, Method, Problem, Role};
+    use crate::region::boundary_problem::BoundaryProblem;
+    use crate::{Constraints, Loose, Method, Role};
 
     /// A solver with the lowest tenth of z fixed and the highest a handle, and the handle's motion.
     fn solver(drawn: Drawn) -> (PrimoSolver, Vec<Motion>, usize) {
@@ -201,7 +202,7 @@ mod tests {
             ..Primo::default()
         };
         let method = Method::from(options.clone());
-        let problem = Problem {
+        let problem = BoundaryProblem {
             surface: &model.surface,
             topology: &model.topology,
             roles: &roles,
@@ -209,11 +210,9 @@ mod tests {
             stiffness: &vec![1.0; roles.len()],
             constraints: Constraints::default(),
             loose: Loose::Rest,
-            method: &method,
-            attachments: &[],
-            revision: 0,
+            examples: None,
         };
-        let partition = Partition::of(&problem).unwrap();
+        let partition = method.partition(&problem).unwrap();
         let handles = [Handle::new(partition.handles[0].clone(), positions)];
         let target =
             DAffine3::from_translation(DVec3::new(0.2, 0.1, 0.0) * bounds.diagonal()) * DAffine3::from_rotation_z(0.5);

@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::directions::directions;
 use crate::Role;
 use crate::method::BindInput;
-use crate::space::samples::thinned;
+use crate::numerical::samples::thinned;
 
 /// More constraints than these are thinned out to about as many, evenly in space.
 const MOST: usize = 40_000;

@@ -5,8 +5,9 @@ use pliant_mesh::SurfaceVertex;
 
 use crate::arap::clusters::Clusters;
 use crate::handles::Handle;
+use crate::region::boundary_problem::BoundaryProblem;
 use crate::region::partition::Partition;
-use crate::{Attachment, Constraints, Loose, Method, Problem};
+use crate::{Constraints, Examples, Loose, Method};
 
 /// The number of coarse cells with which a fine cell turns.
 const NEAREST: usize = 4;
@@ -20,14 +21,14 @@ pub(crate) type Shares = [Share; NEAREST];
 /// Binds `method` with `bind` to the problem on the clusters. Handles keep the fine ones' frames, so that the same
 /// motions apply.
 pub(crate) fn on_clusters<T>(
-    problem: &Problem,
+    problem: &BoundaryProblem,
     clusters: &Clusters,
     method: &Method,
-    attachments: &[(&'static str, Attachment)],
+    examples: Option<&Examples>,
     handles: &[Handle],
-    bind: impl FnOnce(&Problem, Partition, &[Handle]) -> Option<T>,
+    bind: impl FnOnce(&BoundaryProblem, Partition, &[Handle]) -> Option<T>,
 ) -> Option<T> {
-    let coarse = Problem {
+    let coarse = BoundaryProblem {
         surface: &clusters.surface,
         topology: &clusters.topology,
         roles: &clusters.roles,
@@ -38,11 +39,9 @@ pub(crate) fn on_clusters<T>(
             ..Constraints::default()
         },
         loose: Loose::Rest,
-        method,
-        attachments,
-        revision: problem.revision,
+        examples,
     };
-    let partition = Partition::of(&coarse).ok()?;
+    let partition = method.partition(&coarse).ok()?;
     let handles: Vec<Handle> = handles
         .iter()
         .zip(&partition.handles)
@@ -57,7 +56,7 @@ pub(crate) fn on_clusters<T>(
 /// For a surface vertex, the nearest coarse cells of its cluster's ring, with shares that fall to 0 towards the next
 /// one; `cell` gives a cluster's cell, if it has one.
 pub(crate) fn shares(
-    problem: &Problem,
+    problem: &BoundaryProblem,
     clusters: &Clusters,
     cell: &impl Fn(u32) -> Option<u32>,
     vertex: u32,

@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use crate::{BindError, Loose, Problem};
+use crate::{BindError, Loose};
 
 /// The properties of constrained vertices beyond their roles. The default is hard handles, joined as smoothly as the
 /// method can.
@@ -24,7 +24,7 @@ pub struct Constraints<'a> {
     /// number between is a hinge with a spring, equally stiff at every resolution. Empty if it is 2 everywhere.
     pub continuity: &'a [f64],
     /// The behaviour of single components that nothing holds, by their number in the topology, instead of
-    /// [`Problem::loose`]. The last entry for a component counts.
+    /// [`crate::Problem::loose`]. The last entry for a component counts.
     pub parts: &'a [(u32, Loose)],
 }
 
@@ -38,10 +38,9 @@ impl Constraints<'_> {
     }
 
     /// Checks that every table fits the problem and that every number is in its range.
-    pub(crate) fn check(&self, problem: &Problem) -> Result<(), BindError> {
-        let vertex_count = problem.surface.positions.len();
+    pub(crate) fn check(&self, vertex_count: usize, handle_count: usize) -> Result<(), BindError> {
         for (table, found, expected) in [
-            ("the table of handles' weights", self.soft.len(), problem.handle_count),
+            ("the table of handles' weights", self.soft.len(), handle_count),
             ("the continuity table", self.continuity.len(), vertex_count),
         ] {
             if found != 0 && found != expected {

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use pliant_mesh::{MirrorPlane, mirror_planes};
 
-use crate::space::nearest::NearestPoints;
+use crate::numerical::nearest::NearestPoints;
 
 /// The share of a part's vertices that must have their image across a plane.
 const MOST: f64 = 0.95;

@@ -1,5 +1,6 @@
 //! The roles applied to a surface: solved vertices, held vertices with the strength of the hold, and followers.
 
+pub(crate) mod boundary_problem;
 pub(crate) mod clustered;
 pub(crate) mod constraints;
 pub(crate) mod follow;
@@ -8,5 +9,6 @@ pub(crate) mod nodes;
 mod owners;
 pub(crate) mod partition;
 pub(crate) mod patch;
+pub(crate) mod size;
 pub(crate) mod slender;
 mod strays;

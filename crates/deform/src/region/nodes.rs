@@ -7,8 +7,8 @@ use glam::DVec3;
 use pliant_mesh::{SurfaceVertex, Topology};
 
 use super::images::Images;
-use crate::Problem;
-use crate::space::samples::{EQUAL, farthest, thinned};
+use crate::numerical::samples::{EQUAL, farthest, thinned};
+use crate::region::boundary_problem::BoundaryProblem;
 
 /// Nodes, and the part of the surface nearest to each.
 pub(crate) struct Nodes {
@@ -34,17 +34,17 @@ const FEWEST_PAIRED: usize = 200;
 const CANDIDATES: usize = 100;
 
 /// Like [`spread`]; if the part is its own mirror image and there are enough nodes, they are too.
-pub(crate) fn spread_alike(problem: &Problem, part: &[u32], most: usize) -> Nodes {
+pub(crate) fn spread_alike(problem: &BoundaryProblem, part: &[u32], most: usize) -> Nodes {
     let images = (most >= FEWEST_PAIRED).then(|| Images::of(&problem.surface.positions, part));
     spread_with(problem, part, most, images.as_ref())
 }
 
 /// At most this many nodes among the vertices `part`, which are ascending.
-pub(crate) fn spread(problem: &Problem, part: &[u32], most: usize) -> Nodes {
+pub(crate) fn spread(problem: &BoundaryProblem, part: &[u32], most: usize) -> Nodes {
     spread_with(problem, part, most, None)
 }
 
-fn spread_with(problem: &Problem, part: &[u32], most: usize, images: Option<&Images<'_>>) -> Nodes {
+fn spread_with(problem: &BoundaryProblem, part: &[u32], most: usize, images: Option<&Images<'_>>) -> Nodes {
     let (positions, topology) = (&problem.surface.positions, problem.topology);
     let mut search = Search::new(positions, topology, part);
     let pieces: BTreeSet<u32> = part.iter().map(|&v| topology.component(SurfaceVertex(v))).collect();

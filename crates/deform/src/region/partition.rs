@@ -12,7 +12,8 @@ use super::strays::strays;
 use crate::budget::bytes_of;
 use crate::numerical::graph::Graph;
 use crate::operators::triangulation::Triangulation;
-use crate::{BindError, Budget, CONTINUITY_RANGE, ConstraintKind, Loose, Needs, Problem, Remedy, Role, Warning};
+use crate::region::boundary_problem::BoundaryProblem;
+use crate::{BindError, Budget, CONTINUITY_RANGE, ConstraintKind, Loose, Needs, Remedy, Role, Warning};
 
 /// The vertices by role, all lists ascending.
 #[derive(Debug)]
@@ -41,29 +42,37 @@ pub(crate) struct Partition<'a> {
     pub warnings: Vec<Warning>,
 }
 
+/// The facts about a method that decide which vertices it solves for.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Demands {
+    pub method: &'static str,
+    pub needs: Needs,
+    /// The constraints that it supports.
+    pub heeds: &'static [ConstraintKind],
+    /// Whether examples bend the surface by themselves.
+    pub examples_bend: bool,
+}
+
 impl<'a> Partition<'a> {
-    /// Checks the problem's tables and sorts its vertices.
-    pub fn of(problem: &Problem<'a>) -> Result<Self, BindError> {
-        check(problem)?;
-        // An empty surface needs no refusal.
-        if !problem.surface.positions.is_empty() {
-            problem.method.check_bends(problem.surface)?;
-        }
-        let method = problem.method.implementation();
-        let triangulation = method.triangulation(problem);
+    /// Sorts the vertices of a problem that was [checked](check).
+    pub fn of(
+        problem: &BoundaryProblem<'a>,
+        demands: &Demands,
+        triangulation: Triangulation<'a>,
+    ) -> Result<Self, BindError> {
         let mut handles = vec![Vec::new(); problem.handle_count];
         let component_count = problem.topology.components().len();
         let mut held = vec![false; component_count];
         let mut driven = vec![false; component_count];
         let mut free_count = 0;
-        let soft = soft_weights(problem);
+        let soft = soft_weights(problem, demands);
         for (vertex, &role) in problem.roles.iter().enumerate() {
             let component = problem.topology.component(SurfaceVertex(vertex as u32)) as usize;
             match role {
                 Role::Fixed => held[component] = true,
                 Role::Free => free_count += 1,
                 // A spring on a bare point would have no effect: the point follows like others.
-                Role::Handle(handle) if soft[usize::from(handle)].is_some() && is_bare(problem, vertex) => {}
+                Role::Handle(handle) if soft[usize::from(handle)].is_some() && is_bare(problem, demands, vertex) => {}
                 Role::Handle(handle) => {
                     handles[usize::from(handle)].push(vertex as u32);
                     driven[component] = true;
@@ -80,7 +89,7 @@ impl<'a> Partition<'a> {
                 .collect::<Vec<_>>()
         };
         let loose_of = problem.loose_by_component();
-        let (loose, mut warnings): (_, Vec<Warning>) = match method.needs() {
+        let (loose, mut warnings): (_, Vec<Warning>) = match demands.needs {
             // If nothing needs to be connected, only distant components are loose.
             Needs::Points => {
                 let loose = strays(problem, &driven, &held);
@@ -105,19 +114,20 @@ impl<'a> Partition<'a> {
             Loose::Rest => None,
             how => (!handles.is_empty()).then_some((component, how)),
         };
-        let moving = match method.needs() {
+        let moving = match demands.needs {
             Needs::Points => moving(problem, &loose),
             Needs::Surface { .. } => Vec::new(),
         };
-        warnings.extend(unheeded(problem));
+        warnings.extend(unheeded(problem, demands));
         warnings.extend(triangulation.warning().map(Warning::from));
         Ok(Self {
             solved: solved(
                 problem,
+                demands,
                 &triangulation,
                 &handles,
                 &soft,
-                &led_by_examples(problem, &held, &driven),
+                &led_by_examples(problem, demands, &held, &driven),
                 &moving,
             ),
             moving,
@@ -140,16 +150,21 @@ impl Partition<'_> {
     ///
     /// # Errors
     /// [`BindError::Budget`] or [`BindError::Handles`] if these alone exceed it.
-    pub fn take_budget(&mut self, problem: &Problem, budget: Budget) -> Result<(), BindError> {
+    /// `row_bytes` and `handle_row_bytes` are those of the method.
+    pub fn take_budget(
+        &mut self,
+        vertex_count: usize,
+        row_bytes: usize,
+        handle_row_bytes: usize,
+        budget: Budget,
+    ) -> Result<(), BindError> {
         let (handles, solved) = (self.handles.len(), self.solved.len());
-        let row = problem.method.implementation().handle_row_bytes();
-        let of_handles = bytes_of(handles, row * solved).saturating_add(bytes_of(handles, PAIR * handles));
+        let of_handles = bytes_of(handles, handle_row_bytes * solved).saturating_add(bytes_of(handles, PAIR * handles));
         let budget = budget.without(of_handles).map_err(|_| BindError::Handles {
             handle_count: handles,
             free_count: solved,
         })?;
-        let of_tables = bytes_of(problem.surface.positions.len(), SURFACE_ROW)
-            .saturating_add(bytes_of(solved, problem.method.implementation().row_bytes()));
+        let of_tables = bytes_of(vertex_count, SURFACE_ROW).saturating_add(bytes_of(solved, row_bytes));
         self.budget = budget
             .without(of_tables)
             .map_err(|limit| BindError::budget(solved, limit))?;
@@ -165,7 +180,7 @@ const SURFACE_ROW: usize = 190;
 const PAIR: usize = 128;
 
 /// Checks that every table fits the surface and that every number is in its range.
-fn check(problem: &Problem) -> Result<(), BindError> {
+pub(crate) fn check(problem: &BoundaryProblem) -> Result<(), BindError> {
     let expected = problem.surface.positions.len();
     for (table, found) in [
         ("the roles' table", problem.roles.len()),
@@ -175,17 +190,7 @@ fn check(problem: &Problem) -> Result<(), BindError> {
             return Err(BindError::Length { table, found, expected });
         }
     }
-    problem.constraints.check(problem)?;
-    if let Some(examples) = problem.examples() {
-        let title = problem
-            .method
-            .declaration()
-            .attachments
-            .first()
-            .map_or("examples", |own| own.title);
-        let checked = examples.check_fits(expected);
-        checked.map_err(|refused| BindError::Attachment { title, refused })?;
-    }
+    problem.constraints.check(expected, problem.handle_count)?;
     for (vertex, role) in problem.roles.iter().enumerate() {
         if let Role::Handle(handle) = *role
             && usize::from(handle) >= problem.handle_count
@@ -218,12 +223,12 @@ fn check(problem: &Problem) -> Result<(), BindError> {
 
 /// Each handle's weight, `None` if it is hard. A surface method holds a handle with only bare points hard, because its
 /// springs would have no effect.
-fn soft_weights(problem: &Problem) -> Vec<Option<f64>> {
-    let heeds_soft = problem.method.declaration().heeds(ConstraintKind::SoftHandles);
+fn soft_weights(problem: &BoundaryProblem, demands: &Demands) -> Vec<Option<f64>> {
+    let heeds_soft = demands.heeds.contains(&ConstraintKind::SoftHandles);
     let mut pulls = vec![false; problem.handle_count];
     for (vertex, role) in problem.roles.iter().enumerate() {
         if let Role::Handle(handle) = *role {
-            pulls[usize::from(handle)] |= !is_bare(problem, vertex);
+            pulls[usize::from(handle)] |= !is_bare(problem, demands, vertex);
         }
     }
     let weight = |handle: usize| problem.constraints.weight(handle as u16);
@@ -233,7 +238,7 @@ fn soft_weights(problem: &Problem) -> Vec<Option<f64>> {
 }
 
 /// The vertices that are neither fixed nor on these components, ascending.
-fn moving(problem: &Problem, strays: &[u32]) -> Vec<u32> {
+fn moving(problem: &BoundaryProblem, strays: &[u32]) -> Vec<u32> {
     let is_stray = |vertex: u32| {
         let component = problem.topology.component(SurfaceVertex(vertex));
         strays.binary_search(&component).is_ok()
@@ -246,19 +251,19 @@ fn moving(problem: &Problem, strays: &[u32]) -> Vec<u32> {
 }
 
 /// Whether a surface method does not solve for a vertex, because no triangle uses it.
-fn is_bare(problem: &Problem, vertex: usize) -> bool {
+fn is_bare(problem: &BoundaryProblem, demands: &Demands, vertex: usize) -> bool {
     let is_alone = || problem.topology.neighbours(SurfaceVertex(vertex as u32)).is_empty();
-    problem.method.needs() != Needs::Points && is_alone()
+    demands.needs != Needs::Points && is_alone()
 }
 
 /// For each component: whether its free vertices are solved because an example moves it. If there are handles, a
 /// component that nothing holds still follows the others.
-fn led_by_examples(problem: &Problem, held: &[bool], driven: &[bool]) -> Vec<bool> {
+fn led_by_examples(problem: &BoundaryProblem, demands: &Demands, held: &[bool], driven: &[bool]) -> Vec<bool> {
     let mut led = vec![false; held.len()];
-    if !problem.method.examples_bend() {
+    if !demands.examples_bend {
         return led;
     }
-    for shape in problem.examples().iter().flat_map(|examples| &*examples.shapes) {
+    for shape in problem.examples.iter().flat_map(|examples| &*examples.shapes) {
         for (vertex, displacement) in (0..).zip(&*shape.displacements) {
             let component = problem.topology.component(SurfaceVertex(vertex)) as usize;
             led[component] |= *displacement != DVec3::ZERO;
@@ -274,7 +279,8 @@ fn led_by_examples(problem: &Problem, held: &[bool], driven: &[bool]) -> Vec<boo
 /// successive constrained vertices, and those of the components `led` by examples; for points, all free ones. A soft
 /// handle's vertices count as free.
 fn solved(
-    problem: &Problem,
+    problem: &BoundaryProblem,
+    demands: &Demands,
     triangulation: &Triangulation,
     handles: &[Vec<u32>],
     soft: &[Option<f64>],
@@ -292,7 +298,7 @@ fn solved(
             .map(|vertex| vertex as u32)
             .collect()
     };
-    let reach = match problem.method.needs() {
+    let reach = match demands.needs {
         Needs::Points => {
             let moving = moving.iter().copied();
             return moving.filter(|&vertex| is_free(vertex as usize)).collect();
@@ -316,11 +322,11 @@ fn solved(
         }
     }
     let is_led = |vertex: usize| led[problem.topology.component(SurfaceVertex(vertex as u32)) as usize];
-    chosen(&|vertex| (left[vertex] > 0 || is_led(vertex)) && is_free(vertex) && !is_bare(problem, vertex))
+    chosen(&|vertex| (left[vertex] > 0 || is_led(vertex)) && is_free(vertex) && !is_bare(problem, demands, vertex))
 }
 
 /// Sentences about constraints that the method does not support, with the methods that do.
-fn unheeded(problem: &Problem) -> Vec<Warning> {
+fn unheeded(problem: &BoundaryProblem, demands: &Demands) -> Vec<Warning> {
     let constraints = &problem.constraints;
     let soft = constraints.soft.iter().position(Option::is_some);
     let has_joints = constraints
@@ -328,10 +334,9 @@ fn unheeded(problem: &Problem) -> Vec<Warning> {
         .iter()
         .any(|&value| value != *CONTINUITY_RANGE.end());
     let is_painted = problem.stiffness.iter().any(|&value| value != 1.0);
-    let declaration = problem.method.declaration();
-    let name = declaration.name;
+    let name = demands.method;
     let remedy = |kind: ConstraintKind, purpose: &str| format!("take {} for {purpose}", Remedy::Heeding(kind));
-    let is_unheeded = |kind: ConstraintKind, is_asked: bool| is_asked && !declaration.heeds(kind);
+    let is_unheeded = |kind: ConstraintKind, is_asked: bool| is_asked && !demands.heeds.contains(&kind);
     let mut warnings = Vec::new();
     if let Some(handle) = soft.filter(|_| is_unheeded(ConstraintKind::SoftHandles, true)) {
         let remedy = remedy(ConstraintKind::SoftHandles, "soft handles");
@@ -351,7 +356,7 @@ fn unheeded(problem: &Problem) -> Vec<Warning> {
 }
 
 /// A sentence on the points that no triangle uses and nothing holds.
-fn warning_of_points(problem: &Problem, points: &[u32], loose_of: &[Loose]) -> Option<String> {
+fn warning_of_points(problem: &BoundaryProblem, points: &[u32], loose_of: &[Loose]) -> Option<String> {
     let resting = points
         .iter()
         .filter(|&&point| loose_of[point as usize] == Loose::Rest)
@@ -374,7 +379,7 @@ fn warning_of_points(problem: &Problem, points: &[u32], loose_of: &[Loose]) -> O
 const NAMED: usize = 4;
 
 /// Sentences on components without a handle and a fixed vertex.
-fn warnings(problem: &Problem, loose: &[u32], loose_of: &[Loose]) -> Vec<String> {
+fn warnings(problem: &BoundaryProblem, loose: &[u32], loose_of: &[Loose]) -> Vec<String> {
     let mut sentences = Vec::new();
     if problem.handle_count == 0 {
         return sentences;
@@ -425,7 +430,7 @@ fn warnings(problem: &Problem, loose: &[u32], loose_of: &[Loose]) -> Vec<String>
 }
 
 /// Sentences on components with a handle and without a fixed vertex.
-fn warnings_of_unheld(problem: &Problem, unheld: &[u32], handles: &[Vec<u32>]) -> Vec<Warning> {
+fn warnings_of_unheld(problem: &BoundaryProblem, unheld: &[u32], handles: &[Vec<u32>]) -> Vec<Warning> {
     let size = |component: u32| problem.topology.components()[component as usize].vertex_count;
     let mut holders = vec![Vec::new(); unheld.len()];
     if !unheld.is_empty() {

@@ -4,9 +4,9 @@ use glam::DVec3;
 use pliant_mesh::SurfaceVertex;
 use rayon::prelude::*;
 
-use crate::Problem;
 use crate::handles::FRAME_CHUNK;
 use crate::numerical::rows::CHUNK;
+use crate::region::boundary_problem::BoundaryProblem;
 
 /// *Local* vertices: the solved ones and their neighbours on the surface, ascending; and a *row* for each solved one.
 #[derive(Debug)]
@@ -23,7 +23,7 @@ pub(crate) struct Patch {
 
 impl Patch {
     /// The patch around the `solved` vertices, which are ascending; `rest` gives a surface vertex's rest position.
-    pub fn of(problem: &Problem, solved: &[u32], rest: impl Fn(usize) -> DVec3) -> Self {
+    pub fn of(problem: &BoundaryProblem, solved: &[u32], rest: impl Fn(usize) -> DVec3) -> Self {
         let mut is_local = vec![false; problem.surface.positions.len()];
         for &vertex in solved {
             is_local[vertex as usize] = true;

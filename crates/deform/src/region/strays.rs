@@ -6,14 +6,14 @@
 
 use pliant_mesh::{Bounds, SurfaceVertex};
 
-use crate::Problem;
+use crate::region::boundary_problem::BoundaryProblem;
 
 /// The largest size of a speck, as a share of the diagonal of the parts that handles move and hold.
 const MOST: f64 = 0.5;
 
 /// The components, ascending, without a handle or a fixed vertex, whose distance from those with one exceeds the size
 /// of those. Bare points are not included: they may be a cloud.
-pub(super) fn strays(problem: &Problem, driven: &[bool], held: &[bool]) -> Vec<u32> {
+pub(super) fn strays(problem: &BoundaryProblem, driven: &[bool], held: &[bool]) -> Vec<u32> {
     let components = problem.topology.components();
     let has_faces = |component: usize| components[component].face_count > 0;
     let is_loose = |component: usize| !driven[component] && !held[component] && has_faces(component);

@@ -13,7 +13,6 @@ use pliant_mesh::{Cancel, Progress};
 use rayon::prelude::*;
 
 use super::blended::fitted;
-use super::declaration::EXAMPLES;
 use super::elements::{ABSENT, Elements};
 use super::shape::Shape;
 use super::{Shells, ShellsSolver};
@@ -24,8 +23,9 @@ use crate::handles::offsets::Offsets;
 use crate::handles::{Handle, Motion};
 use crate::numerical::rows::CHUNK;
 use crate::numerical::sums::Field;
+use crate::region::boundary_problem::BoundaryProblem;
 use crate::region::clustered::{Share, Shares, on_clusters, shares, transposed};
-use crate::{Attachment, Budget, ExampleShape, Examples, Method, Problem};
+use crate::{Budget, ExampleShape, Examples, Method};
 
 /// The fewest vertices of a cluster.
 const CLUSTER: f64 = 8.0;
@@ -55,7 +55,7 @@ pub(super) struct Coarse {
 impl Coarse {
     /// For the bound `fine` elements of `problem`; `None` if no coarse level can be made.
     pub fn of(
-        problem: &Problem,
+        problem: &BoundaryProblem,
         options: &Shells,
         handles: &[Handle],
         solved: &[u32],
@@ -69,16 +69,12 @@ impl Coarse {
         let mut own = options.clone();
         own.led_above = usize::MAX;
         let method = Method::from(own.clone());
-        let attachments: Vec<(&'static str, Attachment)> = problem
-            .examples()
-            .map(|examples| (EXAMPLES, Attachment::Shapes(examples_of(examples, &clusters))))
-            .into_iter()
-            .collect();
+        let examples = problem.examples.map(|examples| examples_of(examples, &clusters));
         let solver = on_clusters(
             problem,
             &clusters,
             &method,
-            &attachments,
+            examples.as_ref(),
             handles,
             |coarse, mut partition, handles| {
                 partition.budget = budget;

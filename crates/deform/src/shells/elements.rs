@@ -8,11 +8,12 @@ use rayon::prelude::*;
 
 use super::Shells;
 use super::hinge::angle_rad;
+use crate::BindError;
 use crate::numerical::rows::CHUNK;
 use crate::primo::edges::{CROWD, area};
+use crate::region::boundary_problem::BoundaryProblem;
 use crate::sparse::Elimination;
 use crate::sparse::ordering::graph::elimination;
-use crate::{BindError, Problem};
 
 /// No local vertex.
 pub(super) const ABSENT: u32 = u32::MAX;
@@ -97,7 +98,7 @@ impl Elements {
     /// # Errors
     /// [`BindError::Cancelled`].
     pub fn of(
-        problem: &Problem,
+        problem: &BoundaryProblem,
         options: &Shells,
         solved: &[u32],
         world_origin: DVec3,
@@ -180,8 +181,8 @@ impl Elements {
 }
 
 /// The edges and hinges, by surface vertices; `number` tells the solved ones.
-fn collected(problem: &Problem, options: &Shells, number: &[u32], world_origin: DVec3) -> Collected {
-    let Problem { surface, topology, .. } = *problem;
+fn collected(problem: &BoundaryProblem, options: &Shells, number: &[u32], world_origin: DVec3) -> Collected {
+    let BoundaryProblem { surface, topology, .. } = *problem;
     let is_solved = |vertex: u32| number[vertex as usize] != ABSENT;
     let mut is_near: Vec<bool> = number.iter().map(|&place| place != ABSENT).collect();
     for vertex in (0..number.len() as u32).filter(|&vertex| is_solved(vertex)) {

@@ -9,9 +9,9 @@ use rayon::prelude::*;
 
 use super::Shells;
 use super::elements::Elements;
-use crate::Problem;
 use crate::numerical::rows::CHUNK;
 use crate::numerical::sums::CHUNKS_A_TASK;
+use crate::region::boundary_problem::BoundaryProblem;
 
 /// A component whose volume is below this share of what its area could enclose encloses nothing.
 const NOTHING: f64 = 1e-6;
@@ -35,11 +35,11 @@ pub(super) struct Part {
 
 impl Enclosed {
     /// Those with a solved vertex, with all their vertices numbered; none if their volume does not count.
-    pub fn of(problem: &Problem, options: &Shells, elements: &mut Elements) -> Self {
+    pub fn of(problem: &BoundaryProblem, options: &Shells, elements: &mut Elements) -> Self {
         if options.volume == 0.0 {
             return Self::default();
         }
-        let Problem { surface, topology, .. } = *problem;
+        let BoundaryProblem { surface, topology, .. } = *problem;
         let component = |vertex: SurfaceVertex| topology.component(vertex) as usize;
         let mut faces = vec![Vec::new(); topology.components().len()];
         let mut solved = vec![Vec::new(); faces.len()];

@@ -8,8 +8,8 @@ use glam::{DMat3, DQuat, DVec3};
 use pliant_mesh::SurfaceVertex;
 
 use super::elements::Elements;
-use crate::Problem;
 use crate::numerical::rigid_fit::best_rotation;
+use crate::region::boundary_problem::BoundaryProblem;
 use crate::region::partition::Partition;
 
 /// A vertex that moves by less than this share of the diagonal counts as one that stands still.
@@ -30,7 +30,7 @@ pub(super) struct Frame {
 impl Frame {
     /// Those of all components that nothing holds.
     pub fn all(
-        problem: &Problem,
+        problem: &BoundaryProblem,
         partition: &Partition,
         elements: &Elements,
         displacements: &[Vec<DVec3>],

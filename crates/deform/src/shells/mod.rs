@@ -66,15 +66,16 @@ use self::lead::Led;
 use self::shape::{Energy, Shape, Slopes};
 use self::system::{Pattern, System};
 use self::unfolded::{Preconditioner, Unfolded};
+use crate::BindError;
 use crate::budget::bytes_of;
 use crate::handles::blend::HandleFrame;
 use crate::handles::offsets::Offsets;
 use crate::handles::{Handle, Motion};
 use crate::numerical::lbfgs::Memory;
+use crate::region::boundary_problem::BoundaryProblem;
 use crate::region::partition::Partition;
 use crate::region::slender;
 use crate::sparse::factor_error::FactorError;
-use crate::{BindError, Problem};
 
 /// Bytes of a solved vertex in the tables of a surface that is led: shares, turns, factors, positions, and the last steps
 /// with their changes.
@@ -152,7 +153,7 @@ impl Prescribed {
 impl ShellsSolver {
     /// Collects edges and hinges, analyses the matrix, and solves for the weights of `handles`.
     pub fn bind(
-        problem: &Problem,
+        problem: &BoundaryProblem,
         options: &Shells,
         partition: &Partition,
         handles: &[Handle],
@@ -361,7 +362,7 @@ impl ShellsSolver {
 }
 
 fn prescribed(
-    problem: &Problem,
+    problem: &BoundaryProblem,
     partition: &Partition,
     handles: &[Handle],
     elements: &Elements,

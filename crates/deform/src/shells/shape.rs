@@ -12,10 +12,10 @@ use super::face::{self, Barrier};
 use super::frames::Frame;
 use super::hinge;
 use super::springs::Springs;
-use crate::Problem;
 use crate::handles::Handle;
 use crate::numerical::rows::CHUNK;
 use crate::numerical::sums::{CHUNKS_A_TASK, Field};
+use crate::region::boundary_problem::BoundaryProblem;
 use crate::region::partition::Partition;
 
 /// How much a rigid motion by the diagonal is resisted within a step where nothing else does, in units of stretching.
@@ -118,14 +118,14 @@ impl Rows {
 impl Energy {
     /// Of these elements, and of the volumes and soft handles that there are.
     pub fn of(
-        problem: &Problem,
+        problem: &BoundaryProblem,
         options: &Shells,
         partition: &Partition,
         handles: &[Handle],
         mut elements: Elements,
     ) -> Self {
         let enclosed = Enclosed::of(problem, options, &mut elements);
-        let examples = Examples::of(problem.examples(), &elements, &enclosed);
+        let examples = Examples::of(problem.examples, &elements, &enclosed);
         for (number, face) in elements.faces.iter_mut().enumerate() {
             face.least += examples.least_area(number);
         }
@@ -394,7 +394,7 @@ fn partial_sums<T: Sync>(each: &[T], of: impl Fn(usize, &T) -> f64 + Sync) -> f6
 
 /// The components that nothing holds, and what their vertices add to the diagonal.
 fn loose(
-    problem: &Problem,
+    problem: &BoundaryProblem,
     partition: &Partition,
     elements: &Elements,
     examples: &Examples,
@@ -423,8 +423,8 @@ mod tests {
     use super::super::{Descent, Shells, ShellsSolver};
     use super::Slopes;
     use crate::handles::Handle;
-    use crate::region::partition::Partition;
-    use crate::{Attachment, Constraints, ExampleShape, Examples, Loose, Method, Problem, Role};
+    use crate::region::boundary_problem::BoundaryProblem;
+    use crate::{Constraints, ExampleShape, Examples, Loose, Method, Role};
 
     fn noise(k: usize) -> f64 {
         2.0 * ((k as f64 * 12.9898).sin() * 43_758.545).fract() - 1.0
@@ -463,9 +463,8 @@ mod tests {
             shapes: std::sync::Arc::new((0..weights.len()).map(example).collect()),
             weights: weights.to_vec(),
         };
-        let attachments = [("examples", Attachment::Shapes(examples))];
         let method = Method::from(options.clone());
-        let problem = Problem {
+        let problem = BoundaryProblem {
             surface: &model.surface,
             topology: &model.topology,
             roles: &roles,
@@ -476,11 +475,9 @@ mod tests {
                 ..Constraints::default()
             },
             loose: Loose::Rest,
-            method: &method,
-            attachments: &attachments,
-            revision: 0,
+            examples: Some(&examples),
         };
-        let partition = Partition::of(&problem).unwrap();
+        let partition = method.partition(&problem).unwrap();
         let handles = [Handle::new(partition.handles[0].clone(), positions)];
         let mut solver = ShellsSolver::bind(
             &problem,

@@ -8,11 +8,11 @@ use glam::DVec3;
 
 use super::Shells;
 use super::elements::Elements;
-use crate::Problem;
 use crate::handles::offsets::Offsets;
 use crate::handles::{Handle, Motion};
 use crate::numerical::sums::Field;
 use crate::primo::edges::area;
+use crate::region::boundary_problem::BoundaryProblem;
 use crate::region::partition::Partition;
 
 /// The springs of all soft handles, and what else pulls.
@@ -41,7 +41,7 @@ pub(super) struct Spring {
 impl Springs {
     /// Those of the handles that `partition` has soft.
     pub fn of(
-        problem: &Problem,
+        problem: &BoundaryProblem,
         options: &Shells,
         partition: &Partition,
         handles: &[Handle],

@@ -17,16 +17,17 @@ use super::elements::Hinge;
 use super::hinge::flat;
 use super::shape::Energy;
 use super::system::{Pattern, scale};
+use crate::Role;
 use crate::budget::Budget;
 use crate::numerical::rows::{CHUNK, place_in};
 use crate::numerical::sums::CHUNKS_A_TASK;
+use crate::region::boundary_problem::BoundaryProblem;
 use crate::region::partition::Partition;
 use crate::sparse::cholesky::Factor;
 use crate::sparse::factor_error::FactorError;
 use crate::sparse::matrix::ScaledMatrix;
 use crate::sparse::solve::rhs::Rhs;
 use crate::sparse::solve::substitution::{Room, Substitution};
-use crate::{Problem, Role};
 
 /// The factor of the unfolded energy's matrix on the solved vertices.
 #[derive(Debug)]
@@ -82,7 +83,7 @@ impl Unfolded {
     /// [`FactorError::Cancelled`].
     pub fn weights(
         &self,
-        problem: &Problem,
+        problem: &BoundaryProblem,
         partition: &Partition,
         energy: &Energy,
         cancel: &Cancel,

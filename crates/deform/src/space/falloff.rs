@@ -4,9 +4,10 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::nearest::NearestPoints;
 use super::shaping::shaping;
-use crate::{Problem, Role};
+use crate::Role;
+use crate::numerical::nearest::NearestPoints;
+use crate::region::boundary_problem::BoundaryProblem;
 
 /// A factor from 0 to 1 for each of some vertices, and its gradient per world unit.
 #[derive(Clone, Debug, Default)]
@@ -18,7 +19,7 @@ pub(crate) struct Falloff {
 impl Falloff {
     /// s(t) = t² (3 − 2 t) with t the distance to the nearest fixed vertex over `width`, in world units, of each of
     /// these vertices. With a width of 0 only fixed vertices have the factor 0.
-    pub fn of(problem: &Problem, vertices: &[u32], width: f64) -> Self {
+    pub fn of(problem: &BoundaryProblem, vertices: &[u32], width: f64) -> Self {
         let positions = &problem.surface.positions;
         let fixed = (0..)
             .zip(problem.roles)

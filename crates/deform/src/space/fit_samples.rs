@@ -2,13 +2,13 @@
 
 use glam::DVec3;
 
-use super::controls::{Hold, Holder};
 use super::field::moving;
-use super::samples::thinned;
 use super::shaping::shaping;
 use crate::Role;
+use crate::handles::controls::{Hold, Holder};
 use crate::method::BindInput;
 use crate::needs::HandleFit;
+use crate::numerical::samples::thinned;
 
 /// Fixed vertices are near the region up to this share of the moving part's diagonal outside its box.
 const NEAR: f64 = 0.25;

@@ -9,7 +9,6 @@
 
 pub(crate) mod affine;
 pub(crate) mod blend;
-pub(crate) mod controls;
 pub(crate) mod falloff;
 pub(crate) mod field;
 pub(crate) mod fit_samples;
@@ -17,8 +16,6 @@ pub(crate) mod hand_field;
 pub(crate) mod joining;
 pub(crate) mod linear;
 pub(crate) mod moving;
-pub(crate) mod nearest;
 pub(crate) mod neighbours;
-pub(crate) mod samples;
 pub(crate) mod shaping;
 pub(crate) mod unit;

@@ -1,9 +1,9 @@
 //! The vertices that shape the space: those of triangles. Bare points beside triangles follow.
 
-use crate::Problem;
+use crate::region::boundary_problem::BoundaryProblem;
 
 /// The vertices in these that triangles use, or all if triangles use none of them.
-pub(crate) fn shaping(problem: &Problem, vertices: impl Iterator<Item = u32> + Clone) -> Vec<u32> {
+pub(crate) fn shaping(problem: &BoundaryProblem, vertices: impl Iterator<Item = u32> + Clone) -> Vec<u32> {
     let first_bare = problem.topology.bare_points().start;
     let used: Vec<u32> = vertices
         .clone()

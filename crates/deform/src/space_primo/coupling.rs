@@ -250,9 +250,9 @@ mod tests {
     use crate::method::BindInput;
     use crate::numerical::sums::Field;
     use crate::primo::pose::Pose;
-    use crate::region::partition::Partition;
+    use crate::region::boundary_problem::BoundaryProblem;
     use crate::sparse::refactorisation::Refactorisation;
-    use crate::{Constraints, Loose, Method, Problem, Role, SpacePrimo};
+    use crate::{Constraints, Loose, Method, Role, SpacePrimo};
 
     fn noise(k: usize) -> f64 {
         2.0 * ((k as f64 * 12.9898).sin() * 43_758.545).fract()
@@ -273,7 +273,7 @@ mod tests {
             ..SpacePrimo::default()
         };
         let method = Method::from(options.clone());
-        let problem = Problem {
+        let problem = BoundaryProblem {
             surface: &model.surface,
             topology: &model.topology,
             roles: &roles,
@@ -281,16 +281,16 @@ mod tests {
             stiffness: &vec![1.0; roles.len()],
             constraints: Constraints::default(),
             loose: Loose::Rest,
-            method: &method,
-            attachments: &[],
-            revision: 0,
+            examples: None,
         };
-        let partition = Partition::of(&problem).unwrap();
+        let partition = method.partition(&problem).unwrap();
         let handles = [Handle::new(partition.handles[0].clone(), positions)];
         test(
             &options,
             &BindInput {
                 problem: &problem,
+                needs: method.needs(),
+                takes_first_power: false,
                 partition: &partition,
                 handles: &handles,
                 attachment: None,

@@ -14,7 +14,8 @@ use crate::handles::{Motion, clear};
 use crate::method::{BindInput, BoundMethod, DeformMethod, MethodDeclaration, Stepped};
 use crate::needs::{Needs, Solve};
 use crate::operators::triangulation::Triangulation;
-use crate::{BindError, Problem, ReusableFactor, SolveError};
+use crate::region::boundary_problem::BoundaryProblem;
+use crate::{BindError, ReusableFactor, SolveError};
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "wrinkles",
@@ -63,7 +64,7 @@ impl DeformMethod for Wrinkles {
         false
     }
 
-    fn triangulation<'a>(&self, problem: &Problem<'a>) -> Triangulation<'a> {
+    fn triangulation<'a>(&self, problem: &BoundaryProblem<'a>) -> Triangulation<'a> {
         self.bending().triangulation(problem)
     }
 

@@ -17,8 +17,8 @@ use glam::DVec3;
 use pliant_mesh::SurfaceVertex;
 use rayon::prelude::*;
 
-use crate::Problem;
 use crate::numerical::rows::CHUNK;
+use crate::region::boundary_problem::BoundaryProblem;
 use crate::region::nodes::{NO_NODE, spread};
 use crate::region::patch::Patch;
 use crate::space::neighbours::Neighbours;
@@ -50,7 +50,7 @@ const SHORTEST: f64 = 1e-6;
 
 impl Strain {
     /// The edges between at most this many samples of a patch.
-    pub fn of(problem: &Problem, patch: &Patch, samples: usize) -> Self {
+    pub fn of(problem: &BoundaryProblem, patch: &Patch, samples: usize) -> Self {
         let positions = &problem.surface.positions;
         let nodes = spread(problem, &patch.vertices, samples);
         let cell = |vertex: u32| nodes.cells[vertex as usize];

@@ -15,9 +15,9 @@ use rayon::prelude::*;
 
 use super::base::Base;
 use super::frames::RingFrames;
-use crate::Problem;
 use crate::method::BindInput;
 use crate::numerical::rows::CHUNK;
+use crate::region::boundary_problem::BoundaryProblem;
 use crate::region::patch::Patch;
 
 /// A sheet is thinner than this, in sizes of the bending part.
@@ -195,7 +195,7 @@ impl Sheets {
 
 /// Finds the points opposite vertices.
 struct Finder<'p> {
-    problem: &'p Problem<'p>,
+    problem: &'p BoundaryProblem<'p>,
     /// Searches the triangles near the patch.
     hierarchy: Bvh,
     triangles: Vec<u32>,
@@ -203,7 +203,7 @@ struct Finder<'p> {
 }
 
 impl<'p> Finder<'p> {
-    fn new(problem: &'p Problem<'p>, patch: &Patch) -> Self {
+    fn new(problem: &'p BoundaryProblem<'p>, patch: &Patch) -> Self {
         let surface = problem.surface;
         let position = |vertex: SurfaceVertex| surface.positions[vertex.index()];
         let near = Bounds::around(patch.rest.iter().copied()).map(|bounds| bounds.grown(THICKEST * patch.size));

@@ -18,8 +18,8 @@ use super::base::Base;
 use super::donors::NONE;
 use super::frames::Frames;
 use super::sheets::Sheets;
-use crate::Problem;
 use crate::numerical::rows::CHUNK;
+use crate::region::boundary_problem::BoundaryProblem;
 
 /// The prisms over the base, and the frames that the iteration begins with.
 #[derive(Debug)]
@@ -85,7 +85,7 @@ const SMALL: f64 = 0.05;
 
 impl Volumes {
     /// The prisms of the base's faces.
-    pub fn of(base: &Base, sheets: Option<&Sheets>, iterations: u32, problem: &Problem<'_>) -> Self {
+    pub fn of(base: &Base, sheets: Option<&Sheets>, iterations: u32, problem: &BoundaryProblem<'_>) -> Self {
         let (triangles, topology) = (&problem.surface.triangles, problem.topology);
         let count = base.patch.rows.len();
         let mut row_of = vec![count as u32; base.patch.vertices.len()];

@@ -15,7 +15,7 @@ use crate::numerical::graph::Graph;
 use crate::operators::triangulation::intrinsic::Intrinsic;
 use crate::operators::triangulation::principal::stretches;
 use crate::operators::triangulation::surface::SurfaceTriangulation;
-use crate::{Bilaplacian, Problem, Remedy, TriangulationKind};
+use crate::{Remedy, TriangulationKind};
 
 /// Triangles with edge lengths over the surface's vertices.
 #[derive(Clone, Debug)]
@@ -45,14 +45,20 @@ impl<'a> Triangulation<'a> {
         })
     }
 
-    /// The triangulation of the bi-Laplacian's options.
-    pub fn of_options(problem: &Problem<'a>, options: &Bilaplacian) -> Self {
+    /// Triangles of a kind, measured along stretched axes (see [`stretches`]).
+    pub fn stretched(
+        surface: &'a Surface,
+        topology: &'a Topology,
+        kind: TriangulationKind,
+        anisotropy: f64,
+        may_move: &dyn Fn(SurfaceVertex) -> bool,
+    ) -> Self {
         let triangulation = SurfaceTriangulation {
-            surface: problem.surface,
-            topology: problem.topology,
-            stretches: stretches(problem, options.anisotropy),
+            surface,
+            topology,
+            stretches: stretches(surface, topology, anisotropy, may_move),
         };
-        match options.triangulation {
+        match kind {
             TriangulationKind::AsIs => Self::Surface(triangulation),
             TriangulationKind::IntrinsicDelaunay => {
                 Self::Intrinsic(Box::new(Intrinsic::delaunay(&triangulation)), triangulation.topology)

@@ -6,10 +6,9 @@
 //! that end alone. The stretched bar is as wide as long, and its twist spreads evenly over all of it.
 
 use glam::{DMat3, DVec3};
-use pliant_mesh::{SurfaceVertex, face_area};
+use pliant_mesh::{Surface, SurfaceVertex, Topology, face_area};
 
 use crate::numerical::eigen::eigenvectors;
-use crate::{Problem, Role};
 
 /// Axes along which the surface is thinner than this share of its longest are stretched as if it were that wide: so
 /// that a flat sheet's bumps don't count as width.
@@ -22,20 +21,20 @@ const NEGLIGIBLE: f64 = 1e-9;
 /// none is stretched.
 ///
 /// The axes are those of the part that may move: the triangles at free and softly held vertices, by area.
-pub(crate) fn stretches(problem: &Problem, anisotropy: f64) -> Vec<DMat3> {
+pub(crate) fn stretches(
+    surface: &Surface,
+    topology: &Topology,
+    anisotropy: f64,
+    may_move: &dyn Fn(SurfaceVertex) -> bool,
+) -> Vec<DMat3> {
     if anisotropy == 0.0 {
         return Vec::new();
     }
-    let is_free = |corner: SurfaceVertex| match problem.roles.get(corner.index()) {
-        Some(Role::Free) => true,
-        Some(Role::Handle(handle)) => problem.constraints.weight(*handle).is_some(),
-        Some(Role::Fixed) | None => false,
-    };
-    let mut moments = vec![Moments::NONE; problem.topology.components().len()];
-    for corners in &problem.surface.triangles {
-        if corners.iter().any(|&corner| is_free(corner)) {
-            let component = problem.topology.component(corners[0]) as usize;
-            moments[component].add(corners.map(|corner| problem.surface.positions[corner.index()]));
+    let mut moments = vec![Moments::NONE; topology.components().len()];
+    for corners in &surface.triangles {
+        if corners.iter().any(|&corner| may_move(corner)) {
+            let component = topology.component(corners[0]) as usize;
+            moments[component].add(corners.map(|corner| surface.positions[corner.index()]));
         }
     }
     let stretches: Vec<DMat3> = moments.iter().map(|moments| moments.stretch(anisotropy)).collect();

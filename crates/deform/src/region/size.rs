@@ -5,28 +5,27 @@
 //! directions nor on other components.
 
 use glam::DVec3;
-use pliant_mesh::{SurfaceVertex, face_area};
+use pliant_mesh::{Surface, SurfaceVertex, Topology, face_area};
 
-use crate::{Problem, Role};
+use crate::Role;
 
 /// A rod's length over its radius of gyration.
 const OF_RODS: f64 = 3.464_101_615_137_754_6;
 
 /// The size of the bending part of a problem, in world units; 0 for points in one place.
-pub(crate) fn size(problem: &Problem) -> f64 {
-    let topology = problem.topology;
+pub(crate) fn size(surface: &Surface, topology: &Topology, roles: &[Role]) -> f64 {
     let mut bends = vec![false; topology.components().len()];
-    for (vertex, role) in (0..).zip(problem.roles) {
+    for (vertex, role) in (0..).zip(roles) {
         if matches!(role, Role::Handle(_)) {
             bends[topology.component(SurfaceVertex(vertex)) as usize] = true;
         }
     }
     let of_part = |bends: &dyn Fn(usize) -> bool| {
-        let of_surface = size_of_triangles(problem, bends);
+        let of_surface = size_of_triangles(surface, topology, bends);
         if of_surface > 0.0 {
             of_surface
         } else {
-            size_of_points(problem, bends)
+            size_of_points(surface, topology, bends)
         }
     };
     let of_handles = of_part(&|component| bends[component]);
@@ -63,9 +62,8 @@ impl Moments {
     }
 }
 
-fn size_of_triangles(problem: &Problem, bends: &dyn Fn(usize) -> bool) -> f64 {
-    let surface = problem.surface;
-    let own = |corners: &&[SurfaceVertex; 3]| bends(problem.topology.component(corners[0]) as usize);
+fn size_of_triangles(surface: &Surface, topology: &Topology, bends: &dyn Fn(usize) -> bool) -> f64 {
+    let own = |corners: &&[SurfaceVertex; 3]| bends(topology.component(corners[0]) as usize);
     let mut moments = Moments::default();
     let mut origin = None;
     for corners in surface.triangles.iter().filter(own) {
@@ -79,8 +77,7 @@ fn size_of_triangles(problem: &Problem, bends: &dyn Fn(usize) -> bool) -> f64 {
     moments.size()
 }
 
-fn size_of_points(problem: &Problem, bends: &dyn Fn(usize) -> bool) -> f64 {
-    let (surface, topology) = (problem.surface, problem.topology);
+fn size_of_points(surface: &Surface, topology: &Topology, bends: &dyn Fn(usize) -> bool) -> f64 {
     let own = (0..surface.positions.len()).filter(|&v| bends(topology.component(SurfaceVertex(v as u32)) as usize));
     let mut moments = Moments::default();
     let mut origin = None;
@@ -98,7 +95,7 @@ mod tests {
     use pliant_mesh::{Drawn, DrawnVertex, shapes};
 
     use super::size;
-    use crate::{Constraints, Loose, Method, Problem, Role};
+    use crate::Role;
 
     /// The size of a shape whose first component has a handle.
     fn of(drawn: Drawn) -> f64 {
@@ -106,19 +103,7 @@ mod tests {
         let first = model.drawn.surface_vertex(DrawnVertex(0)).map_or(0, |v| v.index());
         let mut roles = vec![Role::Free; model.surface.positions.len()];
         roles[first] = Role::Handle(0);
-        let method = Method::default();
-        size(&Problem {
-            surface: &model.surface,
-            topology: &model.topology,
-            roles: &roles,
-            handle_count: 1,
-            stiffness: &[],
-            constraints: Constraints::default(),
-            loose: Loose::Follow,
-            method: &method,
-            attachments: &[],
-            revision: 0,
-        })
+        size(&model.surface, &model.topology, &roles)
     }
 
     #[test]

@@ -1,28 +1,24 @@
 //! A problem bound to a method: new transforms in, displacements out.
 
+mod binding;
+mod targets;
+
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec3, Mat3};
-use pliant_mesh::{Cancel, Progress};
 use rayon::prelude::*;
 
 use crate::attachment::{check_weights, finite};
-use crate::budget::bytes_of;
 use crate::handles::finite::Finite;
 use crate::handles::offsets::Offsets;
 use crate::handles::residual::HandleResidual;
 use crate::handles::turns::TurnLimit;
 use crate::handles::{FRAME_CHUNK, Handle, Motion, clear};
-use crate::method::{BindInput, BoundMethod};
-use crate::needs::{HandleFit, Solve};
-use crate::region::follow::{Followers, followers};
-use crate::region::partition::Partition;
-use crate::rigid::{RigidParts, Softened};
-use crate::sparse::refactorisation::Refactorisation;
-use crate::{
-    Attachment, AttachmentRefused, BindError, Budget, HandleBases, Ordering, Problem, ReusableFactor, SolveError,
-    Warning,
-};
+use crate::method::BoundMethod;
+use crate::needs::Solve;
+use crate::region::follow::Followers;
+use crate::rigid::Part;
+use crate::{Attachment, AttachmentRefused, HandleBases, ReusableFactor, SolveError, Warning};
 
 /// A bound problem: everything that does not depend on the handles' transforms is solved.
 #[derive(Debug)]
@@ -96,225 +92,10 @@ pub struct Step {
 }
 
 impl Bound {
-    pub(crate) fn bind(
-        problem: &Problem,
-        ordering: Option<&Ordering>,
-        refactorisation: Refactorisation,
-        budget: Budget,
-        progress: &Progress,
-        cancel: &Cancel,
-    ) -> Result<Self, BindError> {
-        let bound = Self::bind_within(problem, ordering, refactorisation, budget, progress, cancel);
-        bound.map_err(|refused| refused.with_culprit(problem.topology, budget))
-    }
-
-    fn bind_within(
-        problem: &Problem,
-        ordering: Option<&Ordering>,
-        refactorisation: Refactorisation,
-        budget: Budget,
-        progress: &Progress,
-        cancel: &Cancel,
-    ) -> Result<Self, BindError> {
-        let Some(softened) = Softened::of(problem)? else {
-            return Self::bind_plain(problem, ordering, refactorisation, budget, progress, cancel);
-        };
-        let firm = softened.problem(problem);
-        let mut bound = Self::bind_plain(&firm, ordering, refactorisation, budget, progress, cancel)?;
-        let left = budget.without(bytes_of(bound.factor_len(), size_of::<f64>()));
-        let left = left.map_err(|limit| BindError::budget(bound.solved_count(), limit))?;
-        let rigid = softened.bind_parts(problem, ordering, left, progress, cancel)?;
-        bound.rigid = rigid.map(Box::new);
-        // Those about the last step and its targets come after those of the binding.
-        bound.warnings.extend(softened.warning());
-        bound.of_binding.clone_from(&bound.warnings);
-        bound.binding_warnings = bound.warnings.len();
-        bound.target_warnings = bound.warnings.len();
-        Ok(bound)
-    }
-
-    /// Binds a problem in which nothing is rigid.
-    pub(crate) fn bind_plain(
-        problem: &Problem,
-        ordering: Option<&Ordering>,
-        refactorisation: Refactorisation,
-        budget: Budget,
-        progress: &Progress,
-        cancel: &Cancel,
-    ) -> Result<Self, BindError> {
-        cancel.check()?;
-        let mut partition = Partition::of(problem)?;
-        partition.take_budget(problem, budget)?;
-        let takes_places = problem.method.implementation().takes_places();
-        if takes_places {
-            let held = partition.handles.iter().map(Vec::len).sum();
-            let budget = partition.budget.without(bytes_of(held, size_of::<DVec3>()));
-            partition.budget = budget.map_err(|limit| BindError::budget(partition.free_count, limit))?;
-        }
-        let positions = &problem.surface.positions;
-        let handles: Vec<Handle> = partition
-            .handles
-            .iter()
-            .map(|vertices| Handle::new(vertices.clone(), positions))
-            .collect();
-        let declaration = problem.method.declaration();
-        let brought = problem.attachment();
-        if let Some((name, attachment)) = brought {
-            let title = declaration.attachment(name).map_or(name, |declared| declared.title);
-            let checked = problem.method.check_attachment(name, attachment);
-            checked.map_err(|refused| BindError::Attachment { title, refused })?;
-        }
-        let mut method = problem.method.implementation().bind(&BindInput {
-            problem,
-            partition: &partition,
-            handles: &handles,
-            attachment: brought.map(|(_, attachment)| attachment),
-            ordering,
-            refactorisation,
-            progress,
-            cancel,
-        })?;
-        if let (Some((_, attachment)), Some(controls)) = (brought, method.controls_mut())
-            && let Some(moved) = attachment.moved()
-        {
-            controls.move_to(Arc::clone(moved));
-        }
-        let attachment = declaration.attachments.first();
-        let weights = problem
-            .examples()
-            .map(|examples| examples.weights.clone())
-            .unwrap_or_default();
-        method.set_weights(&weights);
-        let residual = match problem.method.implementation().handle_fit() {
-            HandleFit::Exact => HandleResidual::default(),
-            HandleFit::LeastSquares => HandleResidual::new(problem, &handles, &partition.soft),
-        };
-        let turn_limit = problem.method.implementation().follows_turns();
-        let turn_limit = turn_limit.map(|followed| TurnLimit {
-            method: declaration.name,
-            followed,
-            is_held: partition.held.contains(&true),
-        });
-        let rest = |handle: &Handle| handle.vertices.iter().map(|&own| positions[own as usize]).collect();
-        let world_rest = handles.iter().filter(|_| takes_places).map(rest).collect();
-        let mut warnings = partition.warnings;
-        warnings.extend(method.warnings().into_iter().map(Warning::from));
-        Ok(Self {
-            revision: problem.revision,
-            vertex_count: positions.len(),
-            free_count: partition.free_count,
-            motions: vec![Motion::default(); handles.len()],
-            offsets: Arc::default(),
-            world_rest,
-            handles,
-            iteration: 0,
-            solve: problem.method.solve(),
-            name: declaration.name,
-            method,
-            attachment: attachment.map(|declared| (declared.name, declared.title)),
-            weights,
-            followers: followers(
-                problem.surface,
-                problem.topology,
-                &partition.following,
-                &partition.driven,
-                cancel,
-            )?,
-            rigid: None,
-            turn_limit,
-            residual,
-            of_binding: warnings.clone(),
-            binding_warnings: warnings.len(),
-            target_warnings: warnings.len(),
-            warnings,
-        })
-    }
-
     /// The data that the next binding can reuse if only a few vertices' roles change. Only linear methods have such a
     /// factor, and it holds little unless [`Problem::rebind`] bound it.
     pub fn reusable_factor(&self) -> Option<ReusableFactor> {
         self.method.reusable_factor()
-    }
-
-    /// Sets the handles' targets: for each handle, one affine map of world positions, from rest.
-    ///
-    /// # Errors
-    /// A wrong count, or a transform that is not finite; the previous targets stay.
-    pub fn set_targets(&mut self, world_targets: &[DAffine3]) -> Result<(), SolveError> {
-        if world_targets.len() != self.handles.len() {
-            return Err(SolveError::TargetCount {
-                found: world_targets.len(),
-                expected: self.handles.len(),
-            });
-        }
-        if let Some(handle) = world_targets.iter().position(|target| !target.is_finite()) {
-            return Err(SolveError::TargetNotFinite { handle });
-        }
-        let motions: Vec<Motion> = self
-            .handles
-            .iter()
-            .zip(world_targets)
-            .map(|(handle, target)| handle.motion(target))
-            .collect();
-        self.aim(motions, Offsets::default(), &[]);
-        Ok(())
-    }
-
-    /// Like [`Bound::set_targets`], but a handle's target may be places for all its vertices instead of a map: every
-    /// vertex of a hard handle then goes exactly to its place, and every vertex of a soft handle is pulled there.
-    ///
-    /// # Errors
-    /// Those of [`Bound::set_targets`], and [`SolveError::NoPlaces`] for a method that takes no places; the previous
-    /// targets stay.
-    pub fn set_places(&mut self, targets: &[Target]) -> Result<(), SolveError> {
-        let expected = self.handles.len();
-        if targets.len() != expected {
-            let found = targets.len();
-            return Err(SolveError::TargetCount { found, expected });
-        }
-        let mut offsets = Offsets::default();
-        let mut placed = vec![false; expected];
-        let mut motions = Vec::with_capacity(expected);
-        for (number, target) in targets.iter().enumerate() {
-            let handle = &self.handles[number];
-            motions.push(match target {
-                Target::Map(map) if !map.is_finite() => return Err(SolveError::TargetNotFinite { handle: number }),
-                Target::Map(map) => handle.motion(map),
-                Target::Places(places) => {
-                    let world_rest = self.world_rest.get(number);
-                    let world_rest = world_rest.ok_or(SolveError::NoPlaces { method: self.name })?;
-                    let displacements = displacements_to(places, number, handle, world_rest)?;
-                    placed[number] = true;
-                    offsets.take(handle, world_rest, &displacements)
-                }
-            });
-        }
-        self.aim(motions, offsets.sorted(), &placed);
-        Ok(())
-    }
-
-    /// The surface vertices of a handle, ascending; empty for a number that no handle has.
-    pub fn handle_vertices(&self, handle: usize) -> &[u32] {
-        self.handles.get(handle).map_or(&[], |handle| &handle.vertices)
-    }
-
-    /// Sets motions and offsets, and updates the warnings for these targets. `placed` tells for each handle whether its
-    /// vertices have places.
-    fn aim(&mut self, motions: Vec<Motion>, offsets: Offsets, placed: &[bool]) {
-        if offsets != *self.offsets {
-            self.put_offsets(Arc::new(offsets));
-        }
-        self.put_motions(motions);
-        let of_binding = self.of_binding.iter();
-        self.warnings.clear();
-        self.warnings
-            .extend(of_binding.filter(|warning| !warning.is_void(placed)).cloned());
-        self.binding_warnings = self.warnings.len();
-        self.warnings.extend(self.method.blind_to(&self.motions));
-        let limit = self.turn_limit.as_ref();
-        self.warnings
-            .extend(limit.and_then(|limit| limit.warning(&self.handles, &self.motions)));
-        self.target_warnings = self.warnings.len();
     }
 
     fn put_offsets(&mut self, offsets: Arc<Offsets>) {
@@ -601,34 +382,32 @@ impl Bound {
     }
 }
 
-/// The displacements that take a handle's vertices to these places.
-///
-/// # Errors
-/// A wrong count, or a place that is not finite.
-fn displacements_to(
-    places: &[DVec3],
-    number: usize,
-    handle: &Handle,
-    world_rest: &[DVec3],
-) -> Result<Vec<DVec3>, SolveError> {
-    if places.len() != world_rest.len() {
-        return Err(SolveError::PlaceCount {
-            handle: number,
-            found: places.len(),
-            expected: world_rest.len(),
-        });
+/// The rigid parts, and the binding in which they are handles.
+#[derive(Debug)]
+struct RigidParts {
+    parts: Vec<Part>,
+    /// Displacements of a part, kept from frame to frame.
+    moved: Vec<DVec3>,
+    bound: Bound,
+}
+
+impl RigidParts {
+    /// Replaces a shape in which the parts are very stiff by one in which they are rigid.
+    ///
+    /// # Errors
+    /// Those of a step.
+    fn step(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> Result<Step, SolveError> {
+        let of_parts: Vec<Motion> = (self.parts.iter())
+            .map(|part| part.motion(displacements, &mut self.moved))
+            .collect();
+        self.bound.follow([motions, &of_parts].concat());
+        let step = self.bound.step(displacements)?;
+        // A method that only fits handles bends the parts a little.
+        for (part, motion) in self.parts.iter().zip(&of_parts) {
+            part.place(motion, displacements);
+        }
+        Ok(step)
     }
-    if let Some(at) = places.iter().position(|place| !place.is_finite()) {
-        return Err(SolveError::PlaceNotFinite {
-            handle: number,
-            vertex: handle.vertices[at],
-        });
-    }
-    Ok(places
-        .iter()
-        .zip(world_rest)
-        .map(|(place, rest)| *place - *rest)
-        .collect())
 }
 
 /// Every result passes through here, so that none with a non-finite displacement is returned.
