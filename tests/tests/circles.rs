@@ -3,27 +3,11 @@
 //!
 //! The paths that a file names (`crate::…`, `super::…`, `self::…`, in `use` lines and elsewhere) are resolved to the
 //! file that defines the item, through folders' `mod.rs` and their `pub use` re-exports. Unit tests and comments are
-//! left out. Crates that are not in [`STRICT`] are checked a little less strictly.
+//! left out.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
-
-/// The crates in which every dependency counts. In the others any file may use the names that the crate's root exports,
-/// and a folder's own file (`mod.rs`) counts as one with the files below it.
-const STRICT: &[&str] = &["editor", "engine", "io", "mesh", "python", "render", "xtask"];
-
-/// The crates whose folders are checked.
-const STRICT_FOLDERS: &[&str] = &["engine", "io", "mesh", "python", "render", "xtask"];
-
-/// The dependencies that count.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-enum Counted {
-    /// All of them.
-    All,
-    /// All except names that the crate's root re-exports and dependencies on a folder's own file from below.
-    BesideFolders,
-}
 
 /// A module: its file, and the names that it uses from elsewhere.
 #[derive(Debug, Default)]
@@ -33,6 +17,8 @@ struct Module {
     imports: BTreeMap<String, Vec<String>>,
     /// Every path in the code outside `use` lines, and those in private `use` lines.
     paths: Vec<Vec<String>>,
+    /// Every path outside `use` lines that begins with a name in lower case.
+    relative_paths: Vec<Vec<String>>,
     /// Every word outside `use` lines.
     words: BTreeSet<String>,
     /// Those that do more than declare a module.
@@ -46,7 +32,7 @@ type Modules = BTreeMap<Vec<String>, Module>;
 type Arrows = BTreeMap<PathBuf, BTreeSet<PathBuf>>;
 
 #[test]
-fn no_file_needs_itself_through_others() {
+fn no_file_and_no_folder_needs_itself_through_others() {
     let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates");
     let mut folders: Vec<PathBuf> = std::fs::read_dir(&crates)
         .unwrap()
@@ -58,32 +44,17 @@ fn no_file_needs_itself_through_others() {
     let mut found = Vec::new();
     for folder in folders {
         let modules = modules_of(&folder);
-        let is_strict = STRICT.iter().any(|name| folder.ends_with(Path::new(name).join("src")));
-        let arrows = arrows(
-            &modules,
-            if is_strict {
-                Counted::All
-            } else {
-                Counted::BesideFolders
-            },
-        );
+        let arrows = arrows(&modules);
         let count: usize = arrows.values().map(BTreeSet::len).sum();
         assert!(count > 0 || modules.len() < 3, "{} has arrows", folder.display());
-        for circle in circles(&arrows) {
-            found.push(told(&circle, &arrows, &crates));
-        }
-        if STRICT_FOLDERS
-            .iter()
-            .any(|name| folder.ends_with(Path::new(name).join("src")))
-        {
-            for arrows in arrows_of_folders(&arrows, &folder).values() {
-                for circle in circles(arrows) {
-                    found.push(told(&circle, arrows, &crates));
-                }
+        let of_folders = arrows_of_folders(&arrows, &folder);
+        for arrows in std::iter::once(&arrows).chain(of_folders.values()) {
+            for circle in circles(arrows) {
+                found.push(told(&circle, arrows, &crates));
             }
         }
     }
-    assert!(found.is_empty(), "circles of files:\n{}", found.join("\n"));
+    assert!(found.is_empty(), "circles of files or folders:\n{}", found.join("\n"));
 }
 
 /// Tests the scan itself: the circles that it must find in a made-up crate, and those that it must not find.
@@ -108,7 +79,12 @@ fn the_scan_sees_grouped_paths_and_follows_what_is_handed_on() {
         &["b"],
         "pub struct C; fn f() -> crate::Deep { \"crate::a::A\" }\n#[cfg(test)]\nmod tests { use crate::A; }",
     );
-    let arrows = arrows(&modules, Counted::All);
+    add(
+        &["d"],
+        "use crate::b; pub(in crate::a) fn g() { b::h(); inner::deeper(); std::mem::swap() }",
+    );
+    add(&["d", "inner"], "pub fn deeper() {}");
+    let arrows = arrows(&modules);
     let to = |from: &str| -> Vec<&str> {
         let to = arrows.get(Path::new(from)).into_iter().flatten();
         to.map(|path| path.to_str().unwrap()).collect()
@@ -121,9 +97,18 @@ fn the_scan_sees_grouped_paths_and_follows_what_is_handed_on() {
         "through the root, and not what its test names"
     );
     assert_eq!(to(".rs"), Vec::<&str>::new(), "handing on is not needing");
+    assert_eq!(
+        to("d.rs"),
+        ["b.rs", "d/inner.rs"],
+        "by paths that begin with an imported or a child module"
+    );
     let names: Vec<Vec<PathBuf>> = circles(&arrows);
     assert_eq!(names.len(), 1);
     assert_eq!(names[0], ["a/inner.rs", "a.rs", "b.rs"].map(PathBuf::from));
+    let of_folders = arrows_of_folders(&arrows, Path::new(""));
+    let of_d: Vec<_> = of_folders[Path::new("")][Path::new("d.rs")].iter().collect();
+    assert_eq!(of_d, [Path::new("b.rs"), Path::new("d")]);
+    assert!(of_folders[Path::new("")][Path::new("a")].contains(Path::new("a.rs")));
 }
 
 /// The dependencies between the files and folders of each folder under `root`: one depends on another if a file in it
@@ -200,7 +185,10 @@ fn module(file: PathBuf, own: &[String], text: &str) -> Module {
     }
     rest.push_str(statements);
     for path in paths_in(&rest) {
-        module.paths.push(absolute(&path, own));
+        match path[0].as_str() {
+            "crate" | "super" | "self" => module.paths.push(absolute(&path, own)),
+            _ => module.relative_paths.push(path),
+        }
     }
     let words: Vec<&str> = rest
         .split(|letter: char| !letter.is_alphanumeric() && letter != '_')
@@ -222,7 +210,9 @@ fn without_tests(code: &str) -> &str {
         while let Some(attribute) = rest.trim_start().strip_prefix("#[") {
             rest = attribute.split_once(']').unwrap_or_default().1;
         }
-        let name = rest.trim_start().strip_prefix("mod ").unwrap_or(";");
+        let rest = rest.trim_start();
+        let name = rest.strip_prefix("pub(crate) ").unwrap_or(rest);
+        let name = name.strip_prefix("mod ").unwrap_or(";");
         let name = name.trim_start_matches(|letter: char| letter.is_alphanumeric() || letter == '_');
         ["#[cfg(test", "#[cfg(all(test"]
             .iter()
@@ -288,20 +278,21 @@ fn expanded(tree: &str) -> Vec<(Vec<String>, String)> {
     vec![(path, name)]
 }
 
-/// Every `crate::…` and `super::…` path in the code.
+/// Every path of several segments in the code that begins with a name in lower case.
 fn paths_in(code: &str) -> Vec<Vec<String>> {
-    let is_word = |letter: char| letter.is_alphanumeric() || letter == '_';
+    let is_of_path = |letter: char| letter.is_alphanumeric() || letter == '_' || letter == ':';
     let mut paths = Vec::new();
-    for root in ["crate::", "super::"] {
-        for (start, _) in code.match_indices(root) {
-            let before = code[..start].chars().next_back();
-            if before.is_some_and(|letter| is_word(letter) || letter == ':' || letter == '$') {
-                continue;
-            }
-            let end = code[start..].find(|letter| !is_word(letter) && letter != ':');
-            let path = &code[start..end.map_or(code.len(), |end| start + end)];
-            paths.push(path.split("::").filter(|s| !s.is_empty()).map(str::to_owned).collect());
+    let mut rest = code;
+    while let Some(start) = rest.find(is_of_path) {
+        let before = rest[..start].chars().next_back();
+        let end = rest[start..].find(|letter| !is_of_path(letter));
+        let end = end.map_or(rest.len(), |end| start + end);
+        let path: Vec<String> = rest[start..end].split("::").map(str::to_owned).collect();
+        let begins_low = path[0].starts_with(|letter: char| letter.is_lowercase() || letter == '_');
+        if before != Some('$') && path.len() > 1 && begins_low {
+            paths.push(path.into_iter().filter(|segment| !segment.is_empty()).collect());
         }
+        rest = &rest[end..];
     }
     paths
 }
@@ -326,7 +317,7 @@ fn absolute(path: &[String], own: &[String]) -> Vec<String> {
 }
 
 /// The file that defines a path's item, if it is one of the crate's files.
-fn definer<'a>(modules: &'a Modules, path: &[String], counted: Counted, depth: usize) -> Option<&'a Path> {
+fn definer<'a>(modules: &'a Modules, path: &[String], depth: usize) -> Option<&'a Path> {
     if depth == 0 {
         return None;
     }
@@ -339,11 +330,8 @@ fn definer<'a>(modules: &'a Modules, path: &[String], counted: Counted, depth: u
         }
         let module = &modules[&at];
         if let Some(behind) = module.imports.get(segment).filter(|behind| **behind != path[..=place]) {
-            if at.is_empty() && counted == Counted::BesideFolders {
-                return None;
-            }
             let whole: Vec<String> = behind.iter().chain(&path[place + 1..]).cloned().collect();
-            return definer(modules, &whole, counted, depth - 1);
+            return definer(modules, &whole, depth - 1);
         }
         // A word that the module never contains comes from another crate or from a macro.
         let is_own = segment == "*" || module.words.contains(segment);
@@ -353,24 +341,26 @@ fn definer<'a>(modules: &'a Modules, path: &[String], counted: Counted, depth: u
 }
 
 /// The dependencies of each file.
-fn arrows(modules: &Modules, counted: Counted) -> Arrows {
+fn arrows(modules: &Modules) -> Arrows {
     let mut arrows = Arrows::new();
     for (own, module) in modules {
         let used = module
             .imports
             .iter()
             .filter(|(name, _)| module.used.contains(*name))
-            .map(|(_, path)| path);
-        for path in module.paths.iter().chain(used) {
+            .map(|(_, path)| path.clone());
+        // A path may begin with an imported name, or with a module below.
+        let relative = module.relative_paths.iter().filter_map(|path| {
+            let below = || own.iter().cloned().chain([path[0].clone()]).collect::<Vec<_>>();
+            let imported = module.imports.get(&path[0]).cloned();
+            let first = imported.or_else(|| Some(below()).filter(|below| modules.contains_key(below)))?;
+            Some(first.into_iter().chain(path[1..].iter().cloned()).collect())
+        });
+        for path in module.paths.iter().cloned().chain(used).chain(relative) {
             // Naming a child module does not make a dependency on it.
-            let is_module = modules.contains_key(path);
-            match definer(modules, path, counted, 8) {
-                Some(file) if file != module.file && !(is_module && path.starts_with(own)) => {
-                    let is_above =
-                        || (0..own.len()).any(|length| modules.get(&own[..length]).is_some_and(|m| m.file == file));
-                    if counted == Counted::BesideFolders && is_above() {
-                        continue;
-                    }
+            let is_child = modules.contains_key(&path) && path.starts_with(own);
+            match definer(modules, &path, 8) {
+                Some(file) if file != module.file && !is_child => {
                     arrows.entry(module.file.clone()).or_default().insert(file.to_owned());
                 }
                 _ => {}

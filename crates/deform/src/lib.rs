@@ -67,6 +67,7 @@ mod bilaplacian;
 mod bound;
 mod budget;
 mod cage;
+mod coarse;
 mod embedded;
 mod error;
 mod frames;

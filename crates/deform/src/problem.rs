@@ -2,11 +2,9 @@
 
 use pliant_mesh::{Surface, Topology};
 
-use crate::Loose;
-use crate::Role;
 use crate::budget::{ORDERING_ROW, bytes_of};
 use crate::region::boundary_problem::BoundaryProblem;
-use crate::{Attachment, BindError, Budget, Constraints, Method};
+use crate::{Attachment, BindError, Budget, Constraints, Loose, Method, Role};
 
 /// Everything that a deformation depends on, except the handles' transforms.
 ///

@@ -62,8 +62,7 @@ impl fmt::Display for Remedy {
 #[allow(clippy::unwrap_used, reason = "tests")]
 mod tests {
     use super::*;
-    use crate::OptionKind;
-    use crate::OptionValue;
+    use crate::{OptionKind, OptionValue};
 
     #[test]
     fn every_declaration_is_complete_and_its_defaults_are_its_own() {

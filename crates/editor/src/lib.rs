@@ -50,6 +50,9 @@ mod event;
 mod format;
 mod input;
 mod jobs;
+mod pickable;
+mod region;
+mod revision;
 mod scene_view;
 mod selection;
 mod snapshot;
@@ -73,11 +76,13 @@ pub use format::{
 };
 pub use input::{Button, Key, Modifiers, Pointer};
 pub use jobs::{
-    Alternative, BothSides, Compared, Comparison, ControlPlaces, Counts, Descent, Executor, Figures, InlineExecutor,
-    Inspectable, Inspected, IntersectionPlace, Intersections, Job, JobDone, JobKind, JobOutcome, JobQueue, Region,
-    Revision, Rim, Running, Solved, Symmetry,
+    Alternative, BothSides, Compared, Comparison, ControlPlaces, Descent, Executor, Figures, InlineExecutor,
+    Inspectable, Inspected, IntersectionPlace, Intersections, Job, JobDone, JobKind, JobOutcome, JobQueue, Running,
+    Solved, Symmetry,
 };
-pub use scene_view::{ControlPoints, Cursor, Readout, SceneView};
+pub use region::{Counts, Region, Rim};
+pub use revision::Revision;
+pub use scene_view::{ControlPoints, SceneView};
 pub use selection::Selection;
 pub use snapshot::Snapshot;
 pub use status::thousands;
@@ -85,7 +90,7 @@ pub use tool::{
     BrushMetric, Constraint, Correction, CorrectionBrush, Depth, StiffnessAction, StiffnessBrush, StrokeShape, ToolMode,
 };
 pub use view::{
-    Before, Camera, Clay, ControlShape, GizmoAxes, GizmoMode, GizmoOrientation, GizmoPart, GizmoShape, Look, NamedView,
-    Orbit, Pick, Projection, Ray, Shading, UpAxis, hit_gizmo,
+    Before, Camera, Clay, ControlShape, Cursor, GizmoAxes, GizmoMode, GizmoOrientation, GizmoPart, GizmoShape, Look,
+    NamedView, Orbit, Pick, Projection, Ray, Readout, Shading, UpAxis, hit_gizmo,
 };
 pub use workspace::{RegionAction, SnapshotKey, StiffnessChange, stiffness_colour};

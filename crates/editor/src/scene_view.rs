@@ -8,9 +8,10 @@ use glam::{DVec2, DVec3};
 use pliant_mesh::Model;
 
 use crate::document::{Handle, HandleId};
-use crate::jobs::{Counts, Descent, JobKind, Symmetry};
+use crate::jobs::{Descent, JobKind, Symmetry};
+use crate::region::Counts;
 use crate::tool::{BrushMetric, CorrectionBrush, Depth, StiffnessBrush, StrokeShape, ToolMode};
-use crate::view::{Camera, ControlShape, GizmoOrientation, GizmoShape, Look, Orbit};
+use crate::view::{Camera, ControlShape, Cursor, GizmoOrientation, GizmoShape, Look, Orbit, Readout};
 
 /// The whole content of the 3D view and the panels around it.
 #[derive(Debug)]
@@ -123,29 +124,4 @@ pub struct ControlPoints {
     pub selected: usize,
     /// Whether it is the document's; if not, the method has made it.
     pub is_own: bool,
-}
-
-/// A number shown beside the dragged object.
-#[derive(Clone, PartialEq, Debug)]
-pub struct Readout {
-    /// The place, in world space.
-    pub at: DVec3,
-    /// The number with its unit or sign.
-    pub text: String,
-}
-
-/// The look of the pointer over the view.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
-pub enum Cursor {
-    /// An arrow.
-    #[default]
-    Arrow,
-    /// A crosshair: the brush is over the surface.
-    Brush,
-    /// A hand: the part under the pointer can be grabbed.
-    Grab,
-    /// A closed hand: a drag is active.
-    Grabbing,
-    /// Four arrows: a transform follows the pointer.
-    Move,
 }

@@ -1,6 +1,7 @@
 //! The status line: the program's activity, and the next possible actions.
 
-use crate::jobs::{Activity, Counts, JobKind};
+use crate::jobs::{Activity, JobKind};
+use crate::region::Counts;
 use crate::tool::{Gesture, ToolMode, ToolSettings};
 use crate::view::View;
 use crate::workspace::Workspace;

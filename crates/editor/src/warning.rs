@@ -3,7 +3,6 @@
 use pliant_deform::Warning;
 
 use crate::document::{Document, HandleId};
-use crate::format::shortened;
 
 /// A warning of a binding, with the handle that it is about: the binding knows only its number.
 #[derive(Clone, PartialEq, Debug)]
@@ -35,4 +34,14 @@ pub(crate) fn worded(warning: &Warning, name: Option<&str>) -> String {
         Some(name) => warning.naming(&format!("\"{}\"", shortened(name))),
         None => warning.to_string(),
     }
+}
+
+/// Keeps a refusal to one readable line, for any content of the file.
+pub(crate) fn shortened(text: &str) -> String {
+    let clean: String = text
+        .chars()
+        .map(|c| if c.is_control() { ' ' } else { c })
+        .take(60)
+        .collect();
+    if text.chars().count() > 60 { clean + ".." } else { clean }
 }

@@ -4,7 +4,8 @@ use pliant_io::Format;
 
 use super::arguments::ApplyArguments;
 use super::method_argument::method_argument;
-use super::{Console, on_threads, warn};
+use crate::cli::console::{Console, warn};
+use crate::cli::threads::on_threads;
 use pliant_engine::{EngineError, files, memory, read_edit};
 
 pub(super) fn run(arguments: &ApplyArguments, console: &mut Console<'_>) -> Result<(), EngineError> {

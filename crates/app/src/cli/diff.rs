@@ -6,7 +6,8 @@ use pliant_io::{Difference, What};
 use serde_json::{Value, json};
 
 use super::arguments::{ComputeArguments, DiffArguments};
-use super::{Console, on_threads, print, print_json};
+use crate::cli::console::{Console, print, print_json};
+use crate::cli::threads::on_threads;
 use pliant_engine::{Compared, EngineError, differences};
 
 pub(super) fn run(arguments: &DiffArguments, console: &mut Console<'_>) -> Result<(), EngineError> {

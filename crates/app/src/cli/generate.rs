@@ -8,8 +8,8 @@ use std::io;
 use clap_complete::{Generator, Shell};
 use pliant_editor::{Command, Shortcut};
 
-use super::Console;
 use super::arguments::{GenerateArguments, definition};
+use crate::cli::console::Console;
 use pliant_engine::EngineError;
 use pliant_engine::files::shown;
 

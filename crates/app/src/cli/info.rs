@@ -8,7 +8,8 @@ use pliant_mesh::{FindingKind, Inspection, WeldOptions};
 use serde_json::{Value, json};
 
 use super::arguments::{ComputeArguments, InfoArguments};
-use super::{Console, on_threads, print, print_json};
+use crate::cli::console::{Console, print, print_json};
+use crate::cli::threads::on_threads;
 use pliant_engine::EngineError;
 use pliant_engine::files::shown;
 use pliant_engine::watch::Watch;

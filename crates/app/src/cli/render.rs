@@ -14,7 +14,8 @@ use pliant_mesh::{Cancel, Model, WeldOptions, bounding_box};
 use pliant_render::{Background, Frame, Headless, RenderError, Renderer, Samples, Surface, SurfaceLine};
 
 use super::arguments::{self, ComputeArguments, PictureSize, ProjectionName, RenderArguments, Up, View, WeldArguments};
-use super::{Console, on_threads, print};
+use crate::cli::console::{Console, print};
+use crate::cli::threads::on_threads;
 use crate::drawing::{self, Drawing, Pose, Scale};
 use crate::{legend, painting, picture_file};
 use pliant_engine::files::Destination;

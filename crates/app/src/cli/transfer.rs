@@ -3,7 +3,8 @@
 use pliant_io::Format;
 
 use super::arguments::TransferArguments;
-use super::{Console, on_threads, warn};
+use crate::cli::console::{Console, warn};
+use crate::cli::threads::on_threads;
 use pliant_engine::{EngineError, Transfer, transfer};
 
 pub(super) fn run(arguments: &TransferArguments, console: &mut Console<'_>) -> Result<(), EngineError> {

@@ -33,7 +33,7 @@ pub use stage::{field, overlays, style, view};
 pub use wires::wires;
 
 use normals::NormalGroups;
-use pose::Kept;
+use pose::Poser;
 use relative::Relative;
 
 /// The parts that stay the same while the shape changes.
@@ -45,10 +45,7 @@ pub struct Drawing {
     pub inside_out: Arc<BTreeSet<u32>>,
     triangles: Vec<[u32; 3]>,
     welded: Vec<u32>,
-    chunks: Arc<Chunks>,
-    relative: Relative,
-    normals: NormalGroups,
-    kept: Kept,
+    poser: Poser,
     uvs: Option<Vec<[f32; 2]>>,
     second_uvs: Option<Vec<[f32; 2]>>,
     colours: Option<Vec<[u8; 4]>>,
@@ -81,15 +78,12 @@ impl Drawing {
             .map(|position| pose::finite(position - relative.centre))
             .collect();
         let chunks = Chunks::new(&positions, &triangles, &groups, &materials.without_images());
+        let normals = NormalGroups::of(model, &relative, &triangles, appearance.normals, turned);
         Self {
             materials,
             welded: welded(model),
-            chunks: Arc::new(chunks),
-            normals: NormalGroups::of(model, &relative, &triangles, appearance.normals, turned)
-                .with_flat(appearance.flat),
+            poser: Poser::new(Arc::new(chunks), relative, normals.with_flat(appearance.flat)),
             inside_out,
-            relative,
-            kept: Kept::default(),
             uvs: appearance.uvs,
             second_uvs: appearance.second_uvs,
             colours,
@@ -100,23 +94,23 @@ impl Drawing {
 
     /// The f64 point that GPU positions are relative to: the centre of the file's bounding box.
     pub fn centre(&self) -> DVec3 {
-        self.relative.centre
+        self.poser.relative.centre
     }
 
     /// The shape given by `displacements` (one per surface vertex, from the file's shape) for the renderer.
     pub fn pose(&self, model: &Model, displacements: &[DVec3]) -> Pose {
-        Pose::of(model, displacements, None, self)
+        self.poser.pose(model, displacements, None)
     }
 
     /// As [`Drawing::pose`], for a shape from the method's own map: normals turn by the inverse transpose of I + J,
     /// with J the map's Jacobian at each surface vertex ([`pliant_deform::Bound::jacobians`]).
     pub fn pose_turned(&self, model: &Model, displacements: &[DVec3], jacobians: &[Mat3]) -> Pose {
-        Pose::of(model, displacements, Some(jacobians), self)
+        self.poser.pose(model, displacements, Some(jacobians))
     }
 
     /// Takes back a pose whose numbers were uploaded, so that the next one reuses its memory.
     pub fn put_back(&self, pose: Pose) {
-        self.kept.put_back(pose);
+        self.poser.put_back(pose);
     }
 
     /// Uploads everything except the images, in the shape of `pose`.
@@ -139,7 +133,7 @@ impl Drawing {
                 materials: &self.materials.without_images(),
                 textures: &[],
                 welded: Some(&self.welded),
-                chunks: Some(&self.chunks),
+                chunks: Some(&self.poser.chunks),
             },
         )
     }

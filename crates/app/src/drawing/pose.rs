@@ -1,13 +1,14 @@
 //! One shape, converted for the renderer.
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::{DVec3, Mat3, Vec3A};
 use pliant_mesh::{Model, Vector3};
-use pliant_render::{ChunkBounds, ShapeData};
+use pliant_render::{ChunkBounds, Chunks, ShapeData};
 use rayon::prelude::*;
 
-use super::Drawing;
+use super::normals::NormalGroups;
+use super::relative::Relative;
 
 /// The number of poses that wait to be reused: the renderer has one while the next is made.
 const MOST_SPARE: usize = 2;
@@ -23,9 +24,13 @@ pub struct Pose {
     pub bounds: Vec<ChunkBounds>,
 }
 
-/// Memory for poses, kept from frame to frame: mapping it again takes longer than filling it.
-#[derive(Debug, Default)]
-pub(super) struct Kept {
+/// The parts of a drawing that its poses are computed from.
+#[derive(Debug)]
+pub(super) struct Poser {
+    pub chunks: Arc<Chunks>,
+    pub relative: Relative,
+    pub normals: NormalGroups,
+    /// Memory for poses, kept from frame to frame: mapping it again takes longer than filling it.
     scratch: Mutex<Scratch>,
     spare: Mutex<Vec<Pose>>,
 }
@@ -53,7 +58,32 @@ impl<V> Default for Buffers<V> {
     }
 }
 
-impl Kept {
+impl Poser {
+    pub fn new(chunks: Arc<Chunks>, relative: Relative, normals: NormalGroups) -> Self {
+        Self {
+            chunks,
+            relative,
+            normals,
+            scratch: Mutex::default(),
+            spare: Mutex::default(),
+        }
+    }
+
+    /// One shape; normals are turned by the Jacobians of the displacements, if these are known.
+    pub fn pose(&self, model: &Model, displacements: &[DVec3], jacobians: Option<&[Mat3]>) -> Pose {
+        let pose = self.spare.lock().unwrap_or_else(PoisonError::into_inner).pop();
+        let mut pose = pose.unwrap_or_default();
+        // Another thread that poses the same drawing has the memory: the side view, or a picture that is being saved.
+        let mut own = Scratch::default();
+        let mut kept = self.scratch.try_lock().ok();
+        let Scratch { single, double } = kept.as_deref_mut().unwrap_or(&mut own);
+        match self.relative.is_fine {
+            true => pose.fill(model, displacements, jacobians, self, double),
+            false => pose.fill(model, displacements, jacobians, self, single),
+        }
+        pose
+    }
+
     /// Takes a pose that is no longer needed.
     pub fn put_back(&self, pose: Pose) {
         let mut spare = self.spare.lock().unwrap_or_else(PoisonError::into_inner);
@@ -64,30 +94,15 @@ impl Kept {
 }
 
 impl Pose {
-    pub(super) fn of(model: &Model, displacements: &[DVec3], jacobians: Option<&[Mat3]>, drawing: &Drawing) -> Self {
-        let Kept { scratch, spare } = &drawing.kept;
-        let pose = spare.lock().unwrap_or_else(PoisonError::into_inner).pop();
-        let mut pose = pose.unwrap_or_default();
-        // Another thread that poses the same drawing has the memory: the side view, or a picture that is being saved.
-        let mut own = Scratch::default();
-        let mut kept = scratch.try_lock().ok();
-        let Scratch { single, double } = kept.as_deref_mut().unwrap_or(&mut own);
-        match drawing.relative.is_fine {
-            true => pose.fill(model, displacements, jacobians, drawing, double),
-            false => pose.fill(model, displacements, jacobians, drawing, single),
-        }
-        pose
-    }
-
     fn fill<V: Vector3>(
         &mut self,
         model: &Model,
         displacements: &[DVec3],
         jacobians: Option<&[Mat3]>,
-        drawing: &Drawing,
+        poser: &Poser,
         Buffers { positions, normals }: &mut Buffers<V>,
     ) {
-        let (relative, chunks) = (&drawing.relative, &drawing.chunks);
+        let (relative, chunks) = (&poser.relative, &poser.chunks);
         relative.positions(&model.surface.positions, |v| displacements[v], positions);
         let moved = |stray: DVec3, by: DVec3| finite(stray + by - relative.centre);
         model.spread(
@@ -96,8 +111,8 @@ impl Pose {
             &mut self.positions,
         );
         match jacobians {
-            Some(jacobians) => drawing.normals.turned(model, relative, jacobians, &mut self.normals),
-            None => drawing.normals.at(model, positions, normals, &mut self.normals),
+            Some(jacobians) => poser.normals.turned(model, relative, jacobians, &mut self.normals),
+            None => poser.normals.at(model, positions, normals, &mut self.normals),
         }
         (0..chunks.count())
             .into_par_iter()

@@ -6,9 +6,9 @@ mod bars;
 mod dialogs;
 mod fault;
 mod files;
-mod frame;
 mod input;
 mod panels;
+pub(in crate::window) mod session;
 mod shell;
 mod system_window;
 mod threads;
@@ -29,7 +29,7 @@ use winit::platform::run_on_demand::EventLoopExtRunOnDemand;
 pub use application::Application;
 pub use files::app_directories::AppDirectories;
 pub use files::names::original_name;
-pub use files::session::{KeepOriginal, Source};
+pub use session::{KeepOriginal, Source};
 
 /// Saves and projects without the window, for programs that drive them.
 pub mod saving {

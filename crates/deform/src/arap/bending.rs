@@ -31,7 +31,7 @@ use rayon::prelude::*;
 
 use super::bend::Bend;
 use super::cells::Cells;
-use super::domain::Domain;
+use crate::coarse::domain::Domain;
 use crate::numerical::eigen::eigenvectors;
 use crate::numerical::rows::CHUNK;
 
@@ -145,9 +145,9 @@ mod tests {
 
     use super::{add, stiffness, ties};
     use crate::arap::cells::quad;
-    use crate::arap::domain::Domain;
     use crate::arap::rims;
     use crate::arap::shape::{Guesses, Scratch, Shape};
+    use crate::coarse::domain::Domain;
 
     /// The energy of ½ xᵀ H x on a sheet of `side` by `side` cells, less that of the rims, in units of ½ κ A |H|² A.
     fn paid(side: usize, hessian: DMat2) -> f64 {

@@ -10,17 +10,18 @@ use glam::Quat;
 use pliant_mesh::{Cancel, Progress};
 use rayon::prelude::*;
 
-use super::clusters::Clusters;
-use super::domain::{ABSENT, Domain};
+use super::ArapSolver;
 use super::history::Field;
 use super::shape::{Guesses, IDENTITY, Rotation, Shape, wide};
-use super::{ArapSolver, State};
+use super::state::State;
+use crate::coarse::clustered::{Share, Shares, on_clusters, shares, transposed};
+use crate::coarse::clusters::Clusters;
+use crate::coarse::domain::{ABSENT, Domain};
 use crate::handles::blend::Origin;
 use crate::handles::offsets::Offsets;
 use crate::handles::{Handle, Motion};
 use crate::numerical::rows::CHUNK;
 use crate::region::boundary_problem::BoundaryProblem;
-use crate::region::clustered::{Share, Shares, on_clusters, shares, transposed};
 use crate::{Arap, Method, Ordering};
 
 /// The fewest vertices of a cluster: smaller clusters are less stiff against bending and closer to the fine surface,

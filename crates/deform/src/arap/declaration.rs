@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::{Arap, ArapSolver};
+use super::Arap;
+use super::lead::LedSolver;
 use crate::handles::finite::Finite;
 use crate::handles::offsets::Offsets;
 use crate::handles::turns::Followed;
@@ -61,7 +62,7 @@ impl DeformMethod for Arap {
 
     fn bind(&self, input: &BindInput<'_>) -> Result<Box<dyn BoundMethod>, BindError> {
         let (ordering, handles) = (input.ordering()?, input.handles);
-        let solver = ArapSolver::bind(
+        let solver = LedSolver::bind(
             input.problem,
             self,
             input.partition,
@@ -74,44 +75,44 @@ impl DeformMethod for Arap {
     }
 }
 
-impl BoundMethod for ArapSolver {
+impl BoundMethod for LedSolver {
     fn step(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> Result<Stepped, SolveError> {
         clear(displacements);
-        for (own, motion) in self.prescribed.iter().zip(motions) {
+        for (own, motion) in self.solver.prescribed.iter().zip(motions) {
             for vertex in own {
                 displacements[vertex.surface_vertex as usize] = vertex.goes(motion);
             }
         }
-        let (converged, energy) = ArapSolver::step(self, motions, displacements);
+        let (converged, energy) = LedSolver::step(self, motions, displacements);
         Ok(Stepped {
             converged,
-            stalled: self.has_stalled(),
+            stalled: self.solver.has_stalled(),
             energy,
             finite: Finite::Unknown,
         })
     }
 
     fn set_offsets(&mut self, offsets: &Arc<Offsets>) {
-        ArapSolver::set_offsets(self, offsets);
+        LedSolver::set_offsets(self, offsets);
     }
 
     fn rest(&mut self) {
-        ArapSolver::rest(self);
+        LedSolver::rest(self);
     }
 
     fn energy_of(&self, motions: &[Motion], displacements: &[DVec3]) -> Option<f64> {
-        Some(ArapSolver::energy_of(self, motions, displacements))
+        Some(self.solver.energy_of(motions, displacements))
     }
 
     fn solved_count(&self) -> usize {
-        self.domain.solved_count
+        self.solver.domain.solved_count
     }
 
     fn factor_len(&self) -> usize {
-        ArapSolver::factor_len(self)
+        LedSolver::factor_len(self)
     }
 
     fn warnings(&self) -> Vec<String> {
-        repairs(self.mollified_faces).into_iter().collect()
+        repairs(self.solver.mollified_faces).into_iter().collect()
     }
 }

@@ -2,9 +2,10 @@
 
 use rayon::prelude::*;
 
+use super::ArapSolver;
 use super::history::Field;
 use super::shape::{Guesses, Shape};
-use super::{ArapSolver, State};
+use super::state::{End, State};
 use crate::numerical::line_search::Trial;
 use crate::numerical::rows::CHUNK;
 use crate::numerical::sums::CHUNKS_A_TASK;
@@ -17,18 +18,6 @@ const NOTHING: f64 = 3.6e-15;
 
 /// A decrease by less than this share of the energy may be rounding of rotations and gradients in single precision.
 const ROUNDED: f64 = 1e-6;
-
-/// The knowledge at the end of the last step.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) enum End {
-    /// The gradient.
-    #[default]
-    Known,
-    /// The length of the step against `direction`, without the gradient; `trial` is the shape before the step.
-    Stepped(f64),
-    /// Nothing.
-    Unknown,
-}
 
 impl ArapSolver {
     /// Takes one step that lowers the energy, or finds that there is none.

@@ -5,15 +5,21 @@
 //! steps as long as they gain enough. An accepted correction is a step like any other: the energy falls, and the
 //! history learns how soft the surface is along it, which the clusters, too stiff against bending, don't show.
 
+use glam::DVec3;
+use pliant_mesh::{Cancel, Progress};
 use rayon::prelude::*;
 
 use super::coarse::Coarse;
-use super::descent::End;
 use super::shape::{Guesses, IDENTITY};
-use super::{ArapSolver, State};
-use crate::handles::Motion;
+use super::state::{End, State};
+use super::{Arap, ArapSolver};
 use crate::handles::blend::{Origin, Screws};
+use crate::handles::offsets::Offsets;
+use crate::handles::{Handle, Motion};
 use crate::numerical::rows::CHUNK;
+use crate::region::boundary_problem::BoundaryProblem;
+use crate::region::partition::Partition;
+use crate::{BindError, Ordering};
 
 /// Coarse steps for new targets: along a drag of 60 frames more than 4 did not get closer to the minimum, and 2 fell
 /// behind.
@@ -25,9 +31,77 @@ const CORRECTING_STEPS: u32 = 10;
 /// The most fine steps between two corrections.
 const RAREST: u32 = 64;
 
+/// The bound method: a solver and, for a large surface, the coarse level that leads it.
+#[derive(Debug)]
+pub(crate) struct LedSolver {
+    pub(super) solver: ArapSolver,
+    coarse: Option<Coarse>,
+    corrections: Corrections,
+}
+
+impl LedSolver {
+    /// Binds the solver and, if the surface is large, its coarse level.
+    pub fn bind(
+        problem: &BoundaryProblem,
+        options: &Arap,
+        partition: &Partition,
+        handles: &[Handle],
+        ordering: &Ordering,
+        progress: &Progress,
+        cancel: &Cancel,
+    ) -> Result<Self, BindError> {
+        let solver = ArapSolver::bind(problem, options, partition, handles, ordering, progress, cancel)?;
+        let coarse = (solver.domain.solved_count > options.coarse_above)
+            .then(|| Coarse::of(problem, options, handles, &solver.domain, cancel))
+            .flatten();
+        cancel.check()?;
+        Ok(Self {
+            solver,
+            coarse,
+            corrections: Corrections::default(),
+        })
+    }
+
+    /// One step: see [`ArapSolver::step`].
+    pub fn step(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> (bool, f64) {
+        let Some(coarse) = &mut self.coarse else {
+            return self.solver.step(motions, displacements);
+        };
+        let (solver, corrections) = (&mut self.solver, &mut self.corrections);
+        // The pool is entered once: see the solver's own step.
+        rayon::scope(|_| solver.step_led(coarse, corrections, motions));
+        let (has_converged, energy) = solver.read(displacements);
+        if !energy.is_finite() {
+            coarse.rest();
+        }
+        (has_converged, energy)
+    }
+
+    /// Sets the offsets of handles' vertices from their handles' motions.
+    pub fn set_offsets(&mut self, offsets: &Offsets) {
+        self.solver.set_offsets(offsets);
+        if let Some(coarse) = &mut self.coarse {
+            coarse.set_offsets(offsets);
+        }
+    }
+
+    /// Returns to the rest shape.
+    pub fn rest(&mut self) {
+        self.solver.rest();
+        if let Some(coarse) = &mut self.coarse {
+            coarse.rest();
+        }
+    }
+
+    /// The number of entries that the factors store.
+    pub fn factor_len(&self) -> usize {
+        self.solver.factor_len() + self.coarse.as_ref().map_or(0, Coarse::factor_len)
+    }
+}
+
 /// The schedule of corrections.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Corrections {
+struct Corrections {
     /// Fine steps from one correction to the next.
     every: u32,
     /// Fine steps before the next one.
@@ -48,16 +122,16 @@ impl Default for Corrections {
 
 impl ArapSolver {
     /// A step towards `motions`, led by `coarse`.
-    pub(super) fn step_led(&mut self, coarse: &mut Coarse, motions: &[Motion]) {
+    fn step_led(&mut self, coarse: &mut Coarse, corrections: &mut Corrections, motions: &[Motion]) {
         if self.takes_other(motions) {
-            self.start_led(coarse, motions);
-        } else if self.state == State::Descending && self.corrections.left == 0 {
-            self.correct(coarse);
+            self.start_led(coarse, corrections, motions);
+        } else if self.state == State::Descending && corrections.left == 0 {
+            self.correct(coarse, corrections);
         } else if self.state == State::Descending {
             let before = self.current.energy;
             self.descend();
-            self.corrections.gained = before - self.current.energy;
-            self.corrections.left -= 1;
+            corrections.gained = before - self.current.energy;
+            corrections.left -= 1;
         }
     }
 
@@ -65,12 +139,12 @@ impl ArapSolver {
     ///
     /// From the rest shape only the blend is used: it is exact if everything moves rigidly, and the coarse level
     /// corrects it next.
-    fn start_led(&mut self, coarse: &mut Coarse, motions: &[Motion]) {
-        self.corrections = Corrections::default();
+    fn start_led(&mut self, coarse: &mut Coarse, corrections: &mut Corrections, motions: &[Motion]) {
+        *corrections = Corrections::default();
         if self.motions.iter().all(Motion::is_rest) {
             coarse.aim();
             self.start(motions);
-            self.corrections.left = 0;
+            corrections.left = 0;
             return;
         }
         self.finish_step();
@@ -100,7 +174,7 @@ impl ArapSolver {
     }
 
     /// Accepts the coarse level's correction if it lowers the energy.
-    fn correct(&mut self, coarse: &mut Coarse) {
+    fn correct(&mut self, coarse: &mut Coarse, corrections: &mut Corrections) {
         self.finish_step();
         // The history adds the step before, and has the mapped gradient at the beginning of this one.
         self.map_gradient();
@@ -111,10 +185,10 @@ impl ArapSolver {
         self.trial.rotations.copy_from_slice(&self.current.rotations);
         self.prolongate(coarse);
         let gained = self.current.energy - self.trial.energy;
-        let is_worth_it = gained > 2.0 * self.corrections.gained;
-        let every = if is_worth_it { 1 } else { 2 * self.corrections.every };
-        self.corrections.every = every.min(RAREST);
-        self.corrections.left = self.corrections.every;
+        let is_worth_it = gained > 2.0 * corrections.gained;
+        let every = if is_worth_it { 1 } else { 2 * corrections.every };
+        corrections.every = every.min(RAREST);
+        corrections.left = corrections.every;
         if gained > 0.0 {
             let factor = self.unit.recip();
             self.direction
@@ -147,40 +221,5 @@ impl ArapSolver {
         } = self;
         cells.measure(trial, Guesses::Own, scratch);
         springs.add_energy(trial);
-    }
-
-    /// Takes the trial shape to the minimum of the energy for its present rotations: one global step.
-    pub(super) fn relax_trial(&mut self) {
-        let Self {
-            trial,
-            scratch,
-            cells,
-            springs,
-            ..
-        } = self;
-        cells.find_pull(trial, scratch);
-        springs.add_gradient(trial);
-        let unit = self.unit;
-        self.direction.resize(trial.gradient.len(), Default::default());
-        self.preconditioner
-            .map(&trial.gradient, &mut self.direction, &mut self.map_room);
-        trial.displacements[..trial.gradient.len()]
-            .par_chunks_mut(CHUNK)
-            .zip(self.direction.par_chunks(CHUNK))
-            .for_each(|(own, step)| {
-                for (own, step) in own.iter_mut().zip(step) {
-                    for k in 0..3 {
-                        own[k] -= f64::from(step[k]) * unit;
-                    }
-                }
-            });
-    }
-
-    /// Ends the present descent and begins one for `motions`, with the present shape.
-    pub(super) fn leave(&mut self, motions: &[Motion]) {
-        self.motions.copy_from_slice(motions);
-        self.springs.aim(motions);
-        self.history.drop_pending();
-        self.end = End::Known;
     }
 }

@@ -5,10 +5,10 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::cells::{Cells, vector};
-use super::domain::Domain;
 use super::spokes::{floored, largest_weights};
 use super::springs::Spring;
 use crate::budget::reserved;
+use crate::coarse::domain::Domain;
 use crate::numerical::rows::CHUNK;
 use crate::sparse::factor_error::FactorError;
 use crate::sparse::matrix::ScaledMatrix;

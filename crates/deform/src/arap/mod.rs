@@ -15,11 +15,9 @@
 mod bend;
 mod bending;
 mod cells;
-pub(crate) mod clusters;
 pub(crate) mod coarse;
 mod declaration;
 mod descent;
-pub(crate) mod domain;
 mod fit_pass;
 mod gradient_pass;
 mod history;
@@ -33,6 +31,7 @@ mod shape;
 mod spokes;
 mod springs;
 mod start;
+mod state;
 
 use glam::DVec3;
 use pliant_mesh::{Cancel, Progress, SurfaceVertex};
@@ -42,15 +41,13 @@ pub(crate) use self::declaration::DECLARATION;
 pub use self::options::{Arap, ArapEnergy};
 
 use self::cells::{Cells, quad, vector};
-use self::coarse::Coarse;
-use self::descent::End;
-use self::domain::Domain;
 use self::history::{Field, History};
-use self::lead::Corrections;
 use self::matrix::System;
 use self::precondition::{MapRoom, Preconditioner, WeightInput};
 use self::shape::{Guesses, IDENTITY, Scratch, Shape};
 use self::springs::Springs;
+use self::state::{End, State};
+use crate::coarse::domain::Domain;
 use crate::handles::blend::HandleFrame;
 use crate::handles::offsets::Offsets;
 use crate::handles::{Handle, Motion};
@@ -98,21 +95,7 @@ pub(crate) struct ArapSolver {
     /// after the blend loses.
     until_blend: u32,
     patience: u32,
-    /// The coarse level that leads a large surface.
-    coarse: Option<Box<Coarse>>,
-    corrections: Corrections,
     mollified_faces: usize,
-}
-
-/// The progress towards the present targets.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-enum State {
-    /// Not finished.
-    Descending,
-    /// Converged: at a minimum, to the tolerance.
-    Converged,
-    /// Stalled: no step was found that lowers the energy, though the quadratic model promises one.
-    Stalled,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -177,10 +160,6 @@ impl ArapSolver {
         let world_origin = handles.first().map_or(DVec3::ZERO, |handle| handle.world_centre);
         let world_rest = |surface_vertex: u32| surface.positions[surface_vertex as usize];
         let rest: Vec<DVec3> = domain.vertices.iter().map(|&v| world_rest(v) - world_origin).collect();
-        let coarse = (domain.solved_count > options.coarse_above)
-            .then(|| Coarse::of(problem, options, handles, &domain, cancel))
-            .flatten();
-        cancel.check()?;
         let at_rest = Shape::at_rest(domain.vertices.len(), domain.cell_count, domain.solved_count);
         let unit = cells.unit();
         progress.set(1.0);
@@ -207,8 +186,6 @@ impl ArapSolver {
             state: State::Converged,
             until_blend: 0,
             patience: 1,
-            coarse: coarse.map(Box::new),
-            corrections: Corrections::default(),
             mollified_faces,
             domain,
         })
@@ -216,7 +193,7 @@ impl ArapSolver {
 
     /// The number of entries that the factor stores.
     pub fn factor_len(&self) -> usize {
-        self.preconditioner.stored() + self.coarse.as_ref().map_or(0, |coarse| coarse.factor_len())
+        self.preconditioner.stored()
     }
 
     /// The energy in units of the rest shape's, so that it does not depend on the model's scale.
@@ -246,9 +223,6 @@ impl ArapSolver {
         self.springs.set_offsets(&self.domain, offsets);
         self.has_offsets = !offsets.is_empty();
         self.has_other_offsets = true;
-        if let Some(coarse) = &mut self.coarse {
-            coarse.set_offsets(offsets);
-        }
     }
 
     /// Whether these motions or the offsets differ from the last step's.
@@ -270,9 +244,6 @@ impl ArapSolver {
         self.until_blend = 0;
         self.patience = 1;
         self.state = State::Converged;
-        if let Some(coarse) = &mut self.coarse {
-            coarse.rest();
-        }
     }
 
     /// Whether the descent has stalled: no step lowers the energy although the shape has not converged.
@@ -285,11 +256,6 @@ impl ArapSolver {
     pub fn step(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> (bool, f64) {
         // The pool is entered once: otherwise each of the many short loops would wait for it.
         rayon::scope(|_| {
-            if let Some(mut coarse) = self.coarse.take() {
-                self.step_led(&mut coarse, motions);
-                self.coarse = Some(coarse);
-                return;
-            }
             if self.takes_other(motions) {
                 self.start(motions);
             }
@@ -297,6 +263,11 @@ impl ArapSolver {
                 self.descend();
             }
         });
+        self.read(displacements)
+    }
+
+    /// Writes the solved vertices' displacements. Returns whether the shape converged, and the energy.
+    fn read(&mut self, displacements: &mut [DVec3]) -> (bool, f64) {
         let (domain, current) = (&self.domain, &self.current);
         displacements
             .par_chunks_mut(CHUNK)

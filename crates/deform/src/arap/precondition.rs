@@ -4,10 +4,10 @@ use pliant_mesh::{Cancel, Cancelled};
 use rayon::prelude::*;
 
 use super::cells::Quad;
-use super::domain::Domain;
 use super::matrix::System;
 use crate::BindError;
 use crate::budget::{Budget, Limit, filled};
+use crate::coarse::domain::Domain;
 use crate::numerical::rows::CHUNK;
 use crate::numerical::sums::CHUNKS_A_TASK;
 use crate::sparse::cholesky::Factor;

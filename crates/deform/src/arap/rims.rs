@@ -12,7 +12,7 @@ use pliant_mesh::{Surface, SurfaceVertex, Topology, edge_lengths};
 use rayon::prelude::*;
 
 use super::cells::{Cells, Entry, Solved, add_square};
-use super::domain::{ABSENT, Domain};
+use crate::coarse::domain::{ABSENT, Domain};
 use crate::numerical::rows::{CHUNK, place_in};
 use crate::operators::face_terms::Metric;
 

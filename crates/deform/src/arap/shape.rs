@@ -180,8 +180,8 @@ mod tests {
     use super::{Guesses, IDENTITY, Scratch, Shape, wide};
     use crate::Laplacian;
     use crate::arap::cells::Cells;
-    use crate::arap::domain::Domain;
     use crate::arap::{bending, rims, spokes};
+    use crate::coarse::domain::Domain;
     use glam::{DQuat, DVec3};
 
     fn noise(k: usize) -> f64 {

@@ -8,8 +8,8 @@
 use pliant_mesh::Surface;
 
 use super::cells::{Cells, Entry, Solved, add_square};
-use super::domain::Domain;
 use crate::Laplacian;
+use crate::coarse::domain::Domain;
 
 /// The least weight of an edge, in units of the mean of its two ends' largest.
 const FLOOR: f64 = 1e-6;

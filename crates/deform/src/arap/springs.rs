@@ -7,10 +7,10 @@
 use glam::DVec3;
 
 use super::cells::{Quad, minus, quad};
-use super::domain::Domain;
 use super::history::Field;
 use super::shape::Shape;
 use crate::Laplacian;
+use crate::coarse::domain::Domain;
 use crate::handles::offsets::Offsets;
 use crate::handles::{Handle, Motion};
 use crate::region::boundary_problem::BoundaryProblem;

@@ -4,9 +4,10 @@ use glam::{DQuat, DVec3};
 use rayon::prelude::*;
 
 use super::cells::{quad, vector};
-use super::domain::ABSENT;
 use super::shape::{Guesses, Shape, narrow, wide};
-use super::{ArapSolver, Prescribed, State};
+use super::state::{End, State};
+use super::{ArapSolver, Prescribed};
+use crate::coarse::domain::ABSENT;
 use crate::handles::Motion;
 use crate::handles::blend::{Origin, Screw, Screws, carried};
 use crate::numerical::rows::CHUNK;
@@ -97,6 +98,41 @@ impl ArapSolver {
                 }
             });
         self.trial.place(&self.prescribed, &self.motions);
+    }
+
+    /// Takes the trial shape to the minimum of the energy for its present rotations: one global step.
+    pub(super) fn relax_trial(&mut self) {
+        let Self {
+            trial,
+            scratch,
+            cells,
+            springs,
+            ..
+        } = self;
+        cells.find_pull(trial, scratch);
+        springs.add_gradient(trial);
+        let unit = self.unit;
+        self.direction.resize(trial.gradient.len(), Default::default());
+        self.preconditioner
+            .map(&trial.gradient, &mut self.direction, &mut self.map_room);
+        trial.displacements[..trial.gradient.len()]
+            .par_chunks_mut(CHUNK)
+            .zip(self.direction.par_chunks(CHUNK))
+            .for_each(|(own, step)| {
+                for (own, step) in own.iter_mut().zip(step) {
+                    for k in 0..3 {
+                        own[k] -= f64::from(step[k]) * unit;
+                    }
+                }
+            });
+    }
+
+    /// Ends the present descent and begins one for `motions`, with the present shape.
+    pub(super) fn leave(&mut self, motions: &[Motion]) {
+        self.motions.copy_from_slice(motions);
+        self.springs.aim(motions);
+        self.history.drop_pending();
+        self.end = End::Known;
     }
 }
 

@@ -1,9 +1,7 @@
 //! Options of the bi-Laplacian [BS08, section 2]: the material, and the operator's discretisation.
 
-use crate::Discretisation;
-use crate::TriangulationKind;
 use crate::option::{Choice, Choices, Number, OptionType, Whole, named_choices, options};
-use crate::{OptionKind, OptionValue};
+use crate::{Discretisation, OptionKind, OptionValue, TriangulationKind};
 
 /// The largest coefficient.
 const LARGEST: f64 = 1e12;

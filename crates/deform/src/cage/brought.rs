@@ -7,8 +7,7 @@ use rayon::prelude::*;
 
 use super::crossings::met;
 use super::mesh::CageMesh;
-use crate::attachment::finite;
-use crate::attachment::{Attachment, ControlMesh};
+use crate::attachment::{Attachment, ControlMesh, finite};
 use crate::attachment_refused::AttachmentRefused;
 
 /// The fewest and the most vertices: the equations that the handles drive a cage by are dense.

@@ -26,8 +26,7 @@ pub(crate) use self::mollification::repairs;
 
 use crate::Discretisation;
 use crate::numerical::graph::Graph;
-use crate::numerical::rows::CHUNK;
-use crate::numerical::rows::place_in;
+use crate::numerical::rows::{CHUNK, place_in};
 use crate::operators::face_terms::{FaceTerms, Metric};
 use crate::operators::triangulation::Triangulation;
 

@@ -1,7 +1,6 @@
 //! The roles applied to a surface: solved vertices, held vertices with the strength of the hold, and followers.
 
 pub(crate) mod boundary_problem;
-pub(crate) mod clustered;
 pub(crate) mod constraints;
 pub(crate) mod follow;
 mod images;

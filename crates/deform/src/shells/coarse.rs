@@ -16,15 +16,15 @@ use super::blended::fitted;
 use super::elements::{ABSENT, Elements};
 use super::shape::Shape;
 use super::{Shells, ShellsSolver};
-use crate::arap::clusters::Clusters;
-use crate::arap::domain::Domain;
+use crate::coarse::clustered::{Share, Shares, on_clusters, shares, transposed};
+use crate::coarse::clusters::Clusters;
+use crate::coarse::domain::Domain;
 use crate::handles::blend::Origin;
 use crate::handles::offsets::Offsets;
 use crate::handles::{Handle, Motion};
 use crate::numerical::rows::CHUNK;
 use crate::numerical::sums::Field;
 use crate::region::boundary_problem::BoundaryProblem;
-use crate::region::clustered::{Share, Shares, on_clusters, shares, transposed};
 use crate::{Budget, ExampleShape, Examples, Method};
 
 /// The fewest vertices of a cluster.

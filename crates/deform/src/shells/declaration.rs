@@ -4,7 +4,10 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::{Descent, Shells, ShellsSolver};
+use super::coarse::Coarse;
+use super::elements::Elements;
+use super::lead::Led;
+use super::{Descent, Lead, Shells, ShellsSolver};
 use crate::attachment::{AttachmentDeclaration, AttachmentKind};
 use crate::handles::finite::Finite;
 use crate::handles::offsets::Offsets;
@@ -77,14 +80,21 @@ impl DeformMethod for Shells {
     }
 
     fn bind(&self, input: &BindInput<'_>) -> Result<Box<dyn BoundMethod>, BindError> {
-        let solver = ShellsSolver::bind(
-            input.problem,
-            self,
-            input.partition,
-            input.handles,
-            input.progress,
-            input.cancel,
-        )?;
+        let &BindInput {
+            problem,
+            partition,
+            handles,
+            progress,
+            cancel,
+            ..
+        } = input;
+        let led_by = |coarse| -> Lead<'_> {
+            Box::new(move |preconditioner, carrier| Box::new(Led::new(preconditioner, coarse, carrier)))
+        };
+        let coarse = |fine: &Elements, budget| {
+            Coarse::of(problem, self, handles, &partition.solved, fine, budget, cancel).map(led_by)
+        };
+        let solver = ShellsSolver::bind_led(problem, self, partition, handles, progress, cancel, coarse)?;
         Ok(Box::new(solver))
     }
 }

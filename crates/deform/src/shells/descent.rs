@@ -38,7 +38,7 @@ impl ShellsSolver {
         };
         match &mut descent {
             Descent::Newton(system) => self.step_newton(system),
-            Descent::Led(led) => self.step_led(led),
+            Descent::Led(led) => led.step(self),
         }
         self.descent = Some(descent);
     }

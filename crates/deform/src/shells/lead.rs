@@ -11,9 +11,10 @@ use super::carry::{Base, Carrier, Strains};
 use super::coarse::Coarse;
 use super::elements::ABSENT;
 use super::unfolded::Preconditioner;
-use super::{Blending, ShellsSolver};
+use super::{Blending, Leader, ShellsSolver};
 use crate::handles::Motion;
 use crate::handles::blend::{Origin, Screw, Screws, carried};
+use crate::handles::offsets::Offsets;
 use crate::numerical::sums::Field;
 
 /// Coarse steps for new targets.
@@ -61,17 +62,38 @@ impl Led {
         (self.every, self.left) = (1, 0);
         (self.gained, self.corrected) = (f64::INFINITY, f64::INFINITY);
     }
+}
 
-    /// Back to the rest shape.
-    pub fn rest(&mut self) {
+impl Leader for Led {
+    fn start(&mut self, solver: &mut ShellsSolver, motions: &[Motion]) {
+        solver.start_led(self, motions);
+    }
+
+    fn step(&mut self, solver: &mut ShellsSolver) {
+        solver.step_led(self);
+    }
+
+    fn rest(&mut self) {
         self.forget();
         self.coarse.rest();
+    }
+
+    fn set_weights(&mut self, weights: &[Option<f64>]) {
+        self.coarse.set_weights(weights);
+    }
+
+    fn set_offsets(&mut self, offsets: &Offsets) {
+        self.coarse.set_offsets(offsets);
+    }
+
+    fn stored(&self) -> usize {
+        self.preconditioner.stored() + self.coarse.stored()
     }
 }
 
 impl ShellsSolver {
     /// Makes the shape for new motions that the coarse level predicts.
-    pub(super) fn start_led(&mut self, led: &mut Led, motions: &[Motion]) {
+    fn start_led(&mut self, led: &mut Led, motions: &[Motion]) {
         if self.is_at_rest() {
             led.coarse.rest();
         } else if self.has_slopes {
@@ -126,7 +148,7 @@ impl ShellsSolver {
     }
 
     /// A step towards unchanged motions.
-    pub(super) fn step_led(&mut self, led: &mut Led) {
+    fn step_led(&mut self, led: &mut Led) {
         let before = self.current.energy;
         if led.left == 0 {
             self.correct(led);

@@ -51,6 +51,8 @@ mod start;
 mod system;
 mod unfolded;
 
+use std::fmt::Debug;
+
 use glam::DVec3;
 use pliant_mesh::{Cancel, Cancelled, Progress, SurfaceVertex};
 
@@ -59,14 +61,11 @@ pub use self::options::Shells;
 
 use self::blended::Turns;
 use self::carry::Carrier;
-use self::coarse::Coarse;
 use self::elements::Elements;
 use self::examples::Examples;
-use self::lead::Led;
 use self::shape::{Energy, Shape, Slopes};
 use self::system::{Pattern, System};
 use self::unfolded::{Preconditioner, Unfolded};
-use crate::BindError;
 use crate::budget::bytes_of;
 use crate::handles::blend::HandleFrame;
 use crate::handles::offsets::Offsets;
@@ -76,6 +75,7 @@ use crate::region::boundary_problem::BoundaryProblem;
 use crate::region::partition::Partition;
 use crate::region::slender;
 use crate::sparse::factor_error::FactorError;
+use crate::{BindError, Budget};
 
 /// Bytes of a solved vertex in the tables of a surface that is led: shares, turns, factors, positions, and the last steps
 /// with their changes.
@@ -120,8 +120,32 @@ enum Descent {
     /// By Newton's method, with a factor of the whole matrix.
     Newton(Box<System>),
     /// Led by a coarse level.
-    Led(Box<Led>),
+    Led(Box<dyn Leader>),
 }
+
+/// A coarse level that takes the lead of a large surface (`lead`).
+trait Leader: Debug + Send + Sync {
+    /// Makes the shape for new motions.
+    fn start(&mut self, solver: &mut ShellsSolver, motions: &[Motion]);
+
+    /// A step towards unchanged motions.
+    fn step(&mut self, solver: &mut ShellsSolver);
+
+    /// Returns to the rest shape.
+    fn rest(&mut self);
+
+    /// See [`ShellsSolver::give`].
+    fn set_weights(&mut self, weights: &[Option<f64>]);
+
+    /// See [`ShellsSolver::set_offsets`].
+    fn set_offsets(&mut self, offsets: &Offsets);
+
+    /// The number of entries that its factors store.
+    fn stored(&self) -> usize;
+}
+
+/// Gives a coarse level the lead, with the preconditioner of the fine surface.
+type Lead<'a> = Box<dyn FnOnce(Preconditioner, Carrier) -> Box<dyn Leader> + 'a>;
 
 /// What a start from examples takes.
 #[derive(Debug)]
@@ -160,6 +184,19 @@ impl ShellsSolver {
         progress: &Progress,
         cancel: &Cancel,
     ) -> Result<Self, BindError> {
+        Self::bind_led(problem, options, partition, handles, progress, cancel, |_, _| None)
+    }
+
+    /// Like [`ShellsSolver::bind`], for a surface that is led if it is large and `coarse` gives a level.
+    fn bind_led<'a>(
+        problem: &BoundaryProblem,
+        options: &Shells,
+        partition: &Partition,
+        handles: &[Handle],
+        progress: &Progress,
+        cancel: &Cancel,
+        coarse: impl FnOnce(&Elements, Budget) -> Option<Lead<'a>>,
+    ) -> Result<Self, BindError> {
         // They bend as the prisms do, and are refined as little.
         let most = slender::MOST_EDGES_OF_PRISMS;
         slender::check(&partition.triangulation, &partition.solved, most, None)?;
@@ -193,11 +230,9 @@ impl ShellsSolver {
         let budget = budget.map_err(|limit| BindError::budget(free_count, limit))?;
         let pattern = Pattern::of(elements);
         progress.set(0.4);
-        let coarse = is_led
-            .then(|| Coarse::of(problem, options, handles, &partition.solved, elements, budget, cancel))
-            .flatten();
+        let lead = is_led.then(|| coarse(elements, budget)).flatten();
         cancel.check()?;
-        let (system, budget) = match coarse {
+        let (system, budget) = match lead {
             None => System::of(&pattern, &ends, budget)
                 .map(|(system, budget)| (Some(system), budget))
                 .map_err(refused)?,
@@ -213,11 +248,11 @@ impl ShellsSolver {
             carrier: Carrier::of(&energy),
             preconditioner: None,
         });
-        let descent = match (coarse, system) {
-            (Some(coarse), _) => {
+        let descent = match (lead, system) {
+            (Some(lead), _) => {
                 let preconditioner = unfolded.preconditioner().map_err(refused)?;
                 let carrier = Carrier::of(&energy);
-                Descent::Led(Box::new(Led::new(preconditioner, coarse, carrier)))
+                Descent::Led(lead(preconditioner, carrier))
             }
             (None, Some(system)) => {
                 if let Some(blending) = &mut blending {
@@ -274,7 +309,7 @@ impl ShellsSolver {
         self.energy.examples.give(weights);
         self.has_other_weights = true;
         if let Some(Descent::Led(led)) = &mut self.descent {
-            led.coarse.set_weights(weights);
+            led.set_weights(weights);
         }
     }
 
@@ -287,7 +322,7 @@ impl ShellsSolver {
         self.energy.springs.set_offsets(&elements.vertices, offsets);
         self.has_other_offsets = true;
         if let Some(Descent::Led(led)) = &mut self.descent {
-            led.coarse.set_offsets(offsets);
+            led.set_offsets(offsets);
         }
     }
 
@@ -321,7 +356,7 @@ impl ShellsSolver {
         let of_blending = self.blending.as_ref().and_then(|own| own.preconditioner.as_ref());
         let of_descent = match &self.descent {
             Some(Descent::Newton(system)) => system.stored(),
-            Some(Descent::Led(led)) => led.preconditioner.stored() + led.coarse.stored(),
+            Some(Descent::Led(led)) => led.stored(),
             None => 0,
         };
         of_descent + of_blending.map_or(0, Preconditioner::stored)
@@ -333,7 +368,7 @@ impl ShellsSolver {
             return;
         };
         if let Descent::Led(led) = &mut descent {
-            self.start_led(led, motions);
+            led.start(self, motions);
             self.descent = Some(descent);
             return;
         }

@@ -4,6 +4,7 @@
 
 pub(crate) mod cholesky;
 pub(crate) mod factor_error;
+pub(crate) mod line;
 pub(crate) mod low_rank;
 pub(crate) mod matrix;
 pub(crate) mod numeric;

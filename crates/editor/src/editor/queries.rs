@@ -8,18 +8,19 @@ use pliant_deform::Role;
 use pliant_mesh::{ContourLine, SurfaceVertex};
 
 use super::Editor;
-use crate::EditFile;
 use crate::command::{Command, Shortcut, State};
 use crate::document::{Document, History, SaveMark};
 use crate::format::{ExportError, export};
-use crate::jobs::{Comparison, Intersections, JobKind, Revision, Rim};
-use crate::scene_view::{ControlPoints, Cursor, SceneView};
+use crate::jobs::{Comparison, Intersections, JobKind};
+use crate::region::Rim;
+use crate::revision::Revision;
+use crate::scene_view::{ControlPoints, SceneView};
 use crate::snapshot::Snapshot;
 use crate::status::status;
 use crate::tool::{Gesture, ToolMode};
-use crate::view::{Look, Pick};
+use crate::view::{Cursor, Look, Pick};
 use crate::workspace::{SnapshotKey, Workspace, WorkspaceSnapshot, region_colour, rims};
-use crate::{MeshReference, geometry_hash};
+use crate::{EditFile, MeshReference, geometry_hash};
 
 impl Editor {
     /// The present content of the window.

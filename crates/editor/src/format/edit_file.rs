@@ -16,9 +16,9 @@ use super::loose::{OneOrList, StoredLoose};
 use super::method::{method_to_value, read_method};
 use super::project::StoredKept;
 use super::reader::read;
-use super::refusal::shortened;
 use super::selector::Selector;
 use crate::HandleTransform;
+use crate::warning::shortened;
 
 /// The version of the edit format for reading and writing.
 pub const EDIT_VERSION: u64 = 1;

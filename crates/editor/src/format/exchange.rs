@@ -10,9 +10,8 @@ use super::attachment::AttachmentEntry;
 use super::examples::entries_of;
 use super::project::StoredKept;
 use super::selector::ranges_of;
-use crate::document::followed;
-use crate::document::{Content, Document, Handle, HandleId, Paint, PivotPlace, Reach};
-use crate::jobs::{FileContacts, Region, region_input};
+use crate::document::{Content, Document, Handle, HandleId, Paint, PivotPlace, Reach, followed};
+use crate::region::{FileContacts, Region, region_input};
 use crate::{EditError, EditFile, FieldEntry, HandleEntry, HandleTransform, Selector};
 
 /// The reason why a document can't be written as an edit.

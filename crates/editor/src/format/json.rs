@@ -7,7 +7,7 @@ use serde::de::{DeserializeSeed, Deserializer, Error as _, MapAccess, SeqAccess,
 use serde_json::{Map, Value};
 
 use super::edit_error::EditError;
-use super::refusal::shortened;
+use crate::warning::shortened;
 
 /// Reads a text, with or without a byte order mark in front, which some editors write.
 ///

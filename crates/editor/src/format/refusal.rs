@@ -6,6 +6,7 @@ use serde::de::{self, Expected, Unexpected};
 use serde_json::Value;
 
 use super::edit_error::{EditError, remedy};
+use crate::warning::shortened;
 
 /// A value in serde's terms.
 pub(super) fn unexpected(value: &Value) -> Unexpected<'_> {
@@ -132,14 +133,4 @@ fn kind(found: Unexpected<'_>) -> String {
         Unexpected::Other(what) => what.to_owned(),
         other => other.to_string(),
     }
-}
-
-/// Keeps a refusal to one readable line, for any content of the file.
-pub(crate) fn shortened(text: &str) -> String {
-    let clean: String = text
-        .chars()
-        .map(|c| if c.is_control() { ' ' } else { c })
-        .take(60)
-        .collect();
-    if text.chars().count() > 60 { clean + ".." } else { clean }
 }

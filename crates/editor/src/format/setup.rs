@@ -11,11 +11,10 @@ use super::attachment::on_model;
 use super::edit_error::EditError;
 use super::edit_file::EditFile;
 use super::exchange::with_pivot;
-use super::refusal::shortened;
 use crate::HandleTransform;
 use crate::document::{Document, HandleId, KeptShape, attachment_part};
-use crate::jobs::Region;
-use crate::warning::worded;
+use crate::region::Region;
+use crate::warning::{shortened, worded};
 
 /// The input of [`pliant_deform::Problem`] from an edit, and the handles' transforms.
 #[derive(Clone, PartialEq, Debug)]

@@ -9,8 +9,9 @@ use super::bound_controls::BoundControls;
 use super::carried::Carried;
 use super::inspected::{Inspectable, Inspected};
 use super::intersections::Intersections;
-use super::job::{Pickable, Revision, ShownTriangles};
-use super::region::{FileContacts, Region};
+use crate::pickable::{Pickable, ShownTriangles};
+use crate::region::{FileContacts, Region};
+use crate::revision::Revision;
 use crate::warning::HandleWarning;
 
 /// The last results.

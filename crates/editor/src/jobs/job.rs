@@ -8,14 +8,16 @@ use std::sync::Arc;
 
 use glam::{DVec3, Mat3};
 use pliant_deform::{Bound, Budget, Ordering};
-use pliant_mesh::{Bvh, Cancel, Joint, Progress, SurfaceVertex};
+use pliant_mesh::{Cancel, Joint, Progress, SurfaceVertex};
 
 use super::both_sides::BothSides;
 use super::carried::Carried;
 use super::compared::Compared;
 use super::inspected::{Inspectable, Inspected};
 use super::intersections::Intersections;
-use super::region::Region;
+use crate::pickable::Pickable;
+use crate::region::Region;
+use crate::revision::Revision;
 use crate::warning::HandleWarning;
 
 /// The jobs that the editor starts, by result.
@@ -83,10 +85,6 @@ impl JobKind {
     }
 }
 
-/// The number of the state for which a job was made. Numbers only grow; none is used twice.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug, Default)]
-pub struct Revision(pub u64);
-
 /// A job's work, given a progress to report to and a flag that cancels it.
 pub(crate) type Work = Box<dyn FnOnce(&Progress, &Cancel) -> JobOutcome + Send>;
 
@@ -144,24 +142,6 @@ pub trait Executor {
     fn clock_ms(&self) -> fn() -> f64 {
         || 0.0
     }
-}
-
-/// The data that answer rays.
-#[derive(Clone)]
-pub struct Pickable {
-    /// The hierarchy over the shown triangles, in their shape.
-    pub(crate) bvh: Bvh,
-    /// Its triangles of the surface.
-    pub(crate) shown: ShownTriangles,
-}
-
-/// Triangles of the surface that rays may meet.
-#[derive(Clone, Default)]
-pub(crate) struct ShownTriangles {
-    /// A different number for every other set of triangles.
-    pub(super) revision: Revision,
-    /// Their numbers, ascending; `None` is all of them.
-    pub(crate) triangles: Option<Arc<Vec<u32>>>,
 }
 
 /// The end of a job.

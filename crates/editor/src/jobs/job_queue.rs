@@ -2,7 +2,7 @@
 
 use pliant_mesh::{Cancel, Progress};
 
-use super::job::Revision;
+use crate::revision::Revision;
 
 /// One kind's queue. `W` is the data for starting the work; the queue starts nothing itself, its owner starts the work
 /// that [`JobQueue::start_next`] returns.

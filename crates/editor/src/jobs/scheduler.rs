@@ -19,12 +19,14 @@ use super::computed::Computed;
 use super::inspected::{Asked, Inspected};
 use super::inspection::inspect_work;
 use super::intersections::Intersections;
-use super::job::{ControlPlaces, Executor, Job, JobDone, JobKind, JobOutcome, Revision, ShownTriangles, Solved, Work};
+use super::job::{ControlPlaces, Executor, Job, JobDone, JobKind, JobOutcome, Solved, Work};
 use super::job_queue::{JobQueue, Running};
-use super::region::{Region, region_input};
 use super::solving::{controls_work, solve_work};
 use super::work::{bind_work, intersect_work, order_work, pick_work, region_work};
 use crate::document::Document;
+use crate::pickable::ShownTriangles;
+use crate::region::{Region, region_input};
+use crate::revision::Revision;
 use crate::warning::HandleWarning;
 
 /// The person's activity, as far as it affects jobs.

@@ -10,10 +10,11 @@ use super::allowance::Allowance;
 use super::computed::Computed;
 use super::inspected::Inspectable;
 use super::intersections::Intersections;
-use super::job::{JobOutcome, Pickable, Work};
-use super::region::{Region, RegionInput};
+use super::job::{JobOutcome, Work};
 use crate::Setup;
 use crate::document::Document;
+use crate::pickable::Pickable;
+use crate::region::{Region, RegionInput};
 
 /// This many pairs of triangles are enough to show the places.
 const MOST_PAIRS: usize = 20_000;

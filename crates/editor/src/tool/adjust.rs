@@ -5,8 +5,7 @@ use super::context::Context;
 use super::gesture::{Gesture, Next};
 use super::overlay::Lit;
 use crate::input::{Button, Pointer};
-use crate::scene_view::Cursor;
-use crate::view::View;
+use crate::view::{Cursor, View};
 use crate::workspace::Workspace;
 
 /// The widget's step is open.

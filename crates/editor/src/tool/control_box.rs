@@ -7,8 +7,7 @@ use super::gesture::{Gesture, Next};
 use super::mode::{Depth, StrokeShape};
 use super::overlay::Lit;
 use crate::input::{Button, Pointer};
-use crate::scene_view::Cursor;
-use crate::view::View;
+use crate::view::{Cursor, View};
 use crate::workspace::Workspace;
 
 /// An outline during its drawing.

@@ -7,7 +7,7 @@ use pliant_mesh::{Cancel, Cancelled, Model, Progress, SurfaceVertex};
 use rayon::prelude::*;
 
 use super::mode::Depth;
-use crate::jobs::Pickable;
+use crate::pickable::Pickable;
 use crate::view::{Camera, Picking, View};
 use crate::workspace::Workspace;
 

@@ -10,8 +10,7 @@ use super::context::Context;
 use super::overlay::Lit;
 use crate::input::{Button, Key, Modifiers, Pointer};
 use crate::jobs::Activity;
-use crate::scene_view::{Cursor, Readout};
-use crate::view::{ControlShape, View};
+use crate::view::{ControlShape, Cursor, Readout, View};
 use crate::workspace::Workspace;
 
 /// The state of a gesture after an event.

@@ -6,8 +6,7 @@ use super::context::Context;
 use super::gesture::{Gesture, Next};
 use super::overlay::Lit;
 use crate::input::{Button, Pointer};
-use crate::scene_view::Cursor;
-use crate::view::{Camera, View};
+use crate::view::{Camera, Cursor, View};
 use crate::workspace::Workspace;
 
 /// The camera follows the pointer.

@@ -12,8 +12,7 @@ use super::paint::PaintStroke;
 use super::stroke::StrokeGesture;
 use crate::input::{Button, Pointer};
 use crate::jobs::{Activity, JobOutcome};
-use crate::scene_view::Cursor;
-use crate::view::View;
+use crate::view::{Cursor, View};
 use crate::workspace::Workspace;
 
 /// An outline during its drawing.

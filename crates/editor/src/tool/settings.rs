@@ -1,7 +1,7 @@
 //! The settings of tools: the chosen one, its selection of vertices, the gizmo's orientation.
 
 use super::brush::{BRUSH_RADIUS_PX, BrushSize};
-use super::correct::CorrectionBrush;
+use super::correction_brush::CorrectionBrush;
 use super::mode::{Depth, StrokeShape, ToolMode};
 use super::stiffness_brush::StiffnessBrush;
 use crate::document::{HandleId, Paint};

@@ -9,8 +9,7 @@ use super::gesture::{Gesture, Next};
 use super::overlay::Lit;
 use super::settings::ToolSettings;
 use crate::input::{Button, Key, Modifiers, Pointer};
-use crate::scene_view::Cursor;
-use crate::view::View;
+use crate::view::{Cursor, View};
 use crate::workspace::Workspace;
 
 const RIM_SEGMENTS: usize = 64;

@@ -11,8 +11,7 @@ use super::overlay::Lit;
 use crate::document::{Document, Transaction};
 use crate::input::{Button, Pointer};
 use crate::jobs::Activity;
-use crate::scene_view::Cursor;
-use crate::view::View;
+use crate::view::{Cursor, View};
 use crate::workspace::Workspace;
 
 /// The stroke's action.

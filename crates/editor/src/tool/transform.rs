@@ -15,8 +15,7 @@ use super::transform_measure::{Measure, TransformKind};
 use crate::document::{Handle, HandleId, HandleTransform, Transaction, accumulated};
 use crate::input::{Button, Key, Modifiers, Pointer};
 use crate::jobs::Activity;
-use crate::scene_view::{Cursor, Readout};
-use crate::view::{ControlShape, GizmoAxes, GizmoPart, View};
+use crate::view::{ControlShape, Cursor, GizmoAxes, GizmoPart, Readout, View};
 use crate::workspace::{Workspace, count_turn, held_because, members, put_handle};
 
 /// A held button must move the pointer this far before a handle follows.

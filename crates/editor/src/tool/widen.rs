@@ -7,9 +7,8 @@ use super::gesture::{Gesture, Next};
 use super::overlay::Lit;
 use crate::document::{HandleId, Reach, Transaction};
 use crate::input::{Button, Key, Modifiers, Pointer};
-use crate::jobs::reach_length;
-use crate::scene_view::Cursor;
-use crate::view::View;
+use crate::region::reach_length;
+use crate::view::{Cursor, View};
 use crate::workspace::{Workspace, members};
 
 /// A reach that follows the pointer; a click keeps it.

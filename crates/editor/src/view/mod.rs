@@ -8,6 +8,7 @@ mod control_shapes;
 mod gizmo;
 mod look;
 mod picking;
+mod pointer;
 mod sight;
 mod state;
 
@@ -21,4 +22,5 @@ pub use gizmo::{GizmoAxes, GizmoMode, GizmoOrientation, GizmoPart, GizmoShape, g
 pub use look::{Before, Clay, Look, Shading};
 pub use picking::Pick;
 pub(crate) use picking::Picking;
+pub use pointer::{Cursor, Readout};
 pub(crate) use state::View;

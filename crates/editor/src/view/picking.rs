@@ -7,7 +7,7 @@ use pliant_mesh::{Bvh, Model, SurfaceVertex};
 
 use super::camera::{Camera, Ray};
 use super::sight::Sight;
-use crate::jobs::Pickable;
+use crate::pickable::Pickable;
 
 /// A point of the surface under the pointer.
 #[derive(Clone, Copy, PartialEq, Debug)]

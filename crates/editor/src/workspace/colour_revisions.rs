@@ -4,7 +4,7 @@ use pliant_mesh::SurfaceVertex;
 
 use super::dirty_colours::DirtyColours;
 use crate::document::{HandleId, Repainted, Version};
-use crate::jobs::Revision;
+use crate::revision::Revision;
 
 /// The meaning of the surface's colours.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]

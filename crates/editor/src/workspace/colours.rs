@@ -8,7 +8,7 @@ use pliant_mesh::{ContourLine, SurfaceVertex};
 use super::colour_revisions::ColouredBy;
 use super::state::Workspace;
 use crate::document::{HandleId, Paint};
-use crate::jobs::{Rim, bounded};
+use crate::region::{Rim, bounded};
 
 /// The colour of a stiffness, sRGB with alpha: blue where it is soft (0.001), grey at 1, red where it is stiff (1000),
 /// violet where it is rigid.

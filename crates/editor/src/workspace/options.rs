@@ -9,7 +9,7 @@ use super::painting::members;
 use super::state::Workspace;
 use crate::document::{Document, HandleTransform, Tips};
 use crate::format::STRENGTH_RANGE;
-use crate::jobs::centroid;
+use crate::region::centroid;
 
 /// Makes the present shape the new rest shape.
 pub(crate) fn apply_shape(workspace: &mut Workspace) {

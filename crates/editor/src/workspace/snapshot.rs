@@ -7,7 +7,7 @@ use pliant_mesh::Model;
 use super::selection::HandleSelection;
 use super::state::Workspace;
 use crate::document::{Document, Versions};
-use crate::jobs::Revision;
+use crate::revision::Revision;
 
 /// A workspace that no longer changes. Making one is almost free: its long vectors are shared.
 #[derive(Clone, Debug)]

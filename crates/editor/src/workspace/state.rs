@@ -14,7 +14,8 @@ use super::selection::HandleSelection;
 use crate::document::{
     Aspect, Document, HISTORY_BYTES, Handle, HandleId, History, Transaction, Version, Versions, VertexAccess,
 };
-use crate::jobs::{BothSides, Computed, Descent, Executor, Intersections, Jobs, Revision, Symmetry};
+use crate::jobs::{BothSides, Computed, Descent, Executor, Intersections, Jobs, Symmetry};
+use crate::revision::Revision;
 use crate::view::{Pick, Picking, View};
 
 /// The document and its consequences.

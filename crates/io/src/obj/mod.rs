@@ -12,51 +12,30 @@ mod normals;
 mod patch;
 mod rename;
 mod statements;
+mod stored;
 mod turned;
 mod write;
 
 use std::ops::Range;
-use std::sync::Arc;
 
 use pliant_mesh::{Drawn, DrawnVertex, Object};
 
 use crate::appearance::colour::linear_colour;
 use crate::appearance::{Group, Material, ranges};
 use crate::convert::Polygons;
-use crate::objects;
 use crate::save::OutputFile;
 use crate::save::course::Course;
 use crate::save::moved::Moved;
 use crate::source::Source;
 use crate::summary::Summary;
 use crate::text::line_of;
-use crate::{Appearance, ReadError, SaveError};
+use crate::{Appearance, ReadError, SaveError, objects};
 use materials::Materials;
 use statements::{NONE, Statements};
 
 pub(crate) use rename::{library_renamed, texture_renamed};
+pub(crate) use stored::Stored;
 pub(crate) use write::write_new;
-
-/// An OBJ file as stored.
-#[derive(Debug)]
-pub(crate) struct Stored {
-    bytes: Arc<Vec<u8>>,
-    /// Without its positions, corners and faces, which the drawn set and `polygons` replace.
-    statements: Statements,
-    /// The `vt` of each drawn vertex; empty if none has one.
-    uv: Vec<u32>,
-    /// The `vn` of each drawn vertex; empty if none has one.
-    normal: Vec<u32>,
-    /// The faces, if one has more than three corners.
-    polygons: Option<Polygons>,
-    /// The `v` line of each drawn vertex.
-    position: Vec<u32>,
-    groups: Vec<Group>,
-    /// The drawn vertices that belong only to flat faces.
-    flat: Vec<Range<u32>>,
-    materials: Materials,
-    notes: Vec<String>,
-}
 
 /// Reads an OBJ file and asks for its material libraries and textures.
 pub(crate) fn read(source: &Source<'_>) -> Result<(Stored, Drawn), ReadError> {

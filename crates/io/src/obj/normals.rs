@@ -9,8 +9,8 @@ use std::collections::HashMap;
 use glam::DVec3;
 use pliant_mesh::{Cancelled, DrawnVertex};
 
-use super::Stored;
 use super::statements::NONE;
+use super::stored::Stored;
 use crate::save::course::Course;
 use crate::save::moved::Moved;
 

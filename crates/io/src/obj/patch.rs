@@ -7,10 +7,10 @@ use std::ops::Range;
 use glam::DVec3;
 use pliant_mesh::Cancelled;
 
-use super::Stored;
 use super::faces::{self, Face};
 use super::normals::Normals;
 use super::statements::NONE;
+use super::stored::Stored;
 use crate::save::course::Course;
 use crate::save::moved::Moved;
 use crate::text::{Cursor, Splice, push_f32, push_f64};

@@ -4,10 +4,9 @@
 mod header;
 mod patch;
 mod records;
+mod stored;
 mod turned;
 mod write;
-
-use std::sync::Arc;
 
 use pliant_mesh::Drawn;
 
@@ -19,23 +18,9 @@ use crate::save::moved::Moved;
 use crate::source::Source;
 use crate::summary::Summary;
 use crate::{Appearance, ReadError, SaveError};
-use records::Records;
 
+pub(crate) use stored::Stored;
 pub(crate) use write::write_new;
-
-/// An OFF file as stored.
-#[derive(Debug)]
-pub(crate) struct Stored {
-    bytes: Arc<Vec<u8>>,
-    /// Without its positions and faces, which the drawn set and `polygons` replace.
-    records: Records,
-    /// The faces, if one has more than three corners.
-    polygons: Option<Polygons>,
-    triangle_count: u32,
-    /// The number of the file's faces, including those that aren't drawn.
-    face_count: usize,
-    notes: Vec<String>,
-}
 
 /// Reads an OFF file.
 pub(crate) fn read(source: &Source<'_>) -> Result<(Stored, Drawn), ReadError> {

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use pliant_mesh::{Cancelled, DrawnVertex};
 
-use super::Stored;
+use super::stored::Stored;
 use crate::save::course::Course;
 use crate::save::moved::Moved;
 use crate::text::{Cursor, Splice, push_f32, push_f64};

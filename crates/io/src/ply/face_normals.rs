@@ -3,11 +3,11 @@
 use glam::{DMat3, DVec3};
 use pliant_mesh::face_gradient;
 
-use super::Stored;
 use super::header::{Element, Kind};
 use super::records::corner_list;
 use super::rewriting::{Number, Out, record};
 use super::scalar::{Scalar, Walk};
+use super::stored::Stored;
 use crate::save::frames::carried_normal;
 use crate::save::moved::Moved;
 

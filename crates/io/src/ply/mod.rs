@@ -10,18 +10,16 @@ mod patch;
 mod records;
 mod rewriting;
 mod scalar;
+mod stored;
 mod textures;
 mod turned;
 mod unread;
 mod wedges;
 mod write;
 
-use std::sync::Arc;
-
 use pliant_mesh::Drawn;
 
 use crate::appearance::colour::linear_colour;
-use crate::appearance::{Group, Material};
 use crate::convert::Polygons;
 use crate::polygon::{cut_faces, left_out_note};
 use crate::save::OutputFile;
@@ -30,36 +28,14 @@ use crate::save::moved::Moved;
 use crate::source::Source;
 use crate::source::notes::Notes;
 use crate::summary::Summary;
-use crate::{Appearance, Format, ReadError, SaveError};
-use header::Header;
-use records::{Columns, Places, Records};
+use crate::{Appearance, ReadError, SaveError};
+use records::Records;
 use textures::Textures;
 use wedges::Wedges;
 
+pub(crate) use stored::Stored;
 pub(crate) use textures::renamed as texture_renamed;
 pub(crate) use write::write_new;
-
-/// A PLY file as stored.
-#[derive(Debug)]
-pub(crate) struct Stored {
-    bytes: Arc<Vec<u8>>,
-    header: Header,
-    vertex_element: Option<usize>,
-    columns: Columns,
-    places: Places,
-    normals: Vec<[f32; 3]>,
-    colours: Vec<[f32; 4]>,
-    uvs: Vec<[f32; 2]>,
-    /// The file vertex behind each drawn vertex that comes after all of the file's.
-    further: Vec<u32>,
-    textures: Textures,
-    materials: Vec<Material>,
-    groups: Vec<Group>,
-    /// The faces, if one has more than three corners.
-    polygons: Option<Polygons>,
-    triangle_count: u32,
-    notes: Vec<String>,
-}
 
 /// Reads a PLY file.
 pub(crate) fn read(source: &Source<'_>) -> Result<(Stored, Drawn), ReadError> {
@@ -183,13 +159,5 @@ impl Stored {
             false => bytes,
         };
         Ok((bytes, warnings))
-    }
-
-    fn cannot_hold(what: String, remedy: &str) -> SaveError {
-        SaveError::CannotHold {
-            what,
-            format: Format::Ply,
-            remedy: remedy.to_owned(),
-        }
     }
 }

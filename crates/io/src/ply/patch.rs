@@ -3,9 +3,9 @@
 use glam::{DVec3, Vec3};
 use pliant_mesh::{Cancelled, DrawnVertex};
 
-use super::Stored;
 use super::header::{Element, Kind};
 use super::scalar::{Encoding, Scalar, Walk, encode};
+use super::stored::{Stored, cannot_hold};
 use crate::SaveError;
 use crate::convert::faces::coarse_in_f32;
 use crate::save::course::Course;
@@ -189,7 +189,7 @@ fn check(element: &Element, property: Option<usize>, vertex: usize, number: Opti
         return Ok(());
     };
     match scalar.integer_range() {
-        Some([least, most]) if !(least..=most).contains(&number.round()) => Err(Stored::cannot_hold(
+        Some([least, most]) if !(least..=most).contains(&number.round()) => Err(cannot_hold(
             format!("the new position of vertex {vertex}, {number}, beyond the whole numbers of this file,"),
             "save as .glb or move it less",
         )),

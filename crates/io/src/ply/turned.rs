@@ -1,10 +1,10 @@
 //! A PLY file with some parts turned inside out: the corners of their faces in reverse, and normals with other signs.
 
-use super::Stored;
 use super::header::Kind;
 use super::records::{UV_LIST, corner_list};
 use super::rewriting::{Number, Out, record};
 use super::scalar::Walk;
+use super::stored::{Stored, cannot_hold};
 use crate::SaveError;
 use crate::save::turned::wound_back;
 
@@ -23,7 +23,7 @@ pub(super) fn turned(stored: &Stored, bytes: &[u8], turned: &[bool]) -> Result<V
         }
         match element.name.as_str() {
             "tristrips" if element.count > 0 => {
-                return Err(Stored::cannot_hold(
+                return Err(cannot_hold(
                     "strips of triangles that are turned inside out".to_owned(),
                     "save as .glb",
                 ));

@@ -5,7 +5,7 @@ use std::ops::Range;
 use glam::DVec3;
 use pliant_mesh::Cancelled;
 
-use super::{changed_facets, facet_normal};
+use super::facets::{changed_facets, facet_normal};
 use crate::convert::faces::coarse_in_f32;
 use crate::save::course::{Course, STEP};
 use crate::save::moved::Moved;

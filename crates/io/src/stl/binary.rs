@@ -3,7 +3,7 @@
 use glam::{DVec3, Vec3};
 use pliant_mesh::Cancelled;
 
-use super::{changed_facets, facet_normal};
+use super::facets::{changed_facets, facet_normal};
 use crate::save::course::{Course, STEP};
 use crate::save::moved::Moved;
 use crate::source::Source;

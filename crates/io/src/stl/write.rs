@@ -6,7 +6,7 @@ use crate::convert::faces::{coarse_in_f32, has_materials, lost, lost_where};
 use crate::save::Saved;
 use crate::save::course::Course;
 
-use super::facet_normal;
+use super::facets::facet_normal;
 
 /// Writes a mesh's triangles as binary STL, which stores only their corners.
 pub(crate) fn write_new(mesh: &NewMesh<'_>, course: &Course<'_>) -> Result<Saved, SaveError> {

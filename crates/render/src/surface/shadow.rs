@@ -8,9 +8,8 @@ use glam::{Mat4, Vec3, Vec4};
 
 use crate::device::bindings::bind_group;
 use crate::device::guard::guarded;
-use crate::pipelines::fullscreen;
 use crate::pipelines::shaders::Shader;
-use crate::pipelines::{OCCLUSION_FORMAT, Pipeline};
+use crate::pipelines::{OCCLUSION_FORMAT, Pipeline, fullscreen};
 use crate::surface::draw_calls::Batching;
 use crate::target::cleared_depth;
 use crate::uniforms::{FrameUniform, ShadowUniform};

@@ -7,7 +7,7 @@ use pliant_editor::{
     Before, Clay, Command, Editor, NamedView, Orbit, Projection, RegionAction, Shading, StiffnessChange, Tips, UpAxis,
 };
 
-use crate::window::files::file_command::FileCommand;
+use crate::window::input::file_command::FileCommand;
 use crate::window::threads::message::{Ground, PictureKind};
 use crate::window::widgets::command_button::{command_button, command_choice};
 use crate::window::widgets::outbox::Outbox;

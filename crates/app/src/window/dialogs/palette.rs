@@ -7,7 +7,7 @@ use pliant_deform::METHODS;
 use pliant_editor::{Command, Editor};
 
 use crate::window::bars::status;
-use crate::window::files::file_command::FileCommand;
+use crate::window::input::file_command::FileCommand;
 
 /// The open palette.
 #[derive(Debug, Default)]

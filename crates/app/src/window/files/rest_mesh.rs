@@ -23,7 +23,7 @@ pub enum MeshSource {
 }
 
 /// Reads and welds the built-in sample.
-pub(super) fn load_sample(weld: &WeldOptions, watch: &Watch) -> Result<Loaded, EngineError> {
+pub(in crate::window) fn load_sample(weld: &WeldOptions, watch: &Watch) -> Result<Loaded, EngineError> {
     pliant_engine::load_bytes(CREATURE.to_vec(), Path::new(SAMPLE_NAME), weld, watch)
 }
 

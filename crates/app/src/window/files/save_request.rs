@@ -135,7 +135,7 @@ impl Content {
     }
 
     /// The same, for changes.
-    pub(super) fn mesh_mut(&mut self) -> Option<&mut RestMesh> {
+    pub(in crate::window) fn mesh_mut(&mut self) -> Option<&mut RestMesh> {
         match self {
             Self::Model(Model { mesh, .. }) | Self::Project(_, mesh) | Self::Morph(_, mesh) => Some(mesh),
             Self::Edit(_) | Self::Picture(_) => None,

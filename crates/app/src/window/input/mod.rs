@@ -1,6 +1,7 @@
 //! From egui's events to the editor's: the events over the 3D view, in the view's own points.
 
 pub(in crate::window) mod event_queue;
+pub(in crate::window) mod file_command;
 pub(in crate::window) mod own_keys;
 
 use std::collections::VecDeque;

@@ -7,7 +7,7 @@ use eframe::egui;
 use pliant_editor::{Key, Modifiers, Shortcut};
 
 use super::{held_modifiers, key_of, pressed_key};
-use crate::window::files::file_command::FileCommand;
+use crate::window::input::file_command::FileCommand;
 
 /// The key that went down in this frame, even if the window system has turned it into "copy", "cut" or "paste"; a
 /// sentence if a command can't have it.

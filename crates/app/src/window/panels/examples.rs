@@ -4,7 +4,7 @@ use eframe::egui::{self, RichText, ScrollArea, Slider, SliderClamping};
 use pliant_deform::{AttachmentKind, LARGEST_WEIGHT};
 use pliant_editor::{Command, Editor};
 
-use crate::window::files::file_command::FileCommand;
+use crate::window::input::file_command::FileCommand;
 use crate::window::widgets::command_button::command_button;
 use crate::window::widgets::name_label::name_label;
 use crate::window::widgets::outbox::Outbox;

@@ -6,7 +6,7 @@ use pliant_deform::{AttachmentKind, METHODS, Method, OptionDeclaration, OptionKi
 use pliant_editor::{Command, Editor};
 
 use super::{examples, material, method_picture};
-use crate::window::files::file_command::FileCommand;
+use crate::window::input::file_command::FileCommand;
 use crate::window::widgets::command_button::{command_button, command_choice};
 use crate::window::widgets::number_field::number_field;
 use crate::window::widgets::outbox::Outbox;

@@ -15,11 +15,13 @@ pub(in crate::window) mod objects;
 mod part_name;
 mod poses;
 mod strength;
+mod title;
 mod weld;
 
 use std::collections::BTreeSet;
 
-use eframe::egui::{self, RichText, ScrollArea};
+use eframe::egui;
+use eframe::egui::ScrollArea;
 use pliant_editor::{Command, Editor};
 
 use crate::window::widgets::command_button::command_button;
@@ -59,14 +61,9 @@ pub fn show(
     turned
 }
 
-/// The title of a part of the panel.
-fn title(name: &str) -> RichText {
-    RichText::new(name).strong().size(14.0)
-}
-
 /// A part of the panel that can be folded; true if it was folded or unfolded just now.
 fn section(ui: &mut egui::Ui, title: &str, folded: &BTreeSet<String>, contents: &mut dyn FnMut(&mut egui::Ui)) -> bool {
-    let header = egui::CollapsingHeader::new(self::title(title))
+    let header = egui::CollapsingHeader::new(title::title(title))
         .id_salt(title)
         .default_open(!folded.contains(title))
         .show_unindented(ui, |ui| {

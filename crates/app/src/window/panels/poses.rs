@@ -12,7 +12,7 @@ pub fn show_none(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     ui.horizontal(|ui| {
         // Under the titles of the sections that fold.
         ui.add_space(ui.spacing().indent);
-        ui.label(super::title("Poses"));
+        ui.label(super::title::title("Poses"));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             keep(ui, editor, commands);
         });

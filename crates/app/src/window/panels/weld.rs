@@ -4,7 +4,7 @@ use eframe::egui::{self, DragValue};
 use pliant_editor::Editor;
 use pliant_mesh::{Model, WeldOptions};
 
-use crate::window::files::file_command::FileCommand;
+use crate::window::input::file_command::FileCommand;
 use crate::window::widgets::command_button::choices;
 use crate::window::widgets::number_field::number_field;
 use crate::window::widgets::outbox::Outbox;

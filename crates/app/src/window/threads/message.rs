@@ -10,7 +10,7 @@ use pliant_mesh::Cancel;
 use pliant_render::{Materials, Surface};
 
 use crate::drawing::{Drawing, Field, Pose, Scale};
-use crate::window::dialogs::folder_browser::listing::Entry;
+use crate::window::files::listing::Entry;
 use crate::window::files::original::Kept;
 use crate::window::files::rest_mesh::MeshSource;
 use crate::window::files::save_request::{Unwritten, Written};

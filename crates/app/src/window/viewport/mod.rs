@@ -4,16 +4,16 @@
 //! If the processor itself draws, a changing view is drawn with one sample a pixel and large meshes with fewer
 //! triangles, and again in full when it has come to rest.
 
-pub(in crate::window) mod area;
 pub(in crate::window) mod axis_ball;
 pub(in crate::window) mod backdrop;
 pub(in crate::window) mod before;
 pub(in crate::window) mod coarseness;
 pub(in crate::window) mod compare;
-mod context_menu;
+pub(in crate::window) mod context_menu;
+pub(in crate::window) mod drawn_key;
 pub(in crate::window) mod gpu;
 pub(in crate::window) mod method_views;
-mod redrawing;
+pub(in crate::window) mod pose_queue;
 pub(in crate::window) mod shown;
 pub(in crate::window) mod side_view;
 
@@ -30,10 +30,9 @@ use pliant_render::{
 };
 
 use crate::drawing::{self, Drawing, Field, Scale};
-use crate::legend;
-use crate::painting;
 use crate::window::threads::message::{Ground, PictureKind, Posed};
-use crate::window::widgets::drawn_key::DrawnKey;
+use crate::window::viewport::drawn_key::DrawnKey;
+use crate::{legend, painting};
 use backdrop::Backdrop;
 use coarseness::Coarseness;
 use gpu::Gpu;

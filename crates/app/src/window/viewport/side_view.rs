@@ -9,8 +9,8 @@ use glam::DVec3;
 use super::Viewport;
 use crate::drawing::Drawing;
 use crate::window::threads::message::{Message, Posed};
-use crate::window::threads::pose_queue::PoseQueue;
 use crate::window::threads::workers::{Stage, Workers};
+use crate::window::viewport::pose_queue::PoseQueue;
 
 /// A view beside the first, with its own threads.
 pub struct SideView {

@@ -2,7 +2,6 @@
 
 pub(in crate::window) mod command_button;
 pub(in crate::window) mod default_button;
-pub(in crate::window) mod drawn_key;
 pub(in crate::window) mod icon;
 pub(in crate::window) mod name_label;
 pub(in crate::window) mod number_field;

@@ -3,7 +3,7 @@
 use eframe::egui::Response;
 use pliant_editor::{Command, Event};
 
-use crate::window::files::file_command::FileCommand;
+use crate::window::input::file_command::FileCommand;
 
 /// Events for the editor, in order, and the request for files.
 #[derive(Debug, Default)]

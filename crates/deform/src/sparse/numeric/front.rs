@@ -7,7 +7,7 @@ use pliant_mesh::{Cancel, vectors};
 use pulp::{Arch, Simd, WithSimd};
 
 use crate::sparse::factor_error::FactorError;
-use crate::sparse::numeric::line::{LANES, Line, Shape, triangle};
+use crate::sparse::line::{LANES, Line, Shape, triangle};
 use crate::sparse::numeric::tiles::{finish_diagonal, finish_strips, square_strips};
 
 /// The number of strips of columns that are finished at once.

@@ -5,7 +5,6 @@
 //! from each other but the children's contributions, so they run in parallel; several threads work on a large front.
 
 mod front;
-pub(crate) mod line;
 pub(crate) mod reuse;
 mod tiles;
 
@@ -15,9 +14,9 @@ use pliant_mesh::Cancel;
 
 use crate::budget::reserved;
 use crate::sparse::factor_error::FactorError;
+use crate::sparse::line::{LANES, Line, Shape, strips, triangle};
 use crate::sparse::matrix::ScaledMatrix;
 use crate::sparse::numeric::front::{factor_panel, update_matrix};
-use crate::sparse::numeric::line::{LANES, Line, Shape, strips, triangle};
 use crate::sparse::symbolic::Symbolic;
 use crate::sparse::symbolic::assembly_tree::AssemblyTree;
 

@@ -10,8 +10,8 @@ use std::collections::BTreeMap;
 use rayon::prelude::*;
 
 use crate::sparse::Elimination;
+use crate::sparse::line::LANES;
 use crate::sparse::matrix::ScaledMatrix;
-use crate::sparse::numeric::line::LANES;
 use crate::sparse::symbolic::assembly_tree::AssemblyTree;
 use crate::sparse::symbolic::{Symbolic, contribution_lines};
 

@@ -6,7 +6,7 @@
 use pulp::Simd;
 
 use crate::sparse::factor_error::FactorError;
-use crate::sparse::numeric::line::{LANES, Line, Shape, triangle};
+use crate::sparse::line::{LANES, Line, Shape, triangle};
 
 /// A tile's sums: for each column, for each strip, V vectors of rows.
 type Tile<T, const V: usize, const R: usize, const C: usize> = [[[T; V]; R]; C];

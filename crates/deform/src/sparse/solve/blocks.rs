@@ -4,7 +4,7 @@
 //! finished values in registers, and rows below are read and written once for four columns.
 
 use crate::numerical::prefetch::Prefetch;
-use crate::sparse::numeric::line::{Line, Shape};
+use crate::sparse::line::{Line, Shape};
 use crate::sparse::solve::rhs::{Real, Rhs, minus, plus, times};
 
 /// The prefetch distance of the backward substitution, in numbers: some blocks of the usual size.

@@ -3,7 +3,7 @@
 use pulp::{Simd, WithSimd};
 
 use crate::numerical::prefetch::Prefetch;
-use crate::sparse::numeric::line::{LANES, Line, Shape};
+use crate::sparse::line::{LANES, Line, Shape};
 
 /// K right-hand sides of eight rows, each a line.
 pub(crate) type Strip<const K: usize> = [Line; K];

@@ -14,8 +14,8 @@ use std::sync::{Mutex, PoisonError};
 
 use pliant_mesh::vectors;
 
+use crate::sparse::line::{LANES, Line, Shape};
 use crate::sparse::numeric::Numbers;
-use crate::sparse::numeric::line::{LANES, Line, Shape};
 use crate::sparse::solve::kernels::{Backward, Forward, Strip};
 use crate::sparse::solve::passes::forward_and_backward;
 use crate::sparse::symbolic::Symbolic;

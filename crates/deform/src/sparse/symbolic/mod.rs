@@ -9,8 +9,8 @@ use std::ops::Range;
 
 use crate::budget::{Budget, Limit, bytes_of};
 use crate::sparse::factor_error::FactorError;
+use crate::sparse::line::{LANES, Line, Shape, strips, triangle};
 use crate::sparse::matrix::ScaledMatrix;
-use crate::sparse::numeric::line::{LANES, Line, Shape, strips, triangle};
 
 /// No parent: a root.
 pub(crate) const ROOT: u32 = u32::MAX;

@@ -7,11 +7,11 @@ use pliant_mesh::Model;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use super::field::Field;
 use crate::EditError;
 use crate::document::bits_equal;
 use crate::format::examples::check_weight;
 use crate::format::reader::read;
+use crate::format::stored_field::Field;
 
 /// An example.
 #[derive(Serialize, Deserialize)]

@@ -5,10 +5,9 @@ use pliant_deform::CONTINUITY_RANGE;
 use pliant_mesh::MirrorPlane;
 use serde::{Deserialize, Serialize};
 
-use super::field::Ranges;
-use crate::document::{Handle, HandleId, PivotPlace, Twin};
-use crate::document::{followed, means};
-use crate::format::refusal::shortened;
+use crate::document::{Handle, HandleId, PivotPlace, Twin, followed, means};
+use crate::format::stored_field::Ranges;
+use crate::warning::shortened;
 use crate::{EditError, HandleTransform, Reach, SOFT_RANGE};
 
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]

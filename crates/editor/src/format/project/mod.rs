@@ -7,9 +7,7 @@
 
 mod camera;
 mod examples;
-mod field;
 mod handle;
-mod kept;
 mod objects;
 mod poses;
 
@@ -25,9 +23,7 @@ use sha2::{Digest, Sha256};
 
 use self::camera::StoredCamera;
 use self::examples::{are_weighed, read_examples, stored_examples};
-use self::field::{Field, Ranges, for_each_drawn, ranges_where};
 use self::handle::StoredHandle;
-pub use self::kept::StoredKept;
 use self::objects::{StoredObject, StoredSmallParts, access, stored_objects};
 use self::poses::StoredPose;
 use super::attachment::{read_stored_attachments, stored_attachments};
@@ -37,11 +33,12 @@ use super::json::parse;
 use super::loose::StoredLoose;
 use super::method::{method_to_value, read_method};
 use super::reader::read;
-use super::refusal::shortened;
 use super::setup::Setup;
-use crate::document::bits_equal;
-use crate::document::{Content, Document, HandleId, Paint, Tips};
-use crate::jobs::{FileContacts, Region, region_input};
+use crate::document::{Content, Document, HandleId, Paint, Tips, bits_equal};
+pub use crate::format::kept::StoredKept;
+use crate::format::stored_field::{Field, Ranges, for_each_drawn, ranges_where};
+use crate::region::{FileContacts, Region, region_input};
+use crate::warning::shortened;
 use crate::{Camera, STIFFNESS_RANGE};
 
 /// The version of the project format for reading and writing.

@@ -6,11 +6,10 @@ use pliant_mesh::SurfaceVertex;
 use super::kelvinlet::Kelvinlet;
 use crate::document::Document;
 use crate::input::Pointer;
-use crate::scene_view::Cursor;
 use crate::tool::constraint::on_plane;
 use crate::tool::context::Context;
 use crate::tool::stroke::{Stroke, StrokeGesture};
-use crate::view::Pick;
+use crate::view::{Cursor, Pick};
 use crate::workspace::Workspace;
 
 /// The grabbed part.

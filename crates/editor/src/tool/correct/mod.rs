@@ -2,16 +2,15 @@
 //!
 //! A stroke changes the visible shape, and the next drags keep the change (see `document/kept_shape`).
 
-mod brush;
 mod grab;
 mod kelvinlet;
 mod smooth;
 
 use super::context::Context;
+use super::correction_brush::Correction;
 use super::gesture::Gesture;
 use crate::input::Pointer;
 use crate::view::Pick;
-pub use brush::{Correction, CorrectionBrush};
 
 /// Begins a stroke at a point of the surface; Shift smooths with every brush.
 pub(super) fn begin(context: &mut Context<'_>, pointer: Pointer, pick: &Pick) -> Box<dyn Gesture> {

@@ -8,10 +8,10 @@ use std::collections::BTreeMap;
 use glam::{DVec2, DVec3};
 use pliant_mesh::{Model, SurfaceVertex};
 
-use super::brush::{Correction, CorrectionBrush};
 use crate::document::Document;
 use crate::input::Pointer;
 use crate::tool::context::Context;
+use crate::tool::correction_brush::{Correction, CorrectionBrush};
 use crate::tool::stroke::{Stroke, StrokeGesture, firmest};
 use crate::workspace::Workspace;
 

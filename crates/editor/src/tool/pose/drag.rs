@@ -3,18 +3,17 @@
 use glam::{DVec2, DVec3};
 use pliant_mesh::{Joint, SurfaceVertex};
 
-use super::hover::{Limb, hover, limb_under};
 use super::motion::{Motion, Pose, Way};
 use crate::document::{
     Handle, HandleId, HandleTransform, Paint, PivotPlace, Reach, Transaction, accumulated, link_twins,
 };
 use crate::input::{Button, Pointer};
 use crate::jobs::Activity;
-use crate::scene_view::{Cursor, Readout};
 use crate::tool::context::Context;
 use crate::tool::gesture::{Gesture, Next};
+use crate::tool::limb::{Limb, hover, limb_under};
 use crate::tool::overlay::Lit;
-use crate::view::{ControlShape, Pick, View};
+use crate::view::{ControlShape, Cursor, Pick, Readout, View};
 use crate::workspace::{Workspace, count_turn, held_because, members, put_handle, tidy_handles, twin_across};
 
 /// The pointer must move this far before the limb follows.

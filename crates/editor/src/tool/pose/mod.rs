@@ -5,11 +5,9 @@
 //! joint, and turns that. All of it is one step of the history, and a handle like any other afterwards.
 
 mod drag;
-mod hover;
 mod motion;
-mod shapes;
 
 pub(super) use self::drag::PoseDrag;
-pub(crate) use self::hover::hover;
-pub(super) use self::hover::{Limb, limb_under};
-pub(super) use self::shapes::joint_shapes;
+pub(super) use crate::tool::joint_shapes::joint_shapes;
+pub(crate) use crate::tool::limb::hover;
+pub(super) use crate::tool::limb::{Limb, limb_under};

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use pliant_engine::files::shown;
 
-use super::listing::{Column, Entry, Order, shown_entries};
 use super::typed_path::{candidates, completed, folder_of, split, text_of};
+use crate::window::files::listing::{Column, Entry, Order, shown_entries};
 
 /// The purpose of asking for a file.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

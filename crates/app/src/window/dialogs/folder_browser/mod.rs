@@ -5,7 +5,6 @@
 //! [`FolderBrowser`] has the state, a worker reads the folders ([`listing`]), and [`view`] draws.
 
 mod browser;
-pub(in crate::window) mod listing;
 mod row;
 #[cfg(test)]
 mod tests;

@@ -5,7 +5,7 @@ use std::time::SystemTime;
 use chrono::{DateTime, Local};
 use eframe::egui::{self, Align2, Rect, Role, Sense, TextStyle, WidgetInfo, WidgetText, vec2};
 
-use super::listing::Entry;
+use crate::window::files::listing::Entry;
 use crate::window::widgets::icon::{self, Glyph};
 
 /// The width of the column of sizes.

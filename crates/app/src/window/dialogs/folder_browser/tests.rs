@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
 use super::browser::{Asked, Contents, FolderBrowser};
-use super::listing::{Column, Entry, Order, read, shown_entries};
 use super::row::size;
 use super::typed_path::{candidates, completed};
+use crate::window::files::listing::{Column, Entry, Order, read, shown_entries};
 
 const NAMES: [&str; 9] = [
     "scan 10.ply",

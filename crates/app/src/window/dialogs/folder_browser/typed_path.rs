@@ -2,7 +2,7 @@
 
 use std::path::{Component, MAIN_SEPARATOR, Path, PathBuf, is_separator};
 
-use super::listing::Entry;
+use crate::window::files::listing::Entry;
 
 /// The folder's part of a typed path, up to the last separator, and the rest. A text without a separator has no
 /// folder's part.

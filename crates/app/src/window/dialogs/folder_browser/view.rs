@@ -10,9 +10,9 @@ use pliant_editor::thousands;
 use pliant_engine::files::shown;
 
 use super::browser::{Asked, Contents, FolderBrowser};
-use super::listing::Column;
 use super::row::{self, DATE_WIDTH, ICON_WIDTH, MARGIN, SIZE_WIDTH};
 use crate::window::bars::status;
+use crate::window::files::listing::Column;
 use crate::window::widgets::default_button::default_button;
 use crate::window::widgets::icon::{self, Glyph};
 use crate::window::widgets::row_label::row_label;

@@ -3,7 +3,7 @@
 
 use pliant_mesh::SurfaceVertex;
 
-use crate::arap::clusters::Clusters;
+use crate::coarse::clusters::Clusters;
 use crate::handles::Handle;
 use crate::region::boundary_problem::BoundaryProblem;
 use crate::region::partition::Partition;

@@ -1,5 +1,7 @@
 //! The open file, and the jobs that load and save it.
 
+pub(in crate::window) mod opening;
+
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -7,15 +9,15 @@ use std::sync::Arc;
 use glam::DVec3;
 use pliant_editor::{JobQueue, Revision, SaveMark};
 
-use super::names::file_name;
-pub use super::opening::Source;
-use super::opening::{absolute, open};
-use super::original::Original;
-use super::rest_mesh::RestMesh;
-pub use super::save_request::KeepOriginal;
-use super::save_request::{Changed, Content, SaveRequest, Unwritten, Written, WrittenKind};
-use super::writing::write;
 use crate::drawing::Drawing;
+use crate::window::files::names::file_name;
+use crate::window::files::original::Original;
+use crate::window::files::rest_mesh::RestMesh;
+pub use crate::window::files::save_request::KeepOriginal;
+use crate::window::files::save_request::{Changed, Content, SaveRequest, Unwritten, Written, WrittenKind};
+use crate::window::files::writing::write;
+pub use crate::window::session::opening::Source;
+use crate::window::session::opening::{absolute, open};
 use crate::window::threads::message::{Message, ModelToShow};
 use crate::window::threads::workers::Workers;
 use crate::window::viewport::gpu::Gpu;

@@ -10,6 +10,7 @@
 
 mod loose;
 mod reach;
+mod rim;
 mod tips;
 
 use std::collections::BTreeMap;
@@ -22,9 +23,11 @@ use pliant_mesh::{Cancel, Cancelled, ContourLine, DistanceSearch, Model, Surface
 use self::loose::Ball;
 pub(crate) use self::loose::FileContacts;
 pub(crate) use self::reach::{centroid, reach_length};
+pub use self::rim::Rim;
+pub(crate) use self::rim::bounded;
 use self::tips::free_tips;
-use super::rim::rims;
 use crate::document::{Access, Document, HandleId, Paint, Reach, Tips};
+use crate::region::rim::rims;
 
 /// The input of the region; shared with the job that measures it.
 #[derive(Clone, Debug)]

@@ -1,5 +1,12 @@
 //! The application: the window's state beside the editor's, and the queries from outside.
 
+pub(in crate::window) mod actions;
+pub(in crate::window) mod area;
+pub(in crate::window) mod arrivals;
+pub(in crate::window) mod frame;
+pub(in crate::window) mod redrawing;
+pub(in crate::window) mod saves;
+
 use std::collections::{BTreeSet, VecDeque};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -22,7 +29,6 @@ use super::files::recovery::Recovery;
 use super::files::recovery::left::{left_in, remove};
 use super::files::save_request::SaveRequest;
 use super::files::save_wish::SaveWish;
-use super::files::session::{Session, Source};
 use super::files::settings::SettingsFile;
 use super::input::Input;
 use super::input::event_queue::EventQueue;
@@ -30,13 +36,14 @@ use super::input::own_keys;
 use super::panels::notes::{Note, Notes};
 use super::threads::interface_pool;
 use super::threads::message::Message;
-use super::threads::pose_queue::PoseQueue;
 use super::threads::workers::Workers;
 use super::viewport::Viewport;
 use super::viewport::before::{OriginalView, Split};
 use super::viewport::compare::Compare;
 use super::viewport::method_views::MethodViews;
 use super::widgets::{icon, theme};
+use crate::window::session::{Session, Source};
+use crate::window::viewport::pose_queue::PoseQueue;
 use pliant_engine::EngineError;
 
 /// How long the view must rest before it is drawn with smooth borders on a software device.

@@ -7,11 +7,11 @@ use glam::DVec3;
 use pliant_editor::{Beginning, SavedAs, Snapshot};
 use pliant_mesh::WeldOptions;
 
-use super::names::saved_name;
-use super::project_file;
-use super::recovery::left::opened_project;
-use super::rest_mesh::{MeshSource, load_sample};
 use crate::drawing::Drawing;
+use crate::window::files::names::saved_name;
+use crate::window::files::project_file;
+use crate::window::files::recovery::left::opened_project;
+use crate::window::files::rest_mesh::{MeshSource, load_sample};
 use crate::window::threads::message::ModelToShow;
 use crate::window::viewport::gpu::Gpu;
 use pliant_engine::files::Stamp;

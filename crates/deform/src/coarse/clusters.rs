@@ -7,8 +7,8 @@
 
 use pliant_mesh::{DistanceSearch, Surface, SurfaceVertex, Topology};
 
-use super::domain::{ABSENT, Domain};
 use crate::Role;
+use crate::coarse::domain::{ABSENT, Domain};
 use crate::handles::Handle;
 use crate::region::boundary_problem::BoundaryProblem;
 
@@ -103,7 +103,7 @@ mod tests {
     use pliant_mesh::shapes;
 
     use super::Clusters;
-    use crate::arap::domain::{ABSENT, Domain};
+    use crate::coarse::domain::{ABSENT, Domain};
     use crate::handles::Handle;
     use crate::region::boundary_problem::BoundaryProblem;
     use crate::{Constraints, Loose, Role};

@@ -10,10 +10,10 @@ use pliant_mesh::Model;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::field::Field;
 use crate::EditError;
 use crate::document::{Carries, HandleId, KeptShape, bits_equal};
 use crate::format::method::method_to_value;
+use crate::format::stored_field::Field;
 
 /// A kept shape: the visible shape, and the handles, control points and examples' weights at that time.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]

@@ -6,16 +6,16 @@ use std::sync::Arc;
 
 use pliant_editor::{Event, Revision, SavedAs};
 
-use super::opening::Reload;
-use super::rest_mesh::MeshSource;
-use super::save_request::{Changed, Content, Model, Shape, Unwritten, Written, WrittenKind};
-use super::save_wish::SaveWish;
-use super::session::{KeepOriginal, Source};
 use crate::window::application::Application;
 use crate::window::dialogs::file_dialog;
 use crate::window::dialogs::question::{ChangedOffer, Question, Then};
 use crate::window::files::names::{file_name, free_name};
+use crate::window::files::rest_mesh::MeshSource;
+use crate::window::files::save_request::{Changed, Content, Model, Shape, Unwritten, Written, WrittenKind};
+use crate::window::files::save_wish::SaveWish;
 use crate::window::panels::notes::Note;
+use crate::window::session::opening::Reload;
+use crate::window::session::{KeepOriginal, Source};
 use crate::window::threads::message::{Ground, PictureKind, Purpose};
 use pliant_engine::files::{is_same, shown};
 use pliant_engine::is_project;

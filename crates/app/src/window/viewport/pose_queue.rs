@@ -5,8 +5,8 @@ use std::sync::Arc;
 use glam::DVec3;
 use pliant_editor::{JobQueue, Revision};
 
-use super::message::Message;
-use super::workers::{Stage, Workers};
+use crate::window::threads::message::Message;
+use crate::window::threads::workers::{Stage, Workers};
 use crate::window::viewport::Viewport;
 
 /// The poses that one view has requested.

@@ -6,9 +6,9 @@ use glam::{DAffine3, DVec3};
 use pliant_deform::{Loose, Role};
 use pliant_mesh::{Cancel, Drawn, Model, Progress, WeldOptions, shapes};
 
-use super::{FileContacts, Region, RegionInput};
 use crate::Reach;
 use crate::document::{HandleId, Paint, Tips};
+use crate::region::{FileContacts, Region, RegionInput};
 
 /// A sheet over the unit square with a handle: the vertices within `radius` of its middle.
 fn sheet_with_disc(radius: f64, reach: Reach) -> RegionInput {

@@ -7,18 +7,16 @@ use eframe::egui::{self, Align2, FontId, Sense, vec2};
 use glam::DVec2;
 use pliant_editor::{Before, Command, Cursor, Event};
 
-use super::Smoothness;
-use super::axis_ball;
-use super::before::OriginalView;
-use super::context_menu;
-use super::method_views::MethodViews;
 use crate::legend;
 use crate::window::application::{Application, REST};
 use crate::window::bars::hints;
-use crate::window::files::file_command::FileCommand;
 use crate::window::files::names::file_name;
 use crate::window::input::Attention;
 use crate::window::input::event_queue::EventQueue;
+use crate::window::input::file_command::FileCommand;
+use crate::window::viewport::before::OriginalView;
+use crate::window::viewport::method_views::MethodViews;
+use crate::window::viewport::{Smoothness, axis_ball, context_menu};
 use crate::window::widgets::outbox::Outbox;
 use crate::window::widgets::theme;
 

@@ -4,17 +4,17 @@ use std::time::{Duration, Instant};
 
 use eframe::egui::{self, CentralPanel, Panel};
 
-use super::application::Application;
-use super::bars::status::{FileWork, FileWorkAnswer};
-use super::bars::{status, tool_column, top_bar, view_bar};
-use super::dialogs::palette::{Found, Outcome};
-use super::dialogs::{keys_window, log, memory_window, question};
-use super::files::file_command::FileCommand;
-use super::files::session::OpenFile;
-use super::input::event_queue::EventQueue;
-use super::panels;
-use super::threads::interface_pool;
-use super::widgets::outbox::Outbox;
+use crate::window::application::Application;
+use crate::window::bars::status::{FileWork, FileWorkAnswer};
+use crate::window::bars::{status, tool_column, top_bar, view_bar};
+use crate::window::dialogs::palette::{Found, Outcome};
+use crate::window::dialogs::{keys_window, log, memory_window, question};
+use crate::window::input::event_queue::EventQueue;
+use crate::window::input::file_command::FileCommand;
+use crate::window::panels;
+use crate::window::session::OpenFile;
+use crate::window::threads::interface_pool;
+use crate::window::widgets::outbox::Outbox;
 
 impl eframe::App for Application {
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {

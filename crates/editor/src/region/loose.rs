@@ -14,7 +14,7 @@ use pliant_mesh::{
     Bvh, Cancel, Cancelled, Contact, Model, Surface, SurfaceVertex, Topology, component_areas, contacts,
 };
 
-use super::reach::centroid;
+use crate::region::reach::centroid;
 
 /// The contacts of a file's components. They depend on the file alone, so they are found once, at the first need.
 #[derive(Clone, Debug, Default)]
