@@ -106,7 +106,7 @@ pub enum Outlines {
     On,
 }
 
-/// Whether the shadows that surfaces have ([`crate::Surface::update_shadow`]) are drawn on the ground.
+/// Whether the shadows that surfaces have ([`crate::Renderer::update_shadow`]) are drawn on the ground.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Shadows {
     /// None.
