@@ -437,6 +437,15 @@ impl Bound {
         self.frame(displacements, Way::Shortest)
     }
 
+    /// Sets the flag that ends a long step: once it is raised, a step that only settles the shape for unchanged targets
+    /// returns with the shape that it has reached, not finished. A Newton step of a large surface takes seconds.
+    pub fn set_cancel(&mut self, cancel: &Cancel) {
+        self.method.set_cancel(cancel);
+        if let Some(rigid) = &mut self.rigid {
+            rigid.bound.set_cancel(cancel);
+        }
+    }
+
     /// Like [`Bound::step`], but solves with the factor in f64 instead of using the handle bases. A method without
     /// bases takes an ordinary step.
     ///

@@ -183,6 +183,10 @@ pub(crate) trait BoundMethod: Debug + Send + Sync {
         self.step(motions, displacements)
     }
 
+    /// Sets the flag that ends a step which only settles a shape: once it is raised, the step returns with the shape that
+    /// it has reached.
+    fn set_cancel(&mut self, _cancel: &Cancel) {}
+
     /// Called when all handles are back at rest: the next step begins at rest.
     fn rest(&mut self) {}
 

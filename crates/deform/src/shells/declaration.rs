@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use glam::DVec3;
+use pliant_mesh::Cancel;
 
 use super::{Descent, Shells, ShellsSolver};
 use crate::handles::offsets::Offsets;
@@ -120,6 +121,12 @@ impl BoundMethod for ShellsSolver {
         ShellsSolver::set_offsets(self, offsets);
     }
 
+    fn set_cancel(&mut self, cancel: &Cancel) {
+        if let Some(Descent::Led(led)) = &mut self.descent {
+            led.cancel = cancel.clone();
+        }
+    }
+
     fn rest(&mut self) {
         self.back_to_rest();
     }
@@ -156,6 +163,7 @@ impl BoundMethod for ShellsSolver {
         let solved = self.energy.elements.solved_count;
         match &self.descent {
             Some(Descent::Newton(system)) => 20 * solved + (5e-5 * system.work()) as usize,
+            Some(Descent::Led(led)) if led.is_settling() => 20 * solved,
             Some(Descent::Led(_)) | None => 5 * solved,
         }
     }

@@ -62,7 +62,7 @@ use self::carry::Carrier;
 use self::coarse::Coarse;
 use self::elements::Elements;
 use self::examples::Examples;
-use self::lead::Led;
+use self::lead::{Led, Settling};
 use self::shape::{Energy, Shape, Slopes};
 use self::system::{Pattern, System};
 use self::unfolded::{Preconditioner, Unfolded};
@@ -216,7 +216,9 @@ impl ShellsSolver {
             (Some(coarse), _) => {
                 let preconditioner = unfolded.preconditioner().map_err(refused)?;
                 let carrier = Carrier::of(&energy);
-                Descent::Led(Box::new(Led::new(preconditioner, coarse, carrier)))
+                let left = budget.without(bytes_of(preconditioner.stored(), size_of::<f64>()));
+                let settling = left.map_or(Settling::TooLarge, |left| Settling::NotAnalysed(pattern, ends, left));
+                Descent::Led(Box::new(Led::new(preconditioner, coarse, carrier, settling)))
             }
             (None, Some(system)) => {
                 if let Some(blending) = &mut blending {
@@ -320,7 +322,7 @@ impl ShellsSolver {
         let of_blending = self.blending.as_ref().and_then(|own| own.preconditioner.as_ref());
         let of_descent = match &self.descent {
             Some(Descent::Newton(system)) => system.stored(),
-            Some(Descent::Led(led)) => led.preconditioner.stored() + led.coarse.stored(),
+            Some(Descent::Led(led)) => led.stored(),
             None => 0,
         };
         of_descent + of_blending.map_or(0, Preconditioner::stored)
