@@ -461,6 +461,7 @@ pub fn settle(
     most: usize,
     cancel: &Cancel,
 ) -> Result<Step, SolveError> {
+    bound.set_cancel(cancel);
     let mut last = bound.step(displacements)?;
     for _ in 1..most {
         if last.finished || cancel.is_cancelled() {

@@ -6,6 +6,7 @@ mod targets;
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec3, Mat3};
+use pliant_mesh::Cancel;
 use rayon::prelude::*;
 
 use crate::attachment::{check_weights, finite};
@@ -206,6 +207,15 @@ impl Bound {
     /// A wrong length, or a result that is not finite; `displacements` are then all zero.
     pub fn step(&mut self, displacements: &mut [DVec3]) -> Result<Step, SolveError> {
         self.frame(displacements, Way::Shortest)
+    }
+
+    /// Sets the flag that ends a long step: once it is raised, a step that only settles the shape for unchanged targets
+    /// returns with the shape that it has reached, not finished. A Newton step of a large surface takes seconds.
+    pub fn set_cancel(&mut self, cancel: &Cancel) {
+        self.method.set_cancel(cancel);
+        if let Some(rigid) = &mut self.rigid {
+            rigid.bound.set_cancel(cancel);
+        }
     }
 
     /// Like [`Bound::step`], but solves with the factor in f64 instead of using the handle bases. A method without

@@ -4,6 +4,7 @@ use std::fmt::Debug;
 use std::sync::Arc;
 
 use glam::{DVec3, Mat3};
+use pliant_mesh::Cancel;
 
 use crate::handles::Motion;
 use crate::handles::controls::Controls;
@@ -27,6 +28,10 @@ pub(crate) trait BoundMethod: Debug + Send + Sync {
     ) -> Result<Stepped, SolveError> {
         self.step(motions, displacements)
     }
+
+    /// Sets the flag that ends a step which only settles a shape: once it is raised, the step returns with the shape that
+    /// it has reached.
+    fn set_cancel(&mut self, _cancel: &Cancel) {}
 
     /// Called when all handles are back at rest: the next step begins at rest.
     fn rest(&mut self) {}

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use glam::DVec3;
+use pliant_mesh::Cancel;
 
 use super::coarse::Coarse;
 use super::elements::Elements;
@@ -88,9 +89,7 @@ impl DeformMethod for Shells {
             cancel,
             ..
         } = input;
-        let led_by = |coarse| -> Lead<'_> {
-            Box::new(move |preconditioner, carrier| Box::new(Led::new(preconditioner, coarse, carrier)))
-        };
+        let led_by = |coarse| -> Lead<'_> { Box::new(move |means| Box::new(Led::new(coarse, means))) };
         let coarse = |fine: &Elements, budget| {
             Coarse::of(problem, self, handles, &partition.solved, fine, budget, cancel).map(led_by)
         };
@@ -130,6 +129,12 @@ impl BoundMethod for ShellsSolver {
         ShellsSolver::set_offsets(self, offsets);
     }
 
+    fn set_cancel(&mut self, cancel: &Cancel) {
+        if let Some(Descent::Led(led)) = &mut self.descent {
+            led.set_cancel(cancel);
+        }
+    }
+
     fn rest(&mut self) {
         self.back_to_rest();
     }
@@ -166,6 +171,7 @@ impl BoundMethod for ShellsSolver {
         let solved = self.energy.elements.solved_count;
         match &self.descent {
             Some(Descent::Newton(system)) => 20 * solved + (5e-5 * system.work()) as usize,
+            Some(Descent::Led(led)) if led.is_settling() => 20 * solved,
             Some(Descent::Led(_)) | None => 5 * solved,
         }
     }

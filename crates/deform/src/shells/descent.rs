@@ -1,10 +1,13 @@
 //! One Newton step with a line search, or one quasi-Newton step of a surface that is led.
 
+use pliant_mesh::Cancel;
+
 use super::shape::{Energy, Slopes};
 use super::system::System;
 use super::{Descent, ShellsSolver};
 use crate::numerical::line_search::Trial;
 use crate::numerical::sums::{Field, dot};
+use crate::sparse::factor_error::FactorError;
 
 /// Lengths that a line search tries.
 const TRIALS: u32 = 12;
@@ -37,18 +40,20 @@ impl ShellsSolver {
             return;
         };
         match &mut descent {
-            Descent::Newton(system) => self.step_newton(system),
+            Descent::Newton(system) => self.step_newton(system, &Cancel::new()),
             Descent::Led(led) => led.step(self),
         }
         self.descent = Some(descent);
     }
 
     /// A shape has converged if the quadratic model promises a decrease below the tolerance's share of the energy and
-    /// the last step gained less than that too.
-    fn step_newton(&mut self, system: &mut System) {
+    /// the last step gained less than that too. Nothing changes if it is cancelled.
+    pub(super) fn step_newton(&mut self, system: &mut System, cancel: &Cancel) {
         loop {
-            if system.factor(&self.energy, &self.current, &self.slopes).is_err() {
-                break;
+            match system.factor(&self.energy, &self.current, &self.slopes, cancel) {
+                Ok(()) => {}
+                Err(FactorError::Cancelled) => return,
+                Err(_) => break,
             }
             let lowered = self.lower(|energy, slopes, x| system.apply(energy, slopes, x));
             // The curvature is known; earlier steps only mislead, and with them a scan took three times as many.

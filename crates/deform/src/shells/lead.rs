@@ -2,16 +2,20 @@
 //!
 //! For new targets the coarse level steps first, and what it does is carried over: that is the frame while a handle is
 //! dragged. For unchanged targets corrections by the coarse level alternate with quasi-Newton steps on top of the
-//! unfolded energy's factor, as long as they gain enough. Both only ever lower the energy of the whole surface, so that
-//! the minimum is that of the whole surface.
+//! unfolded energy's factor. Both only ever lower the energy of the whole surface, so that the minimum is that of the
+//! whole surface. Near the minimum they gain little: Newton steps of the whole surface, which cost far more each, settle
+//! the shape then.
 
 use glam::{DMat3, DQuat, DVec3};
+use pliant_mesh::Cancel;
 
 use super::carry::{Base, Carrier, Strains};
 use super::coarse::Coarse;
 use super::elements::ABSENT;
+use super::system::{Pattern, System};
 use super::unfolded::Preconditioner;
-use super::{Blending, Leader, ShellsSolver};
+use super::{Blending, Leader, Means, ShellsSolver};
+use crate::budget::Budget;
 use crate::handles::Motion;
 use crate::handles::blend::{Origin, Screw, Screws, carried};
 use crate::handles::offsets::Offsets;
@@ -29,6 +33,13 @@ const RAREST: u32 = 32;
 /// Shares of a correction that are tried.
 const SHARES: [f64; 3] = [1.0, 0.5, 0.2];
 
+/// Steps for unchanged targets after which Newton steps settle the shape.
+const BEFORE_SETTLING: u32 = 24;
+
+/// The most Newton steps for unchanged targets. Limbs take twenty; a shape that has not settled by then has a part that
+/// is drawn out to a thread, and steps go on for minutes.
+const MOST_SETTLING: u32 = 60;
+
 /// What a large surface descends with.
 #[derive(Debug)]
 pub(super) struct Led {
@@ -41,11 +52,45 @@ pub(super) struct Led {
     /// What the last fine step and the last correction gained.
     gained: f64,
     corrected: f64,
+    /// Steps since the targets changed.
+    steps: u32,
+    settling: Settling,
+    /// Ends a Newton step.
+    cancel: Cancel,
+}
+
+/// The matrix of the Newton steps that settle a shape. It is analysed when it is first used: a drag does not use it.
+#[derive(Debug)]
+enum Settling {
+    /// With the ends of its supernodes and the memory that it may take.
+    NotAnalysed(Pattern, Vec<u32>, Budget),
+    Analysed(Box<System>),
+    /// It would take too much memory.
+    TooLarge,
+}
+
+impl Settling {
+    fn system(&mut self) -> Option<&mut System> {
+        if let Self::NotAnalysed(pattern, ends, budget) = self {
+            let system = System::of(pattern, ends, *budget);
+            *self = system.map_or(Self::TooLarge, |(system, _)| Self::Analysed(Box::new(system)));
+        }
+        match self {
+            Self::Analysed(system) => Some(system),
+            _ => None,
+        }
+    }
 }
 
 impl Led {
     /// At rest.
-    pub fn new(preconditioner: Preconditioner, coarse: Coarse, carrier: Carrier) -> Self {
+    pub fn new(coarse: Coarse, means: Means) -> Self {
+        let Means {
+            preconditioner,
+            carrier,
+            matrix,
+        } = means;
+        let not_analysed = |(pattern, ends, budget)| Settling::NotAnalysed(pattern, ends, budget);
         Self {
             preconditioner,
             coarse,
@@ -54,13 +99,19 @@ impl Led {
             left: 0,
             gained: f64::INFINITY,
             corrected: f64::INFINITY,
+            steps: 0,
+            settling: matrix.map_or(Settling::TooLarge, not_analysed),
+            cancel: Cancel::new(),
         }
     }
 
     /// Forgets the way that was taken.
     pub fn forget(&mut self) {
-        (self.every, self.left) = (1, 0);
+        (self.every, self.left, self.steps) = (1, 0, 0);
         (self.gained, self.corrected) = (f64::INFINITY, f64::INFINITY);
+        if let Settling::Analysed(system) = &mut self.settling {
+            system.undamp();
+        }
     }
 }
 
@@ -86,8 +137,20 @@ impl Leader for Led {
         self.coarse.set_offsets(offsets);
     }
 
+    fn set_cancel(&mut self, cancel: &Cancel) {
+        self.cancel = cancel.clone();
+    }
+
+    fn is_settling(&self) -> bool {
+        self.steps >= BEFORE_SETTLING
+    }
+
     fn stored(&self) -> usize {
-        self.preconditioner.stored() + self.coarse.stored()
+        let of_settling = match &self.settling {
+            Settling::Analysed(system) => system.stored(),
+            _ => 0,
+        };
+        self.preconditioner.stored() + self.coarse.stored() + of_settling
     }
 }
 
@@ -149,6 +212,18 @@ impl ShellsSolver {
 
     /// A step towards unchanged motions.
     fn step_led(&mut self, led: &mut Led) {
+        if led.is_settling()
+            && let Some(system) = led.settling.system()
+        {
+            self.step_newton(system, &led.cancel);
+            if led.cancel.is_cancelled() {
+                return;
+            }
+            led.steps += 1;
+            self.has_stalled |= !self.has_converged && led.steps >= BEFORE_SETTLING + MOST_SETTLING;
+            return;
+        }
+        led.steps += 1;
         let before = self.current.energy;
         if led.left == 0 {
             self.correct(led);

@@ -140,12 +140,27 @@ trait Leader: Debug + Send + Sync {
     /// See [`ShellsSolver::set_offsets`].
     fn set_offsets(&mut self, offsets: &Offsets);
 
+    /// Sets the flag that ends a Newton step.
+    fn set_cancel(&mut self, cancel: &Cancel);
+
+    /// Whether the next step is a Newton step, if there is memory for one.
+    fn is_settling(&self) -> bool;
+
     /// The number of entries that its factors store.
     fn stored(&self) -> usize;
 }
 
-/// Gives a coarse level the lead, with the preconditioner of the fine surface.
-type Lead<'a> = Box<dyn FnOnce(Preconditioner, Carrier) -> Box<dyn Leader> + 'a>;
+/// The data of the fine surface that a leader takes over from the binding.
+struct Means {
+    preconditioner: Preconditioner,
+    carrier: Carrier,
+    /// The pattern of the surface's own matrix, the ends of its supernodes, and the memory that it may take; `None` if
+    /// there is none left.
+    matrix: Option<(Pattern, Vec<u32>, Budget)>,
+}
+
+/// Gives a coarse level the lead.
+type Lead<'a> = Box<dyn FnOnce(Means) -> Box<dyn Leader> + 'a>;
 
 /// What a start from examples takes.
 #[derive(Debug)]
@@ -252,7 +267,12 @@ impl ShellsSolver {
             (Some(lead), _) => {
                 let preconditioner = unfolded.preconditioner().map_err(refused)?;
                 let carrier = Carrier::of(&energy);
-                Descent::Led(lead(preconditioner, carrier))
+                let left = budget.without(bytes_of(preconditioner.stored(), size_of::<f64>()));
+                Descent::Led(lead(Means {
+                    preconditioner,
+                    carrier,
+                    matrix: left.ok().map(|left| (pattern, ends, left)),
+                }))
             }
             (None, Some(system)) => {
                 if let Some(blending) = &mut blending {

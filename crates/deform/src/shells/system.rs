@@ -206,14 +206,19 @@ impl System {
     /// Fills in the matrix at an evaluated shape with its gradients, and factors it.
     ///
     /// # Errors
-    /// It is not positive definite on any rung, or memory is short.
-    pub fn factor(&mut self, energy: &Energy, shape: &Shape, slopes: &Slopes) -> Result<(), FactorError> {
+    /// It is not positive definite on any rung, memory is short, or it was cancelled.
+    pub fn factor(
+        &mut self,
+        energy: &Energy,
+        shape: &Shape,
+        slopes: &Slopes,
+        cancel: &Cancel,
+    ) -> Result<(), FactorError> {
         self.assemble(energy, shape, slopes);
-        let cancel = Cancel::new();
         loop {
             let (share, damping) = RUNGS[self.rung.min(RUNGS.len() - 1)];
             self.combine(energy, share);
-            match self.factor.fill(&self.matrix, damping, &cancel) {
+            match self.factor.fill(&self.matrix, damping, cancel) {
                 Err(FactorError::Pivot(_)) if self.rung + 1 < RUNGS.len() => self.rung += 1,
                 Err(error) => return Err(error),
                 Ok(()) => break,

@@ -3,7 +3,7 @@
 use crate::rig::{Scene, apart, eliminated, settle, turned};
 use glam::{DAffine3, DMat3, DVec3};
 use pliant_deform::{Method, OptionValue, Role, Shells};
-use pliant_mesh::{Drawn, face_area, shapes};
+use pliant_mesh::{Cancel, Drawn, face_area, shapes};
 
 /// With `stretching`, `bending` and `volume`.
 fn shells(stiffnesses: [f64; 3]) -> Method {
@@ -367,6 +367,54 @@ fn plain_bends_take_few_steps() {
     scene.method = Method::from_name("shells").unwrap();
     let (_, energies) = settle(&mut scene.bind(), &[turned(DVec3::Z * 7.5, 1.4, DVec3::X)]);
     assert!(energies.len() < 40, "{}", energies.len());
+}
+
+/// A tube whose upper end is the handle, bent with a coarse level above so many solved vertices.
+fn led_tube(led_above: usize) -> Scene {
+    let tube: Drawn = shapes::tube(24, 60, 8.0);
+    let mut scene = Scene::new(tube)
+        .with(Role::Fixed, |p| p.z < 0.5)
+        .with(Role::Handle(0), |p| p.z > 7.5);
+    let mut shells = Shells::default();
+    shells.led_above = led_above;
+    scene.method = shells.into();
+    scene
+}
+
+/// Newton steps settle the shape of a surface that a coarse level leads: it ends at the minimum to which Newton steps
+/// alone go, after few more steps.
+#[test]
+fn a_led_surface_settles_at_the_same_minimum() {
+    let targets = [turned(DVec3::Z * 7.5, 1.2, DVec3::X)];
+    let (alone, of_newton) = settle(&mut led_tube(usize::MAX).bind(), &targets);
+    let (led, of_led) = settle(&mut led_tube(0).bind(), &targets);
+    assert!(of_led.len() < 60, "{} and {}", of_newton.len(), of_led.len());
+    let [lowest, own] = [&of_newton, &of_led].map(|energies| energies[energies.len() - 1]);
+    assert!((own / lowest - 1.0).abs() < 1e-5, "{own} and {lowest}");
+    let apart = apart(&alone, &led);
+    assert!(apart < 1e-2, "{apart:e}");
+}
+
+/// A raised flag ends the steps that settle a shape, and a lowered one lets them go on.
+#[test]
+fn a_cancelled_step_keeps_the_shape() {
+    let mut bound = led_tube(0).bind();
+    bound.set_targets(&[turned(DVec3::Z * 7.5, 1.2, DVec3::X)]).unwrap();
+    let mut displacements = vec![DVec3::ZERO; bound.vertex_count()];
+    let cancel = Cancel::new();
+    cancel.cancel();
+    bound.set_cancel(&cancel);
+    let mut last = bound.step(&mut displacements).unwrap();
+    for _ in 0..60 {
+        last = bound.step(&mut displacements).unwrap();
+    }
+    assert!(!last.finished);
+    let kept = displacements.clone();
+    bound.step(&mut displacements).unwrap();
+    assert_eq!(displacements, kept);
+    bound.set_cancel(&Cancel::new());
+    let lower = bound.step(&mut displacements).unwrap();
+    assert!(lower.energy < last.energy, "{} and {}", lower.energy, last.energy);
 }
 
 /// From paper to rubber: paper keeps its lengths, rubber its angles.

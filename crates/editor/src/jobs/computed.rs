@@ -3,7 +3,7 @@
 use std::sync::{Arc, Mutex};
 
 use pliant_deform::{Bound, Ordering, ReusableFactor};
-use pliant_mesh::{Joint, Model};
+use pliant_mesh::{Cancel, Joint, Model};
 
 use super::bound_controls::BoundControls;
 use super::carried::Carried;
@@ -28,6 +28,8 @@ pub(crate) struct Computed {
     pub(super) bound: Option<Arc<Mutex<Bound>>>,
     /// The binding's control points.
     pub(crate) controls: Option<BoundControls>,
+    /// Raised when newer targets wait, so that a solve for the older ones takes no long steps.
+    pub(super) newer_targets: Cancel,
     /// The state from which a solve with a kept shape continues, with this factorisation.
     pub(super) carried: Option<Carried>,
     /// The parts of the binding that can be shown.
@@ -59,6 +61,7 @@ impl Default for Computed {
             contacts: FileContacts::default(),
             bound: None,
             controls: None,
+            newer_targets: Cancel::new(),
             carried: None,
             inspectable: Inspectable::default(),
             inspected: Inspected::default(),

@@ -9,7 +9,7 @@
 use std::sync::{Arc, Mutex};
 
 use glam::DVec3;
-use pliant_mesh::{Joint, Model, SurfaceVertex};
+use pliant_mesh::{Cancel, Joint, Model, SurfaceVertex};
 
 use super::allowance::Allowance;
 use super::both_sides::BothSides;
@@ -202,6 +202,8 @@ impl Jobs {
     /// The handles' transforms have changed.
     pub(crate) fn targets_changed(&mut self) {
         self.target_revision = self.next_revision();
+        self.computed.newer_targets.cancel();
+        self.computed.newer_targets = Cancel::new();
     }
 
     /// Requests a mirror image, in place of an earlier request.

@@ -29,11 +29,13 @@ pub(super) fn solve_work(computed: &Computed, document: &Document) -> Option<Wor
     let (bound, model) = (computed.bound.clone()?, computed.model.clone()?);
     let handles = &computed.region.handles;
     let wanted = Wanted::of(document, handles, &document.from_rest, computed.carried.as_ref())?;
+    let newer_targets = computed.newer_targets.clone();
     Some(Box::new(move |_, cancel| {
         if cancel.is_cancelled() {
             return JobOutcome::Cancelled;
         }
         let mut bound = bound.lock().unwrap_or_else(PoisonError::into_inner);
+        bound.set_cancel(&newer_targets);
         let is_from_file = wanted.rest.is_none();
         match wanted.solve(&mut bound, cancel) {
             Err(error) => JobOutcome::Failed(

@@ -4,6 +4,7 @@
 //! rest of the scene, is never above a share of the finer of two parts, and scales and turns with the mesh.
 
 use std::collections::HashMap;
+use std::ops::Range;
 
 use glam::DVec3;
 
@@ -43,22 +44,15 @@ pub(super) struct Closeness<'a> {
 impl<'a> Closeness<'a> {
     /// The distances of `count` groups, given the group of each drawn vertex.
     pub(super) fn of(positions: &[DVec3], corners: &Corners, groups: &[u32], count: usize) -> Self {
-        let mut squared = vec![f64::INFINITY; count];
-        for triangle in corners.iter() {
-            let of_corners = triangle.map(|v| groups[v.index()]);
-            if !is_proper(of_corners) {
-                continue;
-            }
-            let [a, b, c] = triangle.map(|v| positions[v.index()]);
-            let longest = a
-                .distance_squared(b)
-                .max(b.distance_squared(c))
-                .max(c.distance_squared(a));
-            for group in of_corners {
-                let size = &mut squared[group as usize];
-                *size = size.min(longest);
-            }
-        }
+        let middle = corners.len() / 2;
+        let (mut squared, of_second_half) = rayon::join(
+            || squared_sizes(positions, corners, 0..middle, groups, count),
+            || squared_sizes(positions, corners, middle..corners.len(), groups, count),
+        );
+        squared
+            .iter_mut()
+            .zip(of_second_half)
+            .for_each(|(size, other)| *size = size.min(other));
         let size = |squared: f64| if squared.is_finite() { squared.sqrt() } else { 0.0 };
         Self {
             sizes: squared.into_iter().map(size).collect(),
@@ -156,6 +150,33 @@ impl<'a> Closeness<'a> {
             _ => (0, 0.0),
         }
     }
+}
+
+/// The squared sizes of groups by some of the triangles; infinite for a group that none of these uses.
+fn squared_sizes(
+    positions: &[DVec3],
+    corners: &Corners,
+    triangles: Range<usize>,
+    groups: &[u32],
+    count: usize,
+) -> Vec<f64> {
+    let mut squared = vec![f64::INFINITY; count];
+    for triangle in triangles.map(|t| corners.of(t)) {
+        let of_corners = triangle.map(|v| groups[v.index()]);
+        if !is_proper(of_corners) {
+            continue;
+        }
+        let [a, b, c] = triangle.map(|v| positions[v.index()]);
+        let longest = a
+            .distance_squared(b)
+            .max(b.distance_squared(c))
+            .max(c.distance_squared(a));
+        for group in of_corners {
+            let size = &mut squared[group as usize];
+            *size = size.min(longest);
+        }
+    }
+    squared
 }
 
 /// Whether a triangle's corners are in three groups.

@@ -62,17 +62,20 @@ pub(crate) fn weld(
     let (lines, roundings) = (drawn.lines, drawn.roundings);
     let usable: Vec<bool> = drawn_positions.par_iter().map(is_usable).collect();
     let uses = uses_of_vertices(&corners, &usable);
-    report_vertices(&file_vertices, &usable, &uses, &mut findings);
-    drop(usable);
+    let in_triangles = || {
+        let members: Vec<u32> = (0..uses.len() as u32)
+            .filter(|&v| uses[v as usize] == Use::Triangle)
+            .collect();
+        let bounds = bounds_of(members.par_iter().map(|&v| drawn_positions[v as usize]));
+        (members, bounds)
+    };
+    let report = || report_vertices(&file_vertices, &usable, &uses, &mut findings);
+    let ((members, bounds), ()) = rayon::join(in_triangles, report);
+    drop((usable, uses));
     cancel.check()?;
     progress.set(0.1);
 
-    let members: Vec<u32> = (0..uses.len() as u32)
-        .filter(|&v| uses[v as usize] == Use::Triangle)
-        .collect();
-    drop(uses);
     let distance = options.distance.map(|distance| distance.max(0.0));
-    let bounds = bounds_of(members.par_iter().map(|&v| drawn_positions[v as usize]));
     let Joining {
         mut positions,
         mut surface_vertices,
@@ -137,12 +140,15 @@ pub(crate) fn weld(
     );
     let first_file_vertex = first_file_vertices(&drawn, positions.len());
     let surface = Surface { positions, triangles };
-    findings.zero_area_triangles = collect(surface.triangles.len(), |t| is_without_area(surface.corners(t)))
-        .renamed(|t| triangle_of_surface[t as usize]);
+    let (components, without_area) = rayon::join(
+        || Components::of(&surface.triangles, &first_file_vertex),
+        || collect(surface.triangles.len(), |t| is_without_area(surface.corners(t))),
+    );
+    findings.zero_area_triangles = without_area.renamed(|t| triangle_of_surface[t as usize]);
     progress.set(0.6);
     Ok(Welded {
         drawn: drawn.with_triangles(corners, triangle_of_surface).with_lines(lines),
-        components: Components::of(&surface.triangles, &first_file_vertex),
+        components,
         surface,
         first_bare,
         findings,

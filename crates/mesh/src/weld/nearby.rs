@@ -176,49 +176,51 @@ impl<'a, P: Fn(u32) -> DVec3 + Sync> Tree<'a, P> {
 
     /// The places that have another within the reach of both, by their numbers.
     fn with_neighbours(&self, reach: &(impl Fn(u32) -> f64 + Sync)) -> Vec<u32> {
-        let runs: Vec<&[u32]> = self.places.chunks(RUN).collect();
-        let found: Vec<Vec<u32>> = runs
-            .par_iter()
-            .enumerate()
-            .with_min_len(512)
-            .fold_chunks(512, Vec::new, |mut found, (number, run)| {
-                self.with_neighbours_in(number, run, reach, &mut found);
+        let groups = self.levels[0].len().div_ceil(RUN);
+        let found: Vec<Vec<u32>> = (0..groups)
+            .into_par_iter()
+            .fold_chunks(64, Vec::new, |mut found, group| {
+                self.with_neighbours_in(group, reach, &mut found);
                 found
             })
             .collect();
         found.concat()
     }
 
-    fn with_neighbours_in(&self, number: usize, run: &[u32], reach: &impl Fn(u32) -> f64, found: &mut Vec<u32>) {
-        let mut reaches = [0.0; RUN];
-        for (reach_of, &place) in reaches.iter_mut().zip(run) {
-            *reach_of = reach(place);
-        }
-        let furthest = reaches.iter().copied().fold(0.0, f64::max);
+    /// Adds the places with neighbours in a group of runs. The runs share one descent of the tree, which a scan without
+    /// neighbours would otherwise spend its time on.
+    fn with_neighbours_in(&self, group: usize, reach: &impl Fn(u32) -> f64, found: &mut Vec<u32>) {
+        let level = 1.min(self.levels.len() - 1);
+        let (own, furthest) = (&self.levels[level][group], self.reaches[level][group]);
         if furthest <= 0.0 {
             return;
         }
-        let mut has_neighbour = [false; RUN];
-        let own = &self.levels[0][number];
-        let reaches_back = |level: usize, other: usize| {
-            let other_box = &self.levels[level][other];
-            other_box.grown(self.reaches[level][other]).meets(own)
-        };
-        self.runs_within(&own.grown(furthest), &reaches_back, |other| {
-            let box_of_other = &self.levels[0][other];
-            for (k, &place) in run.iter().enumerate() {
-                let here = (self.position)(place);
-                if has_neighbour[k] || (other != number && box_of_other.distance(here) > reaches[k]) {
-                    continue;
+        let mut near = Vec::new();
+        self.runs_within(
+            &own.grown(furthest),
+            &|level, other| self.reaches_box(level, other, own),
+            |run| near.push(run),
+        );
+        for number in group * RUN..((group + 1) * RUN).min(self.levels[0].len()) {
+            let own = self.levels[0][number].grown(self.reaches[0][number]);
+            let run = Run::of(self.run(number), self.position, reach);
+            let mut has_neighbour = run.has_neighbour_within();
+            for &other in near.iter().filter(|&&other| other != number) {
+                let box_of_other = &self.levels[0][other];
+                if own.meets(box_of_other) && self.reaches_box(0, other, &self.levels[0][number]) {
+                    run.find_neighbours(self.run(other), box_of_other, self.position, reach, &mut has_neighbour);
                 }
-                has_neighbour[k] = self.run(other).iter().any(|&near| {
-                    let distance = (self.position)(near).distance(here);
-                    near != place && distance <= reaches[k] && distance <= reach(near)
-                });
             }
-        });
-        let with_neighbours = ((number * RUN) as u32..).zip(has_neighbour).filter(|(_, has)| *has);
-        found.extend(with_neighbours.map(|(place, _)| place));
+            let with_neighbours = ((number * RUN) as u32..).zip(has_neighbour).filter(|(_, has)| *has);
+            found.extend(with_neighbours.map(|(place, _)| place));
+        }
+    }
+
+    /// Whether a place in a box may be a neighbour of one in another.
+    fn reaches_box(&self, level: usize, number: usize, other: &Bounds) -> bool {
+        self.levels[level][number]
+            .grown(self.reaches[level][number])
+            .meets(other)
     }
 
     /// Calls `found` with the occupied places within `radius` of a point and their distances. All places whose own
@@ -267,6 +269,63 @@ impl<'a, P: Fn(u32) -> DVec3 + Sync> Tree<'a, P> {
                     None => found(number),
                     Some(below) => self.descend(below, number * RUN, bounds, is_wanted, found),
                 }
+            }
+        }
+    }
+}
+
+/// A run's positions and their reaches.
+struct Run {
+    length: usize,
+    positions: [DVec3; RUN],
+    reaches: [f64; RUN],
+}
+
+impl Run {
+    fn of(places: &[u32], position: &impl Fn(u32) -> DVec3, reach: &impl Fn(u32) -> f64) -> Self {
+        let mut run = Self {
+            length: places.len(),
+            positions: [DVec3::ZERO; RUN],
+            reaches: [0.0; RUN],
+        };
+        for (k, &place) in places.iter().enumerate() {
+            run.positions[k] = position(place);
+            run.reaches[k] = reach(place);
+        }
+        run
+    }
+
+    /// For each place, whether it has a neighbour in the same run.
+    fn has_neighbour_within(&self) -> [bool; RUN] {
+        let mut has_neighbour = [false; RUN];
+        for k in 0..self.length {
+            for l in k + 1..self.length {
+                let distance = self.positions[k].distance(self.positions[l]);
+                if distance <= self.reaches[k].min(self.reaches[l]) {
+                    has_neighbour[k] = true;
+                    has_neighbour[l] = true;
+                }
+            }
+        }
+        has_neighbour
+    }
+
+    /// Notes which places have a neighbour among the `others` of another run, which are in a box.
+    fn find_neighbours(
+        &self,
+        others: &[u32],
+        box_of_others: &Bounds,
+        position: &impl Fn(u32) -> DVec3,
+        reach: &impl Fn(u32) -> f64,
+        has_neighbour: &mut [bool; RUN],
+    ) {
+        for (k, has) in has_neighbour.iter_mut().enumerate().take(self.length) {
+            let (here, own_reach) = (self.positions[k], self.reaches[k]);
+            if !*has && box_of_others.distance(here) <= own_reach {
+                *has = others.iter().any(|&other| {
+                    let distance = position(other).distance(here);
+                    distance <= own_reach && distance <= reach(other)
+                });
             }
         }
     }

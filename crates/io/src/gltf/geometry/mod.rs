@@ -372,9 +372,19 @@ pub(crate) fn apply_targets(
 
 fn place_vertices(positions: &[[f32; 3]], pose: &Pose, first_file_vertex: Option<u32>, drawn: &mut Drawn) {
     let first = first_file_vertex.unwrap_or(0);
-    let positioned = positions.par_iter().enumerate().with_min_len(CHUNK);
-    let world = |(element, p): (usize, &[f32; 3])| pose.at(element).transform_point3(Vec3::from_array(*p).as_dvec3());
-    drawn.positions.par_extend(positioned.map(world));
+    let positioned = positions.par_iter().with_min_len(CHUNK);
+    let point = |p: &[f32; 3]| Vec3::from_array(*p).as_dvec3();
+    match pose {
+        Pose::Node(world_from_node) => {
+            let world = |p| world_from_node.transform_point3(point(p));
+            drawn.positions.par_extend(positioned.map(world));
+        }
+        Pose::Skin(skin) => {
+            let skinned = positioned.zip(skin.transforms());
+            let world = skinned.map(|(p, transform)| transform.transform_point3(point(p)));
+            drawn.positions.par_extend(world);
+        }
+    }
     drawn
         .file_vertex
         .extend((first..).take(positions.len()).map(FileVertex));

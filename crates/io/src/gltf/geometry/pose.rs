@@ -31,6 +31,11 @@ impl SkinPose {
             is_mirrored,
         }
     }
+
+    /// The transform of each vertex.
+    pub fn transforms(&self) -> &[DAffine3] {
+        &self.transforms
+    }
 }
 
 /// The linear part of a vertex's transform, and its inverse.
@@ -45,7 +50,7 @@ impl Pose {
     pub fn transforms(&self) -> &[DAffine3] {
         match self {
             Self::Node(world_from_node) => std::slice::from_ref(world_from_node),
-            Self::Skin(skin) => &skin.transforms,
+            Self::Skin(skin) => skin.transforms(),
         }
     }
 

@@ -6,12 +6,16 @@
 
 use ::gltf::json::accessor::ComponentType;
 use glam::{DAffine3, DMat3, DVec3, Vec3};
+use rayon::prelude::*;
 
 use super::pose::Pose;
 use crate::gltf::document::layout::Layout;
 
 /// Draco's largest number of bits.
 const MOST_BITS: u32 = 30;
+
+/// The number of coordinates for one task.
+const CHUNK: usize = 1 << 14;
 
 /// Whether positions were decoded from Draco's data.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -51,8 +55,11 @@ fn step_of_integers(layout: &Layout, most: f64) -> f64 {
 
 /// The distance between neighbouring numbers at the largest coordinate.
 fn step_of_floats(positions: &[[f32; 3]]) -> f64 {
-    let finite = positions.as_flattened().iter().filter(|x| x.is_finite());
-    let largest = finite.fold(0.0_f32, |largest, x| largest.max(x.abs()));
+    let larger = |largest: f32, x: &f32| if x.is_finite() { largest.max(x.abs()) } else { largest };
+    let chunks = positions.as_flattened().par_chunks(CHUNK);
+    let largest = chunks
+        .map(|chunk| chunk.iter().fold(0.0, larger))
+        .reduce(|| 0.0, f32::max);
     f64::from(largest) * f64::from(f32::EPSILON)
 }
 
