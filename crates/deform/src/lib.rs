@@ -68,6 +68,7 @@ mod budget;
 mod cage;
 mod embedded;
 mod error;
+mod fairing;
 mod frames;
 mod handles;
 #[cfg(feature = "identity-method")]
@@ -102,6 +103,7 @@ pub use budget::{Budget, Limit};
 pub use cage::{Cage, CageCoordinates};
 pub use embedded::Embedded;
 pub use error::{BindError, Crowded, SolveError};
+pub use fairing::fair;
 pub use frames::Frames;
 pub use handles::bases::HandleBases;
 pub use laplacian::{LaplacianEditing, LocalScale, Transforms};
