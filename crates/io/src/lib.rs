@@ -62,6 +62,8 @@ mod text;
 
 pub use appearance::{AlphaMode, Appearance, Group, Image, Lighting, Map, Material, Origin, UvSet, Wrap};
 pub use bytes::Bytes;
+pub use convert::Polygons;
+pub use convert::unsaved::UnsavedShape;
 pub use error::{ImageError, ReadError, SaveError, UnknownFormat};
 pub use format::Format;
 pub use gltf::{bytes_of_name, is_same_document, name_of_bytes, neighbours_named, with_neighbours_renamed};

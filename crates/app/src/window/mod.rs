@@ -5,7 +5,7 @@ mod application;
 mod bars;
 mod dialogs;
 mod fault;
-mod files;
+pub(crate) mod files;
 mod frame;
 mod input;
 mod panels;

@@ -17,6 +17,7 @@ use rayon::prelude::*;
 
 use crate::borders::{Border, Borders};
 use crate::error::StitchError;
+use crate::part::face_beyond;
 use fair::{Surroundings, refine_and_fair};
 use patch::Patch;
 use triangulate::{Rim, triangulate};
@@ -222,12 +223,8 @@ impl Site {
         };
         let beyond = (0..rim.len()).map(|k| {
             let (from, to) = (rim[k], rim[(k + 1) % rim.len()]);
-            let third = topology.faces(from, &surface.triangles).find_map(|face| {
-                let corners = surface.triangles[face as usize];
-                corners
-                    .contains(&to)
-                    .then(|| corners.into_iter().find(|v| *v != from && *v != to))?
-            });
+            let corners = face_beyond(model, from, to).map(|face| surface.triangles[face]);
+            let third = corners.and_then(|corners| corners.into_iter().find(|v| *v != from && *v != to));
             position(third.unwrap_or(from))
         });
         let scale = |&vertex: &SurfaceVertex| {

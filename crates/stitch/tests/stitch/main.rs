@@ -3,3 +3,4 @@
 
 mod fill;
 mod made;
+mod merge;

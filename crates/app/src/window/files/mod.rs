@@ -5,7 +5,7 @@ pub(in crate::window) mod app_directories;
 pub(in crate::window) mod file_command;
 pub(in crate::window) mod names;
 mod opening;
-pub(in crate::window) mod original;
+pub(crate) mod original;
 pub(in crate::window) mod project_file;
 pub(in crate::window) mod recovery;
 pub(in crate::window) mod rest_mesh;
