@@ -61,14 +61,8 @@ fn check_closed(model: &Model, filled: &Filled, open: usize, handles: i64) {
     let whole = shapes::model(with_patches(model, filled));
     let topology = &whole.topology;
     assert_eq!(topology.boundary_loops().len(), open);
-    assert_eq!(
-        (
-            topology.non_manifold_edges(),
-            topology.non_manifold_vertices(),
-            topology.misoriented_edges()
-        ),
-        (0, 0, 0)
-    );
+    assert_eq!((topology.non_manifold_edges(), topology.misoriented_edges()), (0, 0));
+    assert!(topology.non_manifold_vertices() <= model.topology.non_manifold_vertices());
     assert_eq!(genus(&whole), handles);
 }
 
