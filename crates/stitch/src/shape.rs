@@ -21,6 +21,9 @@ pub struct NewShape {
     pub triangle_sources: Vec<TriangleSource>,
     /// The numbers of the new vertices, [`crate::Attributes::width`] for each.
     pub values: Vec<f64>,
+    /// The blended numbers ([`crate::Attributes::blended`]) of vertices on a common border, whose two sides agree there;
+    /// ascending by vertex.
+    pub blended: Vec<(DrawnVertex, Vec<f64>)>,
     /// The unit normals that differ from the sources', those of new vertices among them; ascending by vertex.
     pub normals: Vec<(DrawnVertex, DVec3)>,
 }

@@ -247,13 +247,13 @@ fn dress_vertices(out: &mut Appearance, shape: &NewShape, sources: &[Source<'_>]
     out.uvs = channels.uvs.then(|| pair(0));
     out.second_uvs = channels.second_uvs.then(|| pair(2 * usize::from(channels.uvs)));
     out.colours = channels.colours.then(|| {
-        let colour = |vertex| {
-            [0, 1, 2, 3].map(|k| {
-                let number: f64 = value(vertex, channels.charted() + k);
-                number.round().clamp(0.0, f64::from(u16::MAX)) as u16
-            })
-        };
-        shape.vertices.iter().map(colour).collect()
+        let rounded = |number: f64| number.round().clamp(0.0, f64::from(u16::MAX)) as u16;
+        let colour = |vertex| [0, 1, 2, 3].map(|k| rounded(value(vertex, channels.charted() + k)));
+        let mut colours: Vec<[u16; 4]> = shape.vertices.iter().map(colour).collect();
+        for (vertex, row) in &shape.blended {
+            colours[vertex.index()] = [0, 1, 2, 3].map(|k| rounded(row[k]));
+        }
+        colours
     });
     let like = |vertex: &VertexSource| match *vertex {
         VertexSource::Old { part, vertex } => (usize::from(part), vertex),

@@ -145,6 +145,14 @@ pub fn merge(job: &Merge<'_>, watch: &Watch, staging: &Staging) -> Result<Stitch
     for side in 0..2 {
         warnings.extend(loaded[side].scene.notes().iter().cloned());
         warnings.extend(lost(&loaded[side], job.output)?);
+        let turned = prepared[side].turned_parts;
+        if turned > 0 {
+            let parts = counted(turned, "part of", "parts of");
+            let name = ["A", "B"][side];
+            warnings.push(format!(
+                "{parts} {name} faced inwards and was turned, so that both sides face outwards"
+            ));
+        }
         let flipped = merged.bent[side].1;
         if flipped > 0 {
             let triangles = counted(flipped, "triangle of", "triangles of");

@@ -1,5 +1,7 @@
 //! A file's shape for joining: cut and transformed, with its surface.
 
+use std::collections::BTreeSet;
+
 use glam::{DAffine3, DVec3, Vec3};
 use pliant_editor::{HandleTransform, Selection};
 use pliant_mesh::{Cancel, Drawn, DrawnVertex, FileVertex, Model, Progress, WeldOptions};
@@ -20,12 +22,15 @@ pub(super) struct Prepared {
     pub triangles: Vec<u32>,
     /// The number here of each of the file's vertices.
     file_numbers: Vec<Option<u32>>,
-    /// Whether the transform mirrors.
-    is_mirrored: bool,
+    /// Whether the corners of each of these triangles run the other way than in the file.
+    is_turned: Vec<bool>,
+    /// The number of the file's parts that were inside out, and were turned.
+    pub turned_parts: usize,
 }
 
 impl Prepared {
-    /// The shape of a file without the selected vertices, transformed.
+    /// The shape of a file without the selected vertices, transformed. Closed parts that are inside out are turned, so
+    /// that both shapes agree about the outside.
     ///
     /// # Errors
     /// A selection of everything; [`EngineError::Interrupted`].
@@ -72,9 +77,9 @@ impl Prepared {
                 .surface_vertex(old)
                 .map(|v| model.surface.positions[v.index()])
         };
-        let welded = vertices.iter().map(|&old| surface(old).unwrap_or(DVec3::NAN));
+        let places = vertices.iter().map(|&old| surface(old).unwrap_or(DVec3::NAN));
         let mut drawn = Drawn {
-            positions: welded.collect(),
+            positions: places.collect(),
             triangles: shape.triangles,
             file_vertex: shape.file_vertices,
             file_vertex_count: shape.file_vertex_count,
@@ -88,11 +93,19 @@ impl Prepared {
                 .iter_mut()
                 .for_each(|position| *position = map.transform_point3(*position));
         }
-        if is_mirrored {
-            drawn.triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
-        }
+        let inside_out: BTreeSet<u32> = model.inside_out.iter().copied().collect();
+        let flags = model.drawn_vertices_of(&inside_out);
+        let is_inside_out = |old: DrawnVertex| flags.get(old.index()) == Some(&true);
+        let is_turned = |corners: &[DrawnVertex; 3]| is_inside_out(vertices[corners[0].index()]) != is_mirrored;
+        let is_turned: Vec<bool> = drawn.triangles.iter().map(is_turned).collect();
+        let turned = drawn
+            .triangles
+            .iter_mut()
+            .zip(&is_turned)
+            .filter(|(_, turned)| **turned);
+        turned.for_each(|(corners, _)| corners.swap(1, 2));
         let only_equal = WeldOptions { distance: Some(0.0) };
-        let model = Model::weld(drawn.clone(), &only_equal, progress, cancel).map_err(|_| EngineError::Interrupted)?;
+        let welded = Model::weld(drawn.clone(), &only_equal, progress, cancel).map_err(|_| EngineError::Interrupted)?;
         let unwelded = vertices.iter().map(|old| source.drawn.positions[old.index()]);
         drawn.positions = match map == DAffine3::IDENTITY {
             true => unwelded.collect(),
@@ -102,6 +115,7 @@ impl Prepared {
         let stored = source.normals();
         let normal = |old: &DrawnVertex| {
             let normal = Vec3::from(stored[old.index()]).as_dvec3();
+            let normal = if is_inside_out(*old) { -normal } else { normal };
             if map == DAffine3::IDENTITY {
                 normal
             } else {
@@ -111,11 +125,12 @@ impl Prepared {
         Ok(Self {
             normals: vertices.iter().map(normal).collect(),
             drawn,
-            model,
+            model: welded,
             vertices,
             triangles: shape.triangle_sources.iter().map(|source| source.triangle).collect(),
             file_numbers,
-            is_mirrored,
+            is_turned,
+            turned_parts: inside_out.len(),
         })
     }
 
@@ -139,7 +154,11 @@ impl Prepared {
     pub fn triangle_source(&self, source: TriangleSource) -> TriangleSource {
         TriangleSource {
             triangle: self.triangles[source.triangle as usize],
-            age: if self.is_mirrored { Age::New } else { source.age },
+            age: if self.is_turned[source.triangle as usize] {
+                Age::New
+            } else {
+                source.age
+            },
             ..source
         }
     }

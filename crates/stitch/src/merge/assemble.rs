@@ -94,8 +94,36 @@ pub(super) fn assemble(parts: [Bent<'_>; 2], joins: &[(Join, Vec<Node>)]) -> New
         }
         add_rim_normals(bent, joins, side, &mut node_normals);
     }
+    blend_borders(&parts, &mut shape, &vertices_of_node);
     turn_normals(&parts, &mut shape, &vertices_of_node, &node_normals);
     shape
+}
+
+/// Gives the vertices at one point of the common border the mean of both sides' colours: without texture coordinates
+/// they are one vertex.
+fn blend_borders(parts: &[Bent<'_>; 2], shape: &mut NewShape, vertices_of_node: &[Vec<DrawnVertex>]) {
+    let (first, width) = (parts[0].part.attributes.charted, parts[0].part.attributes.blended);
+    if width == 0 {
+        return;
+    }
+    let value = |vertex: DrawnVertex, channel: usize| match shape.vertices[vertex.index()] {
+        VertexSource::Old { part, vertex } => (parts[usize::from(part)].part.attributes.value)(vertex, first + channel),
+        VertexSource::New { row, .. } => shape.values[row as usize * (first + width) + first + channel],
+    };
+    let mut blended = BTreeMap::new();
+    for vertices in vertices_of_node {
+        let mean = |channel: usize| {
+            let of_side = |side: u8| {
+                let own = vertices.iter().filter(|v| shape.vertices[v.index()].part() == side);
+                let values: Vec<f64> = own.map(|&v| value(v, channel)).collect();
+                values.iter().sum::<f64>() / values.len().max(1) as f64
+            };
+            0.5 * (of_side(0) + of_side(1))
+        };
+        let row: Vec<f64> = (0..width).map(mean).collect();
+        blended.extend(vertices.iter().map(|&vertex| (vertex, row.clone())));
+    }
+    shape.blended = blended.into_iter().collect();
 }
 
 /// Numbers a part's vertices as in a file without attributes. Those of nodes that have a number take it.

@@ -1,18 +1,40 @@
-//! Bending a part so that its borders go to their places: the rims and one ring beside them are the handle, the surface
+//! Bending a part so that its borders go to their places: the rims and one ring beside them are handles, the surface
 //! within reach of them is free.
+//!
+//! Each rim is several handles, so that methods which spread the handles' turns over the surface bend each side of the
+//! rim by its own turn.
 
 use std::collections::BTreeMap;
 
-use glam::{DQuat, DVec3};
+use glam::{DAffine3, DMat3, DQuat, DVec3};
 use pliant_deform::{
     BilaplacianOrder, BindError, Bound, Budget, Constraints, Loose, Method, Problem, Role, SolveError, Target, fair,
 };
 use pliant_mesh::{Cancel, Progress, Surface, SurfaceVertex, Topology, distances_along_surface};
 
+use super::choice;
 use crate::error::StitchError;
 
-/// The way and the turn of each vertex of a part's rims.
-pub(super) type Rims = BTreeMap<SurfaceVertex, (DVec3, DQuat)>;
+/// The vertices of a part's rims.
+pub(super) type Rims = BTreeMap<SurfaceVertex, RimVertex>;
+
+/// The motion of a rim's vertex.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(super) struct RimVertex {
+    /// Its displacement.
+    pub way: DVec3,
+    /// The turn of the surface there.
+    pub turn: DQuat,
+    /// Its handle. Numbers begin at 0, and none is left out.
+    pub handle: u16,
+}
+
+/// A place to which a handle's vertex goes.
+#[derive(Clone, Copy, Debug)]
+struct Placed {
+    at: DVec3,
+    handle: u16,
+}
 
 /// How a part is bent.
 #[derive(Clone, Copy, Debug)]
@@ -44,23 +66,23 @@ impl Bending<'_> {
         let places = self.places(rims);
         if places
             .iter()
-            .all(|(vertex, place)| *place == self.surface.positions[vertex.index()])
+            .all(|(vertex, place)| place.at == self.surface.positions[vertex.index()])
         {
             return Ok(out);
         }
         let sources: Vec<SurfaceVertex> = rims.keys().copied().collect();
         let far = distances_along_surface(self.surface, self.topology, &sources, self.reach);
-        let role = |vertex: usize| match places.contains_key(&SurfaceVertex(vertex as u32)) {
-            true => Role::Handle(0),
-            false if far[vertex] <= self.reach => Role::Free,
-            false => Role::Fixed,
+        let role = |vertex: usize| match places.get(&SurfaceVertex(vertex as u32)) {
+            Some(place) => Role::Handle(place.handle),
+            None if far[vertex] <= self.reach => Role::Free,
+            None => Role::Fixed,
         };
         let roles: Vec<Role> = (0..far.len()).map(role).collect();
         let problem = Problem {
             surface: self.surface,
             topology: self.topology,
             roles: &roles,
-            handle_count: 1,
+            handle_count: rims.values().map(|own| usize::from(own.handle) + 1).max().unwrap_or(0),
             stiffness: &vec![1.0; roles.len()],
             constraints: Constraints::default(),
             loose: Loose::Rest,
@@ -84,7 +106,7 @@ impl Bending<'_> {
         self.solve(&mut bound, &places, &mut out, cancel)?;
         // What the method does not take as places is spread by the bi-Laplacian.
         let rest = |vertex: usize| self.surface.positions[vertex];
-        let missing = |vertex: &SurfaceVertex, place: &DVec3| *place - rest(vertex.index()) - out[vertex.index()];
+        let missing = |vertex: &SurfaceVertex, place: &Placed| place.at - rest(vertex.index()) - out[vertex.index()];
         let largest = places
             .iter()
             .map(|(vertex, place)| missing(vertex, place).length())
@@ -116,35 +138,39 @@ impl Bending<'_> {
     }
 
     /// The places of the rims' vertices and of those beside them, which turn with the rim.
-    fn places(&self, rims: &Rims) -> BTreeMap<SurfaceVertex, DVec3> {
+    fn places(&self, rims: &Rims) -> BTreeMap<SurfaceVertex, Placed> {
         let position = |vertex: SurfaceVertex| self.surface.positions[vertex.index()];
-        let mut beside: BTreeMap<SurfaceVertex, (DVec3, f64)> = BTreeMap::new();
-        for (&vertex, &(way, turn)) in rims {
-            for &other in self
-                .topology
-                .neighbours(vertex)
-                .iter()
-                .filter(|other| !rims.contains_key(other))
-            {
+        let mut beside: BTreeMap<SurfaceVertex, (DVec3, f64, u16)> = BTreeMap::new();
+        for (&vertex, &RimVertex { way, turn, handle }) in rims {
+            let others = self.topology.neighbours(vertex).iter();
+            for &other in others.filter(|other| !rims.contains_key(other)) {
                 let arm = position(other) - position(vertex);
                 // The turn's own part is added as a difference, so that no turn leaves no trace.
-                let moved = way + (turn * arm - arm);
-                let (sum, count) = beside.entry(other).or_default();
-                *sum += if turn == DQuat::IDENTITY { way } else { moved };
+                let turned = if turn == DQuat::IDENTITY {
+                    DVec3::ZERO
+                } else {
+                    turn * arm - arm
+                };
+                let (sum, count, _) = beside.entry(other).or_insert((DVec3::ZERO, 0.0, handle));
+                *sum += way + turned;
                 *count += 1.0;
             }
         }
-        let rims = rims.iter().map(|(&vertex, &(way, _))| (vertex, position(vertex) + way));
-        let beside = beside
-            .into_iter()
-            .map(|(vertex, (sum, count))| (vertex, position(vertex) + sum / count));
-        rims.chain(beside).collect()
+        let own = rims.iter().map(|(&vertex, rim)| {
+            let at = position(vertex) + rim.way;
+            (vertex, Placed { at, handle: rim.handle })
+        });
+        let beside = beside.into_iter().map(|(vertex, (sum, count, handle))| {
+            let at = position(vertex) + sum / count;
+            (vertex, Placed { at, handle })
+        });
+        own.chain(beside).collect()
     }
 
     fn solve(
         &self,
         bound: &mut Bound,
-        places: &BTreeMap<SurfaceVertex, DVec3>,
+        places: &BTreeMap<SurfaceVertex, Placed>,
         out: &mut [DVec3],
         cancel: &Cancel,
     ) -> Result<(), StitchError> {
@@ -152,21 +178,25 @@ impl Bending<'_> {
             part: self.name,
             source,
         };
-        let list: Vec<DVec3> = places.values().copied().collect();
-        match bound.set_places(&[Target::Places(list.clone())]) {
+        let count = places
+            .values()
+            .map(|place| usize::from(place.handle) + 1)
+            .max()
+            .unwrap_or(0);
+        let mut of_handles: Vec<(Vec<DVec3>, Vec<DVec3>)> = vec![Default::default(); count];
+        for (vertex, place) in places {
+            let (rest, list) = &mut of_handles[usize::from(place.handle)];
+            rest.push(self.surface.positions[vertex.index()]);
+            list.push(place.at);
+        }
+        let targets: Vec<Target> = of_handles
+            .iter()
+            .map(|(_, list)| Target::Places(list.clone()))
+            .collect();
+        match bound.set_places(&targets) {
             Err(SolveError::NoPlaces { .. }) => {
-                let rest: Vec<DVec3> = places
-                    .keys()
-                    .map(|vertex| self.surface.positions[vertex.index()])
-                    .collect();
-                let motion = super::choice::fit(&rest, &list);
-                let map = motion.map_or(glam::DAffine3::IDENTITY, |motion| {
-                    let shift = motion.displace(DVec3::ZERO);
-                    let axis = |axis: DVec3| axis + (motion.displace(axis) - shift);
-                    let linear = glam::DMat3::from_cols(axis(DVec3::X), axis(DVec3::Y), axis(DVec3::Z));
-                    glam::DAffine3::from_mat3_translation(linear, shift)
-                });
-                bound.set_targets(&[map]).map_err(refuse)?;
+                let maps: Vec<DAffine3> = of_handles.iter().map(|(rest, list)| rigid(rest, list)).collect();
+                bound.set_targets(&maps).map_err(refuse)?;
             }
             other => other.map_err(refuse)?,
         }
@@ -178,4 +208,11 @@ impl Bending<'_> {
         }
         Ok(())
     }
+}
+
+/// The rigid motion that takes points nearest to others, as a map.
+fn rigid(from: &[DVec3], to: &[DVec3]) -> DAffine3 {
+    choice::fit(from, to).map_or(DAffine3::IDENTITY, |motion| {
+        DAffine3::from_mat3_translation(DMat3::from_quat(motion.rotation()), motion.displace(DVec3::ZERO))
+    })
 }

@@ -24,7 +24,7 @@ use crate::error::StitchError;
 use crate::part::Part;
 use crate::shape::NewShape;
 use assemble::{Bent, assemble};
-use bend::{Bending, Rims};
+use bend::{Bending, RimVertex, Rims};
 use choice::Join;
 use line::Line;
 use seam::{Node, Place, seam};
@@ -259,24 +259,37 @@ fn moved_surface(surface: &Surface, motion: Option<&RigidMotion>) -> Surface {
 }
 
 fn affine(motion: &RigidMotion) -> DAffine3 {
-    let shift = motion.displace(DVec3::ZERO);
-    DAffine3::from_mat3_translation(DMat3::from_quat(motion.rotation()), shift)
+    DAffine3::from_mat3_translation(DMat3::from_quat(motion.rotation()), motion.displace(DVec3::ZERO))
 }
 
-/// The way and the turn of each vertex on the joined borders of both parts.
+/// Each border is at most this many handles, of at least [`LEAST_A_HANDLE`] vertices.
+const HANDLES_A_BORDER: usize = 12;
+
+/// The vertices that a handle has at least, if the border has as many.
+const LEAST_A_HANDLE: usize = 3;
+
+/// The motion of each vertex on the joined borders of both parts.
 fn rims(parts: [&Part<'_>; 2], surfaces: [&Surface; 2], joined: &[(Join, Vec<Node>)]) -> [Rims; 2] {
     let mut rims = [Rims::new(), Rims::new()];
+    let mut first = [0, 0];
     for (join, nodes) in joined {
         let lines = [&join.a, &join.b];
         let normals = [0, 1].map(|side| frames::normals(lines[side], surfaces[side], &parts[side].model.topology));
         let turns = frames::turns(join, nodes, [&normals[0], &normals[1]]);
         for side in 0..2 {
+            let count = lines[side].count();
+            let handles = (count / LEAST_A_HANDLE).clamp(1, HANDLES_A_BORDER);
             for node in nodes {
                 if let Place::Vertex(v) = node.on[side] {
-                    let way = node.target - lines[side].points[v];
-                    rims[side].insert(lines[side].vertices[v], (way, turns[side][v]));
+                    let rim = RimVertex {
+                        way: node.target - lines[side].points[v],
+                        turn: turns[side][v],
+                        handle: (first[side] + v * handles / count) as u16,
+                    };
+                    rims[side].insert(lines[side].vertices[v], rim);
                 }
             }
+            first[side] += handles;
         }
     }
     rims
