@@ -8,7 +8,7 @@ use pliant_stitch::{Attributes, NewShape, Part};
 use serde_json::json;
 
 use super::look::{Channels, Dressed, Source};
-use super::shape_report::judged;
+use super::shape_report::{Change, judged};
 use super::{Outputs, Replace, ShapeCounts, Stitched, counted, lost, refused};
 use crate::EngineError;
 use crate::apply::check_not_empty;
@@ -80,7 +80,7 @@ pub fn cut(job: &Cut<'_>, watch: &Watch, staging: &Staging) -> Result<Stitched, 
     let mut warnings = loaded.scene.notes().to_vec();
     warnings.extend(lost(&loaded, output)?);
     let after = report
-        .map(|_| judged(&shape, dressed.triangles(), |_| false, watch))
+        .map(|_| judged(&shape, dressed.triangles(), |_| Change::OfPart(0), watch))
         .transpose()?;
     let (staged, warnings) = outputs.stage(
         (&shape, &dressed),

@@ -8,7 +8,7 @@ use pliant_stitch::{Age, FilledHole, Holes, NewShape, Part};
 use serde_json::json;
 
 use super::look::{Channels, Dressed, Source};
-use super::shape_report::judged;
+use super::shape_report::{Change, judged};
 use super::{Outputs, Replace, ShapeCounts, Stitched, counted, lost, refused};
 use crate::apply::check_not_empty;
 use crate::files::Staging;
@@ -95,9 +95,12 @@ pub fn fill(job: &Fill<'_>, watch: &Watch, staging: &Staging) -> Result<Stitched
         ));
     }
     warnings.extend(lost(&loaded, output)?);
-    let is_new = |place: usize| shape.triangle_sources[place].age == Age::New;
+    let change = |place: usize| match shape.triangle_sources[place].age {
+        Age::New => Change::Changed,
+        Age::Old => Change::OfPart(0),
+    };
     let after = report
-        .map(|_| judged(&shape, dressed.triangles(), is_new, watch))
+        .map(|_| judged(&shape, dressed.triangles(), change, watch))
         .transpose()?;
     if let Some((_, crossings)) = after.filter(|(_, crossings)| *crossings > 0) {
         let places = counted(crossings, "place", "places");

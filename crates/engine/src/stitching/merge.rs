@@ -5,12 +5,12 @@ use std::time::Instant;
 
 use pliant_editor::{JoinsFile, Placement};
 use pliant_mesh::{DrawnVertex, WeldOptions};
-use pliant_stitch::{Age, Joins, Pair, Part, PlacementOfB, Seam, StitchError, VertexSource};
+use pliant_stitch::{Joins, Pair, Part, PlacementOfB, Seam, StitchError, VertexSource};
 use serde_json::json;
 
 use super::look::{Channels, Dressed, Source};
 use super::prepared::Prepared;
-use super::shape_report::judged;
+use super::shape_report::{Change, judged};
 use super::{Outputs, Replace, ShapeCounts, Stitched, counted, lost, refused};
 use crate::apply::check_not_empty;
 use crate::files::{self, Staging};
@@ -120,17 +120,26 @@ pub fn merge(job: &Merge<'_>, watch: &Watch, staging: &Staging) -> Result<Stitch
         let source = renumbered(error.source, &prepared[error.part]);
         refused(paths[error.part], source)
     })?;
-    let moved: Vec<bool> = merged
+    // B as a whole moved rigidly first.
+    let motions = [glam::DAffine3::IDENTITY, merged.motion];
+    let touch = prepared[0]
+        .model
+        .bounds()
+        .map_or(0.0, |bounds| 1e-8 * bounds.diagonal());
+    let bends = |(source, position): (&VertexSource, &glam::DVec3)| match *source {
+        VertexSource::Old { part, vertex } => {
+            let side = usize::from(part);
+            let there = motions[side].transform_point3(prepared[side].drawn.positions[vertex.index()]);
+            there.distance(*position) > touch
+        }
+        VertexSource::New { .. } => true,
+    };
+    let bent: Vec<bool> = merged
         .shape
         .vertices
         .iter()
         .zip(&merged.shape.positions)
-        .map(|(source, position)| match *source {
-            VertexSource::Old { part, vertex } => {
-                prepared[usize::from(part)].drawn.positions[vertex.index()] != *position
-            }
-            VertexSource::New { .. } => true,
-        })
+        .map(bends)
         .collect();
     for source in &mut merged.shape.vertices {
         *source = prepared[usize::from(source.part())].vertex_source(*source);
@@ -160,14 +169,17 @@ pub fn merge(job: &Merge<'_>, watch: &Watch, staging: &Staging) -> Result<Stitch
         }
     }
     let shape = &merged.shape;
-    let is_new = |place: usize| {
+    let change = |place: usize| {
         let corners = dressed.triangles()[place];
         let source = shape.triangle_sources[place];
-        source.age == Age::New || source.part == 1 || corners.iter().any(|corner| moved[corner.index()])
+        match corners.iter().any(|corner| bent[corner.index()]) {
+            true => Change::Changed,
+            false => Change::OfPart(source.part),
+        }
     };
     let after = job
         .report
-        .map(|_| judged(shape, dressed.triangles(), is_new, watch))
+        .map(|_| judged(shape, dressed.triangles(), change, watch))
         .transpose()?;
     if let Some((_, crossings)) = after.filter(|(_, crossings)| *crossings > 0) {
         let places = counted(crossings, "pair", "pairs");

@@ -1,9 +1,9 @@
 //! The numbers by which a report describes a surface and what a change of topology did to it.
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 
 use glam::DVec3;
-use pliant_mesh::{Bvh, Drawn, DrawnVertex, Model, SurfaceVertex, WeldOptions};
+use pliant_mesh::{Bvh, Drawn, DrawnVertex, Model, SelfIntersection, SurfaceVertex, WeldOptions};
 use pliant_stitch::NewShape;
 use serde::Serialize;
 
@@ -54,12 +54,21 @@ impl ShapeCounts {
 /// The most crossings to count.
 const MOST_CROSSINGS: usize = 20_000;
 
-/// The numbers of a new shape, and how many pairs of triangles pass through each other of which at least one `is_new`.
-/// The triangles are the shape's, in the order of `triangles`.
+/// What became of a triangle.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Change {
+    /// It has the shape that it had, among the others of its part.
+    OfPart(u8),
+    /// It is new, or bent.
+    Changed,
+}
+
+/// The numbers of a new shape, and how many pairs of triangles pass through each other of which one changed, or which
+/// are of two parts. The triangles are the shape's, in the order of `triangles`.
 pub(super) fn judged(
     shape: &NewShape,
     triangles: &[[DrawnVertex; 3]],
-    is_new: impl Fn(usize) -> bool,
+    change: impl Fn(usize) -> Change,
     watch: &Watch,
 ) -> Result<(ShapeCounts, usize), EngineError> {
     let progress = watch.begin("checking the new shape");
@@ -73,13 +82,18 @@ pub(super) fn judged(
     let stopped = |_| EngineError::Interrupted;
     let model = Model::weld(drawn, &WeldOptions::default(), &progress, &watch.cancel).map_err(stopped)?;
     let of_surface = model.surface.triangles.iter().zip(model.drawn.triangle_of_surface());
-    let chosen: BTreeSet<[SurfaceVertex; 3]> = of_surface
-        .filter(|(_, drawn)| is_new(**drawn as usize))
-        .map(|(corners, _)| *corners)
+    let changes: BTreeMap<[SurfaceVertex; 3], Change> = of_surface
+        .map(|(corners, drawn)| (*corners, change(*drawn as usize)))
+        .filter(|(_, change)| *change != Change::OfPart(0))
         .collect();
+    let change_of = |corners: [SurfaceVertex; 3]| changes.get(&corners).copied().unwrap_or(Change::OfPart(0));
     let bvh = Bvh::build(&model.surface.positions as &[DVec3], &model.surface.triangles);
-    let is_chosen = |corners: [SurfaceVertex; 3]| chosen.contains(&corners);
+    let is_chosen = |corners: [SurfaceVertex; 3]| change_of(corners) != Change::OfPart(0);
     let found = bvh.self_intersections_of(is_chosen, MOST_CROSSINGS, &progress, &watch.cancel);
-    let crossings = found.map_err(stopped)?.pairs.len();
-    Ok((ShapeCounts::of(&model), crossings))
+    let pairs = found.map_err(stopped)?.pairs;
+    let is_added = |pair: &&SelfIntersection| {
+        let [one, other] = pair.triangles.map(change_of);
+        one != other || one == Change::Changed
+    };
+    Ok((ShapeCounts::of(&model), pairs.iter().filter(is_added).count()))
 }

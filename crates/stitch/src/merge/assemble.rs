@@ -1,12 +1,13 @@
 //! Putting the two bent parts together: A's vertices, A's cuts, B's vertices and B's cuts, then the triangles in the same
 //! order. Vertices at one point of the common border have one position, to the bit, and one number.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use glam::{DQuat, DVec3};
 use pliant_mesh::{DrawnVertex, FileVertex, Surface, SurfaceVertex};
 
 use super::choice::Join;
+use super::chords::cut_doubled;
 use super::seam::{Node, Place};
 use super::split::Splits;
 use crate::part::Part;
@@ -96,6 +97,12 @@ pub(super) fn assemble(parts: [Bent<'_>; 2], joins: &[(Join, Vec<Node>)]) -> New
     }
     blend_borders(&parts, &mut shape, &vertices_of_node);
     turn_normals(&parts, &mut shape, &vertices_of_node, &node_normals);
+    let on_border: BTreeSet<FileVertex> = file_of_node.into_iter().flatten().collect();
+    let value = |source: VertexSource, channel: usize| match source {
+        VertexSource::Old { part, vertex } => (parts[usize::from(part)].part.attributes.value)(vertex, channel),
+        VertexSource::New { .. } => 0.0,
+    };
+    cut_doubled(&mut shape, &on_border, parts[0].part.attributes.width(), value);
     shape
 }
 

@@ -45,6 +45,8 @@ pub(super) struct Bending<'a> {
     pub topology: &'a Topology,
     /// How far along the surface from the rims it may bend, in world units.
     pub reach: f64,
+    /// Ways up to this length, in world units, are rounding: nothing bends for them.
+    pub touch: f64,
     /// The method.
     pub method: &'a Method,
     /// The memory for the binding.
@@ -64,10 +66,9 @@ impl Bending<'_> {
     pub fn bent(&self, rims: &Rims, progress: &Progress, cancel: &Cancel) -> Result<Vec<DVec3>, StitchError> {
         let mut out = vec![DVec3::ZERO; self.surface.positions.len()];
         let places = self.places(rims);
-        if places
-            .iter()
-            .all(|(vertex, place)| place.at == self.surface.positions[vertex.index()])
-        {
+        let way =
+            |(vertex, place): (&SurfaceVertex, &Placed)| place.at.distance(self.surface.positions[vertex.index()]);
+        if places.iter().map(way).fold(0.0, f64::max) <= self.touch {
             return Ok(out);
         }
         let sources: Vec<SurfaceVertex> = rims.keys().copied().collect();

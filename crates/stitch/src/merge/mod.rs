@@ -10,6 +10,7 @@
 mod assemble;
 mod bend;
 mod choice;
+mod chords;
 mod frames;
 mod line;
 mod seam;
@@ -166,6 +167,7 @@ pub fn merge(
             surface: surfaces[side],
             topology: &parts[side].model.topology,
             reach: joins.reach * diagonal[side],
+            touch: TOUCH * diagonal[0],
             method: joins.method,
             budget,
             name: ["A", "B"][side],

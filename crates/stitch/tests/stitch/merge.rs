@@ -274,3 +274,21 @@ fn the_bits_do_not_depend_on_the_number_of_threads() {
     let one = with(1);
     assert!(one == with(2) && one == with(3));
 }
+
+#[test]
+fn teeth_of_both_borders_at_one_place_make_no_doubled_edge() {
+    for (name, shape) in closed_shapes() {
+        let whole = model(shape.clone());
+        let bounds = whole.bounds().unwrap();
+        let [a, b] = halves(&shape, DVec3::new(0.3, 0.2, 0.9).normalize(), bounds.centre().dot(DVec3::new(0.3, 0.2, 0.9).normalize()));
+        let wider = DAffine3::from_translation(bounds.centre())
+            * DAffine3::from_scale(DVec3::new(1.04, 0.97, 1.0))
+            * DAffine3::from_translation(-bounds.centre());
+        let (a, b) = (model(a), model(shapes::moved(&b, wider)));
+        let pairs = pairs(&a, &b, wider);
+        let merged = joined(&a, &b, &pairs, "poisson", PlacementOfB::Fitted).unwrap();
+        let again = unwelded(&merged);
+        check_sound(&again, 0);
+        assert_eq!(genus(&again), genus(&whole), "{name}");
+    }
+}
