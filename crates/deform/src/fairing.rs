@@ -1,4 +1,4 @@
-//! Fairing: values on a part of the surface from the values around it [BS08, section 2.4; Liepa 2003].
+//! Fairing: values on a part of the surface from the values around it [BS08, section 2.4; Lie03].
 //!
 //! The free vertices get the field x with L M⁻¹ L x = 0 (or the equation of another order), all other vertices keep
 //! theirs. With positions as values, order 2 joins the surface around with continuous tangents; with colours or texture

@@ -1,4 +1,4 @@
-//! Filling holes: the least triangles on the rim, as dense as the surface around, faired [Liepa 2003].
+//! Filling holes: the least triangles on the rim, as dense as the surface around, faired [Lie03].
 //!
 //! Each hole is a task of its own, from the rim and one ring of triangles around it, so that a thousand small holes take
 //! as long as their patches, whatever the size of the surface.

@@ -1,4 +1,4 @@
-//! New points inside a patch until it is as dense as the surface around it [Liepa 2003, section 3].
+//! New points inside a patch until it is as dense as the surface around it [Lie03, section 3].
 //!
 //! Each point has a *scale*, the mean length of the edges there. A triangle is cut at its middle if the middle is
 //! further from each corner than the scales of middle and corner, both divided by √2. New points take the mean scale of

@@ -1,4 +1,4 @@
-//! The first triangles of a patch: those of least weight [Liepa 2003].
+//! The first triangles of a patch: those of least weight [Lie03].
 //!
 //! A triangulation weighs as much as its largest angle between neighbouring triangles, those outside the rim included,
 //! and of equal ones the least area counts. W(i, j), the least weight of the polygon from point i to point j, is the

@@ -280,7 +280,11 @@ fn teeth_of_both_borders_at_one_place_make_no_doubled_edge() {
     for (name, shape) in closed_shapes() {
         let whole = model(shape.clone());
         let bounds = whole.bounds().unwrap();
-        let [a, b] = halves(&shape, DVec3::new(0.3, 0.2, 0.9).normalize(), bounds.centre().dot(DVec3::new(0.3, 0.2, 0.9).normalize()));
+        let [a, b] = halves(
+            &shape,
+            DVec3::new(0.3, 0.2, 0.9).normalize(),
+            bounds.centre().dot(DVec3::new(0.3, 0.2, 0.9).normalize()),
+        );
         let wider = DAffine3::from_translation(bounds.centre())
             * DAffine3::from_scale(DVec3::new(1.04, 0.97, 1.0))
             * DAffine3::from_translation(-bounds.centre());
