@@ -43,7 +43,7 @@ impl DressedPatch {
     /// Dresses a patch; `None` for a hole without a rim of this part.
     pub fn of(part: &Part<'_>, hole: &FilledHole, budget: Budget, cancel: &Cancel) -> Option<Self> {
         let rim = DrawnRim::of(part, hole)?;
-        let of_triangle = continued(hole, &rim);
+        let of_triangle = continued(part, hole, &rim);
         let count = rim.runs.len();
         let positions = hole
             .border

@@ -1,7 +1,7 @@
 //! The charts and groups along a rim, and their continuation over a patch.
 //!
-//! A *run* is a stretch of the rim along which texture coordinates are continuous and the group is the same. Each
-//! triangle of the patch belongs to the run that is nearest to it, triangle by triangle.
+//! A *run* is a stretch of the rim along which texture coordinates are continuous. Each triangle of the patch belongs to
+//! the run, and takes the group, of the edge of the rim that is nearest to it, triangle by triangle.
 
 use std::collections::VecDeque;
 
@@ -35,7 +35,7 @@ impl DrawnRim {
             ends.push([at(from)?, at(to)?]);
             triangles.push(model.drawn.triangle_of_surface()[face]);
         }
-        let runs = runs(part, &ends, &triangles);
+        let runs = runs(part, &ends);
         Some(Self { ends, triangles, runs })
     }
 
@@ -53,12 +53,11 @@ impl DrawnRim {
 }
 
 /// Numbers the runs: a run begins at the first edge that does not continue the one before.
-fn runs(part: &Part<'_>, ends: &[[DrawnVertex; 2]], triangles: &[u32]) -> Vec<u32> {
+fn runs(part: &Part<'_>, ends: &[[DrawnVertex; 2]]) -> Vec<u32> {
     let count = ends.len();
     let begins = |k: usize| {
         let before = (k + count - 1) % count;
-        let is_one_group = (part.group)(triangles[before]) == (part.group)(triangles[k]);
-        !is_one_group || !part.attributes.are_of_one_chart(ends[before][1], ends[k][0])
+        !part.attributes.are_of_one_chart(ends[before][1], ends[k][0])
     };
     let Some(first) = (0..count).find(|&k| begins(k)) else {
         return vec![0; count];
@@ -74,9 +73,14 @@ fn runs(part: &Part<'_>, ends: &[[DrawnVertex; 2]], triangles: &[u32]) -> Vec<u3
 }
 
 /// The run of each triangle of a patch, and an edge of the rim that it continues.
-pub(super) fn continued(hole: &FilledHole, rim: &DrawnRim) -> Vec<(u32, u32)> {
+pub(super) fn continued(part: &Part<'_>, hole: &FilledHole, rim: &DrawnRim) -> Vec<(u32, u32)> {
     let count = rim.runs.len() as u32;
-    if rim.runs.iter().all(|run| *run == 0) {
+    let group = |triangle: &u32| (part.group)(*triangle);
+    let is_one_group = rim
+        .triangles
+        .iter()
+        .all(|triangle| group(triangle) == group(&rim.triangles[0]));
+    if is_one_group && rim.runs.iter().all(|run| *run == 0) {
         return vec![(0, 0); hole.triangles.len()];
     }
     let mut beside: Vec<([u32; 2], u32)> = Vec::with_capacity(3 * hole.triangles.len());
