@@ -550,7 +550,7 @@ mod tests {
             let Some(Descent::Newton(system)) = &mut solver.descent else {
                 unreachable!("a small surface")
             };
-            system.factor(&solver.energy, &rest, &slopes).unwrap();
+            system.factor(&solver.energy, &rest, &slopes, &Cancel::new()).unwrap();
             let length = 1e-7;
             let mut moved = rest;
             let count = solver.energy.elements.solved_count;
