@@ -14,11 +14,18 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("pliant-mesh", &[]),
     ("pliant-io", &["pliant-mesh"]),
     ("pliant-deform", &["pliant-mesh"]),
+    ("pliant-stitch", &["pliant-deform", "pliant-mesh"]),
     ("pliant-render", &[]),
     ("pliant-editor", &["pliant-deform", "pliant-mesh"]),
     (
         "pliant-engine",
-        &["pliant-deform", "pliant-editor", "pliant-io", "pliant-mesh"],
+        &[
+            "pliant-deform",
+            "pliant-editor",
+            "pliant-io",
+            "pliant-mesh",
+            "pliant-stitch",
+        ],
     ),
     (
         "pliant-python",
@@ -42,6 +49,10 @@ const ARROWS: &[(&str, &[&str])] = &[
 const NEVER_LINKED: &[(&str, &[&str])] = &[
     ("pliant-mesh", &["wgpu", "naga", "egui", "eframe", "winit", "serde"]),
     ("pliant-deform", &["wgpu", "naga", "egui", "eframe", "winit", "serde"]),
+    (
+        "pliant-stitch",
+        &["wgpu", "naga", "egui", "eframe", "winit", "serde", "gltf"],
+    ),
     ("pliant-io", &["wgpu", "naga", "egui", "eframe", "winit", "faer"]),
     ("pliant-render", &["egui", "eframe", "winit", "faer", "obvhs", "gltf"]),
     ("pliant-editor", &["wgpu", "naga", "egui", "eframe", "winit", "gltf"]),
@@ -59,6 +70,7 @@ const NEVER_NAMED: &[(&str, &[&str])] = &[
 const NEVER_WRITTEN: &[(&str, &[&str])] = &[
     ("mesh", OUTSIDE_WORLD),
     ("deform", OUTSIDE_WORLD),
+    ("stitch", OUTSIDE_WORLD),
     ("io", OUTSIDE_WORLD),
     (
         "render",

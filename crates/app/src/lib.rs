@@ -26,6 +26,7 @@
 
 pub mod cli;
 pub mod drawing;
+mod files;
 pub mod legend;
 pub mod painting;
 mod picture_file;

@@ -70,6 +70,7 @@ mod cage;
 mod coarse;
 mod embedded;
 mod error;
+mod fairing;
 mod frames;
 mod handles;
 #[cfg(feature = "identity-method")]
@@ -114,6 +115,7 @@ pub use budget::{Budget, Limit};
 pub use cage::{Cage, CageCoordinates};
 pub use embedded::Embedded;
 pub use error::{BindError, Crowded, SolveError};
+pub use fairing::fair;
 pub use frames::Frames;
 pub use handles::bases::HandleBases;
 pub use laplacian::{LaplacianEditing, LocalScale, Transforms};

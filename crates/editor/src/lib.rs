@@ -71,8 +71,8 @@ pub use editor::Editor;
 pub use event::Event;
 pub use format::{
     AttachmentEntry, Axis, Beginning, EDIT_VERSION, EditError, EditFile, ExampleEntry, ExampleSource, ExportError,
-    FieldEntry, HandleEntry, HandleSetup, Kept, MeshReference, Project, Rest, SOFT_RANGE, STIFFNESS_RANGE, Selector,
-    Setup, StoredKept, geometry_hash,
+    FieldEntry, HandleEntry, HandleSetup, JoinsFile, Kept, MeshReference, Placement, Project, Rest, SOFT_RANGE,
+    STIFFNESS_RANGE, Selector, Setup, StoredKept, geometry_hash,
 };
 pub use input::{Button, Key, Modifiers, Pointer};
 pub use jobs::{

@@ -79,6 +79,14 @@ pub enum EngineError {
         /// The obstacle.
         source: pliant_deform::SolveError,
     },
+    /// A shape can't be cut, filled or joined. Its vertices are the file's.
+    #[error("{}: {source}", shown(.file))]
+    Stitch {
+        /// The file.
+        file: PathBuf,
+        /// The obstacle.
+        source: pliant_stitch::StitchError,
+    },
     /// The result can't be stored as requested.
     #[error("{}: {source}", shown(.file))]
     Save {

@@ -1,7 +1,7 @@
 //! The engine turns files and an edit into files. The command line, the window and the Python package run it.
 //!
 //! It reads a file with its neighbours and welds it (`loading`), binds and bends it (`apply`), puts a pose of one mesh
-//! onto another (`transfer`), and writes all of a result or nothing (`saving`, [`files`]). It starts no threads: long
+//! onto another (`transfer`), cuts, fills and joins shapes (`stitching`), and writes all of a result or nothing (`saving`, [`files`]). It starts no threads: long
 //! loops run on the caller's rayon pool, and a [`Watch`](watch::Watch) shows their progress to the caller's other
 //! threads.
 //!
@@ -59,6 +59,7 @@ pub mod memory;
 mod path_text;
 pub mod report;
 pub mod saving;
+pub mod stitching;
 mod transfer;
 pub mod watch;
 

@@ -5,7 +5,10 @@ use std::path::Path;
 use std::time::Instant;
 
 use glam::DVec3;
-use pliant_io::{Format, MorphDeltas, MorphTarget, Role, Save, SaveError, Saved, quoted, with_neighbours_renamed};
+use pliant_io::{
+    Format, MorphDeltas, MorphTarget, Role, Save, SaveError, Saved, SceneAndDrawn, UnsavedShape, quoted,
+    with_neighbours_renamed,
+};
 use pliant_mesh::{Cancel, Progress};
 
 use crate::EngineError;
@@ -99,26 +102,78 @@ pub fn stage(
         None => loaded.scene.save(&save, &of_making, cancel),
         Some(morph) => loaded.scene.save_as_morph(&save, morph, &of_making, cancel),
     };
-    let mut saved = saved.map_err(|error| refused(what.output, error))?;
+    let saved = saved.map_err(|error| refused(what.output, error))?;
+    let triangles = saved.triangles.clone();
+    let compare = |back: &SceneAndDrawn| {
+        loaded
+            .scene
+            .check_read_back(&save, what.morph, triangles.as_deref(), back)
+    };
+    stage_saved(
+        saved,
+        format,
+        (&to, what.beside),
+        compare,
+        staging,
+        (&of_writing, &of_check, cancel),
+    )
+}
 
+/// Prepares the files of a shape that no file has yet, as [`stage`] does.
+///
+/// # Errors
+/// Those of [`stage`].
+pub fn stage_new(
+    shape: &UnsavedShape<'_>,
+    output: &Path,
+    beside: Option<(&str, &Destination)>,
+    staging: &Staging,
+    progress: &Progress,
+    cancel: &Cancel,
+) -> Result<StagedSave, EngineError> {
+    let to = Destination::of(output)?;
+    let (of_making, of_writing) = (progress.part(0.0, 0.4), progress.part(0.4, 0.8));
+    let of_check = progress.part(0.8, 1.0);
+    let format = Format::of_name(&output.to_string_lossy())?;
+    let saved = shape.save(format, &name_in(format, &to), &of_making, cancel);
+    let saved = saved.map_err(|error| refused(output, error))?;
+    let triangles = saved.triangles.clone();
+    let compare = |back: &SceneAndDrawn| shape.check_read_back(format, triangles.as_deref(), back);
+    stage_saved(
+        saved,
+        format,
+        (&to, beside),
+        compare,
+        staging,
+        (&of_writing, &of_check, cancel),
+    )
+}
+
+/// Names the neighbours of encoded files, writes all of them and reads them back.
+fn stage_saved(
+    mut saved: Saved,
+    format: Format,
+    (to, beside): (&Destination, Option<(&str, &Destination)>),
+    compare: impl FnOnce(&SceneAndDrawn) -> Result<(), String>,
+    staging: &Staging,
+    (of_writing, of_check, cancel): (&Progress, &Progress, &Cancel),
+) -> Result<StagedSave, EngineError> {
     // While files that name each other are written, no other save may write there.
-    let is_alone = saved.files.len() > 1 || save.format == Format::Gltf;
+    let is_alone = saved.files.len() > 1 || format == Format::Gltf;
     let share = if is_alone { Share::Alone } else { Share::Together };
-    let beside = what.beside.map(|(_, beside)| (beside, Share::Together));
-    let held = staging.hold([(&to, share)].into_iter().chain(beside), cancel)?;
-    let settled = placement::settle(&mut saved, save.format, &to)?;
-    if let Some((role, beside)) = what.beside {
+    let further = beside.map(|(_, beside)| (beside, Share::Together));
+    let held = staging.hold([(to, share)].into_iter().chain(further), cancel)?;
+    let settled = placement::settle(&mut saved, format, to)?;
+    if let Some((role, beside)) = beside {
         let neighbours = settled
             .iter()
             .map(|settled| ("a file that OUT needs", &*settled.at.target));
         files::refuse_shared((role, &beside.given), neighbours)?;
     }
-    let (staged, names) = write(&saved, &settled, &to, staging, &of_writing, cancel)?;
+    let (staged, names) = write(&saved, &settled, to, staging, of_writing, cancel)?;
     let staged = staged.holding(held);
     let Saved {
-        files,
-        mut warnings,
-        triangles,
+        files, mut warnings, ..
     } = saved;
     // The bytes are on the disk now and are read from there.
     drop(files);
@@ -128,12 +183,11 @@ pub fn stage(
     let last = names.len();
     let neighbours = names.into_iter().enumerate();
     let written = Written {
-        output: &to,
+        output: to,
         file: staged.temporary(last),
         neighbours: neighbours.map(|(file, name)| (name, staged.temporary(file))).collect(),
-        triangles,
     };
-    check::read_back(&written, &loaded.scene, &save, what.morph, &of_check, cancel)?;
+    check::read_back(&written, format, compare, of_check, cancel)?;
     Ok(StagedSave {
         staged,
         warnings,

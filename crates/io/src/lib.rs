@@ -65,6 +65,8 @@ mod text;
 
 pub use appearance::{AlphaMode, Appearance, Group, Image, Lighting, Map, Material, Origin, UvSet, Wrap};
 pub use bytes::Bytes;
+pub use convert::Polygons;
+pub use convert::unsaved::UnsavedShape;
 pub use difference::{Difference, What};
 pub use error::{ImageError, ReadError, SaveError};
 pub use format::{Format, UnknownFormat};

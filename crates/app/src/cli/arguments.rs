@@ -7,6 +7,7 @@ use clap::error::ContextValue;
 use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 use pliant_deform::{ConstraintKind, METHODS};
 use pliant_editor::Clay;
+use pliant_engine::stitching::Replace;
 use pliant_io::{MorphDeltas, MorphTarget, quoted};
 use pliant_mesh::{Vectors, WeldOptions};
 
@@ -46,6 +47,12 @@ pub(crate) enum Command {
     Diff(DiffArguments),
     /// Put a pose of one mesh onto another
     Transfer(TransferArguments),
+    /// Put a part of one file onto another, without a crack
+    Merge(MergeArguments),
+    /// Fill holes
+    Fill(FillArguments),
+    /// Delete vertices, with the triangles that use them
+    Cut(CutArguments),
     /// Write the man pages, the completions for shells and the manual's pages of commands
     Generate(GenerateArguments),
 }
@@ -198,6 +205,89 @@ pub(crate) struct TransferArguments {
     /// On how many threads, and with which vectors.
     #[command(flatten)]
     pub compute: ComputeArguments,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct MergeArguments {
+    /// The file that stays where it is: glb, gltf, obj, ply, stl or off
+    pub first: PathBuf,
+    /// The file that is put onto it
+    pub second: PathBuf,
+    /// What to delete of both, and which places belong together
+    #[arg(long, value_name = "JOINS.json")]
+    pub joins: PathBuf,
+    /// Where to write, and what may be replaced.
+    #[command(flatten)]
+    pub output: NewShapeArguments,
+    /// Which vertices are one.
+    #[command(flatten)]
+    pub weld: WeldArguments,
+    /// On how many threads, and with which vectors.
+    #[command(flatten)]
+    pub compute: ComputeArguments,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct FillArguments {
+    /// The file with holes: glb, gltf, obj, ply, stl or off
+    pub file: PathBuf,
+    /// Fill the N longest holes alone; without it and --at, every hole
+    #[arg(long, value_name = "N", conflicts_with = "at", value_parser = RangedU64ValueParser::<usize>::new().range(1..=100_000_000))]
+    pub largest: Option<usize>,
+    /// Fill the hole whose rim passes this vertex of the file alone
+    #[arg(long, value_name = "VERTEX")]
+    pub at: Option<u32>,
+    /// Where to write, and what may be replaced.
+    #[command(flatten)]
+    pub output: NewShapeArguments,
+    /// Which vertices are one.
+    #[command(flatten)]
+    pub weld: WeldArguments,
+    /// On how many threads, and with which vectors.
+    #[command(flatten)]
+    pub compute: ComputeArguments,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct CutArguments {
+    /// The file to cut: glb, gltf, obj, ply, stl or off
+    pub file: PathBuf,
+    /// The vertices to delete, as a selector of the edit format
+    #[arg(long, value_name = "SELECTOR.json")]
+    pub delete: PathBuf,
+    /// Where to write, and what may be replaced.
+    #[command(flatten)]
+    pub output: NewShapeArguments,
+    /// Which vertices are one.
+    #[command(flatten)]
+    pub weld: WeldArguments,
+    /// On how many threads, and with which vectors.
+    #[command(flatten)]
+    pub compute: ComputeArguments,
+}
+
+/// Where a new shape goes.
+#[derive(Args, Debug)]
+pub(crate) struct NewShapeArguments {
+    /// The file to write; its extension tells its format
+    #[arg(long, value_name = "OUT")]
+    pub output: PathBuf,
+    /// Where to write what was done
+    #[arg(long, value_name = "REPORT.json")]
+    pub report: Option<PathBuf>,
+    /// OUT may be the file that is read; the original is kept beside it
+    #[arg(long)]
+    pub replace: bool,
+}
+
+impl NewShapeArguments {
+    /// Whether OUT may be the file that is read.
+    pub fn replace(&self) -> Replace {
+        match self.replace {
+            true => Replace::WithOriginalKept,
+            false => Replace::Never,
+        }
+    }
 }
 
 #[derive(Args, Debug)]

@@ -11,6 +11,7 @@ mod interrupt;
 mod method_argument;
 mod progress_line;
 mod render;
+mod stitch;
 mod threads;
 mod transfer;
 
@@ -55,6 +56,9 @@ pub fn run(arguments: Vec<OsString>, console: &mut Console<'_>) -> u8 {
             Some(Command::Compare(arguments)) => compare::run(&arguments, console),
             Some(Command::Diff(arguments)) => diff::run(&arguments, console),
             Some(Command::Transfer(arguments)) => transfer::run(&arguments, console),
+            Some(Command::Fill(arguments)) => stitch::fill(&arguments, console),
+            Some(Command::Cut(arguments)) => stitch::cut(&arguments, console),
+            Some(Command::Merge(arguments)) => stitch::merge(&arguments, console),
             Some(Command::Generate(arguments)) => generate::run(&arguments, console),
             None => window::run(Source::of(arguments.file, arguments.edit)),
         },

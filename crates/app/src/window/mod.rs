@@ -26,9 +26,9 @@ use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
 use winit::event_loop::EventLoop;
 use winit::platform::run_on_demand::EventLoopExtRunOnDemand;
 
+pub use crate::files::names::original_name;
 pub use application::Application;
 pub use files::app_directories::AppDirectories;
-pub use files::names::original_name;
 pub use session::{KeepOriginal, Source};
 
 /// Saves and projects without the window, for programs that drive them.

@@ -5,6 +5,8 @@ use serde::{Deserialize, Serialize};
 use serde_json::json;
 
 use super::edit_error::EditError;
+use super::json::parse;
+use super::reader::read;
 use super::transform::vector;
 
 /// A set of a model's vertices, described so that it can be evaluated on any model ([`crate::Selection`]).
@@ -75,6 +77,19 @@ pub enum Axis {
 }
 
 impl Selector {
+    /// Reads a selector's JSON text.
+    ///
+    /// # Errors
+    /// Members that the format does not have, and values that exclude each other, by name and place.
+    pub fn parse(text: &str) -> Result<Self, EditError> {
+        let read = || {
+            let selector: Self = read(&parse(text)?)?;
+            selector.check()?;
+            Ok(selector)
+        };
+        read().map_err(|error: EditError| error.at("the selector"))
+    }
+
     /// Refuses values that exclude each other; the evaluation checks whether the model has the vertices.
     pub(crate) fn check(&self) -> Result<(), EditError> {
         match self {

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use pliant_io::{Bytes, Format, MorphTarget, ReadError, Resolver, Save, Scene};
+use pliant_io::{Bytes, Format, ReadError, Resolver, SceneAndDrawn};
 use pliant_mesh::{Cancel, Progress};
 
 use super::{Destination, Neighbours};
@@ -16,21 +16,18 @@ pub struct Written<'a> {
     pub file: &'a Path,
     /// The neighbours that were written with it, by name, and their bytes on the disk.
     pub neighbours: Vec<(String, &'a Path)>,
-    /// The save's own [`triangles`](pliant_io::Saved::triangles).
-    pub triangles: Option<Vec<u32>>,
 }
 
-/// Reads a save back from the disk, like the next reader, and compares its shape with the one to save. It is the last
-/// check before the old file is replaced.
+/// Reads a save back from the disk, like the next reader, and compares its shape with the one to save, by `compare`. It
+/// is the last check before the old file is replaced.
 ///
 /// # Errors
 /// [`EngineError::ReadBack`] if it can't be read or shows another shape; [`EngineError::Interrupted`] soon after
 /// `cancel` is raised.
 pub fn read_back(
     written: &Written<'_>,
-    scene: &Scene,
-    save: &Save<'_>,
-    morph: Option<&MorphTarget<'_>>,
+    format: Format,
+    compare: impl FnOnce(&SceneAndDrawn) -> Result<(), String>,
     progress: &Progress,
     cancel: &Cancel,
 ) -> Result<(), EngineError> {
@@ -48,15 +45,12 @@ pub fn read_back(
     };
     let name = written.output.given.to_string_lossy();
     let bytes = super::read(written.file)?;
-    let format: Format = save.format;
     let back = pliant_io::read(bytes, format, &name, &resolver, progress, cancel).map_err(|error| match error {
         ReadError::Cancelled(_) => EngineError::Interrupted,
         error => refuse(error.to_string()),
     })?;
     cancel.check().map_err(|_| EngineError::Interrupted)?;
-    scene
-        .check_read_back(save, morph, written.triangles.as_deref(), &back)
-        .map_err(refuse)
+    compare(&back).map_err(refuse)
 }
 
 /// Neighbours in their future state: new ones from their temporary files, the others from beside OUT.

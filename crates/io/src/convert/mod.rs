@@ -1,6 +1,7 @@
 //! A shape with its appearance, from which a new file of any format can be written.
 
 pub(crate) mod faces;
+pub(crate) mod unsaved;
 
 use std::borrow::Cow;
 use std::ops::Range;
@@ -46,8 +47,8 @@ pub(crate) enum Parting {
 }
 
 /// Faces as the file has them, triangles among them: a face with n corners is n − 2 of the drawn triangles, in order.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Polygons {
+#[derive(Clone, PartialEq, Debug, Default)]
+pub struct Polygons {
     /// The start of each face's corners in `corners`; one entry more than there are faces.
     pub offsets: Vec<u32>,
     /// Drawn vertices, counterclockwise seen from outside.

@@ -3,12 +3,12 @@
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
-use pliant_mesh::Cancelled;
+use pliant_mesh::{Cancelled, DrawnVertex};
 
 use crate::appearance::colour::{SrgbBytes, srgb_of_linear};
 use crate::appearance::{AlphaMode, Material, Origin};
 use crate::convert::NewMesh;
-use crate::convert::faces::{for_each_face, lost, lost_where};
+use crate::convert::faces::{for_each_face, lost, lost_where, merged};
 use crate::gltf::{FROM_OUTSIDE, NO_IMAGE};
 use crate::images::decodes;
 use crate::quote::quoted;
@@ -17,8 +17,8 @@ use crate::save::{OutputFile, Role, Saved, own_stem};
 use crate::text::{push_f32, push_f64};
 use crate::{Appearance, SaveError};
 
-/// Writes a mesh as OBJ: a `v` (with its colour), `vt` and `vn` line per drawn vertex, and its faces by object and
-/// material.
+/// Writes a mesh as OBJ: a `v` line (with its colour) per vertex, a `vt` and a `vn` line per drawn vertex (vertices that
+/// a texture seam or a hard edge split are merged again), and its faces by object and material.
 pub(crate) fn write_new(mesh: &NewMesh<'_>, course: &Course<'_>) -> Result<Saved, SaveError> {
     let look = &mesh.appearance;
     let stem = &own_stem(mesh.name);
@@ -29,9 +29,10 @@ pub(crate) fn write_new(mesh: &NewMesh<'_>, course: &Course<'_>) -> Result<Saved
         push_line(&mut out, &["mtllib ", stem, ".mtl"]);
     }
     let (of_vertices, of_faces) = course.split(0.6);
-    push_vertices(&mut out, mesh, &of_vertices)?;
+    let (vertices, number) = merged(mesh);
+    push_vertices(&mut out, mesh, &vertices, &of_vertices)?;
     let names_of_faces = has_materials.then_some(names.as_slice());
-    push_faces(&mut out, mesh, names_of_faces, &of_faces)?;
+    push_faces(&mut out, mesh, &number, names_of_faces, &of_faces)?;
     let mut saved = Saved::alone(mesh.name, out, Vec::new());
     if has_materials {
         let images = image_files(look, stem, &mut saved.warnings);
@@ -100,7 +101,12 @@ fn push_numbers<T: Copy>(out: &mut Vec<u8>, keyword: &str, numbers: &[T], push: 
     }
 }
 
-fn push_vertices(out: &mut Vec<u8>, mesh: &NewMesh<'_>, course: &Course<'_>) -> Result<(), Cancelled> {
+fn push_vertices(
+    out: &mut Vec<u8>,
+    mesh: &NewMesh<'_>,
+    vertices: &[DrawnVertex],
+    course: &Course<'_>,
+) -> Result<(), Cancelled> {
     let srgb = SrgbBytes::new();
     let count = mesh.positions.len();
     let look = &mesh.appearance;
@@ -110,9 +116,10 @@ fn push_vertices(out: &mut Vec<u8>, mesh: &NewMesh<'_>, course: &Course<'_>) -> 
         (None, _) => 0.0,
         (Some(_), normals) => share_before(normals.is_some()),
     });
-    for (v, position) in mesh.positions.iter().enumerate() {
-        of_positions.pass(v, count)?;
-        push_numbers(out, "v", &position.to_array(), push_f64);
+    for (place, vertex) in vertices.iter().enumerate() {
+        of_positions.pass(place, vertices.len())?;
+        let v = vertex.index();
+        push_numbers(out, "v", &mesh.positions[v].to_array(), push_f64);
         if let Some(colours) = &mesh.appearance.colours {
             let [r, g, b, _] = srgb.of_linear(colours[v]).map(|channel| f32::from(channel) / 255.0);
             push_numbers(
@@ -140,6 +147,7 @@ fn push_vertices(out: &mut Vec<u8>, mesh: &NewMesh<'_>, course: &Course<'_>) -> 
 fn push_faces(
     out: &mut Vec<u8>,
     mesh: &NewMesh<'_>,
+    vertex_number: &[u32],
     material_names: Option<&[String]>,
     course: &Course<'_>,
 ) -> Result<(), Cancelled> {
@@ -150,7 +158,7 @@ fn push_faces(
         push_line(out, &["s off"]);
     }
     let (has_uvs, has_normals) = (mesh.appearance.uvs.is_some(), mesh.appearance.normals.is_some());
-    let mut number = Vec::new();
+    let (mut number, mut own) = (Vec::new(), Vec::new());
     for_each_face(mesh, course, |corners, triangle| {
         while let Some(group) = groups.next_if(|group| group.triangles.start as usize <= triangle) {
             if group.triangles.is_empty() {
@@ -171,8 +179,10 @@ fn push_faces(
         for corner in corners {
             number.clear();
             push_f64(&mut number, f64::from(corner.0) + 1.0);
+            own.clear();
+            push_f64(&mut own, f64::from(vertex_number[corner.index()]) + 1.0);
             out.push(b' ');
-            out.extend_from_slice(&number);
+            out.extend_from_slice(&own);
             if has_uvs || has_normals {
                 out.push(b'/');
             }

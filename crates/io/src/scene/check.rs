@@ -6,6 +6,7 @@ use glam::DVec3;
 use pliant_mesh::{Drawn, DrawnVertex};
 
 use crate::convert::Polygons;
+use crate::convert::unsaved::UnsavedShape;
 use crate::save::bits::bit_equal;
 use crate::save::turned::{triangle_wound_back, wound_back};
 use crate::scene::{Scene, SceneAndDrawn, Stored};
@@ -124,6 +125,47 @@ fn same_windings(
         !wanted.eq(found.iter().map(|corner| back.drawn.file_vertex[corner.index()]))
     });
     wrong.map_or(Ok(()), |face| Err(format!("face {face} joins other vertices")))
+}
+
+impl UnsavedShape<'_> {
+    /// Compares `back`, which was read from the bytes of this shape, with it: every corner of every face. `triangles` is
+    /// the save's own [`triangles`](crate::Saved::triangles).
+    ///
+    /// # Errors
+    /// The first difference, in words.
+    pub fn check_read_back(
+        &self,
+        format: Format,
+        triangles: Option<&[u32]>,
+        back: &SceneAndDrawn,
+    ) -> Result<(), String> {
+        let stored = Precision::of(back);
+        if matches!(format, Format::Glb | Format::Gltf | Format::Stl) {
+            let count = triangles.map_or(self.triangles.len(), <[u32]>::len);
+            same_count("triangles", back.drawn.triangles.len(), count)?;
+            let source = |place: usize| triangles.map_or(place, |triangles| triangles[place] as usize);
+            let corners = back.drawn.triangles.iter().enumerate().flat_map(|(place, triangle)| {
+                let from = self.triangles[source(place)];
+                triangle.iter().zip(from).map(|(v, from)| (v.index(), from.index()))
+            });
+            return each(corners.map(|(v, from)| (v, self.positions[from])), back, &stored);
+        }
+        let own = match &self.polygons {
+            Some(polygons) => Faces::Polygons(polygons.clone()),
+            None => Faces::Triangles(self.triangles),
+        };
+        let of_back = Faces::of(&back.scene, &back.drawn);
+        same_count("faces", of_back.iter().count(), own.iter().count())?;
+        for (face, (from, corners)) in own.iter().zip(of_back.iter()).enumerate() {
+            if from.len() != corners.len() {
+                return Err(format!("face {face} has another number of corners"));
+            }
+            let corners = corners.iter().zip(from);
+            let wanted = corners.map(|(v, from)| (v.index(), self.positions[from.index()]));
+            each(wanted, back, &stored)?;
+        }
+        Ok(())
+    }
 }
 
 /// The precision of positions in the format of a file that was read back.

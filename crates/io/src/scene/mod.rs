@@ -117,6 +117,18 @@ fn with_neighbours(mut saved: Saved, (files, warnings): (Vec<OutputFile>, Vec<St
     saved
 }
 
+/// A mesh as a new file.
+pub(crate) fn write_new(mesh: &NewMesh<'_>, format: Format, course: &Course<'_>) -> Result<Saved, SaveError> {
+    match format {
+        Format::Glb => gltf::write::write_new(mesh, course),
+        Format::Gltf => gltf::write::write_new_gltf(mesh, course),
+        Format::Obj => obj::write_new(mesh, course),
+        Format::Ply => ply::write_new(mesh, course),
+        Format::Stl => stl::write_new(mesh, course),
+        Format::Off => off::write_new(mesh, course),
+    }
+}
+
 impl Scene {
     /// The format that was read.
     pub fn format(&self) -> Format {
@@ -229,14 +241,7 @@ impl Scene {
                 let has_normals = appearance.normals.is_some() && !moved.moves_nothing();
                 let (of_looks, course) = course.split(if has_normals { 0.4 } else { 0.0 });
                 let mesh = NewMesh::of(&moved, appearance, save.name, self.polygons(), parting, &of_looks)?;
-                let mut saved = match format {
-                    Format::Glb => gltf::write::write_new(&mesh, &course),
-                    Format::Gltf => gltf::write::write_new_gltf(&mesh, &course),
-                    Format::Obj => obj::write_new(&mesh, &course),
-                    Format::Ply => ply::write_new(&mesh, &course),
-                    Format::Stl => stl::write_new(&mesh, &course),
-                    Format::Off => off::write_new(&mesh, &course),
-                }?;
+                let mut saved = write_new(&mesh, format, &course)?;
                 saved.warnings.extend(self.motion_lost(format));
                 saved.warnings.extend(self.unread_lost(format));
                 if let Stored::Obj(stored) = &self.stored {
@@ -340,6 +345,28 @@ impl Scene {
         Ok(saved)
     }
 
+    /// Sentences about the data of this file that a new file of the format can't have when vertices and triangles
+    /// differ from the file's: skins, animations, morph targets, data that only this file's format names.
+    pub fn lost_in_new_shape(&self, format: Format) -> Vec<String> {
+        let summary = self.summary();
+        let motion = [
+            ("skins", summary.skins > 0),
+            ("animations", summary.animations > 0),
+            ("morph targets", summary.morph_targets > 0),
+        ];
+        let motion: Vec<&str> = motion.iter().filter(|(_, has)| *has).map(|(name, _)| *name).collect();
+        let motion = (!motion.is_empty()).then(|| {
+            let list = motion.join(" and ");
+            format!("A new shape can't keep the file's {list}, which belong to its old vertices.")
+        });
+        let unread = self.unread_lost(format);
+        let materials = match &self.stored {
+            Stored::Obj(stored) => stored.materials_lost(&format.to_string()),
+            _ => None,
+        };
+        [motion, unread, materials].into_iter().flatten().collect()
+    }
+
     /// A warning about parts of the file that other formats do not get.
     fn unread_lost(&self, format: Format) -> Option<String> {
         let unread = match &self.stored {
@@ -384,7 +411,7 @@ impl Scene {
     }
 
     /// The file's own polygons over drawn vertices, if any of them is not a triangle.
-    pub(crate) fn polygons(&self) -> Option<Polygons> {
+    pub fn polygons(&self) -> Option<Polygons> {
         match &self.stored {
             Stored::Gltf(_) | Stored::Stl(_) => None,
             Stored::Obj(stored) => stored.polygons(),

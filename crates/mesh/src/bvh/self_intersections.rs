@@ -97,10 +97,8 @@ impl Bvh {
         progress: &Progress,
         cancel: &Cancel,
     ) -> Result<SelfIntersections, Cancelled> {
-        let is_moved = self.moved_nodes(&surface.positions);
-        let leaves: Vec<u32> = (0..self.nodes.len() as u32)
-            .filter(|&place| is_moved[place as usize] && self.nodes.get(place as usize).count > 0)
-            .collect();
+        let is_elsewhere = |v: &SurfaceVertex| self.positions.get(v.index()) != surface.positions[v.index()];
+        let is_moved = self.marked_nodes(|corners| corners.iter().any(is_elsewhere));
         let is_loose = |corners: [SurfaceVertex; 3]| {
             let mut corners = corners.into_iter();
             corners.all(|v| topology.faces(v, &surface.triangles).nth(1).is_none())
@@ -108,6 +106,38 @@ impl Bvh {
         let is_new = |pair: &SelfIntersection| {
             !pair.triangles.into_iter().any(is_loose) && !crossed_at_rest(pair, surface, topology)
         };
+        self.search(&is_moved, is_new, most, progress, cancel)
+    }
+
+    /// The pairs of triangles that pass through each other of which at least one `is_chosen` by its corners. The search
+    /// ends as that for new ones does.
+    ///
+    /// # Errors
+    /// [`Cancelled`] soon after `cancel` is raised.
+    pub fn self_intersections_of(
+        &self,
+        is_chosen: impl Fn([SurfaceVertex; 3]) -> bool + Sync,
+        most: usize,
+        progress: &Progress,
+        cancel: &Cancel,
+    ) -> Result<SelfIntersections, Cancelled> {
+        let is_marked = self.marked_nodes(|corners| is_chosen(*corners));
+        let is_wanted = |pair: &SelfIntersection| pair.triangles.into_iter().any(&is_chosen);
+        self.search(&is_marked, is_wanted, most, progress, cancel)
+    }
+
+    /// The wanted pairs that have a triangle below a marked leaf.
+    fn search(
+        &self,
+        is_marked: &[bool],
+        is_wanted: impl Fn(&SelfIntersection) -> bool + Sync,
+        most: usize,
+        progress: &Progress,
+        cancel: &Cancel,
+    ) -> Result<SelfIntersections, Cancelled> {
+        let leaves: Vec<u32> = (0..self.nodes.len() as u32)
+            .filter(|&place| is_marked[place as usize] && self.nodes.get(place as usize).count > 0)
+            .collect();
         let (mut pairs, mut tried) = (Vec::new(), 0);
         let most_tried = TRIED_A_TRIANGLE * self.leaves.triangles.len();
         let mut are_all = true;
@@ -122,9 +152,9 @@ impl Bvh {
                 break;
             }
             let of_leaf = |&leaf: &u32| {
-                let (mut found, tried) = self.pairs_of(leaf, &is_moved);
+                let (mut found, tried) = self.pairs_of(leaf, is_marked);
                 let tried = tried + PAIRS_A_CROSSING * found.len();
-                found.retain(is_new);
+                found.retain(&is_wanted);
                 (found, tried)
             };
             for (found, of_leaf) in some.par_iter().map(of_leaf).collect::<Vec<_>>() {
@@ -137,12 +167,11 @@ impl Bvh {
         Ok(SelfIntersections { pairs, are_all })
     }
 
-    /// For each node, whether a corner of a triangle below it differs from its position at `rest`.
-    fn moved_nodes(&self, rest: &[DVec3]) -> Vec<bool> {
-        let is_elsewhere = |v: &SurfaceVertex| self.positions.get(v.index()) != rest[v.index()];
+    /// For each node, whether a triangle below it is marked.
+    fn marked_nodes(&self, is_marked: impl Fn(&[SurfaceVertex; 3]) -> bool + Sync) -> Vec<bool> {
         let of_leaf = |place: usize| {
             let leaf = self.nodes.get(place).leaf();
-            leaf.is_some_and(|leaf| self.leaves.corners[leaf].iter().flatten().any(is_elsewhere))
+            leaf.is_some_and(|leaf| self.leaves.corners[leaf].iter().any(&is_marked))
         };
         let mut is_moved: Vec<bool> = (0..self.nodes.len()).into_par_iter().map(of_leaf).collect();
         // Children come after their parents.

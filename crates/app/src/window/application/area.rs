@@ -7,10 +7,10 @@ use eframe::egui::{self, Align2, FontId, Sense, vec2};
 use glam::DVec2;
 use pliant_editor::{Before, Command, Cursor, Event};
 
+use crate::files::names::file_name;
 use crate::legend;
 use crate::window::application::{Application, REST};
 use crate::window::bars::hints;
-use crate::window::files::names::file_name;
 use crate::window::input::Attention;
 use crate::window::input::event_queue::EventQueue;
 use crate::window::input::file_command::FileCommand;

@@ -6,10 +6,10 @@ use std::sync::Arc;
 
 use pliant_editor::{Event, Revision, SavedAs};
 
+use crate::files::names::{file_name, free_name};
 use crate::window::application::Application;
 use crate::window::dialogs::file_dialog;
 use crate::window::dialogs::question::{ChangedOffer, Question, Then};
-use crate::window::files::names::{file_name, free_name};
 use crate::window::files::rest_mesh::MeshSource;
 use crate::window::files::save_request::{Changed, Content, Model, Shape, Unwritten, Written, WrittenKind};
 use crate::window::files::save_wish::SaveWish;

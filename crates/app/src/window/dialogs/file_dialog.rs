@@ -7,7 +7,7 @@ use rfd::FileHandle;
 
 use super::folder_browser::{Asked, FolderBrowser, Place};
 use super::system_dialog;
-use crate::window::files::names::file_name;
+use crate::files::names::file_name;
 use crate::window::threads::message::{Message, Purpose};
 use crate::window::threads::workers::Workers;
 use pliant_engine::files::folder_of;

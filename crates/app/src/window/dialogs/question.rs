@@ -8,8 +8,8 @@ use pliant_io::quoted;
 
 use super::file_dialog;
 use super::folder_browser::{FolderBrowser, view};
-use crate::window::files::names::file_name;
-use crate::window::files::original::Kept;
+use crate::files::names::file_name;
+use crate::files::original::Kept;
 use crate::window::files::recovery::left::Left;
 use crate::window::threads::message::Purpose;
 use crate::window::widgets::default_button::default_button;

@@ -2,8 +2,6 @@
 
 pub(in crate::window) mod app_directories;
 pub(in crate::window) mod listing;
-pub(in crate::window) mod names;
-pub(in crate::window) mod original;
 pub(in crate::window) mod project_file;
 pub(in crate::window) mod recovery;
 pub(in crate::window) mod rest_mesh;

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use pliant_editor::{Beginning, MeshReference, Project, Snapshot, geometry_hash};
 use pliant_mesh::{Cancel, Progress};
 
-use super::names::{SAMPLE_NAME, file_name, original_names, saved_name, source_names, sources_of};
-use super::original::{Kept, free_or_same};
 use super::rest_mesh::{Check, MeshSource, RestMesh, load_sample};
+use crate::files::names::{SAMPLE_NAME, file_name, original_names, saved_name, source_names, sources_of};
+use crate::files::original::{Kept, free_or_same};
 use pliant_engine::files::{self, Staged, Staging, Stamp};
 use pliant_engine::saving::{self, SaveAs};
 use pliant_engine::watch::Watch;

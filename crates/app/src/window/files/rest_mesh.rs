@@ -9,7 +9,7 @@ use pliant_engine::watch::Watch;
 use pliant_engine::{EngineError, Loaded};
 use pliant_mesh::WeldOptions;
 
-use super::names::SAMPLE_NAME;
+use crate::files::names::SAMPLE_NAME;
 
 /// The present place of a mesh as it was read.
 #[derive(Clone, PartialEq, Eq, Debug)]

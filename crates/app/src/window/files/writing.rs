@@ -7,11 +7,11 @@ use pliant_io::MorphTarget;
 use pliant_mesh::{Cancel, Progress};
 use pliant_render::Image;
 
-use super::names::file_name;
-use super::original::{Kept, Original};
 use super::project_file;
 use super::rest_mesh::MeshSource;
 use super::save_request::{Changed, Content, KeepOriginal, Model, SaveRequest, Unwritten, Written, WrittenKind};
+use crate::files::names::file_name;
+use crate::files::original::{Kept, Original};
 use crate::picture_file;
 use pliant_engine::EngineError;
 use pliant_engine::files::{self, Staged, Staging, Stamp};

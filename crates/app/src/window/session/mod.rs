@@ -10,8 +10,8 @@ use glam::DVec3;
 use pliant_editor::{JobQueue, Revision, SaveMark};
 
 use crate::drawing::Drawing;
-use crate::window::files::names::file_name;
-use crate::window::files::original::Original;
+use crate::files::names::file_name;
+use crate::files::original::Original;
 use crate::window::files::rest_mesh::RestMesh;
 pub use crate::window::files::save_request::KeepOriginal;
 use crate::window::files::save_request::{Changed, Content, SaveRequest, Unwritten, Written, WrittenKind};

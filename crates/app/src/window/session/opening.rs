@@ -8,7 +8,7 @@ use pliant_editor::{Beginning, SavedAs, Snapshot};
 use pliant_mesh::WeldOptions;
 
 use crate::drawing::Drawing;
-use crate::window::files::names::saved_name;
+use crate::files::names::saved_name;
 use crate::window::files::project_file;
 use crate::window::files::recovery::left::opened_project;
 use crate::window::files::rest_mesh::{MeshSource, load_sample};

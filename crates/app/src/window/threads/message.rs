@@ -10,8 +10,8 @@ use pliant_mesh::Cancel;
 use pliant_render::{Materials, Surface};
 
 use crate::drawing::{Drawing, Field, Pose, Scale};
+use crate::files::original::Kept;
 use crate::window::files::listing::Entry;
-use crate::window::files::original::Kept;
 use crate::window::files::rest_mesh::MeshSource;
 use crate::window::files::save_request::{Unwritten, Written};
 use pliant_engine::Loaded;

@@ -5,6 +5,7 @@ use pliant_mesh::Cancelled;
 use serde_json::{Value, json};
 
 use super::buffer::Built;
+use super::maps::second_set;
 use crate::convert::NewMesh;
 use crate::save::course::Course;
 
@@ -61,6 +62,12 @@ pub(super) fn attributes(
         let numbers = each().flat_map(|v| uvs[v].map(finite));
         let view = out.view(numbers, f32::to_le_bytes, ARRAY_BUFFER);
         attributes["TEXCOORD_0"] = out.accessor(floats("VEC2", view)).into();
+    }
+    if let (Some(uvs), Some(set)) = (&looks.second_uvs, second_set(mesh)) {
+        let finite = |number: f32| if number.is_finite() { number } else { 0.0 };
+        let numbers = each().flat_map(|v| uvs[v].map(finite));
+        let view = out.view(numbers, f32::to_le_bytes, ARRAY_BUFFER);
+        attributes[format!("TEXCOORD_{set}")] = out.accessor(floats("VEC2", view)).into();
     }
     course.reach(3, 4)?;
     if let Some(colours) = &looks.colours {

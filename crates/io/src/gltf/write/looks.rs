@@ -1,11 +1,12 @@
 //! Materials, textures, samplers and images of a new glTF.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::ops::Range;
 
 use serde_json::{Value, json};
 
 use super::buffer::Built;
+use super::maps;
 use crate::appearance::{AlphaMode, Material, Origin, Wrap};
 use crate::convert::NewMesh;
 use crate::gltf::{FROM_OUTSIDE, NO_IMAGE};
@@ -26,6 +27,8 @@ pub(super) struct Looks {
     image_of: BTreeMap<usize, Option<usize>>,
     /// The written texture of each image and wrapping.
     texture_of: HashMap<(usize, [Wrap; 2]), usize>,
+    /// The extensions that the materials use.
+    extensions: BTreeSet<&'static str>,
     /// The image that was made of bytes at each place.
     image_at: HashMap<(usize, Range<usize>), usize>,
 }
@@ -73,6 +76,8 @@ impl Looks {
                 value["alphaCutoff"] = unit(cutoff).into();
             }
         }
+        let extensions = maps::dress(self, out, mesh, material, &mut value);
+        self.extensions.extend(extensions);
         self.materials.push(value);
         self.material_of.insert(number, self.materials.len() - 1);
         self.materials.len() - 1
@@ -150,6 +155,9 @@ impl Looks {
             if !section.is_empty() {
                 root[key] = section.into();
             }
+        }
+        if !self.extensions.is_empty() {
+            root["extensionsUsed"] = json!(self.extensions);
         }
     }
 }

@@ -7,6 +7,7 @@
 mod attributes;
 mod buffer;
 mod looks;
+mod maps;
 mod parts;
 
 use glam::{DVec3, Vec3};

@@ -4,7 +4,7 @@ use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-use crate::window::files::names::sources_of;
+use crate::files::names::sources_of;
 use crate::window::files::project_file;
 use pliant_engine::EngineError;
 use pliant_engine::files::{self, Staging};

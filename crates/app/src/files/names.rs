@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use pliant_engine::files::folder_of;
 
 /// The name of the sample that the window shows when no file is named.
-pub(in crate::window) const SAMPLE_NAME: &str = "creature.glb";
+pub(crate) const SAMPLE_NAME: &str = "creature.glb";
 
 /// The highest number in the name of an original.
 const MOST_ORIGINALS: usize = 1000;
@@ -18,19 +18,19 @@ pub fn original_name(path: &Path) -> PathBuf {
 }
 
 /// The names under which originals of `path` are kept: [`original_name`], then `NAME.original-2.EXT` and so on.
-pub(in crate::window) fn original_names(path: &Path) -> impl Iterator<Item = PathBuf> {
+pub(crate) fn original_names(path: &Path) -> impl Iterator<Item = PathBuf> {
     (1..=MOST_ORIGINALS).map(move |number| marked_name(path, "original", number))
 }
 
 /// The names under which a project keeps the mesh with the name `mesh`: `PROJECT.source.EXT`, then
 /// `PROJECT.source-2.EXT` and so on; a `.gltf` is kept as a GLB.
-pub(in crate::window) fn source_names(project: &Path, mesh: &Path) -> impl Iterator<Item = PathBuf> {
+pub(crate) fn source_names(project: &Path, mesh: &Path) -> impl Iterator<Item = PathBuf> {
     let like = project.with_extension(mesh.extension().unwrap_or_default());
     (1..=MOST_ORIGINALS).map(move |number| marked_name(&like, "source", number))
 }
 
 /// The meshes that are kept beside a project, with any former names; see [`source_names`].
-pub(in crate::window) fn sources_of(project: &Path) -> Vec<PathBuf> {
+pub(crate) fn sources_of(project: &Path) -> Vec<PathBuf> {
     let mut prefix = project.file_stem().unwrap_or_default().to_owned();
     prefix.push(".source");
     let is_kept = |path: &PathBuf| {

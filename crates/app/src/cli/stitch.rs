@@ -1,0 +1,94 @@
+//! `pliant fill`, `pliant cut` and `pliant merge`: new shapes.
+
+use pliant_engine::EngineError;
+use pliant_engine::files;
+use pliant_engine::stitching::{self, Cut, Fill, Holes, Merge, Stitched};
+use pliant_io::Format;
+use pliant_mesh::Progress;
+
+use super::arguments::{CutArguments, FillArguments, MergeArguments, NewShapeArguments};
+use crate::cli::console::{Console, print, warn};
+use crate::cli::threads::on_threads;
+use crate::files::original::{Kept, Original};
+
+pub(super) fn fill(arguments: &FillArguments, console: &mut Console<'_>) -> Result<(), EngineError> {
+    check_format(&arguments.output)?;
+    let job = Fill {
+        file: &arguments.file,
+        holes: match (arguments.largest, arguments.at) {
+            (_, Some(vertex)) => Holes::At(vertex),
+            (Some(count), None) => Holes::Largest(count),
+            (None, None) => Holes::Every,
+        },
+        output: &arguments.output.output,
+        report: arguments.output.report.as_deref(),
+        replace: arguments.output.replace(),
+        weld: arguments.weld.options(),
+    };
+    let (watch, staging) = (&console.watch, &console.staging);
+    let stitched = on_threads(arguments.compute, || stitching::fill(&job, watch, staging))??;
+    conclude(stitched, &arguments.output, console)
+}
+
+pub(super) fn cut(arguments: &CutArguments, console: &mut Console<'_>) -> Result<(), EngineError> {
+    check_format(&arguments.output)?;
+    let job = Cut {
+        file: &arguments.file,
+        delete: &arguments.delete,
+        output: &arguments.output.output,
+        report: arguments.output.report.as_deref(),
+        replace: arguments.output.replace(),
+        weld: arguments.weld.options(),
+    };
+    let (watch, staging) = (&console.watch, &console.staging);
+    let stitched = on_threads(arguments.compute, || stitching::cut(&job, watch, staging))??;
+    conclude(stitched, &arguments.output, console)
+}
+
+pub(super) fn merge(arguments: &MergeArguments, console: &mut Console<'_>) -> Result<(), EngineError> {
+    check_format(&arguments.output)?;
+    let job = Merge {
+        first: &arguments.first,
+        second: &arguments.second,
+        joins: &arguments.joins,
+        output: &arguments.output.output,
+        report: arguments.output.report.as_deref(),
+        replace: arguments.output.replace(),
+        weld: arguments.weld.options(),
+    };
+    let (watch, staging) = (&console.watch, &console.staging);
+    let stitched = on_threads(arguments.compute, || stitching::merge(&job, watch, staging))??;
+    conclude(stitched, &arguments.output, console)
+}
+
+/// Refuses an OUT of no known format as a wrong argument.
+fn check_format(to: &NewShapeArguments) -> Result<(), EngineError> {
+    let format = Format::of_name(&to.output.to_string_lossy());
+    format.map_err(|error| EngineError::Arguments(format!("--output: {error}")))?;
+    Ok(())
+}
+
+/// Keeps the original of a file that is replaced, commits, and says what was done.
+fn conclude(stitched: Stitched, to: &NewShapeArguments, console: &mut Console<'_>) -> Result<(), EngineError> {
+    let (cancel, staging) = (&console.watch.cancel, &console.staging);
+    let replaced = stitched
+        .loaded
+        .iter()
+        .find(|loaded| files::is_same(&loaded.path, &to.output));
+    let mut kept = None;
+    let mut first = None;
+    if let Some(loaded) = replaced {
+        let original = Original::of(&to.output, loaded, cancel)?;
+        let (place, staged) = original.keep(&[], loaded, staging, &Progress::new(), cancel)?;
+        first = staged;
+        kept = match place {
+            Kept::Already(place) | Kept::Under(place) => Some(place),
+            Kept::Nothing => None,
+        };
+    }
+    let (done, warnings) = (stitched.done.clone(), stitched.warnings.clone());
+    stitched.commit(first)?;
+    warn(console.err, &warnings);
+    let kept = kept.map(|place| format!("; the original is kept as {}", files::shown(&place)));
+    print(console.out, &format!("{done}{}\n", kept.unwrap_or_default()))
+}

@@ -1,0 +1,43 @@
+//! The matrix of the Newton steps that settle what a coarse level leads.
+
+use super::system::{Pattern, System};
+use crate::Budget;
+
+/// The matrix, which is analysed when it is first used: a drag does not use it.
+#[derive(Debug)]
+pub(super) enum Settling {
+    /// With the ends of its supernodes and the memory that it may take.
+    NotAnalysed(Pattern, Vec<u32>, Budget),
+    Analysed(Box<System>),
+    /// It would take too much memory.
+    TooLarge,
+}
+
+impl Settling {
+    /// The matrix; `None` if it is too large.
+    pub fn system(&mut self) -> Option<&mut System> {
+        if let Self::NotAnalysed(pattern, ends, budget) = self {
+            let system = System::of(pattern, ends, *budget);
+            *self = system.map_or(Self::TooLarge, |(system, _)| Self::Analysed(Box::new(system)));
+        }
+        match self {
+            Self::Analysed(system) => Some(system),
+            _ => None,
+        }
+    }
+
+    /// The next step is the first one behind a jump of the handles.
+    pub fn undamp(&mut self) {
+        if let Self::Analysed(system) = self {
+            system.undamp();
+        }
+    }
+
+    /// The number of entries that the factor stores.
+    pub fn stored(&self) -> usize {
+        match self {
+            Self::Analysed(system) => system.stored(),
+            _ => 0,
+        }
+    }
+}

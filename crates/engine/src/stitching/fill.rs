@@ -1,0 +1,147 @@
+//! Fills holes: a file in, a file out.
+
+use std::path::Path;
+use std::time::Instant;
+
+use pliant_mesh::WeldOptions;
+use pliant_stitch::{Age, FilledHole, Holes, NewShape, Part};
+use serde_json::json;
+
+use super::look::{Channels, Dressed, Source};
+use super::shape_report::{Change, judged};
+use super::{Outputs, Replace, ShapeCounts, Stitched, counted, lost, refused};
+use crate::apply::check_not_empty;
+use crate::files::Staging;
+use crate::loading::load;
+use crate::report::ms_since;
+use crate::watch::Watch;
+use crate::{EngineError, memory};
+
+/// The input of [`fill`].
+#[derive(Clone, Copy, Debug)]
+pub struct Fill<'a> {
+    /// The file with holes.
+    pub file: &'a Path,
+    /// The holes to fill.
+    pub holes: Holes,
+    /// The file to write.
+    pub output: &'a Path,
+    /// The file for the report, if one is wanted.
+    pub report: Option<&'a Path>,
+    /// Whether OUT may be FILE.
+    pub replace: Replace,
+    /// The joining of FILE's vertices.
+    pub weld: WeldOptions,
+}
+
+/// Fills holes of a file and writes the result beside its place.
+///
+/// # Errors
+/// Any refusal of the file, of the holes or of the result.
+pub fn fill(job: &Fill<'_>, watch: &Watch, staging: &Staging) -> Result<Stitched, EngineError> {
+    let &Fill {
+        file,
+        output,
+        report,
+        replace,
+        ..
+    } = job;
+    let outputs = Outputs {
+        output,
+        report,
+        replace,
+    };
+    outputs.check_paths()?;
+    let start = Instant::now();
+    let loaded = load(file, &job.weld, watch)?;
+    check_not_empty(file, &loaded.model)?;
+    outputs.refuse_inputs(file, watch)?;
+    let load_ms = ms_since(start);
+
+    let progress = watch.begin("filling");
+    let start = Instant::now();
+    let budget = memory::budget();
+    let filled = pliant_stitch::fill(&loaded.model, job.holes, budget, &progress, &watch.cancel);
+    let filled = filled.map_err(|error| refused(file, error))?;
+    let drawn = loaded.model.rest();
+    let sources = [Source::of(&loaded, &drawn)];
+    let [source] = &sources;
+    let channels = Channels::of(&sources);
+    let value = |vertex, channel| channels.value(&source.look, vertex, channel);
+    let group = |triangle| source.group(triangle);
+    let normal = |vertex| source.normal(vertex);
+    let part = Part {
+        model: &loaded.model,
+        drawn: &drawn,
+        group: &group,
+        attributes: channels.attributes(&value),
+        normals: source.look.normals.is_some().then_some(&normal as _),
+    };
+    let shape = NewShape::filled(&part, &filled, budget, &watch.cancel);
+    let mut shape = shape.map_err(|error| refused(file, error))?;
+    let dressed = Dressed::of(&mut shape, &sources, channels);
+    let fill_ms = ms_since(start);
+
+    let (points, triangles) = filled.holes.iter().fold((0, 0), |(points, triangles), hole| {
+        (points + hole.points.len(), triangles + hole.triangles.len())
+    });
+    let mut warnings = loaded.scene.notes().to_vec();
+    warnings.extend(filled.passed_over.iter().map(ToString::to_string));
+    let flat = filled.holes.iter().filter(|hole| !hole.is_faired).count();
+    if flat > 0 {
+        let holes = counted(flat, "hole was", "holes were");
+        warnings.push(format!(
+            "{holes} filled without fairing: the equations there could not be solved"
+        ));
+    }
+    warnings.extend(lost(&loaded, output)?);
+    let change = |place: usize| match shape.triangle_sources[place].age {
+        Age::New => Change::Changed,
+        Age::Old => Change::OfPart(0),
+    };
+    let after = report
+        .map(|_| judged(&shape, dressed.triangles(), change, watch))
+        .transpose()?;
+    if let Some((_, crossings)) = after.filter(|(_, crossings)| *crossings > 0) {
+        let places = counted(crossings, "place", "places");
+        warnings.push(format!("the new triangles pass through others in {places}"));
+    }
+    let hole_report = |hole: &FilledHole| {
+        json!({
+            "vertex": loaded.model.first_file_vertex(hole.border.vertices[0]).0,
+            "edges": hole.border.vertices.len(),
+            "length": hole.border.length,
+            "points": hole.points.len(),
+            "triangles": hole.triangles.len(),
+            "faired": hole.is_faired,
+        })
+    };
+    let (staged, warnings) = outputs.stage(
+        (&shape, &dressed),
+        |warnings| {
+            json!({
+                "holes_filled": filled.holes.len(),
+                "passed_over": filled.passed_over.len(),
+                "vertices_added": points,
+                "triangles_added": triangles,
+                "before": ShapeCounts::of(&loaded.model),
+                "after": after.map(|(counts, _)| counts),
+                "self_intersections_added": after.map_or(0, |(_, crossings)| crossings),
+                "holes": filled.holes.iter().map(hole_report).collect::<Vec<_>>(),
+                "load_ms": load_ms,
+                "fill_ms": fill_ms,
+                "warnings": warnings,
+            })
+        },
+        warnings,
+        staging,
+        watch,
+    )?;
+    let holes = counted(filled.holes.len(), "hole", "holes");
+    Ok(Stitched {
+        staged,
+        done: format!("filled {holes} with {}", counted(triangles, "triangle", "triangles")),
+        warnings,
+        loaded: vec![loaded],
+    })
+}

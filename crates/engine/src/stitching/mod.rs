@@ -1,0 +1,153 @@
+//! Changes of topology: files in, a new file out. Cutting, filling and joining are the crate `stitch`'s; here they get
+//! files, appearances and reports.
+
+mod cut;
+mod fill;
+mod look;
+mod merge;
+mod prepared;
+mod shape_report;
+
+use std::path::Path;
+
+use pliant_stitch::NewShape;
+
+use crate::EngineError;
+use crate::files::{self, Destination, NewFile, Staged, Staging};
+use crate::loading::Loaded;
+use crate::saving;
+use crate::watch::Watch;
+use look::Dressed;
+
+pub use cut::{Cut, cut};
+pub use fill::{Fill, fill};
+pub use merge::{Merge, merge};
+pub use pliant_stitch::Holes;
+pub use shape_report::ShapeCounts;
+
+/// Whether a new shape may take the place of the file that it was made from.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub enum Replace {
+    /// It is refused.
+    #[default]
+    Never,
+    /// It may; the caller keeps the original.
+    WithOriginalKept,
+}
+
+/// A new shape that is written beside its place, ready to be committed.
+#[derive(Debug)]
+pub struct Stitched {
+    /// The files that were read: the first is the one that may be replaced.
+    pub loaded: Vec<Loaded>,
+    /// The written files.
+    pub staged: Staged,
+    /// A sentence that says how much was done.
+    pub done: String,
+    /// Sentences that a person should know.
+    pub warnings: Vec<String>,
+}
+
+impl Stitched {
+    /// Commits the files after those of `first`: originals that are kept.
+    ///
+    /// # Errors
+    /// An input that another program has changed meanwhile and that would be replaced; a file that can't be renamed.
+    pub fn commit(self, first: Option<Staged>) -> Result<(), EngineError> {
+        for loaded in &self.loaded {
+            loaded.refuse_changed(&self.staged)?;
+        }
+        let staged = match first {
+            Some(first) => first.and(self.staged),
+            None => self.staged,
+        };
+        Ok(staged.commit()?)
+    }
+}
+
+/// The places of a new shape and of the report about it.
+#[derive(Clone, Copy, Debug)]
+struct Outputs<'a> {
+    output: &'a Path,
+    report: Option<&'a Path>,
+    replace: Replace,
+}
+
+impl Outputs<'_> {
+    /// Refuses places that are no files, before anything is read.
+    fn check_paths(&self) -> Result<(), EngineError> {
+        Destination::of(self.output)?;
+        self.report.map(Destination::of).transpose()?;
+        Ok(())
+    }
+
+    /// Refuses places of files that were read. `file` is the one that may be replaced.
+    fn refuse_inputs(&self, file: &Path, watch: &Watch) -> Result<(), EngineError> {
+        let report = self.report.map(|report| ("--report", report));
+        let outputs: Vec<(&str, &Path)> = [("--output", self.output)].into_iter().chain(report).collect();
+        if self.replace == Replace::Never && files::is_same(file, self.output) {
+            return Err(EngineError::Arguments(format!(
+                "--output {} is the file that is read: give another name, or --replace, which keeps the original beside \
+                 it",
+                files::shown(self.output)
+            )));
+        }
+        watch.refuse_outputs(&outputs, Some(file))
+    }
+
+    /// Writes a dressed shape and the report beside their places.
+    fn stage(
+        &self,
+        (shape, dressed): (&NewShape, &Dressed),
+        report: impl FnOnce(&[String]) -> serde_json::Value,
+        mut warnings: Vec<String>,
+        staging: &Staging,
+        watch: &Watch,
+    ) -> Result<(Staged, Vec<String>), EngineError> {
+        let progress = watch.begin("saving");
+        let report_to = self.report.map(Destination::of).transpose()?;
+        let beside = report_to.as_ref().map(|to| ("--report", to));
+        let unsaved = dressed.unsaved(shape);
+        let saved = saving::stage_new(&unsaved, self.output, beside, staging, &progress, &watch.cancel)?;
+        warnings.extend(saved.warnings);
+        let mut staged = saved.staged;
+        if let Some(to) = report_to {
+            let text = format!("{:#}\n", report(&warnings));
+            let file = NewFile {
+                to,
+                bytes: text.as_bytes(),
+            };
+            let progress = pliant_mesh::Progress::new();
+            staged = staged.and(staging.stage_watched(&[file], None, &progress, &watch.cancel)?);
+        }
+        if watch.cancel.is_cancelled() {
+            return Err(EngineError::Interrupted);
+        }
+        Ok((staged, warnings))
+    }
+}
+
+/// The refusal of a stitch, which names its file.
+fn refused(file: &Path, error: pliant_stitch::StitchError) -> EngineError {
+    match error {
+        pliant_stitch::StitchError::Cancelled(_) => EngineError::Interrupted,
+        source => EngineError::Stitch {
+            file: file.to_owned(),
+            source,
+        },
+    }
+}
+
+/// The sentences about what a new shape loses of a file.
+fn lost(loaded: &Loaded, output: &Path) -> Result<Vec<String>, EngineError> {
+    let format = pliant_io::Format::of_name(&output.to_string_lossy())?;
+    Ok(loaded.scene.lost_in_new_shape(format))
+}
+
+/// A count and its noun.
+fn counted(count: usize, one: &str, many: &str) -> String {
+    match count {
+        1 => format!("1 {one}"),
+        count => format!("{count} {many}"),
+    }
+}

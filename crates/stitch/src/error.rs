@@ -1,0 +1,116 @@
+//! Refusals, each in one sentence that names the culprit and the remedy. Vertices are numbered as in the file.
+
+use pliant_deform::{BindError, SolveError};
+use pliant_mesh::Cancelled;
+
+/// A shape can't be cut, filled or joined as requested.
+#[derive(Clone, PartialEq, Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum StitchError {
+    /// The flag was raised.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    /// A closed surface has nothing to fill or to join.
+    #[error("the surface has no border: cut a part out first")]
+    NoBorder,
+    /// A vertex that was given as one of a border is inside the surface, or in no triangle.
+    #[error("vertex {vertex} is on no border: `pliant info` lists the borders; give a vertex of one of them")]
+    NotOnBorder {
+        /// The vertex.
+        vertex: u32,
+    },
+    /// A vertex that the file does not have.
+    #[error("there is no vertex {vertex}: the file has {count}, numbered from 0")]
+    NoVertex {
+        /// The vertex.
+        vertex: u32,
+        /// The number of the file's vertices.
+        count: usize,
+    },
+    /// A border that can't be filled or joined.
+    #[error("the border at vertex {vertex} {fault}")]
+    FaultyBorder {
+        /// A vertex of it.
+        vertex: u32,
+        /// Its fault.
+        fault: BorderFault,
+    },
+    /// A cut that would leave nothing.
+    #[error("the selection holds every triangle: select less, so that something is left")]
+    NothingLeft,
+    /// A cut without a vertex.
+    #[error("the selection holds no vertex: select at least one")]
+    NothingSelected,
+    /// The bending of a part was refused.
+    #[error("{part} can't be bent to the common border: {source}")]
+    Bind {
+        /// `A` or `B`.
+        part: &'static str,
+        /// The refusal.
+        source: BindError,
+    },
+    /// The bending of a part failed.
+    #[error("{part} can't be bent to the common border: {source}")]
+    Solve {
+        /// `A` or `B`.
+        part: &'static str,
+        /// The failure.
+        source: SolveError,
+    },
+    /// A pair between borders that other pairs join with different ones.
+    #[error(
+        "pair {pair} joins vertex {a} of A with vertex {b} of B, whose borders other pairs join with different ones: keep the pairs of one border of A on one border of B"
+    )]
+    CrossedBorders {
+        /// The pair's place in the list.
+        pair: usize,
+        /// The vertex of A.
+        a: u32,
+        /// The vertex of B.
+        b: u32,
+    },
+    /// Pairs that follow each other on A's border, but not in the opposite direction on B's.
+    #[error(
+        "the pairs on the border at vertex {vertex} of A are not in the opposite order on B's border: if one part is inside out, turn it; otherwise leave out the pair that crosses the others"
+    )]
+    PairsOutOfOrder {
+        /// A vertex of A's border.
+        vertex: u32,
+    },
+    /// Two pairs with the same vertex.
+    #[error("vertex {vertex} of {part} is in two pairs: keep one of them")]
+    TwicePaired {
+        /// `A` or `B`.
+        part: &'static str,
+        /// The vertex.
+        vertex: u32,
+    },
+}
+
+/// The fault of a border.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum BorderFault {
+    /// It ends at an edge that more than two triangles share.
+    NonManifold,
+    /// Triangles along it disagree about the outside.
+    Misoriented,
+    /// Two of its edges cross.
+    CrossesItself,
+    /// It goes around one triangle that nothing else is joined to.
+    LoneTriangle,
+}
+
+impl std::fmt::Display for BorderFault {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::NonManifold => {
+                "ends at an edge that more than two triangles share: delete the triangles there, then fill the hole"
+            }
+            Self::Misoriented => {
+                "runs along triangles that disagree about the outside: turn those that are inside out first"
+            }
+            Self::LoneTriangle => "goes around a single triangle: delete the triangle",
+            Self::CrossesItself => "crosses itself: delete the triangles where it does, then fill the hole",
+        })
+    }
+}

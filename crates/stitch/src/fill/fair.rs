@@ -1,0 +1,94 @@
+//! Fairing a patch so that it joins the surface around with continuous tangents.
+//!
+//! The patch with the triangles around its rim is a small surface of its own, in which the points inside are free. The
+//! bi-Laplacian takes its metric from the patch's present shape, which begins flat: after a fairing the patch may bulge,
+//! so it is refined and faired again, until the metric fits the shape.
+
+use glam::DVec3;
+use pliant_deform::{BilaplacianOrder, BindError, Budget, fair};
+use pliant_mesh::{Cancel, Surface, SurfaceVertex, Topology};
+
+use super::patch::Patch;
+use super::refine::refine;
+
+/// The rounds of fairing and refining. A half sphere is within 1e-3 of its limit after these.
+const ROUNDS: usize = 4;
+
+/// The surface around a patch: triangles whose corners are points of the rim or points of its own.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Surroundings {
+    /// Points that are not on the rim.
+    pub points: Vec<DVec3>,
+    /// Corners below the rim's count are points of the rim, those above it are `points`.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// Refines and fairs a patch; `scales` has an entry for each of its points, and gets those of new ones.
+///
+/// # Errors
+/// Those of fairing. The patch then has its shape before the failed round.
+pub(crate) fn refine_and_fair(
+    patch: &mut Patch,
+    scales: &mut Vec<f64>,
+    around: &Surroundings,
+    budget: Budget,
+    cancel: &Cancel,
+) -> Result<(), BindError> {
+    refine(patch, scales);
+    for _ in 0..ROUNDS {
+        if patch.points.len() == patch.rim {
+            return Ok(());
+        }
+        fair_once(patch, around, budget, cancel)?;
+        refine(patch, scales);
+    }
+    fair_once(patch, around, budget, cancel)
+}
+
+/// Fairs the points inside once.
+fn fair_once(patch: &mut Patch, around: &Surroundings, budget: Budget, cancel: &Cancel) -> Result<(), BindError> {
+    let (inside, rim) = (patch.points.len(), patch.rim);
+    if inside == rim {
+        return Ok(());
+    }
+    let mut triangles: Vec<[SurfaceVertex; 3]> = Vec::with_capacity(patch.triangles.len() + around.triangles.len());
+    triangles.extend(patch.triangles.iter().map(|corners| corners.map(SurfaceVertex)));
+    let beyond = |corner: u32| {
+        SurfaceVertex(if corner < rim as u32 {
+            corner
+        } else {
+            corner + (inside - rim) as u32
+        })
+    };
+    triangles.extend(around.triangles.iter().map(|corners| corners.map(beyond)));
+    triangles.sort_by_cached_key(|corners| {
+        let mut sorted = *corners;
+        sorted.sort_unstable();
+        sorted
+    });
+    let surface = Surface {
+        positions: [&patch.points[..], &around.points].concat(),
+        triangles,
+    };
+    let topology = Topology::of(&surface);
+    let centre = patch.points[..rim].iter().sum::<DVec3>() / rim as f64;
+    let mut values: Vec<[f64; 3]> = surface
+        .positions
+        .iter()
+        .map(|point| (*point - centre).to_array())
+        .collect();
+    let free: Vec<u32> = (rim as u32..inside as u32).collect();
+    fair(
+        &surface,
+        &topology,
+        &free,
+        BilaplacianOrder::ThinPlate,
+        &mut values,
+        budget,
+        cancel,
+    )?;
+    for point in rim..inside {
+        patch.points[point] = DVec3::from_array(values[point]) + centre;
+    }
+    Ok(())
+}

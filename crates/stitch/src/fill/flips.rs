@@ -1,0 +1,60 @@
+//! Flips of edges until the triangulation is Delaunay on the patch.
+
+use std::f64::consts::PI;
+
+use glam::DVec3;
+
+use super::patch::Patch;
+
+/// The flips allowed for each edge: a patch in space may have no Delaunay triangulation at all.
+const MOST_FLIPS: usize = 8;
+
+/// An edge is flipped if its two opposite angles exceed half a turn by this, so that rounding flips none back.
+const SLACK: f64 = 1e-9;
+
+/// Flips edges inside the patch whose opposite angles add up to more than half a turn, unless that would double an edge
+/// or fold the patch.
+pub(crate) fn flip_until_delaunay(patch: &mut Patch) {
+    let mut waiting: Vec<[u32; 2]> = Vec::with_capacity(3 * patch.triangles.len());
+    for &[a, b, c] in &patch.triangles {
+        waiting.extend([[a, b], [b, c], [c, a]].into_iter().filter(|[from, to]| from < to));
+    }
+    let mut left = MOST_FLIPS * waiting.len();
+    while let Some(edge) = waiting.pop() {
+        let Some([c, d]) = other_diagonal(patch, edge) else {
+            continue;
+        };
+        if left == 0 {
+            return;
+        }
+        left -= 1;
+        patch.flip(edge);
+        let [a, b] = edge;
+        waiting.extend([[a, c], [c, b], [b, d], [d, a]]);
+    }
+}
+
+/// The points that would be joined if this edge were flipped, if it should be.
+fn other_diagonal(patch: &Patch, edge: [u32; 2]) -> Option<[u32; 2]> {
+    let [a, b] = edge;
+    let (left, right) = (patch.left_of(a, b)?, patch.left_of(b, a)?);
+    let (c, d) = (patch.opposite(left, edge), patch.opposite(right, edge));
+    let [pa, pb, pc, pd] = [a, b, c, d].map(|point| patch.points[point as usize]);
+    let sum = angle(pc, pa, pb) + angle(pd, pa, pb);
+    if sum <= PI + SLACK || c == d || patch.is_edge(c, d) {
+        return None;
+    }
+    // Both new triangles must look to where the old ones look on average.
+    let normal = |p: DVec3, q: DVec3, r: DVec3| (q - p).cross(r - p);
+    let before = normal(pa, pb, pc).normalize_or_zero() + normal(pb, pa, pd).normalize_or_zero();
+    let (one, two) = (normal(pa, pd, pc), normal(pd, pb, pc));
+    let floor = 1e-12 * (pc - pd).length_squared() * before.length();
+    let is_upright = before == DVec3::ZERO || (one.dot(before) > floor && two.dot(before) > floor);
+    is_upright.then_some([c, d])
+}
+
+/// The angle at `apex` between the directions to two points.
+fn angle(apex: DVec3, p: DVec3, q: DVec3) -> f64 {
+    let (u, v) = (p - apex, q - apex);
+    u.cross(v).length().atan2(u.dot(v))
+}

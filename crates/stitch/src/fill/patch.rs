@@ -1,0 +1,117 @@
+//! The triangles that fill a hole while they are being made: points, triangles and who lies beside whom.
+
+use std::collections::HashMap;
+
+use glam::DVec3;
+
+/// A triangulated polygon whose first points are the rim, in order.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Patch {
+    /// The rim, then the points inside.
+    pub points: Vec<DVec3>,
+    /// The number of the rim's points.
+    pub rim: usize,
+    /// Counterclockwise, so that edges of the rim run from each point to the next.
+    pub triangles: Vec<[u32; 3]>,
+    /// The triangle on the left of each directed edge. It is only looked up, never listed.
+    beside: HashMap<[u32; 2], u32>,
+    /// The pairs of rim points that an edge outside the patch joins already, ascending.
+    joined: Vec<[u32; 2]>,
+}
+
+impl Patch {
+    /// A patch of these points and triangles. `joined` (ascending, lower point first) are pairs of rim points that the
+    /// surface joins already, so that the patch must not.
+    pub fn new(points: Vec<DVec3>, rim: usize, triangles: Vec<[u32; 3]>, joined: Vec<[u32; 2]>) -> Self {
+        let mut patch = Self {
+            points,
+            rim,
+            triangles: Vec::with_capacity(triangles.len()),
+            beside: HashMap::with_capacity(3 * triangles.len()),
+            joined,
+        };
+        triangles.into_iter().for_each(|triangle| {
+            patch.push(triangle);
+        });
+        patch
+    }
+
+    /// The positions of a triangle's corners.
+    pub fn corners(&self, triangle: usize) -> [DVec3; 3] {
+        self.triangles[triangle].map(|point| self.points[point as usize])
+    }
+
+    /// Whether an edge joins two points, here or outside.
+    pub fn is_edge(&self, a: u32, b: u32) -> bool {
+        self.beside.contains_key(&[a, b])
+            || self.beside.contains_key(&[b, a])
+            || self.joined.binary_search(&[a.min(b), a.max(b)]).is_ok()
+    }
+
+    /// The triangle on the left of an edge, if there is one.
+    pub fn left_of(&self, from: u32, to: u32) -> Option<usize> {
+        self.beside.get(&[from, to]).map(|&triangle| triangle as usize)
+    }
+
+    /// The corner of a triangle that is on neither end of an edge.
+    pub fn opposite(&self, triangle: usize, edge: [u32; 2]) -> u32 {
+        let corners = self.triangles[triangle];
+        corners
+            .into_iter()
+            .find(|corner| !edge.contains(corner))
+            .unwrap_or(corners[0])
+    }
+
+    /// Cuts a triangle into three at a new point inside it.
+    pub fn split(&mut self, triangle: usize, at: DVec3) -> u32 {
+        let [a, b, c] = self.triangles[triangle];
+        let point = self.points.len() as u32;
+        self.points.push(at);
+        self.put(triangle, [a, b, point]);
+        self.push([b, c, point]);
+        self.push([c, a, point]);
+        point
+    }
+
+    /// Replaces the edge between two triangles by the other diagonal of their quadrilateral.
+    pub fn flip(&mut self, edge: [u32; 2]) {
+        let [a, b] = edge;
+        let (Some(left), Some(right)) = (self.left_of(a, b), self.left_of(b, a)) else {
+            return;
+        };
+        let (c, d) = (self.opposite(left, edge), self.opposite(right, edge));
+        self.beside.remove(&[a, b]);
+        self.beside.remove(&[b, a]);
+        self.put(left, [a, d, c]);
+        self.put(right, [d, b, c]);
+    }
+
+    /// The neighbours of each point, ascending.
+    pub fn neighbours(&self) -> Vec<Vec<u32>> {
+        let mut neighbours = vec![Vec::new(); self.points.len()];
+        for &[a, b, c] in &self.triangles {
+            for [from, to] in [[a, b], [b, c], [c, a]] {
+                neighbours[from as usize].push(to);
+                neighbours[to as usize].push(from);
+            }
+        }
+        for own in &mut neighbours {
+            own.sort_unstable();
+            own.dedup();
+        }
+        neighbours
+    }
+
+    fn push(&mut self, triangle: [u32; 3]) {
+        self.triangles.push(triangle);
+        self.put(self.triangles.len() - 1, triangle);
+    }
+
+    fn put(&mut self, place: usize, triangle: [u32; 3]) {
+        self.triangles[place] = triangle;
+        let [a, b, c] = triangle;
+        for edge in [[a, b], [b, c], [c, a]] {
+            self.beside.insert(edge, place as u32);
+        }
+    }
+}

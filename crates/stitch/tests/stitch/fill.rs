@@ -1,0 +1,154 @@
+//! Filling holes.
+
+use glam::DVec3;
+use pliant_deform::Budget;
+use pliant_mesh::{Cancel, Drawn, DrawnVertex, Model, Progress, shapes};
+use pliant_stitch::{Filled, Holes, fill};
+
+use crate::made::{genus, model, noise, without};
+
+fn filled(model: &Model, holes: Holes) -> Filled {
+    fill(model, holes, Budget::default(), &Progress::new(), &Cancel::new()).unwrap()
+}
+
+/// The surface with its patches, as positions and triangles.
+fn with_patches(model: &Model, filled: &Filled) -> Drawn {
+    let mut positions = model.surface.positions.clone();
+    let mut triangles: Vec<[u32; 3]> = model.surface.triangles.iter().map(|t| t.map(|v| v.0)).collect();
+    for hole in &filled.holes {
+        let first = positions.len() as u32;
+        positions.extend(&hole.points);
+        let rim = hole.border.vertices.len() as u32;
+        let number = |corner: u32| match corner.checked_sub(rim) {
+            None => hole.border.vertices[corner as usize].0,
+            Some(inside) => first + inside,
+        };
+        triangles.extend(hole.triangles.iter().map(|corners| corners.map(number)));
+    }
+    Drawn::once(positions, triangles.into_iter().map(|t| t.map(DrawnVertex)).collect())
+}
+
+/// The largest angle in degrees across an edge of a rim, less the largest one within two rings outside.
+fn crease(model: &Model, filled: &Filled) -> f64 {
+    let whole = shapes::model(with_patches(model, filled));
+    let corner = |v: pliant_mesh::SurfaceVertex| whole.surface.positions[v.index()];
+    let normal = |face: u32| {
+        let [a, b, c] = whole.surface.triangles[face as usize].map(corner);
+        (b - a).cross(c - a).normalize()
+    };
+    let rim: Vec<DVec3> = filled
+        .holes
+        .iter()
+        .flat_map(|hole| &hole.border.vertices)
+        .map(|v| model.surface.positions[v.index()])
+        .collect();
+    let is_rim = |v: pliant_mesh::SurfaceVertex| rim.contains(&corner(v));
+    let mut worst: f64 = 0.0;
+    for [a, b] in whole.topology.edges().filter(|edge| edge.iter().all(|v| is_rim(*v))) {
+        let faces: Vec<u32> = whole
+            .topology
+            .faces(a, &whole.surface.triangles)
+            .filter(|&f| whole.surface.triangles[f as usize].contains(&b))
+            .collect();
+        if let [one, two] = faces[..] {
+            worst = worst.max(normal(one).angle_between(normal(two)).to_degrees());
+        }
+    }
+    worst
+}
+
+fn check_closed(model: &Model, filled: &Filled, open: usize, handles: i64) {
+    let whole = shapes::model(with_patches(model, filled));
+    let topology = &whole.topology;
+    assert_eq!(topology.boundary_loops().len(), open);
+    assert_eq!((topology.non_manifold_edges(), topology.misoriented_edges()), (0, 0));
+    assert!(topology.non_manifold_vertices() <= model.topology.non_manifold_vertices());
+    assert_eq!(genus(&whole), handles);
+}
+
+#[test]
+fn a_cap_of_a_sphere_comes_back() {
+    for (level, cos) in [(3, 0.9), (4, 0.9), (4, 0.8), (5, 0.7)] {
+        let sphere = without(&shapes::icosphere(level), |p| {
+            p.normalize().dot(DVec3::new(0.3, 0.4, 0.85).normalize()) > cos
+        });
+        let model = model(sphere);
+        let filled = filled(&model, Holes::Every);
+        check_closed(&model, &filled, 0, 0);
+        let diameter = 2.0 * (1.0_f64 - cos * cos).sqrt();
+        let off = filled.holes[0]
+            .points
+            .iter()
+            .map(|p| (p.length() - 1.0).abs())
+            .fold(0.0, f64::max);
+        eprintln!(
+            "sphere level {level} cos {cos}: {} points, off {:.4} diameters, crease {:.3}",
+            filled.holes[0].points.len(),
+            off / diameter,
+            crease(&model, &filled)
+        );
+        assert!(off < 0.02 * diameter, "{off} of {diameter}");
+    }
+}
+
+#[test]
+fn a_cylinder_and_a_saddle_come_back() {
+    let across = 1.0;
+    let open = without(&shapes::tube(96, 80, 5.0), |p| {
+        p.distance(DVec3::new(1.0, 0.0, 2.5)) < across / 2.0
+    });
+    let open = model(open);
+    let patch = filled(&open, Holes::Largest(3));
+    let inner = patch
+        .holes
+        .iter()
+        .find(|hole| {
+            hole.border
+                .vertices
+                .iter()
+                .all(|v| open.surface.positions[v.index()].x > 0.5)
+        })
+        .unwrap();
+    let off = inner
+        .points
+        .iter()
+        .map(|p| (p.truncate().length() - 1.0).abs())
+        .fold(0.0, f64::max);
+    eprintln!("cylinder: {} points, off {:.4} of {across}", inner.points.len(), off);
+    assert!(off < 0.01 * across);
+
+    let mut saddle = shapes::grid(60, 60);
+    let height = |p: DVec3| 0.5 * (p.x * p.x - p.y * p.y);
+    for p in &mut saddle.positions {
+        *p = *p * 2.0 - DVec3::new(1.0, 1.0, 0.0);
+        p.z = height(*p);
+    }
+    let open = model(without(&saddle, |p| p.length() < across / 2.0));
+    let patch = filled(&open, Holes::Largest(2));
+    let inner = &patch.holes[1];
+    let off = inner
+        .points
+        .iter()
+        .map(|p| (p.z - height(*p)).abs())
+        .fold(0.0, f64::max);
+    eprintln!("saddle: {} points, off {:.4} of {across}", inner.points.len(), off);
+    assert!(off < 0.01 * across);
+}
+
+#[test]
+fn a_noisy_sphere_with_many_holes_becomes_closed() {
+    let mut sphere = shapes::icosphere(5);
+    for (k, p) in sphere.positions.iter_mut().enumerate() {
+        *p *= 1.0 + 0.004 * noise(7, k as u64);
+    }
+    let centres: Vec<DVec3> = (0..40)
+        .map(|k| DVec3::new(noise(1, k), noise(2, k), noise(3, k)).normalize())
+        .collect();
+    let holey = model(without(&sphere, |p| {
+        centres.iter().any(|c| p.normalize().distance(*c) < 0.08)
+    }));
+    let patches = filled(&holey, Holes::Every);
+    eprintln!("{} holes, {:?}", patches.holes.len(), patches.passed_over);
+    check_closed(&holey, &patches, patches.passed_over.len(), 0);
+    assert!(patches.holes.iter().all(|hole| hole.is_faired));
+}
