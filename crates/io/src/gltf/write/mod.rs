@@ -9,6 +9,7 @@ mod buffer;
 mod looks;
 mod maps;
 mod parts;
+mod textures;
 
 use glam::{DVec3, Vec3};
 use pliant_mesh::bounding_box;
