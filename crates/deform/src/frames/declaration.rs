@@ -1,4 +1,4 @@
-//! Rotation-invariant coordinates as one of the methods.
+//! Declares rotation-invariant coordinates as one of the methods.
 
 use std::sync::Arc;
 
@@ -26,7 +26,7 @@ pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     first_choice: || Frames::default().into(),
 };
 
-/// A turn by so much is nearly half a turn, where the blend of two frames has no rotation, in radians.
+/// In radians: a turn by this much is nearly half a turn, where the blend of two frames has no rotation.
 const LARGE_RAD: f64 = 2.97;
 
 impl DeformMethod for Frames {
@@ -34,7 +34,7 @@ impl DeformMethod for Frames {
         &DECLARATION
     }
 
-    /// Frames are joined edge by edge, and between two that are half a turn apart their mean has no length.
+    /// Edges join the frames, and the mean of two frames that are half a turn apart has no length.
     fn follows_turns(&self) -> Option<Followed> {
         Some(Followed::by_limbs(140.0))
     }
@@ -100,7 +100,7 @@ impl BoundMethod for FramesSolver {
         self.system.factor_len()
     }
 
-    /// A frame is a back-substitution, not a product.
+    /// A frame costs a back-substitution, not a product.
     fn step_cost(&self) -> usize {
         4 * self.solved_count()
     }

@@ -1,6 +1,6 @@
-//! Each vertex' frame: what its rest frame is multiplied by, T = R S.
+//! The transformation of each vertex' rest frame, T = R S.
 //!
-//! R is a rotation that is solved for, S the handles' blended stretch, which stays.
+//! R is a rotation, which is solved for; S is the handles' blended stretch, which is constant.
 
 use glam::{DMat3, DQuat, DVec3};
 use rayon::prelude::*;
@@ -10,7 +10,7 @@ use crate::numerical::rotation::fit;
 use crate::numerical::rows::CHUNK;
 use crate::operators::gradients::Gradients;
 
-/// A vertex' frame.
+/// A vertex' transformation.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Frame {
     pub rotation: DQuat,
@@ -51,7 +51,7 @@ pub(super) struct HandleFrame {
 }
 
 impl HandleFrame {
-    /// Of its linear map.
+    /// The rotation and stretch of a handle's linear map.
     pub fn of(polar: &Polar) -> Self {
         let rotation = DQuat::from_scaled_axis(polar.turn_rad);
         Self {
@@ -62,7 +62,8 @@ impl HandleFrame {
     }
 }
 
-/// The linear solution: the handles' frames blended by the weights, one row a frame, and made rotations again.
+/// Returns the linear solution: the handles' transformations blended by the weights, one row a frame, with R made a
+/// rotation again.
 pub(super) fn blend(handles: &[HandleFrame], weights: &[f64], frames: &mut [Frame]) {
     frames
         .par_iter_mut()
@@ -89,8 +90,8 @@ pub(super) fn blend(handles: &[HandleFrame], weights: &[f64], frames: &mut [Fram
         });
 }
 
-/// The rotations that fit a field of displacements best, of the solved vertices `columns`: each minimises
-/// Σ w |e' − R S e|² over the edges of the faces around it. `covariances` is room for the faces.
+/// Fits rotations to a field of displacements of the solved vertices `columns`: each minimises Σ w |e' − R S e|² over
+/// the edges of the faces around it. `covariances` is scratch memory for the faces.
 pub(super) fn fit_to(
     gradients: &Gradients,
     columns: &[u32],

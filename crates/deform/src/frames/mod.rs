@@ -1,18 +1,18 @@
-//! Rotation-invariant coordinates [LSLC05; BS08, sections 3.1.3 and 3.2.4]: local frames are solved for first, positions
-//! that fit them second.
+//! Rotation-invariant coordinates [LSLC05; BS08, sections 3.1.3 and 3.2.4]: the method solves for local frames first
+//! and for positions that fit them second.
 //!
-//! At rest the frames of neighbours differ by a connection, F_j = F_i C_ij. With F_i' = T_i F_i the least squares
-//! Σ w_ij |F_j' − F_i' C_ij|² are Σ w_ij |T_j − T_i|²: the tangents that the frames are made of drop out, and what would
-//! be a system of 3n unknowns is the Laplacian, L T = 0 with the handles' T prescribed. So T is the sum of the handles'
-//! by harmonic weights, which are solved for at binding; T is then made a rotation again. The Laplacian has cotangent
-//! weights; with the uniform ones of [LSLC05] the shape would depend on the triangles.
+//! At rest the frames of neighbours differ by a connection, F_j = F_i C_ij. With F_i' = T_i F_i the least squares Σ
+//! w_ij |F_j' − F_i' C_ij|² are Σ w_ij |T_j − T_i|²: the tangents of the frames cancel, and the system of 3n unknowns
+//! reduces to the Laplacian, L T = 0 with the handles' T prescribed. So T is the sum of the handles' T by harmonic
+//! weights, which binding solves for; T is then made a rotation again. The Laplacian has cotangent weights; with the
+//! uniform weights of [LSLC05] the shape would depend on the triangles.
 //!
-//! Positions minimise, with each face's edges seen from its three corners c,
+//! Positions minimise an energy that sees each face's edges from its three corners c,
 //!
 //! E = ½ Σ_f ⅓ Σ_c Σ_(ij in f) w_ij |d_j − d_i − (T_c − I) e_ij|²,
 //!
-//! a Poisson system with the mean of the three T. The same factor serves both. E is also what iterations lower: fitting
-//! the rotations of free vertices to the positions, and positions to them [SA07, CPSS10].
+//! which gives a Poisson system with the mean of the three T. One factor serves both systems. Iterations lower the same
+//! E: they fit the rotations of free vertices to the positions, and positions to the rotations [SA07, CPSS10].
 
 mod declaration;
 mod fitting;
@@ -42,11 +42,11 @@ pub(crate) struct FramesSolver {
     /// Each handle's harmonic weight: one row for each local vertex.
     weights: Vec<f64>,
     handles: Vec<Handle>,
-    /// Whether something is fixed.
+    /// True if a handle or a fixed vertex constrains the component.
     is_held: bool,
-    /// The motions that the shape is for.
+    /// The motions that the current shape belongs to.
     motions: Vec<Motion>,
-    /// Whether the offsets changed since the last step.
+    /// True if the offsets changed since the last step.
     has_other_offsets: bool,
     shape: Shape,
     room: Room,
@@ -60,7 +60,7 @@ struct Shape {
     energy: f64,
 }
 
-/// What is kept from frame to frame, so that none allocates it.
+/// Memory that is kept from frame to frame, so that no frame allocates it.
 #[derive(Clone, Debug, Default)]
 struct Room {
     changes: Vec<EdgeChanges>,
@@ -74,7 +74,7 @@ impl FramesSolver {
         let &BindInput { problem, progress, .. } = input;
         let system = LoadedSystem::bind(&membrane(), problem.stiffness, input.refactorisation, input)?;
         progress.set(0.6);
-        // Painted stiffness is in the system, for frames as for positions.
+        // The system contains the painted stiffness, for frames as for positions.
         let weights = weights(Propagation::Material, &system, input)?;
         progress.set(0.9);
         let gradients = Gradients::of(
@@ -104,9 +104,10 @@ impl FramesSolver {
         })
     }
 
-    /// The linear shape for new motions, or one iteration onwards for the same ones; returns whether it converged.
+    /// Computes the linear shape for new motions, or one more iteration for unchanged ones; returns true if it
+    /// converged.
     fn advance(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> Result<bool, SolveError> {
-        /// An iteration that lowers the energy by less than this share of it was the last one.
+        /// Iteration ends after a step that lowers the energy by less than this share of it.
         const TOLERANCE: f64 = 1e-9;
         let is_same = !std::mem::take(&mut self.has_other_offsets) && self.motions == motions;
         let before = if self.options.iterations > 0 && is_same {
@@ -130,7 +131,7 @@ impl FramesSolver {
         let solved = self.solve(motions);
         self.system.write(&self.shape.field, displacements);
         if solved.is_err() || !self.shape.energy.is_finite() {
-            // The next targets begin afresh.
+            // The next targets start from rest.
             self.rest();
         }
         solved?;
@@ -138,7 +139,7 @@ impl FramesSolver {
         Ok(self.options.iterations == 0 || before.is_some_and(settled))
     }
 
-    /// The positions that fit the frames.
+    /// Solves for the positions that fit the frames.
     fn solve(&mut self, motions: &[Motion]) -> Result<(), SolveError> {
         let Self {
             system,
@@ -178,7 +179,8 @@ impl FramesSolver {
         faces + if scale > 0.0 { springs / scale } else { 0.0 }
     }
 
-    /// The energy of any displacements with the frames of the linear solution or, with iterations, those that fit best.
+    /// Returns the energy of any displacements with the frames of the linear solution or, with iterations, with the
+    /// frames that fit best.
     fn energy_of(&self, motions: &[Motion], displacements: &[DVec3]) -> f64 {
         let field = self.system.read(motions, displacements);
         let mut frames = vec![Frame::default(); self.shape.frames.len()];
@@ -195,7 +197,7 @@ impl FramesSolver {
         self.energy(&frames, &field)
     }
 
-    /// Back to rest.
+    /// Returns to the rest shape.
     fn rest(&mut self) {
         self.motions.fill(Motion::default());
         self.shape.frames.fill(Frame::default());
@@ -203,7 +205,7 @@ impl FramesSolver {
         self.shape.energy = 0.0;
     }
 
-    /// The handles' maps; a turn by more than half a turn is the shorter one the other way.
+    /// The handles' maps; a turn by more than half a turn becomes the shorter one in the opposite direction.
     fn polars(&self, motions: &[Motion]) -> Vec<Polar> {
         polars(&self.handles, motions)
     }

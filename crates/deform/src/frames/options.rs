@@ -5,9 +5,9 @@ use crate::option::{Whole, options};
 options! {
     /// Options of rotation-invariant coordinates.
     pub struct Frames {
-        /// How often frames are fitted to the positions and positions to the frames, after the linear solution. The
-        /// energy never rises, and its fixed point is a minimum of the as-rigid-as-possible energy of frames that
-        /// handles prescribe.
+        /// The number of iterations after the linear solution; each fits the frames to the positions and the positions
+        /// to the frames. The energy never rises, and its fixed point is a minimum of the as-rigid-as-possible energy
+        /// of frames that handles prescribe.
         iterations: u32 = Whole {
             default: 0,
             range: [0, 10_000],
