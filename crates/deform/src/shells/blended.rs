@@ -1,12 +1,12 @@
-//! A first shape for new weights of examples, which does not shrink where parts turn.
+//! The first shape for new weights of examples. It does not shrink where parts turn.
 //!
-//! Of each example the turn R_k of each vertex is known, as the rotation that fits its edges best. An edge e of the rest
-//! shape, or a linear angle, becomes R (e + Σ_k w_k (R_kᵀ e_k − e)), with R the blended turn exp(Σ_k w_k log R_k) and e_k
-//! the example's own edge: turns are blended along arcs, and strains in the vertex' own frame. The positions that fit
-//! these best follow from one solution with the unfolded energy's factor (`carry`). With one weight 1 and the others 0
-//! they are the example itself.
+//! In each example the turn R_k of each vertex is known: the rotation that fits its edges best. An edge e of the rest
+//! shape, or a linear angle, becomes R (e + Σ_k w_k (R_kᵀ e_k − e)), with R the blended turn exp(Σ_k w_k log R_k) and
+//! e_k the example's own edge: turns are blended along arcs, and strains in the vertex' own frame. The positions that
+//! fit these best follow from one solution with the unfolded energy's factor (`carry`). With one weight 1 and the
+//! others 0 they are the example itself.
 //!
-//! A turn's logarithm is the one that is nearest to the neighbour's, so that it may pass half a turn.
+//! A turn's logarithm is the one nearest to the neighbour's, so that turns may exceed half a turn.
 
 use std::f64::consts::TAU;
 
@@ -21,15 +21,15 @@ use crate::numerical::rows::CHUNK;
 /// A rotation by less than this, in radians, has no axis.
 const NO_TURN: f64 = 1e-6;
 
-/// How the local vertices turn in each example.
+/// The turns of the local vertices in each example.
 #[derive(Debug, Default)]
 pub(super) struct Turns {
-    /// Rotation vectors, a row a local vertex, with one entry an example.
+    /// Rotation vectors: one row for each local vertex, one entry for each example.
     vectors: Vec<DVec3>,
 }
 
 impl Turns {
-    /// Of all examples.
+    /// Fits the turns of all examples.
     pub fn of(energy: &Energy) -> Self {
         let displacements = &energy.examples.displacements;
         let rest = &energy.elements.rest;
@@ -51,14 +51,14 @@ impl Turns {
             .collect()
     }
 
-    /// The rotations back from each example to rest, a row a local vertex.
+    /// The rotations from each example back to rest, one row for each local vertex.
     pub fn back(&self) -> Vec<DQuat> {
         let vectors = self.vectors.par_iter().with_min_len(CHUNK);
         vectors.map(|own| DQuat::from_scaled_axis(-*own)).collect()
     }
 }
 
-/// The rotations of all local vertices that fit their edges best.
+/// Fits rotations to the edges around each local vertex.
 pub(super) fn fitted(elements: &Elements, from: &[DVec3], to: &[DVec3]) -> Vec<DQuat> {
     let mut sums = vec![DMat3::ZERO; elements.rest.len()];
     for edge in &elements.edges {
@@ -72,7 +72,8 @@ pub(super) fn fitted(elements: &Elements, from: &[DVec3], to: &[DVec3]) -> Vec<D
     each.map(|sum| fit(sum, DQuat::IDENTITY)).collect()
 }
 
-/// Rotation vectors that differ little from neighbour to neighbour: each part from its least turn on, breadth first.
+/// Makes rotation vectors differ little between neighbours: breadth first in each part, from its vertex with the least
+/// turn.
 fn continuous(elements: &Elements, turns: &[DQuat]) -> Vec<DVec3> {
     let mut vectors: Vec<DVec3> = turns.iter().map(|turn| turn.to_scaled_axis()).collect();
     let count = vectors.len();
@@ -119,7 +120,7 @@ fn continuous(elements: &Elements, turns: &[DQuat]) -> Vec<DVec3> {
     vectors
 }
 
-/// The rotation vector of the same rotation that is nearest to `near`.
+/// Returns the rotation vector nearest to `near` among those of the same rotation.
 fn nearest(vector: DVec3, near: DVec3) -> DVec3 {
     let angle = vector.length();
     let axis = match angle > NO_TURN {

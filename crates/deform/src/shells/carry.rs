@@ -1,12 +1,12 @@
-//! Carries what a coarse level does over to the surface: deformation transfer [SP04] on the unfolded energy.
+//! Carries the motion of a coarse level over to the surface: deformation transfer [SP04] on the unfolded energy.
 //!
-//! Each edge and each hinge of a base shape is turned by the mean M of its ends' turns, and the positions x are sought
-//! that fit them best,
+//! Each edge and each hinge of a base shape is turned by the mean M of its ends' turns. The positions x that fit them
+//! best minimise
 //!
 //! ½ Σ_e w_e |x_b − x_a − M (b_b − b_a)|² + ½ Σ_h w_h |Σ f_i x_i − M Σ f_i b_i|²,
 //!
-//! with the weights of the edges and hinges and the linear angle's factors f. The gradient at a first guess, solved with
-//! the unfolded energy's factor, is what the guess misses.
+//! with the weights of the edges and hinges and the linear angle's factors f. The gradient at a first guess, solved
+//! with the unfolded energy's factor, is the error of the guess.
 
 use glam::{DMat3, DQuat, DVec3};
 use rayon::prelude::*;
@@ -17,26 +17,26 @@ use super::shape::{Energy, Shape};
 use crate::numerical::rows::CHUNK;
 use crate::numerical::sums::Field;
 
-/// What is kept for it.
+/// The tables of the transfer, kept between frames.
 #[derive(Debug)]
 pub(super) struct Carrier {
-    /// f of each hinge. **f32**: they only make a direction.
+    /// f of each hinge. **f32**: they only determine a direction.
     factors: Vec<[f32; 4]>,
     edges: Vec<DVec3>,
     hinges: Vec<DVec3>,
 }
 
-/// The shape that is turned.
+/// The shape whose edges and hinges are turned.
 pub(super) struct Base<'a> {
-    /// Where the local vertices are.
+    /// The positions of the local vertices.
     pub places: &'a [DVec3],
-    /// How the surroundings of each turn.
+    /// The turn of each local vertex' surroundings.
     pub turns: &'a [DMat3],
-    /// The strains that examples give it first: their turns back to rest, and their weights.
+    /// The strains that examples give the base before it turns: the turns back to rest, and the weights.
     pub strains: Option<Strains<'a>>,
 }
 
-/// What examples add to a base that is the rest shape.
+/// The strains that examples add to a base, which is the rest shape.
 pub(super) struct Strains<'a> {
     displacements: &'a [Vec<DVec3>],
     back: Vec<DQuat>,
@@ -44,7 +44,7 @@ pub(super) struct Strains<'a> {
 }
 
 impl<'a> Strains<'a> {
-    /// With these weights.
+    /// The strains with these weights.
     pub fn of(energy: &'a Energy, turns: &Turns, weights: &'a [f64]) -> Self {
         Self {
             displacements: &energy.examples.displacements,
@@ -55,7 +55,7 @@ impl<'a> Strains<'a> {
 }
 
 impl Base<'_> {
-    /// What becomes of a linear function of the places near an edge from a to b: it turns with the edge's ends.
+    /// Turns a linear function of the positions near an edge from a to b by the mean of the turns of its ends.
     fn turned(&self, [a, b]: [u32; 2], function: impl Fn(&dyn Fn(u32) -> DVec3) -> DVec3) -> DVec3 {
         let base = function(&|local| self.places[local as usize]);
         let turn = |end: u32| self.turns[end as usize];
@@ -76,7 +76,7 @@ impl Base<'_> {
 }
 
 impl Carrier {
-    /// For these elements.
+    /// Computes the factors of these elements' hinges.
     pub fn of(energy: &Energy) -> Self {
         let elements = &energy.elements;
         let factors = elements.hinges.par_iter().with_min_len(CHUNK).map(|hinge| {
@@ -113,7 +113,7 @@ impl Carrier {
             .map(|(hinge, factors)| {
                 let [a, b, ..] = hinge.corners;
                 let sum = |place: &dyn Fn(u32) -> DVec3| {
-                    // From a corner, so that rounding in the factors has little to multiply.
+                    // Differences from a corner keep the rounding errors of the factors small.
                     let origin = place(a);
                     let each = hinge.corners.iter().zip(factors);
                     each.map(|(&corner, &factor)| (place(corner) - origin) * f64::from(factor))

@@ -1,10 +1,10 @@
-//! The coarse level of a large surface: the same method on a surface of clusters, small enough for Newton steps in
-//! a frame, as the decimated shells of [FB11].
+//! The coarse level of a large surface: the same method on a surface of clusters, small enough for Newton steps in a
+//! frame, like the decimated shells of [FB11].
 //!
-//! Dead loads make its gradient equal to that of the fine shape it was last restricted from (the full approximation
-//! scheme of [Bra77], as optimisation [Nas00]): at the fine minimum it does not move, and otherwise its motion is a
-//! correction. Only how it turns is carried over (`carry`), so that the clusters don't show and the fine shape keeps its
-//! details.
+//! Dead loads make its gradient equal to that of the fine shape that it was last restricted from (the full
+//! approximation scheme of [Bra77], as optimisation [Nas00]): at the fine minimum it does not move, and otherwise its
+//! motion is a correction. Only its turns are carried over (`carry`), so that the clusters are invisible and the fine
+//! shape keeps its details.
 
 use std::sync::Arc;
 
@@ -30,30 +30,30 @@ use crate::{Budget, ExampleShape, Examples, Method};
 /// The fewest vertices of a cluster.
 const CLUSTER: f64 = 8.0;
 
-/// About how many clusters there are at most, so that two steps fit into a frame.
+/// The largest number of clusters, about, so that two steps fit into a frame.
 const MOST: f64 = 3000.0;
 
-/// The level's own solver, and how it is connected with the fine one.
+/// The level's own solver and its connection with the fine one.
 #[derive(Debug)]
 pub(super) struct Coarse {
     solver: Box<ShellsSolver>,
-    /// For each solved vertex of the fine surface; they sum to 1, or are 0 if nothing is near.
+    /// The shares of each solved vertex of the fine surface; they sum to 1, or are 0 if no cluster is near.
     shares: Vec<Shares>,
-    /// Where each solved coarse vertex' row in `members` starts; one more at the end.
+    /// The start of each solved coarse vertex' row in `members`; one more at the end.
     offsets: Vec<u32>,
-    /// The solved fine vertices with a share in it, and which.
+    /// The solved fine vertices that have a share in it, with their shares.
     members: Vec<Share>,
-    /// Of each solved coarse vertex: the fine local vertex that it is.
+    /// For each solved coarse vertex the fine local vertex at its centre.
     fine_of: Vec<u32>,
-    /// Each coarse vertex's surface vertex.
+    /// Each coarse vertex' surface vertex.
     centres: Vec<u32>,
     next_offsets: Option<Offsets>,
-    /// The coarse positions that were last followed.
+    /// The coarse positions that the fine shape last followed.
     followed: Vec<DVec3>,
 }
 
 impl Coarse {
-    /// For the bound `fine` elements of `problem`; `None` if no coarse level can be made.
+    /// Makes the level of the bound `fine` elements of `problem`; `None` if no coarse level is possible.
     pub fn of(
         problem: &BoundaryProblem,
         options: &Shells,
@@ -78,7 +78,7 @@ impl Coarse {
             handles,
             |coarse, mut partition, handles| {
                 partition.budget = budget;
-                // The clusters' own size is another than the surface's.
+                // The bending depends on the size D, which differs between both surfaces.
                 let sizes = problem.size() / coarse.size();
                 if sizes.is_finite() {
                     own.bending *= sizes * sizes;
@@ -112,7 +112,7 @@ impl Coarse {
         })
     }
 
-    /// How many numbers its factor stores.
+    /// The count of numbers that its factor stores.
     pub fn stored(&self) -> usize {
         self.solver.stored()
     }
@@ -122,7 +122,7 @@ impl Coarse {
         self.next_offsets = Some(offsets.of((0..).zip(self.centres.iter().copied())));
     }
 
-    /// Sets the weights of the examples; the next start heeds them.
+    /// Sets the weights of the examples; the next start uses them.
     pub fn set_weights(&mut self, weights: &[Option<f64>]) {
         self.solver.give(weights);
     }
@@ -132,19 +132,19 @@ impl Coarse {
         &self.solver.current.weights
     }
 
-    /// The next turns are those since rest.
+    /// The next turns are measured from rest.
     pub fn follow_from_rest(&mut self) {
         self.followed.clone_from(&self.solver.energy.elements.rest);
     }
 
-    /// Back to the rest shape.
+    /// Returns to the rest shape.
     pub fn rest(&mut self) {
         self.solver.back_to_rest();
         self.followed.clone_from(&self.solver.energy.elements.rest);
     }
 
-    /// Restricts the fine shape for the motions that it has, whose gradient is known: every centre takes its fine
-    /// position, and the loads make the coarse gradient equal to the fine one.
+    /// Restricts the fine shape for its present motions, whose gradient is known: every centre takes its fine position,
+    /// and the loads make the coarse gradient equal to the fine one.
     pub fn restrict(&mut self, fine: &Shape, gradient: &Field) {
         let solver = &mut *self.solver;
         for (own, &place) in solver.current.displacements.iter_mut().zip(&self.fine_of) {
@@ -175,8 +175,8 @@ impl Coarse {
         self.followed = solver.positions();
     }
 
-    /// Starts for new motions and takes `steps` steps. Returns where it started: if from rest, the fine shape must
-    /// start from rest too.
+    /// Starts for new motions and takes `steps` steps. Returns the origin of the start: if it is rest, the fine shape
+    /// must start from rest too.
     pub fn start(&mut self, motions: &[Motion], steps: u32) -> Origin {
         if let Some(offsets) = self.next_offsets.take() {
             self.solver.set_offsets(&offsets);
@@ -201,9 +201,9 @@ impl Coarse {
         }
     }
 
-    /// How the solved fine vertices turn with the coarse level since it was last followed, `of_handles`
-    /// being how handles did, and `otherwise` what turns those without anything coarse near. With `weights` it is how
-    /// they turn further than the examples have them.
+    /// The turns of the solved fine vertices with the coarse level since they last followed it. `of_handles` are the
+    /// turns of the handles; `otherwise` turns vertices without a cluster near. With `weights` the turns exclude those
+    /// of the examples.
     pub fn turns(
         &mut self,
         of_handles: &[DQuat],
@@ -230,7 +230,7 @@ impl Coarse {
                 let mut sum = DQuat::from_xyzw(0.0, 0.0, 0.0, 0.0);
                 for &(cell, share) in shares {
                     let other = turns[cell as usize];
-                    // Both signs are the same rotation: the one nearer to the first is blended.
+                    // Both signs are the same rotation: the blend takes the one nearer to the first.
                     sum += other * f64::from(share).copysign(other.dot(first));
                 }
                 // Opposed turns may cancel out.

@@ -1,20 +1,20 @@
-//! What the elements' second derivatives add to JᵀJ, as a positive and a negative part.
+//! The second derivatives of the elements, which the Hessian adds to JᵀJ, as a positive and a negative part.
 //!
-//! The Hessian of ½ w r² is w (∇r ∇rᵀ + r ∇²r). JᵀJ leaves out the second part, which decides where triangles are
-//! compressed and hinges are far from their angle: with JᵀJ alone bent limbs of scans took hundreds of steps. It is
-//! indefinite. Each element splits it into a difference of two positive matrices in closed form, so that a step can leave
-//! out as much of the negative one as it must (`system`).
+//! The Hessian of ½ w r² is w (∇r ∇rᵀ + r ∇²r). JᵀJ omits the second part, which decides where triangles are compressed
+//! and hinges are far from their angle: with JᵀJ alone bent limbs of scans took hundreds of steps. It is indefinite.
+//! Each element splits it into a difference of two positive matrices in closed form, so that a step can omit as much of
+//! the negative one as it must (`system`).
 //!
-//! - An edge of the length l and the unit vector g: ∇²l = (I − g gᵀ) / l, positive where the edge is stretched.
-//! - A triangle of the area A and the normal n: along n, ∇²A is the cotangent Laplacian, (∇ᵢA · ∇ⱼA) / A, positive under
-//!   tension. Within the plane it is ½ S ⊗ J with the quarter turn J about n and the skew matrix S of the corners' order.
-//!   (S ⊗ J)² = 3 (I − 1 1ᵀ / 3) ⊗ (I − n nᵀ), and so |S ⊗ J| is √3 times that projection.
+//! - An edge of length l and unit vector g: ∇²l = (I − g gᵀ) / l, positive where the edge is stretched.
+//! - A triangle of area A and normal n: along n, ∇²A is the cotangent Laplacian, (∇ᵢA · ∇ⱼA) / A, positive under
+//!   tension. Within the plane it is ½ S ⊗ J with the quarter turn J about n and the skew matrix S of the corners'
+//!   order. (S ⊗ J)² = 3 (I − 1 1ᵀ / 3) ⊗ (I − n nᵀ), and so |S ⊗ J| is √3 times that projection.
 //! - A hinge: ∇²θ is a sum of x yᵀ + y xᵀ = ½ |x| |y| (v₊ v₊ᵀ − v₋ v₋ᵀ) over pairs of orthogonal vectors, with
 //!   v± = x / |x| ± y / |y|.
 //!
-//! The pairs of a hinge: a triangle at the edge with the direction e and the length l has the height h in the direction
-//! m, the normal n, and the foot of the height at the share s of the edge. With w = (s − 1, −s, 1) and d = (−1, 1, 0) at
-//! the edge's ends and the corner across it, it adds w⊗n with w⊗m / h², and d⊗n with w⊗e / (h l) + d⊗m / (2 l²).
+//! The pairs of a hinge: a triangle at the edge of direction e and length l has the height h in the direction m, the
+//! normal n, and the foot of the height at the share s of the edge. With w = (s − 1, −s, 1) and d = (−1, 1, 0) at the
+//! edge's ends and the corner across it, it adds w⊗n with w⊗m / h², and d⊗n with w⊗e / (h l) + d⊗m / (2 l²).
 
 use std::f64::consts::SQRT_2;
 
@@ -27,7 +27,7 @@ const ROOT_3: f64 = 1.732_050_807_568_877_2;
 /// A block of the positive and of the negative part.
 pub(super) type Parts = [DMat3; 2];
 
-/// Nothing of either.
+/// The zero block of both parts.
 pub(super) const NONE: Parts = [DMat3::ZERO; 2];
 
 /// a bᵀ.
@@ -35,13 +35,13 @@ pub(super) fn outer(a: DVec3, b: DVec3) -> DMat3 {
     DMat3::from_cols(a * b.x, a * b.y, a * b.z)
 }
 
-/// A number and a matrix as parts: the matrix is positive, and the number tells which part it belongs to.
+/// Splits the product of a number and a positive matrix: the number's sign chooses the part.
 fn signed(number: f64, matrix: DMat3) -> Parts {
     [matrix * number.max(0.0), matrix * (-number).max(0.0)]
 }
 
-/// The block of an edge's end with itself; that with the other end has the opposite sign. `along` is its unit vector,
-/// `pull` the derivative of its energy by its length.
+/// The block of an edge's end with itself; the block with the other end has the opposite sign. `along` is its unit
+/// vector, `pull` the derivative of its energy by its length.
 pub(super) fn of_edge(along: DVec3, length: f64, pull: f64) -> Parts {
     if length > 0.0 {
         signed(pull / length, DMat3::IDENTITY - outer(along, along))
@@ -59,7 +59,7 @@ pub(super) struct FaceCurvature {
 }
 
 impl FaceCurvature {
-    /// For a triangle of this area, with `pull` the derivative of its energy by the area.
+    /// The derivative of a triangle of this area, with `pull` the derivative of its energy by the area.
     pub fn of(corners: [DVec3; 3], area: f64, pull: f64) -> Self {
         Self {
             normal: face_normal(corners),
@@ -94,7 +94,8 @@ fn quarter_turn(n: DVec3) -> DMat3 {
     DMat3::from_cols(DVec3::X.cross(n), DVec3::Y.cross(n), DVec3::Z.cross(n))
 }
 
-/// A hinge's second derivative in one of its triangles: the vectors v of v vᵀ at the edge's ends and the corner across it.
+/// A hinge's second derivative in one of its triangles: the vectors v of v vᵀ at the edge's ends and the corner across
+/// it.
 #[derive(Clone, Copy, Default, Debug)]
 pub(super) struct Wing {
     positive: [[DVec3; 3]; 2],
@@ -102,8 +103,8 @@ pub(super) struct Wing {
 }
 
 impl Wing {
-    /// Both of a hinge with these corners, with `moment` the derivative of its energy by the angle. A triangle without an
-    /// area gives none.
+    /// The derivatives in both triangles of a hinge with these corners, with `moment` the derivative of its energy by
+    /// the angle. A triangle without an area has a zero derivative.
     pub fn both([a, b, c, d]: [DVec3; 4], moment: f64) -> [Self; 2] {
         [Self::of([a, b, c], 1.0, moment), Self::of([a, b, d], -1.0, moment)]
     }
@@ -162,7 +163,7 @@ mod tests {
         DVec3::new(0.9, 1.3, 0.6),
     ];
 
-    /// The second derivative of `of` by two corners, by differences of its gradient.
+    /// The second derivative of `of` by two corners, from differences of its gradient.
     fn differences<const N: usize>(
         corners: [DVec3; N],
         [row, column]: [usize; 2],
@@ -187,7 +188,7 @@ mod tests {
         );
     }
 
-    /// Some vectors' values of a quadratic form with these blocks.
+    /// True if the quadratic form with these blocks is positive for all of many vectors.
     fn are_positive(count: usize, part: usize, block: impl Fn(usize, usize) -> Parts) -> bool {
         (0..200).all(|number| {
             let noise = |k: usize| ((number * 97 + k) as f64 * 12.9898).sin();

@@ -1,4 +1,4 @@
-//! Discrete shells as one of the methods.
+//! Declares discrete shells as one of the methods.
 
 use std::sync::Arc;
 
@@ -52,7 +52,7 @@ impl DeformMethod for Shells {
         Some(("bending", 2))
     }
 
-    /// As ARAP does, where the surface twists most it gives way.
+    /// Like ARAP, the surface gives way where it twists most.
     fn follows_turns(&self) -> Option<Followed> {
         Some(Followed::by_necks(150.0))
     }
@@ -61,7 +61,7 @@ impl DeformMethod for Shells {
         Needs::Surface {
             // A hinge joins the two vertices across its edge, which may both be constrained.
             reach: 2,
-            // Its hinges' own graph is ordered.
+            // The elimination orders the hinges' own graph.
             ordering_power: None,
         }
     }
@@ -107,7 +107,7 @@ impl BoundMethod for ShellsSolver {
             }
         }
         let mut outcome = (true, 0.0);
-        // The pool is entered once: otherwise each of the many short loops would wait for it.
+        // The whole step enters the pool once: otherwise each of the many short loops would wait for it.
         rayon::scope(|_| outcome = self.advance(motions));
         let elements = &self.energy.elements;
         let solved = &elements.vertices[..elements.solved_count];

@@ -1,4 +1,4 @@
-//! One Newton step with a line search, or one quasi-Newton step of a surface that is led.
+//! One Newton step with a line search, or one quasi-Newton step of a surface that a coarse level leads.
 
 use pliant_mesh::Cancel;
 
@@ -9,23 +9,23 @@ use crate::numerical::line_search::Trial;
 use crate::numerical::sums::{Field, dot};
 use crate::sparse::factor_error::FactorError;
 
-/// Lengths that a line search tries.
+/// The most lengths that a line search tries.
 const TRIALS: u32 = 12;
 
 /// Energies below this share of the surface's area are rounding.
 pub(super) const NOTHING: f64 = 1e-20;
 
-/// What a step did.
+/// The decreases that a step promised and reached.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Lowered {
     /// The decrease that the quadratic model promised.
     pub promised: f64,
-    /// 0 where no length lowered the energy.
+    /// The decrease of the energy; 0 if no length lowered it.
     pub gained: f64,
 }
 
 impl ShellsSolver {
-    /// One step towards the present motions, which the shape has not converged to.
+    /// Takes one step towards the present motions; the shape must not have converged.
     pub(super) fn descend(&mut self) {
         let is_nothing = self.energy.springs.loads.is_empty() && self.current.energy <= self.nothing();
         if is_nothing || !self.current.energy.is_finite() {
@@ -46,8 +46,8 @@ impl ShellsSolver {
         self.descent = Some(descent);
     }
 
-    /// A shape has converged if the quadratic model promises a decrease below the tolerance's share of the energy and
-    /// the last step gained less than that too. Nothing changes if it is cancelled.
+    /// Takes a Newton step. A shape has converged if the quadratic model promises a decrease below the tolerance's
+    /// share of the energy and the last step gained less than that too. A cancelled step changes nothing.
     pub(super) fn step_newton(&mut self, system: &mut System, cancel: &Cancel) {
         loop {
             match system.factor(&self.energy, &self.current, &self.slopes, cancel) {
@@ -56,7 +56,7 @@ impl ShellsSolver {
                 Err(_) => break,
             }
             let lowered = self.lower(|energy, slopes, x| system.apply(energy, slopes, x));
-            // The curvature is known; earlier steps only mislead, and with them a scan took three times as many.
+            // The factor has the curvature; earlier steps only mislead, and with them a scan took three times as many.
             self.memory.clear();
             if lowered.gained > 0.0 {
                 system.relax();
@@ -74,7 +74,7 @@ impl ShellsSolver {
         self.has_stalled = true;
     }
 
-    /// Whether a step was as good as none.
+    /// True if a step gained next to nothing.
     pub(super) fn is_little(&self, lowered: Lowered) -> bool {
         let enough = self.tolerance * self.current.energy + self.nothing();
         lowered.promised <= enough && lowered.gained <= enough
@@ -107,7 +107,7 @@ impl ShellsSolver {
         }
     }
 
-    /// Moves against `uphill`, by its whole length if that lowers the energy enough. Returns whether any length did.
+    /// Moves against `uphill`, by its whole length if that lowers the energy enough. Returns true if some length did.
     fn search(&mut self, uphill: &Field, slope: f64) -> bool {
         let before = self.current.energy;
         let mut length = 1.0;
@@ -130,7 +130,7 @@ impl ShellsSolver {
         false
     }
 
-    /// Finds the gradient at the current shape and remembers the step that led to it from the trial one.
+    /// Finds the gradient at the current shape and remembers the step from the trial shape to it.
     pub(super) fn learn(&mut self) {
         let before = self.slopes.energy.clone();
         self.energy.find_slopes(&self.current, &mut self.slopes);

@@ -1,6 +1,7 @@
-//! The edges, hinges and triangles that the solved vertices take part in, numbered for the solver.
+//! The edges, hinges and triangles at the solved vertices, numbered for the solver.
 //!
-//! Local vertices are first the solved ones, in the order of elimination, then all others that an edge or a hinge needs.
+//! The solved vertices come first among the local ones, in the order of elimination; then follow all others that an
+//! edge or a hinge needs.
 
 use glam::DVec3;
 use pliant_mesh::{Cancel, Surface, SurfaceVertex, face_area};
@@ -15,40 +16,41 @@ use crate::region::boundary_problem::BoundaryProblem;
 use crate::sparse::Elimination;
 use crate::sparse::ordering::graph::elimination;
 
-/// No local vertex.
+/// The number of an absent local vertex.
 pub(super) const ABSENT: u32 = u32::MAX;
 
-/// k_a, in units of `stretching`. Without it triangles at the inside of a bend give way within their plane until they have
-/// no area; with half of it those of a tube that is bent far and of a sheet that is pressed together by 30% still do.
-/// Stretched, a surface of equilateral triangles narrows by 0.6 as much: by a third with edges alone, and rubber by a half.
+/// k_a, in units of `stretching`. Without it triangles at the inside of a bend collapse within their plane until they
+/// have no area; with half of it those of a strongly bent tube and of a sheet that is compressed by 30% still do. A
+/// stretched surface of equilateral triangles narrows by 0.6 times as much: by a third with edges alone, and rubber by
+/// a half.
 const AREA: f64 = 0.25;
 
-/// An edge counts as at least this share of the longest one of its triangles, so that one without a length resists
-/// stretching firmly, but not beyond what can be computed; a triangle as at least this share of that edge's square.
+/// An edge counts as at least this share of the longest edge of its triangles, so that one without a length resists
+/// stretching firmly, but remains computable; a triangle counts as at least this share of that edge's square.
 const LENGTH_FLOOR: f64 = 1e-2;
 
-/// Triangles that are lower than this share of their edge hold the hinge there less firmly, by the square: their angle
-/// turns about with the least move. Those much lower have no hinge there.
+/// Triangles that are lower than this share of their edge hold the hinge there less firmly, by the square: the
+/// slightest move changes their angle. Much lower ones have no hinge there.
 const HEIGHT_FLOOR: f64 = 1e-2;
 
-/// Of [`HEIGHT_FLOOR`]: a triangle below has no angle that could be computed.
+/// A share like [`HEIGHT_FLOOR`]: a triangle below it has no angle that could be computed.
 const NO_HEIGHT: f64 = 1e-6;
 
-/// The surface around the solved vertices, as far as the energy sees it.
+/// The surface around the solved vertices, as far as the energy needs it.
 #[derive(Clone, Debug)]
 pub(super) struct Elements {
     /// The surface vertex of each local one.
     pub vertices: Vec<u32>,
-    /// How many of them are solved for.
+    /// The number of solved vertices.
     pub solved_count: usize,
     /// Rest positions relative to the solver's origin, in world units.
     pub rest: Vec<DVec3>,
     pub edges: Vec<Edge>,
     pub hinges: Vec<Hinge>,
     pub faces: Vec<Face>,
-    /// The area that the edges stand for, in squared world units.
+    /// The area of the edges, in squared world units.
     pub area: f64,
-    /// Triangles that are too flat to have an angle with others.
+    /// The number of triangles that are too flat to form an angle with others.
     pub flat_faces: usize,
 }
 
@@ -82,7 +84,7 @@ pub(super) struct Face {
 /// A side of a triangle: the edge's lower vertex, its higher one, and the triangle.
 type Side = (u32, u32, u32);
 
-/// What is collected before the vertices have their numbers: surface vertices, weights, and areas.
+/// The elements before the vertices have their numbers: surface vertices, weights, and areas.
 #[derive(Default)]
 struct Collected {
     edges: Vec<Edge>,
@@ -93,7 +95,8 @@ struct Collected {
 }
 
 impl Elements {
-    /// Those of the solved surface vertices, and where each supernode of the order of elimination ends.
+    /// Collects the elements of the solved surface vertices. Returns also the end of each supernode of the elimination
+    /// order.
     ///
     /// # Errors
     /// [`BindError::Cancelled`].
@@ -180,7 +183,7 @@ impl Elements {
     }
 }
 
-/// The edges and hinges, by surface vertices; `number` tells the solved ones.
+/// The edges and hinges, by surface vertices; `number` marks the solved ones.
 fn collected(problem: &BoundaryProblem, options: &Shells, number: &[u32], world_origin: DVec3) -> Collected {
     let BoundaryProblem { surface, topology, .. } = *problem;
     let is_solved = |vertex: u32| number[vertex as usize] != ABSENT;
@@ -261,7 +264,7 @@ impl Material<'_> {
     }
 
     fn add_face(&self, number: u32, corners: [u32; 3], found: &mut Collected) {
-        // As the energy measures it, so that it is zero at rest to the last bit.
+        // The energy's own formula, so that the energy is zero at rest to the last bit.
         let area = face_area(corners.map(|corner| self.at(corner)));
         let floored = area.max(LENGTH_FLOOR * self.longest(number).powi(2));
         if area > 0.0 {
@@ -281,7 +284,7 @@ impl Material<'_> {
         a.distance(b).max(b.distance(c)).max(c.distance(a))
     }
 
-    /// Each pair of the edge's triangles, or each with the largest.
+    /// Adds a hinge for each pair of the edge's triangles, or for each triangle with the largest.
     fn add_hinges(&self, group: &[Side], is_solved: &impl Fn(u32) -> bool, found: &mut Collected) {
         if group.len() <= CROWD {
             let weaker = 1.0 / (group.len() as f64 - 1.0);
@@ -344,9 +347,9 @@ impl Material<'_> {
     }
 }
 
-/// Which solved vertices meet in an edge or a hinge, as compressed rows, ascending.
+/// The graph of the solved vertices that share an edge or a hinge, as compressed rows, ascending.
 fn graph(found: &Collected, number: &[u32], count: usize) -> (Vec<u32>, Vec<u32>) {
-    // A hinge's vertices are joined by edges but for those across.
+    // Edges join a hinge's vertices except the two across it.
     let across = found.hinges.iter().map(|hinge| [hinge.corners[2], hinge.corners[3]]);
     let pairs = || found.edges.iter().map(|edge| edge.ends).chain(across.clone());
     let places = || {

@@ -1,7 +1,7 @@
 //! The volumes that closed components enclose.
 //!
-//! V = Σ p_a · (p_b × p_c) / 6 over a component's triangles, and its gradient at a vertex is Σ p_b × p_c / 6. A component
-//! counts as closed if its triangles pass each edge as often one way as the other.
+//! V = Σ p_a · (p_b × p_c) / 6 over a component's triangles, and its gradient at a vertex is Σ p_b × p_c / 6. A
+//! component counts as closed if its triangles pass each edge equally often in both directions.
 
 use glam::DVec3;
 use pliant_mesh::SurfaceVertex;
@@ -13,10 +13,10 @@ use crate::numerical::rows::CHUNK;
 use crate::numerical::sums::CHUNKS_A_TASK;
 use crate::region::boundary_problem::BoundaryProblem;
 
-/// A component whose volume is below this share of what its area could enclose encloses nothing.
+/// A component whose volume is below this share of the largest volume that its area could enclose has no volume.
 const NOTHING: f64 = 1e-6;
 
-/// All closed components that are bent.
+/// All closed components that bend.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Enclosed {
     pub parts: Vec<Part>,
@@ -25,7 +25,7 @@ pub(super) struct Enclosed {
 /// A closed component: ½ weight (V − volume)².
 #[derive(Clone, Debug)]
 pub(super) struct Part {
-    /// By local vertices.
+    /// Its triangles, by local vertices.
     faces: Vec<[u32; 3]>,
     /// Its solved vertices, ascending.
     pub solved: Vec<u32>,
@@ -34,7 +34,7 @@ pub(super) struct Part {
 }
 
 impl Enclosed {
-    /// Those with a solved vertex, with all their vertices numbered; none if their volume does not count.
+    /// Finds the components with a solved vertex and numbers all their vertices; none if the option `volume` is 0.
     pub fn of(problem: &BoundaryProblem, options: &Shells, elements: &mut Elements) -> Self {
         if options.volume == 0.0 {
             return Self::default();
@@ -89,7 +89,7 @@ impl Enclosed {
 }
 
 impl Part {
-    /// V with the local vertices at these places.
+    /// V with the local vertices at these positions.
     pub fn volume_at(&self, at: &(impl Fn(u32) -> DVec3 + Sync)) -> f64 {
         let sums: Vec<f64> = self
             .faces
@@ -106,7 +106,7 @@ impl Part {
         sums.iter().sum::<f64>() / 6.0
     }
 
-    /// Fills in V's gradient at its solved vertices.
+    /// Adds V's gradient at its solved vertices.
     pub fn add_gradient(&self, at: &impl Fn(u32) -> DVec3, gradient: &mut [[f64; 3]]) {
         for corners in &self.faces {
             let [a, b, c] = corners.map(at);
@@ -120,7 +120,7 @@ impl Part {
     }
 }
 
-/// Whether each edge is passed as often one way as the other.
+/// True if the triangles pass each edge equally often in both directions.
 fn is_closed(faces: &[[SurfaceVertex; 3]]) -> bool {
     let mut sides: Vec<(u32, u32, i32)> = faces
         .iter()

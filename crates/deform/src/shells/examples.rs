@@ -1,14 +1,14 @@
-//! Examples: further shapes that say what lengths, angles, areas and volumes the surface may have [FB11].
+//! Examples: further shapes that give lengths, angles, areas and volumes which the surface may have [FB11].
 //!
 //! With the weights w the energy's targets are l*(w) = l̄ + Σ_k w_k (l_k − l̄), and the same for angles, areas and
-//! volumes. An angle's difference is the one of at most half a turn. Weights are given or free. The residuals are linear
-//! in the free ones, so those that are best for a shape come from a small dense system, and the energy is a function of
-//! the shape alone (variable projection [GP73]):
+//! volumes. An angle's difference is the one of at most half a turn. Weights are given or free. The residuals are
+//! linear in the free ones, so the best ones for a shape are the solution of a small dense system, and the energy is a
+//! function of the shape alone (variable projection [GP73]):
 //!
 //! E(x) = min_w ½ Σ_i W_i (v_i(x) − v̄_i − Σ_k w_k Δ_ik)² + ½ ε Σ_k G_kk w_k²,  G_kl = Σ_i W_i Δ_ik Δ_il.
 //!
-//! The last term keeps a free weight at 0 where nothing of the shape depends on it. The energy's gradient is that of the
-//! residuals with these weights held; its matrix is in `leaning`.
+//! The last term keeps a free weight at 0 if it changes nothing in the shape. The energy's gradient is that of the
+//! residuals with these weights held constant; `leaning` has its matrix.
 
 use faer::Mat;
 use glam::DVec3;
@@ -25,11 +25,11 @@ use crate::numerical::sums::CHUNKS_A_TASK;
 /// ε.
 const MILD: f64 = 1e-6;
 
-/// The examples, as far as the energy sees them. Tables have a row for each edge, hinge, triangle or component, with one
-/// entry an example.
+/// The examples, as far as the energy needs them. Tables have a row for each edge, hinge, triangle or component, with
+/// one entry for each example.
 #[derive(Debug, Default)]
 pub(super) struct Examples {
-    /// Of each example: how far its local vertices are from rest.
+    /// For each example the displacements of its local vertices from rest.
     pub displacements: Vec<Vec<DVec3>>,
     /// Δ.
     lengths: Vec<f64>,
@@ -38,16 +38,16 @@ pub(super) struct Examples {
     volumes: Vec<f64>,
     /// G, row by row.
     products: Vec<f64>,
-    /// Each one's weight; `None` where it is free.
+    /// The weight of each example; `None` if it is free.
     given: Vec<Option<f64>>,
-    /// The numbers of those that are free.
+    /// The numbers of the free ones.
     free: Vec<usize>,
     /// The free part of G + ε diag G.
     normal: Option<Lu>,
 }
 
 impl Examples {
-    /// Those of a problem.
+    /// Measures the examples of a problem.
     pub fn of(brought: Option<&crate::Examples>, elements: &Elements, enclosed: &Enclosed) -> Self {
         let shapes = brought.map_or(&[][..], |brought| &brought.shapes);
         let displacements: Vec<Vec<DVec3>> = shapes
@@ -120,7 +120,7 @@ impl Examples {
         self.displacements.len()
     }
 
-    /// Sets the weights; `None` where one is free.
+    /// Sets the weights; `None` makes one free.
     pub fn give(&mut self, weights: &[Option<f64>]) {
         self.given = weights.to_vec();
         self.free = (0..weights.len()).filter(|&k| weights[k].is_none()).collect();
@@ -143,12 +143,12 @@ impl Examples {
         if own > 0.0 { MILD * own } else { 1.0 }
     }
 
-    /// Whether some weights are free.
+    /// True if some weights are free.
     pub fn are_free(&self) -> bool {
         !self.free.is_empty()
     }
 
-    /// The weights that were given, and 0 for those that are free.
+    /// The given weights, and 0 for the free ones.
     pub fn given(&self) -> impl Iterator<Item = f64> + '_ {
         self.given.iter().map(|weight| weight.unwrap_or(0.0))
     }
@@ -200,7 +200,7 @@ impl Examples {
         0.5 * held.sum::<f64>()
     }
 
-    /// The weights of a shape of these displacements and angles: those that were given, and the best of the free ones.
+    /// The weights of a shape of these displacements and angles: the given ones, and the best values of the free ones.
     pub fn weigh(
         &self,
         elements: &Elements,
@@ -242,7 +242,7 @@ impl Examples {
         }
     }
 
-    /// Σ_i W_i Δ_ik v_i for each example k, of values v of the edges, hinges, triangles and components.
+    /// Σ_i W_i Δ_ik v_i for each example k, over the values v of the edges, hinges, triangles and components.
     fn moments(
         &self,
         elements: &Elements,
@@ -289,8 +289,8 @@ impl Examples {
         sums
     }
 
-    /// The free weights that carry the rest shape nearest to where these local vertices are wanted, with those that were
-    /// given: a first guess.
+    /// A first guess of the free weights: with the given ones, they bring the rest shape nearest to the wanted
+    /// displacements of these local vertices.
     pub fn guess(&self, wanted: impl Iterator<Item = (usize, DVec3)>) -> Vec<f64> {
         let mut weights: Vec<f64> = self.given().collect();
         let free = &self.free;

@@ -1,17 +1,17 @@
 //! A triangle's area: its gradient, and a barrier that keeps compressed triangles from losing it.
 //!
-//! ½ w (A − Ā)² is finite at A = 0, while the gradient of the angles at a triangle grows without bound where it loses its
-//! height: a triangle that has come so far stays there. So below the least area Â that rest and examples give it, a
-//! triangle has more, which makes it w Â² / 4 (x² − 1 − 2 log x) of x = A / Â in all where Â is Ā: as stiff for small
-//! changes, and without bound at 0. On the arm of a scan that is bent by 90° the smallest area was a quarter of a percent
-//! without it. It is nothing above Â, so that stretching costs as before and examples are met.
+//! ½ w (A − Ā)² is finite at A = 0, while the gradient of the angles at a triangle grows without bound as it loses its
+//! height: a triangle that has come so far does not recover. So below the least area Â that rest and examples give it,
+//! a triangle has an additional energy. With x = A / Â the sum is w Â² / 4 (x² − 1 − 2 log x) where Â is Ā: as stiff
+//! for small changes, and without bound at 0. On the arm of a scan that is bent by 90° the smallest area was a quarter
+//! of a percent without it. It is zero above Â, so that stretching costs as before and examples are met.
 
 use glam::DVec3;
 use pliant_mesh::face_normal;
 
 use super::elements::Face;
 
-/// A triangle of a smaller share of its area counts as one of this.
+/// A smaller share of a triangle's area counts as this one.
 const SMALLEST: f64 = 1e-12;
 
 /// The area's gradient at the three corners. A triangle without an area gives none.
@@ -20,7 +20,7 @@ pub(super) fn gradient([a, b, c]: [DVec3; 3]) -> [DVec3; 3] {
     [c - b, a - c, b - a].map(|opposite| 0.5 * normal.cross(opposite))
 }
 
-/// What the barrier adds to a triangle's energy, and its first and second derivative by the area.
+/// The barrier's addition to a triangle's energy, and its first and second derivative by the area.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub(super) struct Barrier {
     pub energy: f64,
@@ -29,7 +29,7 @@ pub(super) struct Barrier {
 }
 
 impl Barrier {
-    /// The value for a triangle that has this area.
+    /// The barrier of a triangle that has this area.
     pub fn of(face: &Face, area: f64) -> Self {
         let Face { weight, least, .. } = *face;
         if least <= 0.0 || area >= least {

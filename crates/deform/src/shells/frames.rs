@@ -1,8 +1,8 @@
-//! Where a component stands that no handle and no fixed vertex holds, and that only the weights of examples move.
+//! The placement of a component that no handle and no fixed vertex holds: only the weights of examples move it.
 //!
-//! The energy does not know. So each shape is moved rigidly before it is shown: to where the component's mean and turn
-//! are when those of the examples, relative to rest, are blended by their weights. Vertices count the more the less the
-//! examples move them, so that a body stands still while its arm goes along an arc.
+//! The energy does not determine it. So each shape is moved rigidly before it is shown: the component takes the mean
+//! and turn that result from blending those of the examples, relative to rest, by their weights. A vertex counts the
+//! more the less the examples move it, so that a body is still while its arm moves along an arc.
 
 use glam::{DMat3, DQuat, DVec3};
 use pliant_mesh::SurfaceVertex;
@@ -12,7 +12,7 @@ use crate::numerical::rigid_fit::best_rotation;
 use crate::region::boundary_problem::BoundaryProblem;
 use crate::region::partition::Partition;
 
-/// A vertex that moves by less than this share of the diagonal counts as one that stands still.
+/// A vertex that moves by less than this share of the diagonal counts as still.
 const STILL: f64 = 1e-3;
 
 /// A component that nothing holds.
@@ -20,15 +20,15 @@ const STILL: f64 = 1e-3;
 pub(super) struct Frame {
     /// Its solved vertices.
     vertices: Vec<u32>,
-    /// How much each counts.
+    /// The weight of each of them in the mean and the turn.
     shares: Vec<f64>,
     centre: DVec3,
-    /// Of each example: the centre's shift, and the turn as a rotation vector.
+    /// For each example the centre's shift, and the turn as a rotation vector.
     examples: Vec<(DVec3, DVec3)>,
 }
 
 impl Frame {
-    /// Those of all components that nothing holds.
+    /// Finds all components that nothing holds.
     pub fn all(
         problem: &BoundaryProblem,
         partition: &Partition,
@@ -56,7 +56,7 @@ impl Frame {
             };
             let mut shares: Vec<f64> = vertices.iter().map(share).collect();
             if shares.iter().sum::<f64>().is_nan() || shares.iter().sum::<f64>() <= 0.0 {
-                // Nothing of it has a length.
+                // All its masses are zero or undefined, so its vertices count alike.
                 shares.fill(1.0);
             }
             let mut frame = Self {
@@ -82,7 +82,7 @@ impl Frame {
         &self.vertices
     }
 
-    /// Moves its vertices' displacements to where the weights have it.
+    /// Moves its vertices' displacements to the placement for these weights.
     pub fn place(&self, rest: &[DVec3], weights: &[f64], displacements: &mut [DVec3]) {
         let place = |local: u32| rest[local as usize] + displacements[local as usize];
         let from = self.mean(place);
@@ -105,7 +105,7 @@ impl Frame {
         sum / self.shares.iter().sum::<f64>()
     }
 
-    /// The rotation from rest to these places, whose mean is `centre`.
+    /// The rotation from rest to these positions, whose mean is `centre`.
     fn turn(&self, rest: &[DVec3], centre: DVec3, place: impl Fn(u32) -> DVec3) -> DQuat {
         let mut covariance = DMat3::ZERO;
         for (&local, &share) in self.vertices.iter().zip(&self.shares) {

@@ -1,15 +1,15 @@
 //! The angle at an edge between its two triangles.
 //!
-//! A hinge has the corners a, b, c, d: the edge from a to b and the two vertices across it. With e = b − a,
-//! n₁ = e × (c − a) and n₂ = (d − a) × e the angle from n₁ to n₂ about e is 0 where the triangles lie flat, and does not
-//! depend on how the file turns them. Its gradient is −u₁ at c and −u₂ at d with u = |e| n / |n|², and the shares of
-//! u₁ + u₂ that keep moments at a and b.
+//! A hinge has the corners a, b, c, d: the edge from a to b and the two vertices across it. With e = b − a, n₁ = e × (c
+//! − a) and n₂ = (d − a) × e the angle from n₁ to n₂ about e is 0 where the triangles are coplanar, and does not depend
+//! on their orientation in the file. Its gradient is −u₁ at c and −u₂ at d with u = |e| n / |n|², and the shares of u₁
+//! + u₂ that keep moments at a and b.
 
 use std::f64::consts::TAU;
 
 use glam::DVec3;
 
-/// Of a normal that is shorter than this share of the edge's square the triangle has no direction.
+/// A triangle has no direction if its normal is shorter than this share of the edge's square.
 const NO_AREA: f64 = 1e-12;
 
 /// The angle in radians, from −π to π.
@@ -20,12 +20,13 @@ pub(super) fn angle_rad([a, b, c, d]: [DVec3; 4]) -> f64 {
     sine.atan2(one.dot(other) * edge.length())
 }
 
-/// The same angle, whole turns added, that is nearest to `near`.
+/// Adds whole turns to the angle so that it is nearest to `near`.
 pub(super) fn unwrapped(angle_rad: f64, near_rad: f64) -> f64 {
     angle_rad + TAU * ((near_rad - angle_rad) / TAU).round()
 }
 
-/// The angle's gradient at the four corners, in radians a unit of length. A triangle without an area gives none.
+/// The angle's gradient at the four corners, in radians per unit of length. A triangle without an area has a zero
+/// gradient.
 pub(super) fn gradient([a, b, c, d]: [DVec3; 4]) -> [DVec3; 4] {
     let edge = b - a;
     let square = edge.length_squared();
@@ -46,7 +47,7 @@ pub(super) fn gradient([a, b, c, d]: [DVec3; 4]) -> [DVec3; 4] {
     [u * (1.0 - s) + v * (1.0 - t), u * s + v * t, -u, -v]
 }
 
-/// The angle as a linear function of heights above the plane that the hinge is unfolded into [WBHZG07]: the factors at
+/// The angle as a linear function of heights above the plane into which the hinge is unfolded [WBHZG07]: the factors at
 /// the four corners. They give zero for constants and for slopes.
 pub(super) fn flat([a, b, c, d]: [DVec3; 4]) -> [f64; 4] {
     let edge = b - a;

@@ -1,10 +1,10 @@
-//! Steps of a large surface, which its coarse level leads.
+//! Steps of a large surface that its coarse level leads.
 //!
-//! For new targets the coarse level steps first, and what it does is carried over: that is the frame while a handle is
+//! For new targets the coarse level steps first and its motion is carried over: that is the frame while a handle is
 //! dragged. For unchanged targets corrections by the coarse level alternate with quasi-Newton steps on top of the
-//! unfolded energy's factor. Both only ever lower the energy of the whole surface, so that the minimum is that of the
-//! whole surface. Near the minimum they gain little: Newton steps of the whole surface, which cost far more each, settle
-//! the shape then.
+//! unfolded energy's factor. Both only lower the energy of the whole surface, so the minimum is that of the whole
+//! surface. Near the minimum they gain little: then Newton steps of the whole surface, which cost far more each, settle
+//! the shape.
 
 use glam::{DMat3, DQuat, DVec3};
 use pliant_mesh::Cancel;
@@ -27,45 +27,45 @@ const STEPS: u32 = 2;
 /// Coarse steps of a correction.
 const CORRECTING_STEPS: u32 = 3;
 
-/// Fine steps between two corrections at most.
+/// The most fine steps between two corrections.
 const RAREST: u32 = 32;
 
-/// Shares of a correction that are tried.
+/// The shares of a correction that are tried.
 const SHARES: [f64; 3] = [1.0, 0.5, 0.2];
 
-/// Steps for unchanged targets after which Newton steps settle the shape.
+/// After this many steps for unchanged targets, Newton steps settle the shape.
 const BEFORE_SETTLING: u32 = 24;
 
-/// The most Newton steps for unchanged targets. Limbs take twenty; a shape that has not settled by then has a part that
-/// is drawn out to a thread, and steps go on for minutes.
+/// The most Newton steps for unchanged targets. Limbs take twenty; if a shape has not settled by then, a part of it is
+/// drawn out to a thread, and steps go on for minutes.
 const MOST_SETTLING: u32 = 60;
 
-/// What a large surface descends with.
+/// The state of a large surface's descent.
 #[derive(Debug)]
 pub(super) struct Led {
     pub preconditioner: Preconditioner,
     pub coarse: Coarse,
     pub carrier: Carrier,
-    /// Fine steps from one correction to the next, and those before the next one.
+    /// Fine steps from one correction to the next, and those left before the next one.
     every: u32,
     left: u32,
-    /// What the last fine step and the last correction gained.
+    /// The decreases of the last fine step and the last correction.
     gained: f64,
     corrected: f64,
     /// Steps since the targets changed.
     steps: u32,
     settling: Settling,
-    /// Ends a Newton step.
+    /// The flag that ends a Newton step.
     cancel: Cancel,
 }
 
-/// The matrix of the Newton steps that settle a shape. It is analysed when it is first used: a drag does not use it.
+/// The matrix of the Newton steps that settle a shape. It is analysed at its first use: a drag does not use it.
 #[derive(Debug)]
 enum Settling {
-    /// With the ends of its supernodes and the memory that it may take.
+    /// The pattern, the ends of its supernodes and the memory that it may take.
     NotAnalysed(Pattern, Vec<u32>, Budget),
     Analysed(Box<System>),
-    /// It would take too much memory.
+    /// The matrix would take too much memory.
     TooLarge,
 }
 
@@ -83,7 +83,7 @@ impl Settling {
 }
 
 impl Led {
-    /// At rest.
+    /// The state at rest.
     pub fn new(coarse: Coarse, means: Means) -> Self {
         let Means {
             preconditioner,
@@ -105,7 +105,7 @@ impl Led {
         }
     }
 
-    /// Forgets the way that was taken.
+    /// Forgets the earlier steps.
     pub fn forget(&mut self) {
         (self.every, self.left, self.steps) = (1, 0, 0);
         (self.gained, self.corrected) = (f64::INFINITY, f64::INFINITY);
@@ -210,7 +210,7 @@ impl ShellsSolver {
         std::mem::swap(&mut self.current, &mut self.trial);
     }
 
-    /// A step towards unchanged motions.
+    /// Takes a step towards unchanged motions.
     fn step_led(&mut self, led: &mut Led) {
         if led.is_settling()
             && let Some(system) = led.settling.system()
@@ -241,13 +241,13 @@ impl ShellsSolver {
             self.has_converged = self.is_little(lowered);
             self.has_stalled = !self.has_converged;
         } else if self.is_little(lowered) {
-            // Unless the coarse level has not been asked for long.
+            // It has not converged if the coarse level's last correction gained more.
             self.has_converged = led.corrected <= self.tolerance * self.current.energy;
             led.left = 0;
         }
     }
 
-    /// Has the coarse level, loaded with what is left of the gradient, go on, and follows it as far as that lowers the
+    /// Loads the coarse level with the remaining gradient, lets it step, and follows it as far as that lowers the
     /// energy.
     fn correct(&mut self, led: &mut Led) {
         led.coarse.restrict(&self.current, &self.slopes.energy);
@@ -279,9 +279,9 @@ impl ShellsSolver {
             .collect()
     }
 
-    /// How each local vertex' surroundings turn: with its handle, with the coarse level, or where that has nothing near
-    /// with the blended `screws`; not at all where these are none. With weights of examples it turns as these have it, too:
-    /// the coarse level, which knows no sharp folds, says only how much further.
+    /// The turn of each local vertex' surroundings: that of its handle or of the coarse level, or, if no cluster is
+    /// near, that of the blended `screws` (the identity without screws). With weights of examples the examples' turns
+    /// come first, because the coarse level has no sharp folds; it gives only the further turn.
     fn turns(&self, led: &mut Led, screws: &[Screw], examples: Option<(&Blending, &[f64])>) -> Vec<DMat3> {
         let mut of_handles: Vec<DQuat> = screws.iter().map(Screw::turn).collect();
         of_handles.resize(self.motions.len(), DQuat::IDENTITY);
@@ -307,7 +307,7 @@ impl ShellsSolver {
         turns
     }
 
-    /// How far the trial shape's solved vertices are from where the turned base would have them.
+    /// The distance of the trial shape's solved vertices from the positions that fit the turned base.
     fn away(&self, led: &mut Led, base: &Base) -> Field {
         let mut away = led.carrier.pull(&self.energy, base, &self.trial);
         led.preconditioner.apply(&mut away);

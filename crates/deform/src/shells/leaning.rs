@@ -1,8 +1,8 @@
-//! What free weights of examples change of the matrix.
+//! The change of the matrix by free weights of examples.
 //!
-//! With the weights eliminated (see `examples`) the matrix is K − C (G + ε diag G)⁻¹ Cᵀ, with K the matrix of held weights
-//! (`system`) and C = JᵀW Δ. Its inverse is K⁻¹ + U S⁻¹ Uᵀ with U = K⁻¹ C and S = G + ε diag G − Cᵀ U: one more solution
-//! for each free weight, while the pattern of K stays. It is positive definite if S is.
+//! With the weights eliminated (see `examples`) the matrix is K − C (G + ε diag G)⁻¹ Cᵀ, with K the matrix of constant
+//! weights (`system`) and C = JᵀW Δ. Its inverse is K⁻¹ + U S⁻¹ Uᵀ with U = K⁻¹ C and S = G + ε diag G − Cᵀ U: one more
+//! solution for each free weight, while the pattern of K is unchanged. It is positive definite if S is.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -21,8 +21,8 @@ pub(super) struct Leaning {
 }
 
 impl Leaning {
-    /// For the gradients `slopes`, `solve` applying K⁻¹; none if no weight is free, or S is not positive definite: K alone
-    /// leads downhill then.
+    /// Computes both for the gradients `slopes`; `solve` applies K⁻¹. None if no weight is free, or S is not positive
+    /// definite: then K alone leads downhill.
     pub fn of(energy: &Energy, slopes: &Slopes, solve: impl Fn(&mut Field)) -> Option<Self> {
         let examples = &energy.examples;
         if !examples.are_free() {
@@ -58,7 +58,7 @@ impl Leaning {
     }
 }
 
-/// The column of C of a free example: how the energy's gradient changes with its weight, but for the sign.
+/// The column of C of a free example: up to its sign, the derivative of the energy's gradient by the example's weight.
 fn column(energy: &Energy, slopes: &Slopes, example: usize) -> Field {
     let elements = &energy.elements;
     let [length, angle_rad, area, volume] = energy.examples.differences(example);

@@ -1,34 +1,37 @@
-//! Discrete shells [GHDS03]: a surface keeps the lengths of its edges, the angles at them, its triangles'
-//! areas and, if wished, the volume that it encloses. [FB11] minimises it by Gauss–Newton; here Newton's method does, with the elements' exact Hessians.
+//! Discrete shells [GHDS03]: a surface keeps the lengths of its edges, the angles at them, its triangles' areas and, if
+//! wished, its enclosed volume. [FB11] minimises the energy by Gauss–Newton; here Newton's method does, with the
+//! elements' exact Hessians.
 //!
 //! E = ½ Σ_e k_s s_e A_e (l_e / l̄_e − 1)² + ½ Σ_t k_a k_s s_t Ā_t (A_t / Ā_t − 1)²
 //!   + ½ Σ_e k_b D² s_e (l̄_e² / A_e) (θ_e − θ̄_e)² + ½ Σ_c k_v A_c (V_c / V̄_c − 1)²
 //!
-//! over the edges e, the triangles t and the closed components c: l is an edge's length, θ the angle between the normals
-//! of its two triangles, A_t a triangle's area, V a component's volume, and the bar marks the rest shape. A_e is a third
-//! of the areas of the edge's triangles, as in [GHDS03] and [SHHR20], so that the energy hardly depends on the mesh; A_c is
-//! a component's area, D the size of what bends, and s_e and s_t are the means of the painted stiffness of the edge's ends
-//! and the triangle's corners. k_s, k_b and k_v are the options `stretching`, `bending` and `volume`. k_a = 1/4: [FB11]
-//! leaves out the areas of [GHDS03], but edges alone are a truss, in which triangles that are compressed give way within
-//! their plane until they have no area. Compressed triangles resist without bound, by a barrier (`face`).
+//! over the edges e, the triangles t and the closed components c: l is an edge's length, θ the angle between the
+//! normals of its two triangles, A_t a triangle's area, V a component's volume, and the bar marks the rest shape. A_e
+//! is a third of the areas of the edge's triangles, as in [GHDS03] and [SHHR20], so that the energy hardly depends on
+//! the mesh; A_c is a component's area, D the size of the bending region, and s_e and s_t are the means of the painted
+//! stiffness of the edge's ends and the triangle's corners. k_s, k_b and k_v are the options `stretching`, `bending`
+//! and `volume`. k_a = 1/4: [FB11] omits the areas of [GHDS03], but edges alone are a truss, in which compressed
+//! triangles give way within their plane until they have no area. Compressed triangles resist without bound, by a
+//! barrier (`face`).
 //!
-//! The angle is followed from step to step (`hinge`), so that it does not jump where a fold passes half a turn and a
-//! surface that went through itself finds back. An edge at a border has no angle. Where more than two triangles meet at
-//! an edge, each pair of them has one, weaker in proportion, so that each triangle is held as firmly as at any other
-//! edge; where very many meet, each is paired only with the largest.
+//! The angle is followed from step to step (`hinge`), so that it does not jump where a fold passes half a turn, and a
+//! surface that went through itself returns. An edge at a border has no angle. Where more than two triangles meet at an
+//! edge, each pair of them has one, weaker in proportion, so that each triangle is held as firmly as at any other edge;
+//! where very many meet, each is paired only with the largest.
 //!
-//! Steps are Newton's, as exact as leaves the matrix positive definite (`system`). The matrix' pattern is analysed once. The volume's gradient would fill the matrix: it stays outside and enters by the formula of Sherman and
+//! Newton steps use a matrix as close to the Hessian as remains positive definite (`system`). Its pattern is analysed
+//! once. The volume's gradient would fill the matrix: it stays outside and enters by the formula of Sherman and
 //! Morrison, component by component, since components do not meet in the matrix. A line search on the true energy ends
-//! each step, so it never rises; where no length lowers it, the diagonal is raised [NW06, section 10.3].
+//! each step, so the energy never rises; where no length lowers it, the diagonal is raised [NW06, section 10.3].
 //!
-//! Examples lead the targets l̄, θ̄, Ā and V̄ by weights that are given or found (`examples`, `leaning`). Where they alone
-//! move a part, `frames` says where it stands.
+//! Examples change the targets l̄, θ̄, Ā and V̄ by weights that are given or found (`examples`, `leaning`). If they
+//! alone move a part, `frames` places it.
 //!
-//! Parts: `elements` are the edges, hinges and triangles, `hinge` the angle and its gradient, `face` the area's gradient and barrier,
-//! `curvature` their second derivatives, `enclosed` the volumes, `springs` the soft handles, `shape` where the vertices are and their energy, `system` the
-//! matrix, `unfolded` a quadratic energy that gives the handles' weights, `start` chooses where to begin, `blended` is the
-//! start for examples, and `descent` takes a step. A large surface has a `coarse` level that takes the `lead`; `carry`
-//! brings over what it does.
+//! Parts: `elements` defines the edges, hinges and triangles, `hinge` the angle and its gradient, `face` the area's
+//! gradient and barrier, `curvature` their second derivatives, `enclosed` the volumes, `springs` the soft handles,
+//! `shape` the positions and their energy, `system` the matrix, and `unfolded` a quadratic energy that gives the
+//! handles' weights. `start` chooses the first shape for new targets, `blended` gives the one for examples, and
+//! `descent` takes a step. A large surface has a `coarse` level that takes the `lead`; `carry` transfers its motion.
 
 mod blended;
 mod carry;
@@ -77,17 +80,17 @@ use crate::region::slender;
 use crate::sparse::factor_error::FactorError;
 use crate::{BindError, Budget};
 
-/// Bytes of a solved vertex in the tables of a surface that is led: shares, turns, factors, positions, and the last steps
-/// with their changes.
+/// Bytes of a solved vertex in the tables of a led surface: shares, turns, factors, positions, and the last steps with
+/// their changes.
 const LED_ROW: usize = 900;
 
-/// The bound method, with the shape it is at.
+/// The bound method with its present shape.
 #[derive(Debug)]
 pub(crate) struct ShellsSolver {
     energy: Energy,
     /// None while it acts.
     descent: Option<Descent>,
-    /// What starts from examples take, if there are any.
+    /// The data for starts from examples, if there are any.
     blending: Option<Blending>,
     /// The last steps.
     memory: Memory,
@@ -95,31 +98,31 @@ pub(crate) struct ShellsSolver {
     weights: Vec<f64>,
     /// The handles relative to the solver's origin.
     handles: Vec<HandleFrame>,
-    /// Of each hard handle: its surface vertices with their coordinates.
+    /// For each hard handle its surface vertices with their coordinates.
     prescribed: Vec<Vec<Prescribed>>,
     motions: Vec<Motion>,
     current: Shape,
     trial: Shape,
     slopes: Slopes,
-    /// Whether these are the gradients at the current shape.
+    /// True if these are the gradients at the current shape.
     has_slopes: bool,
     has_converged: bool,
-    /// Whether no step was found that lowers the energy, though the shape has not converged.
+    /// True if no step was found that lowers the energy, though the shape has not converged.
     has_stalled: bool,
-    /// Whether other weights of examples were set since the last step.
+    /// True if other weights of examples were set since the last step.
     has_other_weights: bool,
-    /// Whether the offsets of handles' vertices changed since the last step.
+    /// True if the offsets of handles' vertices changed since the last step.
     has_other_offsets: bool,
     tolerance: f64,
     warnings: Vec<String>,
 }
 
-/// How steps are found.
+/// The method that finds steps.
 #[derive(Debug)]
 enum Descent {
-    /// By Newton's method, with a factor of the whole matrix.
+    /// Newton's method, with a factor of the whole matrix.
     Newton(Box<System>),
-    /// Led by a coarse level.
+    /// A coarse level leads.
     Led(Box<dyn Leader>),
 }
 
@@ -128,7 +131,7 @@ trait Leader: Debug + Send + Sync {
     /// Makes the shape for new motions.
     fn start(&mut self, solver: &mut ShellsSolver, motions: &[Motion]);
 
-    /// A step towards unchanged motions.
+    /// Takes a step towards unchanged motions.
     fn step(&mut self, solver: &mut ShellsSolver);
 
     /// Returns to the rest shape.
@@ -143,7 +146,7 @@ trait Leader: Debug + Send + Sync {
     /// Sets the flag that ends a Newton step.
     fn set_cancel(&mut self, cancel: &Cancel);
 
-    /// Whether the next step is a Newton step, if there is memory for one.
+    /// True if the next step is a Newton step, if there is memory for one.
     fn is_settling(&self) -> bool;
 
     /// The number of entries that its factors store.
@@ -162,7 +165,7 @@ struct Means {
 /// Gives a coarse level the lead.
 type Lead<'a> = Box<dyn FnOnce(Means) -> Box<dyn Leader> + 'a>;
 
-/// What a start from examples takes.
+/// The data for a start from examples.
 #[derive(Debug)]
 struct Blending {
     turns: Turns,
@@ -171,11 +174,11 @@ struct Blending {
     preconditioner: Option<Preconditioner>,
 }
 
-/// A vertex that goes exactly where its handle goes.
+/// A vertex that follows its handle exactly.
 #[derive(Clone, Copy, Debug)]
 struct Prescribed {
     surface_vertex: u32,
-    /// [`elements::ABSENT`] where nothing of the energy sees it.
+    /// [`elements::ABSENT`] if no element has it.
     local: u32,
     coordinates: [f64; 4],
     /// The offset of its target from its handle's motion.
@@ -202,7 +205,7 @@ impl ShellsSolver {
         Self::bind_led(problem, options, partition, handles, progress, cancel, |_, _| None)
     }
 
-    /// Like [`ShellsSolver::bind`], for a surface that is led if it is large and `coarse` gives a level.
+    /// Like [`ShellsSolver::bind`], but a large surface is led if `coarse` gives a level.
     fn bind_led<'a>(
         problem: &BoundaryProblem,
         options: &Shells,
@@ -212,7 +215,7 @@ impl ShellsSolver {
         cancel: &Cancel,
         coarse: impl FnOnce(&Elements, Budget) -> Option<Lead<'a>>,
     ) -> Result<Self, BindError> {
-        // They bend as the prisms do, and are refined as little.
+        // They bend like the prisms, and are refined as little.
         let most = slender::MOST_EDGES_OF_PRISMS;
         slender::check(&partition.triangulation, &partition.solved, most, None)?;
         let world_origin = handles.first().map_or(DVec3::ZERO, |handle| handle.world_centre);
@@ -255,7 +258,7 @@ impl ShellsSolver {
         };
         cancel.check()?;
         progress.set(0.6);
-        // Its factor may be copied.
+        // The budget must also hold a copy of its factor.
         let unfolded = Unfolded::of(&energy, &pattern, &ends, budget.shared_by(1.5), cancel).map_err(refused)?;
         let weights = unfolded.weights(problem, partition, &energy, cancel).map_err(refused)?;
         let mut blending = (examples > 0).then(|| Blending {
@@ -306,7 +309,7 @@ impl ShellsSolver {
         })
     }
 
-    /// One step towards `motions`. Whether it converged, and the energy.
+    /// Takes one step towards `motions`. Returns true if it converged, and the energy.
     pub fn advance(&mut self, motions: &[Motion]) -> (bool, f64) {
         let has_other_weights = std::mem::take(&mut self.has_other_weights);
         let has_other_offsets = std::mem::take(&mut self.has_other_offsets);
@@ -318,13 +321,13 @@ impl ShellsSolver {
         }
         let energy = self.current.energy;
         if !energy.is_finite() {
-            // It is refused; the next targets begin afresh.
+            // The shape is refused; the next targets start from rest.
             self.back_to_rest();
         }
         (self.has_converged, energy * self.energy.unit)
     }
 
-    /// Sets the weights of the examples; the next step heads for them.
+    /// Sets the weights of the examples; the next step approaches them.
     pub fn give(&mut self, weights: &[Option<f64>]) {
         self.energy.examples.give(weights);
         self.has_other_weights = true;
@@ -333,7 +336,7 @@ impl ShellsSolver {
         }
     }
 
-    /// Sets the offsets of handles' vertices from the motions; the next step has new targets then.
+    /// Sets the offsets of handles' vertices from the motions; then the next step has new targets.
     pub fn set_offsets(&mut self, offsets: &Offsets) {
         for vertex in self.prescribed.iter_mut().flatten() {
             vertex.offset = offsets.at(vertex.surface_vertex);
@@ -346,8 +349,8 @@ impl ShellsSolver {
         }
     }
 
-    /// The solved vertices' displacements with the components that nothing holds where their frames have them; `None`
-    /// if there are no such components.
+    /// The solved vertices' displacements, with the components that nothing holds placed by their frames; `None` if
+    /// there are no such components.
     pub fn placed(&self) -> Option<Vec<DVec3>> {
         let Energy { frames, elements, .. } = &self.energy;
         let mut placed = (!frames.is_empty()).then(|| self.current.displacements.clone());
@@ -359,7 +362,7 @@ impl ShellsSolver {
         placed
     }
 
-    /// Whether neither a handle nor an example moves the present shape.
+    /// True if neither a handle nor an example moves the present shape.
     fn is_at_rest(&self) -> bool {
         let has_places = self
             .prescribed
@@ -371,7 +374,7 @@ impl ShellsSolver {
             && self.current.weights.iter().all(|weight| *weight == 0.0)
     }
 
-    /// How many numbers its factors store.
+    /// The count of numbers that its factors store.
     pub fn stored(&self) -> usize {
         let of_blending = self.blending.as_ref().and_then(|own| own.preconditioner.as_ref());
         let of_descent = match &self.descent {
@@ -382,7 +385,7 @@ impl ShellsSolver {
         of_descent + of_blending.map_or(0, Preconditioner::stored)
     }
 
-    /// Makes the first shape for new motions: a start and a step, or what the coarse level predicts.
+    /// Makes the first shape for new motions: a start and a step, or the prediction of the coarse level.
     fn head_for(&mut self, motions: &[Motion]) {
         let Some(mut descent) = self.descent.take() else {
             return;
@@ -397,7 +400,7 @@ impl ShellsSolver {
         self.descend();
     }
 
-    /// The rest shape, where no handle moves.
+    /// Returns to the rest shape, where no handle moves.
     pub fn back_to_rest(&mut self) {
         self.motions.fill(Motion::default());
         self.energy.springs.aim(&self.motions);

@@ -1,4 +1,4 @@
-//! Where the vertices are, the energy there, and its gradient.
+//! The positions of the vertices, their energy, and its gradient.
 
 use glam::DVec3;
 use pliant_mesh::face_area;
@@ -18,24 +18,24 @@ use crate::numerical::sums::{CHUNKS_A_TASK, Field};
 use crate::region::boundary_problem::BoundaryProblem;
 use crate::region::partition::Partition;
 
-/// How much a rigid motion by the diagonal is resisted within a step where nothing else does, in units of stretching.
+/// The resistance to a rigid motion by the diagonal within a step where nothing else resists, in units of stretching.
 const INERTIA: f64 = 1e-6;
 
 /// A shape. Angles, weights and energy are valid after an evaluation of the displacements.
 #[derive(Clone, Debug)]
 pub(super) struct Shape {
-    /// Of each local vertex, in world units.
+    /// The displacement of each local vertex, in world units.
     pub displacements: Vec<DVec3>,
-    /// θ of each hinge. An evaluation takes those that are nearest to what they were before.
+    /// θ of each hinge. An evaluation takes the angles nearest to their earlier values.
     pub angles_rad: Vec<f64>,
-    /// Those of the examples: an evaluation finds the free ones.
+    /// The weights of the examples: an evaluation finds the free ones.
     pub weights: Vec<f64>,
     /// E, in squared world units.
     pub energy: f64,
 }
 
 impl Shape {
-    /// Moves the first vertices by so much of a field.
+    /// Moves the first vertices by `share` times a field.
     pub fn move_by(&mut self, field: &Field, share: f64) {
         self.displacements[..field.len()]
             .par_iter_mut()
@@ -45,7 +45,7 @@ impl Shape {
     }
 }
 
-/// All that has an energy.
+/// Everything that has an energy.
 #[derive(Debug)]
 pub(super) struct Energy {
     pub elements: Elements,
@@ -54,16 +54,16 @@ pub(super) struct Energy {
     pub springs: Springs,
     /// Components that only examples move.
     pub frames: Vec<Frame>,
-    /// What is added to the matrices' diagonal at these solved vertices, which belong to `frames`: all together they may
+    /// The addition to the matrices' diagonal at these solved vertices, which belong to `frames`: all together they may
     /// move rigidly without any energy.
     pub inertia: Vec<(u32, f64)>,
-    /// What makes the energy a number without unit: one over the area.
+    /// The factor that makes the energy a number without unit: one over the area.
     pub unit: f64,
-    /// Of each solved vertex: its edges, doubled, plus which end it is.
+    /// For each solved vertex: its edges, doubled, plus the number of its end.
     edges_at: Rows,
-    /// Of each solved vertex: its hinges, four times, plus which corner it is.
+    /// For each solved vertex: its hinges, four times, plus the number of its corner.
     hinges_at: Rows,
-    /// Of each solved vertex: its triangles, four times, plus which corner it is.
+    /// For each solved vertex: its triangles, four times, plus the number of its corner.
     faces_at: Rows,
 }
 
@@ -77,17 +77,17 @@ struct Rows {
 /// The residuals' gradients at a shape.
 #[derive(Debug, Default)]
 pub(super) struct Slopes {
-    /// Of each edge from its first end to the second: the unit vector along it.
+    /// For each edge the unit vector from its first end to the second.
     pub edges: Vec<DVec3>,
-    /// Of each hinge at its corners.
+    /// For each hinge the gradient of its angle at its corners.
     pub hinges: Vec<[DVec3; 4]>,
-    /// Of each triangle at its corners.
+    /// For each triangle the gradient of its area at its corners.
     pub faces: Vec<[DVec3; 3]>,
     /// The second derivative of each triangle's energy by its area.
     pub face_weights: Vec<f64>,
-    /// Of each solved vertex: that of its component's volume; empty if none counts.
+    /// For each solved vertex the gradient of its component's volume; empty if no volume counts.
     pub volume: Field,
-    /// Of the energy at the solved vertices.
+    /// The gradient of the energy at the solved vertices.
     pub energy: Field,
 }
 
@@ -116,7 +116,7 @@ impl Rows {
 }
 
 impl Energy {
-    /// Of these elements, and of the volumes and soft handles that there are.
+    /// Makes the energy of these elements and of the volumes and soft handles.
     pub fn of(
         problem: &BoundaryProblem,
         options: &Shells,
@@ -179,8 +179,8 @@ impl Energy {
         shape.energy = 0.0;
     }
 
-    /// Forgets how far the hinges were turned: the next evaluation takes the angles that are nearest to those of the
-    /// shape's weights.
+    /// Forgets the whole turns of the hinges: the next evaluation takes the angles nearest to those of the shape's
+    /// weights.
     pub fn relax_angles(&self, shape: &mut Shape) {
         let Shape {
             angles_rad, weights, ..
@@ -190,17 +190,17 @@ impl Energy {
         angles_rad.extend(hinges.map(|(place, hinge)| hinge.angle_rad + self.examples.angle_rad(place, weights)));
     }
 
-    /// The edges that a solved vertex ends, doubled, plus which end it is.
+    /// The edges that end at a solved vertex, doubled, plus the number of the end.
     pub fn edges_at(&self, vertex: usize) -> &[u32] {
         self.edges_at.at(vertex)
     }
 
-    /// The hinges that a solved vertex is a corner of, four times, plus which corner it is.
+    /// The hinges with a corner at a solved vertex, four times, plus the number of the corner.
     pub fn hinges_at(&self, vertex: usize) -> &[u32] {
         self.hinges_at.at(vertex)
     }
 
-    /// The triangles that a solved vertex is a corner of, four times, plus which corner it is.
+    /// The triangles with a corner at a solved vertex, four times, plus the number of the corner.
     pub fn faces_at(&self, vertex: usize) -> &[u32] {
         self.faces_at.at(vertex)
     }
@@ -241,7 +241,8 @@ impl Energy {
         self.elements.rest[local as usize] + shape.displacements[local as usize]
     }
 
-    /// What is added to a matrix' diagonal at a solved vertex: the springs, and the inertia of what nothing holds.
+    /// The addition to a matrix' diagonal at each solved vertex: the springs, and the inertia of components that
+    /// nothing holds.
     pub fn on_diagonal(&self) -> impl Iterator<Item = (u32, f64)> + '_ {
         let springs = self.springs.all().iter().map(|spring| (spring.local, spring.strength));
         springs.chain(self.inertia.iter().copied())
@@ -381,7 +382,7 @@ impl Energy {
     }
 }
 
-/// Σ of what each gives, the same on any number of threads.
+/// Sums `of` over all items, with the same result on any number of threads.
 fn partial_sums<T: Sync>(each: &[T], of: impl Fn(usize, &T) -> f64 + Sync) -> f64 {
     let sums: Vec<f64> = each
         .par_chunks(CHUNK)
@@ -392,7 +393,7 @@ fn partial_sums<T: Sync>(each: &[T], of: impl Fn(usize, &T) -> f64 + Sync) -> f6
     sums.iter().sum()
 }
 
-/// The components that nothing holds, and what their vertices add to the diagonal.
+/// The components that nothing holds, and their vertices' additions to the diagonal.
 fn loose(
     problem: &BoundaryProblem,
     partition: &Partition,
@@ -430,7 +431,8 @@ mod tests {
         2.0 * ((k as f64 * 12.9898).sin() * 43_758.545).fract() - 1.0
     }
 
-    /// Unevenly stiff, the lowest part fixed, the highest one a soft handle, with an example for each weight.
+    /// Makes a solver for an unevenly stiff shape: its lowest part is fixed, its highest part is a soft handle, and
+    /// each weight has an example.
     fn solver(drawn: Drawn, weights: &[Option<f64>]) -> ShellsSolver {
         let model = shapes::model(drawn);
         let bounds = model.bounds().unwrap();
@@ -532,7 +534,7 @@ mod tests {
         }
     }
 
-    /// To first order; what is left is of the second order in the length.
+    /// It agrees to first order; the rest is of second order in the length.
     #[test]
     fn at_rest_the_matrix_is_the_second_derivative() {
         let cases = [

@@ -1,8 +1,8 @@
 //! Soft handles: a spring from each of their vertices to its target.
 //!
 //! Their vertices are solved for like free ones, and E gains ½ Σ W_i |d_i − c_i|² with the strengths W of
-//! [`crate::Constraints`]: what a sheet of these stiffnesses opposes, q A_i (k_s + k_b D² q) for the handle's square wave
-//! number q.
+//! [`crate::Constraints`]: the resistance of a sheet of these stiffnesses, q A_i (k_s + k_b D² q) for the handle's
+//! square wave number q.
 
 use glam::DVec3;
 
@@ -15,13 +15,13 @@ use crate::primo::edges::area;
 use crate::region::boundary_problem::BoundaryProblem;
 use crate::region::partition::Partition;
 
-/// The springs of all soft handles, and what else pulls.
+/// The springs of all soft handles, and the dead loads.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Springs {
     springs: Vec<Spring>,
     /// c of each, in world units.
     wanted: Vec<DVec3>,
-    /// A dead load at each solved vertex, or none: E loses what they give, Σ load · d.
+    /// A dead load at each solved vertex, or none: they lower E by Σ load · d.
     pub loads: Field,
 }
 
@@ -39,7 +39,7 @@ pub(super) struct Spring {
 }
 
 impl Springs {
-    /// Those of the handles that `partition` has soft.
+    /// Makes the springs of the soft handles of `partition`.
     pub fn of(
         problem: &BoundaryProblem,
         options: &Shells,
@@ -82,12 +82,12 @@ impl Springs {
         }
     }
 
-    /// All of them.
+    /// All springs.
     pub fn all(&self) -> &[Spring] {
         &self.springs
     }
 
-    /// Where each wants its solved vertex, as a displacement.
+    /// The solved vertices with their wanted displacements.
     pub fn wanted(&self) -> impl Iterator<Item = (usize, DVec3)> + '_ {
         let each = self.springs.iter().zip(&self.wanted);
         each.map(|(spring, wanted)| (spring.local as usize, *wanted))
@@ -108,7 +108,7 @@ impl Springs {
         }
     }
 
-    /// What they hold.
+    /// The energy of the springs.
     pub fn energy(&self, displacements: &[DVec3]) -> f64 {
         let each = self.springs.iter().zip(&self.wanted);
         let held = each
@@ -124,7 +124,7 @@ impl Springs {
             .sum::<f64>()
     }
 
-    /// Adds how they pull.
+    /// Adds the springs' and loads' gradient.
     pub fn add_gradient(&self, displacements: &[DVec3], gradient: &mut [[f64; 3]]) {
         for (spring, wanted) in self.springs.iter().zip(&self.wanted) {
             let pull = (displacements[spring.local as usize] - *wanted) * spring.strength;

@@ -1,5 +1,5 @@
-//! The start for new targets: the rest shape or the last one, moved by the handles' blended motions, or the examples
-//! blended and carried by these.
+//! The start for new targets: the rest shape or the last one, moved by the handles' blended motions, or the blended
+//! examples, carried by these motions.
 
 use glam::{DMat3, DQuat, DVec3};
 use rayon::prelude::*;
@@ -12,12 +12,12 @@ use crate::handles::Motion;
 use crate::handles::blend::{Origin, Screw, Screws, carried};
 use crate::numerical::rows::CHUNK;
 
-/// Solutions with a factor in single precision for a blended shape, each correcting the last.
+/// The number of solutions for a blended shape with a factor in single precision; each corrects the last.
 const ROUNDS: u32 = 2;
 
 impl ShellsSolver {
-    /// Makes the best start the current shape for `motions`, and returns which one it was: the rest shape carried, the
-    /// last one carried, or the last one as it was.
+    /// Makes the best start the current shape for `motions`, and returns its origin: the rest shape carried, the last
+    /// one carried, or the last one unchanged.
     ///
     /// Loads belong to the shape that they were computed at: a start from rest has none, and the starts are compared
     /// without them.
@@ -54,7 +54,7 @@ impl ShellsSolver {
             }
         }
         if !best.0.energy.is_finite() {
-            // It is refused.
+            // The caller refuses this shape.
             std::mem::swap(&mut best.0, &mut self.trial);
         }
         self.current = best.0;
@@ -67,8 +67,8 @@ impl ShellsSolver {
         best.1
     }
 
-    /// Makes the trial shape what the examples are with the given weights and a guess of the free ones, carried by
-    /// `screws`. Whether there is something to blend.
+    /// Makes the trial shape the blend of the examples with the given weights and a guess of the free ones, carried by
+    /// `screws`. Returns true if there are examples to blend.
     fn blend(&mut self, screws: &[Screw]) -> bool {
         let Some(mut blending) = self.blending.take() else {
             return false;
@@ -103,8 +103,8 @@ impl ShellsSolver {
         true
     }
 
-    /// How each local vertex turns: as the examples have it, and besides, by its handles' weights, as these turn further
-    /// than the examples have them.
+    /// The turn of each local vertex: the examples' turn, and further, by its handles' weights, the handles' turns
+    /// beyond those of the examples.
     fn blended_turns(&self, mut turns: Vec<DQuat>, screws: &[Screw]) -> Vec<DMat3> {
         let further = |(own, screw): (&Vec<Prescribed>, &Screw)| {
             let own = own.iter().filter(|vertex| vertex.local != ABSENT);
@@ -134,8 +134,8 @@ impl ShellsSolver {
         turns.par_iter().enumerate().with_min_len(CHUNK).map(turn).collect()
     }
 
-    /// The given weights, and for the free ones those that carry the vertices that are held nearest to where they are in
-    /// the trial shape.
+    /// The given weights, and a guess of the free ones, which brings the constrained vertices nearest to their
+    /// positions in the trial shape.
     fn guess(&self) -> Vec<f64> {
         let Energy { elements, examples, .. } = &self.energy;
         let held = elements.solved_count..elements.vertices.len();
@@ -143,7 +143,7 @@ impl ShellsSolver {
         examples.guess(held.chain(self.energy.springs.wanted()))
     }
 
-    /// Makes the trial shape the rest shape or the current one, carried by `screws`, with the handles where they go.
+    /// Makes the trial shape the rest shape or the current one, carried by `screws`, with the handles at their targets.
     pub(super) fn carry(&mut self, screws: &[Screw], origin: Origin) {
         let Self {
             current,

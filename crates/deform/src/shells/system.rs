@@ -2,13 +2,13 @@
 //!
 //! The Hessian is P − N with two positive matrices: P is JᵀJ and the positive part of the residuals' own second
 //! derivatives, N the negative part (`curvature`). A step takes P − N if that is positive definite, which its
-//! factor tells, and otherwise P − c N with the first c of a few that is. On bent scans P alone took two to six times as
-//! many steps: it is too firm where a shape is about to buckle. A multiple of the diagonal in place of a smaller c, which
-//! resists moves of whole limbs most, took up to twice as many.
+//! factorisation shows, and otherwise P − c N with the first c of a few for which it is. On bent scans P alone took two
+//! to six times as many steps: it is too firm for a shape that is about to buckle. A multiple of the diagonal in place
+//! of a smaller c resists moves of whole limbs most and took up to twice as many.
 //!
 //! A column's rows are the vertices that share an edge or a hinge with its own; those of a triangle share its edges.
-//! Volumes are left out of it: their gradients g enter the solution by the formula of Sherman and Morrison,
-//! (K + w g gᵀ)⁻¹ b = y − z w gᵀy / (1 + w gᵀz) with y = K⁻¹ b and z = K⁻¹ g, component by component.
+//! The matrix excludes volumes: their gradients g enter the solution by the formula of Sherman and Morrison, (K + w g
+//! gᵀ)⁻¹ b = y − z w gᵀy / (1 + w gᵀz) with y = K⁻¹ b and z = K⁻¹ g, component by component.
 
 use glam::DMat3;
 use pliant_mesh::Cancel;
@@ -28,8 +28,8 @@ use crate::sparse::matrix::ScaledMatrix;
 /// Unknowns of a vertex.
 const DOF: usize = 3;
 
-/// Matrices from the exact to the firmest: how much of N counts, and what is added to the unit diagonal. A later one is
-/// taken where an earlier one is not positive definite or no length of its step lowers the energy.
+/// Matrices from the exact to the firmest: the share of N, and the addition to the unit diagonal. A later one is taken
+/// if an earlier one is not positive definite or no length of its step lowers the energy.
 const RUNGS: [(f64, f64); 8] = [
     (1.0, 1e-13),
     (0.95, 1e-13),
@@ -41,37 +41,37 @@ const RUNGS: [(f64, f64); 8] = [
     (0.0, 1e-2),
 ];
 
-/// The first rung that is positive definite but for rounding.
+/// The first rung that is positive definite up to rounding.
 const SAFE: usize = 3;
 
 /// The matrix and its factor.
 #[derive(Debug)]
 pub(super) struct System {
     pattern: Pattern,
-    /// Its values are those of a combination of the two parts.
+    /// Its values are a combination of the two parts.
     matrix: ScaledMatrix,
     positive: Vec<f64>,
     negative: Vec<f64>,
     factor: Factor,
-    /// The place in [`RUNGS`].
+    /// The present place in [`RUNGS`].
     rung: usize,
-    /// What the free weights of examples change of the inverse, as of the present factor.
+    /// The change of the inverse by the free weights of examples, for the present factor.
     leaning: Option<Leaning>,
 }
 
-/// Which vertices share an edge or a hinge.
+/// The pairs of vertices that share an edge or a hinge.
 #[derive(Clone, Debug)]
 pub(super) struct Pattern {
     offsets: Vec<u32>,
-    /// Of each solved vertex: itself, and those after it in the order of elimination, ascending.
+    /// For each solved vertex: itself, and its later neighbours in the order of elimination, ascending.
     rows: Vec<u32>,
 }
 
 impl Pattern {
-    /// Of the solved vertices.
+    /// The pattern of the solved vertices.
     pub fn of(elements: &Elements) -> Self {
         let count = elements.solved_count;
-        // A hinge's vertices are joined by edges but for those across.
+        // Edges join a hinge's vertices except the two across it.
         let across = elements.hinges.iter().map(|hinge| [hinge.corners[2], hinge.corners[3]]);
         let pairs = || {
             let all = elements.edges.iter().map(|edge| edge.ends).chain(across.clone());
@@ -110,7 +110,7 @@ impl Pattern {
         &self.rows[self.offsets[vertex] as usize..self.offsets[vertex + 1] as usize]
     }
 
-    /// How many vertices it has.
+    /// The number of its vertices.
     pub fn count(&self) -> usize {
         self.offsets.len() - 1
     }
@@ -151,7 +151,7 @@ pub(super) fn scale(matrix: &mut ScaledMatrix) {
 }
 
 impl System {
-    /// Analyses the matrix, whose supernodes of vertices end at `ends`. Returns what is left of the budget.
+    /// Analyses the matrix, whose supernodes of vertices end at `ends`. Returns the rest of the budget too.
     ///
     /// # Errors
     /// It takes more than the budget, or more memory than there is.
@@ -177,28 +177,28 @@ impl System {
         Ok((system, budget))
     }
 
-    /// How many numbers the factor stores.
+    /// The count of numbers that the factor stores.
     pub fn stored(&self) -> usize {
         self.factor.stored()
     }
 
-    /// Operations of a factorisation.
+    /// The operations of a factorisation.
     pub fn work(&self) -> f64 {
         self.factor.work()
     }
 
-    /// The next step takes P: behind a jump of the handles nothing nearer to the Hessian is positive definite.
+    /// The next step takes P: after a jump of the handles nothing nearer to the Hessian is positive definite.
     pub fn undamp(&mut self) {
         self.rung = SAFE;
     }
 
-    /// The next step takes a firmer matrix. Whether there is one.
+    /// The next step takes a firmer matrix. Returns true if there is one.
     pub fn damp(&mut self) -> bool {
         self.rung += 1;
         self.rung < RUNGS.len()
     }
 
-    /// A step went well: the next one tries a matrix nearer to the Hessian.
+    /// After a good step, the next one tries a matrix nearer to the Hessian.
     pub fn relax(&mut self) {
         self.rung = self.rung.saturating_sub(1);
     }
@@ -284,7 +284,7 @@ impl System {
         });
     }
 
-    /// x ← H⁻¹ x for the factored matrix H, with the volumes of `slopes` and the free weights as of the factor.
+    /// x ← H⁻¹ x for the factored matrix H, with the volumes of `slopes` and the free weights of the factor.
     pub fn apply(&self, energy: &Energy, slopes: &Slopes, x: &mut [[f64; 3]]) {
         let right = self.leaning.as_ref().map(|_| x.to_vec());
         self.apply_residuals(energy, slopes, x);
@@ -293,7 +293,7 @@ impl System {
         }
     }
 
-    /// The same with all weights held.
+    /// The same with all weights constant.
     fn apply_residuals(&self, energy: &Energy, slopes: &Slopes, x: &mut [[f64; 3]]) {
         if slopes.volume.is_empty() {
             let [solution] = self.solve([&*x]);
@@ -336,7 +336,7 @@ impl System {
     }
 }
 
-/// Both slices, cut at a place.
+/// Splits both slices at a place.
 fn split(both: [&mut [f64]; 2], at: usize) -> [[&mut [f64]; 2]; 2] {
     let [(a, b), (c, d)] = both.map(|slice| slice.split_at_mut(at));
     [[a, c], [b, d]]

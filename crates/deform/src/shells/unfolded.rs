@@ -1,14 +1,15 @@
-//! The energy of the surface unfolded, which is quadratic and the same for the three coordinates:
+//! The energy of the unfolded surface, which is quadratic and the same for the three coordinates:
 //!
 //! ½ Σ_e k_s s_e A_e (x_a − x_b)² / l̄² + ½ Σ_e k_b D² s_e l̄² (Σ_i f_i x_i)² / A_e
 //!
-//! with the linear angle's factors f (`hinge::flat`): a thin plate on a membrane. Its matrix is no less than that of the
-//! edges and hinges in JᵀJ where the surface is about flat. It gives the handles' weights, which minimise it: how much of
-//! a handle's motion each vertex begins with. Constants cost nothing, so that where nothing is fixed the weights sum to 1.
-//! A large surface's steps descend on top of its factor, and what its coarse level does is carried over by it (`carry`).
+//! with the linear angle's factors f (`hinge::flat`): a thin plate on a membrane. Its matrix is at least that of the
+//! edges and hinges in JᵀJ where the surface is about flat. The handles' weights minimise it: each is the share of a
+//! handle's motion with which a vertex starts. Constants cost nothing, so the weights sum to 1 if nothing is fixed. A
+//! large surface's steps descend on top of its factor, and the factor transfers the motion of the coarse level
+//! (`carry`).
 //!
-//! Areas are left out: with edges 1.5 times as stiff, which outweighs them too, the steps of a scan of 43k vertices
-//! lowered the energy as much as without.
+//! Areas are omitted: edges 1.5 times as stiff would outweigh them too, but with these the steps of a scan of 43k
+//! vertices lowered the energy as much as without.
 
 use pliant_mesh::{Cancel, SurfaceVertex};
 use rayon::prelude::*;
@@ -46,10 +47,10 @@ pub(super) struct Preconditioner {
 }
 
 impl Unfolded {
-    /// Factors it, with supernodes that end at `ends`.
+    /// Factors the matrix, with supernodes that end at `ends`.
     ///
     /// # Errors
-    /// As for a factorisation; a pivot is named by its local vertex.
+    /// The errors of a factorisation; a pivot is named by its local vertex.
     pub fn of(
         energy: &Energy,
         pattern: &Pattern,
@@ -64,7 +65,7 @@ impl Unfolded {
         })
     }
 
-    /// Its copy in single precision.
+    /// Copies it in single precision.
     ///
     /// # Errors
     /// [`FactorError::Memory`].
@@ -91,7 +92,7 @@ impl Unfolded {
         let handle_count = partition.handles.len();
         let solved_count = energy.elements.solved_count;
         let mut weights = vec![0.0; solved_count * handle_count];
-        // Of a local vertex: the hard handle that holds it.
+        // The hard handle that holds a local vertex.
         let handle_of = |local: u32| match problem.roles[energy.elements.vertices[local as usize] as usize] {
             Role::Handle(handle) => Some(usize::from(handle)).filter(|&handle| partition.soft[handle].is_none()),
             Role::Fixed | Role::Free => None,
@@ -134,7 +135,7 @@ impl Unfolded {
 }
 
 impl Preconditioner {
-    /// How many numbers of 8 bytes it stores.
+    /// The count of numbers of 8 bytes that it stores.
     pub fn stored(&self) -> usize {
         self.factor.stored() / 2
     }
@@ -168,7 +169,7 @@ impl Preconditioner {
     }
 }
 
-/// Calls with the vertices, the factors f and the weight of each square ½ weight (Σ f w)².
+/// Visits each square ½ weight (Σ f w)²: its vertices, its factors f and its weight.
 fn each_square(energy: &Energy, mut take: impl FnMut(&[u32], &[f64], f64)) {
     let elements = &energy.elements;
     for edge in &elements.edges {
