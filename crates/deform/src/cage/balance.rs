@@ -1,8 +1,8 @@
 //! The discrete Laplace equation on a grid inside the cage.
 //!
-//! A node's balance is Σ (u_neighbour − u) / θ = 0 over its six directions, where θ is the distance in steps to the next
-//! node or, where the cage comes first, to the cage, whose value is taken there [GFCK02]. All difference quotients of a
-//! linear function are alike, so linear functions are reproduced exactly, and the matrix is such that no coordinate is
+//! A node's balance is Σ (u_neighbour − u) / θ = 0 over its six directions. θ is the distance in steps to the next node
+//! or, if the cage comes first, to the cage, which gives the value there [GFCK02]. All difference quotients of a linear
+//! function are alike, so linear functions are reproduced exactly, and the matrix is such that no coordinate is
 //! negative.
 
 use glam::USizeVec3;
@@ -11,15 +11,15 @@ use super::crossings::{Crossings, GridFrame};
 use super::mesh::CageMesh;
 use crate::sparse::matrix::ScaledMatrix;
 
-/// Coordinates that are solved for at once.
+/// The number of coordinates that one solve handles.
 pub(super) const AT_ONCE: usize = 8;
 
-/// A node that does not lie in the cage.
+/// The number of a node outside the cage.
 pub(super) const OUTSIDE: u32 = u32::MAX;
 
-/// What a node's balance consists of.
+/// The equations of all nodes' balances.
 pub(super) struct Balance {
-    /// Its weight, the sum of all.
+    /// The weight of each node: the sum of all weights around it.
     diagonal: Vec<f64>,
     pub offsets: Vec<u32>,
     /// The nodes beside each, in compressed rows.
@@ -29,9 +29,9 @@ pub(super) struct Balance {
 }
 
 impl Balance {
-    /// At each of the nodes that `inside` numbers.
+    /// Makes the balance at each of the nodes that `inside` numbers.
     pub fn of(cage: &CageMesh, frame: &GridFrame, crossings: &Crossings, inside: &[u32], node_count: usize) -> Self {
-        /// Nearer to the cage a node has its value to all digits.
+        /// At a smaller distance from the cage, a node has the cage's value to all digits.
         const NEAREST: f64 = 1e-9;
         let mut balance = Self {
             diagonal: Vec::with_capacity(node_count),
@@ -75,7 +75,7 @@ impl Balance {
     }
 }
 
-/// The numbers of the nodes inside, by how often the line along x crosses the cage before them.
+/// Numbers the nodes inside: the line along x crosses the cage an odd number of times before each.
 pub(super) fn nodes_inside(frame: &GridFrame, crossings: &Crossings) -> Vec<u32> {
     let mut inside = vec![OUTSIDE; frame.count()];
     let mut count = 0;

@@ -1,4 +1,4 @@
-//! The bound cage: what handles and the hand do to it, frame by frame.
+//! The bound cage: its motion by handles and by hand, frame by frame.
 
 use glam::{DVec3, Mat3};
 
@@ -21,10 +21,10 @@ pub(super) struct BoundCage {
     pub warnings: Vec<String>,
 }
 
-/// How points follow the cage.
+/// The map from the cage to the points.
 #[derive(Debug)]
 pub(super) enum Field {
-    /// With what the hand does, where the cage was brought.
+    /// A linear field, with the moves by hand if the cage was brought.
     Linear(Box<LinearField>, Option<Box<ByHand>>),
     Conformal(Box<Conformal>),
 }

@@ -1,4 +1,4 @@
-//! A cage that a person gives: whether it is one, and what lies in it.
+//! Checks a cage that a person gives, and finds the points outside it.
 
 use std::collections::BTreeMap;
 
@@ -10,14 +10,14 @@ use super::mesh::CageMesh;
 use crate::attachment::{Attachment, ControlMesh, finite};
 use crate::attachment_refused::AttachmentRefused;
 
-/// The fewest and the most vertices: the equations that the handles drive a cage by are dense.
+/// The fewest and the most vertices: the equations by which the handles drive a cage are dense.
 const VERTICES: [usize; 2] = [4, 3000];
 
 /// A triangle of less than this share of the cage's size squared has no area, and a cage of less than this share of its
-/// size cubed no volume.
+/// size cubed has no volume.
 const NOTHING: f64 = 1e-14;
 
-/// Refuses what is no closed triangle mesh around a volume.
+/// Refuses anything but a closed triangle mesh around a volume.
 pub(super) fn check(attachment: &Attachment) -> Result<(), AttachmentRefused> {
     let Attachment::Mesh(mesh) = attachment else {
         return Err(AttachmentRefused::Kind);
@@ -49,7 +49,7 @@ pub(super) fn outward_faces(mesh: &ControlMesh) -> Vec<[u32; 3]> {
     }
 }
 
-/// Which points do not lie in a cage: a line along x from each crosses it evenly often.
+/// A flag for each point that is outside a cage: a line along x from it crosses the cage an even number of times.
 pub(super) fn are_outside(cage: &CageMesh, points: &[DVec3]) -> Vec<bool> {
     let faces = (0..cage.faces.len()).map(|face| {
         let corners = cage.corners(face);
@@ -121,9 +121,9 @@ fn check_edges(triangles: &[[u32; 3]]) -> Result<(), AttachmentRefused> {
     Ok(())
 }
 
-/// What it encloses, negative where its triangles face inward.
+/// The enclosed volume, negative if the triangles face inward.
 fn volume(mesh: &ControlMesh) -> f64 {
-    // A cage that was made around nothing has no vertex.
+    // A made cage around no points has no vertex.
     let origin = mesh.rest.first().copied().unwrap_or_default();
     let volumes = mesh.triangles.iter().map(|corners| {
         let [a, b, c] = corners.map(|corner| mesh.rest[corner as usize] - origin);

@@ -1,4 +1,4 @@
-//! What the hand's moves of a cage's vertices do with coordinates that are linear in them.
+//! The field of a cage's vertices that were moved by hand, for coordinates that are linear in them.
 
 use glam::{DVec3, Mat3};
 use rayon::prelude::*;
@@ -13,12 +13,12 @@ use crate::method::BindInput;
 use crate::space::falloff::Falloff;
 use crate::space::hand_field::{ControlMap, HandField};
 
-/// The field of the hand's moves.
+/// The field of the moves by hand.
 #[derive(Debug)]
 pub(super) enum ByHand {
-    /// Of coordinates that are kept: to compute them takes longer than a frame may.
+    /// A field by stored coordinates: their computation takes longer than a frame may.
     Stored(StoredField),
-    /// Of harmonic coordinates that are too many to be kept.
+    /// A field by harmonic coordinates that are too many to be stored.
     Nodes(HandField<HarmonicCoordinates>),
 }
 
@@ -29,18 +29,19 @@ pub(super) struct HarmonicCoordinates {
     harmonic: Harmonic,
 }
 
-/// The most bytes of harmonic coordinates that are kept: above that a frame takes longer to read them than to interpolate
-/// them between nodes.
+/// The most bytes of harmonic coordinates that are stored: above that a frame takes longer to read them than to
+/// interpolate them between nodes.
 const MOST_STORED: u64 = 512 << 20;
 
-/// The bytes of harmonic coordinates of so many points in a cage with so many vertices, 0 where they are not kept.
+/// The bytes of harmonic coordinates of `point_count` points in a cage with `vertex_count` vertices; 0 if they are not
+/// stored.
 pub(super) fn kept_bytes(point_count: usize, vertex_count: usize) -> u64 {
     let bytes = bytes_of(point_count, stored_bytes(vertex_count));
     if bytes <= MOST_STORED { bytes } else { 0 }
 }
 
 impl ByHand {
-    /// By mean value coordinates of these vertices.
+    /// Stores mean value coordinates of these vertices.
     ///
     /// # Errors
     /// It was cancelled, or there is no memory.
@@ -59,7 +60,7 @@ impl ByHand {
         Ok(Self::Stored(field?))
     }
 
-    /// By harmonic coordinates of these vertices in a cage with so many.
+    /// Makes the field by harmonic coordinates of these vertices in a cage with `count` vertices.
     ///
     /// # Errors
     /// It was cancelled, or there is no memory.

@@ -1,4 +1,4 @@
-//! The cage of a binding: the one that was brought, or one made around the region.
+//! The cage of a binding: the brought one, or one made around the region.
 
 use std::sync::Arc;
 
@@ -16,17 +16,17 @@ use crate::space::shaping::shaping;
 /// A cage.
 #[derive(Debug)]
 pub(super) struct ChosenCage {
-    /// In world units.
+    /// The cage in world units.
     pub attachment: ControlMesh,
-    /// In the cage's unit.
+    /// The cage in its own unit.
     pub mesh: CageMesh,
-    /// The size of the voxels that a made cage has, whether it was made or not.
+    /// The size of the voxels of a made cage; a brought cage has it too.
     pub voxel: f64,
     pub is_brought: bool,
 }
 
 impl ChosenCage {
-    /// Of a binding; `detail` voxels on the longest side of the region.
+    /// Chooses the cage of a binding; a made one has `detail` voxels on the longest side of the region.
     pub fn of(input: &BindInput<'_>, within: &RegionBox, unit: Unit, detail: u32) -> Self {
         let points = region_points(input, within, unit);
         let brought = match input.attachment {
@@ -45,8 +45,8 @@ impl ChosenCage {
     }
 }
 
-/// Everything in the region's box in the cage's unit, without bare points if triangles use any of it; all there is where
-/// nothing moves.
+/// All points in the region's box, in the cage's unit, without bare points if triangles use any of them; all points of
+/// the surface if nothing moves.
 fn region_points(input: &BindInput<'_>, within: &RegionBox, unit: Unit) -> Vec<DVec3> {
     let positions = &input.problem.surface.positions;
     let all = 0..positions.len() as u32;
@@ -58,7 +58,7 @@ fn region_points(input: &BindInput<'_>, within: &RegionBox, unit: Unit) -> Vec<D
     points.map(|vertex| unit.local(positions[vertex as usize])).collect()
 }
 
-/// A cage around these points, at rest.
+/// Makes a cage around these points, at rest.
 fn made(detail: u32, points: &[DVec3], input: &BindInput<'_>, within: &RegionBox, unit: Unit) -> ControlMesh {
     let surface = input.problem.surface;
     let triangles = surface.triangles.iter();

@@ -1,5 +1,5 @@
 //! The bound cage of Green coordinates. Its faces' normals are not linear in the handles' motions, so steps fit the
-//! cage's vertices to the handles, and each sums up vertices and normals at each point.
+//! cage's vertices to the handles, and each step sums up vertices and normals at each point.
 
 use glam::{DMat3, DVec3, Mat3};
 use pliant_mesh::{Cancel, Progress};
@@ -28,20 +28,20 @@ pub(super) struct Conformal {
     unit: Unit,
     fit: GreenFit,
     affine: AffineParts,
-    /// The vertices that move, ascending, where they rest, and how they fade.
+    /// The moving vertices, ascending, with their rest positions and falloff.
     vertices: Vec<u32>,
     points: Vec<DVec3>,
     falloff: Falloff,
     table: GreenTable,
     samples: Vec<Sample>,
-    /// What `descent` is for: the handles' motions, and what the hand does.
+    /// The handles' motions and the moves by hand that `descent` belongs to.
     motions: Vec<Motion>,
     by_hand: Vec<DVec3>,
     descent: Option<Descent>,
 }
 
 impl Conformal {
-    /// Computes the coordinates of the vertices that move.
+    /// Computes the coordinates of the moving vertices.
     #[expect(clippy::too_many_arguments, reason = "its parts, each made by another function")]
     pub fn bind(
         unit: Unit,
@@ -85,7 +85,7 @@ impl Conformal {
         DIRECTIONS.saturating_mul(self.fit.work())
     }
 
-    /// One step towards these motions, and what it did; fills all of `displacements`.
+    /// Takes one step towards these motions and returns its result; fills all of `displacements`.
     pub fn step(&mut self, controls: &Controls, motions: &[Motion], displacements: &mut [DVec3]) -> Progressed {
         if motions.is_empty() {
             self.fill(&self.fit.cage.moved(&self.linear(controls, motions)), displacements);
@@ -113,7 +113,7 @@ impl Conformal {
         self.descent.as_ref().map_or(0.0, |descent| descent.current.energy)
     }
 
-    /// Back to rest.
+    /// Returns to rest.
     pub fn rest(&mut self) {
         self.descent = None;
     }
@@ -130,7 +130,7 @@ impl Conformal {
         });
     }
 
-    /// The Jacobians of the displacements, where gradients are kept; whether they are.
+    /// Writes the Jacobians of the displacements if gradients are stored; returns true if they are.
     pub fn jacobians(&self, controls: &Controls, motions: &[Motion], out: &mut [Mat3]) -> bool {
         let GreenTable::Small(rows, gradients) = &self.table else {
             return false;
@@ -148,20 +148,20 @@ impl Conformal {
         true
     }
 
-    /// Where the cage's vertices are, in world units.
+    /// The positions of the cage's vertices, in world units.
     pub fn control_positions(&self, controls: &Controls, motions: &[Motion]) -> Vec<DVec3> {
         let shifts = self.shifts(controls, motions);
         let places = controls.rest.iter().zip(shifts);
         places.map(|(rest, shift)| *rest + shift * self.unit.length).collect()
     }
 
-    /// Whether the descent is for these motions and what the hand does.
+    /// True if the descent belongs to these motions and moves by hand.
     fn is_for(&self, controls: &Controls, motions: &[Motion]) -> bool {
         let is_for = self.motions == motions && self.by_hand == controls.corrected().unwrap_or_default();
         self.descent.is_some() && is_for
     }
 
-    /// The displacements of the cage's vertices: those of the last step or, before there is one, the linear ones.
+    /// The displacements of the cage's vertices: those of the last step or, before the first step, the linear ones.
     fn shifts(&self, controls: &Controls, motions: &[Motion]) -> Vec<DVec3> {
         match &self.descent {
             Some(descent) if self.is_for(controls, motions) => descent.current.shifts.clone(),
@@ -169,7 +169,7 @@ impl Conformal {
         }
     }
 
-    /// The displacements of the cage's vertices that are linear in what handles and hand do.
+    /// The displacements of the cage's vertices that are linear in the motions of handles and the moves by hand.
     fn linear(&self, controls: &Controls, motions: &[Motion]) -> Vec<DVec3> {
         let corrected = controls.corrected();
         let shift = |vertex: usize| {
@@ -179,10 +179,11 @@ impl Conformal {
         (0..controls.rest.len()).map(shift).collect()
     }
 
-    /// What handles and hand ask of the cage.
+    /// The targets that handles and moves by hand give the cage.
     fn asked(&self, controls: &Controls, motions: &[Motion]) -> Asked {
         let local = |shift: DVec3| shift / self.unit.length;
-        // Handles are fitted by what the hand leaves; so what is fixed has the hand's displacement for its target.
+        // The handles' fit corrects the moves by hand; so fixed vertices have the displacement by hand for their
+        // target.
         let by_hand = controls.displacements();
         let of_hand = by_hand.map(|by_hand| {
             let shifts: Vec<DVec3> = by_hand.iter().map(|shift| local(*shift)).collect();

@@ -1,10 +1,10 @@
-//! Where the lines of a grid cross the cage.
+//! The crossings of a grid's lines with the cage.
 
 use glam::{DVec3, USizeVec3};
 
 use super::mesh::CageMesh;
 
-/// A grid of nodes around a cage, which lies so that no line of it meets a vertex or an edge but by accident.
+/// A grid of nodes around a cage. Its offset keeps its lines from vertices and edges of the cage except by accident.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct GridFrame {
     pub low: DVec3,
@@ -12,10 +12,10 @@ pub(super) struct GridFrame {
     pub counts: USizeVec3,
 }
 
-/// Where a line meets a face.
+/// The point at which a line meets a face.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Crossing {
-    /// Along the line, in steps from its first node.
+    /// The position along the line, in steps from its first node.
     pub at: f64,
     pub face: u32,
     /// The weights of the face's corners.
@@ -28,11 +28,11 @@ pub(super) struct Crossings {
     lines: [Vec<Vec<Crossing>>; 3],
 }
 
-/// How far the grid begins before the cage, in steps: three numbers without a common measure.
+/// The distance by which the grid begins before the cage, in steps: three numbers without a common measure.
 const BEFORE: DVec3 = DVec3::new(1.371_71, 1.413_73, 1.293_17);
 
 impl GridFrame {
-    /// Around a cage.
+    /// Makes a grid around a cage.
     pub fn around(cage: &CageMesh, step: f64) -> Self {
         let low = cage.vertices.iter().copied().fold(DVec3::INFINITY, DVec3::min);
         let high = cage.vertices.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
@@ -100,7 +100,8 @@ impl Crossings {
     }
 }
 
-/// The weights of a projected face's corners at a point in it. Faces that share an edge decide about it alike.
+/// The weights of a projected face's corners at a point in it; `None` outside. Two faces decide alike about a point at
+/// their shared edge.
 pub(super) fn met(face: &[u32; 3], corners: [[f64; 2]; 3], point: [f64; 2]) -> Option<[f64; 3]> {
     let area = |k: usize| {
         let (a, b) = ((k + 1) % 3, (k + 2) % 3);

@@ -1,4 +1,4 @@
-//! The cage as one of the methods.
+//! Declares the cage as one of the methods.
 
 use faer::Mat;
 use glam::DVec3;
@@ -52,10 +52,10 @@ pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     first_choice: || Cage::default().into(),
 };
 
-/// The most samples of the handles and of what is fixed, all together, and the fewest of each.
+/// The most samples of all handles and the fixed vertices together, and the fewest of each.
 const SAMPLES: [usize; 2] = [3000, 50];
 
-/// As [`SAMPLES`], for coordinates whose frames evaluate each sample.
+/// Like [`SAMPLES`], for coordinates whose frames evaluate each sample.
 const SAMPLES_A_FRAME: [usize; 2] = [600, 20];
 
 /// The most steps of a frame by Green coordinates.
@@ -66,7 +66,7 @@ impl DeformMethod for Cage {
         &DECLARATION
     }
 
-    /// Between two turns it is their mean, which is narrower by the cosine of half the angle.
+    /// Between two turns the field is their mean, which is narrower by the cosine of half the angle.
     fn follows_turns(&self) -> Option<Followed> {
         Some(Followed::by_limbs(90.0))
     }
@@ -226,7 +226,7 @@ fn of_cage(refused: AttachmentRefused) -> BindError {
     }
 }
 
-/// A row a vertex and four columns a handle, as entries of one vertex and handle.
+/// One row for each vertex and four columns for each handle become one entry for each vertex and handle.
 fn by_rows(driven: &Mat<f64>) -> Vec<[f64; 4]> {
     let row = |vertex: usize| {
         let handles = 0..driven.ncols() / 4;

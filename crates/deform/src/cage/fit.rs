@@ -1,5 +1,6 @@
-//! How the handles drive the cage: min Σ w |d(p) − target|² + λ |L D|² over the displacements D of the cage's vertices,
-//! with L the difference from the mean of the neighbours. So the cage bends smoothly between the handles.
+//! The fit by which the handles drive the cage: min Σ w |d(p) − target|² + λ |L D|² over the displacements D of the
+//! cage's vertices, with L the difference from the mean of the neighbours. So the cage bends smoothly between the
+//! handles.
 
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, Par};
@@ -17,19 +18,19 @@ const REGULARISATION: f64 = 1e-6;
 /// Where these differences leave a choice, least displacements decide, with this factor.
 pub(super) const RIDGE: f64 = 1e-3;
 
-/// The weight of a soft handle of weight 1: about as much as the cage resists.
+/// The weight of a soft handle of weight 1: about the resistance of the cage.
 pub(super) fn soft_unit(cage: &CageMesh) -> f64 {
     REGULARISATION * cage.vertices.len() as f64 * 0.1
 }
 
-/// Bytes that the fit takes.
+/// The bytes of the fit.
 pub(super) fn fit_bytes(vertex_count: usize, sample_count: usize) -> u64 {
     let (vertices, samples) = (vertex_count as u64, sample_count as u64);
     8 * vertices * (2 * vertices + 4 * samples + 64)
 }
 
-/// The normal equations: their matrix, and what multiplies the samples' misses, a row a vertex and a column a sample.
-/// `rows` has the coordinates, a row a sample.
+/// The normal equations: their matrix, and the factor of the samples' errors, one row for each vertex and one column
+/// for each sample. `rows` has the coordinates, one row for each sample.
 fn normal_equations(cage: &CageMesh, rows: &Mat<f64>, samples: &[Sample]) -> (Mat<f64>, Mat<f64>) {
     let (count, sample_count) = (cage.vertices.len(), samples.len());
     let weighted = Mat::from_fn(count, sample_count, |vertex, sample| {
@@ -56,8 +57,8 @@ pub(super) fn add_differences(matrix: &mut Mat<f64>, cage: &CageMesh, factor: f6
     }
 }
 
-/// The vertices' displacements that are linear in the handles' motions: a row a vertex and four columns a handle.
-/// `world_vertices` are where they rest.
+/// The vertices' displacements that are linear in the handles' motions: one row for each vertex and four columns for
+/// each handle. `world_vertices` are their rest positions.
 pub(super) fn controls(
     cage: &CageMesh,
     rows: &Mat<f64>,
@@ -83,7 +84,7 @@ pub(super) fn controls(
     })
 }
 
-/// On one thread, so that the bits do not depend on how many there are.
+/// Multiplies on one thread, so that the bits do not depend on the number of threads.
 fn multiply(out: &mut Mat<f64>, a: &Mat<f64>, b: &Mat<f64>) {
     matmul(out.as_mut(), Accum::Replace, a.as_ref(), b.as_ref(), 1.0, Par::Seq);
 }

@@ -1,9 +1,9 @@
-//! Green coordinates [LLC08]: p = Σ_i φ_i(p) v_i + Σ_j ψ_j(p) s_j n_j, by Green's third identity for the functions
-//! x, y and z. With the cage's normals n and how much its faces are stretched, s, the map keeps angles.
+//! Green coordinates [LLC08]: p = Σ_i φ_i(p) v_i + Σ_j ψ_j(p) s_j n_j, by Green's third identity for the functions x, y
+//! and z. With the cage's normals n and the stretch of its faces, s, the map keeps angles.
 //!
 //! φ_i is the double-layer potential of the hat function of vertex i and ψ_j the single-layer potential of face j, both
-//! over 4π. In closed form a face has, of its solid angle Ω, its height h over p, and of each edge e the potential
-//! L_e = ∫ 1/r ds, the distance d_e in the plane and the normal m_e in the plane:
+//! over 4π. The closed form uses a face's solid angle Ω, its height h over p, and of each edge e the potential L_e = ∫
+//! 1/r ds, the distance d_e in the plane and the normal m_e in the plane:
 //!
 //! 4π ψ = Σ_e d_e L_e − h Ω and 4π φ_i = Γ_i Ω − h Σ_e (∇Γ_i · m_e) L_e,
 //!
@@ -28,16 +28,16 @@ struct Plane {
     normal: DVec3,
     /// For each corner the normal, in the plane and outward, of the edge opposite to it.
     outward: [DVec3; 3],
-    /// For each corner how fast its hat function falls along `outward`: one over the triangle's height there.
+    /// For each corner the slope at which its hat function falls along `outward`: one over the triangle's height there.
     slopes: [f64; 3],
 }
 
-/// What an edge from a to b, seen from the point, gives to the faces at its sides.
+/// The contribution of an edge from a to b, relative to the point, to the faces at its sides.
 #[derive(Clone, Copy, Debug, Default)]
 struct AtEdge {
     /// ∫ 1/r ds.
     potential: f64,
-    /// Its gradient.
+    /// The gradient of `potential`.
     slope: DVec3,
     /// ∫ r × ds / r³, whose sum around a face is the gradient of its solid angle.
     turn: DVec3,
@@ -62,12 +62,12 @@ impl<'a> Green<'a> {
         }
     }
 
-    /// How many coordinates there are: those of the vertices, then those of the faces.
+    /// The count of coordinates: those of the vertices, then those of the faces.
     pub fn count(&self) -> usize {
         self.cage.vertices.len() + self.cage.faces.len()
     }
 
-    /// The coordinates of a point, and their gradients. Those of the vertices sum to 1 inside.
+    /// Computes the coordinates of a point, and their gradients. Those of the vertices sum to 1 inside.
     pub fn at(&self, point: DVec3, values: &mut [f64], mut gradients: Option<&mut [DVec3]>) {
         let cage = self.cage;
         values.fill(0.0);
@@ -90,7 +90,7 @@ impl<'a> Green<'a> {
             let height = a.0.dot(plane.normal);
             let volume = a.0.dot(b.0.cross(c.0));
             let lengths = a.1 * b.1 * c.1;
-            // On the face itself the limit from inside.
+            // On the face itself this takes the limit from inside.
             let volume = if volume.abs() < 1e-14 * lengths {
                 volume.abs()
             } else {
@@ -99,14 +99,14 @@ impl<'a> Green<'a> {
             let below = lengths + a.0.dot(b.0) * c.1 + b.0.dot(c.0) * a.1 + c.0.dot(a.0) * b.1;
             let solid_angle = 2.0 * volume.atan2(below);
             let own = sides.map(|side| edges[side.edge as usize]);
-            // An edge is opposite to its corner: another corner lies on it.
+            // Each edge is opposite to its corner, so another corner is on it.
             let distances = [0, 1, 2].map(|k| [b, c, a][k].0.dot(plane.outward[k]));
             let mut single = -height * solid_angle;
             for k in 0..3 {
                 single += distances[k] * own[k].potential;
             }
             values[vertex_count + number] = single / (4.0 * PI);
-            // Σ_e m_e L_e, whose products with ∇Γ_i = −slope m_i the double layers need.
+            // Σ_e m_e L_e: the double layers need its products with ∇Γ_i = −slope m_i.
             let pull: DVec3 = (0..3).map(|k| plane.outward[k] * own[k].potential).sum();
             for corner in 0..3 {
                 let hat = distances[corner] * plane.slopes[corner];
@@ -131,11 +131,11 @@ impl<'a> Green<'a> {
     }
 }
 
-/// Of an edge between two vertices, given from the point with their distances.
+/// The contribution of an edge between two vertices, given relative to the point with their distances.
 fn at_edge((a, a_length): (DVec3, f64), (b, b_length): (DVec3, f64)) -> AtEdge {
     let length = a.distance(b);
     let sum = a_length + b_length;
-    // On the edge itself what these multiply is zero.
+    // On the edge itself the factors of these are zero.
     let tiny = 1e-16 * length.max(f64::MIN_POSITIVE.sqrt());
     let gap = (sum - length).max(tiny);
     let product = (a_length * b_length).max(tiny * tiny);

@@ -1,12 +1,12 @@
-//! What a cage of Green coordinates is fitted to: min over the displacements D of its vertices of
+//! The energy that fits a cage of Green coordinates: min over the displacements D of its vertices of
 //!
 //! E = Σ w |d(p) − target|² + λ (|L (D − B)|² + ε |D − B|²) + σ Σ_f A_f (q_f − 1/q_f)²,
 //!
-//! with L the difference from the mean of the neighbours and B what the vertices have without the handles, as `fit` has
-//! it for coordinates that are linear in the vertices. Here d is not: the faces' stretched normals follow the vertices,
-//! too. So there is the last term, which keeps the angles of the cage's faces f ([`RestFace::shear`]; A_f is a face's
-//! share of the area): a face that collapses would have no normal, and steps end where one does. What is fixed is held by
-//! the falloff, too, so it counts less than the handles.
+//! with L the difference from the mean of the neighbours and B the displacements of the vertices without the handles,
+//! as in `fit` for coordinates that are linear in the vertices. Here d is not linear: the faces' stretched normals
+//! follow the vertices, too. The last term keeps the angles of the cage's faces f ([`RestFace::shear`]; A_f is a face's
+//! share of the area): a face that collapses would have no normal, and steps end where one does. The falloff also holds
+//! fixed points, so a fixed sample counts less than the handles.
 
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, Par};
@@ -23,7 +23,7 @@ use crate::space::fit_samples::Sample;
 /// The share of its weight that a fixed sample has.
 const FIXED: f64 = 0.03;
 
-/// λ. With three times as much, handles on a sphere are missed by more than twice as much as with mean value
+/// λ. With three times as much, the cage misses handles on a sphere by more than twice as much as with mean value
 /// coordinates.
 const RESISTANCE: f64 = 3e-7;
 
@@ -36,7 +36,7 @@ pub(super) struct GreenFit {
     pub cage: RestCage,
     points: Vec<DVec3>,
     weights: Vec<f64>,
-    /// The samples' coordinates, a row a sample, and the same transposed.
+    /// The samples' coordinates, one row for each sample, and the same transposed.
     rows: LaneRows<f64>,
     columns: LaneRows<f64>,
     neighbours: Vec<Vec<u32>>,
@@ -45,7 +45,7 @@ pub(super) struct GreenFit {
     preconditioner: Lu,
 }
 
-/// What is asked of the cage.
+/// The targets for the cage.
 #[derive(Debug)]
 pub(super) struct Asked {
     /// The samples' displacements.
@@ -54,12 +54,12 @@ pub(super) struct Asked {
     pub base: Vec<DVec3>,
 }
 
-/// The cage with some displacements of its vertices.
+/// The cage with one choice of its vertices' displacements.
 #[derive(Debug)]
 pub(super) struct Tried {
     pub shifts: Vec<DVec3>,
     pub moved: MovedCage,
-    /// How far the samples are from their targets.
+    /// The samples' displacements less their targets.
     misses: Vec<DVec3>,
     /// D − B.
     strays: Vec<DVec3>,
@@ -67,7 +67,8 @@ pub(super) struct Tried {
     pub energy: f64,
 }
 
-/// How everything in E follows the vertices: J, by which d does, and the derivative of each face's q − 1/q.
+/// The derivatives of everything in E by the vertices: J, the derivative of d, and the derivative of each face's q −
+/// 1/q.
 #[derive(Debug)]
 pub(super) struct Derivatives {
     normals: Vec<Slopes>,
@@ -75,10 +76,10 @@ pub(super) struct Derivatives {
 }
 
 impl GreenFit {
-    /// Binds the fit for samples at these points with these coordinates, a row a sample.
+    /// Binds the fit for samples at these points with these coordinates, one row for each sample.
     ///
     /// # Errors
-    /// There is no memory.
+    /// It fails if there is no memory.
     pub fn bind(cage: RestCage, points: Vec<DVec3>, samples: &[Sample], rows: &Mat<f64>) -> Result<Self, BindError> {
         let (sample_count, count) = (rows.nrows(), rows.ncols());
         let out_of_memory = |_| BindError::OutOfMemory {
@@ -102,7 +103,7 @@ impl GreenFit {
         })
     }
 
-    /// Multiplications of a step's product with a direction, and of its preconditioner.
+    /// The multiplications of a step's product with a direction, and of its preconditioner.
     pub fn work(&self) -> usize {
         let vertices = self.neighbours.len();
         let columns = vertices + self.shear_weights.len();
@@ -177,8 +178,8 @@ impl GreenFit {
         out
     }
 
-    /// About what solves for [`Self::product`]: the mean over the axes of the equations at rest. No turn of the whole
-    /// cage changes it.
+    /// Approximately solves [`Self::product`]: with the mean over the axes of the equations at rest. No turn of the
+    /// whole cage changes it.
     pub fn preconditioned(&self, field: &[DVec3]) -> Vec<DVec3> {
         let solved = self
             .preconditioner
@@ -227,7 +228,7 @@ impl GreenFit {
     }
 }
 
-/// Bytes that the fit takes for so many vertices, faces and samples.
+/// The bytes of the fit for this many vertices, faces and samples.
 pub(super) fn green_fit_bytes(vertex_count: usize, face_count: usize, sample_count: usize) -> u64 {
     let (vertices, faces, samples) = (vertex_count as u64, face_count as u64, sample_count as u64);
     8 * (2 * vertices * vertices + 3 * samples * (vertices + faces) + 2 * samples * vertices + 40 * faces)
@@ -256,7 +257,7 @@ fn mean_equations(cage: &RestCage, rows: &Mat<f64>, weights: &[f64]) -> Mat<f64>
         let weighted = Mat::from_fn(count, sample_count, |vertex, sample| {
             own[(sample, vertex)] * weights[sample] / 3.0
         });
-        // On one thread, so that the bits do not depend on how many there are.
+        // One thread multiplies, so that the bits do not depend on the number of threads.
         matmul(
             matrix.as_mut(),
             Accum::Add,

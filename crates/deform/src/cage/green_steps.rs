@@ -1,42 +1,42 @@
-//! How a cage of Green coordinates comes to fit its handles: Gauss–Newton steps with Levenberg's damping from the better
-//! of the linear shape and the last one. A step is solved for by conjugate gradients. What damps is the cage's own
-//! resistance, so that a step is as smooth as the shape.
+//! The steps that fit a cage of Green coordinates to its handles: Gauss–Newton with Levenberg's damping, from the
+//! better of the linear shape and the last one. Conjugate gradients solve for a step. The cage's own resistance damps
+//! it, so that a step is as smooth as the shape.
 
 use glam::DVec3;
 
 use super::green_fit::{Asked, Derivatives, GreenFit, Tried, add, dot};
 
-/// A step that lowers the energy by less than this share of it was the last one.
+/// Steps end after one that lowers the energy by less than this share of it.
 const TOLERANCE: f64 = 1e-3;
 
 /// Energies below this are rounding.
 const NOTHING: f64 = 1e-24;
 
-/// The most conjugate directions of a step, and the share of the first residual's square that they leave.
+/// The most conjugate directions of a step, and the share of the first residual's square that remains.
 pub(super) const DIRECTIONS: usize = 60;
 const LEFT: f64 = 0.01;
 
-/// How often a step is damped more before there is none to take, and by what factor.
+/// The most increases of a step's damping, and their factor.
 const TRIALS: usize = 9;
 const MORE: f64 = 5.0;
 
-/// A step must bring this share of what the linear model promises; one that brings the second share lets the next be
+/// A step must lower the energy by this share of the linear model's prediction; above the second share the next step is
 /// damped less.
 const SUFFICIENT: f64 = 0.1;
 const GOOD: f64 = 0.6;
 
-/// What a step did.
+/// The result of a step.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum Progressed {
-    /// There may be more to gain.
+    /// The energy may decrease further.
     Descends,
-    /// It gained next to nothing.
+    /// The energy hardly decreased.
     Converged,
-    /// No step lowers the energy, though the model promises one.
+    /// No step lowers the energy, although the model predicts a decrease.
     Stalled,
 }
 
-/// A cage on its way.
+/// The state of the steps.
 #[derive(Debug)]
 pub(super) struct Descent {
     pub asked: Asked,
@@ -46,7 +46,7 @@ pub(super) struct Descent {
 }
 
 impl Descent {
-    /// From the better of these displacements.
+    /// Starts from the better of these displacements.
     pub fn new(fit: &GreenFit, asked: Asked, start: Vec<DVec3>, last: Option<Vec<DVec3>>) -> Self {
         let mut current = fit.tried(&asked, start);
         if let Some(last) = last.map(|last| fit.tried(&asked, last))
@@ -62,7 +62,7 @@ impl Descent {
         }
     }
 
-    /// One step, unless it has converged or stalled.
+    /// Takes one step, unless it has converged or stalled.
     pub fn step(&mut self, fit: &GreenFit) {
         if self.state != Progressed::Descends {
             return;

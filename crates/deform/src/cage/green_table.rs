@@ -1,8 +1,8 @@
 //! The Green coordinates of the points that a cage moves.
 //!
-//! The coordinates are kept, and of small regions their gradients, too. These are three times as many numbers, so that
-//! to read a large region's would take longer than a frame may: there the normals are computed from the triangles, and
-//! the coordinates are in single precision, which costs 1e-7 of the cage's motion.
+//! The coordinates are stored, and for small regions their gradients, too. These are three times as many numbers, so a
+//! large region's gradients would take longer to read than a frame may: there the normals are computed from the
+//! triangles, and the coordinates are in single precision, which costs 1e-7 of the cage's motion.
 
 use glam::DVec3;
 use pliant_mesh::Cancel;
@@ -16,18 +16,18 @@ use crate::budget::bytes_of;
 use crate::handles::bases::Stored;
 use crate::numerical::lanes::LANES;
 
-/// The most bytes that gradients may take to be kept: about ten milliseconds of reading.
+/// The most bytes of stored gradients: about ten milliseconds of reading.
 const MOST_GRADIENTS: u64 = 256 << 20;
 
 /// The points' coordinates.
 #[derive(Debug)]
 pub(super) enum GreenTable {
-    /// With their gradients along x, y and z, in single precision, because only normals are made of them.
+    /// The coordinates with their gradients along x, y and z, in single precision, because only normals use them.
     Small(LaneRows<f64>, [LaneRows<f32>; 3]),
     Large(LaneRows<f32>),
 }
 
-/// The bytes of the coordinates of so many points.
+/// The bytes of the coordinates of `point_count` points.
 pub(super) fn green_bytes(cage: &CageMesh, point_count: usize) -> u64 {
     let count = cage.vertices.len() + cage.faces.len();
     let rows = if is_small(point_count, count) {
@@ -43,7 +43,7 @@ fn is_small(point_count: usize, count: usize) -> bool {
 }
 
 impl GreenTable {
-    /// Of these points.
+    /// Computes the coordinates of these points.
     ///
     /// # Errors
     /// It was cancelled, or there is no memory.
@@ -70,7 +70,7 @@ impl GreenTable {
     }
 }
 
-/// The coordinates of some points.
+/// Computes the coordinates of some points.
 ///
 /// # Errors
 /// It was cancelled, or there is no memory.
@@ -123,7 +123,7 @@ fn fill_with_gradients(
     })
 }
 
-/// One row of a block.
+/// Writes one row of a block.
 fn put<T: Stored>(block: &mut [[T; LANES]], lane: usize, values: impl Iterator<Item = f64>) {
     for (entry, value) in block.iter_mut().zip(values) {
         entry[lane] = T::of(value);
@@ -145,7 +145,7 @@ mod tests {
         let faces = vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
         let cage = CageMesh::new(vertices.to_vec(), faces);
         let green = Green::new(&cage);
-        // More than a block of points, and a block that is not full.
+        // The points are more than a block, and the last block is not full.
         let points: Vec<DVec3> = (0..13)
             .map(|i| DVec3::splat(0.1) + DVec3::splat(0.01) * f64::from(i))
             .collect();

@@ -1,8 +1,8 @@
 //! Harmonic coordinates [JMD+07]: each vertex' function is harmonic inside the cage and, on it, the hat function of the
 //! vertex.
 //!
-//! They are solved for on a grid inside the cage (`balance`). Between the nodes cubic B-splines are put over their values,
-//! which keep linear functions and signs and have continuous curvature.
+//! A grid inside the cage gives them (`balance`). Between the nodes cubic B-splines with their values as coefficients
+//! keep linear functions and signs and have continuous curvature.
 
 use glam::{DVec3, I64Vec3};
 use pliant_mesh::{Cancel, Progress};
@@ -43,7 +43,7 @@ impl Harmonic {
         let frame = GridFrame::around(cage, step);
         let vertex_count = cage.vertices.len();
         let blocks = vertex_count.div_ceil(AT_ONCE);
-        // Nodes of the grid and what is kept of them; the rest grows with the nodes inside.
+        // The nodes of the grid and their tables; the rest grows with the nodes inside.
         let budget = budget.without(bytes_of(frame.count(), 16))?;
         let crossings = Crossings::of(cage, &frame);
         let inside = nodes_inside(&frame, &crossings);
@@ -93,12 +93,12 @@ impl Harmonic {
         })
     }
 
-    /// How many nodes lie in the cage.
+    /// The number of nodes in the cage.
     pub fn node_count(&self) -> usize {
         self.node_count
     }
 
-    /// How many of the 64 nodes that a point's coordinates are made of lie in the cage.
+    /// The number of nodes in the cage among the 64 that give a point's coordinates.
     pub fn nodes_around(&self, point: DVec3) -> usize {
         let first = self.frame.steps(point).floor().as_i64vec3() - 1;
         let around = (0..64).map(|step| first + I64Vec3::new(step % 4, step / 4 % 4, step / 16));
@@ -151,7 +151,7 @@ impl Harmonic {
                 .for_each(|&(node, weight, gradient)| visit(node, weight, gradient));
             return;
         }
-        // So near the cage that some nodes are missing: the others share their weight.
+        // Close to the cage some nodes are missing: the others share their weight.
         let sum: f64 = found.iter().map(|(_, weight, _)| weight).sum();
         let slope: DVec3 = found.iter().map(|(_, _, gradient)| *gradient).sum();
         for &(node, weight, gradient) in found.iter().filter(|_| sum > 0.0) {
@@ -159,7 +159,7 @@ impl Harmonic {
         }
     }
 
-    /// The number of a node of the grid, if it lies in the cage.
+    /// The number of a node of the grid, if it is in the cage.
     fn node(&self, node: I64Vec3) -> Option<usize> {
         let is_in = node.cmpge(I64Vec3::ZERO).all() && node.cmplt(self.frame.counts.as_i64vec3()).all();
         let number = is_in.then(|| self.inside[self.frame.number(node.as_usizevec3())])?;
@@ -167,7 +167,7 @@ impl Harmonic {
     }
 }
 
-/// The four cubic B-splines at a place in a cell, and their slopes.
+/// The four cubic B-splines at a position in a cell, and their slopes.
 fn cubic(t: f64) -> [(f64, f64); 4] {
     let s = 1.0 - t;
     [

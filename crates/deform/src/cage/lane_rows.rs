@@ -1,4 +1,4 @@
-//! Rows of coordinates and their products with what moves, eight rows side by side.
+//! Rows of coordinates, eight rows side by side, and their products with displacements.
 
 use std::collections::TryReserveError;
 
@@ -11,28 +11,29 @@ use crate::budget::{bytes_of, filled};
 use crate::handles::bases::Stored;
 use crate::numerical::lanes::LANES;
 
-/// A dense matrix of a row a point and a column a coordinate. A product reads it once from one end to the other.
+/// A dense matrix with a row for each point and a column for each coordinate. A product reads it once from one end to
+/// the other.
 #[derive(Debug)]
 pub(super) struct LaneRows<T> {
     row_count: usize,
     column_count: usize,
-    /// For eight rows all columns, then for the next eight.
+    /// All columns of eight rows, then those of the next eight.
     blocks: Vec<[T; LANES]>,
 }
 
-/// Blocks of eight rows that one task takes.
+/// The number of blocks of eight rows that one task takes.
 pub(super) const BLOCKS: usize = 32;
 
-/// Bytes of a matrix of this size.
+/// The bytes of a matrix of this size.
 pub(super) fn lane_rows_bytes<T>(row_count: usize, column_count: usize) -> u64 {
     bytes_of(row_count.div_ceil(LANES), column_count * size_of::<[T; LANES]>())
 }
 
 impl<T: Stored> LaneRows<T> {
-    /// All zero.
+    /// Makes a matrix of zeros.
     ///
     /// # Errors
-    /// Where the machine has no memory for it.
+    /// The machine has no memory for it.
     pub fn zeros(row_count: usize, column_count: usize) -> Result<Self, TryReserveError> {
         Ok(Self {
             row_count,
@@ -41,10 +42,10 @@ impl<T: Stored> LaneRows<T> {
         })
     }
 
-    /// From its entries.
+    /// Makes a matrix from its entries.
     ///
     /// # Errors
-    /// Where the machine has no memory for it.
+    /// The machine has no memory for it.
     pub fn of(
         row_count: usize,
         column_count: usize,
@@ -59,7 +60,7 @@ impl<T: Stored> LaneRows<T> {
         Ok(rows)
     }
 
-    /// The blocks of eight rows each, to be filled: for each column eight numbers.
+    /// The blocks of eight rows each, for writing: for each column eight numbers.
     pub fn blocks_mut(&mut self) -> rayon::slice::ChunksExactMut<'_, [T; LANES]> {
         self.blocks.par_chunks_exact_mut(self.column_count)
     }
@@ -84,8 +85,8 @@ impl<T: Stored> LaneRows<T> {
     }
 }
 
-/// Changes a table's entries of these vertices, ascending, of which each is a row: for each block its number and the
-/// entries of its rows.
+/// Changes a table's entries of these ascending vertices, each of which is a row: `change` gets each block's number and
+/// the entries of its rows.
 pub(super) fn by_blocks<T: Send>(
     vertices: &[u32],
     mut table: &mut [T],
@@ -130,7 +131,7 @@ impl<T: Stored> WithSimd for Product<'_, T> {
         let mut sum = [[0.0; LANES]; 3];
         for (row, term) in self.rows.iter().zip(self.terms) {
             for lane in 0..LANES {
-                // From the stored number on everything is f64.
+                // All sums are in f64.
                 let entry: f64 = row[lane].into();
                 sum[0][lane] += entry * term.x;
                 sum[1][lane] += entry * term.y;

@@ -8,7 +8,7 @@ use super::harmonic::Harmonic;
 use super::mean_value::MeanValue;
 use crate::space::field::{Coefficients, SpaceMap};
 
-/// World coordinates in the cage's unit.
+/// The map between world coordinates and the cage's unit.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Unit {
     pub world_origin: DVec3,
@@ -19,7 +19,7 @@ pub(super) struct Unit {
 pub(super) struct MeanValueMap<'a> {
     pub unit: Unit,
     pub coordinates: MeanValue<'a>,
-    /// A row a vertex of the cage and four columns a handle.
+    /// One row for each vertex of the cage and four columns for each handle.
     pub controls: &'a Mat<f64>,
 }
 
@@ -27,7 +27,7 @@ pub(super) struct MeanValueMap<'a> {
 pub(super) struct HarmonicMap<'a> {
     unit: Unit,
     harmonic: &'a Harmonic,
-    /// Row-major: one entry a node and handle.
+    /// One entry for each node and handle, row-major.
     nodes: Vec<[f64; 4]>,
     handle_count: usize,
 }

@@ -1,12 +1,12 @@
 //! Mean value coordinates of closed triangle meshes [JSW05], and their gradients.
 //!
-//! A face's mean vector m is the integral of the unit normals over the spherical triangle that a point p sees it in:
-//! m = ½ Σ_k θ_k N_k, with θ_k the angle at p under the edge opposite to corner k and N_k the unit normal of the plane
+//! A face's mean vector m is the integral of the unit normals over the spherical triangle in which a point p sees it: m
+//! = ½ Σ_k θ_k N_k, with θ_k the angle at p under the edge opposite to corner k and N_k the unit normal of the plane
 //! through p and this edge. With e_i from p to the corners and c_i = e_{i+1} × e_{i+2} the face gives its corner i the
 //! weight w_i = c_i · m / D, D = e_0 · c_0, so that Σ w_i e_i = m. Over a closed mesh the mean vectors sum to zero.
 //!
-//! Eight points at a time, edge by edge and then face by face. Points that lie in the plane of a face, where D is zero,
-//! are computed one by one in [`super::mean_value_at`].
+//! The code computes eight points at a time, edge by edge and then face by face. [`super::mean_value_at`] computes
+//! points in the plane of a face, where D is zero, one by one.
 
 use glam::DVec3;
 use pliant_mesh::vectors;
@@ -22,18 +22,18 @@ pub(super) struct MeanValue<'a> {
     cage: &'a CageMesh,
 }
 
-/// What is computed at an edge: c, M = ½ θ N, and its derivative column by column.
+/// The quantities of an edge: c, M = ½ θ N, and its derivative column by column.
 type AtEdge = [Lanes; 15];
 
-/// Room for a group of points.
+/// Scratch memory for a group of points.
 #[derive(Default)]
 struct Room {
-    /// From the points to each vertex, and the distances.
+    /// The vectors from the points to each vertex, and the distances.
     spokes: Vec<[Lanes; 4]>,
     edges: Vec<AtEdge>,
     /// Each vertex' weight and the weight's gradient.
     weights: Vec<[Lanes; 4]>,
-    /// Not zero for a point that has to be computed by itself.
+    /// Not zero for a point that must be computed alone.
     doubts: Lanes,
 }
 
@@ -42,12 +42,13 @@ impl<'a> MeanValue<'a> {
         Self { cage }
     }
 
-    /// How many coordinates there are.
+    /// The count of coordinates.
     pub fn count(&self) -> usize {
         self.cage.vertices.len()
     }
 
-    /// Each point's coordinates: one of every vertex with its gradient. They sum to 1, and Σ λ_i v_i is the point.
+    /// Visits each point's coordinates: one for each vertex with its gradient. They sum to 1, and Σ λ_i v_i is the
+    /// point.
     pub fn at(&self, points: &[DVec3], mut visit: impl FnMut(usize, &[Weight])) {
         let count = self.cage.vertices.len();
         let mut room = Room {
@@ -176,7 +177,7 @@ fn at_edge<S: Simd>(simd: S, a: [Vector<S>; 4], b: [Vector<S>; 4], out: &mut AtE
     let c = cross(from, to);
     let length = dot(c, c).sqrt();
     let one = Vector::splat(simd, 1.0);
-    // tan ½ θ, and by two more halvings an argument that the arc tangent's fraction takes.
+    // tan ½ θ, and by two more halvings an argument for the arc tangent's fraction.
     let half = length / (a[3] * b[3] + dot(from, to));
     let quarter = half / (one + (one + half * half).sqrt());
     let eighth = quarter / (one + (one + quarter * quarter).sqrt());
@@ -204,7 +205,7 @@ fn at_edge<S: Simd>(simd: S, a: [Vector<S>; 4], b: [Vector<S>; 4], out: &mut AtE
     Vector::put_each(all, out, place);
 }
 
-/// Twice half the arc tangent of what is at most tan π/8, to the last digits: the fraction of the Cephes library.
+/// Twice half the arc tangent of numbers up to tan π/8, to the last digits: the fraction of the Cephes library.
 #[inline(always)]
 fn arc_tangent<S: Simd>(simd: S, x: Vector<S>) -> Vector<S> {
     const ABOVE: [f64; 5] = [

@@ -10,13 +10,13 @@ pub(super) type Weight = (f64, DVec3);
 /// Three directions with a smaller triple product lie in a plane.
 pub(super) const COPLANAR: f64 = 1e-10;
 
-/// A point nearer to a vertex than this share of the cage's size is there.
+/// A point nearer to a vertex than this share of the cage's size is at the vertex.
 const AT_VERTEX: f64 = 1e-13;
 
 /// The step of differences in units of the cage's size.
 const STEP: f64 = 1e-5;
 
-/// The coordinates of a point, by the definition, and gradients by differences, because near the plane of a face the
+/// Computes the coordinates of a point by their definition, and gradients by differences: near the plane of a face the
 /// formula for the gradient has no digits left.
 pub(super) fn at_any(cage: &CageMesh, point: DVec3, out: &mut [Weight]) {
     let size = cage.vertices[0]
@@ -34,7 +34,7 @@ pub(super) fn at_any(cage: &CageMesh, point: DVec3, out: &mut [Weight]) {
     }
 }
 
-/// The coordinates, with zero gradients.
+/// Computes the coordinates, with zero gradients.
 fn values(cage: &CageMesh, point: DVec3, size: f64, out: &mut [Weight]) {
     out.fill((0.0, DVec3::ZERO));
     let nearest = (0..cage.vertices.len()).map(|vertex| (cage.vertices[vertex].distance(point), vertex));
@@ -52,10 +52,10 @@ fn values(cage: &CageMesh, point: DVec3, size: f64, out: &mut [Weight]) {
         let volume = e[0].dot(crosses[0]);
         if volume.abs() <= COPLANAR * lengths[0] * lengths[1] * lengths[2] {
             if angles.iter().sum::<f64>() < std::f64::consts::TAU - COPLANAR {
-                // From beside it the face is seen as nothing.
+                // From a point beside it in its plane, the face has no solid angle.
                 continue;
             }
-            // On the face: areas.
+            // On the face the weights are areas.
             let area = crosses[0] + crosses[1] + crosses[2];
             out.fill((0.0, DVec3::ZERO));
             for corner in 0..3 {
@@ -69,13 +69,13 @@ fn values(cage: &CageMesh, point: DVec3, size: f64, out: &mut [Weight]) {
         }
     }
     if !normalised(out) {
-        // Only outside, where weights may cancel.
+        // This happens only outside, where weights may cancel.
         out.fill((0.0, DVec3::ZERO));
         out[nearest].0 = 1.0;
     }
 }
 
-/// λ = w / Σ w with its gradient. False where that is no number.
+/// Computes λ = w / Σ w with its gradient. Returns false if that is no number.
 pub(super) fn normalised(weights: &mut [Weight]) -> bool {
     let (mut sum, mut slope) = (0.0, DVec3::ZERO);
     for (value, gradient) in weights.iter() {

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 
-/// A closed triangle mesh, its faces counterclockwise seen from outside.
+/// A closed triangle mesh with its faces counterclockwise seen from outside.
 #[derive(Clone, Debug)]
 pub(crate) struct CageMesh {
     pub vertices: Vec<DVec3>,
@@ -14,16 +14,16 @@ pub(crate) struct CageMesh {
     pub sides: Vec<[Side; 3]>,
 }
 
-/// An edge as a face goes along it.
+/// An edge in the direction of a face.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Side {
     pub edge: u32,
-    /// 1 where the face goes along the edge as it is stored, else −1.
+    /// 1 if the face passes the edge in its stored direction, else −1.
     pub sign: f64,
 }
 
 impl CageMesh {
-    /// With the edges of these faces.
+    /// Makes a mesh and finds the edges of its faces.
     pub fn new(vertices: Vec<DVec3>, faces: Vec<[u32; 3]>) -> Self {
         let mut numbers: BTreeMap<[u32; 2], u32> = BTreeMap::new();
         let mut edges = Vec::new();
@@ -55,7 +55,7 @@ impl CageMesh {
         self.faces[face].map(|vertex| self.vertices[vertex as usize])
     }
 
-    /// For each vertex those that it shares an edge with, ascending.
+    /// For each vertex its neighbours along edges, ascending.
     pub fn neighbours(&self) -> Vec<Vec<u32>> {
         let mut neighbours = vec![Vec::new(); self.vertices.len()];
         for &[a, b] in &self.edges {

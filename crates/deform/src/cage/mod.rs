@@ -1,10 +1,10 @@
 //! Deformation by a cage: d(p) = Σ λ_i(p) D_i, with coordinates λ of p in a coarse closed triangle mesh around the
-//! region. The handles drive the cage: its vertices' displacements are those with which the field fits the handles in
-//! the least-squares sense, and of these the smoothest ones.
+//! region. The handles drive the cage: its vertices' displacements are the smoothest among those whose field fits the
+//! handles in the least-squares sense.
 //!
-//! `voxels` and `offset` make the cage, and `brought` checks one that a person gives. The coordinates are those of `mean_value` [JSW05], of `harmonic` functions
-//! [JMD+07] and of `green` [LLC08]; `fit` solves for the cage's vertices, and
-//! `green_fit` and `green_steps` where the faces' normals follow them.
+//! `voxels` and `offset` make the cage, and `brought` checks one that a person gives. `mean_value` [JSW05], `harmonic`
+//! [JMD+07] and `green` [LLC08] give the coordinates; `fit` solves for the cage's vertices, and `green_fit` and
+//! `green_steps` do where the faces' normals follow them.
 
 mod balance;
 mod bound;

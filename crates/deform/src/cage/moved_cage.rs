@@ -1,4 +1,4 @@
-//! A moved cage of Green coordinates: what the field is made of.
+//! A moved cage of Green coordinates: the coefficients of the field.
 
 use glam::{DMat3, DVec3};
 
@@ -8,7 +8,7 @@ use super::mesh::CageMesh;
 use super::stretched::RestFace;
 use crate::numerical::rigid_fit::RigidMotion;
 
-/// A rigid motion and what differs from it.
+/// A rigid motion and the differences from it.
 #[derive(Debug)]
 pub(super) struct MovedCage {
     pub rigid: Option<RigidMotion>,
@@ -17,7 +17,7 @@ pub(super) struct MovedCage {
     pub differences: Vec<DVec3>,
 }
 
-/// A cage at rest, which moves.
+/// A cage at rest that displacements can move.
 #[derive(Debug)]
 pub(super) struct RestCage {
     pub mesh: CageMesh,
@@ -36,13 +36,13 @@ impl RestCage {
         }
     }
 
-    /// Where these displacements take its vertices.
+    /// The positions of its vertices with these displacements.
     pub fn places(&self, shifts: &[DVec3]) -> Vec<DVec3> {
         let rest = self.mesh.vertices.iter().zip(shifts);
         rest.map(|(rest, shift)| *rest + *shift).collect()
     }
 
-    /// Moved by these displacements of its vertices.
+    /// The cage with these displacements of its vertices.
     pub fn moved(&self, shifts: &[DVec3]) -> MovedCage {
         let rigid = RigidMotion::fit(&self.mesh.vertices, shifts);
         let turn = rigid.map_or(DMat3::IDENTITY, |rigid| DMat3::from_quat(rigid.rotation()));
@@ -70,7 +70,7 @@ impl MovedCage {
         sums
     }
 
-    /// How far the rigid motion takes a point.
+    /// The displacement of a point by the rigid motion.
     pub fn displaced(&self, point: DVec3) -> DVec3 {
         displaced(self.rigid.as_ref(), point)
     }

@@ -1,4 +1,4 @@
-//! A cage made for a region: the surface of voxels around it, smoothed.
+//! Makes a cage for a region: the surface of voxels around it, smoothed.
 
 use std::collections::BTreeMap;
 
@@ -7,15 +7,15 @@ use glam::{DVec3, I64Vec3};
 use super::mesh::CageMesh;
 use super::voxels::Voxels;
 
-/// How far a vertex may move from its voxels while the cage is smoothed, in voxels. The region lies at least one voxel
-/// within their surface, so at least 0.7 voxels within the cage: as far as the splines of harmonic coordinates reach
-/// over their grid, 2 √3 steps of a fifth of a voxel.
+/// The largest move of a vertex by the smoothing, in voxels. The region is at least one voxel within their surface, so
+/// at least 0.7 voxels within the cage: that is the reach of the splines of harmonic coordinates over their grid, 2 √3
+/// steps of a fifth of a voxel.
 const SMOOTHING: f64 = 0.3;
 
-/// How often vertices move to the middle of their neighbours.
+/// The number of rounds in which vertices move to the middle of their neighbours.
 const ROUNDS: usize = 3;
 
-/// A closed 2-manifold around all of the points and along the triangles between them, with `detail` voxels on the
+/// Makes a closed 2-manifold around all of the points and along the triangles between them, with `detail` voxels on the
 /// longest side of the points' box. It has a part for each group of points that are far apart.
 pub(crate) fn offset_cage(points: &[DVec3], triangles: impl Iterator<Item = [DVec3; 3]>, detail: u32) -> CageMesh {
     let (low, high) = bounds(points);
@@ -25,7 +25,7 @@ pub(crate) fn offset_cage(points: &[DVec3], triangles: impl Iterator<Item = [DVe
     smoothed(surface(&voxels), SMOOTHING * voxel)
 }
 
-/// The side of the voxels of which `detail` lie along the longest side of the points' box.
+/// The side of a voxel if the longest side of the points' box has `detail` of them.
 pub(crate) fn voxel_size(points: &[DVec3], detail: u32) -> f64 {
     let (low, high) = bounds(points);
     let longest = (high - low).max_element();
@@ -49,9 +49,9 @@ fn bounds(points: &[DVec3]) -> (DVec3, DVec3) {
     }
 }
 
-/// Points on a triangle that are no farther apart than about `step`.
+/// Points on a triangle at distances of at most about `step`.
 fn spread([a, b, c]: [DVec3; 3], step: f64) -> impl Iterator<Item = DVec3> {
-    // In steps, because the square of a length in world units may overflow.
+    // The lengths are in steps, because the square of a length in world units may overflow.
     let steps = [b - a, c - b, a - c].map(|side| (side / step).length());
     let count = steps.into_iter().fold(1.0, f64::max).ceil() as usize;
     let at = move |share: usize| share as f64 / count as f64;
@@ -70,7 +70,7 @@ fn surface(voxels: &Voxels) -> CageMesh {
                     continue;
                 }
                 let first = if is_ahead { cell + along } else { cell };
-                // Counterclockwise seen from outside.
+                // The corners are counterclockwise seen from outside.
                 let (a, b) = if is_ahead { (a, b) } else { (b, a) };
                 let corners = [first, first + a, first + a + b, first + b].map(|corner| {
                     *numbers.entry(corner.to_array()).or_insert_with(|| {
@@ -79,7 +79,7 @@ fn surface(voxels: &Voxels) -> CageMesh {
                     })
                 });
                 let [p, q, r, s] = corners;
-                // Diagonals alternate, so that the cage leans to no side.
+                // Diagonals alternate, so that the cage prefers no side.
                 if (first.x + first.y + first.z) % 2 == 0 {
                     faces.extend([[p, q, r], [p, r, s]]);
                 } else {
@@ -91,7 +91,7 @@ fn surface(voxels: &Voxels) -> CageMesh {
     CageMesh::new(vertices, faces)
 }
 
-/// Vertices move to the middle of their neighbours, and at most so far from where they were.
+/// Moves vertices to the middle of their neighbours, each at most `most` from its first position.
 fn smoothed(mut mesh: CageMesh, most: f64) -> CageMesh {
     let neighbours = mesh.neighbours();
     let rest = mesh.vertices.clone();

@@ -1,4 +1,4 @@
-//! What there is to say of vertices that a brought cage does not hold as it should.
+//! Warnings and refusals about vertices outside a brought cage or too close to it.
 
 use glam::DVec3;
 
@@ -9,7 +9,7 @@ use super::linear::Unit;
 use super::mesh::CageMesh;
 use crate::attachment_refused::AttachmentRefused;
 
-/// Of vertices outside the cage: mean value coordinates are defined there, the others are not.
+/// Reports vertices outside the cage: mean value coordinates are defined there, the others are not.
 ///
 /// # Errors
 /// [`AttachmentRefused::Outside`].
@@ -33,7 +33,7 @@ pub(super) fn told_outside(
     }
 }
 
-/// Of vertices so near to the cage that the harmonic grid has too few nodes around them.
+/// Reports vertices so close to the cage that the harmonic grid has too few nodes around them.
 ///
 /// # Errors
 /// [`AttachmentRefused::Close`].

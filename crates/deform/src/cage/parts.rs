@@ -1,4 +1,4 @@
-//! The cage's parts by themselves, for tests and measurements.
+//! The cage's parts alone, for tests and measurements.
 
 use glam::DVec3;
 
@@ -15,7 +15,7 @@ use crate::Budget;
 /// Vertices and faces of a mesh.
 pub type Mesh = (Vec<DVec3>, Vec<[u32; 3]>);
 
-/// The cage made for points and the triangles between them, with so many cells on its longest side.
+/// The cage made for points and the triangles between them, with `detail` cells on its longest side.
 pub fn made(points: &[DVec3], triangles: &[[DVec3; 3]], detail: u32) -> Mesh {
     let mesh = offset_cage(points, triangles.iter().copied(), detail);
     (mesh.vertices, mesh.faces)
@@ -39,7 +39,7 @@ pub fn green(mesh: &Mesh, point: DVec3) -> Vec<(f64, DVec3)> {
     values.into_iter().zip(gradients).collect()
 }
 
-/// Where Green coordinates take a point as the cage's vertices move.
+/// The position of a point by Green coordinates after the cage's vertices moved.
 pub fn green_moved(mesh: &Mesh, moved: &[DVec3], point: DVec3) -> DVec3 {
     let cage = CageMesh::new(mesh.0.clone(), mesh.1.clone());
     let green = Green::new(&cage);
@@ -53,7 +53,7 @@ pub fn green_moved(mesh: &Mesh, moved: &[DVec3], point: DVec3) -> DVec3 {
     targets.zip(&values).map(|(target, value)| target * *value).sum()
 }
 
-/// The harmonic coordinates of points in a cage, by a grid of this step; `None` where it can't be solved.
+/// The harmonic coordinates of points in a cage, by a grid of this step; `None` if the solve fails.
 pub fn harmonic(mesh: &Mesh, step: f64, points: &[DVec3]) -> Option<Vec<Vec<f64>>> {
     let cage = CageMesh::new(mesh.0.clone(), mesh.1.clone());
     let harmonic = Harmonic::solved(&cage, step, Budget::default(), &Progress::new(), &Cancel::new()).ok()?;

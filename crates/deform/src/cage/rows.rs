@@ -1,4 +1,4 @@
-//! The coordinates of the samples at which handles are fitted: a row a sample.
+//! The coordinates of the samples at which handles are fitted: one row for each sample.
 
 use faer::Mat;
 use glam::DVec3;
@@ -22,7 +22,7 @@ pub(super) fn mean_value_rows(coordinates: &MeanValue<'_>, samples: &[Sample], u
     rows
 }
 
-/// Harmonic coordinates of a cage with so many vertices.
+/// Harmonic coordinates of a cage with `vertex_count` vertices.
 pub(super) fn harmonic_rows(harmonic: &Harmonic, vertex_count: usize, samples: &[Sample], unit: Unit) -> Mat<f64> {
     let own = samples.iter().map(|sample| harmonic.at(unit.local(sample.world_point)));
     let own: Vec<Vec<f64>> = own.collect();

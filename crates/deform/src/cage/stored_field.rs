@@ -1,5 +1,5 @@
-//! Coordinates of a brought cage, kept for every vertex that moves: the field of what the hand does to the cage's
-//! vertices is a product with them.
+//! Coordinates of a brought cage, stored for every moving vertex: the field of the moves by hand is a product with
+//! them.
 
 use glam::{DMat3, DVec3, Mat3};
 use pliant_mesh::Cancel;
@@ -15,22 +15,22 @@ use crate::space::hand_field::outer;
 /// The field, faded towards what is fixed.
 #[derive(Debug)]
 pub(super) struct StoredField {
-    /// Ascending, and how they fade.
+    /// The moving vertices, ascending, with their falloff.
     vertices: Vec<u32>,
     falloff: Falloff,
     rows: LaneRows<f64>,
-    /// Along x, y and z per world unit; in single precision, because only normals are made of them.
+    /// The gradients along x, y and z per world unit; in single precision, because only normals use them.
     gradients: [LaneRows<f32>; 3],
 }
 
-/// Bytes of a vertex' coordinates in a cage with so many vertices.
+/// The bytes of a vertex' coordinates in a cage with `vertex_count` vertices.
 pub(super) fn stored_bytes(vertex_count: usize) -> usize {
     vertex_count * (size_of::<f64>() + 3 * size_of::<f32>()) + 2 * size_of::<DVec3>()
 }
 
 impl StoredField {
-    /// Of `count` coordinates at these points, one for each of `vertices`, in units of so much world length. `visit_each`
-    /// visits some points' coordinates, each with its gradient.
+    /// Stores `count` coordinates at these points, one point for each of `vertices`. `length` is the points' unit in
+    /// world units. `visit_each` visits some points' coordinates, each with its gradient.
     ///
     /// # Errors
     /// It was cancelled, or there is no memory.
@@ -86,7 +86,7 @@ impl StoredField {
         by_blocks(&self.vertices, out, |block, own| {
             let [x, y, z] = self.gradients.each_ref().map(|axis| axis.block_product(block, moves));
             let fades: [(f64, DVec3); LANES] = std::array::from_fn(|lane| self.falloff.at(block * LANES + lane));
-            // Where nothing fades their values are not needed.
+            // The values matter only where the field fades.
             let sums = match fades.iter().any(|(_, slope)| *slope != DVec3::ZERO) {
                 true => self.rows.block_product(block, moves),
                 false => [DVec3::ZERO; LANES],

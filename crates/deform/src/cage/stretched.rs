@@ -1,7 +1,7 @@
-//! The cage's faces as Green coordinates see them move: each face's normal n times how much the face is stretched, s,
-//! and how this vector follows the face's corners.
+//! The moving faces of a cage for Green coordinates: each face's normal n times its stretch s, and the derivatives of
+//! this vector by the face's corners.
 //!
-//! With a face's edges u, v at rest and u', v' where they are moved to [LLC08, equation 9],
+//! With a face's edges u, v at rest and u', v' after the motion [LLC08, equation 9],
 //!
 //! s = √(|u'|² |v|² − 2 (u'·v') (u·v) + |v'|² |u|²) / (√2 |u × v|) and n = (u' × v') / |u' × v'|.
 //!
@@ -11,8 +11,8 @@ use glam::{DMat3, DVec3};
 
 use crate::space::hand_field::outer;
 
-/// A moved face of less than this share of its area at rest has no normal to speak of: there the derivative is that of
-/// a face of this area.
+/// A moved face of less than this share of its area at rest hardly has a normal: there the derivative is that of a face
+/// of this area.
 const COLLAPSED: f64 = 1e-3;
 
 /// A face at rest.
@@ -29,7 +29,7 @@ pub(super) struct RestFace {
 pub(super) struct Slopes([DMat3; 2]);
 
 impl RestFace {
-    /// With these corners of these vertices.
+    /// The face of these corners of these vertices.
     pub fn of(corners: [u32; 3], vertices: &[DVec3]) -> Self {
         let edges = edges(corners, vertices);
         Self {
@@ -39,13 +39,13 @@ impl RestFace {
         }
     }
 
-    /// s n as the vertices move.
+    /// s n after the vertices moved.
     pub fn stretched_normal(&self, moved: &[DVec3]) -> DVec3 {
         let [u, v] = edges(self.corners, moved);
         u.cross(v).normalize_or_zero() * self.stretch([u, v])
     }
 
-    /// The derivatives of s n as the vertices move.
+    /// The derivatives of s n after the vertices moved.
     pub fn slopes(&self, moved: &[DVec3]) -> Slopes {
         let [u, v] = edges(self.corners, moved);
         let stretch = self.stretch([u, v]);
@@ -59,9 +59,8 @@ impl RestFace {
         ])
     }
 
-    /// How far its angles have changed: q − 1/q with q = s / √J, where J is how much its area has grown. It is zero
-    /// where the face is turned and scaled alone, and grows without bound as the face collapses. And its derivatives by
-    /// the corners.
+    /// The change of its angles, and its derivatives by the corners: q − 1/q with q = s / √J, where J is the growth of
+    /// its area. It is zero if the face is only turned and scaled, and grows without bound as the face collapses.
     pub fn shear(&self, moved: &[DVec3]) -> (f64, [DVec3; 3]) {
         let [u, v] = edges(self.corners, moved);
         let across = u.cross(v);
@@ -103,7 +102,7 @@ impl RestFace {
 }
 
 impl Slopes {
-    /// By each of the face's corners.
+    /// The derivatives by each of the face's corners.
     pub fn by_corners(&self) -> [DMat3; 3] {
         let [u, v] = self.0;
         [-(u + v), u, v]

@@ -11,12 +11,12 @@ pub(super) struct Voxels {
     filled: Vec<bool>,
 }
 
-/// Empty layers around the region's own voxels: one that the dilation fills, and one that stays.
+/// The number of empty layers around the region's own voxels: the dilation fills one, and one remains.
 const LAYERS: usize = 2;
 
 impl Voxels {
-    /// All cubes of this size with one of the points in them, and those around these. Within the box from `low` over
-    /// `extent`, which holds the points.
+    /// Makes all cubes of this size that contain a point, and the cubes around them. The box from `low` over `extent`
+    /// contains the points.
     pub fn around(points: impl Iterator<Item = DVec3>, low: DVec3, extent: DVec3, size: f64) -> Self {
         let layers = (extent / size).ceil().max(DVec3::ONE);
         let counts = layers.as_usizevec3() + 2 * LAYERS;
@@ -47,7 +47,7 @@ impl Voxels {
         voxels
     }
 
-    /// Whether a cube belongs to the set; those beyond the box do not.
+    /// True if a cube belongs to the set; those beyond the box do not.
     pub fn contains(&self, cell: I64Vec3) -> bool {
         let is_inside = cell.cmpge(I64Vec3::ZERO).all() && cell.cmplt(self.counts.as_i64vec3()).all();
         is_inside && self.filled[self.number(cell.as_usizevec3())]
@@ -62,7 +62,7 @@ impl Voxels {
         cell.x + self.counts.x * (cell.y + self.counts.y * cell.z)
     }
 
-    /// Fills what can't be reached from outside.
+    /// Fills all cubes that can't be reached from outside.
     fn fill_hollows(&mut self) {
         let mut is_outside = vec![false; self.filled.len()];
         is_outside[0] = true;
@@ -116,7 +116,7 @@ impl Voxels {
     }
 }
 
-/// The cells of a cube with so many on a side.
+/// The cells of a cube with `side` of them on each side.
 fn block(side: usize) -> impl Iterator<Item = I64Vec3> {
     all(USizeVec3::splat(side))
 }
