@@ -20,16 +20,16 @@ pub struct Border {
 /// All borders of a surface.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub struct Borders {
-    /// Those that can be filled and joined, by falling length, equal ones by their first vertex.
+    /// The borders that can be filled and joined, by falling length, equal ones by their first vertex.
     pub sound: Vec<Border>,
     /// A vertex of each of the others, and its fault.
     pub faulty: Vec<(SurfaceVertex, BorderFault)>,
-    /// Which of `faulty` each of their vertices belongs to, ascending.
+    /// The vertices of the faulty borders with their places in `faulty`, ascending.
     faulty_vertices: Vec<(SurfaceVertex, u32)>,
 }
 
 impl Borders {
-    /// The borders of a model.
+    /// Finds the borders of a model.
     pub fn of(model: &Model) -> Self {
         let (positions, edges) = (&model.surface.positions, model.topology.boundary_edge_list());
         let loops = model.topology.boundary_loops();
@@ -58,7 +58,7 @@ impl Borders {
         borders
     }
 
-    /// The numbers of the sound borders that pass one of these surface vertices, which are those of one file vertex.
+    /// The numbers of the sound borders that pass one of these surface vertices, which belong to one file vertex.
     ///
     /// # Errors
     /// [`StitchError::FaultyBorder`] if only faulty borders do, [`StitchError::NotOnBorder`] if none does.
@@ -87,7 +87,7 @@ impl Borders {
     }
 }
 
-/// Whether the surface has a triangle with these three corners.
+/// True if the surface has a triangle with these three corners.
 fn is_triangle(model: &Model, vertices: &[SurfaceVertex]) -> bool {
     let triangles = &model.surface.triangles;
     let mut around = model.topology.faces(vertices[0], triangles);

@@ -2,15 +2,15 @@
 
 use glam::DVec3;
 
-/// Two edges of a line this close to each other, in units of the shorter one, cross.
+/// Two edges of a line cross if they are this close to each other, in units of the shorter one.
 const TOUCH: f64 = 1e-9;
 
-/// The first pair of edges of a closed line that cross each other inside both; an edge is named by its first point.
-/// Edges that only meet at an end don't cross.
+/// The first pair of edges of a closed line that cross each other inside both; each edge has the number of its first
+/// point. Edges that only meet at an end don't cross.
 pub(crate) fn first_crossing(points: &[DVec3]) -> Option<[usize; 2]> {
     let count = points.len();
     let edge = |k: usize| [points[k], points[(k + 1) % count]];
-    // Swept along the longest axis: edges apart there can't cross.
+    // The sweep follows the longest axis: edges that are apart there can't cross.
     let low = points.iter().copied().fold(DVec3::INFINITY, DVec3::min);
     let high = points.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
     let size = high - low;
@@ -37,7 +37,7 @@ pub(crate) fn first_crossing(points: &[DVec3]) -> Option<[usize; 2]> {
     found
 }
 
-/// Whether two segments pass through each other inside both.
+/// True if two segments pass through each other inside both.
 fn cross([a, b]: [DVec3; 2], [c, d]: [DVec3; 2]) -> bool {
     let (u, v, w) = (b - a, d - c, c - a);
     let normal = u.cross(v);
@@ -46,7 +46,7 @@ fn cross([a, b]: [DVec3; 2], [c, d]: [DVec3; 2]) -> bool {
     if square <= (TOUCH * long * short).powi(2) {
         return false;
     }
-    // a + s u and c + t v are nearest to each other.
+    // a + s u and c + t v are the nearest points of both.
     let s = w.cross(v).dot(normal) / square;
     let t = w.cross(u).dot(normal) / square;
     let gap = (w.dot(normal) / square.sqrt()).abs();

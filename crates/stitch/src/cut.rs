@@ -7,7 +7,7 @@ use crate::part::Part;
 use crate::shape::{Age, NewShape, TriangleSource, VertexSource};
 
 impl NewShape {
-    /// A part without the chosen vertices of its surface (a flag each) and the triangles that use them. Vertices that
+    /// Deletes the chosen vertices of a part's surface (a flag for each) and the triangles that use them. Vertices that
     /// only those triangles used go, too; all others keep their order.
     ///
     /// # Errors

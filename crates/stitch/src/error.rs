@@ -13,13 +13,13 @@ pub enum StitchError {
     /// A closed surface has nothing to fill or to join.
     #[error("the surface has no border: cut a part out first")]
     NoBorder,
-    /// A vertex that was given as one of a border is inside the surface, or in no triangle.
+    /// A given vertex is inside the surface or in no triangle, but should be on a border.
     #[error("vertex {vertex} is on no border: `pliant info` lists the borders; give a vertex of one of them")]
     NotOnBorder {
         /// The vertex.
         vertex: u32,
     },
-    /// A vertex that the file does not have.
+    /// The file does not have this vertex.
     #[error("there is no vertex {vertex}: the file has {count}, numbered from 0")]
     NoVertex {
         /// The vertex.
@@ -27,7 +27,7 @@ pub enum StitchError {
         /// The number of the file's vertices.
         count: usize,
     },
-    /// A border that can't be filled or joined.
+    /// A border can't be filled or joined.
     #[error("the border at vertex {vertex} {fault}")]
     FaultyBorder {
         /// A vertex of it.
@@ -35,13 +35,13 @@ pub enum StitchError {
         /// Its fault.
         fault: BorderFault,
     },
-    /// A cut that would leave nothing.
+    /// The cut would leave nothing.
     #[error("the selection holds every triangle: select less, so that something is left")]
     NothingLeft,
-    /// A cut without a vertex.
+    /// The cut has no vertex.
     #[error("the selection holds no vertex: select at least one")]
     NothingSelected,
-    /// The bending of a part was refused.
+    /// The method refused to bend a part.
     #[error("{part} can't be bent to the common border: {source}")]
     Bind {
         /// `A` or `B`.
@@ -49,7 +49,7 @@ pub enum StitchError {
         /// The refusal.
         source: BindError,
     },
-    /// The bending of a part failed.
+    /// The method failed to bend a part.
     #[error("{part} can't be bent to the common border: {source}")]
     Solve {
         /// `A` or `B`.
@@ -57,7 +57,7 @@ pub enum StitchError {
         /// The failure.
         source: SolveError,
     },
-    /// A pair between borders that other pairs join with different ones.
+    /// A pair joins borders that other pairs join with different ones.
     #[error(
         "pair {pair} joins vertex {a} of A with vertex {b} of B, whose borders other pairs join with different ones: keep the pairs of one border of A on one border of B"
     )]
@@ -69,7 +69,7 @@ pub enum StitchError {
         /// The vertex of B.
         b: u32,
     },
-    /// Pairs that follow each other on A's border, but not in the opposite direction on B's.
+    /// Pairs follow each other on A's border, but not in the opposite direction on B's.
     #[error(
         "the pairs on the border at vertex {vertex} of A are not in the opposite order on B's border: if one part is inside out, turn it; otherwise leave out the pair that crosses the others"
     )]
@@ -77,7 +77,7 @@ pub enum StitchError {
         /// A vertex of A's border.
         vertex: u32,
     },
-    /// Two pairs with the same vertex.
+    /// Two pairs have the same vertex.
     #[error("vertex {vertex} of {part} is in two pairs: keep one of them")]
     TwicePaired {
         /// `A` or `B`.
@@ -96,7 +96,7 @@ pub enum BorderFault {
     Misoriented,
     /// Two of its edges cross.
     CrossesItself,
-    /// It goes around one triangle that nothing else is joined to.
+    /// It goes around one triangle without neighbours.
     LoneTriangle,
 }
 

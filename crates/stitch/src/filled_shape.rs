@@ -1,4 +1,4 @@
-//! A part with its holes filled, as a shape.
+//! Makes a shape of a part with its holes filled.
 
 use std::collections::BTreeMap;
 
@@ -13,12 +13,12 @@ use crate::fill::Filled;
 use crate::part::Part;
 use crate::shape::{Age, NewShape, TriangleSource, VertexSource};
 
-/// A file's normal that is within this cosine of the surface's is smooth there, and turns with the patch; any other one
-/// is a hard edge's and stays.
+/// A file's normal within this cosine of the surface's is smooth, and turns with the patch; any other belongs to a hard
+/// edge and is kept.
 const SMOOTH: f64 = 0.866;
 
 impl NewShape {
-    /// All of a part, unchanged.
+    /// Takes a whole part, unchanged.
     pub fn whole(part: &Part<'_>) -> Self {
         let count = part.drawn.triangles.len() as u32;
         let vertices = (0..part.drawn.positions.len() as u32).map(DrawnVertex);
@@ -38,7 +38,7 @@ impl NewShape {
         }
     }
 
-    /// A part with its holes filled. The part's vertices and triangles come first, in their order.
+    /// Fills the holes of a part. The part's vertices and triangles come first, in their order.
     ///
     /// # Errors
     /// [`StitchError::Cancelled`].

@@ -1,12 +1,12 @@
 //! Changes of topology: cutting, filling holes, and joining two surfaces.
 //!
-//! Every other crate keeps the triangles that a file has. This one takes surfaces with their attributes ([`Part`]) and
-//! gives a [`NewShape`]: old and new vertices and triangles, each with its source, so that a caller can find materials,
-//! groups and polygons again. [`fill()`] makes the least triangulation of each rim, as dense as the surface around, and
-//! fairs it; [`merge()`] bends two parts by any method of `deform` until their borders meet, and puts them together
-//! without a crack. Borders that have no such answer ([`Borders::faulty`]) are refused in words.
+//! Every other crate keeps the triangles of a file. This one takes surfaces with their attributes ([`Part`]) and gives
+//! a [`NewShape`]: old and new vertices and triangles, each with its source, so that a caller can find materials,
+//! groups and polygons again. [`fill()`] triangulates each rim with least weight, as dense as the surrounding surface,
+//! and fairs the patch; [`merge()`] bends two parts by any method of `deform` until their borders meet, and joins them
+//! without a crack. Borders without a solution ([`Borders::faulty`]) are refused with a sentence.
 //!
-//! A hole in a sphere is closed by points that lie on the sphere again:
+//! Points that are again on the sphere close a hole in it:
 //!
 //! ```
 //! use pliant_deform::Budget;

@@ -1,4 +1,4 @@
-//! A shape that is cut, filled or joined: its surface, and what its vertices carry beside positions.
+//! The input shape: its surface, and the further data of its vertices.
 
 use glam::DVec3;
 use pliant_mesh::{Drawn, DrawnVertex, Model, SurfaceVertex};
@@ -12,9 +12,9 @@ pub struct Part<'a> {
     pub drawn: &'a Drawn,
     /// The group (node and material) of each drawn triangle, by any numbers.
     pub group: &'a (dyn Fn(u32) -> u32 + Sync),
-    /// The numbers that its drawn vertices carry.
+    /// The numbers of its drawn vertices.
     pub attributes: Attributes<'a>,
-    /// The unit normal of each drawn vertex, zero for one without; `None` if it has none at all.
+    /// The unit normal of each drawn vertex, zero for one without; `None` if no vertex has one.
     pub normals: Option<&'a (dyn Fn(DrawnVertex) -> DVec3 + Sync)>,
 }
 
@@ -53,14 +53,13 @@ impl Attributes<'_> {
         self.charted + self.blended
     }
 
-    /// Whether two vertices have the same charted numbers.
+    /// True if two vertices have the same charted numbers.
     pub(crate) fn are_of_one_chart(&self, a: DrawnVertex, b: DrawnVertex) -> bool {
         a == b || (0..self.charted).all(|channel| (self.value)(a, channel) == (self.value)(b, channel))
     }
 }
 
-/// The triangle of a surface that has an edge from `to` to `from`, which is the one beyond the edge from `from` to `to`
-/// of a border.
+/// The triangle of a surface that has an edge from `to` to `from`; it is beyond the border's edge from `from` to `to`.
 pub(crate) fn face_beyond(model: &Model, from: SurfaceVertex, to: SurfaceVertex) -> Option<usize> {
     let triangles = &model.surface.triangles;
     let mut around = model.topology.faces(from, triangles);

@@ -1,4 +1,4 @@
-//! The shape that comes out: old and new vertices and triangles, each with its source.
+//! The output shape: old and new vertices and triangles, each with its source.
 
 use glam::DVec3;
 use pliant_mesh::{DrawnVertex, FileVertex};
@@ -10,21 +10,21 @@ pub struct NewShape {
     pub vertices: Vec<VertexSource>,
     /// The world position of each vertex.
     pub positions: Vec<DVec3>,
-    /// The number of each vertex in a file without texture coordinates and normals: those at one point of the surface
-    /// share it.
+    /// The number of each vertex in a file without texture coordinates and normals: the vertices at one point of the
+    /// surface share it.
     pub file_vertices: Vec<FileVertex>,
     /// The count of these numbers.
     pub file_vertex_count: usize,
-    /// Counterclockwise seen from outside.
+    /// They are counterclockwise seen from outside.
     pub triangles: Vec<[DrawnVertex; 3]>,
     /// The source of each triangle.
     pub triangle_sources: Vec<TriangleSource>,
     /// The numbers of the new vertices, [`crate::Attributes::width`] for each.
     pub values: Vec<f64>,
-    /// The blended numbers ([`crate::Attributes::blended`]) of vertices on a common border, whose two sides agree there;
-    /// ascending by vertex.
+    /// The blended numbers ([`crate::Attributes::blended`]) of vertices on a common border, whose two sides agree
+    /// there; ascending by vertex.
     pub blended: Vec<(DrawnVertex, Vec<f64>)>,
-    /// The unit normals that differ from the sources', those of new vertices among them; ascending by vertex.
+    /// The unit normals that differ from the sources', including those of new vertices; ascending by vertex.
     pub normals: Vec<(DrawnVertex, DVec3)>,
 }
 
@@ -63,13 +63,13 @@ impl VertexSource {
 pub struct TriangleSource {
     /// 0 or 1.
     pub part: u8,
-    /// The drawn triangle that it was, or whose group it takes.
+    /// The drawn triangle that is its source or gives its group.
     pub triangle: u32,
-    /// Whether it was there before.
+    /// The triangle's age.
     pub age: Age,
 }
 
-/// Whether a triangle was there before.
+/// The age of a triangle.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Age {
     /// It has the corners of its source.

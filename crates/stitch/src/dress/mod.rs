@@ -1,7 +1,7 @@
-//! A patch as it is drawn: its vertices with their numbers, and its triangles with their groups.
+//! A patch in its drawn form: its vertices with their numbers, and its triangles with their groups.
 //!
-//! Colours are continued from the whole rim. Texture coordinates jump along seams, so each run of the rim is continued
-//! over its own share of the patch (see `runs`), and a point between two shares is drawn once for each.
+//! Colours continue from the whole rim. Texture coordinates jump along seams, so each run of the rim continues over its
+//! own share of the patch (see `runs`), and a point between two shares is drawn once for each.
 
 mod runs;
 mod values;
@@ -17,10 +17,10 @@ use crate::part::Part;
 use runs::{DrawnRim, continued};
 use values::continue_values;
 
-/// A patch as it is drawn.
+/// A patch in its drawn form.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub(crate) struct DressedPatch {
-    /// The new vertices: the point of the patch at which each is, and a drawn vertex of the rim whose kind it takes.
+    /// The new vertices: each one's point of the patch, and a drawn vertex of the rim whose kind it takes.
     pub vertices: Vec<(u32, DrawnVertex)>,
     /// Their numbers, row after row.
     pub values: Vec<f64>,

@@ -1,7 +1,7 @@
 //! The charts and groups along a rim, and their continuation over a patch.
 //!
-//! A *run* is a stretch of the rim along which texture coordinates are continuous. Each triangle of the patch belongs to
-//! the run, and takes the group, of the edge of the rim that is nearest to it, triangle by triangle.
+//! A *run* is a stretch of the rim along which texture coordinates are continuous. Each triangle of the patch belongs
+//! to the run, and takes the group, of the rim's nearest edge, counted in triangles.
 
 use std::collections::VecDeque;
 
@@ -10,7 +10,7 @@ use pliant_mesh::DrawnVertex;
 use crate::fill::FilledHole;
 use crate::part::{Part, face_beyond};
 
-/// The edges of a rim as they are drawn.
+/// The edges of a rim in their drawn form.
 #[derive(Debug)]
 pub(super) struct DrawnRim {
     /// For each edge, the drawn vertices at its first and its second end in the triangle beyond it.
@@ -22,7 +22,7 @@ pub(super) struct DrawnRim {
 }
 
 impl DrawnRim {
-    /// The rim of a hole; `None` if a triangle beyond it is missing, which a sound border excludes.
+    /// Finds the rim of a hole; `None` if a triangle beyond it is missing, which a sound border excludes.
     pub fn of(part: &Part<'_>, hole: &FilledHole) -> Option<Self> {
         let model = part.model;
         let rim = &hole.border.vertices;

@@ -1,12 +1,14 @@
-//! Numbers on a patch, continued from its rim: harmonic, so that none leaves the range of those on the rim.
+//! Continues numbers from a patch's rim over the patch: they are harmonic, so that none leaves the range of those on
+//! the rim.
 
 use glam::DVec3;
 use pliant_deform::{BilaplacianOrder, Budget, fair};
 use pliant_mesh::{Cancel, Surface, SurfaceVertex, Topology};
 
-/// Fills the rows of the points that are not `known`. `rows` has one row for each point, `width` numbers long.
+/// Fills the rows of the points that are not `known`. `rows` has one row of `width` numbers for each point.
 ///
-/// Points that no triangle uses keep their rows. If the equations can't be solved, the mean of the known rows is taken.
+/// Points that no triangle uses keep their rows. If the equations can't be solved, the points take the mean of the
+/// known rows.
 pub(super) fn continue_values(
     points: &[DVec3],
     triangles: &[[u32; 3]],

@@ -1,4 +1,4 @@
-//! Cutting a long polygon in two along the chord that is shortest for the lines on both sides of it.
+//! Cuts a long polygon in two along the chord that is shortest relative to the lines on both sides of it.
 
 use super::triangulate::Rim;
 
@@ -8,11 +8,11 @@ const TRIED: usize = 600;
 /// Each side keeps at least this share of the points.
 const LEAST_SHARE: f64 = 0.2;
 
-/// The chord between two points of `polygon` (points of the rim), by their places in it; `None` if the surface joins
-/// all that come into question.
+/// The best chord between two points of `polygon` (points of the rim), by their places in it; `None` if the surface
+/// already joins all tried pairs.
 ///
-/// It is the one that is shortest in units of the shorter way along the polygon, so that a slit is cut across and not
-/// along, and no side is left with few points: cutting in two then takes log n rounds.
+/// It is the shortest in units of the shorter way along the polygon, so that it cuts a slit across and not along, and
+/// neither side has few points: so log n rounds of cutting suffice.
 pub(crate) fn best_chord(rim: &Rim<'_>, polygon: &[u32]) -> Option<[usize; 2]> {
     let count = polygon.len();
     let point = |place: usize| rim.points[polygon[place] as usize];

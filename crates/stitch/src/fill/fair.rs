@@ -1,8 +1,8 @@
-//! Fairing a patch so that it joins the surface around with continuous tangents.
+//! Fairs a patch so that it joins the surrounding surface with continuous tangents.
 //!
 //! The patch with the triangles around its rim is a small surface of its own, in which the points inside are free. The
-//! bi-Laplacian takes its metric from the patch's present shape, which begins flat: after a fairing the patch may bulge,
-//! so it is refined and faired again, until the metric fits the shape.
+//! bi-Laplacian takes its metric from the patch's present shape, which is flat at first: after a fairing the patch may
+//! bulge, so it is refined and faired again, until the metric fits the shape.
 
 use glam::DVec3;
 use pliant_deform::{BilaplacianOrder, BindError, Budget, fair};
@@ -11,10 +11,10 @@ use pliant_mesh::{Cancel, Surface, SurfaceVertex, Topology};
 use super::patch::Patch;
 use super::refine::refine;
 
-/// The rounds of fairing and refining. A half sphere is within 1e-3 of its limit after these.
+/// The rounds of fairing and refining. After these a half sphere is within 1e-3 of its limit.
 const ROUNDS: usize = 4;
 
-/// The surface around a patch: triangles whose corners are points of the rim or points of its own.
+/// The surface around a patch: triangles whose corners are points of the rim or of `points`.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Surroundings {
     /// Points that are not on the rim.
@@ -26,7 +26,7 @@ pub(crate) struct Surroundings {
 /// Refines and fairs a patch; `scales` has an entry for each of its points, and gets those of new ones.
 ///
 /// # Errors
-/// Those of fairing. The patch then has its shape before the failed round.
+/// The errors of fairing. The patch then has its shape before the failed round.
 pub(crate) fn refine_and_fair(
     patch: &mut Patch,
     scales: &mut Vec<f64>,

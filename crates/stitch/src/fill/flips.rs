@@ -1,4 +1,4 @@
-//! Flips of edges until the triangulation is Delaunay on the patch.
+//! Flips edges until the triangulation is Delaunay on the patch.
 
 use std::f64::consts::PI;
 
@@ -6,10 +6,10 @@ use glam::DVec3;
 
 use super::patch::Patch;
 
-/// The flips allowed for each edge: a patch in space may have no Delaunay triangulation at all.
+/// The flips allowed for each edge: a patch in space may have no Delaunay triangulation.
 const MOST_FLIPS: usize = 8;
 
-/// An edge is flipped if its two opposite angles exceed half a turn by this, so that rounding flips none back.
+/// An edge is flipped if its two opposite angles exceed half a turn by this, so that rounding does not flip it back.
 const SLACK: f64 = 1e-9;
 
 /// Flips edges inside the patch whose opposite angles add up to more than half a turn, unless that would double an edge
@@ -34,7 +34,7 @@ pub(crate) fn flip_until_delaunay(patch: &mut Patch) {
     }
 }
 
-/// The points that would be joined if this edge were flipped, if it should be.
+/// The points that a flip of this edge would join; `None` if it should not be flipped.
 fn other_diagonal(patch: &Patch, edge: [u32; 2]) -> Option<[u32; 2]> {
     let [a, b] = edge;
     let (left, right) = (patch.left_of(a, b)?, patch.left_of(b, a)?);
@@ -44,7 +44,7 @@ fn other_diagonal(patch: &Patch, edge: [u32; 2]) -> Option<[u32; 2]> {
     if sum <= PI + SLACK || c == d || patch.is_edge(c, d) {
         return None;
     }
-    // Both new triangles must look to where the old ones look on average.
+    // Both new triangles must face the average direction of the old ones.
     let normal = |p: DVec3, q: DVec3, r: DVec3| (q - p).cross(r - p);
     let before = normal(pa, pb, pc).normalize_or_zero() + normal(pb, pa, pd).normalize_or_zero();
     let (one, two) = (normal(pa, pd, pc), normal(pd, pb, pc));

@@ -1,7 +1,7 @@
-//! Filling holes: the least triangles on the rim, as dense as the surface around, faired [Lie03].
+//! Fills holes: triangles of least weight on the rim, as dense as the surrounding surface, faired [Lie03].
 //!
-//! Each hole is a task of its own, from the rim and one ring of triangles around it, so that a thousand small holes take
-//! as long as their patches, whatever the size of the surface.
+//! Each hole is a separate task, which needs the rim and one ring of triangles around it. So a thousand small holes
+//! take as long as their patches, for any size of the surface.
 
 mod divide;
 mod fair;
@@ -25,12 +25,12 @@ use triangulate::{Rim, triangulate};
 /// The holes to fill.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub enum Holes {
-    /// All.
+    /// All holes.
     #[default]
     Every,
-    /// The longest ones, this many.
+    /// This many of the holes with the longest rims.
     Largest(usize),
-    /// Those whose rims pass this vertex, numbered as in the file.
+    /// The holes whose rims pass this vertex, numbered as in the file.
     At(u32),
 }
 
@@ -41,18 +41,19 @@ pub struct FilledHole {
     pub border: Border,
     /// The points inside.
     pub points: Vec<DVec3>,
-    /// Counterclockwise. Corners below the rim's count are places in the rim, those above it are points inside.
+    /// They are counterclockwise. Corners below the rim's count are places in the rim; higher ones are points inside.
     pub triangles: Vec<[u32; 3]>,
-    /// Whether the points inside are faired. If the equations could not be solved, the patch is as it was triangulated.
+    /// True if the points inside are faired. If the equations could not be solved, the patch has its shape after
+    /// triangulation.
     pub is_faired: bool,
 }
 
 /// The result of filling.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub struct Filled {
-    /// By falling length of their rims.
+    /// The filled holes by falling length of their rims.
     pub holes: Vec<FilledHole>,
-    /// The refusals of faulty borders that were passed over.
+    /// The refusals of faulty borders that were skipped.
     pub passed_over: Vec<StitchError>,
 }
 
@@ -155,7 +156,7 @@ fn fill_one(
     let mut points = site.points.clone();
     let mut scales = site.scales.clone();
     let triangles = triangulate(&outline).unwrap_or_else(|| {
-        // Each rim can be filled by a fan around a new point.
+        // A fan around a new point fills any rim.
         points.push(site.points.iter().sum::<DVec3>() / rim as f64);
         scales.push(site.scales.iter().sum::<f64>() / rim as f64);
         (0..rim as u32).map(|k| [k, (k + 1) % rim as u32, rim as u32]).collect()
@@ -183,7 +184,7 @@ struct Site {
     beyond: Vec<DVec3>,
     /// For each point of the rim the mean length of the surface's edges there.
     scales: Vec<f64>,
-    /// See [`Rim::joined`].
+    /// The pairs of [`Rim::joined`].
     joined: Vec<[u32; 2]>,
     around: Surroundings,
 }
@@ -244,8 +245,8 @@ impl Site {
     }
 }
 
-/// The pairs of places in a rim, not next to each other, that an edge of the surface joins, or that the patch of another
-/// hole could join.
+/// The pairs of places in a rim, not next to each other, that an edge of the surface joins, or that the patch of
+/// another hole could join.
 fn joined(
     model: &Model,
     rim: &[SurfaceVertex],

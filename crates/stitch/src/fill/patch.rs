@@ -1,4 +1,4 @@
-//! The triangles that fill a hole while they are being made: points, triangles and who lies beside whom.
+//! The unfinished triangles of a hole: points, triangles and their neighbours.
 
 use std::collections::HashMap;
 
@@ -11,17 +11,17 @@ pub(crate) struct Patch {
     pub points: Vec<DVec3>,
     /// The number of the rim's points.
     pub rim: usize,
-    /// Counterclockwise, so that edges of the rim run from each point to the next.
+    /// The triangles are counterclockwise, so that edges of the rim run from each point to the next.
     pub triangles: Vec<[u32; 3]>,
-    /// The triangle on the left of each directed edge. It is only looked up, never listed.
+    /// The triangle on the left of each directed edge. The code only looks it up and never lists it.
     beside: HashMap<[u32; 2], u32>,
     /// The pairs of rim points that an edge outside the patch joins already, ascending.
     joined: Vec<[u32; 2]>,
 }
 
 impl Patch {
-    /// A patch of these points and triangles. `joined` (ascending, lower point first) are pairs of rim points that the
-    /// surface joins already, so that the patch must not.
+    /// Makes a patch of these points and triangles. `joined` (ascending, lower point first) are pairs of rim points
+    /// that the surface already joins, so that the patch must not.
     pub fn new(points: Vec<DVec3>, rim: usize, triangles: Vec<[u32; 3]>, joined: Vec<[u32; 2]>) -> Self {
         let mut patch = Self {
             points,
@@ -41,7 +41,7 @@ impl Patch {
         self.triangles[triangle].map(|point| self.points[point as usize])
     }
 
-    /// Whether an edge joins two points, here or outside.
+    /// True if an edge joins two points, here or outside.
     pub fn is_edge(&self, a: u32, b: u32) -> bool {
         self.beside.contains_key(&[a, b])
             || self.beside.contains_key(&[b, a])

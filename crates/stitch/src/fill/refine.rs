@@ -1,8 +1,8 @@
-//! New points inside a patch until it is as dense as the surface around it [Lie03, section 3].
+//! Adds points inside a patch until it is as dense as the surrounding surface [Lie03, section 3].
 //!
-//! Each point has a *scale*, the mean length of the edges there. A triangle is cut at its middle if the middle is
-//! further from each corner than the scales of middle and corner, both divided by √2. New points take the mean scale of
-//! their triangle, so density varies from one side of the rim to the other.
+//! Each point has a *scale*, the mean length of its edges. A triangle is cut at its middle if the middle is further
+//! from each corner than the scales of middle and corner, both divided by √2. New points take the mean scale of their
+//! triangle, so density varies from one side of the rim to the other.
 
 use std::f64::consts::SQRT_2;
 

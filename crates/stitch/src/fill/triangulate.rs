@@ -1,7 +1,7 @@
-//! The first triangles of a patch: those of least weight [Lie03].
+//! The first triangles of a patch: the triangulation of least weight [Lie03].
 //!
-//! A triangulation weighs as much as its largest angle between neighbouring triangles, those outside the rim included,
-//! and of equal ones the least area counts. W(i, j), the least weight of the polygon from point i to point j, is the
+//! The weight of a triangulation is its largest angle between neighbouring triangles, including those outside the rim;
+//! the least area decides among equal ones. W(i, j), the least weight of the polygon from point i to point j, is the
 //! least of W(i, m), W(m, j) and the triangle (i, m, j) together, over all m between. This takes n³ / 6 steps, so a
 //! polygon of more than [`MOST`] points is first cut in two ([`divide`](super::divide)).
 
@@ -15,18 +15,18 @@ const MOST: usize = 150;
 /// Angles are compared in steps of this many radians, so that rounding does not decide between flat triangulations.
 const ANGLE_STEP: f64 = 1e-4;
 
-/// A closed line to be filled.
+/// A closed line to fill.
 pub(crate) struct Rim<'a> {
     /// Its points, in order.
     pub points: &'a [DVec3],
-    /// For each edge (named by its first point) the third corner of the surface's triangle beyond it.
+    /// For each edge (it has the number of its first point) the third corner of the surface's triangle beyond it.
     pub beyond: &'a [DVec3],
-    /// Pairs of its points that the surface joins already, ascending, lower point first.
+    /// Pairs of its points that the surface already joins, ascending, lower point first.
     pub joined: &'a [[u32; 2]],
 }
 
 impl Rim<'_> {
-    /// Whether the surface joins two points, so that no triangle of the patch may.
+    /// True if the surface joins two points, so that no triangle of the patch may.
     pub fn is_joined(&self, a: u32, b: u32) -> bool {
         self.joined.binary_search(&[a.min(b), a.max(b)]).is_ok()
     }
@@ -57,7 +57,7 @@ pub(crate) fn triangulate(rim: &Rim<'_>) -> Option<Vec<[u32; 3]>> {
 struct Polygon {
     /// Points of the rim, in order.
     points: Vec<u32>,
-    /// The third corner of the triangle beyond each edge, where it is known.
+    /// The third corner of the triangle beyond each edge, if it is known.
     beyond: Vec<Option<DVec3>>,
 }
 
@@ -164,8 +164,8 @@ fn lightest(rim: &Rim<'_>, polygon: &Polygon) -> Option<Vec<[u32; 3]>> {
     Some(triangles)
 }
 
-/// The angle between a triangle of this normal at its edge and the triangle that the edge has with `other` on its right
-/// side, in [`ANGLE_STEP`]s: 0 if they are in one plane. A triangle without area counts as folded.
+/// The angle between a triangle with this normal at its edge and the triangle of this edge and `other`, which is on the
+/// edge's right side, in [`ANGLE_STEP`]s: 0 if they are in one plane. A triangle without area counts as folded.
 fn bend(normal: DVec3, from: DVec3, to: DVec3, other: DVec3) -> u32 {
     let beside = (other - from).cross(to - from);
     let lengths = normal.length() * beside.length();

@@ -1,4 +1,4 @@
-//! Putting the two bent parts together: A's vertices, A's cuts, B's vertices and B's cuts, then the triangles in the same
+//! Assembles the two bent parts: A's vertices, A's cuts, B's vertices and B's cuts, then the triangles in the same
 //! order. Vertices at one point of the common border have one position, to the bit, and one number.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -133,7 +133,7 @@ fn blend_borders(parts: &[Bent<'_>; 2], shape: &mut NewShape, vertices_of_node: 
     shape.blended = blended.into_iter().collect();
 }
 
-/// Numbers a part's vertices as in a file without attributes. Those of nodes that have a number take it.
+/// Numbers a part's vertices as in a file without attributes. Vertices at a numbered node take its number.
 fn number_file_vertices(
     bent: &Bent<'_>,
     node_of: &BTreeMap<SurfaceVertex, usize>,
@@ -225,7 +225,7 @@ fn add_rim_normals(bent: &Bent<'_>, joins: &[(Join, Vec<Node>)], side: usize, ou
     }
 }
 
-/// Normals that turned: along with the surface where it bent, and those of the common surface on the border.
+/// Turns normals: with the surface where it bent, and on the border to the normal of the common surface.
 fn turn_normals(
     parts: &[Bent<'_>; 2],
     shape: &mut NewShape,

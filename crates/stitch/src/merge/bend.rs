@@ -1,8 +1,8 @@
-//! Bending a part so that its borders go to their places: the rims and one ring beside them are handles, the surface
+//! Bends a part so that its borders reach their targets: the rims and one ring beside them are handles, and the surface
 //! within reach of them is free.
 //!
-//! Each rim is several handles, so that methods which spread the handles' turns over the surface bend each side of the
-//! rim by its own turn.
+//! Each rim is several handles, so that methods which distribute the handles' turns over the surface bend each side of
+//! the rim by its own turn.
 
 use std::collections::BTreeMap;
 
@@ -25,27 +25,27 @@ pub(super) struct RimVertex {
     pub way: DVec3,
     /// The turn of the surface there.
     pub turn: DQuat,
-    /// Its handle. Numbers begin at 0, and none is left out.
+    /// Its handle. Handles are numbered from 0 without gaps.
     pub handle: u16,
 }
 
-/// A place to which a handle's vertex goes.
+/// The target of a handle's vertex.
 #[derive(Clone, Copy, Debug)]
 struct Placed {
     at: DVec3,
     handle: u16,
 }
 
-/// How a part is bent.
+/// The input for the bending of a part.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bending<'a> {
     /// Its surface, in its final place.
     pub surface: &'a Surface,
     /// The surface's connectivity.
     pub topology: &'a Topology,
-    /// How far along the surface from the rims it may bend, in world units.
+    /// The largest distance along the surface from the rims at which it may bend, in world units.
     pub reach: f64,
-    /// Ways up to this length, in world units, are rounding: nothing bends for them.
+    /// Displacements up to this length, in world units, are rounding: the part does not bend for them.
     pub touch: f64,
     /// The method.
     pub method: &'a Method,
@@ -59,7 +59,7 @@ pub(super) struct Bending<'a> {
 const MOST_STEPS: u32 = 500;
 
 impl Bending<'_> {
-    /// The displacement of each vertex of the surface. Rims go exactly to their targets.
+    /// Computes the displacement of each vertex of the surface. Rims reach their targets exactly.
     ///
     /// # Errors
     /// The refusals of the method.
@@ -105,7 +105,7 @@ impl Bending<'_> {
             .bind_within(ordering.as_ref(), self.budget, progress, cancel)
             .map_err(bind)?;
         self.solve(&mut bound, &places, &mut out, cancel)?;
-        // What the method does not take as places is spread by the bi-Laplacian.
+        // The bi-Laplacian spreads the displacements that the method leaves missing at the targets.
         let rest = |vertex: usize| self.surface.positions[vertex];
         let missing = |vertex: &SurfaceVertex, place: &Placed| place.at - rest(vertex.index()) - out[vertex.index()];
         let largest = places
@@ -138,7 +138,7 @@ impl Bending<'_> {
         Ok(out)
     }
 
-    /// The places of the rims' vertices and of those beside them, which turn with the rim.
+    /// The targets of the rims' vertices and of those beside them, which turn with the rim.
     fn places(&self, rims: &Rims) -> BTreeMap<SurfaceVertex, Placed> {
         let position = |vertex: SurfaceVertex| self.surface.positions[vertex.index()];
         let mut beside: BTreeMap<SurfaceVertex, (DVec3, f64, u16)> = BTreeMap::new();
@@ -146,7 +146,7 @@ impl Bending<'_> {
             let others = self.topology.neighbours(vertex).iter();
             for &other in others.filter(|other| !rims.contains_key(other)) {
                 let arm = position(other) - position(vertex);
-                // The turn's own part is added as a difference, so that no turn leaves no trace.
+                // The turn contributes a difference, so that the identity contributes exactly nothing.
                 let turned = if turn == DQuat::IDENTITY {
                     DVec3::ZERO
                 } else {

@@ -1,4 +1,4 @@
-//! The borders that are joined, and the anchors between them: from pairs, or from nearness and arc length.
+//! Chooses the borders to join and the anchors between them: by pairs, or by nearness and arc length.
 
 use std::collections::BTreeMap;
 
@@ -17,7 +17,7 @@ use crate::part::Part;
 pub(crate) struct Join {
     /// A's border.
     pub a: Line,
-    /// B's border, in the opposite direction, so that both run alike.
+    /// B's border, in the opposite direction, so that both have the same direction.
     pub b: Line,
     /// The map between them.
     pub map: Correspondence,
@@ -29,11 +29,11 @@ const MOST_BORDERS: usize = 16;
 /// The number of points at which two borders are compared.
 const SAMPLES: usize = 96;
 
-/// Borders whose points fit each other rigidly within this share of their length are the two sides of one cut.
+/// Two borders are the two sides of one cut if a rigid motion fits their points within this share of their length.
 const CONGRUENT: f64 = 1e-5;
 
-/// Once the first two borders are put together, others whose points are within this share of their length belong
-/// together, too.
+/// After the first two borders are fitted, others also belong together if their points are within this share of their
+/// length.
 const NEAR: f64 = 0.1;
 
 impl Join {
@@ -85,8 +85,7 @@ impl Join {
         Ok(joins)
     }
 
-    /// The joins of the borders that are nearest and whose lengths differ least. `holds` says whether B may not be moved
-    /// first.
+    /// The joins of the borders that are nearest and differ least in length. With `holds` B does not move first.
     pub fn by_nearness(parts: [&Part<'_>; 2], borders: [&Borders; 2], holds: bool) -> Vec<Self> {
         let most = |side: usize| borders[side].sound.len().min(MOST_BORDERS);
         let a: Vec<Line> = (0..most(0)).map(|k| line(parts[0], borders[0], k)).collect();
@@ -97,7 +96,7 @@ impl Join {
                 candidates.extend(Candidate::best(i, j, a, b, holds));
             }
         }
-        // Among the two sides of a cut, the candidate that brings most other borders together comes first.
+        // For the two sides of a cut, the candidate that brings most other borders together comes first.
         let (all_a, all_b) = (&a, &b);
         let together = |candidate: &Candidate| match candidate.is_congruent {
             true => (0..all_b.len())
@@ -186,20 +185,20 @@ fn reversed(part: &Part<'_>, borders: &Borders, number: usize) -> Line {
     Line::of(vertices, points)
 }
 
-/// Two borders and the way along B's that belongs to the beginning of A's.
+/// Two borders, and the way along B's border at the beginning of A's.
 struct Candidate {
     i: usize,
     j: usize,
     shift: f64,
     is_congruent: bool,
-    /// How far apart the borders are and how much their lengths differ, in world units.
+    /// The distance of the borders and the difference of their lengths, in world units.
     cost: f64,
     /// The motion that takes B's border onto A's; `None` for rest.
     motion: Option<RigidMotion>,
 }
 
 impl Candidate {
-    /// Those that come into question for two borders: every shift under which they are congruent, or else the nearest.
+    /// The candidates for two borders: every shift under which they are congruent, or else the nearest.
     fn best(i: usize, j: usize, a: &Line, b: &Line, holds: bool) -> Vec<Self> {
         let of_a = samples(a, 0.0);
         let middle = of_a.iter().sum::<DVec3>() / SAMPLES as f64;
@@ -280,7 +279,7 @@ impl Candidate {
     }
 }
 
-/// The join of two borders in which B's way `shift` belongs to A's beginning.
+/// The join of two borders in which the way `shift` along B's border corresponds to the beginning of A's.
 fn join(a: &Line, b: &Line, shift: f64) -> Join {
     Join {
         map: Correspondence::of(vec![[0.0, shift]], [a.length(), b.length()]),
@@ -289,7 +288,7 @@ fn join(a: &Line, b: &Line, shift: f64) -> Join {
     }
 }
 
-/// Points at equal ways along a line, from a way on.
+/// Points at equal distances along a line, beginning at the way `from`.
 fn samples(line: &Line, from: f64) -> Vec<DVec3> {
     let step = line.length() / SAMPLES as f64;
     (0..SAMPLES).map(|k| line.point(from + k as f64 * step)).collect()

@@ -1,5 +1,5 @@
-//! Edges that both parts have between the same two points of the common border: four triangles would share such an edge,
-//! so B's gets a vertex in its middle.
+//! Cuts edges that both parts have between the same two points of the common border: four triangles would share such an
+//! edge, so B's edge gets a vertex in its middle.
 //!
 //! A part has such an edge if one of its triangles has two edges on the border, like a tooth of a saw.
 
@@ -11,7 +11,8 @@ use pliant_mesh::{DrawnVertex, FileVertex};
 use crate::shape::{Age, NewShape, VertexSource};
 
 /// Cuts B's copies of edges that more than two triangles share. `on_border` are the numbers of the common border's
-/// vertices in a file without attributes, `width` the count of numbers at a vertex, and `value` gives those of old ones.
+/// vertices in a file without attributes, `width` is the count of numbers at a vertex, and `value` gives those of old
+/// ones.
 pub(super) fn cut_doubled(
     shape: &mut NewShape,
     on_border: &BTreeSet<FileVertex>,

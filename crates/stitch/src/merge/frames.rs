@@ -1,7 +1,7 @@
 //! The turns of a border's vertices: from each side's frame to the frame between both [YZX+04, section 5].
 //!
-//! A frame has the tangent of the border and the normal of the surface. Both sides turn half of the way. Where the
-//! borders coincide already, nothing turns: the surfaces meet there as they did.
+//! A frame has the tangent of the border and the normal of the surface. Each side turns half of the way. Where the
+//! borders coincide already, nothing turns: the surfaces meet there as before.
 
 use glam::{DMat3, DQuat, DVec3};
 use pliant_mesh::{Surface, SurfaceVertex, Topology};
@@ -71,7 +71,7 @@ pub(crate) fn turns(join: &Join, nodes: &[Node], normals: [&[DVec3]; 2]) -> [Vec
 /// The orthonormal frame of a tangent and a normal, if they determine one.
 fn frame(tangent: DVec3, normal: DVec3) -> Option<DMat3> {
     let tangent = tangent.try_normalize()?;
-    // Sides that look in opposite directions have no frame between.
+    // Two sides that face in opposite directions have no frame between them.
     let normal = (normal.length() > 0.2)
         .then(|| normal - tangent * normal.dot(tangent))?
         .try_normalize()?;

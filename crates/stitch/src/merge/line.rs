@@ -12,7 +12,7 @@ pub(crate) struct Line {
     pub vertices: Vec<SurfaceVertex>,
     /// Their positions.
     pub points: Vec<DVec3>,
-    /// The way along the line to each vertex, in world units; the line's length comes last.
+    /// The way along the line to each vertex, in world units; the last entry is the line's length.
     pub ways: Vec<f64>,
 }
 
@@ -49,7 +49,7 @@ impl Line {
         length(k).min(length(before))
     }
 
-    /// The edge at a way along the line, and the share of the edge that lies before it.
+    /// The edge at a way along the line, and the share of the edge before it.
     pub fn place(&self, way: f64) -> (usize, f64) {
         let way = way.rem_euclid(self.length());
         let edge = self.ways.partition_point(|own| *own <= way).clamp(1, self.count()) - 1;
@@ -69,7 +69,7 @@ impl Line {
     }
 }
 
-/// Ways along two lines that belong together, and everything between in proportion.
+/// Pairs of ways along two lines that belong together; the map is linear between them.
 #[derive(Clone, Debug)]
 pub(crate) struct Correspondence {
     /// Ways along the first line and along the second, in cyclic order along both.
@@ -79,7 +79,7 @@ pub(crate) struct Correspondence {
 }
 
 impl Correspondence {
-    /// The map with these anchors, by rising way along the first line.
+    /// Makes the map with these anchors, by rising way along the first line.
     pub fn of(anchors: Vec<[f64; 2]>, lengths: [f64; 2]) -> Self {
         Self { anchors, lengths }
     }
@@ -89,7 +89,7 @@ impl Correspondence {
         let to = 1 - from;
         let count = self.anchors.len();
         let ahead = |start: f64, end: f64, line: usize| (end - start).rem_euclid(self.lengths[line]);
-        // The last anchor that is not beyond the way is the one that the way is least ahead of.
+        // The last anchor at or before the way is the one with the least distance to the way.
         let own = (0..count)
             .min_by(|&a, &b| {
                 let way_from = |k: usize| ahead(self.anchors[k][from], way, from);

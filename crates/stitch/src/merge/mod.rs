@@ -1,11 +1,11 @@
-//! Joining two surfaces at their borders [YZX+04, section 5].
+//! Joins two surfaces at their borders [YZX+04, section 5].
 //!
-//! 1. The borders that belong together, and the map between them by arc length (`choice`, `line`).
-//! 2. B moves rigidly so that its borders lie on A's as well as possible, unless it was placed by hand. The two halves
-//!    of one surface, moved apart in any way, so become that surface again.
-//! 3. The common border lies half way between both, with the points of both (`seam`), and the frames there are half way
-//!    between both sides' (`frames`).
-//! 4. Both sides are bent to it by any method (`bend`), and put together (`split`, `assemble`).
+//! 1. `choice` finds the borders that belong together, and `line` maps them by arc length.
+//! 2. B moves rigidly so that its borders fit A's as well as possible, unless it was placed by hand. So the two halves
+//!    of one surface, moved apart in any way, become that surface again.
+//! 3. The common border is half way between both, with the points of both (`seam`); its frames are half way between the
+//!    frames of both sides (`frames`).
+//! 4. Any method bends both sides to it (`bend`), and `split` and `assemble` join them.
 
 mod assemble;
 mod bend;
@@ -33,13 +33,13 @@ use seam::{Node, Place, seam};
 /// The request to join two parts.
 #[derive(Clone, Copy, Debug)]
 pub struct Joins<'a> {
-    /// Vertices that belong together; empty for those that lie nearest.
+    /// Vertices that belong together; without pairs the nearest borders are joined.
     pub pairs: &'a [Pair],
-    /// Whether B may move rigidly.
+    /// The placement of B.
     pub placement: PlacementOfB,
-    /// How far from the borders each part may bend, as a share of its own diagonal.
+    /// The largest distance from the borders at which each part may bend, as a share of its own diagonal.
     pub reach: f64,
-    /// The method by which both bend.
+    /// The method that bends both.
     pub method: &'a Method,
 }
 
@@ -48,30 +48,30 @@ pub struct Joins<'a> {
 pub struct Pair {
     /// The vertices of A and B by the numbers that a person gave.
     pub named: [u32; 2],
-    /// The same by the numbers of the parts' drawn sets; `None` for one that was deleted.
+    /// The same by the numbers of the parts' drawn sets; `None` for a deleted one.
     pub file: [Option<u32>; 2],
 }
 
-/// Whether B moves rigidly before both are bent.
+/// The placement of B before both are bent.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub enum PlacementOfB {
-    /// Its borders are laid on A's as well as a rigid motion can.
+    /// A rigid motion fits its borders to A's as well as possible.
     #[default]
     Fitted,
-    /// It stays.
+    /// B is not moved.
     Kept,
 }
 
-/// The joined shape, and what was done.
+/// The joined shape and the changes.
 #[derive(Clone, Debug)]
 pub struct Merged {
-    /// The shape: A's vertices in their order, then the points with which B's border cut A's, then B's.
+    /// The shape: A's vertices in their order, then the points at which B's border cut A's, then B's.
     pub shape: NewShape,
     /// The rigid motion of B.
     pub motion: DAffine3,
     /// The joined borders.
     pub seams: Vec<Seam>,
-    /// For each part, the number of its surface's vertices that bent, and of triangles that were turned over by it.
+    /// For each part, the number of its surface's vertices that bent, and of triangles that turned over.
     pub bent: [(usize, usize); 2],
 }
 
@@ -88,7 +88,7 @@ pub struct Seam {
     pub gap: [f64; 2],
 }
 
-/// A refusal, and the part (0 for A, 1 for B) that it is about.
+/// A refusal, and the part (0 for A, 1 for B) that caused it.
 #[derive(Clone, PartialEq, Debug, thiserror::Error)]
 #[error("{source}")]
 pub struct MergeError {
@@ -104,7 +104,7 @@ impl MergeError {
     }
 }
 
-/// Points of two borders that are closer than this share of A's diagonal are at one place already.
+/// Points of two borders that are closer than this share of A's diagonal are already at one place.
 const TOUCH: f64 = 1e-9;
 
 /// Joins two parts.
@@ -264,10 +264,10 @@ fn affine(motion: &RigidMotion) -> DAffine3 {
     DAffine3::from_mat3_translation(DMat3::from_quat(motion.rotation()), motion.displace(DVec3::ZERO))
 }
 
-/// Each border is at most this many handles, of at least [`LEAST_A_HANDLE`] vertices.
+/// The most handles of a border; each has at least [`LEAST_A_HANDLE`] vertices.
 const HANDLES_A_BORDER: usize = 12;
 
-/// The vertices that a handle has at least, if the border has as many.
+/// The least number of a handle's vertices, if the border has as many.
 const LEAST_A_HANDLE: usize = 3;
 
 /// The motion of each vertex on the joined borders of both parts.

@@ -1,7 +1,7 @@
-//! The common border: the points of both borders in one order, and the places to which they move.
+//! The common border: the points of both borders in one order, and their targets.
 //!
-//! Points of both borders that are nearest to each other, and nearer than a third of the edges there, become one. Every
-//! other point cuts the other border's edge.
+//! Two points of both borders become one if they are nearest to each other, and nearer than a third of the edges there.
+//! Every other point cuts the other border's edge.
 
 use glam::DVec3;
 
@@ -18,7 +18,7 @@ pub(crate) struct Node {
     pub on: [Place; 2],
     /// The way along A's border.
     pub way: f64,
-    /// Where it goes.
+    /// Its target.
     pub target: DVec3,
 }
 
@@ -27,7 +27,7 @@ pub(crate) struct Node {
 pub(crate) enum Place {
     /// A vertex of the line, by its place.
     Vertex(usize),
-    /// A point inside an edge (named by its first vertex), and the share of the edge before it.
+    /// A point inside an edge (with the number of its first vertex), and the share of the edge before it.
     Edge(usize, f64),
 }
 
@@ -114,7 +114,7 @@ fn mates(a: &Line, b: &Line, ways: &[f64]) -> Vec<Option<usize>> {
         .collect()
 }
 
-/// The places on a line of entries in cyclic order: vertices, and ways for points on edges.
+/// The places of entries on a line, in cyclic order: vertices, and points on edges by their ways.
 fn places(line: &Line, entries: &[(Option<usize>, f64)]) -> Vec<Place> {
     let count = entries.len();
     let Some(first) = entries.iter().position(|(vertex, _)| vertex.is_some()) else {
@@ -138,7 +138,7 @@ fn places(line: &Line, entries: &[(Option<usize>, f64)]) -> Vec<Place> {
         let mut shares: Vec<f64> = (1..=inside).map(share).collect();
         let is_rising = shares.iter().all(|share| *share > 0.0 && *share < 1.0) && shares.is_sorted_by(|x, y| x < y);
         if !is_rising {
-            // Rounding, or a mate that is beyond: the points are spread evenly.
+            // Rounding, or a mate beyond, left no rising order: the points are spread evenly.
             shares = (1..=inside).map(|k| k as f64 / (inside + 1) as f64).collect();
         }
         for (k, share) in shares.into_iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Cutting the triangles along a border at the points that the other border brings.
+//! Cuts the triangles along a border at the points of the other border.
 
 use std::collections::BTreeMap;
 
@@ -21,15 +21,15 @@ pub(super) struct CutVertex {
 /// The cuts of a part's triangles.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Splits {
-    /// The new vertices. The first has the number `first`, and so on.
+    /// The new vertices, numbered from `first`.
     pub vertices: Vec<CutVertex>,
-    /// For each cut drawn triangle the triangles into which it is cut.
+    /// For each cut drawn triangle its pieces.
     pub triangles: BTreeMap<u32, Vec<[DrawnVertex; 3]>>,
 }
 
 impl Splits {
-    /// Adds the cuts along a line. The line is side 0 (the part is A) or 1. `first` is the number of the part's first new
-    /// vertex; `first_node` numbers the nodes.
+    /// Adds the cuts along a line. The line is side 0 (the part is A) or 1. `first` is the number of the part's first
+    /// new vertex; `first_node` numbers the nodes.
     pub fn add(
         &mut self,
         part: &Part<'_>,
@@ -47,7 +47,7 @@ impl Splits {
         for (edge, mut cuts) in of_edge {
             cuts.sort_by(|a, b| a.0.total_cmp(&b.0));
             let (from, to) = (line.vertices[edge], line.vertices[(edge + 1) % line.count()]);
-            // A's line has the hole on its left, B's runs the other way.
+            // A's line has the hole on its left; B's has the opposite direction.
             let (back, fore) = if side == 0 { (to, from) } else { (from, to) };
             let Some(face) = face_beyond(part.model, fore, back) else {
                 continue;
@@ -55,7 +55,7 @@ impl Splits {
             let (own, drawn) = (part.model.surface.triangles[face], part.model.drawn_corners(face));
             let corner = |vertex| (0..3).find(|&k| own[k] == vertex).map_or(drawn[0], |k| drawn[k]);
             let (start, end) = (corner(back), corner(fore));
-            // The triangle has the edge from `start` to `end`; cuts come in its direction.
+            // The triangle has the edge from `start` to `end`, and the cuts follow its direction.
             if side == 0 {
                 cuts.reverse();
             }
