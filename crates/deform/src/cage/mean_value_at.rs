@@ -7,7 +7,7 @@ use super::mesh::CageMesh;
 /// A coordinate and its gradient.
 pub(super) type Weight = (f64, DVec3);
 
-/// Three directions with a smaller triple product lie in a plane.
+/// Three directions with a smaller triple product are coplanar.
 pub(super) const COPLANAR: f64 = 1e-10;
 
 /// A point nearer to a vertex than this share of the cage's size is at the vertex.

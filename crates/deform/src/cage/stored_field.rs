@@ -12,7 +12,7 @@ use crate::numerical::lanes::LANES;
 use crate::space::falloff::Falloff;
 use crate::space::hand_field::outer;
 
-/// The field, faded towards what is fixed.
+/// The field, which fades towards fixed vertices.
 #[derive(Debug)]
 pub(super) struct StoredField {
     /// The moving vertices, ascending, with their falloff.
