@@ -1,8 +1,8 @@
 //! Rotation-invariant coordinates [LSLC05; BS08, sections 3.1.3 and 3.2.4]: the method solves for local frames first
 //! and for positions that fit them second.
 //!
-//! At rest the frames of neighbours differ by a connection, F_j = F_i C_ij. With F_i' = T_i F_i the least squares Σ
-//! w_ij |F_j' − F_i' C_ij|² are Σ w_ij |T_j − T_i|²: the tangents of the frames cancel, and the system of 3n unknowns
+//! At rest the frames of neighbours differ by a connection, F_j = F_i C_ij. With F_i' = T_i F_i the least squares
+//! Σ w_ij |F_j' − F_i' C_ij|² are Σ w_ij |T_j − T_i|²: the tangents of the frames cancel, and the system of 3n unknowns
 //! reduces to the Laplacian, L T = 0 with the handles' T prescribed. So T is the sum of the handles' T by harmonic
 //! weights, which binding solves for; T is then made a rotation again. The Laplacian has cotangent weights; with the
 //! uniform weights of [LSLC05] the shape would depend on the triangles.

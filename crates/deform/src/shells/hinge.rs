@@ -1,9 +1,9 @@
 //! The angle at an edge between its two triangles.
 //!
-//! A hinge has the corners a, b, c, d: the edge from a to b and the two vertices across it. With e = b − a, n₁ = e × (c
-//! − a) and n₂ = (d − a) × e the angle from n₁ to n₂ about e is 0 where the triangles are coplanar, and does not depend
-//! on their orientation in the file. Its gradient is −u₁ at c and −u₂ at d with u = |e| n / |n|², and the shares of
-//! u₁ + u₂ that keep moments at a and b.
+//! A hinge has the corners a, b, c, d: the edge from a to b and the two vertices across it. With e = b − a, n₁ = e ×
+//! (c − a) and n₂ = (d − a) × e the angle from n₁ to n₂ about e is 0 where the triangles are coplanar, and does not
+//! depend on their orientation in the file. Its gradient is −u₁ at c and −u₂ at d with u = |e| n / |n|², and the shares
+//! of u₁ + u₂ that keep moments at a and b.
 
 use std::f64::consts::TAU;
 
