@@ -6,8 +6,7 @@ use std::ops::Range;
 use serde_json::{Value, json};
 
 use super::buffer::Built;
-use super::maps;
-use crate::appearance::{AlphaMode, Material, Origin, Wrap};
+use crate::appearance::{Origin, Wrap};
 use crate::convert::NewMesh;
 use crate::gltf::{FROM_OUTSIDE, NO_IMAGE};
 use crate::images::decode::mime_type;
@@ -17,9 +16,9 @@ use crate::quote::quoted;
 /// Materials, textures, samplers and images that are used.
 #[derive(Default)]
 pub(super) struct Looks {
-    materials: Vec<Value>,
+    pub(super) materials: Vec<Value>,
     /// The written material of each of the appearance's.
-    material_of: BTreeMap<usize, usize>,
+    pub(super) material_of: BTreeMap<usize, usize>,
     textures: Vec<Value>,
     samplers: Vec<Value>,
     images: Vec<Value>,
@@ -28,61 +27,12 @@ pub(super) struct Looks {
     /// The written texture of each image and wrapping.
     texture_of: HashMap<(usize, [Wrap; 2]), usize>,
     /// The extensions that the materials use.
-    extensions: BTreeSet<&'static str>,
+    pub(super) extensions: BTreeSet<&'static str>,
     /// The image that was made of bytes at each place.
     image_at: HashMap<(usize, Range<usize>), usize>,
 }
 
 impl Looks {
-    pub(super) fn material(
-        &mut self,
-        out: &mut Built,
-        mesh: &NewMesh<'_>,
-        number: usize,
-        material: &Material,
-    ) -> usize {
-        if let Some(&known) = self.material_of.get(&number) {
-            return known;
-        }
-        let unit = |number: f32| {
-            f64::from(if number.is_finite() {
-                number.clamp(0.0, 1.0)
-            } else {
-                1.0
-            })
-        };
-        let mut surface = json!({
-            "baseColorFactor": material.base_colour.map(unit),
-            "metallicFactor": unit(material.metallic),
-            "roughnessFactor": unit(material.roughness),
-        });
-        // A texture without texture coordinates is an error in glTF.
-        let image = material.base_colour_image.filter(|_| mesh.appearance.uvs.is_some());
-        if let Some(image) = image.and_then(|image| self.image(out, mesh, image)) {
-            surface["baseColorTexture"] = json!({ "index": self.texture(image, material.wrap) });
-        }
-        let mut value = json!({ "pbrMetallicRoughness": surface });
-        if !material.name.is_empty() {
-            value["name"] = material.name.as_str().into();
-        }
-        if material.double_sided {
-            value["doubleSided"] = true.into();
-        }
-        match material.alpha {
-            AlphaMode::Opaque => {}
-            AlphaMode::Blend => value["alphaMode"] = "BLEND".into(),
-            AlphaMode::Mask(cutoff) => {
-                value["alphaMode"] = "MASK".into();
-                value["alphaCutoff"] = unit(cutoff).into();
-            }
-        }
-        let extensions = maps::dress(self, out, mesh, material, &mut value);
-        self.extensions.extend(extensions);
-        self.materials.push(value);
-        self.material_of.insert(number, self.materials.len() - 1);
-        self.materials.len() - 1
-    }
-
     pub(super) fn texture(&mut self, image: usize, wrap: [Wrap; 2]) -> usize {
         let mode = |wrap| match wrap {
             Wrap::ClampToEdge => 33071,

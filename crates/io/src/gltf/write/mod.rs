@@ -8,6 +8,7 @@ mod attributes;
 mod buffer;
 mod looks;
 mod maps;
+mod materials;
 mod parts;
 
 use glam::{DVec3, Vec3};
