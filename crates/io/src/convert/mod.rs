@@ -60,6 +60,11 @@ impl Polygons {
         self.offsets.len().saturating_sub(1)
     }
 
+    /// Whether there is no face.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
     /// The faces with their final winding.
     fn turned(mut self, moved: &Moved<'_>) -> Self {
         if moved.turns_any() {
