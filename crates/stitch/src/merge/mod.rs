@@ -13,6 +13,7 @@ mod choice;
 mod chords;
 mod frames;
 mod line;
+mod pair;
 mod seam;
 mod split;
 
@@ -28,6 +29,7 @@ use assemble::{Bent, assemble};
 use bend::{Bending, RimVertex, Rims};
 use choice::Join;
 use line::Line;
+pub use pair::{MergeError, Pair};
 use seam::{Node, Place, seam};
 
 /// The request to join two parts.
@@ -41,15 +43,6 @@ pub struct Joins<'a> {
     pub reach: f64,
     /// The method by which both bend.
     pub method: &'a Method,
-}
-
-/// Two vertices that belong together.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub struct Pair {
-    /// The vertices of A and B by the numbers that a person gave.
-    pub named: [u32; 2],
-    /// The same by the numbers of the parts' drawn sets; `None` for one that was deleted.
-    pub file: [Option<u32>; 2],
 }
 
 /// Whether B moves rigidly before both are bent.
@@ -86,22 +79,6 @@ pub struct Seam {
     pub points: usize,
     /// The mean and the largest distance between the borders before they were bent.
     pub gap: [f64; 2],
-}
-
-/// A refusal, and the part (0 for A, 1 for B) that it is about.
-#[derive(Clone, PartialEq, Debug, thiserror::Error)]
-#[error("{source}")]
-pub struct MergeError {
-    /// 0 or 1.
-    pub part: usize,
-    /// The refusal.
-    pub source: StitchError,
-}
-
-impl MergeError {
-    fn of(part: usize, source: StitchError) -> Self {
-        Self { part, source }
-    }
 }
 
 /// Points of two borders that are closer than this share of A's diagonal are at one place already.
