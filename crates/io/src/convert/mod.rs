@@ -1,7 +1,6 @@
 //! A shape with its appearance, from which a new file of any format can be written.
 
 pub(crate) mod faces;
-pub(crate) mod unsaved;
 
 use std::borrow::Cow;
 use std::ops::Range;

@@ -6,9 +6,9 @@ use glam::DVec3;
 use pliant_mesh::{Drawn, DrawnVertex};
 
 use crate::convert::Polygons;
-use crate::convert::unsaved::UnsavedShape;
 use crate::save::bits::bit_equal;
 use crate::save::turned::{triangle_wound_back, wound_back};
+use crate::scene::unsaved::UnsavedShape;
 use crate::scene::{Scene, SceneAndDrawn, Stored};
 use crate::{Format, MorphTarget, Save};
 

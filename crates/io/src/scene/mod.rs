@@ -9,6 +9,7 @@ mod check;
 mod differences;
 pub(crate) mod pose;
 mod rename;
+pub(crate) mod unsaved;
 
 use std::sync::Arc;
 

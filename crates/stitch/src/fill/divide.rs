@@ -1,6 +1,6 @@
 //! Cuts a long polygon in two along the chord that is shortest relative to the lines on both sides of it.
 
-use super::triangulate::Rim;
+use crate::fill::rim::Rim;
 
 /// About this many points are tried as ends of the chord.
 const TRIED: usize = 600;

@@ -8,6 +8,7 @@ mod fair;
 mod flips;
 mod patch;
 mod refine;
+mod rim;
 mod triangulate;
 
 use glam::DVec3;
@@ -20,7 +21,8 @@ use crate::error::StitchError;
 use crate::part::face_beyond;
 use fair::{Surroundings, refine_and_fair};
 use patch::Patch;
-use triangulate::{Rim, triangulate};
+use rim::Rim;
+use triangulate::triangulate;
 
 /// The holes to fill.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]

@@ -8,29 +8,13 @@
 use glam::DVec3;
 
 use super::divide::best_chord;
+use super::rim::Rim;
 
 /// Longer polygons are cut in two: 150 points take 0.6 million steps.
 const MOST: usize = 150;
 
 /// Angles are compared in steps of this many radians, so that rounding does not decide between flat triangulations.
 const ANGLE_STEP: f64 = 1e-4;
-
-/// A closed line to fill.
-pub(crate) struct Rim<'a> {
-    /// Its points, in order.
-    pub points: &'a [DVec3],
-    /// For each edge (it has the number of its first point) the third corner of the surface's triangle beyond it.
-    pub beyond: &'a [DVec3],
-    /// Pairs of its points that the surface already joins, ascending, lower point first.
-    pub joined: &'a [[u32; 2]],
-}
-
-impl Rim<'_> {
-    /// True if the surface joins two points, so that no triangle of the patch may.
-    pub fn is_joined(&self, a: u32, b: u32) -> bool {
-        self.joined.binary_search(&[a.min(b), a.max(b)]).is_ok()
-    }
-}
 
 /// The triangles of least weight, counterclockwise; `None` if every triangulation would double an edge of the surface.
 pub(crate) fn triangulate(rim: &Rim<'_>) -> Option<Vec<[u32; 3]>> {

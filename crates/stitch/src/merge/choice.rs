@@ -7,7 +7,7 @@ use pliant_deform::RigidMotion;
 use pliant_mesh::{FileVertex, SurfaceOfFile, SurfaceVertex};
 
 use super::line::{Correspondence, Line};
-use super::{MergeError, Pair};
+use super::pair::{MergeError, Pair};
 use crate::borders::Borders;
 use crate::error::StitchError;
 use crate::part::Part;

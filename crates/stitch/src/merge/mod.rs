@@ -13,6 +13,7 @@ mod choice;
 mod chords;
 mod frames;
 mod line;
+mod pair;
 mod seam;
 mod split;
 
@@ -28,6 +29,7 @@ use assemble::{Bent, assemble};
 use bend::{Bending, RimVertex, Rims};
 use choice::Join;
 use line::Line;
+pub use pair::{MergeError, Pair};
 use seam::{Node, Place, seam};
 
 /// The request to join two parts.
@@ -41,15 +43,6 @@ pub struct Joins<'a> {
     pub reach: f64,
     /// The method that bends both.
     pub method: &'a Method,
-}
-
-/// Two vertices that belong together.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub struct Pair {
-    /// The vertices of A and B by the numbers that a person gave.
-    pub named: [u32; 2],
-    /// The same by the numbers of the parts' drawn sets; `None` for a deleted one.
-    pub file: [Option<u32>; 2],
 }
 
 /// The placement of B before both are bent.
@@ -88,23 +81,7 @@ pub struct Seam {
     pub gap: [f64; 2],
 }
 
-/// A refusal, and the part (0 for A, 1 for B) that caused it.
-#[derive(Clone, PartialEq, Debug, thiserror::Error)]
-#[error("{source}")]
-pub struct MergeError {
-    /// 0 or 1.
-    pub part: usize,
-    /// The refusal.
-    pub source: StitchError,
-}
-
-impl MergeError {
-    fn of(part: usize, source: StitchError) -> Self {
-        Self { part, source }
-    }
-}
-
-/// Points of two borders that are closer than this share of A's diagonal are already at one place.
+/// Points of two borders that are closer than this share of A's diagonal are at one place already.
 const TOUCH: f64 = 1e-9;
 
 /// Joins two parts.

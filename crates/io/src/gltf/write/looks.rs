@@ -1,81 +1,107 @@
-//! Materials of a new glTF.
+//! Materials, textures, samplers and images of a new glTF.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::ops::Range;
 
 use serde_json::{Value, json};
 
 use super::buffer::Built;
-use super::maps;
-use super::textures::Textures;
-use crate::appearance::{AlphaMode, Material};
+use crate::appearance::{Origin, Wrap};
 use crate::convert::NewMesh;
+use crate::gltf::{FROM_OUTSIDE, NO_IMAGE};
+use crate::images::decode::mime_type;
+use crate::images::decodes;
+use crate::quote::quoted;
 
-/// Materials that are used, with their textures.
+/// Materials, textures, samplers and images that are used.
 #[derive(Default)]
 pub(super) struct Looks {
-    materials: Vec<Value>,
+    pub(super) materials: Vec<Value>,
     /// The written material of each of the appearance's.
-    material_of: BTreeMap<usize, usize>,
-    textures: Textures,
+    pub(super) material_of: BTreeMap<usize, usize>,
+    textures: Vec<Value>,
+    samplers: Vec<Value>,
+    images: Vec<Value>,
+    /// The written image of each of the appearance's; `None` if glTF can't hold it.
+    image_of: BTreeMap<usize, Option<usize>>,
+    /// The written texture of each image and wrapping.
+    texture_of: HashMap<(usize, [Wrap; 2]), usize>,
     /// The extensions that the materials use.
-    extensions: BTreeSet<&'static str>,
+    pub(super) extensions: BTreeSet<&'static str>,
+    /// The image that was made of bytes at each place.
+    image_at: HashMap<(usize, Range<usize>), usize>,
 }
 
 impl Looks {
-    pub(super) fn material(
-        &mut self,
-        out: &mut Built,
-        mesh: &NewMesh<'_>,
-        number: usize,
-        material: &Material,
-    ) -> usize {
-        if let Some(&known) = self.material_of.get(&number) {
+    pub(super) fn texture(&mut self, image: usize, wrap: [Wrap; 2]) -> usize {
+        let mode = |wrap| match wrap {
+            Wrap::ClampToEdge => 33071,
+            Wrap::MirroredRepeat => 33648,
+            Wrap::Repeat => 10497,
+        };
+        *self.texture_of.entry((image, wrap)).or_insert_with(|| {
+            let sampler = json!({ "wrapS": mode(wrap[0]), "wrapT": mode(wrap[1]) });
+            let sampler = index_of(&mut self.samplers, sampler);
+            self.textures.push(json!({ "source": image, "sampler": sampler }));
+            self.textures.len() - 1
+        })
+    }
+
+    pub(super) fn image(&mut self, out: &mut Built, mesh: &NewMesh<'_>, image: usize) -> Option<usize> {
+        if let Some(&known) = self.image_of.get(&image) {
             return known;
         }
-        let unit = |number: f32| {
-            f64::from(if number.is_finite() {
-                number.clamp(0.0, 1.0)
-            } else {
-                1.0
-            })
-        };
-        let mut surface = json!({
-            "baseColorFactor": material.base_colour.map(unit),
-            "metallicFactor": unit(material.metallic),
-            "roughnessFactor": unit(material.roughness),
-        });
-        // A texture without texture coordinates is an error in glTF.
-        let image = material.base_colour_image.filter(|_| mesh.appearance.uvs.is_some());
-        if let Some(image) = image.and_then(|image| self.textures.image(out, mesh, image)) {
-            surface["baseColorTexture"] = json!({ "index": self.textures.texture(image, material.wrap) });
+        let found = mesh.appearance.images.get(image)?;
+        let name = quoted(&found.name);
+        if let Some(&same) = self.image_at.get(&found.encoded.place()) {
+            self.image_of.insert(image, Some(same));
+            return Some(same);
         }
-        let mut value = json!({ "pbrMetallicRoughness": surface });
-        if !material.name.is_empty() {
-            value["name"] = material.name.as_str().into();
+        if found.origin == Origin::Outside && !decodes(&found.encoded) {
+            // A file from a stranger may name any file there, and a private file would be copied as an image.
+            out.warnings.push(format!("{name} {NO_IMAGE}"));
+            self.image_of.insert(image, None);
+            return None;
         }
-        if material.double_sided {
-            value["doubleSided"] = true.into();
-        }
-        match material.alpha {
-            AlphaMode::Opaque => {}
-            AlphaMode::Blend => value["alphaMode"] = "BLEND".into(),
-            AlphaMode::Mask(cutoff) => {
-                value["alphaMode"] = "MASK".into();
-                value["alphaCutoff"] = unit(cutoff).into();
+        let mime = mime_type(&found.encoded).filter(|mime| matches!(*mime, "image/png" | "image/jpeg"));
+        let written = match mime {
+            Some(mime) => {
+                let view = out.bytes(found.encoded.iter().copied());
+                let mut value = json!({ "bufferView": view, "mimeType": mime });
+                if !found.name.is_empty() {
+                    value["name"] = found.name.as_str().into();
+                }
+                self.images.push(value);
+                self.image_at.insert(found.encoded.place(), self.images.len() - 1);
+                if found.origin == Origin::Outside {
+                    out.warnings.push(format!("{name} {FROM_OUTSIDE}"));
+                }
+                Some(self.images.len() - 1)
             }
-        }
-        let extensions = maps::dress(&mut self.textures, out, mesh, material, &mut value);
-        self.extensions.extend(extensions);
-        self.materials.push(value);
-        self.material_of.insert(number, self.materials.len() - 1);
-        self.materials.len() - 1
+            None if found.encoded.is_empty() => {
+                out.warnings
+                    .push(format!("The image {name} was missing and could not be embedded."));
+                None
+            }
+            None => {
+                out.warnings.push(format!(
+                    "The image {name} is neither PNG nor JPEG, so glTF can't embed it."
+                ));
+                None
+            }
+        };
+        self.image_of.insert(image, written);
+        written
     }
 
     pub(super) fn add_to(self, root: &mut Value) {
-        for (key, section) in [("materials", self.materials)]
-            .into_iter()
-            .chain(self.textures.sections())
-        {
+        let sections = [
+            ("materials", self.materials),
+            ("textures", self.textures),
+            ("samplers", self.samplers),
+            ("images", self.images),
+        ];
+        for (key, section) in sections {
             if !section.is_empty() {
                 root[key] = section.into();
             }
@@ -84,4 +110,13 @@ impl Looks {
             root["extensionsUsed"] = json!(self.extensions);
         }
     }
+}
+
+/// The number of a value in a section; a new value is appended.
+pub(super) fn index_of(section: &mut Vec<Value>, value: Value) -> usize {
+    let known = section.iter().position(|other| *other == value);
+    known.unwrap_or_else(|| {
+        section.push(value);
+        section.len() - 1
+    })
 }

@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use super::buffer::Built;
-use super::textures::Textures;
+use super::looks::Looks;
 use crate::appearance::{Lighting, Map, Material, UvSet};
 use crate::convert::NewMesh;
 
@@ -13,7 +13,7 @@ const SKEW: f32 = 1e-4;
 
 /// Adds the maps, the emission and the lighting of `material` to its JSON. Gives the extensions that it uses.
 pub(super) fn dress(
-    textures: &mut Textures,
+    looks: &mut Looks,
     out: &mut Built,
     mesh: &NewMesh<'_>,
     material: &Material,
@@ -21,8 +21,8 @@ pub(super) fn dress(
 ) -> Vec<&'static str> {
     let mut used = Vec::new();
     let mut put =
-        |textures: &mut Textures, out: &mut Built, map: Option<Map>, place: [&str; 2], scale: Option<(&str, f32)>| {
-            let reference = map.and_then(|map| reference(textures, out, mesh, map, &mut used));
+        |looks: &mut Looks, out: &mut Built, map: Option<Map>, place: [&str; 2], scale: Option<(&str, f32)>| {
+            let reference = map.and_then(|map| reference(looks, out, mesh, map, &mut used));
             if let Some(mut reference) = reference {
                 if let Some((name, factor)) = scale.filter(|(_, factor)| *factor != 1.0 && factor.is_finite()) {
                     reference[name] = factor.into();
@@ -34,18 +34,12 @@ pub(super) fn dress(
             }
         };
     let inside = ["pbrMetallicRoughness", "metallicRoughnessTexture"];
-    put(textures, out, material.metallic_roughness_map, inside, None);
+    put(looks, out, material.metallic_roughness_map, inside, None);
     let scale = Some(("scale", material.normal_scale));
-    put(textures, out, material.normal_map, ["", "normalTexture"], scale);
+    put(looks, out, material.normal_map, ["", "normalTexture"], scale);
     let strength = Some(("strength", material.occlusion_strength));
-    put(
-        textures,
-        out,
-        material.occlusion_map,
-        ["", "occlusionTexture"],
-        strength,
-    );
-    put(textures, out, material.emissive_map, ["", "emissiveTexture"], None);
+    put(looks, out, material.occlusion_map, ["", "occlusionTexture"], strength);
+    put(looks, out, material.emissive_map, ["", "emissiveTexture"], None);
     let most = material.emissive.into_iter().fold(0.0, f32::max);
     if most > 0.0 && most.is_finite() {
         let strength = most.max(1.0);
@@ -64,7 +58,7 @@ pub(super) fn dress(
 
 /// The reference to a map; `None` if the mesh lacks its texture coordinates or its image.
 fn reference(
-    textures: &mut Textures,
+    looks: &mut Looks,
     out: &mut Built,
     mesh: &NewMesh<'_>,
     map: Map,
@@ -74,8 +68,8 @@ fn reference(
         UvSet::Base => mesh.appearance.uvs.as_ref().map(|_| 0)?,
         UvSet::Second => second_set(mesh)?,
     };
-    let image = textures.image(out, mesh, map.image)?;
-    let mut reference = json!({ "index": textures.texture(image, map.wrap) });
+    let image = looks.image(out, mesh, map.image)?;
+    let mut reference = json!({ "index": looks.texture(image, map.wrap) });
     if set > 0 {
         reference["texCoord"] = set.into();
     }

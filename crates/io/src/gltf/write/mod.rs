@@ -8,8 +8,8 @@ mod attributes;
 mod buffer;
 mod looks;
 mod maps;
+mod materials;
 mod parts;
-mod textures;
 
 use glam::{DVec3, Vec3};
 use pliant_mesh::bounding_box;
