@@ -1,8 +1,8 @@
 //! The placement of a component that no handle and no fixed vertex holds: only the weights of examples move it.
 //!
 //! The energy does not determine it. So each shape is moved rigidly before it is shown: the component takes the mean
-//! and turn that result from blending those of the examples, relative to rest, by their weights. A vertex counts the
-//! more the less the examples move it, so that a body is still while its arm moves along an arc.
+//! and turn that result from blending those of the examples, relative to rest, by their weights. Vertices that the
+//! examples move little have a large weight, so that a body is still while its arm moves along an arc.
 
 use glam::{DMat3, DQuat, DVec3};
 use pliant_mesh::SurfaceVertex;

@@ -1,15 +1,15 @@
-//! The matrix of the Newton steps that settle what a coarse level leads.
+//! The matrix of the Newton steps that settle a shape after its coarse level.
 
 use super::system::{Pattern, System};
 use crate::Budget;
 
-/// The matrix, which is analysed when it is first used: a drag does not use it.
+/// The matrix of the Newton steps. It is analysed at its first use: a drag does not use it.
 #[derive(Debug)]
 pub(super) enum Settling {
-    /// With the ends of its supernodes and the memory that it may take.
+    /// The pattern, the ends of its supernodes and the memory that it may take.
     NotAnalysed(Pattern, Vec<u32>, Budget),
     Analysed(Box<System>),
-    /// It would take too much memory.
+    /// The matrix would take too much memory.
     TooLarge,
 }
 
@@ -26,14 +26,14 @@ impl Settling {
         }
     }
 
-    /// The next step is the first one behind a jump of the handles.
+    /// The next step is the first one after a jump of the handles.
     pub fn undamp(&mut self) {
         if let Self::Analysed(system) = self {
             system.undamp();
         }
     }
 
-    /// The number of entries that the factor stores.
+    /// The count of numbers that the factor stores.
     pub fn stored(&self) -> usize {
         match self {
             Self::Analysed(system) => system.stored(),
