@@ -195,3 +195,60 @@ fn a_cut_file_and_the_rest_of_it_merge() {
     let said = merge(&job, &watch, &staging).unwrap_err().to_string();
     assert!(said.contains("ball.obj") && said.contains("no border"), "{said}");
 }
+
+/// The corners of an OBJ whose normal points against their face.
+fn normals_against_faces(path: &Path) -> usize {
+    let text = fs::read_to_string(path).unwrap();
+    let (mut points, mut normals, mut against) = (Vec::new(), Vec::new(), 0);
+    for line in text.lines() {
+        let mut words = line.split_whitespace();
+        let kind = words.next();
+        let mut vector = || {
+            let [x, y, z] = [(); 3].map(|()| words.next().unwrap().parse().unwrap());
+            glam::DVec3::new(x, y, z)
+        };
+        match kind {
+            Some("v") => points.push(vector()),
+            Some("vn") => normals.push(vector()),
+            Some("f") => {
+                let corners = words.map(|corner| {
+                    let mut numbers = corner.split('/').map(|number| number.parse::<usize>().unwrap_or(0));
+                    (numbers.next().unwrap() - 1, numbers.nth(1).unwrap() - 1)
+                });
+                let corners: Vec<(usize, usize)> = corners.collect();
+                let [a, b, c] = [0, 1, 2].map(|k| points[corners[k].0]);
+                let face = (b - a).cross(c - a);
+                against += corners
+                    .iter()
+                    .filter(|corner| normals[corner.1].dot(face) < 0.0)
+                    .count();
+            }
+            _ => {}
+        }
+    }
+    assert!(!normals.is_empty());
+    against
+}
+
+/// Normals go along with a part that is placed by a transform.
+#[test]
+fn normals_of_a_placed_part_turn_with_it() {
+    let (_folder, [half, joins, output]) = paths(["half.obj", "joins.json", "whole.obj"]);
+    textured_sphere(&half, 0.0);
+    let placed =
+        r#"{"version": 1, "b": {"placement": "kept", "transform": {"rotation": [1, 0, 0, 0], "pivot": [0, 0, 0]}}}"#;
+    fs::write(&joins, placed).unwrap();
+    let job = Merge {
+        first: &half,
+        second: &half,
+        joins: &joins,
+        output: &output,
+        report: None,
+        replace: Replace::Never,
+        weld: WeldOptions::default(),
+    };
+    let merged = merge(&job, &Watch::default(), &Staging::default()).unwrap();
+    merged.commit(None).unwrap();
+    assert!(is_closed(&model(&output)));
+    assert_eq!(normals_against_faces(&output), 0);
+}

@@ -243,10 +243,14 @@ fn turn_normals(
         for v in 0..bent.drawn.len() {
             let surface = bent.part.model.drawn.surface_vertex(DrawnVertex(v as u32));
             let own = surface.and_then(|surface| of_surface.get(&surface));
-            if own.is_some() || bent.turn != DQuat::IDENTITY {
-                let normal = own.copied().unwrap_or(DQuat::IDENTITY) * (bent.turn * normal_of(DrawnVertex(v as u32)));
-                turned.insert(DrawnVertex((first + v) as u32), normal.normalize_or_zero());
-            }
+            let normal = normal_of(DrawnVertex(v as u32));
+            // A part may differ from its file as a whole, so every normal is written; those that do not turn keep their
+            // digits.
+            let normal = match own {
+                None if bent.turn == DQuat::IDENTITY => normal,
+                _ => (own.copied().unwrap_or(DQuat::IDENTITY) * (bent.turn * normal)).normalize_or_zero(),
+            };
+            turned.insert(DrawnVertex((first + v) as u32), normal);
         }
         if side == 0 {
             first = shape.vertices.iter().filter(|source| source.part() == 0).count();
