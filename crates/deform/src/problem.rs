@@ -33,7 +33,7 @@ pub struct Problem<'a> {
     /// The attachments, by the names that methods declare. The method makes those that are missing, and ignores those
     /// that other methods declare.
     pub attachments: &'a [(&'static str, Attachment)],
-    /// The caller's stamp, handed back by [`Bound::revision`].
+    /// The caller's stamp, handed back by [`crate::Bound::revision`].
     pub revision: u64,
 }
 

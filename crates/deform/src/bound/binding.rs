@@ -19,7 +19,7 @@ use crate::{BindError, Budget, HandleFit, Ordering, Problem, ReusableFactor, War
 impl Problem<'_> {
     /// Factors and solves everything that does not depend on the handles' transforms.
     ///
-    /// `ordering` must come from [`Method::ordering`] for the same topology, or be of the power that
+    /// `ordering` must come from [`crate::Method::ordering`] for the same topology, or be of the power that
     /// [`Problem::ordering_power_within`] gives. A method that needs none ignores it. Uses rayon's current pool; the
     /// result is the same bit for bit for every size of the pool.
     ///

@@ -94,7 +94,7 @@ pub struct Step {
 
 impl Bound {
     /// The data that the next binding can reuse if only a few vertices' roles change. Only linear methods have such a
-    /// factor, and it holds little unless [`Problem::rebind`] bound it.
+    /// factor, and it holds little unless [`crate::Problem::rebind`] bound it.
     pub fn reusable_factor(&self) -> Option<ReusableFactor> {
         self.method.reusable_factor()
     }
@@ -386,7 +386,7 @@ impl Bound {
         self.method.factor_len() + self.rigid.as_ref().map_or(0, |rigid| rigid.bound.factor_len())
     }
 
-    /// [`Problem::revision`] of the problem it was bound from.
+    /// [`crate::Problem::revision`] of the problem it was bound from.
     pub fn revision(&self) -> u64 {
         self.revision
     }

@@ -147,7 +147,7 @@ impl DrawnSet {
         self.triangles.len()
     }
 
-    /// The drawn lines: see [`Drawn::lines`].
+    /// The drawn lines: see [`crate::Drawn::lines`].
     pub fn lines(&self) -> &[[DrawnVertex; 2]] {
         &self.lines
     }
