@@ -17,11 +17,13 @@ const MOST_ROUNDS: usize = 40;
 /// The rounds in which the points inside move to the middle of their neighbours.
 const EVENING_ROUNDS: usize = 4;
 
-/// A patch gets at most this many points: its scale may be off by orders of magnitude.
-const MOST_POINTS: usize = 4_000_000;
+/// The most points of a patch, as a share of its rim's squared count. A disc of equilateral triangles whose rim has n
+/// edges has 0.09 n² points, a domed patch some more; a rim with a few needle edges would ask for any number.
+const MOST_POINTS: f64 = 0.5;
 
 /// Cuts triangles until none is too large. `scales` has one entry for each point, and gets those of the new points.
 pub(crate) fn refine(patch: &mut Patch, scales: &mut Vec<f64>) {
+    let most_points = patch.rim + (MOST_POINTS * (patch.rim as f64).powi(2)) as usize;
     flip_until_delaunay(patch);
     for _ in 0..MOST_ROUNDS {
         let mut is_done = true;
@@ -34,7 +36,7 @@ pub(crate) fn refine(patch: &mut Patch, scales: &mut Vec<f64>) {
                 let far = SQRT_2 * middle.distance(*point);
                 far > scale && far > scales[*corner as usize]
             };
-            if patch.points.len() < MOST_POINTS && corners.iter().zip(&points).all(is_far) {
+            if patch.points.len() < most_points && corners.iter().zip(&points).all(is_far) {
                 patch.split(triangle, middle);
                 scales.push(scale);
                 is_done = false;

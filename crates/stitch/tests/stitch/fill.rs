@@ -182,6 +182,38 @@ fn rims_of_hundreds_of_edges_and_slits_are_filled() {
     assert!(off < 0.01, "{off}");
 }
 
+/// Needle edges in a rim don't ask for a patch of millions of points.
+#[test]
+fn a_rim_with_needle_edges_gets_a_patch_of_its_own_order() {
+    let angles: Vec<f64> = (0..24)
+        .flat_map(|k| {
+            let angle = f64::from(k) * std::f64::consts::TAU / 24.0;
+            if k % 8 == 0 {
+                vec![angle, angle + 1e-4]
+            } else {
+                vec![angle]
+            }
+        })
+        .collect();
+    let count = angles.len() as u32;
+    let ring = |z: f64| angles.iter().map(move |angle| DVec3::new(angle.cos(), angle.sin(), z));
+    let positions: Vec<DVec3> = (0..4).flat_map(|row| ring(1e-3 * f64::from(row))).collect();
+    let square = |k: u32| {
+        let (row, here) = (k / count * count, k % count);
+        let next = (here + 1) % count;
+        let [a, b, c, d] = [row + here, row + next, row + count + next, row + count + here];
+        [[a, b, c], [a, c, d]]
+    };
+    let triangles = (0..3 * count).flat_map(square).map(|t| t.map(DrawnVertex)).collect();
+    let tube = model(Drawn::once(positions, triangles));
+    let patches = filled(&tube, Holes::Every);
+    assert_eq!(patches.holes.len(), 2);
+    for hole in &patches.holes {
+        let rim = hole.border.vertices.len();
+        assert!(hole.triangles.len() < 2 * rim * rim, "{}", hole.triangles.len());
+    }
+}
+
 #[test]
 fn each_class_of_surfaces_is_filled_or_refused_and_bits_do_not_depend_on_threads() {
     for (name, shape) in shapes::classes() {
