@@ -252,3 +252,17 @@ fn normals_of_a_placed_part_turn_with_it() {
     assert!(is_closed(&model(&output)));
     assert_eq!(normals_against_faces(&output), 0);
 }
+
+/// Triangles that belong to no surface are named.
+#[test]
+fn triangles_with_broken_coordinates_are_named() {
+    let (_folder, [file, output]) = paths(["ball.obj", "filled.obj"]);
+    textured_sphere(&file, 2.0);
+    let text = fs::read_to_string(&file).unwrap();
+    let start = text.match_indices("v ").nth(200).unwrap().0;
+    let end = start + text[start..].find('\n').unwrap();
+    fs::write(&file, format!("{}v nan 0 0{}", &text[..start], &text[end..])).unwrap();
+    let warnings = filled(&file, &output, Holes::Every, Replace::Never).unwrap();
+    let named = warnings.iter().any(|warning| warning.contains("not numbers"));
+    assert!(named, "{warnings:?}");
+}

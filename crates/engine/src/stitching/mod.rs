@@ -138,10 +138,19 @@ fn refused(file: &Path, error: pliant_stitch::StitchError) -> EngineError {
     }
 }
 
-/// The sentences about what a new shape loses of a file.
+/// The sentences about the parts of a file that a new shape loses, or keeps though they belong to no surface.
 fn lost(loaded: &Loaded, output: &Path) -> Result<Vec<String>, EngineError> {
     let format = pliant_io::Format::of_name(&output.to_string_lossy())?;
-    Ok(loaded.scene.lost_in_new_shape(format))
+    let mut sentences = loaded.scene.lost_in_new_shape(format);
+    let broken = loaded.model.findings.non_finite_triangles.count;
+    if broken > 0 {
+        let triangles = counted(broken, "triangle", "triangles");
+        sentences.push(format!(
+            "{triangles} with coordinates that are not numbers stay in the new shape: the surface was worked on without \
+             them, so repair these coordinates first"
+        ));
+    }
+    Ok(sentences)
 }
 
 /// A count and its noun.
