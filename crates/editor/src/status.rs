@@ -80,9 +80,9 @@ fn hint(workspace: &Workspace, settings: &ToolSettings) -> String {
     } else if workspace.selection.selected().is_none() {
         "Press Tab to select a handle, or paint a new one"
     } else if document.is_displaced() {
-        "Drag the gizmo, paint on from this shape, or save"
+        "Drag the handle or its gizmo, paint on from this shape, or save"
     } else {
-        "Drag the gizmo, or press G, R or S to move, turn or scale"
+        "Drag the handle or its gizmo, or press G, R or S to move, turn or scale"
     };
     let Counts { fixed, free, handle } = workspace.computed().region.counts;
     let [handle, free, fixed] = [handle, free, fixed].map(thousands);

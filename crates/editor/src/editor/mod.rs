@@ -83,9 +83,8 @@ impl Editor {
         let lit = self.gesture.as_ref().map_or((Lit::Pointed, Vec::new()), |gesture| {
             (gesture.lit(), gesture.shapes(&self.view))
         });
-        let pointer_px = self.pointer.map(|pointer| pointer.position_px);
         self.overlay
-            .renew(lit, &self.workspace, &self.view, &self.settings, pointer_px);
+            .renew(lit, &self.workspace, &self.view, &self.settings, self.pointer);
     }
 
     fn dispatch(&mut self, event: Event) {

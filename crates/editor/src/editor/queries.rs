@@ -100,6 +100,7 @@ impl Editor {
         match &self.gesture {
             Some(gesture) => gesture.cursor(),
             None if self.overlay.hovered.is_some() || self.overlay.pointed_control.is_some() => Cursor::Grab,
+            None if self.overlay.takes_handle => Cursor::Grab,
             None if self.settings.mode == ToolMode::Pose && !self.overlay.shapes.is_empty() => Cursor::Grab,
             None if self.overlay.is_over_surface && self.settings.mode != ToolMode::Select => Cursor::Brush,
             None => Cursor::Arrow,
