@@ -76,9 +76,9 @@ pub use format::{
 };
 pub use input::{Button, Key, Modifiers, Pointer};
 pub use jobs::{
-    Alternative, BothSides, Compared, Comparison, ControlPlaces, Descent, Executor, Figures, InlineExecutor,
-    Inspectable, Inspected, IntersectionPlace, Intersections, Job, JobDone, JobKind, JobOutcome, JobQueue, Running,
-    Solved, Symmetry,
+    Alternative, Bent, BothSides, Compared, Comparison, ControlPlaces, Descent, Executor, Figures, InlineExecutor,
+    Inspectable, Inspected, IntersectionPlace, Intersections, Job, JobDone, JobKind, JobOutcome, JobQueue, JobResult,
+    PresentBinding, Running, Solved, Symmetry, Unfinished,
 };
 pub use region::{Counts, Region, Rim};
 pub use revision::Revision;

@@ -9,7 +9,8 @@ use pliant_mesh::{Cancel, SurfaceVertex};
 
 use super::carried::Carried;
 use super::computed::Computed;
-use super::job::{ControlPlaces, Descent, JobOutcome, Solved, Work};
+use super::slot::{Unfinished, Work};
+use super::solved::{Bent, ControlPlaces, Descent, Solved};
 use crate::document::{Document, HandleId, KeptShape, sum_of_shapes};
 use crate::warning::HandleWarning;
 
@@ -25,29 +26,27 @@ const MOST_STEPS: usize = 16;
 const MOST_FIRST_ROUNDS: usize = 8;
 
 /// Takes steps towards the handles' targets; `None` while nothing is bound.
-pub(super) fn solve_work(computed: &Computed, document: &Document) -> Option<Work> {
-    let (bound, model) = (computed.bound.clone()?, computed.model.clone()?);
+pub(super) fn solve_work(computed: &Computed, document: &Document) -> Option<Work<Bent>> {
+    let (bound, model) = (Arc::clone(&computed.slots.bind.last()?.bound), computed.model.clone()?);
     let handles = &computed.region.handles;
     let wanted = Wanted::of(document, handles, &document.from_rest, computed.carried.as_ref())?;
     let newer_targets = computed.newer_targets.clone();
     Some(Box::new(move |_, cancel| {
-        if cancel.is_cancelled() {
-            return JobOutcome::Cancelled;
-        }
+        cancel.check()?;
         let mut bound = bound.lock().unwrap_or_else(PoisonError::into_inner);
         bound.set_cancel(&newer_targets);
         let is_from_file = wanted.rest.is_none();
         match wanted.solve(&mut bound, cancel) {
-            Err(error) => JobOutcome::Failed(
+            Err(error) => Err(Unfinished::Failed(
                 error
                     .renumbered(|vertex| model.first_file_vertex(SurfaceVertex(vertex)).0)
                     .to_string(),
-            ),
+            )),
             Ok(mut solved) => {
                 if is_from_file && solved.carried.is_none() {
                     solved.jacobians = bound.jacobians();
                 }
-                JobOutcome::Solved(solved)
+                Ok(Bent::Shape(solved))
             }
         }
     }))
@@ -55,14 +54,12 @@ pub(super) fn solve_work(computed: &Computed, document: &Document) -> Option<Wor
 
 /// Computes the control points' positions for the document's targets, whose shape is known; `None` while nothing is
 /// bound.
-pub(super) fn controls_work(computed: &Computed, document: &Document) -> Option<Work> {
-    let bound = computed.bound.clone()?;
+pub(super) fn controls_work(computed: &Computed, document: &Document) -> Option<Work<Bent>> {
+    let bound = Arc::clone(&computed.slots.bind.last()?.bound);
     let handles = targets(document, &computed.region.handles)?;
     let attachments = Arc::clone(&document.attachments);
     Some(Box::new(move |_, cancel| {
-        if cancel.is_cancelled() {
-            return JobOutcome::Cancelled;
-        }
+        cancel.check()?;
         let mut bound = bound.lock().unwrap_or_else(PoisonError::into_inner);
         let own = bound.attachment().and_then(|(name, _)| attachments.get(name));
         let targets = Targets {
@@ -71,8 +68,10 @@ pub(super) fn controls_work(computed: &Computed, document: &Document) -> Option<
             weights: &[],
         };
         match targets.set(&mut bound) {
-            Err(error) => JobOutcome::Failed(error.to_string()),
-            Ok(()) => ControlPlaces::of(&bound).map_or(JobOutcome::Cancelled, JobOutcome::Controls),
+            Err(error) => Err(Unfinished::Failed(error.to_string())),
+            Ok(()) => ControlPlaces::of(&bound)
+                .map(Bent::Controls)
+                .ok_or(Unfinished::Cancelled),
         }
     }))
 }
@@ -160,7 +159,7 @@ impl Targets<'_> {
 }
 
 /// The result of a solve.
-struct Bent {
+struct Stepped {
     /// The shown shape, as displacements from the rest shape.
     shown: Arc<Vec<DVec3>>,
     /// The start of the next solve, if a shape was kept.
@@ -209,12 +208,12 @@ impl Beginning {
         targets: &Targets<'_>,
         from_rest: &Arc<Vec<DVec3>>,
         cancel: &Cancel,
-    ) -> Result<Bent, SolveError> {
+    ) -> Result<Stepped, SolveError> {
         let (kept, at_first, mut solution) = match self {
             Self::Shown => {
                 let mut solution = from_rest.to_vec();
                 let step = steps(bound, targets, &mut solution, cancel)?;
-                return Ok(Bent {
+                return Ok(Stepped {
                     shown: Arc::new(solution),
                     carried: None,
                     step,
@@ -248,7 +247,7 @@ impl Beginning {
             solution: Arc::new(solution),
             shown: Arc::clone(&shown),
         };
-        Ok(Bent {
+        Ok(Stepped {
             shown,
             carried: Some(carried),
             step,
