@@ -118,7 +118,7 @@ impl Content {
 /// The drawn shape: the rest shape's displacements, if there are any, plus those from it.
 ///
 /// If nothing is added, the bits of the rest shape stay, so that applying a shape moves nothing.
-pub(crate) fn sum_of_shapes(rest: Option<&Arc<Vec<DVec3>>>, from_rest: &Arc<Vec<DVec3>>) -> Arc<Vec<DVec3>> {
+pub fn sum_of_shapes(rest: Option<&Arc<Vec<DVec3>>>, from_rest: &Arc<Vec<DVec3>>) -> Arc<Vec<DVec3>> {
     match rest {
         None => Arc::clone(from_rest),
         Some(rest) => Arc::new(

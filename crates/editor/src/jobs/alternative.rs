@@ -87,7 +87,7 @@ impl Alternative {
             .as_ref()
             .map_or_else(rest, |binding| Arc::clone(&binding.from_rest));
         let carried = self.binding.as_ref().and_then(|binding| binding.carried.as_ref());
-        let wanted = Wanted::of(document, &computed.region.handles, &from_rest, carried)?;
+        let wanted = Wanted::of(document, &self.method, &computed.region.handles, &from_rest, carried)?;
         let (document, region, binding) = (document.clone(), computed.region.clone(), self.binding.clone());
         let method = self.method.clone();
         let of = Edit::of(&document);

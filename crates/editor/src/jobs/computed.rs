@@ -7,10 +7,10 @@ use pliant_deform::Ordering;
 use pliant_mesh::{Cancel, Joint, Model};
 
 use super::bound_controls::BoundControls;
-use super::carried::Carried;
 use super::inspected::Inspectable;
 use super::intersections::Intersections;
 use super::table::Slots;
+use crate::bending::Carried;
 use crate::pickable::{Pickable, ShownTriangles};
 use crate::region::{FileContacts, Region};
 use crate::revision::Revision;

@@ -8,7 +8,7 @@ use pliant_deform::Bound;
 use super::computed::Computed;
 use super::inspected::{Asked, Inspected};
 use super::slot::Work;
-use super::solving::targets;
+use super::solving::maps;
 use crate::document::{Document, HandleId, sum_of_shapes};
 
 /// Queries the present binding; `None` while there is none.
@@ -16,7 +16,7 @@ pub(super) fn inspect_work(computed: &Computed, document: &Document, asked: Aske
     let bound = Arc::clone(&computed.slots.bind.last()?.bound);
     let handles = computed.region.handles.clone();
     let is_base_wanted = asked.base && computed.inspectable().base;
-    let targets = is_base_wanted.then(|| targets(document, &handles)).flatten();
+    let targets = is_base_wanted.then(|| maps(document, &handles)).flatten();
     let rest = document.applied.then(|| Arc::clone(&document.rest));
     Some(Box::new(move |_, cancel| {
         cancel.check()?;

@@ -16,7 +16,7 @@ use super::computed::Computed;
 use super::inspected::Asked;
 use super::inspection::inspect_work;
 use super::slot::{Ended, Scheduled, Slot, Unfinished, Work};
-use super::solved::{Bent, ControlPlaces, Solved};
+use super::solved::{ControlPlaces, SolveResult, Solved};
 use super::solving::{controls_work, solve_work};
 use super::table::{Executor, JobDone, JobKind, Slots};
 use super::work::{bind_work, intersect_work, order_work, pick_work, region_work};
@@ -252,7 +252,7 @@ impl Jobs {
         let Some(model) = self.computed.model.clone() else {
             return;
         };
-        if self.is_picking_current() {
+        if self.is_picking_current() && !self.computed.slots.intersect.is_current() {
             self.want(
                 |slots| &mut slots.intersect,
                 |computed| intersect_work(computed, &model, displacements),
@@ -437,8 +437,8 @@ impl Jobs {
             }
             JobKind::Bind => self.take_binding(),
             JobKind::Solve => match self.computed.slots.solve.take() {
-                Some(Bent::Shape(solved)) => return self.take_solved(solved, stamp),
-                Some(Bent::Controls(places)) => self.put_controls(&places, stamp),
+                Some(SolveResult::Shape(solved)) => return self.take_solved(solved, stamp),
+                Some(SolveResult::Controls(places)) => self.put_controls(&places, stamp),
                 None => {}
             },
             _ => {}

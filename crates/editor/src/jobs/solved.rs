@@ -5,12 +5,12 @@ use std::sync::Arc;
 use glam::{DVec3, Mat3};
 use pliant_deform::Bound;
 
-use super::carried::Carried;
+use crate::bending::Carried;
 use crate::warning::HandleWarning;
 
 /// The result of the job that bends.
 #[derive(Clone, Debug)]
-pub enum Bent {
+pub enum SolveResult {
     /// A new shape.
     Shape(Solved),
     /// The positions of the control points; the shape is known.

@@ -15,7 +15,7 @@ use super::inspected::Inspected;
 use super::intersections::Intersections;
 use super::present_binding::PresentBinding;
 use super::slot::{Ended, Scheduled, Slot, Unfinished};
-use super::solved::Bent;
+use super::solved::SolveResult;
 use crate::pickable::Pickable;
 use crate::region::Region;
 use crate::revision::Revision;
@@ -128,7 +128,7 @@ jobs! {
     /// The factorisation for the present regions, ready for steps.
     bind: Bind(Box<PresentBinding>) = Row { doing: "binding", is_awaited: true, is_named: true };
     /// The surface, or the control points alone, for the present handle transforms.
-    solve: Solve(Bent) = Row { doing: "bending", is_awaited: true, is_named: false };
+    solve: Solve(SolveResult) = Row { doing: "bending", is_awaited: true, is_named: false };
     /// The vertices of a region's mirror image, ascending.
     mirror: Mirror(Vec<usize>) = Row { doing: "looking for the mirror image", is_awaited: true, is_named: true };
     /// The plane across which the shape is its own mirror image, and the pairs of vertices; `None` if it has none.

@@ -12,7 +12,7 @@ use std::time::Instant;
 use eframe::egui;
 use glam::{DVec3, Mat3};
 use pliant_deform::Budget;
-use pliant_editor::{Bent, Executor, Job, JobDone, JobResult, Unfinished};
+use pliant_editor::{Executor, Job, JobDone, JobResult, SolveResult, Unfinished};
 
 use super::message::{Message, Painted, Posed};
 use crate::drawing::{self, Drawing, Field, Scale};
@@ -146,7 +146,7 @@ impl Executor for Workers {
             move || {
                 let done = job.run();
                 let posed = match (&done.outcome, stage) {
-                    (Ok(JobResult::Solve(Bent::Shape(solved))), Some(stage)) => {
+                    (Ok(JobResult::Solve(SolveResult::Shape(solved))), Some(stage)) => {
                         Some(stage.pose(Arc::clone(&solved.from_file), solved.jacobians.as_deref()))
                     }
                     _ => None,
