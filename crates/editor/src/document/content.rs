@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use glam::DVec3;
-use pliant_deform::{Arap, Attachment, Loose, Method};
+use pliant_deform::{Attachment, Loose, Method};
 
 use super::access::Access;
 use super::handle::{Handle, HandleId};
@@ -90,7 +90,7 @@ impl Content {
             next_handle: 0,
             stiffness: None,
             continuity: None,
-            method: Arap::first_choice().into(),
+            method: Method::of_new_documents(),
             attachments: Arc::default(),
             tips: Tips::default(),
             loose: Loose::default(),
