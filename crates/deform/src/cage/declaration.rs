@@ -38,6 +38,8 @@ pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
                   anything inside it, loose pieces included; with harmonic coordinates limbs that are near \
                   each other stay apart. It fits the handles as well as the cage can, not exactly.",
     keywords: "cage mean value harmonic green coordinates conformal space",
+    picture: Picture::Hull,
+    slider: None,
     options: Cage::OPTIONS,
     attachments: &[AttachmentDeclaration {
         name: "cage",

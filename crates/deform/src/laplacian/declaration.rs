@@ -8,7 +8,7 @@ use crate::handles::finite::Finite;
 use crate::handles::polar::{Polar, polars_of};
 use crate::method::{BindInput, BoundMethod, DeformMethod, MethodDeclaration, Stepped};
 use crate::needs::{ConstraintKind, Needs, Solve};
-use crate::{BindError, ReusableFactor, SolveError, Warning};
+use crate::{BindError, Picture, ReusableFactor, SolveError, Warning};
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "laplacian",
@@ -16,6 +16,8 @@ pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     when_to_use: "Turns details with the surface, at once, for moves and for turns of wide parts up to about 90°; limbs \
                   give way from about 70° on, and beyond 90° it bulges and shrinks unless `steps` divides the way.",
     keywords: "laplacian differential coordinates detail similarity implicit",
+    picture: Picture::Spikes,
+    slider: None,
     options: LaplacianEditing::OPTIONS,
     attachments: &[],
     heeds: &[

@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, Align, Color32, ComboBox, DragValue, Layout, RichText, Sense};
 use glam::DVec3;
-use pliant_deform::CONTINUITY_RANGE;
+use pliant_deform::{CONTINUITY_RANGE, ConstraintKind, METHODS};
 use pliant_editor::{
     Command, Editor, HANDLE_COLOURS, Handle, HandleId, HandleTransform, PivotPlace, Reach, SOFT_RANGE,
 };
@@ -283,14 +283,17 @@ fn joint(ui: &mut egui::Ui, editor: &Editor, handle: &Handle, commands: &mut Out
         ui.horizontal(|ui| {
             let hover = if has_choice {
                 "How smoothly the surface joins this handle: 0 folds like a hinge, 1 keeps its tangents, 2 its curvature."
+                    .to_owned()
             } else {
-                "This method always joins a handle in the same way: the thin plate (`bilaplacian`), `laplacian` and `wrinkles` let you choose."
+                let others = METHODS.iter().filter(|method| method.heeds(ConstraintKind::Continuity));
+                let titles: Vec<&str> = others.map(|method| method.title).collect();
+                format!("This method always joins a handle in the same way. You can choose it with: {}.", titles.join(", "))
             };
             let field = number_field(ui, &mut value, |ui, value| {
                 let field = DragValue::new(value).range(CONTINUITY_RANGE).speed(0.02);
                 ui.add(field.max_decimals(2).update_while_editing(false))
             });
-            let field = field.labelled_by(label.id).on_hover_text(hover).on_disabled_hover_text(hover);
+            let field = field.labelled_by(label.id).on_hover_text(&hover).on_disabled_hover_text(&hover);
             commands.adjust(&field, || Command::SetContinuity(handle.id, Some(value)));
             ui.label(RichText::new(word).weak());
         });
