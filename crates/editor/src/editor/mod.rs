@@ -266,8 +266,7 @@ impl Editor {
             self.workspace.refusal = None;
         }
         if activity == Some(Activity::Dragging) && scope == Scope::Document {
-            self.workspace
-                .refuse("The drag that was under way has been taken back: drag once more.");
+            self.workspace.refuse("The active drag was cancelled: drag again.");
         }
         // Undo during a drag aborts the drag, and nothing before it.
         if !(had_gesture && scope == Scope::History) {

@@ -124,7 +124,9 @@ impl JoinsFile {
         of_part(&stored.b.delete, "b")?;
         let (method, attachments) = read_method(&stored.method).map_err(|error| error.under("method"))?;
         if let Some(name) = attachments.keys().next() {
-            return Err(EditError::custom(format!("has `{name}`, and joins take none: leave it out")).under("method"));
+            return Err(
+                EditError::custom(format!("has `{name}`, which joins do not allow: leave it out")).under("method"),
+            );
         }
         if !(stored.reach > 0.0 && stored.reach <= 10.0) {
             let found = json!(stored.reach);

@@ -40,7 +40,7 @@ impl Gesture for ControlBox {
     }
 
     fn status(&self, _: &Workspace, _: &View) -> Option<String> {
-        Some("Let go to select the points inside, Esc to leave it".to_owned())
+        Some("Release to select the points inside, Esc to cancel".to_owned())
     }
 
     fn outline_px(&self) -> Vec<DVec2> {

@@ -250,10 +250,10 @@ impl Gesture for TransformDrag {
     fn status(&self, _: &Workspace, view: &View) -> Option<String> {
         let end = match self.ending {
             Ending::Click => "click or Enter to keep it",
-            Ending::Release(_) => "let go to keep it",
+            Ending::Release(_) => "release to keep it",
         };
         Some(format!(
-            "{}{} by {}: x, y, z hold it to an axis, numbers type, {end}, Esc to leave it",
+            "{}{} by {}: x, y or z chooses an axis, digits set the amount, {end}, Esc to cancel",
             self.measure.kind.doing(),
             self.measure.constraint.label(),
             self.measure.label(view),

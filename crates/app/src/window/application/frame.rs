@@ -214,7 +214,7 @@ impl Application {
         let end = if descent.converged {
             "Settled"
         } else {
-            "Stopped at its limit of steps"
+            "Stopped at the step limit"
         };
         Some(format!("{end}, energy {:.3e}.", descent.energy))
     }

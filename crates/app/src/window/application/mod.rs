@@ -201,7 +201,7 @@ impl Application {
         context.egui_ctx.add_plugin(EventQueue::default());
         let Some(state) = context.wgpu_render_state.clone() else {
             return Err(EngineError::System(
-                "the window has no graphics device any more".to_owned(),
+                "the window has lost its graphics device".to_owned(),
             ));
         };
         let system = |error: pliant_render::RenderError| EngineError::System(error.to_string());
@@ -222,7 +222,7 @@ impl Application {
             self.viewport.show(drawing, surface, displacements, lowest);
         }
         self.notes.headline = Some(Note::Done(
-            "The graphics device was lost and has been opened again; the document is as it was.".to_owned(),
+            "The graphics device was lost and opened again; the document is unchanged.".to_owned(),
         ));
         Ok(())
     }

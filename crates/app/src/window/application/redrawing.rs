@@ -52,7 +52,7 @@ impl Application {
             Err(sentence) => {
                 // This is not requested again and again.
                 self.redrawing = wanted;
-                return self.fail(format!("the view does not show what is turned inside out: {sentence}"));
+                return self.fail(format!("the view can't show parts turned inside out: {sentence}"));
             }
         };
         let Redrawn {

@@ -59,7 +59,7 @@ impl Log {
                     .stick_to_bottom(true)
                     .show(ui, |ui| {
                         if self.lines.is_empty() {
-                            ui.label(RichText::new("Nothing was said yet.").weak());
+                            ui.label(RichText::new("There are no messages yet.").weak());
                         }
                         for line in &self.lines {
                             ui.add(

@@ -59,7 +59,8 @@ impl SettingsFile {
             Some(Problem::Corrupted(reason)) => match put_aside(&path) {
                 Ok(aside) => {
                     let sentence = format!(
-                        "the settings in {} can't be read ({reason}), so the defaults hold: what was there is kept as {}",
+                        "the settings in {} can't be read ({reason}), so the defaults apply: the old file is kept as \
+                         {}",
                         shown(&path),
                         shown(&aside)
                     );
@@ -113,8 +114,8 @@ fn put_aside(path: &Path) -> Result<PathBuf, String> {
     let aside = free.unwrap_or_else(|| named(1));
     std::fs::rename(path, &aside).map_err(|error| {
         format!(
-            "the settings in {} can't be read, and the file can't be renamed ({error}): mend or delete it; the defaults \
-             hold for now",
+            "the settings in {} can't be read, and the file can't be renamed ({error}): repair or delete it; the \
+             defaults apply for now",
             shown(path)
         )
     })?;

@@ -22,7 +22,7 @@ fn scale(method: &Method) -> Option<Scale> {
             option: "bending",
             ends: ["Paper", "rubber"],
             range: Shells::PAPER_TO_RUBBER,
-            help: "Paper keeps its lengths and creases; thick rubber bends evenly and stretches instead. It sets \
+            help: "Paper keeps its lengths and creases; thick rubber bends evenly and stretches. The slider sets \
                    `bending`.",
         });
     }
@@ -31,7 +31,8 @@ fn scale(method: &Method) -> Option<Scale> {
         option: "smoothness",
         ends: ["Rigid", "smooth"],
         range: RIGID_TO_SMOOTH,
-        help: "Rigid keeps details and bends where it must; smooth spreads the bend evenly. It sets `smoothness`.",
+        help: "Rigid keeps details and bends only where it must; smooth spreads the bend evenly. The slider sets \
+               `smoothness`.",
     })
 }
 

@@ -169,7 +169,7 @@ pub(super) fn open(source: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<Mode
             }
         }
     };
-    let progress = watch.begin("getting the picture ready");
+    let progress = watch.begin("preparing the picture");
     notes.extend_from_slice(loaded.scene.notes());
     let drawing = Drawing::new(&loaded.model, loaded.scene.appearance(), Arc::default());
     progress.set(0.7);

@@ -64,7 +64,7 @@ impl Split {
         ui.painter().circle_filled(knob, 5.0, colour);
         let top = view.top() + 12.0;
         let words = ui.painter().with_clip_rect(view);
-        readout(&words, egui::pos2(x - 150.0, top), "As it was opened");
+        readout(&words, egui::pos2(x - 150.0, top), "Original");
         readout(&words, egui::pos2(x + 12.0, top), "Now");
     }
 }

@@ -329,7 +329,7 @@ impl Project {
         let found = geometry_hash(model);
         if found != self.mesh.geometry {
             return Err(EditError::OtherMesh {
-                name: "the one at hand".to_owned(),
+                name: "the given one".to_owned(),
                 found: hash_shown(&found),
                 expected: hash_shown(&self.mesh.geometry),
             });
@@ -420,7 +420,8 @@ impl Project {
             let id = HandleId(stored.id);
             if document.handles.iter().any(|handle| handle.id == id) || stored.id >= self.next_handle {
                 return Err(EditError::Project(format!(
-                    "the handle `{}` has the number {}, which is another's or none: number them below `next_handle`",
+                    "the handle `{}` has the number {}, which is taken or too large: give each handle its own number \
+                     below `next_handle`",
                     shortened(&stored.name),
                     stored.id
                 )));

@@ -358,7 +358,7 @@ impl FolderBrowser {
         } else if !rest.is_empty() {
             let missing = shown(&self.folder.join(rest));
             self.problem = Some(format!(
-                "There is no {missing}: choose one of the list, or another folder."
+                "{missing} does not exist: choose a file from the list, or another folder."
             ));
         }
     }
