@@ -149,7 +149,7 @@ impl OptionDeclaration {
         let has_effect = matches!(value(other), Some(OptionValue::Name(name)) if names.contains(&name));
         (!has_effect).then(|| {
             let names = joined(names.iter().map(|name| format!("\"{name}\"")), "or");
-            format!("Counts only where {other} is {names}.")
+            format!("Takes effect only if {other} is {names}.")
         })
     }
 

@@ -77,7 +77,7 @@ pub fn stage(
         && loaded.scene.morph_targets().iter().any(|name| name == morph.name)
     {
         return Err(EngineError::Unsupported(format!(
-            "{} has a morph target called {} already: give the new one another name",
+            "{} already has a morph target called {}: give the new one another name",
             files::shown(&loaded.path),
             quoted(morph.name)
         )));

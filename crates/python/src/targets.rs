@@ -42,7 +42,7 @@ pub fn goals(
             let Some(handle) = handles.iter().position(|handle| handle.name == name) else {
                 let known: Vec<String> = handles.iter().map(|handle| format!("{:?}", handle.name)).collect();
                 return Err(refused(format!(
-                    "transforms names the handle {name:?}, which there is not: known are {}",
+                    "transforms names the unknown handle {name:?}: known are {}",
                     known.join(", ")
                 )));
             };
@@ -130,8 +130,8 @@ fn goal(any: &Bound<'_, PyAny>, place: &str, pivot: DVec3) -> PyResult<Goal> {
     } else {
         let unknown = |found: &str| {
             refused(format!(
-                "{place} is no transform{found}: give a 3×4 or 4×4 matrix, a translation, a pair of a 3×3 matrix and a \
-                 translation, a dict, or a position for each of the handle's vertices"
+                "{place} is not a transform{found}: give a 3×4 or 4×4 matrix, a translation, a pair of a 3×3 matrix \
+                 and a translation, a dict, or a position for each of the handle's vertices"
             ))
         };
         let Ok((shape, numbers)) = reals(any, place) else {

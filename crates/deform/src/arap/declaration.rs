@@ -18,8 +18,8 @@ use crate::{BindError, SolveError};
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "arap",
     title: "As rigid as possible",
-    when_to_use: "Keeps every neighbourhood as rigid as it can, step by step, for large turns and long drags: with the \
-                  energy \"smooth\" it bends and twists evenly, with \"spokes-and-rims\" it binds sooner and may crease.",
+    when_to_use: "Keeps every neighbourhood as rigid as possible, step by step, for large turns and long drags. The \
+                  energy \"smooth\" bends and twists evenly; \"spokes-and-rims\" binds sooner and may crease.",
     keywords: "arap as-rigid-as-possible",
     options: Arap::OPTIONS,
     attachments: &[],

@@ -20,7 +20,7 @@ use crate::{Bilaplacian, BindError, Detail, HandleBases, ReusableFactor, SolveEr
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "bilaplacian",
     title: "Thin plate",
-    when_to_use: "Bends like a thin plate, at once: for small turns and smooth bulges.",
+    when_to_use: "Bends like a thin plate, in one step: for small turns and smooth bulges.",
     keywords: "bilaplacian bi-laplacian biharmonic linear shell laplacian",
     options: Bilaplacian::OPTIONS,
     attachments: &[],

@@ -71,7 +71,8 @@ impl Solution {
     pub fn warnings(&self) -> Vec<String> {
         let stiffened = |shift: f64| {
             format!(
-                "the system was barely stable on this mesh: it was stiffened by {shift:.0e} of its diagonal and refined"
+                "the system was barely stable on this mesh, so it was stiffened by {shift:.0e} of its diagonal and \
+                 refined"
             )
         };
         let mut sentences = Vec::new();

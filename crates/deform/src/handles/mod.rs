@@ -130,8 +130,8 @@ pub(crate) fn only_moved(method: &str, motions: &[Motion], is_held: bool) -> Opt
         && (is_held || motions.iter().any(|motion| motion.shift != first));
     let sentence = || {
         format!(
-            "{method} is blind to moves: the handles are moved and not turned, so the surface shears between them; turn \
-             a handle, or take laplacian or arap"
+            "{method} turns nothing for moves, and the handles only move, so the surface shears between them: turn a \
+             handle, or take laplacian or arap"
         )
     };
     (moves && motions.iter().all(is_only_moved)).then(|| sentence().into())

@@ -87,8 +87,8 @@ impl TurnLimit {
         (degrees > most_degrees + ROOM_DEGREES).then(|| {
             Warning::of_handle(number, |handle| {
                 format!(
-                    "{handle} turns by {degrees:.0}° against what it bends. From about {most_degrees:.0}° on {} \
-                     {beyond}: take {others}, or turn it in parts",
+                    "{handle} turns by {degrees:.0}° against the other end of its region. From about \
+                     {most_degrees:.0}° on, {} {beyond}: take {others}, or turn it in parts",
                     self.method
                 )
             })

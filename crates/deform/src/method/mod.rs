@@ -158,7 +158,7 @@ impl Method {
                 let names = options.iter().map(|option| format!("`{}`", option.name));
                 return Err(OptionRefused {
                     option: name.to_owned(),
-                    allowed: format!("nothing: {} has {}", self.name(), joined(names, "and")),
+                    allowed: format!("no value: {} has only {}", self.name(), joined(names, "and")),
                 });
             };
             if !option.kind.takes(value) {

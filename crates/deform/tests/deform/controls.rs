@@ -347,7 +347,7 @@ fn what_is_no_lattice_and_what_does_not_fit_the_binding_is_refused_in_words() {
         moved: Arc::new(vec![DVec3::ZERO; 5]),
         ..lattice
     };
-    assert!(of(short).contains("has 5 moved points where 343 are expected"));
+    assert!(of(short).contains("has 5 moved points, but 343 points"));
     let mut bound = scene.bind();
     let nowhere = bound.set_controls(&Arc::new(vec![DVec3::NAN; 343])).unwrap_err();
     assert!(matches!(

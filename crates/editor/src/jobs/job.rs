@@ -69,18 +69,18 @@ impl JobKind {
     /// The job's activity, for the status line: "binding".
     pub fn doing(self) -> &'static str {
         match self {
-            Self::Pick => "getting the surface ready for the pointer",
+            Self::Pick => "preparing the surface for the pointer",
             Self::Order => "ordering the equations",
             Self::Region => "measuring the region",
             Self::Bind => "binding",
             Self::Solve => "bending",
-            Self::Mirror => "looking for the mirror image",
-            Self::Symmetry => "looking for the plane of symmetry",
-            Self::Enclose => "looking for what is inside",
+            Self::Mirror => "computing the mirror image",
+            Self::Symmetry => "finding the plane of symmetry",
+            Self::Enclose => "finding the enclosed vertices",
             Self::Compare => "comparing methods",
-            Self::Inspect => "looking into the binding",
-            Self::Joint => "looking for the joint",
-            Self::Intersect => "looking for where the shape passes through itself",
+            Self::Inspect => "inspecting the binding",
+            Self::Joint => "finding the joint",
+            Self::Intersect => "finding places where the shape passes through itself",
         }
     }
 }

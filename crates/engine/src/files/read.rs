@@ -36,7 +36,7 @@ fn ordinary(path: &Path) -> Result<Metadata, FileError> {
         return Err(refuse(ErrorKind::IsADirectory.into()));
     }
     if !metadata.is_file() {
-        return Err(refuse(in_words("it is no ordinary file; give the path of one")));
+        return Err(refuse(in_words("it is not an ordinary file; give the path of one")));
     }
     Ok(metadata)
 }

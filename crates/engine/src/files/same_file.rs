@@ -33,7 +33,7 @@ pub fn follow(path: &Path) -> io::Result<PathBuf> {
             _ => return Ok(at),
         }
     }
-    Err(in_words("its links lead in a circle; remove them"))
+    Err(in_words("its links form a circle; remove them"))
 }
 
 /// A file's identity in the system.
@@ -139,7 +139,7 @@ pub fn refuse_shared<'a, 'b>(
     for (other_role, other) in others {
         if is_same(path, other) {
             return Err(EngineError::Arguments(format!(
-                "{role} {} is {other_role} as well: give it another name",
+                "{role} {} is also {other_role}: give it another name",
                 shown(path)
             )));
         }

@@ -223,7 +223,7 @@ impl<'a> Reader<'a> {
         };
         let found = &mut self.found;
         if found.positions.len() >= UNUSED as usize {
-            return Err(self.broken(at, "there are more vertices than 32 bits can number: split the file"));
+            return Err(self.broken(at, "it has more vertices than 32 bits can number: split the file"));
         }
         found.positions.push(DVec3::new(x, y, z));
         found.position_at.push(at);
@@ -402,7 +402,7 @@ impl<'a> Reader<'a> {
 
 fn no_corner(word: &[u8]) -> String {
     format!(
-        "'{}' is no corner of a face: correct it, as in 'f 1/2/3 4/5/6 7/8/9'",
+        "'{}' is not a corner of a face: correct it, as in 'f 1/2/3 4/5/6 7/8/9'",
         excerpt(word)
     )
 }

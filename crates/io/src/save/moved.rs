@@ -62,7 +62,7 @@ impl<'a> Moved<'a> {
         let is_any_turned = turned.contains(&true);
         if is_any_turned && !is_same_for_file_vertices(drawn, turned) {
             return Err(SaveError::CannotHold {
-                what: "a mesh that several nodes show and that is turned inside out in some of them".to_owned(),
+                what: "a mesh that several nodes show and only some turn inside out".to_owned(),
                 format,
                 remedy: "turn all of them, or none".to_owned(),
             });

@@ -58,7 +58,7 @@ impl Scene {
                 {
                     Ok(())
                 } else {
-                    Err("its triangles join other vertices".to_owned())
+                    Err("its triangles have other vertices".to_owned())
                 }
             }
             // An STL's corners are its vertices: those of a turned facet change places.
@@ -124,7 +124,7 @@ fn same_windings(
         let wanted = as_wound(from, &is_turned).map(|corner| save.drawn.file_vertex[corner.index()]);
         !wanted.eq(found.iter().map(|corner| back.drawn.file_vertex[corner.index()]))
     });
-    wrong.map_or(Ok(()), |face| Err(format!("face {face} joins other vertices")))
+    wrong.map_or(Ok(()), |face| Err(format!("face {face} has other vertices")))
 }
 
 impl UnsavedShape<'_> {
@@ -226,7 +226,7 @@ fn each(
         Some((v, wanted)) => {
             let [found, wanted] = [back.drawn.positions[v], wanted].map(|p| format!("({}, {}, {})", p.x, p.y, p.z));
             let vertex = back.drawn.file_vertex[v].0;
-            Err(format!("vertex {vertex} stands at {found} instead of {wanted}"))
+            Err(format!("vertex {vertex} is at {found} instead of {wanted}"))
         }
     }
 }

@@ -33,13 +33,12 @@ pub(super) fn is_certain(bytes: &[u8]) -> bool {
 pub(super) fn read(source: &Source<'_>, notes: &mut Vec<String>) -> Result<Vec<DVec3>, ReadError> {
     let bytes: &[u8] = source.bytes;
     let Some(count) = stored_count(bytes) else {
-        let reason =
-            "it has neither the 84 bytes of a binary file's head nor the 'solid' of an ascii file: export it anew";
+        let reason = "it has neither the 84 bytes of a binary header nor the 'solid' of an ascii file: export it again";
         return Err(source.malformed(Format::Stl, reason));
     };
     let room = (bytes.len() - HEADER) / FACET;
     if count > room as u64 {
-        let reason = format!("it promises {count} facets but holds only {room}: the file is cut short or not STL");
+        let reason = format!("it declares {count} facets but has only {room}: the file is cut short or not STL");
         return Err(source.malformed(Format::Stl, reason));
     }
     if count > u64::from(u32::MAX / 3) {
@@ -51,7 +50,7 @@ pub(super) fn read(source: &Source<'_>, notes: &mut Vec<String>) -> Result<Vec<D
     let rest = bytes.len() - HEADER - count as usize * FACET;
     if rest > 0 {
         notes.push(format!(
-            "The file promises {count} facets and goes on for {rest} bytes behind them; they are kept but not shown."
+            "The file has {rest} bytes after its {count} facets; they are kept but not shown."
         ));
     }
     let mut corners = Vec::with_capacity(3 * count as usize);

@@ -58,7 +58,7 @@ fn brush_rows(ui: &mut egui::Ui, mut radius_px: f64, metric: BrushMetric, comman
     });
     let slider = slider
         .labelled_by(label.id)
-        .on_hover_text("[ and ] make it smaller and larger.");
+        .on_hover_text("Sets the size of the brush; [ makes it smaller and ] larger.");
     if slider.changed() {
         commands.push(Command::SetBrushRadius(radius_px));
     }

@@ -77,12 +77,12 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, morph_targets: &[String], comman
                 true => (
                     0.0,
                     -0.5..=1.5,
-                    "0 is the rest shape, 1 is the example, and larger weights exaggerate it",
+                    "Sets the weight: 0 is the rest shape, 1 is the example, and larger weights exaggerate it",
                 ),
                 false => (
                     1.0,
                     0.0..=2.0,
-                    "The share of its wrinkles to add: 0 is none, 1 is as in the example",
+                    "Sets the share of its wrinkles to add: 0 is none, 1 is as in the example",
                 ),
             };
             let mut shown = weight.or(found.filter(|_| they_bend)).unwrap_or(without);

@@ -75,8 +75,9 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, model: &Model, commands: &mut Ou
                 .update_while_editing(false);
             ui.add_enabled(!editor.is_acting(), field).labelled_by(label.id)
         });
-        let field = field
-            .on_hover_text("The distance in the file's unit, like `weld` in an edit and `--weld` on the command line.");
+        let field = field.on_hover_text(
+            "Sets the distance in the file's unit, like `weld` in an edit and `--weld` on the command line.",
+        );
         if field.dragged() {
             ui.data_mut(|data| data.insert_temp(id, value));
         } else {

@@ -130,8 +130,8 @@ impl Capacitance {
     pub fn sentence(&self) -> String {
         let kept = self.kept.read().unwrap_or_else(PoisonError::into_inner);
         format!(
-            "the factor of {} free vertices does not fit the memory that is left, so they were solved for with the \
-             Laplacian's factor ({} MiB) and {} conjugate directions for {} vertices at the rim",
+            "the factor of {} free vertices does not fit the free memory, so they were solved with the Laplacian's \
+             factor ({} MiB) and {} conjugate directions for {} vertices at the rim",
             self.middle.len(),
             (8 * self.factored.factor.stored()) >> 20,
             kept.len(),

@@ -66,7 +66,7 @@ pub(crate) fn decode(document: &mut Document, cancel: &Cancel) -> Result<(), Can
         .map(|compressed| {
             let compressed = compressed?;
             if cancel.is_cancelled() {
-                return Err("was not wanted any more".to_owned());
+                return Err("is no longer needed".to_owned());
             }
             let stride = (compressed.mode == Mode::Attributes).then_some(compressed.stride);
             Ok::<_, String>((compressed.decoded()?, stride))
@@ -93,7 +93,7 @@ impl<'a> Compressed<'a> {
             (number.fract() == 0.0 && (0.0..9e15).contains(&number)).then_some(number as usize)
         };
         let word = |key: &str| json.member(extension, key).and_then(|at| json.string(at));
-        let needed = |key: &str| whole(key).ok_or_else(|| format!("does not say its {key}"));
+        let needed = |key: &str| whole(key).ok_or_else(|| format!("has no {key}"));
         let (buffer, offset, length) = (
             needed("buffer")?,
             whole("byteOffset").unwrap_or(0),

@@ -231,8 +231,8 @@ impl Gathering<'_> {
                 let note = (flattened > 0).then(|| {
                     let vertices = if flattened == 1 { "vertex" } else { "vertices" };
                     format!(
-                        "The skin of {called} flattens {flattened} {vertices}, so a move can't be brought back to the \
-                         file: what is saved leaves them as they are."
+                        "The skin of {called} flattens {flattened} {vertices}, so their moves can't be saved: they \
+                         stay as they are."
                     )
                 });
                 self.notes.add("skins", note);

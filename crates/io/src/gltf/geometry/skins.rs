@@ -85,7 +85,10 @@ pub(crate) fn transforms(
             pairs.find_map(|(joint, weight)| (*weight != 0.0 && *joint as usize >= skin.len()).then_some(*joint))
         });
         if let Some(joint) = wrong {
-            return Err(format!("a vertex names joint {joint}, but there are {}", skin.len()));
+            return Err(format!(
+                "a vertex names joint {joint}, but there are only {}",
+                skin.len()
+            ));
         }
         sums.par_iter_mut()
             .zip(joints.par_iter().zip(&weights))

@@ -19,7 +19,7 @@ impl Patch<'_> {
         let at = document.nodes_at[node];
         let cannot = |what: &str| SaveError::CannotHold {
             what: format!(
-                "{what} of {} that the edit makes differ ({EXTENSION}),",
+                "{what} of {} that differ after the edit ({EXTENSION}),",
                 document.called(node)
             ),
             format,
