@@ -18,7 +18,7 @@ KEY = "Pliant"
 # The modifiers whose targets handles may have.
 MOVERS = {"HOOK", "ARMATURE"}
 
-# How long a method that iterates may take before Blender draws again, in seconds.
+# The most seconds that an iterative method may take before Blender draws again.
 FRAME = 0.03
 
 # By the objects' session numbers: names change, and pointers move.

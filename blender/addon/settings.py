@@ -70,7 +70,7 @@ class PliantHandle(bpy.types.PropertyGroup):
     weight: FloatProperty(
         name="Weight", description="A larger weight pulls harder", default=1.0, min=1e-6, max=1e6, soft_max=100.0
     )
-    # Where the target was when the mesh began to be bent live, row by row.
+    # The target's world matrix at the beginning of live bending, row by row.
     rest_place: FloatVectorProperty(size=16, options={"HIDDEN"})
 
 

@@ -163,7 +163,7 @@ fn the_surveys_scenes_meet_their_constraints() {
     }
 }
 
-/// Loose parts that nothing holds follow their contacts: no triangle edge of a translated helmet is torn.
+/// Loose parts follow their contacts: no triangle edge of a translated helmet is torn.
 #[test]
 fn loose_parts_of_real_models_travel_with_the_surface() {
     for name in ["gltf/DamagedHelmet.glb", "gltf/FlightHelmet/FlightHelmet.gltf"] {

@@ -340,9 +340,9 @@ pub enum SolveError {
     PlaceCount {
         /// The handle.
         handle: usize,
-        /// How many came.
+        /// The given number.
         found: usize,
-        /// How many vertices there are.
+        /// The number of the handle's vertices.
         expected: usize,
     },
     /// A place holds a NaN or an infinity.

@@ -11,7 +11,7 @@ pub struct OptionDeclaration {
     pub help: &'static str,
     /// Its kind of values.
     pub kind: OptionKind,
-    /// Whether it is an expert option: the window folds such options away.
+    /// True if it is an expert option: the window folds such options away.
     pub is_advanced: bool,
     /// The choice option, and its names with which this option has an effect.
     pub only_with: Option<(&'static str, &'static [&'static str])>,
@@ -70,7 +70,7 @@ pub struct OptionRefused {
 }
 
 impl OptionKind {
-    /// Whether `value` is of this kind and within its range.
+    /// Returns true if `value` is of this kind and within its range.
     pub fn takes(&self, value: OptionValue) -> bool {
         match (self, value) {
             (

@@ -25,7 +25,7 @@ pub struct SaveAs<'a> {
     pub positions: &'a [DVec3],
     /// The connected parts that are turned inside out, by their numbers.
     pub inside_out: &'a BTreeSet<u32>,
-    /// Whether the deltas of the file's morph targets turn with the surface.
+    /// The deltas of the file's morph targets: turning with the surface, or kept.
     pub deltas: MorphDeltas,
     /// Saves the edit as a morph target beside the unchanged shape.
     pub morph: Option<&'a MorphTarget<'a>>,

@@ -31,7 +31,7 @@ pub struct Transfer<'a> {
     pub output: &'a Path,
     /// The joining of TARGET's vertices.
     pub weld: WeldOptions,
-    /// Whether the deltas of the target file's own morph targets turn with the surface.
+    /// The deltas of the target file's own morph targets: turning with the surface, or kept.
     pub deltas: MorphDeltas,
     /// Saves the pose as a morph target beside the unchanged shape.
     pub morph: Option<MorphTarget<'a>>,

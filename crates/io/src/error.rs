@@ -4,7 +4,7 @@ use pliant_mesh::Cancelled;
 
 use crate::{Format, quoted};
 
-/// Why a file could not be read.
+/// The reason why a file could not be read.
 #[derive(Clone, PartialEq, Eq, Debug, thiserror::Error)]
 pub enum ReadError {
     /// The bytes are not in the format.
@@ -53,7 +53,7 @@ pub enum ReadError {
     Cancelled(#[from] Cancelled),
 }
 
-/// Why a scene could not be saved; nothing was written.
+/// The reason why a scene could not be saved; nothing was written.
 #[derive(Clone, PartialEq, Eq, Debug, thiserror::Error)]
 pub enum SaveError {
     /// A position is beyond single precision, which nearly every reader uses.
@@ -103,7 +103,7 @@ pub enum SaveError {
     Cancelled(#[from] Cancelled),
 }
 
-/// Why an image could not be decoded.
+/// The reason why an image could not be decoded.
 #[derive(Clone, PartialEq, Eq, Debug, thiserror::Error)]
 #[error("the image could not be decoded ({reason}): convert it to PNG or JPEG, or make it smaller")]
 pub struct ImageError {

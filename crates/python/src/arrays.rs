@@ -194,7 +194,7 @@ pub fn numbers(any: &Bound<'_, PyAny>, place: &str, vertex_count: usize) -> PyRe
     }
 }
 
-/// Whether a flat list or array has names among its elements, such as "rigid".
+/// Returns true if a flat list or array has names among its elements, such as "rigid".
 pub fn has_names(any: &Bound<'_, PyAny>) -> PyResult<bool> {
     let array = array(any, "")?;
     Ok("UO".contains(kind(&array)?) && shape(&array)?.len() == 1)

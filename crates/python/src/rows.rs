@@ -19,7 +19,7 @@ pub struct Rows {
     drawn: Vec<(u32, u32)>,
     /// Rows of vertices in the same place, which must be equal.
     alike: Vec<(u32, u32)>,
-    /// Rows of vertices that stand apart but are welded, which must move together.
+    /// Rows of vertices at different positions that are welded and must move together.
     welded: Vec<(u32, u32)>,
 }
 

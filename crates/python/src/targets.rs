@@ -99,7 +99,7 @@ fn is_transform(dict: &Bound<'_, PyDict>) -> PyResult<bool> {
     Ok(false)
 }
 
-/// Whether a value could be a handle's whole goal, for a handle that is called like a transform's member.
+/// Returns true if a value could be a handle's whole goal, for a handle that is called like a transform's member.
 fn is_whole(any: &Bound<'_, PyAny>) -> bool {
     let is_array = || reals(any, "").is_ok_and(|(shape, _)| matches!(shape[..], [_, 3] | [3, 4] | [4, 4]));
     any.is_instance_of::<PyDict>() || is_array()

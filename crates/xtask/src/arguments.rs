@@ -32,14 +32,14 @@ pub enum Command {
     Run {
         /// A mesh instead of the sample.
         file: Option<PathBuf>,
-        /// Whether packages may be installed without asking.
+        /// The consent to installing packages without asking.
         consent: Consent,
     },
     /// Run all checks.
     Test {
         /// Filters of test names. With filters, formatting and clippy are skipped.
         filters: Vec<String>,
-        /// Whether packages may be installed without asking.
+        /// The consent to installing packages without asking.
         consent: Consent,
     },
     /// Run the fast checks.

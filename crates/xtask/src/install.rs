@@ -7,7 +7,7 @@ use crate::process;
 use crate::requirement::{Requirement, missing_packages};
 use crate::system::{self, System};
 
-/// Whether packages may be installed without asking.
+/// The consent to installing packages without asking.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Consent {
     /// Ask first.

@@ -109,7 +109,7 @@ impl EncodedMaterials {
             .collect()
     }
 
-    /// Whether any material has an image.
+    /// Returns true if any material has an image.
     pub fn has_images(&self) -> bool {
         !self.wanted.is_empty()
     }

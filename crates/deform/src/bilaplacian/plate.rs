@@ -14,7 +14,7 @@ pub(crate) struct Plate {
     /// The handles' places, then the parts'.
     pub prescribed: Vec<Prescribed>,
     pub parts: StiffParts,
-    /// Whether natural boundaries were left out, because their factor does not fit.
+    /// True if natural boundaries were left out, because their factor does not fit.
     pub is_plain: bool,
 }
 

@@ -47,12 +47,12 @@ impl Solution {
         }
     }
 
-    /// Whether solutions are found by iteration.
+    /// Returns true if solutions are found by iteration.
     pub fn is_iterative(&self) -> bool {
         matches!(self, Self::Capacitance(_))
     }
 
-    /// Whether solves must follow each other in a fixed order.
+    /// Returns true if solves must follow each other in a fixed order.
     pub fn is_learning(&self) -> bool {
         match self {
             Self::Factor(..) => false,

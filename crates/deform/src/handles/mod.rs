@@ -106,7 +106,7 @@ impl Motion {
         self.linear * DVec3::new(coordinates[0], coordinates[1], coordinates[2]) + self.shift * coordinates[3]
     }
 
-    /// Whether nothing moves.
+    /// Returns true if nothing moves.
     pub fn is_rest(&self) -> bool {
         *self == Self::default()
     }

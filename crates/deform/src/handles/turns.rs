@@ -46,7 +46,7 @@ impl Followed {
 pub(crate) struct TurnLimit {
     pub method: &'static str,
     pub followed: Followed,
-    /// Whether something is fixed.
+    /// True if something is fixed.
     pub is_held: bool,
 }
 

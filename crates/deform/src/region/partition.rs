@@ -49,7 +49,7 @@ pub(crate) struct Demands {
     pub needs: Needs,
     /// The constraints that it supports.
     pub heeds: &'static [ConstraintKind],
-    /// Whether examples bend the surface by themselves.
+    /// True if examples bend the surface by themselves.
     pub examples_bend: bool,
 }
 
@@ -250,7 +250,7 @@ fn moving(problem: &BoundaryProblem, strays: &[u32]) -> Vec<u32> {
         .collect()
 }
 
-/// Whether a surface method does not solve for a vertex, because no triangle uses it.
+/// Returns true if a surface method does not solve for a vertex, because no triangle uses it.
 fn is_bare(problem: &BoundaryProblem, demands: &Demands, vertex: usize) -> bool {
     let is_alone = || problem.topology.neighbours(SurfaceVertex(vertex as u32)).is_empty();
     demands.needs != Needs::Points && is_alone()

@@ -106,7 +106,7 @@ fn moved_there_and_back_everything_rests_to_the_bit_and_unmoved_the_handles_do_w
         bound.set_controls(&moved(&scene, bent)).unwrap();
         assert_ne!(settle(&mut bound, &target).0, without, "{name}");
         bound.set_controls(&moved(&scene, |_, p| p)).unwrap();
-        // What iterates goes on from where it was, and forgets that at rest.
+        // An iterative method continues from its last shape, and forgets that shape at rest.
         step(&mut bound, &[DAffine3::IDENTITY]);
         assert_eq!(settle(&mut bound, &target).0, without, "{name}");
         let rest = step(&mut bound, &[DAffine3::IDENTITY]);

@@ -9,7 +9,7 @@ use glam::{DAffine3, DMat3, DVec3};
 use pliant_deform::{Bound, Method, MlsTransforms, OptionValue, Role};
 use pliant_mesh::{Drawn, DrawnVertex, shapes};
 
-/// Every method with the options that change what it computes.
+/// Every method with the options that change its result.
 pub fn methods() -> Vec<Method> {
     let with = |name: &str| Method::from_name(name).unwrap();
     let set = |name: &str, option: &str, value: OptionValue| with(name).with([(option, value)]).unwrap();

@@ -47,7 +47,7 @@ impl Stance {
         }
     }
 
-    /// Whether its path is that of the transform alone, which has no full turns.
+    /// Returns true if its path is that of the transform alone, which has no full turns.
     pub(crate) fn goes_the_short_way(&self) -> bool {
         match self.transform {
             HandleTransform::Trs { rotation, .. } => is_short(rotation, self.turn_deg),

@@ -20,7 +20,7 @@ pub(crate) struct ToolSettings {
     pub(crate) pressure: Option<f64>,
     pub(crate) gizmo_mode: GizmoMode,
     pub(crate) orientation: GizmoOrientation,
-    /// Whether the next click moves the selected handle's pivot.
+    /// True if the next click moves the selected handle's pivot.
     pub(crate) wants_pivot: bool,
 }
 

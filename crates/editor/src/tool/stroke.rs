@@ -31,7 +31,7 @@ pub(crate) trait Stroke: std::fmt::Debug {
         Cursor::Brush
     }
 
-    /// Whether it measures with the camera of its beginning.
+    /// Returns true if it measures with the camera of its beginning.
     fn holds_camera(&self) -> bool {
         false
     }

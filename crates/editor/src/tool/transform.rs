@@ -1,4 +1,5 @@
-//! Moving, turning and scaling a handle or control points, by the gizmo or by G, R and S: begin, preview, commit or abort.
+//! Moving, turning and scaling a handle or control points, by the gizmo or by G, R and S: begin, preview, commit or
+//! abort.
 //!
 //! A drag of the gizmo ends when its button goes up; a transform begun by a key follows the pointer without a button
 //! and ends with a click or Enter. Both understand x, y, z (with Shift: every axis except that one), typed numbers, and
@@ -37,7 +38,7 @@ pub(crate) struct TransformDrag {
     subject: Subject,
     measure: Measure,
     ending: Ending,
-    /// Whether the pointer has moved far enough.
+    /// True if the pointer has moved far enough.
     is_armed: bool,
 }
 

@@ -168,7 +168,7 @@ fn remove(file: &File, path: &Path) {
     }
 }
 
-/// Whether the open file is still the one at the path.
+/// Returns true if the open file is still the one at the path.
 fn is_at(file: &File, path: &Path) -> bool {
     #[cfg(unix)]
     {

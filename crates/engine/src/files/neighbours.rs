@@ -169,7 +169,7 @@ fn relative(uri: &str) -> Result<String, String> {
     Ok(steps.join("/"))
 }
 
-/// Whether a name is a device, or a stream within a file, on Windows.
+/// Returns true if a name is a device, or a stream within a file, on Windows.
 fn is_reserved(step: &str) -> bool {
     if !cfg!(windows) {
         return false;

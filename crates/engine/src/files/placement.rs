@@ -45,11 +45,11 @@ pub struct Settled {
     pub file: usize,
     /// Its path.
     pub at: Destination,
-    /// Whether it is written.
+    /// Its treatment.
     pub action: Action,
 }
 
-/// Whether a neighbour is written.
+/// The treatment of a neighbour.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Action {
     /// It is written.

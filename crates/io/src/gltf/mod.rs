@@ -77,7 +77,7 @@ pub(crate) const FROM_OUTSIDE: &str = "is outside the file's own folder and was 
 /// The warning about a neighbour that is named as an image and isn't one.
 pub(crate) const NO_IMAGE: &str = "is outside the file's own folder and is not an image, so it was left out.";
 
-/// Whether a neighbour's path stays in the file's own folder.
+/// Returns true if a neighbour's path stays in the file's own folder.
 pub(crate) fn stays_inside(path: &str) -> bool {
     uri::inside(path).is_some()
 }

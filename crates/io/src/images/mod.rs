@@ -70,7 +70,7 @@ pub fn decode_images(
     Ok(out)
 }
 
-/// Whether the bytes are a complete image.
+/// Returns true if the bytes are a complete image.
 pub(crate) fn decodes(encoded: &[u8]) -> bool {
     let decoded = decode_images(&[encoded], IMAGE_BYTES, &Cancel::new());
     decoded.is_ok_and(|images| images.iter().all(Result::is_ok))

@@ -69,11 +69,11 @@ pub(super) struct Statements {
 /// The shading that `s` lines request.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Smoothing {
-    /// Whether some faces are flat.
+    /// True if some faces are flat.
     pub(super) has_flat: bool,
     /// The first group.
     group: Option<String>,
-    /// Whether there are several groups, between which edges are hard.
+    /// True if there are several groups, between which edges are hard.
     pub(super) has_several: bool,
     /// Whether each face is flat, up to the last flat one.
     pub(super) flat_faces: Vec<bool>,
@@ -120,7 +120,7 @@ struct Reader<'a> {
     material: Option<usize>,
     material_numbers: HashMap<String, usize>,
     run_is_open: bool,
-    /// Whether `s off` applies to the faces that follow.
+    /// True if `s off` applies to the faces that follow.
     is_flat: bool,
     /// The colours of `#MRGB` lines, in the vertices' order.
     polypaint: Vec<[f32; 3]>,

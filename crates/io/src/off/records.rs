@@ -25,7 +25,7 @@ pub(super) struct Records {
     pub(super) face_ends: Vec<u32>,
     /// The number of faces with fewer than three corners.
     pub(super) left_out: usize,
-    /// Whether a colour follows the corners of a face.
+    /// True if a colour follows the corners of a face.
     pub(super) has_face_colours: bool,
 }
 

@@ -128,8 +128,8 @@ fn same_windings(
 }
 
 impl UnsavedShape<'_> {
-    /// Compares `back`, which was read from the bytes of this shape, with it: every corner of every face. `triangles` is
-    /// the save's own [`triangles`](crate::Saved::triangles).
+    /// Compares `back`, which was read from the bytes of this shape, with it: every corner of every face. `triangles`
+    /// is the save's own [`triangles`](crate::Saved::triangles).
     ///
     /// # Errors
     /// The first difference, in words.
@@ -184,7 +184,7 @@ impl<'a> Precision<'a> {
         }
     }
 
-    /// Whether drawn vertex `v`, read back at `found`, is `wanted` to the format's precision.
+    /// Returns true if drawn vertex `v`, read back at `found`, is `wanted` to the format's precision.
     fn holds(&self, v: usize, found: DVec3, wanted: DVec3) -> bool {
         let lanes = found.to_array().into_iter().zip(wanted.to_array());
         match self {

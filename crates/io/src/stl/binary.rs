@@ -20,8 +20,8 @@ fn stored_count(bytes: &[u8]) -> Option<u64> {
     Some(u64::from(u32::from_le_bytes(count)))
 }
 
-/// Whether a file is binary, for any first word: its length is exactly that of its facet count, or its count has a byte
-/// that no text has, and the file has all its facets.
+/// Returns true if a file is binary, for any first word: its length is exactly that of its facet count, or its count
+/// has a byte that no text has, and the file has all its facets.
 pub(super) fn is_certain(bytes: &[u8]) -> bool {
     stored_count(bytes).is_some_and(|count| {
         let (wanted, length) = (HEADER as u64 + count * FACET as u64, bytes.len() as u64);
@@ -65,7 +65,7 @@ pub(super) fn read(source: &Source<'_>, notes: &mut Vec<String>) -> Result<Vec<D
     Ok(corners)
 }
 
-/// Whether a facet has attribute bytes, which some programs use for a colour.
+/// Returns true if a facet has attribute bytes, which some programs use for a colour.
 pub(super) fn has_attributes(bytes: &[u8], facet_count: usize) -> bool {
     let facets = bytes
         .get(HEADER..)

@@ -216,7 +216,7 @@ impl<'a, P: Fn(u32) -> DVec3 + Sync> Tree<'a, P> {
         }
     }
 
-    /// Whether a place in a box may be a neighbour of one in another.
+    /// Returns true if a place in a box may be a neighbour of one in another.
     fn reaches_box(&self, level: usize, number: usize, other: &Bounds) -> bool {
         self.levels[level][number]
             .grown(self.reaches[level][number])

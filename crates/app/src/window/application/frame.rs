@@ -220,7 +220,7 @@ impl Application {
     }
 }
 
-/// Whether an event may change the picture, so that one more frame is needed to lay it out.
+/// Returns true if an event may change the picture, so that one more frame is needed to lay it out.
 fn may_change_layout(event: &egui::Event) -> bool {
     use egui::Event::{MouseMoved, MouseWheel, PointerGone, PointerMoved, Touch, Zoom};
     !matches!(

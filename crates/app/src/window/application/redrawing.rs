@@ -9,7 +9,7 @@ use crate::window::application::Application;
 use crate::window::threads::message::{Message, Redrawn};
 
 impl Application {
-    /// Whether the drawing turns the same parts inside out as the document.
+    /// Returns true if the drawing turns the same parts inside out as the document.
     pub(in crate::window) fn shows_what_is_turned(&self) -> bool {
         let open = self.session.open.as_ref();
         open.is_none_or(|open| open.drawing.inside_out == *self.editor.document().inside_out())

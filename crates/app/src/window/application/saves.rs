@@ -117,7 +117,7 @@ impl Application {
         self.session.ask_again();
     }
 
-    /// Whether a save is under way or waits.
+    /// Returns true if a save is under way or waits.
     pub(in crate::window) fn is_saving(&self) -> bool {
         self.session.is_saving() || !self.wishes.is_empty()
     }

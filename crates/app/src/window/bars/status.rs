@@ -29,7 +29,7 @@ pub struct FileWork {
     pub doing: Option<(&'static str, f32)>,
     /// The waiting saves and their reason, in a sentence.
     pub waiting: Option<String>,
-    /// Whether the file's images are being decoded.
+    /// True if the file's images are being decoded.
     pub is_loading_textures: bool,
 }
 

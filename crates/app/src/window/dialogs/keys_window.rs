@@ -13,7 +13,7 @@ pub const ID: &str = "keys window";
 /// The open list.
 #[derive(Debug, Default)]
 pub struct KeysWindow {
-    /// Whether it is open.
+    /// True if it is open.
     pub open: bool,
     /// The command that waits for its key.
     waiting: Option<&'static str>,
@@ -22,7 +22,7 @@ pub struct KeysWindow {
 }
 
 impl KeysWindow {
-    /// Whether the next key is meant for it.
+    /// Returns true if the next key is meant for it.
     pub fn takes_keys(&self) -> bool {
         self.open && self.waiting.is_some()
     }

@@ -17,7 +17,7 @@ pub const ID: &str = "log window";
 #[derive(Debug, Default)]
 pub struct Log {
     lines: Vec<String>,
-    /// Whether its window is open.
+    /// True if its window is open.
     pub open: bool,
 }
 

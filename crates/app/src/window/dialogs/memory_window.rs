@@ -17,7 +17,7 @@ const RANGE_GB: std::ops::RangeInclusive<f64> = 0.1..=4096.0;
 /// The choice.
 #[derive(Debug, Default)]
 pub struct MemoryWindow {
-    /// Whether it is open.
+    /// True if it is open.
     pub open: bool,
     /// The number while it is being dragged: it takes effect on release.
     dragged_gb: Option<f64>,

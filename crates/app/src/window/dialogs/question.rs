@@ -20,15 +20,15 @@ pub enum Question {
     /// Whether the opened file may be replaced; with it the place of its original, kept or to be kept, once that is
     /// known.
     WriteOver(PathBuf, Option<Result<Kept, String>>),
-    /// What to do with a file that another program has changed before a save.
+    /// The choices for a file that another program has changed before a save.
     Changed(PathBuf, ChangedOffer),
     /// The path of a file, if the system has no dialog.
     File(Purpose, Box<FolderBrowser>),
-    /// Whether the existing file at the chosen path may be replaced.
+    /// The replacement of the existing file at the chosen path.
     Replace(Purpose, PathBuf),
-    /// Whether the unsaved work may be lost.
+    /// The loss of unsaved work.
     Discard(Then, String),
-    /// Whether to open the work of earlier sessions.
+    /// The recovery of earlier sessions' work.
     Recover(Vec<Left>),
 }
 

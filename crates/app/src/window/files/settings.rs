@@ -27,11 +27,11 @@ pub struct Settings {
     pub panel_width: f32,
     /// The window's size in points.
     pub window_size: Option<[f32; 2]>,
-    /// Whether the window fills the screen; its size is the one for the other case.
+    /// True if the window fills the screen; its size is the one for the other case.
     pub maximised: bool,
     /// Sections of the panel that are folded away, by their titles.
     pub folded: std::collections::BTreeSet<String>,
-    /// Whether the person has closed the hints on the canvas.
+    /// True if the person has closed the hints on the canvas.
     pub hints_seen: bool,
     /// The memory limit for binding; without one, the machine's free memory.
     pub memory: Option<MostMemory>,

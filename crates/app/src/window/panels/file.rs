@@ -37,7 +37,7 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, notes: &Notes, commands: &mut Ou
     }
 }
 
-/// Whether inward-facing parts were turned, and the button that does it.
+/// Shows the state of inward-facing parts, and the button that turns them.
 fn turn(ui: &mut egui::Ui, editor: &Editor, model: &Model, commands: &mut Outbox) {
     ui.horizontal_wrapped(|ui| {
         let turned = editor.document().inside_out();

@@ -28,9 +28,8 @@ const CHOICES: [(Loose, &str, &str); 3] = [
 pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     let document = editor.document();
     ui.horizontal(|ui| {
-        row_label(ui, "Loose parts").on_hover_text(
-            "Loose parts of the surface have neither a handle nor a fixed vertex.",
-        );
+        row_label(ui, "Loose parts")
+            .on_hover_text("Loose parts of the surface have neither a handle nor a fixed vertex.");
         if let Some(loose) = choices(ui, document.loose(), &CHOICES) {
             commands.push(Command::SetLoose(loose));
         }

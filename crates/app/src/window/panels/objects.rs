@@ -29,7 +29,7 @@ struct Rows {
     materials: Vec<Row>,
     /// The number of objects.
     count: usize,
-    /// Whether some connected part is smaller than another.
+    /// True if some connected part is smaller than another.
     has_parts: bool,
 }
 

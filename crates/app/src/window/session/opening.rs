@@ -51,7 +51,7 @@ pub struct Reload {
     pub snapshot: Snapshot,
     /// The displacements with which the mesh in `file` was saved there, per surface vertex, if it was.
     pub saved: Option<Arc<Vec<DVec3>>>,
-    /// Whether the work counts as unsaved.
+    /// True if the work counts as unsaved.
     pub unsaved: bool,
     /// The project that is open.
     pub project: Option<PathBuf>,

@@ -41,7 +41,7 @@ impl Split {
         Rect::from_x_y_ranges(x - GRIP..=x + GRIP, view.y_range())
     }
 
-    /// Whether the pointer is on the line, if that is shown.
+    /// Returns true if the pointer is on the line, if that is shown.
     pub fn takes(self, view: Rect, position: Option<Pos2>, before: Before) -> bool {
         before == Before::Split && position.is_some_and(|position| self.grip(view).contains(position))
     }
@@ -78,7 +78,7 @@ impl OriginalView {
         Self(SideView::beside(context, first))
     }
 
-    /// Whether it shows the open file's shape.
+    /// Returns true if it shows the open file's shape.
     pub fn is_settled(&self, view: &SceneView<'_>) -> bool {
         self.0.shows(view.original)
     }

@@ -31,14 +31,14 @@ pub struct MethodViews {
 
 /// The result of showing the views.
 pub struct Shown {
-    /// Whether a second drawing is worth it when nothing has changed for a while.
+    /// True if a second drawing is worth it when nothing has changed for a while.
     pub again: bool,
     /// The method that was clicked.
     pub taken: Option<Method>,
 }
 
 impl MethodViews {
-    /// Whether every view shows its method's result for the present edit.
+    /// Returns true if every view shows its method's result for the present edit.
     pub fn are_settled(&self, comparison: &Comparison) -> bool {
         let alternatives = comparison.alternatives();
         let mut pairs = self.views.iter().zip(alternatives);

@@ -59,7 +59,7 @@ impl Document {
         document
     }
 
-    /// Whether the path of each handle from rest follows from its transform alone.
+    /// Returns true if the path of each handle from rest follows from its transform alone.
     pub(crate) fn goes_the_short_way(&self) -> bool {
         let mut handles = self.content.handles.iter();
         handles.all(|handle| Stance::of(handle).goes_the_short_way())

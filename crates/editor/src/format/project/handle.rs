@@ -115,7 +115,7 @@ impl StoredHandle {
         }
     }
 
-    /// Whether it is at its rest position.
+    /// Returns true if it is at its rest position.
     pub(super) fn is_at_rest(&self) -> bool {
         is_default(&self.transform)
     }

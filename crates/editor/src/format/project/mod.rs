@@ -58,7 +58,7 @@ pub struct Project {
     /// The behaviour of single parts instead of that, by their component's number.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     loose_parts: BTreeMap<u32, StoredLoose>,
-    /// Whether tips are fixed; without it, they are free.
+    /// The state of the tips; without it, they are free.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     tips: Option<StoredTips>,
     /// Painted free.
@@ -98,7 +98,7 @@ pub struct Project {
     /// The shape when the constraints last changed, from which the next drag begins.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     kept: Option<StoredKept>,
-    /// Whether that is the final solution for the handles' transforms; if not, it is computed on opening.
+    /// True if that is the final solution for the handles' transforms; if not, it is computed on opening.
     settled: bool,
     /// The distance within which the mesh's vertices are joined; without it, it follows from the mesh.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -302,7 +302,7 @@ impl Project {
         self.settled = false;
     }
 
-    /// Whether the shape is the file's.
+    /// Returns true if the shape is the file's.
     pub(crate) fn changes_nothing(&self) -> bool {
         let moves = |attachment: &Value| attachment.get("moved").is_some() || are_weighed(attachment);
         let own = |name: &str| {

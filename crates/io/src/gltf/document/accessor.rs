@@ -62,7 +62,7 @@ impl Layout {
             let some = sparse.indices.count;
             return Err(format!("has {some} sparse elements, more than its {count} elements"));
         }
-        // Zeros take no bytes in the file, so their number is limited by what the file could have stored.
+        // Zeros take no bytes in the file, so their number is limited by the file's size.
         if dense.is_none() && count > document.loaded_bytes {
             return Err(format!(
                 "has {count} elements without bytes, more than the file has bytes"

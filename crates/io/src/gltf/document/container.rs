@@ -21,7 +21,7 @@ pub(crate) struct Container {
     pub trailing: Range<usize>,
 }
 
-/// Whether the bytes begin like a GLB.
+/// Returns true if the bytes begin like a GLB.
 pub(crate) fn is_glb(bytes: &[u8]) -> bool {
     bytes.starts_with(MAGIC)
 }

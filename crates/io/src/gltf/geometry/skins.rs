@@ -21,7 +21,7 @@ pub(crate) type Skin = Arc<Vec<DAffine3>>;
 /// The skin of a node's mesh; `None` if the node names none. `world` has the world transform of each node.
 ///
 /// # Errors
-/// Why the skin can't be read, as the end of a sentence.
+/// The reason why the skin can't be read, as the end of a sentence.
 pub(crate) fn of_node(document: &Document, node: At, world: &[DAffine3]) -> Result<Option<Skin>, String> {
     let json = &document.json;
     let list = json.member(json.root(), "skins");

@@ -231,7 +231,7 @@ fn bring_images(
     Ok(())
 }
 
-/// Whether a buffer has OUT's name, apart from a number after the stem and the extension.
+/// Returns true if a buffer has OUT's name, apart from a number after the stem and the extension.
 fn is_own_name(name: &str, out: &str) -> bool {
     let behind = name.strip_prefix(&own_stem(out));
     let number = behind

@@ -32,7 +32,7 @@ impl<'a> Patched<'a> {
         }
     }
 
-    /// Whether this is the document as it was read.
+    /// Returns true if this is the document as it was read.
     pub fn is_unchanged(&self) -> bool {
         let is_borrowed = |cow: &Cow<'_, [u8]>| matches!(cow, Cow::Borrowed(_));
         is_borrowed(&self.text) && self.buffers.iter().all(is_borrowed)

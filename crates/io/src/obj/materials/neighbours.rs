@@ -48,7 +48,7 @@ pub(in crate::obj) fn unread_lost(materials: &Materials, kind: &str) -> Option<S
     })
 }
 
-/// Whether a path stays within its starting folder, on every system.
+/// Returns true if a path stays within its starting folder, on every system.
 fn is_inside(path: &str) -> bool {
     !path.is_empty()
         && !path.contains([':', '\\', '\0'])

@@ -33,7 +33,7 @@ pub struct Recovery {
     writing: Option<SnapshotKey>,
     last: Instant,
     every: Duration,
-    /// Whether the last write failed, which is reported once.
+    /// True if the last write failed, which is reported once.
     failed: bool,
 }
 
@@ -113,7 +113,7 @@ impl Recovery {
         Some(work)
     }
 
-    /// Whether this state was written.
+    /// Returns true if this state was written.
     pub fn has(&self, key: SnapshotKey) -> bool {
         self.kept == Some(key) && !self.failed
     }
