@@ -83,7 +83,7 @@ pub enum BindError {
     },
     /// The surface has only points, and the method bends surfaces.
     #[error(
-        "there is no triangle, and {method} bends surfaces: take {}, which bend points and lines",
+        "the file has no triangle, but {method} bends surfaces: take {}, which bend points and lines",
         Remedy::OfSpace
     )]
     NoTriangles {

@@ -17,10 +17,10 @@ pub(crate) fn status(
         return "Open a mesh, or drop one here".to_owned();
     };
     if model.surface.positions.is_empty() {
-        return "This file holds no triangle and no point: open another".to_owned();
+        return "This file has no triangle and no point: open another file".to_owned();
     }
     if let Err(refused) = workspace.document.method().check_bends(&model.surface) {
-        return format!("This file holds points alone: {refused}");
+        return format!("This file has only points: {refused}");
     }
     let now = gesture.and_then(|gesture| gesture.status(workspace, view));
     let now = now.unwrap_or_else(|| hint(workspace, settings));

@@ -22,7 +22,7 @@ pub enum EngineError {
     #[error(transparent)]
     Read(pliant_io::ReadError),
     /// A file without anything to edit.
-    #[error("{} holds no triangle and no point, so there is nothing to edit: choose a file with a shape", shown(.0))]
+    #[error("{} has no triangle and no point, so there is nothing to edit: choose a file with a shape", shown(.0))]
     Empty(PathBuf),
     /// The edit can't be read, or does not fit the file.
     #[error("{}: {source}", shown(.edit))]

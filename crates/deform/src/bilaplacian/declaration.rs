@@ -68,7 +68,7 @@ impl DeformMethod for Bilaplacian {
         }
         Err(OptionRefused {
             option: "bending".to_owned(),
-            allowed: "a number above 0 where `stretching` is 0".to_owned(),
+            allowed: "a number above 0 if `stretching` is 0".to_owned(),
         })
     }
 

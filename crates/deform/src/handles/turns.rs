@@ -28,7 +28,7 @@ impl Followed {
     pub fn by_necks(most_degrees: f64) -> Self {
         Self {
             most_degrees,
-            beyond: "narrows the limb where it is thin",
+            beyond: "narrows the limb at thin places",
         }
     }
 

@@ -14,7 +14,7 @@ options! {
         /// The treatment of the scale of implicit transformations.
         scale: LocalScale = Choice {
             default: LocalScale::Normalised,
-            help: "size of details: kept (\"normalised\"), or growing where the surface is pulled (\"free\")",
+            help: "size of details: kept (\"normalised\"), or growing with a pulled surface (\"free\")",
         },
         /// The distance in edges of the neighbours from which transformations are estimated; implicit ones use 1 first.
         ring: u32 = Whole {

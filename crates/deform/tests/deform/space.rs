@@ -264,7 +264,7 @@ fn jacobians_are_the_derivatives_of_the_displacements() {
         ];
         let (displacements, _) = settle(bound, &targets);
         let jacobians = bound.jacobians().unwrap();
-        // Welding numbers the vertices anew.
+        // Welding numbers the vertices again.
         let numbers: HashMap<[u64; 3], usize> = (0..)
             .zip(scene.positions())
             .map(|(vertex, p)| (p.to_array().map(f64::to_bits), vertex))

@@ -97,7 +97,7 @@ pub(super) const REGION: Entry<RegionAction> = Entry {
         ),
     ],
     scope: Scope::Document,
-    unavailable: |state, _| match state.settings.role_in_hand(state.workspace.selection.selected()) {
+    unavailable: |state, _| match state.settings.selected_role(state.workspace.selection.selected()) {
         None => Some("No region is selected: select a handle, or choose Paint region or Paint fixed.".into()),
         Some(Paint::Handle(id)) => {
             let handle = state.workspace.document.handle(id);
@@ -107,7 +107,7 @@ pub(super) const REGION: Entry<RegionAction> = Entry {
     },
     action: Action::Do(|context, action| {
         let selected = context.workspace.selection.selected();
-        if let Some(role) = context.settings.role_in_hand(selected) {
+        if let Some(role) = context.settings.selected_role(selected) {
             act_on_region(context.workspace, role, action);
         }
     }),

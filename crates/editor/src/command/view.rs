@@ -120,7 +120,7 @@ pub(super) const CAMERA_FORTH: Entry<()> = Entry {
     action: Action::Do(|context, ()| context.view.step(CameraStep::Forth)),
 };
 
-/// The axis that points up on the screen. The model is framed anew, because another axis shows another side of it.
+/// The axis that points up on the screen. The model is framed again, because another axis shows another side of it.
 pub(super) const SET_UP: Entry<UpAxis> = Entry {
     listed: &[
         item(

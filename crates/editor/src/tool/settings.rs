@@ -26,7 +26,7 @@ pub(crate) struct ToolSettings {
 
 impl ToolSettings {
     /// The role for region commands: the tool's, else the selected handle's.
-    pub(crate) fn role_in_hand(&self, selected: Option<HandleId>) -> Option<Paint> {
+    pub(crate) fn selected_role(&self, selected: Option<HandleId>) -> Option<Paint> {
         match self.mode {
             ToolMode::PaintFree => Some(Paint::Free),
             ToolMode::PaintFixed => Some(Paint::Fixed),

@@ -96,7 +96,7 @@ pub(crate) fn reset(workspace: &mut Workspace) {
     });
 }
 
-/// Sets another cage or lattice: the shape is solved anew, from the rest shape alone.
+/// Sets another cage or lattice: the shape is solved again, from the rest shape alone.
 fn put_other(document: &mut Document, attachments: Arc<BTreeMap<&'static str, Attachment>>) {
     document.unsettle_if_displaced();
     document.set_attachments(attachments);

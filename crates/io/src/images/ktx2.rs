@@ -35,9 +35,9 @@ pub(crate) fn decode(encoded: &[u8], halvings: u32) -> Result<(Rgba8, u32), Imag
     // The reader continues beyond keys whose length is not a multiple of 4. One image needs none of them.
     let mut encoded = encoded.to_vec();
     encoded[KEYS_LENGTH_AT].fill(0);
-    let image = Transcoder::new(&encoded).map_err(|_| failed("it holds no whole Basis Universal image"))?;
+    let image = Transcoder::new(&encoded).map_err(|_| failed("it has no complete Basis Universal image"))?;
     if !matches!(image.source_format(), SourceFormat::Etc1s | SourceFormat::UastcLdr) {
-        return Err(failed("it holds neither ETC1S nor UASTC"));
+        return Err(failed("it has neither ETC1S nor UASTC data"));
     }
     let pixels = image
         .transcode(level, TargetFormat::Rgba32, DecodeFlags::NONE)

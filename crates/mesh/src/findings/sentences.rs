@@ -89,8 +89,8 @@ impl Wording {
                 "join parts that share nothing else there",
             ]),
             FindingKind::MisorientedEdges => of_edges([
-                "lies between triangles that disagree about which side is outside",
-                "lie between triangles that disagree about which side is outside",
+                "lies between triangles that face opposite sides",
+                "lie between triangles that face opposite sides",
             ]),
             FindingKind::InsideOutComponents => Self::new(
                 ["closed part", "closed parts"],

@@ -48,7 +48,7 @@ pub enum RenderError {
         vertices: usize,
     },
     /// A group, material or texture index out of range.
-    #[error("{what} {number} does not exist, there are {count}")]
+    #[error("{what} {number} does not exist: there are {count}")]
     NoSuch {
         /// The kind of index.
         what: &'static str,

@@ -159,7 +159,7 @@ mod tests {
                 ..good
             })
             .as_deref(),
-            Some("material 0 does not exist, there are 0")
+            Some("material 0 does not exist: there are 0")
         );
     }
 }

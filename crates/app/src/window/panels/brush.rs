@@ -233,7 +233,7 @@ fn stiffness_rows(ui: &mut egui::Ui, brush: &mut StiffnessBrush) {
                 (
                     "Strength",
                     &mut brush.strength,
-                    "Sets how far one stroke changes the stiffness towards the value.",
+                    "Sets the share of the way to the value that one stroke makes.",
                 ),
                 (
                     "Falloff",

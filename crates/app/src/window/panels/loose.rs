@@ -21,7 +21,7 @@ const CHOICES: [(Loose, &str, &str); 3] = [
         "bend along",
         "Each point follows the surface beside it, like straps, seams or bandages.",
     ),
-    (Loose::Rest, "rest", "Loose parts stay where they are."),
+    (Loose::Rest, "rest", "Loose parts stay in place."),
 ];
 
 /// Shows the choice for all parts and the list of those that are loose.

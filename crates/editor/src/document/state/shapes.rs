@@ -99,7 +99,7 @@ impl Document {
         }
     }
 
-    /// Returns true if opening a project makes the kept shape anew ([`Self::keep_way`]).
+    /// Returns true if opening a project makes the kept shape again ([`Self::keep_way`]).
     pub(crate) fn keeps_way_alone(&self) -> bool {
         self.depends_on_way() && self.shows_kept_shape()
     }

@@ -15,7 +15,7 @@ impl Document {
         self.content.strength.as_ref().map_or(1.0, |strength| strength.share)
     }
 
-    /// Shows a share (0 to 1) of the whole edit, which must be solved anew.
+    /// Shows a share (0 to 1) of the whole edit, which must be solved again.
     pub(crate) fn set_strength(&mut self, share: f64) {
         if share != self.strength() {
             self.unsettle();

@@ -246,7 +246,7 @@ impl Project {
             rest: document.applied.then(|| displacements(&document.rest)).flatten(),
             applied: document.applied,
             shape: displacements(&document.from_rest),
-            // Data that opening makes anew from the shape are not stored twice.
+            // Data that opening makes again from the shape are not stored twice.
             kept: document
                 .kept
                 .as_ref()

@@ -195,7 +195,7 @@ fn strided(
         .ok_or_else(|| format!("names buffer view {view}, which does not exist"))?;
     let buffer = found.buffer.value();
     if buffer >= document.buffers.len() {
-        return Err(format!("lies in buffer {buffer}, which does not exist"));
+        return Err(format!("is in buffer {buffer}, which does not exist"));
     }
     let stride = match found.byte_stride {
         Some(stride) if packing == Packing::ByView && stride.0 != 0 => stride.0,

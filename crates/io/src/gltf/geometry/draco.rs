@@ -179,7 +179,7 @@ fn index_bytes(document: &Document, accessor: usize, mesh: &Mesh) -> Result<Vec<
     let told = &document.accessors[accessor];
     if told.count.0 != 3 * mesh.num_faces() as u64 {
         return Err(format!(
-            "Draco data with {} triangles where accessor {accessor} has {} corners",
+            "Draco data with {} triangles, but accessor {accessor} has {} corners",
             mesh.num_faces(),
             told.count.0
         ));
@@ -208,7 +208,7 @@ fn attribute_bytes(document: &Document, accessor: usize, number: u32, mesh: &Mes
     };
     if told.count.0 != points as u64 || usize::from(attribute.num_components()) != lanes {
         return Err(format!(
-            "Draco data with {points} points of {} numbers where accessor {accessor} has {} of {lanes}",
+            "Draco data with {points} points of {} numbers, but accessor {accessor} has {} of {lanes}",
             attribute.num_components(),
             told.count.0
         ));

@@ -103,7 +103,7 @@ impl<'a> Compressed<'a> {
         let source = offset
             .checked_add(length)
             .and_then(|end| document.buffer(buffer).get(offset..end))
-            .ok_or_else(|| format!("lies beyond the bytes of buffer {buffer}"))?;
+            .ok_or_else(|| format!("is beyond the bytes of buffer {buffer}"))?;
         let mode = word("mode").unwrap_or_default();
         let filter = word("filter").unwrap_or_else(|| "NONE".to_owned());
         let unknown = |what: &str, name: &str| format!("has the unknown {what} '{}'", quoted(name));

@@ -433,10 +433,7 @@ fn corners(document: &Document, primitive: &Primitive, vertex_count: usize) -> R
         .with_min_len(CHUNK)
         .position_first(|&index| index as usize >= vertex_count)
     {
-        Some(at) => Err(format!(
-            "has index {} where it has {vertex_count} vertices",
-            indices[at]
-        )),
+        Some(at) => Err(format!("has index {}, but only {vertex_count} vertices", indices[at])),
         None => Ok(Corners::Listed(indices)),
     }
 }
