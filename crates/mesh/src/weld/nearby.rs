@@ -186,7 +186,9 @@ impl<'a, P: Fn(u32) -> DVec3 + Sync> Tree<'a, P> {
             .with_min_len(64)
             .for_each(|group| self.find_neighbours(group, reach, &has_neighbour));
         let flags = (0..).zip(has_neighbour);
-        flags.filter_map(|(number, has)| has.into_inner().then_some(number)).collect()
+        flags
+            .filter_map(|(number, has)| has.into_inner().then_some(number))
+            .collect()
     }
 
     /// Flags the places with neighbours of which one is in a group of runs and the other in no earlier run. The runs
