@@ -50,7 +50,7 @@ def test_a_rigid_pose_is_transferred_rigidly_by_correspondences(mesh):
     assert np.abs((posed - posed.mean(0)) - (expected - expected.mean(0))).max() < 1e-6
     for wrong, said in [
         ([[0, 10**6]], r"correspondences\[0\] is \[0, 1000000\], but source has"),
-        ([[0, 1], [1, 1]], r"correspondences\[1\] names target's triangle 1 once more"),
+        ([[0, 1], [1, 1]], r"correspondences\[1\] names target's triangle 1 again"),
         ([[0, 1, 2]], r"shape \[1, 3\]"),
         ([], "correspondences is empty"),
         (None, "give correspondences"),
