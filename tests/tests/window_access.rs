@@ -36,7 +36,7 @@ struct Control {
     id: String,
 }
 
-/// All controls that can be focused or pressed, without what is greyed out.
+/// All controls that can be focused or pressed, without greyed ones.
 fn controls(session: &Session) -> Vec<Control> {
     let all = session.harness.root().children_recursive();
     let controls = all.filter_map(|node| {

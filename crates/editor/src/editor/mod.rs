@@ -185,7 +185,7 @@ impl Editor {
         (&mut self.gesture, context)
     }
 
-    /// Passes an event to the active gesture, if there is one, and returns what comes next.
+    /// Passes an event to the active gesture, if there is one, and returns the next step.
     fn ask_gesture(&mut self, ask: impl FnOnce(&mut dyn Gesture, &mut Context<'_>) -> Next) -> Option<Next> {
         let (gesture, mut context) = self.parts();
         let next = ask(gesture.as_deref_mut()?, &mut context);
@@ -265,8 +265,7 @@ impl Editor {
             self.workspace.refusal = None;
         }
         if activity == Some(Activity::Dragging) && scope == Scope::Document {
-            self.workspace
-                .refuse("The drag that was under way has been taken back: drag once more.");
+            self.workspace.refuse("The active drag was cancelled: drag again.");
         }
         // Undo during a drag aborts the drag, and nothing before it.
         if !(had_gesture && scope == Scope::History) {
@@ -392,8 +391,8 @@ impl Editor {
         self.gesture.as_ref().is_some_and(|gesture| gesture.is_looking())
     }
 
-    /// Whether the event must wait: for the hierarchy of the drawn shape, for the result of an outline, or for events
-    /// that wait already.
+    /// Returns true if the event must wait: for the hierarchy of the drawn shape, for the result of an outline, or for
+    /// events that wait already.
     fn must_wait(&mut self, event: &Event) -> bool {
         let waits = !self.waiting.is_empty() || self.is_looking();
         match event {

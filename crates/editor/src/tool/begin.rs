@@ -95,7 +95,7 @@ pub(crate) fn begin(context: &mut Context<'_>, pointer: Pointer, button: Button)
     }
 }
 
-/// Whether Shift changes the tool's effect on the surface: a brush smooths, a limb grows.
+/// Returns true if Shift changes the tool's effect on the surface: a brush smooths, a limb grows.
 fn heeds_shift(context: &Context<'_>) -> bool {
     let settings = &*context.settings;
     let is_brush = settings.mode.has_brush() && settings.stroke_shape == StrokeShape::Brush;
@@ -111,7 +111,7 @@ fn control_under(context: &Context<'_>, pointer: Pointer) -> Option<u32> {
     (!is_gizmo).then_some(point)
 }
 
-/// Whether a box or a lasso selects control points.
+/// Returns true if a box or a lasso selects control points.
 fn boxes_controls(context: &Context<'_>) -> bool {
     context.settings.mode == ToolMode::Select && !context.overlay.control_points.is_empty()
 }

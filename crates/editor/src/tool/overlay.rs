@@ -75,7 +75,7 @@ impl Overlay {
         self.rested = part.filter(|part| !matches!(part, GizmoPart::Centre | GizmoPart::Square(_)));
     }
 
-    /// Computes the overlay anew, with the shapes of a gesture; its revision grows if it looks different.
+    /// Computes the overlay again, with the shapes of a gesture; its revision grows if it looks different.
     pub(crate) fn renew(
         &mut self,
         (lit, mut shapes): (Lit, Vec<ControlShape>),

@@ -102,9 +102,9 @@ pub struct Material {
     pub emissive: [f32; 3],
     /// Multiplies it; sRGB.
     pub emissive_map: Option<Map>,
-    /// Whether the material is lit.
+    /// The material's lighting.
     pub lighting: Lighting,
-    /// Whether back faces are drawn.
+    /// True if back faces are drawn.
     pub double_sided: bool,
     /// The meaning of the base colour's alpha.
     pub alpha: AlphaMode,
@@ -169,7 +169,7 @@ pub enum UvSet {
     Second,
 }
 
-/// Whether a material is lit.
+/// The lighting of a material.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub enum Lighting {
     /// Lit.

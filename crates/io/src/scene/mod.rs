@@ -301,7 +301,7 @@ impl Scene {
         let fault = |what: String| SaveError::CannotHold {
             what,
             format: save.format,
-            remedy: "this is a fault of the program, so report it with the file".to_owned(),
+            remedy: "this is a fault of the program: report it with the file".to_owned(),
         };
         let file = rest.files[0].bytes.clone();
         let written = read(
@@ -317,7 +317,7 @@ impl Scene {
             error => fault(error.to_string()),
         })?;
         if written.drawn.positions.len() != save.positions.len() {
-            return Err(fault("a shape whose vertices are not all written".to_owned()));
+            return Err(fault("a shape whose vertices are not all saved".to_owned()));
         }
         // The written positions were rounded to f32, so the displacements are applied to those.
         let ways = save.drawn.positions.iter().zip(save.positions);
@@ -379,7 +379,7 @@ impl Scene {
         let own = self.format.extension();
         (!unread.is_empty()).then(|| {
             format!(
-                "{format} output leaves out {}: keep the .{own} for it.",
+                "{format} output leaves out {}: keep the .{own} for them.",
                 unread.join(", ")
             )
         })

@@ -73,7 +73,7 @@ impl Bounds {
         }
     }
 
-    /// Whether the two have a point in common.
+    /// Returns true if the two have a point in common.
     pub fn meets(&self, other: &Self) -> bool {
         self.min.cmple(other.max).all() && self.max.cmpge(other.min).all()
     }
@@ -107,7 +107,7 @@ pub fn face_normal([a, b, c]: [DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a).normalize_or_zero()
 }
 
-/// Whether a triangle is a line or a point to within rounding: its height is below 1e-10 of its longest edge.
+/// Returns true if a triangle is a line or a point to within rounding: its height is below 1e-10 of its longest edge.
 pub fn is_without_area(corners: [DVec3; 3]) -> bool {
     area_vector(corners).is_none()
 }

@@ -33,7 +33,7 @@ fn sorted(triangle: [SurfaceVertex; 3]) -> [SurfaceVertex; 3] {
     [low.min(c), low.max(high.min(c)), high.max(c)]
 }
 
-/// Whether triangles are in order of their lowest, then their middle, then their highest vertex.
+/// Returns true if triangles are in order of their lowest, then their middle, then their highest vertex.
 pub(crate) fn are_in_order(triangles: &[[SurfaceVertex; 3]]) -> bool {
     triangles.is_sorted_by_key(|triangle| sorted(*triangle))
 }

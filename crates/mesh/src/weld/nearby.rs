@@ -225,7 +225,7 @@ impl<'a, P: Fn(u32) -> DVec3 + Sync> Tree<'a, P> {
         &flags[run * RUN..((run + 1) * RUN).min(self.places.len())]
     }
 
-    /// Whether a place in a box may be a neighbour of one in another.
+    /// Returns true if a place in a box may be a neighbour of one in another.
     fn reaches_box(&self, level: usize, number: usize, other: &Bounds) -> bool {
         self.levels[level][number]
             .grown(self.reaches[level][number])
@@ -348,8 +348,8 @@ fn set_both(flags: [&AtomicBool; 2]) {
     flags.iter().for_each(|flag| flag.store(true, Relaxed));
 }
 
-/// Whether two positions are at most `distance` apart. Nearly all pairs are further apart, by far more than the square's
-/// rounding, so nearly none needs a square root.
+/// Returns true if two positions are at most `distance` apart. Nearly all pairs are further apart, by far more than the
+/// square's rounding, so nearly none needs a square root.
 fn are_within(a: DVec3, b: DVec3, distance: f64) -> bool {
     let squared = a.distance_squared(b);
     squared <= distance * distance * (1.0 + 1e-12) && squared.sqrt() <= distance

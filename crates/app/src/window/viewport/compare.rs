@@ -44,7 +44,7 @@ impl Compare {
         self.side.viewport.drawing_time()
     }
 
-    /// Whether it shows its method's result for the handles.
+    /// Returns true if it shows its method's result for the handles.
     pub fn is_settled(&self) -> bool {
         let view = self.editor.view();
         view.settled && self.side.shows(view.drawn)

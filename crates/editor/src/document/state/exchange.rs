@@ -34,7 +34,7 @@ impl Document {
     }
 
     /// Takes over another document's content, except the method. `known` are its versions at the last time. The shape
-    /// stays that of this document's method, as long as the rest shape stays, and must be solved anew.
+    /// stays that of this document's method, as long as the rest shape stays, and must be solved again.
     pub(crate) fn follow(&mut self, leader: &Self, known: Option<&Versions>, method: &Method) {
         let is_new = |aspect| known.is_none_or(|known| leader.versions().differ(known, aspect));
         let is_own = |aspect| matches!(aspect, Aspect::Method | Aspect::Shape | Aspect::Drawn);

@@ -81,7 +81,7 @@ fn reference(
         }
         None => {
             out.warnings
-                .push("An image whose place on the surface is skewed can't be placed in glTF: it was left out.".into());
+                .push("An image with skewed texture coordinates was left out, because glTF can't hold them.".into());
             return None;
         }
     }
