@@ -5,7 +5,7 @@ mod rig;
 
 use glam::{DAffine3, DMat3, DVec2, DVec3};
 use pliant_editor::{
-    Button, Command, Event, JobKind, Key, Modifiers, Paint, PivotPlace, Pointer, Reach, Symmetry, ToolMode,
+    Button, Command, EditFile, Event, JobKind, Key, Modifiers, Paint, PivotPlace, Pointer, Reach, Symmetry, ToolMode,
 };
 use pliant_mesh::{Drawn, shapes};
 use rig::{Rig, VIEWPORT_PX};
@@ -346,4 +346,153 @@ fn a_limb_across_the_plane_of_symmetry_has_no_twin() {
     drag(&mut rig, hand_px, DVec2::new(0.0, -60.0), Modifiers::NONE);
     let handles = rig.editor.document().handles();
     assert_eq!((handles.len(), handles[0].twin), (1, None));
+}
+
+/// A leg: a shaft of three parts along x from a large ball, with narrow places at `HIP` and `KNEE`.
+fn body_with_a_leg_of_two_parts() -> Drawn {
+    let profile = |share: f64| {
+        let x: f64 = 6.0 - 8.0 * share;
+        let ball = (1.6 * 1.6 - x * x).max(0.0).sqrt();
+        let narrow = |at: f64| 1.0 - 0.5 * (-((x - at) / 0.35).powi(2)).exp();
+        let leg = if x > 0.0 {
+            0.55 * narrow(HIP) * narrow(KNEE)
+        } else {
+            0.0
+        };
+        let cap = (1.0 - ((x - 5.5) / 0.5).max(0.0).powi(2)).max(0.0).sqrt();
+        DVec2::new(if share % 1.0 == 0.0 { 0.0 } else { ball.max(leg * cap) }, x)
+    };
+    let along_x = DAffine3::from_mat3(DMat3::from_cols(DVec3::Y, DVec3::Z, DVec3::X));
+    shapes::moved(&shapes::turned(140, 28, profile), along_x)
+}
+
+const HIP: f64 = 1.9;
+const KNEE: f64 = 3.8;
+
+fn open_leg() -> Rig {
+    let mut rig = Rig::open(body_with_a_leg_of_two_parts());
+    rig.command(Command::SetTool(ToolMode::Pose));
+    rig
+}
+
+/// Holds that the leg hangs together as a thigh and a shank: its two handles have their joints at hip and knee, and the
+/// shank is the thigh's child.
+fn assert_two_joints(rig: &Rig, thigh: usize, shank: usize) {
+    let handles = rig.editor.document().handles();
+    assert_eq!(handles.len(), 2);
+    assert!(
+        handles[thigh].pivot.distance(DVec3::X * HIP) < 0.2,
+        "{}",
+        handles[thigh].pivot
+    );
+    assert!(
+        handles[shank].pivot.distance(DVec3::X * KNEE) < 0.2,
+        "{}",
+        handles[shank].pivot
+    );
+    assert_eq!(
+        (handles[shank].parent, handles[thigh].parent),
+        (Some(handles[thigh].id), None)
+    );
+}
+
+#[test]
+fn a_knee_and_then_its_hip_are_posed_by_one_drag_each_and_the_shank_rides_along() {
+    let mut rig = open_leg();
+    let shank_px = seen(&rig, 4.6..5.2);
+    drag(&mut rig, shank_px, DVec2::new(0.0, -60.0), Modifiers::NONE);
+    let knee = rig.editor.document().handles()[0].clone();
+    assert!(knee.pivot.distance(DVec3::X * KNEE) < 0.2, "{}", knee.pivot);
+    let before = rig.fingerprint();
+    let thigh_px = seen(&rig, 2.7..2.9);
+    drag(&mut rig, thigh_px, DVec2::new(0.0, 50.0), Modifiers::NONE);
+    assert_two_joints(&rig, 1, 0);
+    let [shank, thigh] = [0, 1].map(|handle: usize| rig.editor.document().handles()[handle].clone());
+    assert!(thigh.turn_deg.length() > 10.0);
+    let composed = thigh.affine() * knee.affine();
+    assert!(shank.affine().abs_diff_eq(composed, 1e-9), "turns compose");
+    rig.assert_as_meant("hip after knee");
+    rig.undo();
+    rig.drain();
+    assert_eq!(rig.fingerprint(), before, "one step");
+    rig.redo();
+    rig.drain();
+
+    // The shank alone turns about the knee where that is now, and the thigh takes it along again.
+    let shank_px = seen(&rig, 4.6..5.2);
+    drag(&mut rig, shank_px, DVec2::new(20.0, 30.0), Modifiers::NONE);
+    let after = rig.editor.document().handles().to_vec();
+    assert_eq!((after.len(), after[1].transform), (2, thigh.transform));
+    assert!(after[0].centre().distance(shank.centre()) < 1e-9);
+    assert_ne!(after[0].transform, shank.transform);
+    let thigh_px = seen(&rig, 2.7..2.9);
+    drag(&mut rig, thigh_px, DVec2::new(0.0, -30.0), Modifiers::NONE);
+    let last = rig.editor.document().handles();
+    assert_eq!(last.len(), 2);
+    let motion = last[1].affine() * after[1].affine().inverse();
+    assert!(last[0].affine().abs_diff_eq(motion * after[0].affine(), 1e-9));
+}
+
+#[test]
+fn a_hip_and_then_its_knee_are_posed_by_one_drag_each_and_nothing_jumps() {
+    let mut rig = open_leg();
+    let thigh_px = seen(&rig, 2.7..2.9);
+    drag(&mut rig, thigh_px, DVec2::new(0.0, 50.0), Modifiers::NONE);
+    assert_eq!(rig.editor.document().handles().len(), 1);
+    let bent = rig.editor.document().from_file().to_vec();
+    let shank_px = seen(&rig, 4.6..5.2);
+    rig.move_to(shank_px);
+    rig.drain();
+    rig.press(shank_px);
+    rig.release(shank_px);
+    rig.drain();
+    let now = rig.editor.document().from_file();
+    let moved = now.iter().zip(&bent).map(|(now, was)| now.distance(*was));
+    let moved = moved.fold(0.0, f64::max);
+    assert!(moved < 1e-6, "a click makes the knee and moves nothing: {moved}");
+    drag(&mut rig, shank_px, DVec2::new(0.0, -60.0), Modifiers::NONE);
+    assert_two_joints(&rig, 0, 1);
+    let handles = rig.editor.document().handles();
+    assert!(handles[1].turn_deg.distance(handles[0].turn_deg) > 10.0);
+    rig.assert_as_meant("knee after hip");
+}
+
+#[test]
+fn parents_are_kept_by_files_and_circles_of_them_are_refused() {
+    let mut rig = open_leg();
+    for (from, by) in [(4.6..5.2, -60.0), (2.7..2.9, 50.0)] {
+        let from_px = seen(&rig, from);
+        drag(&mut rig, from_px, DVec2::new(0.0, by), Modifiers::NONE);
+    }
+    let [shank, thigh] = [0, 1].map(|handle: usize| rig.editor.document().handles()[handle].id);
+    rig.command(Command::SetParent(thigh, Some(shank)));
+    assert!(
+        rig.editor
+            .view()
+            .problem
+            .is_some_and(|why| why.contains("rides along with"))
+    );
+    let edit = rig.editor.edit_file().unwrap();
+    let text = edit.to_json();
+    let read = EditFile::parse(&text).unwrap();
+    let parents: Vec<_> = read.handles.iter().map(|handle| handle.parent).collect();
+    assert_eq!(parents.iter().flatten().count(), 1, "{text}");
+    let place = parents.iter().position(Option::is_some).unwrap();
+    let other = 1 - place;
+    let circle = text.replace(&format!("\"parent\": {other}"), &format!("\"parent\": {place}"));
+    let refusal = EditFile::parse(&circle).unwrap_err().to_string();
+    assert!(refusal.contains(&format!("handles[{place}].parent")), "{refusal}");
+    rig.command(Command::SetParent(shank, None));
+    assert_eq!(rig.editor.document().handles()[0].parent, None);
+    rig.undo();
+    rig.command(Command::SelectHandle(thigh));
+    rig.command(Command::DeleteHandle);
+    rig.drain();
+    assert!(
+        rig.editor
+            .document()
+            .handles()
+            .iter()
+            .all(|handle| handle.id != thigh || handle.is_pin)
+    );
 }

@@ -7,8 +7,8 @@ use crate::document::{HandleId, Reach};
 use crate::input::Key;
 use crate::tool::{ToolMode, Widen};
 use crate::workspace::{
-    Purpose, change_handle, delete_selected, mirror, pin_or_unpin_selected, reset_region, set_continuity, set_reach,
-    set_soft, split_selected, untwin,
+    Purpose, change_handle, delete_selected, mirror, pin_or_unpin_selected, reset_region, set_continuity, set_parent,
+    set_reach, set_soft, split_selected, untwin,
 };
 
 /// Widens the selected handle's reach with the pointer.
@@ -290,6 +290,14 @@ pub(super) const SET_SOFT: Entry<(HandleId, Option<f64>)> = Entry {
     scope: Scope::Document,
     unavailable: |state, (id, _)| state.gone(*id),
     action: Action::Do(|context, (id, soft)| set_soft(context.workspace, id, soft)),
+};
+
+/// Chooses the handle with which a handle rides along.
+pub(super) const SET_PARENT: Entry<(HandleId, Option<HandleId>)> = Entry {
+    listed: &[],
+    scope: Scope::Document,
+    unavailable: |state, (id, parent)| state.gone(*id).or_else(|| parent.and_then(|parent| state.gone(parent))),
+    action: Action::Do(|context, (id, parent)| set_parent(context.workspace, id, parent)),
 };
 
 /// The continuity ([`pliant_deform::CONTINUITY_RANGE`]) with which the surface joins a handle; `None` is the smoothest.

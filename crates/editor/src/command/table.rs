@@ -221,6 +221,8 @@ commands! {
     /// The continuity ([`pliant_deform::CONTINUITY_RANGE`]) with which the surface joins a handle; `None` is the
     /// smoothest.
     SetContinuity(id: HandleId, continuity: Option<f64>) = handle::SET_CONTINUITY;
+    /// Chooses the handle with which a handle rides along; one of its own descendants is refused.
+    SetParent(id: HandleId, parent: Option<HandleId>) = handle::SET_PARENT;
     /// Changes the selected region as a whole.
     Region(action: RegionAction) = region::REGION;
     /// Chooses whether the parts that a reach cuts off from the body are free.

@@ -43,6 +43,8 @@ pub struct Handle {
     pub continuity: Option<f64>,
     /// The handle with the mirrored motion on the other side of a plane.
     pub twin: Option<Twin>,
+    /// The handle with which it rides along.
+    pub parent: Option<HandleId>,
 }
 
 /// The place of a handle's pivot.
@@ -99,6 +101,7 @@ impl Handle {
             is_pin: false,
             continuity: None,
             twin: None,
+            parent: None,
         }
     }
 

@@ -86,6 +86,10 @@ pub struct HandleEntry {
     /// The continuity of its own border, instead of [`EditFile::continuity`].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub continuity: Option<f64>,
+    /// The place in the list, from 0, of the handle with which it rides along when a person moves that one in the
+    /// window. Transforms are absolute, so it changes no shape.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub parent: Option<u32>,
 }
 
 /// The members in the file.
@@ -214,6 +218,7 @@ impl EditFile {
                 .check()
                 .map_err(|error| error.under(&format!("handles[{index}]")))?;
         }
+        check_parents(&handles)?;
         let stiffness = FieldKind {
             name: "a stiffness",
             range: STIFFNESS_RANGE,
@@ -393,6 +398,30 @@ impl HandleEntry {
         }
         Ok(())
     }
+}
+
+/// Refuses a parent that is not in the list, and one that is among the handle's own descendants.
+fn check_parents(handles: &[HandleEntry]) -> Result<(), EditError> {
+    let parent_of = |place: u32| handles.get(place as usize)?.parent;
+    for (place, handle) in (0..).zip(handles) {
+        let Some(parent) = handle.parent else { continue };
+        let ancestors = std::iter::successors(Some(parent), |place| parent_of(*place)).take(handles.len());
+        let allowed = if parent as usize >= handles.len() {
+            Some("the place of a handle in the list, counted from 0")
+        } else if ancestors.into_iter().any(|ancestor| ancestor == place) {
+            Some("a handle that does not ride along with this one itself")
+        } else {
+            None
+        };
+        if let Some(allowed) = allowed {
+            return Err(EditError::OutOfRange {
+                place: format!("handles[{place}].parent"),
+                found: parent.to_string(),
+                allowed: allowed.to_owned(),
+            });
+        }
+    }
+    Ok(())
 }
 
 /// The range of a strength.

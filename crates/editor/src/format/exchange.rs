@@ -65,6 +65,10 @@ pub(crate) fn export(document: &Document, model: &Arc<Model>) -> Result<EditFile
             ranges => Selector::Ranges(ranges),
         }
     };
+    let parent_place = |parent: Option<HandleId>| {
+        let place = region.handles.iter().position(|id| Some(*id) == parent)?;
+        Some(place as u32)
+    };
     let mut handles = Vec::new();
     for (index, &id) in region.handles.iter().enumerate() {
         if let Some(handle) = document.handle(id) {
@@ -74,6 +78,7 @@ pub(crate) fn export(document: &Document, model: &Arc<Model>) -> Result<EditFile
                 transform: with_pivot(handle),
                 soft: handle.soft,
                 continuity: handle.continuity,
+                parent: parent_place(handle.parent),
             });
         }
     }
@@ -162,6 +167,7 @@ pub(crate) fn import(edit: &EditFile, model: &Model) -> Result<Document, EditErr
             reach: Reach::Length(0.0),
             soft: setup.soft[index],
             continuity: edit.handles[index].continuity,
+            parent: edit.handles[index].parent.map(|place| HandleId(place as u16)),
             ..Handle::new(id, handle.name.clone())
         });
         document.next_handle = id.0.saturating_add(1);

@@ -1,14 +1,18 @@
 //! The limb under the pointer, and the search for its joint.
+//!
+//! A limb has several joints, and each posed part of it is a handle: below a posed joint there may be another, whose
+//! part becomes a child of the posed one, and above it another, whose part becomes its parent.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use pliant_mesh::{Joint, Shape, joint_of};
+use pliant_deform::Role;
+use pliant_mesh::{DistanceSearch, Joint, Shape, SurfaceVertex, joint_of};
 
-use crate::document::{Document, HandleId, Paint};
+use crate::document::{Document, Handle, HandleId, Paint};
 use crate::jobs::JobKind;
 use crate::view::{Pick, View};
-use crate::workspace::Workspace;
+use crate::workspace::{Workspace, members};
 
 /// The limb under the pose brush at a point of the surface.
 #[derive(Clone, Debug)]
@@ -16,11 +20,47 @@ pub(crate) enum Limb {
     /// A limb that already has a handle.
     Posed(HandleId),
     /// A limb without one.
-    Untouched(Arc<Joint>),
+    Untouched(NewLimb),
     /// The search for its joint is running.
     Unknown,
     /// There is no joint.
     None,
+}
+
+/// A limb that can become a handle.
+#[derive(Clone, Debug)]
+pub(crate) struct NewLimb {
+    pub(crate) joint: Arc<Joint>,
+    /// The vertices that become the handle's.
+    pub(crate) own: Vec<SurfaceVertex>,
+    /// The handle with which it rides along.
+    pub(crate) parent: Option<HandleId>,
+    /// The handles that ride along with it.
+    pub(crate) children: Vec<HandleId>,
+}
+
+impl NewLimb {
+    /// The distance along the surface within which its handle moves the surface: all of the joint's falloff.
+    pub(crate) fn reach(&self) -> f64 {
+        2.0 * self.joint.falloff
+    }
+
+    /// The vertices of its parent that become free to bend at the joint; `None` if the parent would keep no vertex.
+    pub(crate) fn freed(&self, workspace: &Workspace) -> Option<Vec<SurfaceVertex>> {
+        let (Some(parent), Some(model)) = (self.parent, workspace.model()) else {
+            return Some(Vec::new());
+        };
+        let (document, surface) = (&workspace.document, &model.surface);
+        let seeds: Vec<(SurfaceVertex, f64)> = self.own.iter().map(|&vertex| (vertex, 0.0)).collect();
+        let position = |vertex: SurfaceVertex| workspace.position(vertex);
+        let is_parents = |vertex: &SurfaceVertex| document.paint()[vertex.index()] == Paint::Handle(parent);
+        let mut search = DistanceSearch::default();
+        let near = search.within(&surface.triangles, &model.topology, position, &seeds, self.reach());
+        let near = near.iter().map(|(vertex, _)| *vertex).filter(is_parents);
+        let freed = open(workspace, near.filter(|vertex| self.own.binary_search(vertex).is_err()));
+        let lost = freed.len() + self.own.iter().filter(|vertex| is_parents(vertex)).count();
+        (lost < members(document, parent).len()).then_some(freed)
+    }
 }
 
 /// Requests the joint of the limb under the pointer, if it is not known yet.
@@ -32,7 +72,7 @@ pub(crate) fn hover(workspace: &mut Workspace, view: &View, pointer_px: Option<g
     let Some(pick) = pick else {
         return workspace.jobs.forget_joint();
     };
-    if handle_at(&workspace.document, &pick).is_some() || !workspace.jobs.asks_for_joint(pick.triangle) {
+    if !workspace.jobs.asks_for_joint(pick.triangle) {
         return;
     }
     let Some(model) = workspace.model().cloned() else {
@@ -54,21 +94,85 @@ pub(crate) fn hover(workspace: &mut Workspace, view: &View, pointer_px: Option<g
     );
 }
 
-/// The limb at a point of the surface: the handle there, or the limb of the shown joint, or of a handle on its far
-/// side.
+/// The limb at a point of the surface, by the joint that was found last: the handle of that joint, or the part of the
+/// surface that can become one.
 pub(crate) fn limb_under(workspace: &Workspace, pick: &Pick) -> Limb {
-    let document = &workspace.document;
-    if let Some(id) = handle_at(document, pick) {
-        return Limb::Posed(id);
-    }
-    match workspace.computed().joint() {
-        Some(joint) if joint.limb.binary_search(&pick.vertex).is_ok() => match handle_on(document, joint) {
+    let on = handle_at(&workspace.document, pick);
+    let joint = workspace.computed().joint();
+    let Some(joint) = joint.filter(|joint| joint.limb.binary_search(&pick.vertex).is_ok()) else {
+        return match on {
+            _ if workspace.jobs.is_busy(JobKind::Joint) => Limb::Unknown,
             Some(id) => Limb::Posed(id),
-            None => Limb::Untouched(Arc::clone(joint)),
-        },
-        _ if workspace.jobs.is_busy(JobKind::Joint) => Limb::Unknown,
-        _ => Limb::None,
+            None => Limb::None,
+        };
+    };
+    let beyond = handles_beyond(&workspace.document, joint);
+    // The first of equal ones.
+    let most = beyond.iter().rev().max_by_key(|(_, inside)| inside.count);
+    let present = on.or(most.map(|(id, _)| *id));
+    let Some(present) = present else {
+        return Limb::Untouched(untouched(workspace, joint));
+    };
+    let new = match workspace.document.handle(present) {
+        Some(handle) if !turns_about(handle, joint) => Some(further_limb(workspace, joint, on, &beyond)),
+        _ => None,
+    };
+    match new.filter(|new| !new.own.is_empty()) {
+        Some(new) => Limb::Untouched(new),
+        None => Limb::Posed(present),
     }
+}
+
+/// Returns true if a handle's pivot is at a joint.
+fn turns_about(handle: &Handle, joint: &Joint) -> bool {
+    handle.centre().distance(joint.centre) <= joint.falloff.max(joint.radius)
+}
+
+/// A limb beyond whose joint there is no handle.
+fn untouched(workspace: &Workspace, joint: &Arc<Joint>) -> NewLimb {
+    NewLimb {
+        own: open(workspace, joint.far_side.iter().copied()),
+        joint: Arc::clone(joint),
+        parent: None,
+        children: Vec::new(),
+    }
+}
+
+/// The limb beyond another joint of a posed limb; it has no vertex of its own if the joint's surroundings belong to
+/// others. `on` is the handle under the pointer, of which it takes its part.
+fn further_limb(
+    workspace: &Workspace,
+    joint: &Arc<Joint>,
+    on: Option<HandleId>,
+    beyond: &BTreeMap<HandleId, Inside>,
+) -> NewLimb {
+    let document = &workspace.document;
+    let roles = &workspace.computed().region.roles;
+    let below = beyond.iter().filter(|(id, inside)| Some(**id) != on && inside.is_most);
+    let below: Vec<HandleId> = below.map(|(id, _)| *id).collect();
+    let parent_of = |id: &HandleId| document.handle(*id).and_then(|handle| handle.parent);
+    let is_root = |id: &&HandleId| parent_of(id).is_none_or(|parent| !below.contains(&parent));
+    let children: Vec<HandleId> = below.iter().filter(is_root).copied().collect();
+    let becomes_own = |vertex: &SurfaceVertex| match document.paint()[vertex.index()] {
+        Paint::Handle(id) => Some(id) == on,
+        // The bends of the children stay free.
+        _ => children.is_empty() || roles.get(vertex.index()) != Some(&Role::Free),
+    };
+    let own = open(workspace, joint.far_side.iter().copied().filter(becomes_own));
+    NewLimb {
+        parent: on.or_else(|| children.iter().find_map(parent_of)),
+        joint: Arc::clone(joint),
+        own,
+        children,
+    }
+}
+
+/// The vertices that may be painted.
+fn open(workspace: &Workspace, vertices: impl Iterator<Item = SurfaceVertex>) -> Vec<SurfaceVertex> {
+    let access = &workspace.vertex_access;
+    vertices
+        .filter(|vertex| access.may_be_painted(vertex.index()))
+        .collect()
 }
 
 /// The handle at a point of the surface, except pins.
@@ -82,8 +186,16 @@ fn handle_at(document: &Document, pick: &Pick) -> Option<HandleId> {
     }
 }
 
-/// The handle with the most vertices on the far side of a joint.
-fn handle_on(document: &Document, joint: &Joint) -> Option<HandleId> {
+/// The part of a handle that is beyond a joint.
+struct Inside {
+    /// The number of its vertices on the far side.
+    count: usize,
+    /// True if these are most of its vertices.
+    is_most: bool,
+}
+
+/// The handles with vertices on the far side of a joint, except pins.
+fn handles_beyond(document: &Document, joint: &Joint) -> BTreeMap<HandleId, Inside> {
     let mut counts: BTreeMap<HandleId, usize> = BTreeMap::new();
     for vertex in &joint.far_side {
         if let Paint::Handle(id) = document.paint()[vertex.index()]
@@ -92,7 +204,17 @@ fn handle_on(document: &Document, joint: &Joint) -> Option<HandleId> {
             *counts.entry(id).or_default() += 1;
         }
     }
-    // The first of equal ones.
-    let most = counts.into_iter().rev().max_by_key(|(_, count)| *count);
-    most.map(|(id, _)| id)
+    let mut all: BTreeMap<HandleId, usize> = counts.keys().map(|id| (*id, 0)).collect();
+    for paint in document.paint() {
+        if let Paint::Handle(id) = paint
+            && let Some(number) = all.get_mut(id)
+        {
+            *number += 1;
+        }
+    }
+    let with_share = |(id, count): (HandleId, usize)| {
+        let is_most = 2 * count > all.get(&id).copied().unwrap_or_default();
+        (id, Inside { count, is_most })
+    };
+    counts.into_iter().map(with_share).collect()
 }

@@ -187,7 +187,7 @@ fn joint(
         .filter(|_| is_hovering)
         .and_then(|px| workspace.pick(view, px));
     match pick.map(|pick| limb_under(workspace, &pick)) {
-        Some(Limb::Untouched(joint)) => shapes(joint.centre, Some(&*joint)),
+        Some(Limb::Untouched(limb)) => shapes(limb.joint.centre, Some(&*limb.joint)),
         Some(Limb::Posed(id)) => of_handle(id),
         Some(Limb::Unknown | Limb::None) | None => Vec::new(),
     }

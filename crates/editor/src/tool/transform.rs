@@ -17,7 +17,7 @@ use crate::document::{Handle, HandleId, HandleTransform, Transaction, accumulate
 use crate::input::{Button, Key, Modifiers, Pointer};
 use crate::jobs::Activity;
 use crate::view::{ControlShape, Cursor, GizmoAxes, GizmoPart, Readout, View};
-use crate::workspace::{Workspace, count_turn, held_because, members, put_handle};
+use crate::workspace::{Workspace, count_turn, held_because, members, put_handles};
 
 /// A held button must move the pointer this far before a handle follows.
 const THRESHOLD_PX: f64 = 3.0;
@@ -180,46 +180,39 @@ impl TransformDrag {
         companions: &[Handle],
     ) {
         let (measure, start) = (&self.measure, self.measure.start);
+        let together = |own: HandleTransform, of_other: &dyn Fn(&Handle) -> HandleTransform| {
+            let others = companions.iter().map(|other| (other.id, of_other(other)));
+            std::iter::once((handle, own)).chain(others).collect::<Vec<_>>()
+        };
         match measure.kind {
             TransformKind::Move => {
                 let way = measure.translation(view);
-                put_handle(workspace, handle, start.moved_by(way));
-                for other in companions {
-                    put_handle(workspace, other.id, other.transform.moved_by(way));
-                }
+                let of_other = |other: &Handle| other.transform.moved_by(way);
+                put_handles(workspace, &together(start.moved_by(way), &of_other));
             }
             TransformKind::Turn => {
                 let (axis, angle_rad) = (measure.turn_axis(view), measure.angle_rad());
                 let turn = rotation(axis, angle_rad);
-                put_handle(workspace, handle, start.turned_by(turn, pivot));
+                let of_other = |other: &Handle| {
+                    let arm = other.centre() - measure.centre;
+                    other.transform.turned_by(turn, other.pivot).moved_by(turn * arm - arm)
+                };
+                put_handles(workspace, &together(start.turned_by(turn, pivot), &of_other));
                 if let (HandleTransform::Trs { rotation, .. }, Some(before)) =
                     (start, self.transaction.before().handle(handle))
                 {
                     let counted = accumulated(before.turn_deg, rotation, axis, angle_rad);
                     count_turn(workspace, handle, counted);
                 }
-                for other in companions {
-                    let arm = other.centre() - measure.centre;
-                    let way = turn * arm - arm;
-                    put_handle(
-                        workspace,
-                        other.id,
-                        other.transform.turned_by(turn, other.pivot).moved_by(way),
-                    );
-                }
             }
             TransformKind::Scale => {
                 let (factors, own) = (measure.scale(view), measure.own_rotation());
-                put_handle(workspace, handle, start.scaled_by(factors, pivot));
-                for other in companions {
+                let of_other = |other: &Handle| {
                     let arm = other.centre() - measure.centre;
                     let way = own * (factors * (own.inverse() * arm)) - arm;
-                    put_handle(
-                        workspace,
-                        other.id,
-                        other.transform.scaled_by(factors, other.pivot).moved_by(way),
-                    );
-                }
+                    other.transform.scaled_by(factors, other.pivot).moved_by(way)
+                };
+                put_handles(workspace, &together(start.scaled_by(factors, pivot), &of_other));
             }
         }
     }

@@ -2,10 +2,10 @@
 
 use pliant_deform::CONTINUITY_RANGE;
 
-use super::handles::{count_turn, put_handle};
+use super::handles::{change_handle, count_turn, put_handle};
 use super::state::Workspace;
 use crate::SOFT_RANGE;
-use crate::document::{HandleId, HandleTransform, Reach, rotation_of};
+use crate::document::{HandleId, HandleTransform, Reach, is_within, rotation_of};
 
 /// Sets a handle's transform in a separate step.
 pub(crate) fn transform_handle(workspace: &mut Workspace, verb: &str, id: HandleId, transform: HandleTransform) {
@@ -83,6 +83,27 @@ pub(crate) fn set_continuity(workspace: &mut Workspace, id: HandleId, continuity
             document.change_handle(id, |handle| handle.continuity = continuity);
         }
     });
+}
+
+/// Chooses the handle with which a handle rides along from now on.
+pub(crate) fn set_parent(workspace: &mut Workspace, id: HandleId, parent: Option<HandleId>) {
+    let handles = workspace.document.handles();
+    if let Some(parent) = parent.filter(|parent| is_within(handles, *parent, id)) {
+        let name = |id| workspace.document.handle(id).map_or("", |handle| handle.name.as_str());
+        let sentence = match parent == id {
+            true => format!("{} can't ride along with itself: choose another handle.", name(id)),
+            false => format!("{} rides along with {}: choose another handle.", name(parent), name(id)),
+        };
+        workspace.refuse(sentence);
+        return;
+    }
+    if workspace
+        .document
+        .handle(id)
+        .is_some_and(|handle| handle.parent != parent)
+    {
+        change_handle(workspace, "Choose parent", id, |handle| handle.parent = parent);
+    }
 }
 
 /// Gives a handle a weight, so that it only pulls; `None` makes it hard.

@@ -7,7 +7,8 @@ use pliant_mesh::{Model, SurfaceVertex};
 use super::painting::{border_middle, members, repaint, tidy_handles};
 use super::state::Workspace;
 use crate::document::{
-    Document, Handle, HandleId, HandleTransform, Paint, PivotPlace, Reach, VertexAccess, means, mirrored_transform,
+    Document, Handle, HandleId, HandleTransform, Paint, PivotPlace, Reach, VertexAccess, find_parents_anew, means,
+    mirrored_transform,
 };
 
 /// The reason why a handle can't be moved, if it can't.
@@ -33,36 +34,85 @@ pub(crate) fn held_because(workspace: &Workspace, id: HandleId) -> Option<String
     })
 }
 
-/// Sets a handle's transform in the present document: the surface follows as soon as it can, and so does its twin.
+/// Sets a handle's transform in the present document: the surface follows as soon as it can, and so do its descendants,
+/// its twin and the twin's descendants.
 pub(crate) fn put_handle(workspace: &mut Workspace, id: HandleId, transform: HandleTransform) {
-    if let Some(why) = held_because(workspace, id) {
-        workspace.refuse(why);
+    put_handles(workspace, &[(id, transform)]);
+}
+
+/// Sets the transforms of handles that move together; those among them that are descendants of others do not move twice.
+pub(crate) fn put_handles(workspace: &mut Workspace, given: &[(HandleId, HandleTransform)]) {
+    let mut moved = Vec::new();
+    for &(id, transform) in given {
+        if let Some(why) = held_because(workspace, id) {
+            workspace.refuse(why);
+            continue;
+        }
+        let handle = workspace.document.handle(id);
+        if handle.is_none_or(|handle| handle.transform == transform) {
+            continue;
+        }
+        if !transform.can_be_undone() {
+            workspace.refuse("That would flatten the handle for good: give a scale other than 0.".to_owned());
+            continue;
+        }
+        // A number passes through 0 while it is typed digit by digit.
+        workspace.refusal = None;
+        moved.push((id, transform));
+    }
+    if moved.is_empty() {
         return;
     }
-    let Some(handle) = workspace
-        .document
-        .handle(id)
-        .filter(|handle| handle.transform != transform)
-    else {
-        return;
-    };
-    if !transform.can_be_undone() {
-        workspace.refuse("That would flatten the handle for good: give a scale other than 0.".to_owned());
-        return;
-    }
-    let (twin, pivot) = (handle.twin, handle.pivot);
-    // A number passes through 0 while it is typed digit by digit.
-    workspace.refusal = None;
+    let given: Vec<HandleId> = given.iter().map(|(id, _)| *id).collect();
+    add_descendants(workspace, &given, &mut moved, 0);
+    let first_twin = moved.len();
+    add_twins(workspace, &given, &mut moved);
+    add_descendants(workspace, &given, &mut moved, first_twin);
     workspace.document.unsettle();
-    put_alone(workspace, id, transform);
-    if let Some(twin) = twin
-        && held_because(workspace, twin.handle).is_none()
-    {
-        put_alone(
-            workspace,
-            twin.handle,
-            mirrored_transform(&twin.plane, transform, pivot),
-        );
+    for (id, transform) in moved {
+        put_alone(workspace, id, transform);
+    }
+}
+
+/// Adds the children that ride along with the moved handles from number `first` on, and theirs.
+fn add_descendants(
+    workspace: &Workspace,
+    given: &[HandleId],
+    moved: &mut Vec<(HandleId, HandleTransform)>,
+    first: usize,
+) {
+    let handles = workspace.document.handles();
+    let mut next = first;
+    while let Some(&(id, transform)) = moved.get(next) {
+        next += 1;
+        let Some(parent) = workspace.document.handle(id) else {
+            continue;
+        };
+        let motion = transform.affine(parent.pivot) * parent.affine().inverse();
+        for child in handles.iter().filter(|child| child.parent == Some(id)) {
+            let rides = !given.contains(&child.id)
+                && moved.iter().all(|(other, _)| *other != child.id)
+                && held_because(workspace, child.id).is_none();
+            let carried = child.transform.carried(&motion, child.pivot);
+            if rides && carried.can_be_undone() {
+                moved.push((child.id, carried));
+            }
+        }
+    }
+}
+
+/// Adds the twins of the moved handles, with mirrored transforms.
+fn add_twins(workspace: &Workspace, given: &[HandleId], moved: &mut Vec<(HandleId, HandleTransform)>) {
+    for number in 0..moved.len() {
+        let (id, transform) = moved[number];
+        let handle = workspace.document.handle(id);
+        let Some((twin, pivot)) = handle.and_then(|handle| Some((handle.twin?, handle.pivot))) else {
+            continue;
+        };
+        let is_free = !given.contains(&twin.handle) && moved.iter().all(|(other, _)| *other != twin.handle);
+        if is_free && held_because(workspace, twin.handle).is_none() {
+            moved.push((twin.handle, mirrored_transform(&twin.plane, transform, pivot)));
+        }
     }
 }
 
@@ -142,7 +192,11 @@ pub(crate) fn delete_selected(workspace: &mut Workspace) {
         } else {
             let freed = members(document, id).into_iter().map(|vertex| (vertex, Paint::Bare));
             document.paint_vertices(freed.collect::<Vec<_>>());
-            document.change_handles(|handles| handles.retain(|handle| handle.id != id));
+            document.change_handles(|handles| {
+                let former = handles.clone();
+                handles.retain(|handle| handle.id != id);
+                find_parents_anew(handles, &former);
+            });
         }
         document.change_handles(|handles| {
             for handle in handles {

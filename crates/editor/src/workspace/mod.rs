@@ -32,10 +32,10 @@ pub(crate) use controls::{
 pub(crate) use examples::{
     add_example, examples_name, keep_example, remove_example, rename_example, set_example_weight,
 };
-pub(crate) use handle_values::{set_continuity, set_reach, set_soft, set_turn, transform_handle};
+pub(crate) use handle_values::{set_continuity, set_parent, set_reach, set_soft, set_turn, transform_handle};
 pub(crate) use handles::{
-    change_handle, count_turn, delete_selected, held_because, pin_or_unpin_selected, put_handle, reset_region,
-    set_pivot, set_pivot_place, split_selected, untwin,
+    change_handle, count_turn, delete_selected, held_because, pin_or_unpin_selected, put_handle, put_handles,
+    reset_region, set_pivot, set_pivot_place, split_selected, untwin,
 };
 pub(crate) use mirror::{mirror, take_mirrored};
 pub(crate) use mirror_request::Purpose;

@@ -8,7 +8,7 @@ use pliant_deform::{RigidMotion, Role};
 use pliant_mesh::{Model, SurfaceVertex};
 
 use super::state::Workspace;
-use crate::document::{Aspect, Document, Handle, HandleId, HandleTransform, Paint, PivotPlace};
+use crate::document::{Aspect, Document, Handle, HandleId, HandleTransform, Paint, PivotPlace, find_parents_anew};
 
 /// The vertices of a handle, ascending.
 pub(crate) fn members(document: &Document, id: HandleId) -> Vec<SurfaceVertex> {
@@ -120,6 +120,7 @@ pub(crate) fn tidy_handles(workspace: &mut Workspace, before: &Document) {
         }
     }
     document.change_handles(|handles| {
+        let former = handles.clone();
         handles.retain_mut(|handle| {
             let (sum, count, changed) = sums[usize::from(handle.id.0)];
             // A turned handle's numbers are about its pivot: they keep their values.
@@ -132,6 +133,7 @@ pub(crate) fn tidy_handles(workspace: &mut Workspace, before: &Document) {
             }
             count > 0.0
         });
+        find_parents_anew(handles, &former);
         let left: Vec<HandleId> = handles.iter().map(|handle| handle.id).collect();
         for handle in handles {
             handle.twin = handle.twin.filter(|twin| left.contains(&twin.handle));

@@ -174,6 +174,7 @@ fn numbers(ui: &mut egui::Ui, editor: &Editor, handle: &Handle, commands: &mut O
             joint(ui, editor, handle, commands);
             softness(ui, handle, commands);
             ui.end_row();
+            parent(ui, editor, handle, commands);
         });
 }
 
@@ -266,6 +267,38 @@ fn reach(ui: &mut egui::Ui, handle: &Handle, commands: &mut Outbox) {
     });
     let field = field.labelled_by(label.id).on_hover_text(hover);
     commands.adjust(&field, || Command::SetReach(handle.id, make(value)));
+    ui.end_row();
+}
+
+/// The handle with which this one rides along, if there are others.
+fn parent(ui: &mut egui::Ui, editor: &Editor, handle: &Handle, commands: &mut Outbox) {
+    let document = editor.document();
+    let others = document
+        .handles()
+        .iter()
+        .filter(|other| other.id != handle.id && !other.is_pin);
+    let others: Vec<&Handle> = others.collect();
+    if others.is_empty() {
+        return;
+    }
+    let label = row_label(ui, "Parent");
+    let present = handle.parent.and_then(|parent| document.handle(parent));
+    let mut chosen = handle.parent;
+    let shown = egui::ComboBox::from_id_salt("parent")
+        .selected_text(present.map_or("none", |parent| &parent.name))
+        .show_ui(ui, |ui| {
+            ui.selectable_value(&mut chosen, None, "none");
+            for other in others {
+                ui.selectable_value(&mut chosen, Some(other.id), &other.name);
+            }
+        });
+    shown
+        .response
+        .labelled_by(label.id)
+        .on_hover_text("When the parent moves, this handle rides along, as a hand does when the arm turns.");
+    if chosen != handle.parent {
+        commands.push(Command::SetParent(handle.id, chosen));
+    }
     ui.end_row();
 }
 

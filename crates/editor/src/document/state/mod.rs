@@ -25,6 +25,7 @@ use super::access::Access;
 use super::content::{Content, Paint, Tips};
 use super::handle::{Handle, HandleId};
 use super::kept_shape::KeptShape;
+use super::parents::find_parents_anew;
 use super::version::{Aspect, Marks, Versions};
 
 /// The edited state of one mesh.
@@ -354,7 +355,11 @@ impl Document {
 
     /// Removes the handles that were made since `before`; their numbers are used again.
     pub(crate) fn drop_handles_made_since(&mut self, before: &Self) {
-        self.change_handles(|handles| handles.retain(|handle| before.handle(handle.id).is_some()));
+        self.change_handles(|handles| {
+            let former = handles.clone();
+            handles.retain(|handle| before.handle(handle.id).is_some());
+            find_parents_anew(handles, &former);
+        });
         self.content.next_handle = before.content.next_handle;
         if self.content.handles == before.content.handles {
             for aspect in [

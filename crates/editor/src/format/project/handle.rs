@@ -38,6 +38,9 @@ pub(super) struct StoredHandle {
     pin: bool,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     twin: Option<StoredTwin>,
+    /// The number of the handle with which it rides along.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) parent: Option<u16>,
 }
 
 #[derive(Clone, Copy, PartialEq, Debug, Default, Serialize, Deserialize)]
@@ -112,6 +115,7 @@ impl StoredHandle {
                 normal: twin.plane.axis().is_none().then(|| twin.plane.normal().to_array()),
                 at: twin.plane.distance(),
             }),
+            parent: handle.parent.map(|parent| parent.0),
         }
     }
 
@@ -163,6 +167,7 @@ impl StoredHandle {
                     plane: twin.plane()?,
                 })
             }),
+            parent: self.parent.map(HandleId),
             ..Handle::new(id, self.name.clone())
         })
     }

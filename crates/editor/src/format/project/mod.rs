@@ -34,7 +34,7 @@ use super::loose::StoredLoose;
 use super::method::{method_to_value, read_method};
 use super::reader::read;
 use super::setup::Setup;
-use crate::document::{Content, Document, HandleId, Paint, Tips, bits_equal};
+use crate::document::{Content, Document, Handle, HandleId, Paint, Tips, bits_equal, is_within};
 pub use crate::format::kept::StoredKept;
 use crate::format::stored_field::{Field, Ranges, for_each_drawn, ranges_where};
 use crate::region::{FileContacts, Region, region_input};
@@ -433,7 +433,20 @@ impl Project {
             )?;
             document.handles.push(stored.handle()?);
         }
-        Ok(())
+        let handles = &document.handles;
+        let is_wrong = |handle: &&Handle| {
+            let parent = handle
+                .parent
+                .filter(|parent| handles.iter().any(|other| other.id == *parent));
+            handle.parent.is_some() && parent.is_none_or(|parent| is_within(handles, parent, handle.id))
+        };
+        match handles.iter().find(is_wrong) {
+            Some(handle) => Err(EditError::Project(format!(
+                "the parent of the handle `{}` is missing or rides along with it: remove its `parent`",
+                shortened(&handle.name)
+            ))),
+            None => Ok(()),
+        }
     }
 
     /// The solver's input: the document's regions, from its own rest shape.

@@ -1,20 +1,20 @@
 //! A drag of the pose brush, from the press to the release of the limb.
 
 use glam::{DVec2, DVec3};
-use pliant_mesh::{Joint, SurfaceVertex};
+use pliant_mesh::SurfaceVertex;
 
 use super::motion::{Motion, Pose, Way};
 use crate::document::{
-    Handle, HandleId, HandleTransform, Paint, PivotPlace, Reach, Transaction, accumulated, link_twins,
+    Document, Handle, HandleId, HandleTransform, Paint, PivotPlace, Reach, Transaction, accumulated, link_twins,
 };
 use crate::input::{Button, Pointer};
-use crate::jobs::Activity;
+use crate::jobs::{Activity, JobKind};
 use crate::tool::context::Context;
 use crate::tool::gesture::{Gesture, Next};
-use crate::tool::limb::{Limb, hover, limb_under};
+use crate::tool::limb::{Limb, NewLimb, hover, limb_under};
 use crate::tool::overlay::Lit;
 use crate::view::{ControlShape, Cursor, Pick, Readout, View};
-use crate::workspace::{Workspace, count_turn, held_because, members, put_handle, tidy_handles, twin_across};
+use crate::workspace::{Workspace, count_turn, held_because, members, put_handle, tidy_handles};
 
 /// The pointer must move this far before the limb follows.
 const THRESHOLD_PX: f64 = 3.0;
@@ -68,13 +68,18 @@ impl PoseDrag {
     /// Grabs the limb, if it is known.
     fn take_limb(&mut self, workspace: &mut Workspace) -> Next {
         let posing = match limb_under(workspace, &self.pick) {
+            // The shown joint may be that of the place where the pointer was before.
+            _ if workspace.jobs.is_busy(JobKind::Joint) => return Next::Stay,
             Limb::Unknown => return Next::Stay,
             Limb::None => {
                 workspace.refuse(NO_JOINT);
                 return Next::End;
             }
             Limb::Posed(id) => take_again(workspace, id),
-            Limb::Untouched(joint) => make_handle(workspace, &joint),
+            Limb::Untouched(limb) => match (limb.freed(workspace), limb.parent) {
+                (None, Some(parent)) => take_again(workspace, parent),
+                (freed, _) => make_handle(workspace, &limb, &freed.unwrap_or_default()),
+            },
         };
         let Some((transaction, handle, axis)) = posing else {
             return Next::End;
@@ -239,13 +244,11 @@ fn take_again(workspace: &mut Workspace, id: HandleId) -> Option<Taken> {
     Some((workspace.begin(format!("Pose {}", handle.name)), handle, axis))
 }
 
-/// Makes the far side of a joint a handle that reaches back across the falloff; `None`, with a sentence, if all of it
-/// is locked or hidden.
-fn make_handle(workspace: &mut Workspace, joint: &Joint) -> Option<Taken> {
-    let access = &workspace.vertex_access;
-    let is_open = |vertex: &&SurfaceVertex| access.may_be_painted(vertex.index());
-    let painted: Vec<_> = joint.far_side.iter().filter(is_open).copied().collect();
-    if painted.is_empty() {
+/// Makes a limb a handle that reaches back across its joint's falloff, between its parent, of which vertices are
+/// `freed`, and its children; `None`, with a sentence, if all of it is locked or hidden.
+fn make_handle(workspace: &mut Workspace, limb: &NewLimb, freed: &[SurfaceVertex]) -> Option<Taken> {
+    let joint = &*limb.joint;
+    if limb.own.is_empty() {
         workspace.refuse("This limb is locked: unlock it in the list of objects to pose it.");
         return None;
     }
@@ -253,36 +256,69 @@ fn make_handle(workspace: &mut Workspace, joint: &Joint) -> Option<Taken> {
     let document = &mut workspace.document;
     document.keep_shape();
     let id = document.add_handle();
-    document.change_handle(id, |handle| handle.reach = Reach::Length(2.0 * joint.falloff));
-    let paint = Paint::Handle(id);
-    document.paint_vertices(painted.into_iter().map(|vertex| (vertex, paint)));
+    document.change_handle(id, |handle| {
+        handle.reach = Reach::Length(limb.reach());
+        handle.parent = limb.parent;
+    });
+    paint_limb(document, id, &limb.own, freed);
+    for child in &limb.children {
+        document.change_handle(*child, |child| child.parent = Some(id));
+    }
     tidy_handles(workspace, transaction.before());
     workspace.document.change_handle(id, |handle| {
         let on_rest = handle.affine().inverse().transform_point3(joint.centre);
         handle.pivot_place = PivotPlace::Picked;
         handle.move_pivot(on_rest);
     });
-    make_posed_twin(workspace, id);
+    make_posed_twin(workspace, id, limb, freed);
     let handle = workspace.document.handle(id)?.clone();
     transaction.rename(format!("Make {}", handle.name));
     Some((transaction, handle, joint.axis))
 }
 
+/// Paints a limb's own vertices as a handle, and frees those that bend at its joint.
+fn paint_limb(document: &mut Document, id: HandleId, own: &[SurfaceVertex], freed: &[SurfaceVertex]) {
+    let own = own.iter().map(|vertex| (*vertex, Paint::Handle(id)));
+    document.paint_vertices(own);
+    document.paint_vertices(freed.iter().map(|vertex| (*vertex, Paint::Bare)));
+}
+
 /// With symmetry, gives a limb that has become a handle its twin on the other side, unless it is on both sides of the
-/// plane.
-fn make_posed_twin(workspace: &mut Workspace, id: HandleId) {
+/// plane. Twins of its parent and children are the twin's.
+fn make_posed_twin(workspace: &mut Workspace, id: HandleId, limb: &NewLimb, freed: &[SurfaceVertex]) {
     let Some(sides) = workspace.both_sides().cloned() else {
         return;
     };
-    let Some((twin, opposite)) = twin_across(workspace, &sides, id, &[]) else {
+    if sides.are_crossed_by(&limb.own) {
         return;
-    };
-    let access = &workspace.vertex_access;
-    let open: Vec<_> = opposite
-        .into_iter()
-        .filter(|vertex| access.may_be_painted(vertex.index()))
+    }
+    let twin_of = |workspace: &Workspace, id: HandleId| Some(workspace.document.handle(id)?.twin?.handle);
+    let parent = limb.parent.map(|parent| twin_of(workspace, parent).unwrap_or(parent));
+    let children: Vec<HandleId> = limb
+        .children
+        .iter()
+        .filter_map(|child| twin_of(workspace, *child))
         .collect();
+    let across = |vertices: &[SurfaceVertex]| -> Vec<SurfaceVertex> {
+        let is_open = |vertex: &SurfaceVertex| {
+            let may_change = match workspace.document.paint()[vertex.index()] {
+                Paint::Handle(other) => Some(other) == parent && other != id,
+                _ => true,
+            };
+            may_change && workspace.vertex_access.may_be_painted(vertex.index())
+        };
+        sides.opposite(vertices.to_vec()).filter(is_open).collect()
+    };
+    let (own, freed) = (across(&limb.own), across(freed));
+    if own.is_empty() {
+        return;
+    }
     let document = &mut workspace.document;
-    document.paint_vertices(open.into_iter().map(|vertex| (vertex, Paint::Handle(twin))));
+    let twin = document.add_handle();
+    paint_limb(document, twin, &own, &freed);
     link_twins(document, id, twin, sides.plane);
+    document.change_handle(twin, |handle| handle.parent = parent);
+    for child in children {
+        document.change_handle(child, |child| child.parent = Some(twin));
+    }
 }
