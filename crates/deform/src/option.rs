@@ -17,6 +17,19 @@ pub struct OptionDeclaration {
     pub only_with: Option<(&'static str, &'static [&'static str])>,
 }
 
+/// A slider of an option, on a logarithmic scale.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct OptionSlider {
+    /// The option, a number.
+    pub option: &'static str,
+    /// The words at the ends.
+    pub ends: [&'static str; 2],
+    /// The values at the ends.
+    pub range: [f64; 2],
+    /// Its effect.
+    pub help: &'static str,
+}
+
 /// The values of an option.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub enum OptionKind {

@@ -80,9 +80,9 @@ fn hint(workspace: &Workspace, settings: &ToolSettings) -> String {
     } else if workspace.selection.selected().is_none() {
         "Press Tab to select a handle, or paint a new one"
     } else if document.is_displaced() {
-        "Drag the gizmo, paint on from this shape, or save"
+        "Drag the handle or its gizmo, paint on from this shape, or save"
     } else {
-        "Drag the gizmo, or press G, R or S to move, turn or scale"
+        "Drag the handle or its gizmo, or press G, R or S to move, turn or scale"
     };
     let Counts { fixed, free, handle } = workspace.computed().region.counts;
     let [handle, free, fixed] = [handle, free, fixed].map(thousands);
@@ -92,15 +92,13 @@ fn hint(workspace: &Workspace, settings: &ToolSettings) -> String {
 /// The background computation for which a person waits.
 fn working(workspace: &Workspace, is_dragging: bool) -> Option<String> {
     let (jobs, document) = (&workspace.jobs, &workspace.document);
-    let mut needed = [JobKind::Order, JobKind::Region, JobKind::Bind].into_iter();
-    if needed.any(|kind| jobs.has_given_up(kind)) && !document.handles().is_empty() {
+    if jobs.has_given_up_binding() && !document.handles().is_empty() {
         return Some("The method is not bound: only handles move until the regions change".to_owned());
     }
     let (kind, fraction) = jobs.running().into_iter().rfind(|(kind, _)| match kind {
-        JobKind::Solve | JobKind::Compare | JobKind::Inspect | JobKind::Joint | JobKind::Intersect => false,
-        JobKind::Pick => workspace.computed().pickable.is_none(),
+        JobKind::Pick => workspace.computed().pickable().is_none(),
         JobKind::Order => !document.handles().is_empty(),
-        JobKind::Region | JobKind::Bind | JobKind::Mirror | JobKind::Symmetry | JobKind::Enclose => true,
+        kind => kind.is_named(),
     })?;
     let doing = kind.doing();
     let waits = is_dragging || !document.is_settled();

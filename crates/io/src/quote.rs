@@ -26,6 +26,18 @@ pub fn quoted(text: &str) -> String {
     out
 }
 
+/// The most names in a list of [`listed`].
+const MOST_NAMES: usize = 8;
+
+/// Names as a message lists them: each [`quoted`], with a count in place of those beyond the eighth.
+pub(crate) fn listed(names: &[&str]) -> String {
+    let mut list: Vec<String> = names.iter().take(MOST_NAMES).map(|name| quoted(name)).collect();
+    if names.len() > MOST_NAMES {
+        list.push(format!("{} more", names.len() - MOST_NAMES));
+    }
+    list.join(", ")
+}
+
 /// Returns true if a character controls a terminal or a line of text instead of being shown.
 pub fn steers(letter: char) -> bool {
     letter.is_control()

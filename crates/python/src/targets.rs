@@ -1,6 +1,7 @@
 //! Each handle's target in world space: a transform from rest, or a position for each of its vertices.
 
 use glam::{DAffine3, DMat3, DVec3};
+use pliant_deform::Method;
 use pliant_editor::{EDIT_VERSION, EditFile, HandleTransform, Setup};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList, PyTuple};
@@ -179,7 +180,7 @@ fn affine(entry: impl Fn(usize, usize) -> f64, translation: &[f64]) -> DAffine3 
 fn of_format(any: &Bound<'_, PyAny>, place: &str, pivot: DVec3) -> PyResult<DAffine3> {
     let edit = json!({
         "version": EDIT_VERSION,
-        "method": { "name": "bilaplacian" },
+        "method": { "name": Method::default().name() },
         "handles": [{ "select": "none", "transform": value(any, place)? }],
     });
     let edit = EditFile::from_value(&edit)

@@ -13,7 +13,15 @@ use crate::handles::{Motion, clear};
 use crate::method::{BindInput, BoundMethod, DeformMethod, MethodDeclaration, Stepped};
 use crate::needs::{ConstraintKind, Needs, Solve};
 use crate::operators::repairs;
-use crate::{BindError, SolveError};
+use crate::{BindError, OptionSlider, Picture, SolveError};
+
+/// From a hundredth of the default to a hundred times it: the logarithmic slider begins in its middle.
+const RIGID_TO_SMOOTH: OptionSlider = OptionSlider {
+    option: "smoothness",
+    ends: ["Rigid", "smooth"],
+    range: [3e-5, 0.3],
+    help: "Rigid keeps details and bends only where it must; smooth spreads the bend evenly. The slider sets `smoothness`.",
+};
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "arap",
@@ -21,6 +29,8 @@ pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     when_to_use: "Keeps every neighbourhood as rigid as possible, step by step, for large turns and long drags. The \
                   energy \"smooth\" bends and twists evenly; \"spokes-and-rims\" binds sooner and may crease.",
     keywords: "arap as-rigid-as-possible",
+    picture: Picture::Blocks,
+    slider: Some(&RIGID_TO_SMOOTH),
     options: Arap::OPTIONS,
     attachments: &[],
     heeds: &[ConstraintKind::SoftHandles, ConstraintKind::Stiffness],
@@ -36,6 +46,10 @@ impl DeformMethod for Arap {
     /// A neck can be so short that stretching it costs less than the twist around it.
     fn follows_turns(&self) -> Option<Followed> {
         Some(Followed::by_necks(140.0))
+    }
+
+    fn advised_for_degrees(&self) -> u16 {
+        140
     }
 
     fn needs(&self) -> Needs {

@@ -38,6 +38,8 @@ pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
                   including loose pieces. The cage fits the handles closely, not exactly; harmonic coordinates keep \
                   limbs that are near each other apart.",
     keywords: "cage mean value harmonic green coordinates conformal space",
+    picture: Picture::Hull,
+    slider: None,
     options: Cage::OPTIONS,
     attachments: &[AttachmentDeclaration {
         name: "cage",

@@ -17,7 +17,7 @@ use crate::region::nodes::spread_alike;
 use crate::space::blend::{Affine, Blend, Share};
 use crate::space::shaping::shaping;
 use crate::sparse::factor_error::FactorError;
-use crate::{BindError, SolveError};
+use crate::{BindError, Picture, SolveError};
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "embedded",
@@ -25,6 +25,8 @@ pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     when_to_use: "Bends a few hundred nodes as rigidly as possible, step by step, and moves everything around them \
                   along: for large bends of large scans, and of loose or broken pieces.",
     keywords: "embedded deformation graph nodes sumner rigid nonlinear space points soup",
+    picture: Picture::Graph,
+    slider: None,
     options: Embedded::OPTIONS,
     attachments: &[],
     heeds: &[ConstraintKind::SoftHandles, ConstraintKind::Stiffness],

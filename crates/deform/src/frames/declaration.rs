@@ -11,7 +11,7 @@ use crate::handles::turns::Followed;
 use crate::handles::{Motion, only_moved};
 use crate::method::{BindInput, BoundMethod, DeformMethod, MethodDeclaration, Stepped};
 use crate::needs::{ConstraintKind, Needs, Solve};
-use crate::{BindError, ReusableFactor, SolveError, Warning};
+use crate::{BindError, Picture, ReusableFactor, SolveError, Warning};
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "frames",
@@ -20,6 +20,8 @@ pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
                   handles by less than half a turn. A handle that is only moved turns nothing unless `iterations` are \
                   added.",
     keywords: "frames rotation-invariant coordinates local frames linear",
+    picture: Picture::Frames,
+    slider: None,
     options: Frames::OPTIONS,
     attachments: &[],
     heeds: &[ConstraintKind::SoftHandles, ConstraintKind::Stiffness],

@@ -4,7 +4,7 @@ use glam::DQuat;
 
 use super::polar::Polar;
 use super::{Handle, Motion};
-use crate::Warning;
+use crate::{Remedy, Warning};
 
 /// The largest turn between handles, or between a handle and a fixed vertex, that leaves a limb at least about 0.7 of
 /// its radius everywhere, by `tests/large_turns.rs`.
@@ -53,9 +53,6 @@ pub(crate) struct TurnLimit {
 /// The warning waits for this much more than the limit, so that a turn by the limit itself gives none.
 const ROOM_DEGREES: f64 = 5.0;
 
-/// ARAP also follows turns up to this.
-const OF_ARAP_DEGREES: f64 = 140.0;
-
 impl TurnLimit {
     /// A sentence about two turns that differ by more than the method's limit.
     pub fn warning(&self, handles: &[Handle], motions: &[Motion]) -> Option<Warning> {
@@ -79,11 +76,7 @@ impl TurnLimit {
             }
         }
         let (degrees, number) = worst;
-        let others = if degrees > OF_ARAP_DEGREES {
-            "poisson"
-        } else {
-            "arap or poisson"
-        };
+        let others = Remedy::FollowingTurns(degrees.ceil() as u16);
         (degrees > most_degrees + ROOM_DEGREES).then(|| {
             Warning::of_handle(number, |handle| {
                 format!(

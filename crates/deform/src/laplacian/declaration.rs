@@ -8,7 +8,7 @@ use crate::handles::finite::Finite;
 use crate::handles::polar::{Polar, polars_of};
 use crate::method::{BindInput, BoundMethod, DeformMethod, MethodDeclaration, Stepped};
 use crate::needs::{ConstraintKind, Needs, Solve};
-use crate::{BindError, ReusableFactor, SolveError, Warning};
+use crate::{BindError, Picture, ReusableFactor, SolveError, Warning};
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "laplacian",
@@ -17,6 +17,8 @@ pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
                   90°. Limbs collapse from about 70° on, and beyond 90° the surface bulges and shrinks unless `steps` \
                   divides the motion.",
     keywords: "laplacian differential coordinates detail similarity implicit",
+    picture: Picture::Spikes,
+    slider: None,
     options: LaplacianEditing::OPTIONS,
     attachments: &[],
     heeds: &[

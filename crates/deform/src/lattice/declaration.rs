@@ -18,7 +18,7 @@ use crate::space::falloff::Falloff;
 use crate::space::field::{Coefficients, FIELD_ROW, LinearField, SpaceMap, moving};
 use crate::space::fit_samples::{RegionBox, holds, samples};
 use crate::space::hand_field::HandField;
-use crate::{BindError, SolveError};
+use crate::{BindError, Picture, SolveError};
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "lattice",
@@ -26,6 +26,8 @@ pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     when_to_use: "Bends a box around the surface by a coarse lattice: for broad, soft bends and stretches of \
                   everything inside it, including loose pieces. The lattice fits the handles closely, not exactly.",
     keywords: "lattice ffd free-form deformation box spline space",
+    picture: Picture::Lattice,
+    slider: None,
     options: Lattice::OPTIONS,
     attachments: &[AttachmentDeclaration {
         name: "lattice",

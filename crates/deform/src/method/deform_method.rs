@@ -11,7 +11,7 @@ use crate::operators::triangulation::Triangulation;
 use crate::region::boundary_problem::BoundaryProblem;
 use crate::{
     Attachment, AttachmentDeclaration, AttachmentRefused, BindError, ConstraintKind, ControlLattice, HandleFit, Needs,
-    OptionDeclaration, OptionRefused, OptionValue, Solve,
+    OptionDeclaration, OptionRefused, OptionSlider, OptionValue, Picture, Solve,
 };
 
 /// A method with its options: the law by which a surface follows its handles.
@@ -28,6 +28,10 @@ pub struct MethodDeclaration {
     pub when_to_use: &'static str,
     /// Its other names, in lower case.
     pub keywords: &'static str,
+    /// The elements that its picture shows.
+    pub picture: Picture,
+    /// The slider of the option that counts most, if it has one; shown while the option has an effect.
+    pub slider: Option<&'static OptionSlider>,
     /// Its options, in the order of the window.
     pub options: &'static [OptionDeclaration],
     /// Its inputs beside handles, such as a cage. The method makes those that are not brought.
@@ -126,8 +130,13 @@ pub(crate) trait DeformMethod: Options {
         None
     }
 
-    /// Returns true if it can be bound with an ordering of power 1 instead of its own, by the Laplacian's factor, which
-    /// takes less memory and more time.
+    /// The largest turn between handles for which it is advised instead of a method that follows less; 0 for none.
+    fn advised_for_degrees(&self) -> u16 {
+        0
+    }
+
+    /// Returns true if it can be bound with an ordering of power 1 instead of its own, by the Laplacian's factor, which takes
+    /// less memory and more time.
     fn takes_first_power(&self) -> bool {
         false
     }

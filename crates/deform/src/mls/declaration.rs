@@ -6,6 +6,7 @@ use super::moments::Entry;
 use super::points::Points;
 use super::{Mls, MlsTransforms};
 use crate::BindError;
+use crate::Picture;
 use crate::handles::turns::Followed;
 use crate::method::{BindInput, BoundMethod, DeformMethod, MethodDeclaration};
 use crate::needs::{ConstraintKind, Needs, Solve};
@@ -17,6 +18,8 @@ pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     when_to_use: "Turns and moves each place like the handles around it, in one step: for quick poses of scans of \
                   loose or broken pieces. Everything near in space moves along, connected or not.",
     keywords: "mls moving least squares schaefer rigid similarity affine space points soup warp",
+    picture: Picture::Moves,
+    slider: None,
     options: Mls::OPTIONS,
     attachments: &[],
     heeds: &[ConstraintKind::SoftHandles],

@@ -11,7 +11,7 @@ use crate::handles::offsets::Offsets;
 use crate::handles::polar::Polar;
 use crate::method::{BindInput, BoundMethod, DeformMethod, MethodDeclaration, Stepped};
 use crate::needs::{ConstraintKind, Needs, Solve};
-use crate::{BindError, ReusableFactor, SolveError, Warning};
+use crate::{BindError, Picture, ReusableFactor, SolveError, Warning};
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "poisson",
@@ -20,6 +20,8 @@ pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
                   bends and twists of detailed shapes. A handle that is only moved turns nothing, and details shear \
                   there.",
     keywords: "poisson gradient harmonic geodesic material propagation",
+    picture: Picture::Arrows,
+    slider: None,
     options: Poisson::OPTIONS,
     attachments: &[],
     heeds: &[ConstraintKind::SoftHandles, ConstraintKind::Stiffness],
@@ -30,6 +32,10 @@ pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
 impl DeformMethod for Poisson {
     fn declaration(&self) -> &'static MethodDeclaration {
         &DECLARATION
+    }
+
+    fn advised_for_degrees(&self) -> u16 {
+        u16::MAX
     }
 
     fn needs(&self) -> Needs {

@@ -7,6 +7,7 @@ use super::centres::fitted;
 use super::constraints::Constraints;
 use super::kernel::{Sum, Weights};
 use crate::BindError;
+use crate::Picture;
 use crate::budget::bytes_of;
 use crate::handles::turns::Followed;
 use crate::method::{BindInput, BoundMethod, DeformMethod, MethodDeclaration};
@@ -20,6 +21,8 @@ pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     when_to_use: "Bends the space around the surface as smoothly as possible, in one step: for scans of loose or \
                   broken pieces. Everything near in space moves along, connected or not.",
     keywords: "rbf radial triharmonic space points soup warp",
+    picture: Picture::Circles,
+    slider: None,
     options: Rbf::OPTIONS,
     attachments: &[],
     heeds: &[],

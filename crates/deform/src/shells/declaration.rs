@@ -16,10 +16,18 @@ use crate::handles::turns::Followed;
 use crate::handles::{Motion, clear};
 use crate::method::{BindInput, BoundMethod, DeformMethod, MethodDeclaration, Stepped};
 use crate::needs::{ConstraintKind, Needs, Solve};
-use crate::{BindError, SolveError};
+use crate::{BindError, OptionSlider, Picture, SolveError};
 
 /// The attachment's name.
 pub(super) const EXAMPLES: &str = "examples";
+
+/// The bending of materials.
+const PAPER_TO_RUBBER: OptionSlider = OptionSlider {
+    option: "bending",
+    ends: ["Paper", "rubber"],
+    range: Shells::PAPER_TO_RUBBER,
+    help: "Paper keeps its lengths and creases; thick rubber bends evenly and stretches. The slider sets `bending`.",
+};
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "shells",
@@ -28,6 +36,8 @@ pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
                   and balloons, from paper, which creases (`bending` 1e-6), to thick rubber, which bends evenly \
                   (1e-2). Poses that you keep as examples guide it, and their weights alone blend shapes along arcs.",
     keywords: "discrete shells nonlinear thin shell paper cloth rubber balloon volume isometric developable examples pose blend interpolation grinspun",
+    picture: Picture::Triangles,
+    slider: Some(&PAPER_TO_RUBBER),
     options: Shells::OPTIONS,
     attachments: &[AttachmentDeclaration {
         name: EXAMPLES,

@@ -16,7 +16,7 @@ use crate::primo::bodies::Bodies;
 use crate::space::blend::{Affine, Blend, Share};
 use crate::space::neighbours::Neighbours;
 use crate::sparse::factor_error::FactorError;
-use crate::{BindError, SolveError};
+use crate::{BindError, Picture, SolveError};
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "space-primo",
@@ -24,6 +24,8 @@ pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     when_to_use: "Bends the space around the shape like rubber, step by step: for even bends and twists of closed \
                   shapes, and of loose or broken pieces.",
     keywords: "space primo rigid cells octree botsch rubber solid nonlinear points soup",
+    picture: Picture::Cells,
+    slider: None,
     options: SpacePrimo::OPTIONS,
     attachments: &[],
     heeds: &[ConstraintKind::SoftHandles, ConstraintKind::Stiffness],

@@ -15,7 +15,7 @@ use crate::method::{BindInput, BoundMethod, DeformMethod, MethodDeclaration, Ste
 use crate::needs::{Needs, Solve};
 use crate::operators::triangulation::Triangulation;
 use crate::region::boundary_problem::BoundaryProblem;
-use crate::{BindError, ReusableFactor, SolveError};
+use crate::{BindError, Picture, ReusableFactor, SolveError};
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "wrinkles",
@@ -24,6 +24,8 @@ pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
                   strained like them: for faces and cloth whose folds you sculpted in a few poses. Without examples \
                   it is the thin plate.",
     keywords: "wrinkles folds creases face facial skin examples pose-space deformation bickel learnt strain detail",
+    picture: Picture::Waves,
+    slider: None,
     options: Wrinkles::OPTIONS,
     attachments: &[AttachmentDeclaration {
         name: "examples",

@@ -154,7 +154,7 @@ fn not_in_binding(
         return Some("The method is not bound yet: paint a handle, or wait.".into());
     }
     let title = workspace.document.method().declaration().title;
-    (!is_there(workspace.computed().inspectable)).then(|| why(title).into())
+    (!is_there(workspace.computed().inspectable())).then(|| why(title).into())
 }
 
 /// Shows the smooth base instead of the surface, or the surface again.

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use glam::DVec3;
-use pliant_deform::{Arap, Attachment, Loose, Method};
+use pliant_deform::{Attachment, Loose, Method};
 
 use super::access::Access;
 use super::handle::{Handle, HandleId};
@@ -90,7 +90,7 @@ impl Content {
             next_handle: 0,
             stiffness: None,
             continuity: None,
-            method: Arap::first_choice().into(),
+            method: Method::of_new_documents(),
             attachments: Arc::default(),
             tips: Tips::default(),
             loose: Loose::default(),
@@ -118,7 +118,7 @@ impl Content {
 /// The drawn shape: the rest shape's displacements, if there are any, plus those from it.
 ///
 /// If nothing is added, the bits of the rest shape stay, so that applying a shape moves nothing.
-pub(crate) fn sum_of_shapes(rest: Option<&Arc<Vec<DVec3>>>, from_rest: &Arc<Vec<DVec3>>) -> Arc<Vec<DVec3>> {
+pub fn sum_of_shapes(rest: Option<&Arc<Vec<DVec3>>>, from_rest: &Arc<Vec<DVec3>>) -> Arc<Vec<DVec3>> {
     match rest {
         None => Arc::clone(from_rest),
         Some(rest) => Arc::new(

@@ -14,7 +14,7 @@ use crate::command::{Command, KeyMap, Scope, frame_all};
 use crate::document::{Document, SavedAs};
 use crate::event::Event;
 use crate::input::{Button, Key, Modifiers, Pointer};
-use crate::jobs::{Activity, Arrival, Asked, Executor, JobDone, JobKind};
+use crate::jobs::{Activity, Asked, Executor, JobDone, JobKind};
 use crate::snapshot::Snapshot;
 use crate::tool::{Adjust, Brush, Context, Gesture, Lit, Next, Overlay, ToolMode, ToolSettings, begin, hover};
 use crate::view::{Shading, View};
@@ -83,9 +83,8 @@ impl Editor {
         let lit = self.gesture.as_ref().map_or((Lit::Pointed, Vec::new()), |gesture| {
             (gesture.lit(), gesture.shapes(&self.view))
         });
-        let pointer_px = self.pointer.map(|pointer| pointer.position_px);
         self.overlay
-            .renew(lit, &self.workspace, &self.view, &self.settings, pointer_px);
+            .renew(lit, &self.workspace, &self.view, &self.settings, self.pointer);
     }
 
     fn dispatch(&mut self, event: Event) {
@@ -329,13 +328,14 @@ impl Editor {
         let kind = done.kind;
         let arrival = self.workspace.jobs.accept(done);
         match self.workspace.take_arrival(arrival) {
-            Some(Arrival::Enclosed(inside)) => {
+            Some(JobKind::Enclose) => {
+                let inside = self.workspace.jobs.computed.slots.enclose.take().unwrap_or_default();
                 self.ask_gesture(|gesture, context| gesture.found(context, inside));
             }
-            Some(Arrival::Joint) => {
+            Some(JobKind::Joint) => {
                 self.ask_gesture(|gesture, context| gesture.found_joint(context));
             }
-            Some(Arrival::Mirrored(image)) => take_mirrored(&mut self.workspace, image, self.gesture.is_none()),
+            Some(JobKind::Mirror) => take_mirrored(&mut self.workspace, self.gesture.is_none()),
             _ => {}
         }
         // The search has ended without a result: it was stopped, or it failed.

@@ -57,7 +57,7 @@ struct StoredJoins {
     pairs: Vec<[u32; 2]>,
     #[serde(default = "a_fifth")]
     reach: f64,
-    #[serde(default = "poisson")]
+    #[serde(default = "default_method")]
     method: Value,
 }
 
@@ -95,8 +95,8 @@ fn a_fifth() -> f64 {
     0.2
 }
 
-fn poisson() -> Value {
-    json!({ "name": "poisson" })
+fn default_method() -> Value {
+    json!({ "name": Method::of_merges().name() })
 }
 
 impl JoinsFile {

@@ -7,9 +7,9 @@ use pliant_deform::METHODS;
 
 use super::allowance::Allowance;
 use super::alternative::Alternative;
-use super::compared::Edit;
+use super::compared::{Compared, Edit};
 use super::computed::Computed;
-use super::job::{JobOutcome, Work};
+use super::slot::{Unfinished, Work};
 use crate::document::Document;
 
 /// Each method's result for the present edit.
@@ -75,7 +75,7 @@ impl Comparison {
         document: &Document,
         computed: &Computed,
         (allowance, clock_ms): (Allowance, fn() -> f64),
-    ) -> Option<Work> {
+    ) -> Option<Work<Box<Compared>>> {
         let number = self.turn()?;
         let work = self.alternatives[number].work(document, computed, allowance, clock_ms)?;
         self.under_way = Some((number, Edit::of(document)));
@@ -84,7 +84,7 @@ impl Comparison {
     }
 
     /// Stores the result of a job.
-    pub(super) fn take(&mut self, outcome: JobOutcome) {
+    pub(super) fn take(&mut self, outcome: Result<Box<Compared>, Unfinished>) {
         let Some((number, of)) = self.under_way.take() else {
             return;
         };

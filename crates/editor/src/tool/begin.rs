@@ -13,6 +13,7 @@ use super::paint::PaintStroke;
 use super::pose::PoseDrag;
 use super::smooth::SmoothStroke;
 use super::stiffness::StiffnessStroke;
+use super::taken_handle::is_taken_along;
 use super::transform::TransformDrag;
 use super::transform_measure::TransformKind;
 use crate::document::Paint;
@@ -81,6 +82,10 @@ pub(crate) fn begin(context: &mut Context<'_>, pointer: Pointer, button: Button)
             let part = context.workspace.part_of(pick.vertex);
             stroke.finish_with(context.workspace, |stroke, workspace| stroke.take(workspace, part));
             None
+        }
+        _ if is_taken_along(context.workspace, context.settings, &pick, modifiers) => {
+            let drag = TransformDrag::begin(context, TransformKind::Move, Constraint::Free, pointer.position_px)?;
+            Some(Box::new(drag.held(button, None)))
         }
         _ => {
             let mut stroke = PaintStroke::begin(context.workspace, context.settings, pointer)?;

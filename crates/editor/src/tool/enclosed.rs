@@ -34,7 +34,7 @@ impl Search {
         Some(Self {
             model: Arc::clone(workspace.model()?),
             displacements: Arc::clone(workspace.document.from_file()),
-            pickable: workspace.computed().pickable.clone()?,
+            pickable: workspace.computed().pickable().cloned()?,
             camera: *view.camera(),
             viewport_px: view.viewport_px(),
             is_current: workspace.jobs.is_picking_current(),

@@ -18,7 +18,7 @@ impl Workspace {
         let document = &self.document;
         let method = document.method();
         let own = document.attachment();
-        let bound = self.computed().controls.as_ref();
+        let bound = self.computed().controls();
         let bound = bound.filter(|bound| method.declaration().attachment(bound.name).is_some());
         let Some((name, attachment)) = own else {
             return bound.cloned();

@@ -25,7 +25,7 @@ impl WorkspaceSnapshot {
         Some(Self {
             document: workspace.document.clone(),
             model: Arc::clone(workspace.model()?),
-            model_revision: workspace.jobs.model_revision,
+            model_revision: workspace.jobs.model_revision(),
             file_name: workspace.file_name.clone(),
             selection: workspace.selection.clone(),
         })

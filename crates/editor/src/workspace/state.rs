@@ -137,7 +137,7 @@ impl Workspace {
 
     /// The places where the settled shape passes through itself; `None` before the search, and while it moves.
     pub(crate) fn intersections(&self) -> Option<&Intersections> {
-        self.jobs.intersections().filter(|_| self.document.is_settled())
+        self.computed().intersections().filter(|_| self.document.is_settled())
     }
 
     pub(crate) fn colours(&self) -> &Colours {
@@ -258,7 +258,7 @@ impl Workspace {
         Some(Picking::of(
             self.model()?,
             self.document.from_file(),
-            self.computed().pickable.as_ref()?,
+            self.computed().pickable()?,
             (view.camera(), view.viewport_px()),
             self.jobs.is_picking_current(),
         ))

@@ -7,6 +7,7 @@ mod geometry;
 mod neighbours;
 mod remarks;
 mod save;
+pub(crate) mod unread;
 mod uv_sets;
 pub(crate) mod write;
 
@@ -187,5 +188,15 @@ impl Stored {
 
     pub fn appearance(&self) -> Appearance {
         appearance::appearance(&self.document, &self.meshes, &self.pieces)
+    }
+
+    /// The same with the materials as the file has them.
+    pub fn appearance_with_originals(&self) -> Appearance {
+        let mut appearance = self.appearance();
+        for (number, material) in appearance.materials.iter_mut().enumerate() {
+            let original = appearance::originals::original(&self.document, number);
+            material.original = original.map(|(original, _)| original);
+        }
+        appearance
     }
 }

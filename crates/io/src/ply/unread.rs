@@ -2,10 +2,7 @@
 
 use super::header::Element;
 use super::records::{Columns, TEXTURE_NUMBER, UV_LIST, corner_list};
-use crate::quote::quoted;
-
-/// The most names that a sentence lists for each element.
-const MOST_NAMES: usize = 8;
+use crate::quote::{listed, quoted};
 
 /// The parts of a file that aren't read, in words: properties by their element, then further elements.
 pub(super) fn parts(elements: &[Element], vertex_element: Option<usize>, columns: &Columns) -> Vec<String> {
@@ -39,14 +36,6 @@ pub(super) fn parts(elements: &[Element], vertex_element: Option<usize>, columns
         parts.push(format!("the {elements} {}", listed(&others)));
     }
     parts
-}
-
-fn listed(names: &[&str]) -> String {
-    let mut list: Vec<String> = names.iter().take(MOST_NAMES).map(|name| quoted(name)).collect();
-    if names.len() > MOST_NAMES {
-        list.push(format!("{} more", names.len() - MOST_NAMES));
-    }
-    list.join(", ")
 }
 
 /// Notes on parts that users expect an edit or a viewer to heed.

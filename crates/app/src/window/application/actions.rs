@@ -209,7 +209,7 @@ impl Application {
             Message::Cage(mesh.map_err(|error| error.to_string()))
         };
         self.workers
-            .spawn("cage", read, |sentence| Message::Cage(Err(sentence)));
+            .spawn("control mesh", read, |sentence| Message::Cage(Err(sentence)));
     }
 
     /// Takes the cage that was read.

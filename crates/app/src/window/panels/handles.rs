@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, Align, Color32, ComboBox, DragValue, Layout, RichText, Sense};
 use glam::DVec3;
-use pliant_deform::CONTINUITY_RANGE;
+use pliant_deform::{CONTINUITY_RANGE, ConstraintKind, METHODS};
 use pliant_editor::{
     Command, Editor, HANDLE_COLOURS, Handle, HandleId, HandleTransform, PivotPlace, Reach, SOFT_RANGE,
 };
@@ -284,9 +284,14 @@ fn joint(ui: &mut egui::Ui, editor: &Editor, handle: &Handle, commands: &mut Out
             let hover = if has_choice {
                 "Sets the smoothness of the joint with this handle: 0 folds like a hinge, 1 keeps tangents, 2 keeps \
                  curvature."
+                    .to_owned()
             } else {
-                "This method has one kind of joint: choose Thin plate, Laplacian editing or Wrinkles from examples to \
-                 set it."
+                let others = METHODS.iter().filter(|method| method.heeds(ConstraintKind::Continuity));
+                let titles: Vec<&str> = others.map(|method| method.title).collect();
+                format!(
+                    "This method has one kind of joint. Methods with a choice: {}.",
+                    titles.join(", ")
+                )
             };
             let field = number_field(ui, &mut value, |ui, value| {
                 let field = DragValue::new(value).range(CONTINUITY_RANGE).speed(0.02);
@@ -294,8 +299,8 @@ fn joint(ui: &mut egui::Ui, editor: &Editor, handle: &Handle, commands: &mut Out
             });
             let field = field
                 .labelled_by(label.id)
-                .on_hover_text(hover)
-                .on_disabled_hover_text(hover);
+                .on_hover_text(&hover)
+                .on_disabled_hover_text(&hover);
             commands.adjust(&field, || Command::SetContinuity(handle.id, Some(value)));
             ui.label(RichText::new(word).weak());
         });

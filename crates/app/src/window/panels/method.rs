@@ -147,7 +147,7 @@ pub fn choose_method(ui: &mut egui::Ui, id: &str, present: &Method, width: f32) 
             for declaration in METHODS {
                 let is_present = present.name() == declaration.name;
                 let picture = Atom::paint(method_picture::SIZE, |ui: &egui::Ui, place| {
-                    method_picture::paint(ui, place.rect, declaration.name, place.fallback_text_color);
+                    method_picture::paint(ui, place.rect, declaration.picture, place.fallback_text_color);
                 });
                 let choice = ui
                     .add(Button::selectable(is_present, (picture, declaration.title)))

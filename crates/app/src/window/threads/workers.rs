@@ -12,7 +12,7 @@ use std::time::Instant;
 use eframe::egui;
 use glam::{DVec3, Mat3};
 use pliant_deform::Budget;
-use pliant_editor::{Executor, Job, JobDone, JobOutcome};
+use pliant_editor::{Executor, Job, JobDone, JobResult, SolveResult, Unfinished};
 
 use super::message::{Message, Painted, Posed};
 use crate::drawing::{self, Drawing, Field, Scale};
@@ -146,7 +146,7 @@ impl Executor for Workers {
             move || {
                 let done = job.run();
                 let posed = match (&done.outcome, stage) {
-                    (JobOutcome::Solved(solved), Some(stage)) => {
+                    (Ok(JobResult::Solve(SolveResult::Shape(solved))), Some(stage)) => {
                         Some(stage.pose(Arc::clone(&solved.from_file), solved.jacobians.as_deref()))
                     }
                     _ => None,
@@ -158,7 +158,7 @@ impl Executor for Workers {
                     JobDone {
                         kind,
                         stamp,
-                        outcome: JobOutcome::Failed(sentence),
+                        outcome: Err(Unfinished::Failed(sentence)),
                     },
                     None,
                 )

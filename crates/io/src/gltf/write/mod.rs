@@ -9,6 +9,7 @@ mod buffer;
 mod looks;
 mod maps;
 mod materials;
+mod originals;
 mod parts;
 
 use glam::{DVec3, Vec3};
