@@ -130,7 +130,13 @@ pub(crate) fn act_on_region(workspace: &mut Workspace, role: Paint, action: Regi
             target
         }
     };
-    repaint(workspace, format!("{} {what}", action.name(role)), role, target, changes);
+    repaint(
+        workspace,
+        format!("{} {what}", action.name(role)),
+        role,
+        target,
+        changes,
+    );
 }
 
 /// Vertices beside members, ascending.
