@@ -312,7 +312,7 @@ fn preconditioner(
         unheld: &unheld,
     };
     Preconditioner::of(system, ends, &input, partition.budget, cancel)
-        .map_err(|error| error.into_bind_error(domain, component))
+        .map_err(|error| error.into_bind_error(problem.topology, domain.solved_count))
 }
 
 /// The cells of the options' energy, and the stiffness κ A of its bending term, 0 without one.

@@ -3,9 +3,9 @@
 use pliant_mesh::{Cancel, Topology};
 
 use crate::BindError;
-use crate::bilaplacian::system_error::SystemError;
 use crate::budget::{Budget, ORDERING_ROW, bytes_of, plate_bytes};
 use crate::method::BindInput;
+use crate::sparse::system_error::SystemError;
 use crate::sparse::{Elimination, Ordering};
 
 /// The order of elimination given to the binding, and the source of another one.

@@ -4,8 +4,8 @@ use crate::bilaplacian::elimination_plan::EliminationPlan;
 use crate::bilaplacian::factored::BilaplacianSystem;
 use crate::bilaplacian::parts::StiffParts;
 use crate::bilaplacian::setup::{Boundaries, Prescribed, operator};
-use crate::bilaplacian::system_error::SystemError;
 use crate::method::BindInput;
+use crate::sparse::system_error::SystemError;
 use crate::{Bilaplacian, Detail};
 
 /// The factored system, the values that its handles and stiff parts prescribe, and the parts.

@@ -12,7 +12,6 @@ use crate::bilaplacian::factored::BilaplacianSystem;
 use crate::bilaplacian::parts::StiffParts;
 use crate::bilaplacian::plate::{PLAIN, Plate};
 use crate::bilaplacian::setup::Prescribed;
-use crate::bilaplacian::system_error::SystemError;
 use crate::handles::bases::{Stored, frame};
 use crate::handles::finite::Finite;
 use crate::handles::offsets::Offsets;
@@ -23,6 +22,7 @@ use crate::region::boundary_problem::BoundaryProblem;
 use crate::region::partition::Partition;
 use crate::region::slender;
 use crate::sparse::refactorisation::RenewableFactor;
+use crate::sparse::system_error::SystemError;
 use crate::{Bilaplacian, BindError, HandleBases, SolveError};
 
 /// The bound bi-Laplacian, with handle bases of the precision `T`.
@@ -58,7 +58,7 @@ impl<T: Stored> BilaplacianSolver<T> {
         } = input;
         let solved = &partition.solved;
         let component_of = |vertex: u32| problem.topology.component(SurfaceVertex(vertex));
-        let refuse = |error: SystemError| of_order(options, error.into_bind_error(component_of, solved.len()));
+        let refuse = |error: SystemError| of_order(options, error.into_bind_error(problem.topology, solved.len()));
         let order = options.operator_power();
         slender::check(
             &partition.triangulation,
@@ -81,13 +81,7 @@ impl<T: Stored> BilaplacianSolver<T> {
         for column in &columns {
             let (vertex, error) = (column.vertex, column.error);
             if error.is_nan() || error > TOLERANCE {
-                let component = component_of(vertex);
-                let refused = BindError::Inaccurate {
-                    component,
-                    vertex,
-                    error,
-                };
-                return Err(of_order(options, refused));
+                return Err(refuse(SystemError::Inaccurate { vertex, error }));
             }
         }
         let free_count = solved.len();

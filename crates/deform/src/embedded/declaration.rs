@@ -16,7 +16,7 @@ use crate::needs::{ConstraintKind, Needs, Solve};
 use crate::region::nodes::spread_alike;
 use crate::space::blend::{Affine, Blend, Share};
 use crate::space::shaping::shaping;
-use crate::sparse::factor_error::FactorError;
+use crate::sparse::system_error::SystemError;
 use crate::{BindError, Picture, SolveError};
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
@@ -101,11 +101,9 @@ pub(super) fn bound(options: &Embedded, input: &BindInput<'_>) -> Result<BoundEm
     let graph = Graph::of(input, &nodes, &moving, &places)?;
     input.progress.set(0.5);
     let energy = Energy::of(input, &graph, &sets);
-    let refused = |error| match error {
-        FactorError::Budget(limit) => BindError::budget(input.partition.solved.len(), limit),
-        _ => BindError::OutOfMemory {
-            free_count: input.partition.solved.len(),
-        },
+    let refused = |error| {
+        let free_count = input.partition.solved.len();
+        SystemError::of_definite(error).into_bind_error(input.problem.topology, free_count)
     };
     let system = System::of(&energy, &graph, budget).map_err(refused)?;
     let is_held = energy.constraints.iter().any(|constraint| constraint.handle.is_none());

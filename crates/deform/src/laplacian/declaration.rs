@@ -6,9 +6,9 @@ use super::{LaplacianEditing, LaplacianSolver, Transforms};
 use crate::handles::Motion;
 use crate::handles::finite::Finite;
 use crate::handles::polar::{Polar, polars_of};
-use crate::method::{BindInput, BoundMethod, DeformMethod, MethodDeclaration, Stepped};
+use crate::method::{BindInput, BoundMethod, DeformMethod, FactoredSystem, MethodDeclaration, Stepped};
 use crate::needs::{ConstraintKind, Needs, Solve};
-use crate::{BindError, Picture, ReusableFactor, SolveError, Warning};
+use crate::{BindError, Picture, SolveError, Warning};
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "laplacian",
@@ -87,25 +87,17 @@ impl BoundMethod for LaplacianSolver {
         LaplacianSolver::energy_of(self, motions, displacements)
     }
 
-    fn reusable_factor(&self) -> Option<ReusableFactor> {
-        Some(self.system.reusable_factor())
+    fn system(&self) -> Option<&dyn FactoredSystem> {
+        Some(&self.system)
     }
 
     fn solved_count(&self) -> usize {
         self.system.columns().len()
     }
 
-    fn factor_len(&self) -> usize {
-        self.system.factor_len()
-    }
-
     /// A frame is a back-substitution or two, not a product.
     fn step_cost(&self) -> usize {
         8 * self.options.steps as usize * self.solved_count()
-    }
-
-    fn warnings(&self) -> Vec<String> {
-        self.system.warnings()
     }
 
     fn blind_to(&self, motions: &[Motion]) -> Vec<Warning> {

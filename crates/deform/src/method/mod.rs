@@ -12,7 +12,7 @@ use glam::DVec3;
 use pliant_mesh::{Cancel, Cancelled, Progress, Surface, Topology};
 
 pub(crate) use self::bind_input::BindInput;
-pub(crate) use self::bound_method::{BoundMethod, Stepped};
+pub(crate) use self::bound_method::{BoundMethod, FactoredSystem, Stepped};
 pub(crate) use self::deform_method::{DeformMethod, Options};
 pub use self::deform_method::{Method, MethodDeclaration};
 use crate::budget::plate_bytes;

@@ -9,9 +9,9 @@ use crate::handles::Motion;
 use crate::handles::finite::Finite;
 use crate::handles::offsets::Offsets;
 use crate::handles::polar::Polar;
-use crate::method::{BindInput, BoundMethod, DeformMethod, MethodDeclaration, Stepped};
+use crate::method::{BindInput, BoundMethod, DeformMethod, FactoredSystem, MethodDeclaration, Stepped};
 use crate::needs::{ConstraintKind, Needs, Solve};
-use crate::{BindError, Picture, ReusableFactor, SolveError, Warning};
+use crate::{BindError, Picture, SolveError, Warning};
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "poisson",
@@ -81,25 +81,12 @@ impl BoundMethod for PoissonSolver {
         true
     }
 
-    fn reusable_factor(&self) -> Option<ReusableFactor> {
-        Some(self.system.reusable_factor())
+    fn system(&self) -> Option<&dyn FactoredSystem> {
+        Some(&self.system)
     }
 
     fn solved_count(&self) -> usize {
         self.system.columns().len()
-    }
-
-    fn factor_len(&self) -> usize {
-        self.system.factor_len()
-    }
-
-    /// A frame is a back-substitution, not a product.
-    fn step_cost(&self) -> usize {
-        4 * self.solved_count()
-    }
-
-    fn warnings(&self) -> Vec<String> {
-        self.system.warnings()
     }
 
     fn blind_to(&self, motions: &[Motion]) -> Vec<Warning> {

@@ -57,7 +57,7 @@ mod unfolded;
 use std::fmt::Debug;
 
 use glam::DVec3;
-use pliant_mesh::{Cancel, Cancelled, Progress, SurfaceVertex};
+use pliant_mesh::{Cancel, Progress};
 
 pub(crate) use self::declaration::DECLARATION;
 pub use self::options::Shells;
@@ -77,7 +77,7 @@ use crate::numerical::lbfgs::Memory;
 use crate::region::boundary_problem::BoundaryProblem;
 use crate::region::partition::Partition;
 use crate::region::slender;
-use crate::sparse::factor_error::FactorError;
+use crate::sparse::system_error::SystemError;
 use crate::{BindError, Budget};
 
 /// Bytes of a solved vertex in the tables of a led surface: shares, turns, factors, positions, and the last steps with
@@ -225,15 +225,8 @@ impl ShellsSolver {
         let free_count = partition.free_count;
         let energy = Energy::of(problem, options, partition, handles, elements);
         let elements = &energy.elements;
-        let refused = |error| match error {
-            FactorError::Pivot(local) => {
-                let vertex = elements.vertices[local];
-                let component = problem.topology.component(SurfaceVertex(vertex));
-                BindError::NotPositiveDefinite { component, vertex }
-            }
-            FactorError::Memory => BindError::OutOfMemory { free_count },
-            FactorError::Budget(limit) => BindError::budget(free_count, limit),
-            FactorError::Cancelled => BindError::Cancelled(Cancelled),
+        let refused = |error| {
+            SystemError::of(error, |local| elements.vertices[local]).into_bind_error(problem.topology, free_count)
         };
         let is_led = elements.solved_count > options.led_above;
         let examples = energy.examples.count();

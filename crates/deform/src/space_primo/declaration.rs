@@ -15,7 +15,7 @@ use crate::needs::{ConstraintKind, Needs, Solve};
 use crate::primo::bodies::Bodies;
 use crate::space::blend::{Affine, Blend, Share};
 use crate::space::neighbours::Neighbours;
-use crate::sparse::factor_error::FactorError;
+use crate::sparse::system_error::SystemError;
 use crate::{BindError, Picture, SolveError};
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
@@ -106,11 +106,8 @@ pub(super) fn bound(options: &SpacePrimo, input: &BindInput<'_>) -> Result<Bound
         budget,
         input.cancel,
     );
-    let bodies = bodies.map_err(|error| match error {
-        FactorError::Budget(limit) => over(limit),
-        FactorError::Cancelled => BindError::Cancelled(pliant_mesh::Cancelled),
-        FactorError::Memory | FactorError::Pivot(_) => BindError::OutOfMemory { free_count },
-    })?;
+    let bodies =
+        bodies.map_err(|error| SystemError::of_definite(error).into_bind_error(input.problem.topology, free_count))?;
     input.progress.set(0.7);
     let world_centres: Vec<DVec3> = (0..octree.cells.len()).map(|cell| octree.world_centre(cell)).collect();
     let tree = Neighbours::of(&world_centres);
