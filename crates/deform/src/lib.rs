@@ -68,6 +68,7 @@ mod bound;
 mod budget;
 mod cage;
 mod coarse;
+mod descent;
 mod embedded;
 mod error;
 mod fairing;
