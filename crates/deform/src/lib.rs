@@ -16,7 +16,7 @@
 //!
 //! ```
 //! use glam::{DAffine3, DVec3};
-//! use pliant_deform::{Constraints, Loose, Method, Problem, Role};
+//! use pliant_deform::{Method, Problem, Role};
 //! use pliant_mesh::{Cancel, Progress, shapes};
 //!
 //! let model = shapes::model(shapes::bar(10, 2, 2));
@@ -29,18 +29,8 @@
 //!     .collect();
 //! let method = Method::from_name("arap").unwrap_or_default();
 //! let (progress, cancel) = (Progress::new(), Cancel::new());
-//! let problem = Problem {
-//!     surface: &model.surface,
-//!     topology: &model.topology,
-//!     roles: &roles,
-//!     handle_count: 1,
-//!     stiffness: &vec![1.0; roles.len()],
-//!     constraints: Constraints::default(),
-//!     loose: Loose::Follow,
-//!     method: &method,
-//!     attachments: &[],
-//!     revision: 0,
-//! };
+//! let stiffness = vec![1.0; roles.len()];
+//! let problem = Problem::new((&model.surface, &model.topology), &roles, &stiffness, &method);
 //! let ordering = method.ordering(&model.topology, &progress, &cancel)?;
 //! let mut bound = problem.bind(&ordering, &progress, &cancel)?;
 //!
