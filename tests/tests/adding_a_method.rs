@@ -76,11 +76,11 @@ fn the_help_lists_it_with_its_options() {
     let help = run(["apply", "--help"]).done().out;
     let declaration = METHODS.iter().find(|method| method.name == "identity").unwrap();
     assert!(
-        help.contains("  identity: Moves the handles and leaves the rest where it is."),
+        help.contains("  identity: Moves the handles and leaves the rest in place."),
         "{help}"
     );
     assert!(
-        help.contains("share: how far the handles go of their way; 0 to 1; default 1"),
+        help.contains("share: share of the handles' motion; 0 to 1; default 1"),
         "{help}"
     );
     assert_eq!(declaration.options.len(), 1);
@@ -181,7 +181,7 @@ fn the_palette_and_the_panel_have_it() {
     assert_eq!(harness.state().editor().document().method().name(), "identity");
 
     // The panel shows its sentence, and a widget for its option below.
-    harness.get_by_label("Moves the handles and leaves the rest where it is.");
+    harness.get_by_label("Moves the handles and leaves the rest in place.");
     harness.get_by_label("Options").click();
     harness.run_steps(8);
     assert!(harness.query_all_by_label("Share").next().is_some());

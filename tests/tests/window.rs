@@ -399,7 +399,7 @@ fn all_methods_are_compared_in_small_views_and_a_click_takes_one() {
         .zip(METHODS)
         .find(|(_, method)| method.name != own && method.name != "identity")
         .unwrap();
-    let label = format!("Take {}", other.title);
+    let label = format!("Use {}", other.title);
     let middle = session.harness.get_by_label(&label).rect().center();
     session.pointer(middle, Some(true));
     session.pointer(middle, Some(false));
@@ -650,14 +650,14 @@ fn escape_closes_the_window_on_top_and_then_means_the_editor_again() {
         session.palette(name);
         session.key(Key::Enter, Modifiers::NONE);
     }
-    let (of_log, of_keys) = ("Copy all", "The program's own keys");
+    let (of_log, of_keys) = ("Copy all", "Default keys");
     assert!(has(&session, of_log) && has(&session, of_keys));
     // The palette closes first.
     session.palette("log");
     session.key(Key::Escape, Modifiers::NONE);
     assert!(has(&session, of_log) && has(&session, of_keys));
     // Then the wait for a key.
-    session.harness.get_by_label("Key of Undo").click();
+    session.harness.get_by_label("Key for Undo").click();
     session.harness.run_steps(2);
     session.key(Key::Escape, Modifiers::NONE);
     assert!(has(&session, of_log) && has(&session, of_keys));
@@ -695,7 +695,7 @@ fn a_key_that_the_window_has_is_refused_by_name_and_another_is_awaited() {
     let Some(mut session) = Session::begin() else { return };
     session.palette("keys");
     session.key(Key::Enter, Modifiers::NONE);
-    session.harness.get_by_label("Key of Undo").click();
+    session.harness.get_by_label("Key for Undo").click();
     session.harness.run_steps(2);
     session.key(Key::S, Modifiers::COMMAND);
     assert!(

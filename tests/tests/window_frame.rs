@@ -187,7 +187,7 @@ fn the_memory_that_binding_may_take_is_remembered() {
     assert_eq!(most(&session), Some(1_500_000_000));
     session.palette("memory");
     session.key(Key::Enter, Modifiers::NONE);
-    session.harness.get_by_label("What the machine leaves").click();
+    session.harness.get_by_label("All free memory").click();
     session.harness.run_steps(2);
     assert_eq!((most(&session), kept()), (None, serde_json::Value::Null));
     session.key(Key::Escape, Modifiers::NONE);

@@ -47,7 +47,8 @@ impl Session {
         self.harness.step();
     }
 
-    /// Whether the shape in the buffers has the handle at the pointer's place: an earlier move's result does not.
+    /// Returns true if the shape in the buffers has the handle at the pointer's place: an earlier move's result does
+    /// not.
     fn shows_handle(&self, size: f64) -> bool {
         let application = self.harness.state();
         let document = application.editor().document();

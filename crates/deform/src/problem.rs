@@ -104,8 +104,8 @@ impl<'a> Problem<'a> {
         let factor = former / now;
         ((factor.ln().abs() > ABOUT_ALIKE) && factor.is_finite()).then(|| {
             format!(
-                "`{option}` counts in the size of what bends ({now:.4}), no longer in the diagonal of the scene's box \
-                 ({former:.4}): an edit from before that bends as it did with {:.3} times the value",
+                "the unit of `{option}` is the size of the bending part ({now:.4}), no longer the diagonal of the \
+                 scene's box ({former:.4}): multiply the value of an older edit by {:.3} to bend as before",
                 factor.powi(power)
             )
         })

@@ -263,7 +263,7 @@ fn binding_allocates_as_the_mesh_grows_and_within_its_budget() {
                 });
                 let [(peak, allocated), (twice, all_twice)] = measured;
                 assert!(twice < 3 * peak, "{name}, {method:?}: {peak} {twice} held");
-                // Each correction allocates its memory anew, and at a crowded vertex order 3 needs more corrections for
+                // Each correction allocates its memory again, and at a crowded vertex order 3 needs more corrections for
                 // more neighbours.
                 let order = method.0.options::<Bilaplacian>().map(|options| options.order);
                 let corrects_more = name == "vertex" && order == Some(BilaplacianOrder::CurvatureVariation);

@@ -46,7 +46,7 @@ pub enum Event {
         /// The ratio of the fingers' distances since the last event.
         factor: f64,
     },
-    /// How hard the pen presses, 0 to 1; `None` for a device that reports no force.
+    /// The pen's pressure, 0 to 1; `None` for a device that reports no force.
     Pressure(Option<f64>),
     /// A key went down (repeats of a held key included). Characters come in lower case, one event per key.
     Key(Key, Modifiers),

@@ -240,7 +240,7 @@ fn faults(model: &Model, method: &Method, solution: &Solution, watch: &Watch) ->
     let damage = Damage::of(surface, topology, &solution.surface_positions);
     let mut bvh = Bvh::build(&surface.positions, &surface.triangles);
     bvh.refit(|v| solution.surface_positions[v.index()]);
-    let progress = watch.begin("looking for where the shape passes through itself");
+    let progress = watch.begin("finding places where the shape passes through itself");
     let crossings = bvh.new_self_intersections(surface, topology, MOST_CROSSINGS, &progress, &watch.cancel);
     let crossings = crossings.map_err(|_| EngineError::Interrupted)?;
     let mut sentences = Intersections::of(&crossings, damage).sentences();
@@ -252,7 +252,7 @@ fn faults(model: &Model, method: &Method, solution: &Solution, watch: &Watch) ->
             .any(|option| option.name == "max_iterations");
         let more = if is_limited { "raise `max_iterations`, " } else { "" };
         sentences.push(format!(
-            "the shape had not settled when the steps ended: {more}lower the strength, or take another method"
+            "the shape did not settle within the step limit: {more}lower the strength, or take another method"
         ));
     }
     Ok(sentences)

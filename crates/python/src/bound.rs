@@ -55,7 +55,7 @@ struct Solving {
     /// One for each surface vertex.
     displacements: Vec<DVec3>,
     last: Step,
-    /// Whether targets were set before.
+    /// True if targets were set before.
     has_targets: bool,
 }
 

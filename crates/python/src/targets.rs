@@ -43,7 +43,7 @@ pub fn goals(
             let Some(handle) = handles.iter().position(|handle| handle.name == name) else {
                 let known: Vec<String> = handles.iter().map(|handle| format!("{:?}", handle.name)).collect();
                 return Err(refused(format!(
-                    "transforms names the handle {name:?}, which there is not: known are {}",
+                    "transforms names the unknown handle {name:?}: known are {}",
                     known.join(", ")
                 )));
             };
@@ -100,7 +100,7 @@ fn is_transform(dict: &Bound<'_, PyDict>) -> PyResult<bool> {
     Ok(false)
 }
 
-/// Whether a value could be a handle's whole goal, for a handle that is called like a transform's member.
+/// Returns true if a value could be a handle's whole goal, for a handle that is called like a transform's member.
 fn is_whole(any: &Bound<'_, PyAny>) -> bool {
     let is_array = || reals(any, "").is_ok_and(|(shape, _)| matches!(shape[..], [_, 3] | [3, 4] | [4, 4]));
     any.is_instance_of::<PyDict>() || is_array()
@@ -131,8 +131,8 @@ fn goal(any: &Bound<'_, PyAny>, place: &str, pivot: DVec3) -> PyResult<Goal> {
     } else {
         let unknown = |found: &str| {
             refused(format!(
-                "{place} is no transform{found}: give a 3×4 or 4×4 matrix, a translation, a pair of a 3×3 matrix and a \
-                 translation, a dict, or a position for each of the handle's vertices"
+                "{place} is not a transform{found}: give a 3×4 or 4×4 matrix, a translation, a pair of a 3×3 matrix \
+                 and a translation, a dict, or a position for each of the handle's vertices"
             ))
         };
         let Ok((shape, numbers)) = reals(any, place) else {

@@ -51,7 +51,7 @@ pub(super) fn check_png(output: &Path) -> Result<(), EngineError> {
     }
     let output = files::shown(output);
     Err(EngineError::Arguments(format!(
-        "--output {output} is no .png: pictures are written as PNG"
+        "--output {output} is not a .png: give a name that ends with .png"
     )))
 }
 

@@ -110,7 +110,7 @@ impl Coarse {
         })
     }
 
-    /// Whether every fine cell has a coarse one near it; small parts may have none.
+    /// Returns true if every fine cell has a coarse one near it; small parts may have none.
     pub fn leads_all(&self) -> bool {
         self.leads_all
     }

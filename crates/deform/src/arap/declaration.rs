@@ -21,14 +21,14 @@ const RIGID_TO_SMOOTH: OptionSlider = OptionSlider {
     option: "smoothness",
     ends: ["Rigid", "smooth"],
     range: [3e-5, 0.3],
-    help: "Rigid keeps details and bends where it must; smooth spreads the bend evenly. It sets `smoothness`.",
+    help: "Rigid keeps details and bends only where it must; smooth spreads the bend evenly. The slider sets `smoothness`.",
 };
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "arap",
     title: "As rigid as possible",
-    when_to_use: "Keeps every neighbourhood as rigid as it can, step by step, for large turns and long drags: with the \
-                  energy \"smooth\" it bends and twists evenly, with \"spokes-and-rims\" it binds sooner and may crease.",
+    when_to_use: "Keeps every neighbourhood as rigid as possible, step by step, for large turns and long drags. The \
+                  energy \"smooth\" bends and twists evenly; \"spokes-and-rims\" binds sooner and may crease.",
     keywords: "arap as-rigid-as-possible",
     picture: Picture::Blocks,
     slider: Some(&RIGID_TO_SMOOTH),

@@ -87,9 +87,9 @@ pub(crate) struct ArapSolver {
     unit: f64,
     /// The motions of the `current` shape.
     motions: Vec<Motion>,
-    /// Whether vertices of handles have offsets from the motions.
+    /// True if vertices of handles have offsets from the motions.
     has_offsets: bool,
-    /// Whether the offsets changed since the last step.
+    /// True if the offsets changed since the last step.
     has_other_offsets: bool,
     state: State,
     /// The number of further targets without a try of the blend from the rest shape, and the number of targets to skip
@@ -216,7 +216,7 @@ impl ArapSolver {
         self.has_other_offsets = true;
     }
 
-    /// Whether these motions or the offsets differ from the last step's.
+    /// Returns true if these motions or the offsets differ from the last step's.
     fn takes_other(&mut self, motions: &[Motion]) -> bool {
         std::mem::take(&mut self.has_other_offsets) || self.motions != motions
     }
@@ -237,7 +237,7 @@ impl ArapSolver {
         self.state = State::Converged;
     }
 
-    /// Whether the descent has stalled: no step lowers the energy although the shape has not converged.
+    /// Returns true if the descent has stalled: no step lowers the energy although the shape has not converged.
     pub fn has_stalled(&self) -> bool {
         self.state == State::Stalled
     }

@@ -226,7 +226,7 @@ pub(crate) struct WeightInput<'a> {
     pub handle_count: usize,
     /// The handle of a local vertex.
     pub handle_of: &'a dyn Fn(u32) -> Option<usize>,
-    /// Whether nothing is fixed around a local vertex.
+    /// True if nothing is fixed around a local vertex.
     pub unheld: &'a dyn Fn(u32) -> bool,
 }
 

@@ -13,7 +13,7 @@ pub(crate) struct EliminationPlan<'a> {
     ordering: &'a Ordering,
     topology: &'a Topology,
     solved: &'a [u32],
-    /// Whether the factor of the Laplacian can replace the method's own.
+    /// True if the factor of the Laplacian can replace the method's own.
     takes_first_power: bool,
 }
 

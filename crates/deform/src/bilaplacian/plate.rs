@@ -14,7 +14,7 @@ pub(crate) struct Plate {
     /// The handles' places, then the parts'.
     pub prescribed: Vec<Prescribed>,
     pub parts: StiffParts,
-    /// Whether natural boundaries were left out, because their factor does not fit.
+    /// True if natural boundaries were left out, because their factor does not fit.
     pub is_plain: bool,
 }
 
@@ -76,5 +76,5 @@ impl Plate {
 }
 
 /// The sentence about natural boundaries that were left out.
-pub(crate) const PLAIN: &str = "the plate's own factor does not fit the memory that is left, so stiff parts may shear, \
-                                soft ones swell, and free borders curl: raise the memory limit, or take arap";
+pub(crate) const PLAIN: &str = "the plate's own factor does not fit the free memory, so stiff parts may shear, soft \
+                                ones swell, and free borders curl: raise the memory limit, or take arap";

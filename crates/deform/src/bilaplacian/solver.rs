@@ -36,7 +36,7 @@ pub(crate) struct BilaplacianSolver<T = f32> {
     parts: StiffParts,
     /// The offsets of handles' vertices from their handles' motions.
     offsets: Arc<Offsets>,
-    /// Whether natural boundaries were left out.
+    /// True if natural boundaries were left out.
     is_plain: bool,
     /// E = ½ Σ_hk tr(X_hᵀ G_hk X_k) over the motions' 4×3 matrices X; row-major, one 4×4 block a pair of handles.
     energy_blocks: Vec<[[f64; 4]; 4]>,
@@ -119,7 +119,7 @@ impl<T: Stored> BilaplacianSolver<T> {
         self.offsets = Arc::clone(offsets);
     }
 
-    /// Whether no vertex has an offset, so that the bases give the frame.
+    /// Returns true if no vertex has an offset, so that the bases give the frame.
     pub fn is_affine(&self) -> bool {
         self.offsets.is_empty()
     }
@@ -129,7 +129,7 @@ impl<T: Stored> BilaplacianSolver<T> {
         self.system.factored()
     }
 
-    /// Whether no stiff part moves between the handles.
+    /// Returns true if no stiff part moves between the handles.
     pub fn is_driven_by_handles_alone(&self) -> bool {
         self.parts.len() == 0
     }

@@ -35,9 +35,9 @@ use crate::sparse::system_error::SystemError;
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "cage",
     title: "Cage",
-    when_to_use: "Bends the space in a coarse cage around the surface, which the handles drive: for broad bends of \
-                  anything inside it, loose pieces included; with harmonic coordinates limbs that are near \
-                  each other stay apart. It fits the handles as well as the cage can, not exactly.",
+    when_to_use: "Bends the space in a coarse cage around the surface: for broad bends of everything inside it, \
+                  including loose pieces. The cage fits the handles closely, not exactly; harmonic coordinates keep \
+                  limbs that are near each other apart.",
     keywords: "cage mean value harmonic green coordinates conformal space",
     picture: Picture::Hull,
     slider: None,
@@ -45,9 +45,9 @@ pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     attachments: &[AttachmentDeclaration {
         name: "cage",
         title: "cage",
-        help: "a cage of your own, a closed mesh of triangles around the region: its `vertices` and `triangles`, or the \
-               `file` (OBJ, PLY, OFF, GLB, ..) that has them, and where its vertices are `moved` to; without it, one \
-               around the region as fine as `detail`",
+        help: "a cage of your own, a closed mesh of triangles around the region: its `vertices` and `triangles`, or a \
+               `file` (OBJ, PLY, OFF, GLB, ..) with them, and the positions to which its vertices are `moved`; \
+               without it, one around the region as fine as `detail`",
         kind: AttachmentKind::ControlMesh,
     }],
     heeds: &[ConstraintKind::SoftHandles],

@@ -22,8 +22,8 @@ use crate::{BindError, Picture, SolveError};
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "embedded",
     title: "Embedded graph",
-    when_to_use: "A few hundred nodes bend as rigidly as they can and carry everything around them, step by step: for \
-                  large bends of large scans, and of loose or broken pieces.",
+    when_to_use: "Bends a few hundred nodes as rigidly as possible, step by step, and moves everything around them \
+                  along: for large bends of large scans, and of loose or broken pieces.",
     keywords: "embedded deformation graph nodes sumner rigid nonlinear space points soup",
     picture: Picture::Graph,
     slider: None,

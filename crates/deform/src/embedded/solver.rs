@@ -32,7 +32,7 @@ pub(super) struct Solver {
     /// E at `maps`.
     value: f64,
     has_converged: bool,
-    /// Whether the descent has stalled: no step was found that lowers the energy, though the maps have not converged.
+    /// True if the descent has stalled: no step was found that lowers the energy, though the maps have not converged.
     has_stalled: bool,
     tolerance: f64,
 }
@@ -72,7 +72,8 @@ impl Solver {
         self.system.stored()
     }
 
-    /// Whether the descent has stalled: no step was found that lowers the energy, though the maps have not converged.
+    /// Returns true if the descent has stalled: no step was found that lowers the energy, though the maps have not
+    /// converged.
     pub fn has_stalled(&self) -> bool {
         self.has_stalled
     }

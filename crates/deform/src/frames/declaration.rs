@@ -16,8 +16,9 @@ use crate::{BindError, Picture, SolveError, Warning};
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "frames",
     title: "Rotation-invariant coordinates",
-    when_to_use: "Solves for how the surface turns and then for where it lies: for turns of several handles by less than \
-                  half a turn, at once. A handle that is only moved turns nothing unless `iterations` are added.",
+    when_to_use: "Solves for the surface's turns and then for its positions, in one step: for turns of several \
+                  handles by less than half a turn. A handle that is only moved turns nothing unless `iterations` are \
+                  added.",
     keywords: "frames rotation-invariant coordinates local frames linear",
     picture: Picture::Frames,
     slider: None,
@@ -107,8 +108,8 @@ impl BoundMethod for FramesSolver {
                 let degrees = turn.to_degrees();
                 Warning::of_handle(handle, |handle| {
                     format!(
-                        "{handle} turns by {degrees:.0}°, and frames knows no turn beyond half a turn: take poisson, \
-                         which follows a drag beyond that"
+                        "{handle} turns by {degrees:.0}°, but frames follows less than half a turn: take poisson, \
+                         which follows larger turns"
                     )
                 })
             })

@@ -28,7 +28,7 @@ impl Followed {
     pub fn by_necks(most_degrees: f64) -> Self {
         Self {
             most_degrees,
-            beyond: "narrows the limb where it is thin",
+            beyond: "narrows the limb at thin places",
         }
     }
 
@@ -46,7 +46,7 @@ impl Followed {
 pub(crate) struct TurnLimit {
     pub method: &'static str,
     pub followed: Followed,
-    /// Whether something is fixed.
+    /// True if something is fixed.
     pub is_held: bool,
 }
 
@@ -80,8 +80,8 @@ impl TurnLimit {
         (degrees > most_degrees + ROOM_DEGREES).then(|| {
             Warning::of_handle(number, |handle| {
                 format!(
-                    "{handle} turns by {degrees:.0}° against what it bends. From about {most_degrees:.0}° on {} \
-                     {beyond}: take {others}, or turn it in parts",
+                    "{handle} turns by {degrees:.0}° against the other end of its region. From about \
+                     {most_degrees:.0}° on, {} {beyond}: take {others}, or turn it in parts",
                     self.method
                 )
             })

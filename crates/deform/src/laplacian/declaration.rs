@@ -13,8 +13,9 @@ use crate::{BindError, Picture, SolveError, Warning};
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "laplacian",
     title: "Laplacian editing",
-    when_to_use: "Turns details with the surface, at once, for moves and for turns of wide parts up to about 90°; limbs \
-                  give way from about 70° on, and beyond 90° it bulges and shrinks unless `steps` divides the way.",
+    when_to_use: "Turns details with the surface, in one step: for moves, and for turns of wide parts up to about \
+                  90°. Limbs collapse from about 70° on, and beyond 90° the surface bulges and shrinks unless `steps` \
+                  divides the motion.",
     keywords: "laplacian differential coordinates detail similarity implicit",
     picture: Picture::Spikes,
     slider: None,
@@ -110,7 +111,7 @@ impl BoundMethod for LaplacianSolver {
         match self.options.transforms {
             Transforms::None if turn > SMALL_RAD => vec![Warning::of_handle(handle, |handle| {
                 format!(
-                    "laplacian turns no details where `transforms` is \"none\", and {handle} turns by {degrees:.0}°: \
+                    "laplacian turns no details if `transforms` is \"none\", but {handle} turns by {degrees:.0}°: \
                      take \"implicit\""
                 )
             })],
@@ -118,7 +119,7 @@ impl BoundMethod for LaplacianSolver {
                 let steps = (turn / LARGE_RAD).ceil();
                 vec![Warning::of_handle(handle, |handle| {
                     format!(
-                        "{handle} turns by {degrees:.0}°, and laplacian follows about 90° a step: set `steps` to \
+                        "{handle} turns by {degrees:.0}°, but laplacian follows about 90° a step: set `steps` to \
                          {steps:.0}, or take poisson or arap"
                     )
                 })]

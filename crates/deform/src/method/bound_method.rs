@@ -29,8 +29,8 @@ pub(crate) trait BoundMethod: Debug + Send + Sync {
         self.step(motions, displacements)
     }
 
-    /// Sets the flag that ends a step which only settles a shape: once it is raised, the step returns with the shape that
-    /// it has reached.
+    /// Sets the flag that ends a step which only settles a shape: once it is raised, the step returns with the shape
+    /// that it has reached.
     fn set_cancel(&mut self, _cancel: &Cancel) {}
 
     /// Called when all handles are back at rest: the next step begins at rest.
@@ -144,14 +144,14 @@ pub(crate) trait FactoredSystem {
 /// The result of a step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Stepped {
-    /// Whether further steps to the same motions would change nothing, and the shape is a minimum.
+    /// True if further steps to the same motions would change nothing, and the shape is a minimum.
     pub converged: bool,
-    /// Whether further steps would change nothing although the shape is no minimum: no step was found that lowers the
+    /// True if further steps would change nothing although the shape is no minimum: no step was found that lowers the
     /// energy.
     pub stalled: bool,
     /// See [`crate::Step::energy`].
     pub energy: f64,
-    /// Whether all displacements are finite, if that was checked while they were computed.
+    /// The finiteness of all displacements, if it was checked while they were computed.
     pub finite: Finite,
 }
 

@@ -1,4 +1,4 @@
-//! A method as its options: what it declares, and how it is bound.
+//! A method as its options: its declaration and its binding.
 
 use std::any::Any;
 use std::fmt::Debug;
@@ -50,7 +50,7 @@ impl MethodDeclaration {
         self.attachments.iter().find(|attachment| attachment.name == name)
     }
 
-    /// Whether it supports this constraint.
+    /// Returns true if it supports this constraint.
     pub fn heeds(&self, constraint: ConstraintKind) -> bool {
         self.heeds.contains(&constraint)
     }
@@ -98,8 +98,8 @@ pub(crate) trait DeformMethod: Options {
         Ok(())
     }
 
-    /// Whether examples bend the surface by their weights, 0 being rest. Otherwise they only add to the handles'
-    /// effect, and a weight multiplies its example's addition.
+    /// Returns true if examples bend the surface by their weights, 0 being rest. Otherwise they only add to the
+    /// handles' effect, and a weight multiplies its example's addition.
     fn examples_bend(&self) -> bool {
         true
     }
@@ -114,7 +114,7 @@ pub(crate) trait DeformMethod: Options {
         HandleFit::Exact
     }
 
-    /// Whether [`crate::Constraints::continuity`] has an effect.
+    /// Returns true if [`crate::Constraints::continuity`] has an effect.
     fn has_continuity(&self) -> bool {
         false
     }
@@ -135,13 +135,14 @@ pub(crate) trait DeformMethod: Options {
         0
     }
 
-    /// Whether it can be bound with an ordering of power 1 instead of its own, by the Laplacian's factor, which takes
+    /// Returns true if it can be bound with an ordering of power 1 instead of its own, by the Laplacian's factor, which takes
     /// less memory and more time.
     fn takes_first_power(&self) -> bool {
         false
     }
 
-    /// Whether each vertex of a handle can have its own place, by an offset from the handle's motion ([`crate::handles::offsets::Offsets`]).
+    /// Returns true if each vertex of a handle can have its own place, by an offset from the handle's motion
+    /// ([`crate::handles::offsets::Offsets`]).
     fn takes_places(&self) -> bool {
         false
     }

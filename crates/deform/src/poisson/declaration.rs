@@ -16,8 +16,9 @@ use crate::{BindError, Picture, SolveError, Warning};
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "poisson",
     title: "Gradient editing",
-    when_to_use: "Spreads the handles' turns and stretches over the surface, at once and beyond half a turn: for bends \
-                  and twists of detailed shapes. A handle that is only moved turns nothing, and details shear there.",
+    when_to_use: "Spreads the handles' turns and stretches over the surface, in one step and beyond half a turn: for \
+                  bends and twists of detailed shapes. A handle that is only moved turns nothing, and details shear \
+                  there.",
     keywords: "poisson gradient harmonic geodesic material propagation",
     picture: Picture::Arrows,
     slider: None,

@@ -37,7 +37,7 @@ pub(crate) struct Bodies {
     pub(super) state: State,
     /// Steps towards the present targets since the matrix was last factored.
     pub(super) age: u32,
-    /// Whether the matrix was factored at another pose than the rest pose.
+    /// True if the matrix was factored at another pose than the rest pose.
     pub(super) is_renewed: bool,
     /// The relative decrease of the energy below which iteration ends.
     pub(super) tolerance: f64,
@@ -131,7 +131,7 @@ impl Bodies {
         }
     }
 
-    /// Whether no step lowers the energy although the pose has not converged.
+    /// Returns true if no step lowers the energy although the pose has not converged.
     pub fn has_stalled(&self) -> bool {
         self.state == State::Steps(rule::State::Stalled)
     }

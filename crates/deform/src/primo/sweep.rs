@@ -48,7 +48,7 @@ impl Pose {
         fit(&sum, self.rotations[prism])
     }
 
-    /// Whether some prism is rotated by more than a quarter turn from a neighbour.
+    /// Returns true if some prism is rotated by more than a quarter turn from a neighbour.
     pub fn is_folded(&self, joints: &Joints) -> bool {
         (0..joints.count()).into_par_iter().with_min_len(CHUNK).any(|prism| {
             let own = self.rotations[prism];

@@ -395,7 +395,7 @@ impl ShellsSolver {
 fn warnings(options: &Shells, energy: &Energy) -> Vec<String> {
     let mut sentences = Vec::new();
     if options.volume > 0.0 && energy.enclosed.parts.is_empty() {
-        let sentence = "nothing that is bent is closed, so it has no volume to keep: `volume` changes nothing";
+        let sentence = "no bent part is closed, so there is no volume to keep: `volume` has no effect";
         sentences.push(sentence.to_owned());
     }
     sentences.extend(crate::operators::repairs(energy.elements.flat_faces));

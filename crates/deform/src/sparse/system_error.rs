@@ -56,7 +56,7 @@ impl SystemError {
         }
     }
 
-    /// Whether memory was too small.
+    /// Returns true if memory was too small.
     pub fn is_for_memory(self) -> bool {
         matches!(self, Self::Budget(Limit::Bytes(_)) | Self::OutOfMemory)
     }

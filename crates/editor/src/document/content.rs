@@ -62,7 +62,7 @@ pub struct Content {
     pub(crate) access: Arc<Access>,
     /// The rest shape's displacements from the file's.
     pub(crate) rest: Arc<Vec<DVec3>>,
-    /// Whether a shape was applied; if not, `rest` is zero.
+    /// True if a shape was applied; if not, `rest` is zero.
     pub(crate) applied: bool,
     /// The present shape's displacements from the rest shape.
     pub(crate) from_rest: Arc<Vec<DVec3>>,
@@ -72,7 +72,7 @@ pub struct Content {
     pub(crate) kept: Option<Arc<KeptShape>>,
     /// The present shape's corrections by hand, as far as they are still visible; `None` without any.
     pub(crate) corrections: Option<Arc<Vec<DVec3>>>,
-    /// Whether `from_rest` is final for the handles' transforms.
+    /// True if `from_rest` is final for the handles' transforms.
     pub(crate) settled: bool,
     /// The full values of which handles and attachments are a share; `None` if they are shown in full.
     pub(crate) strength: Option<Arc<Strength>>,

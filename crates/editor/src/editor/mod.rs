@@ -81,9 +81,8 @@ impl Editor {
         let lit = self.gesture.as_ref().map_or((Lit::Pointed, Vec::new()), |gesture| {
             (gesture.lit(), gesture.shapes(&self.view))
         });
-        let pointer_px = self.pointer.map(|pointer| pointer.position_px);
         self.overlay
-            .renew(lit, &self.workspace, &self.view, &self.settings, pointer_px);
+            .renew(lit, &self.workspace, &self.view, &self.settings, self.pointer);
     }
 
     fn dispatch(&mut self, event: Event) {
@@ -183,7 +182,7 @@ impl Editor {
         (&mut self.gesture, context)
     }
 
-    /// Passes an event to the active gesture, if there is one, and returns what comes next.
+    /// Passes an event to the active gesture, if there is one, and returns the next step.
     fn ask_gesture(&mut self, ask: impl FnOnce(&mut dyn Gesture, &mut Context<'_>) -> Next) -> Option<Next> {
         let (gesture, mut context) = self.parts();
         let next = ask(gesture.as_deref_mut()?, &mut context);
@@ -263,8 +262,7 @@ impl Editor {
             self.workspace.refusal = None;
         }
         if activity == Some(Activity::Dragging) && scope == Scope::Document {
-            self.workspace
-                .refuse("The drag that was under way has been taken back: drag once more.");
+            self.workspace.refuse("The active drag was cancelled: drag again.");
         }
         // Undo during a drag aborts the drag, and nothing before it.
         if !(had_gesture && scope == Scope::History) {
@@ -382,8 +380,8 @@ impl Editor {
         self.gesture.as_ref().is_some_and(|gesture| gesture.is_looking())
     }
 
-    /// Whether the event must wait: for the hierarchy of the drawn shape, for the result of an outline, or for events
-    /// that wait already.
+    /// Returns true if the event must wait: for the hierarchy of the drawn shape, for the result of an outline, or for
+    /// events that wait already.
     fn must_wait(&mut self, event: &Event) -> bool {
         let waits = !self.waiting.is_empty() || self.is_looking();
         match event {

@@ -97,6 +97,7 @@ impl Editor {
         match &self.gesture {
             Some(gesture) => gesture.cursor(),
             None if self.overlay.hovered.is_some() || self.overlay.pointed_control.is_some() => Cursor::Grab,
+            None if self.overlay.takes_handle => Cursor::Grab,
             None if self.settings.mode == ToolMode::Pose && !self.overlay.shapes.is_empty() => Cursor::Grab,
             None if self.overlay.is_over_surface && self.settings.mode != ToolMode::Select => Cursor::Brush,
             None => Cursor::Arrow,
@@ -248,7 +249,7 @@ impl Editor {
         self.key_map.shortcuts(command)
     }
 
-    /// Whether the command has an effect now.
+    /// Returns true if the command has an effect now.
     pub fn is_enabled(&self, command: &Command) -> bool {
         self.unavailable_because(command).is_none()
     }
@@ -262,13 +263,13 @@ impl Editor {
         })
     }
 
-    /// Whether a gesture is active that Esc ends: a stroke, a drag, picking a pivot.
+    /// Returns true if a gesture is active that Esc ends: a stroke, a drag, picking a pivot.
     pub fn is_acting(&self) -> bool {
         self.gesture.is_some() || self.settings.wants_pivot
     }
 
-    /// Whether shape and regions are final: no drag or stroke is active, and no job runs except those that prepare for
-    /// the pointer or the first drag.
+    /// Returns true if shape and regions are final: no drag or stroke is active, and no job runs except those that
+    /// prepare for the pointer or the first drag.
     pub fn is_settled(&self) -> bool {
         let is_displaced = self.document().is_displaced();
         let awaited = |kind: JobKind| kind.is_awaited() && (kind != JobKind::Order || is_displaced);

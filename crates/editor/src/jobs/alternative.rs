@@ -16,7 +16,7 @@ use crate::Setup;
 use crate::document::Document;
 
 /// The message about a method whose job a person has stopped.
-const STOPPED: &str = "it was stopped: compare again to go on";
+const STOPPED: &str = "it was stopped: compare again";
 
 /// One method's result for the present edit.
 #[derive(Debug)]

@@ -117,7 +117,7 @@ macro_rules! jobs {
 jobs! {
     /// The hierarchy for picking under the pointer, built or refitted to the present shape.
     pick: Pick(Pickable) = Row {
-        doing: "getting the surface ready for the pointer",
+        doing: "preparing the surface for the pointer",
         is_awaited: false,
         is_named: true,
     };
@@ -130,24 +130,24 @@ jobs! {
     /// The surface, or the control points alone, for the present handle transforms.
     solve: Solve(SolveResult) = Row { doing: "bending", is_awaited: true, is_named: false };
     /// The vertices of a region's mirror image, ascending.
-    mirror: Mirror(Vec<usize>) = Row { doing: "looking for the mirror image", is_awaited: true, is_named: true };
+    mirror: Mirror(Vec<usize>) = Row { doing: "computing the mirror image", is_awaited: true, is_named: true };
     /// The plane across which the shape is its own mirror image, and the pairs of vertices; `None` if it has none.
     symmetry: Symmetry(Option<Arc<BothSides>>) = Row {
-        doing: "looking for the plane of symmetry",
+        doing: "finding the plane of symmetry",
         is_awaited: true,
         is_named: true,
     };
     /// The vertices inside an outline on the screen, ascending.
-    enclose: Enclose(Vec<SurfaceVertex>) = Row { doing: "looking for what is inside", is_awaited: true, is_named: true };
+    enclose: Enclose(Vec<SurfaceVertex>) = Row { doing: "finding the enclosed vertices", is_awaited: true, is_named: true };
     /// Another method's result for the edit.
     compare: Compare(Box<Compared>) = Row { doing: "comparing methods", is_awaited: false, is_named: false };
     /// Weights or base of the present binding, for display.
-    inspect: Inspect(Inspected) = Row { doing: "looking into the binding", is_awaited: true, is_named: false };
+    inspect: Inspect(Inspected) = Row { doing: "inspecting the binding", is_awaited: true, is_named: false };
     /// The joint of the limb under the pointer; `None` if there is none.
-    joint: Joint(Option<Arc<Joint>>) = Row { doing: "looking for the joint", is_awaited: false, is_named: false };
+    joint: Joint(Option<Arc<Joint>>) = Row { doing: "finding the joint", is_awaited: false, is_named: false };
     /// The places where the present shape passes through itself.
     intersect: Intersect(Intersections) = Row {
-        doing: "looking for where the shape passes through itself",
+        doing: "finding places where the shape passes through itself",
         is_awaited: false,
         is_named: false,
     };

@@ -109,7 +109,7 @@ impl ClosedLine {
         Some(Self { low, high, bands })
     }
 
-    /// Whether a point is inside, by the number of edges to its right.
+    /// Returns true if a point is inside, by the number of edges to its right.
     fn holds(&self, p: DVec2) -> bool {
         if !(p.cmpge(self.low).all() && p.cmple(self.high).all()) {
             return false;

@@ -62,8 +62,8 @@ impl Gesture for OutlineStroke {
     fn status(&self, _: &Workspace, _: &View) -> Option<String> {
         let shape = if self.shape == StrokeShape::Box { "box" } else { "lasso" };
         Some(match self.phase {
-            Phase::Drawing => format!("Drawing a {shape}: let go to paint what is inside, Esc to leave it"),
-            Phase::Looking => format!("Looking for what is in the {shape}: Esc to leave it"),
+            Phase::Drawing => format!("Drawing a {shape}: release to paint everything inside, Esc to cancel"),
+            Phase::Looking => format!("Finding the vertices in the {shape}: Esc to cancel"),
         })
     }
 

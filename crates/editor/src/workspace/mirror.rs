@@ -45,7 +45,7 @@ pub(crate) fn take_mirrored(workspace: &mut Workspace, is_idle: bool) {
     };
     let is_other = workspace.document.versions().of(Aspect::Paint) != paint;
     if is_other || !is_idle {
-        workspace.refuse("The regions have changed while the mirror image was looked for: mirror again.");
+        workspace.refuse("The regions changed while the mirror image was computed: mirror again.");
         return;
     }
     match purpose {
@@ -75,8 +75,10 @@ fn twin_of(workspace: &mut Workspace, id: HandleId, image: &[usize], plane: Mirr
         .filter(|&vertex| !matches!(workspace.document.paint[vertex], Paint::Handle(_)))
         .collect();
     if image.is_empty() {
-        workspace
-            .refuse("The handle has no mirror image on the surface that is free: choose another axis, or paint it.");
+        workspace.refuse(
+            "The handle's mirror image has no vertex that can become its twin: choose another axis, or paint the \
+             twin.",
+        );
         return;
     }
     workspace.jobs.drop_solves();

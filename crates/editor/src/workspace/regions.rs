@@ -44,7 +44,7 @@ impl RegionAction {
             Self::Grow => "Grow",
             Self::Shrink => "Shrink",
             Self::Invert => "Invert",
-            Self::EverythingBut => "Everything but",
+            Self::EverythingBut => "Fix all but",
             Self::SmoothBorder => "Smooth border of",
             Self::FillParts => "Fill parts of",
             Self::Mirror(_) => "Mirror",
@@ -62,7 +62,7 @@ pub(crate) fn act_on_region(workspace: &mut Workspace, role: Paint, action: Regi
     };
     let is_member = members_of(workspace, role);
     if !is_member.contains(&true) {
-        workspace.refuse("There is nothing painted to do this with: paint first.");
+        workspace.refuse("Nothing is painted: paint a region first.");
         return;
     }
     let what = name_of(workspace, role);

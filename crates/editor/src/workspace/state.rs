@@ -100,7 +100,7 @@ impl Workspace {
         self.colours.change_all();
     }
 
-    /// Whether anything was painted at the end of the last event outside a stroke.
+    /// Returns true if anything was painted at the end of the last event outside a stroke.
     pub(crate) fn is_painted(&self) -> bool {
         self.painted.0
     }
@@ -188,7 +188,7 @@ impl Workspace {
         self.step(name, |workspace| change(&mut workspace.document))
     }
 
-    /// Whether a widget is adjusting a step.
+    /// Returns true if a widget is adjusting a step.
     pub(crate) fn is_adjusting(&self) -> bool {
         self.adjusting.is_some()
     }

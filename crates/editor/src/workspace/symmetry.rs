@@ -54,7 +54,7 @@ pub(crate) fn take_symmetry(workspace: &mut Workspace) {
     let found = workspace.jobs.computed.slots.symmetry.take().flatten();
     if found.is_none() {
         workspace.symmetry = Symmetry::None;
-        workspace.refuse("This shape has no plane of symmetry: choose an axis for one, or paint each side by itself.");
+        workspace.refuse("This shape has no plane of symmetry: choose an axis, or paint one side at a time.");
     }
     workspace.both_sides = found;
 }

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use glam::{DVec3, Vec3};
-use pliant_io::{Appearance, Group, Image, Material, Polygons, UnsavedShape};
+use pliant_io::{Appearance, Group, Image, Material, OriginalMaterial, Polygons, UnsavedShape};
 use pliant_mesh::{Drawn, DrawnVertex, Model, vertex_normals};
 use pliant_stitch::{Age, Attributes, NewShape, VertexSource};
 
@@ -27,7 +27,7 @@ impl<'a> Source<'a> {
         Self {
             model: &loaded.model,
             drawn,
-            look: loaded.scene.appearance(),
+            look: loaded.scene.appearance_with_originals(),
             polygons: loaded.scene.polygons(),
         }
     }
@@ -216,6 +216,8 @@ fn add_groups(all: &mut Appearance, look: &Appearance) {
                 &mut own.emissive_map,
             ];
             maps.into_iter().flatten().for_each(|map| map.image = images[map.image]);
+            let originals = own.original.iter_mut().flat_map(OriginalMaterial::images_mut);
+            originals.for_each(|image| *image = images[*image]);
             let known = all.materials.iter().position(|other| *other == own);
             known.unwrap_or_else(|| {
                 all.materials.push(own);

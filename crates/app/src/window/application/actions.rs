@@ -140,8 +140,8 @@ impl Application {
         }
     }
 
-    /// Whether saving under a path from the window's own dialog would replace a file other than the open one; the
-    /// system's dialogs ask that themselves.
+    /// Returns true if saving under a path from the window's own dialog would replace a file other than the open one;
+    /// the system's dialogs ask that themselves.
     fn would_be_lost(&self, purpose: Purpose, path: &Path) -> bool {
         let path = match purpose {
             Purpose::SaveProject => project_path(path.to_owned()),

@@ -210,11 +210,7 @@ impl Application {
         }
         if !Arc::ptr_eq(shown.drawn, shown.displacements) {
             let at = rect.center_bottom() + vec2(-90.0, -34.0);
-            let shows = if shown.look.original {
-                "As it was opened"
-            } else {
-                "Smooth base"
-            };
+            let shows = if shown.look.original { "Original" } else { "Smooth base" };
             axis_ball::readout(ui.painter(), at, shows);
         }
         drop_target(ui, rect);
@@ -259,8 +255,8 @@ fn drop_target(ui: &egui::Ui, rect: egui::Rect) {
     let Some(path) = held else { return };
     let name = path.as_deref().map(file_name);
     let text = name.map_or_else(
-        || "Let go to open it".to_owned(),
-        |name| format!("Let go to open {name}"),
+        || "Release to open it".to_owned(),
+        |name| format!("Release to open {name}"),
     );
     ui.painter().rect_stroke(
         rect.shrink(6.0),

@@ -45,7 +45,7 @@ use crate::window::session::{Session, Source};
 use crate::window::viewport::pose_queue::PoseQueue;
 use pliant_engine::EngineError;
 
-/// How long the view must rest before it is drawn with smooth borders on a software device.
+/// The time that the view must rest before a software device draws it with smooth borders.
 pub(super) const REST: Duration = Duration::from_millis(300);
 
 /// The window's state beside the editor's: files, threads, the GPU, questions and notes.
@@ -65,9 +65,9 @@ pub struct Application {
     pub(super) settings: SettingsFile,
     pub(super) recovery: Option<Recovery>,
     pub(super) palette: Option<Palette>,
-    /// Whether this is a person's window, which shows the first steps.
+    /// True if this is a person's window, which shows the first steps.
     pub(super) shows_hints: bool,
-    /// Whether the panel beside the view is hidden.
+    /// True if the panel beside the view is hidden.
     pub(super) is_panel_hidden: bool,
     pub(super) log: Log,
     pub(super) keys: KeysWindow,
@@ -86,7 +86,7 @@ pub struct Application {
     /// The recovered session that is open now, until this one keeps or saves its work.
     pub(super) recovered_from: Option<PathBuf>,
     pub(super) longest_frame: Duration,
-    /// Whether the window is still to fill the screen, as it did last time.
+    /// True if the window is still to fill the screen, as it did last time.
     pub(super) is_to_fill_screen: bool,
     /// The places of the window's content, its bars and its panel in the last frame.
     pub(super) layout: [egui::Rect; 6],
@@ -197,7 +197,7 @@ impl Application {
         context.egui_ctx.add_plugin(EventQueue::default());
         let Some(state) = context.wgpu_render_state.clone() else {
             return Err(EngineError::System(
-                "the window has no graphics device any more".to_owned(),
+                "the window has lost its graphics device".to_owned(),
             ));
         };
         let system = |error: pliant_render::RenderError| EngineError::System(error.to_string());
@@ -217,7 +217,7 @@ impl Application {
             self.viewport.show(drawing, surface, displacements, lowest);
         }
         self.notes.headline = Some(Note::Done(
-            "The graphics device was lost and has been opened again; the document is as it was.".to_owned(),
+            "The graphics device was lost and opened again; the document is unchanged.".to_owned(),
         ));
         Ok(())
     }
@@ -227,7 +227,7 @@ impl Application {
         self.input.numpad.extend(digits);
     }
 
-    /// Whether the graphics device is lost, so that the window must be opened again.
+    /// Returns true if the graphics device is lost, so that the window must be opened again.
     pub fn has_lost_its_device(&self) -> bool {
         self.viewport.is_lost()
     }
@@ -247,12 +247,13 @@ impl Application {
         self.session.open.as_ref()?.path.as_deref()
     }
 
-    /// Whether materials are requested and their images are still being decoded.
+    /// Returns true if materials are requested and their images are still being decoded.
     pub fn is_loading_textures(&self) -> bool {
         self.editor.view().look.shading == Shading::Material && self.viewport.awaits_images()
     }
 
-    /// Whether nothing is in progress: no job, no file being read or written, and the picture shows the present shape.
+    /// Returns true if nothing is in progress: no job, no file being read or written, and the picture shows the present
+    /// shape.
     pub fn is_settled(&self) -> bool {
         let view = self.editor.view();
         let shown = self

@@ -112,7 +112,7 @@ impl Workers {
         };
         if let Err(error) = std::thread::Builder::new().name(name.to_owned()).spawn(body) {
             self.send(failed_to_start(format!(
-                "the system gives no thread for it ({error}): close other programs"
+                "the system can't start a thread for it ({error}): close other programs"
             )));
         }
     }
@@ -179,5 +179,5 @@ fn panic_sentence(panic: &(dyn std::any::Any + Send)) -> String {
         .copied()
         .or_else(|| panic.downcast_ref::<String>().map(String::as_str));
     let words = words.unwrap_or("no reason given");
-    format!("an inner fault stopped it ({words}): the document is as it was; please report this")
+    format!("an internal error stopped it ({words}): the document is unchanged; please report this")
 }

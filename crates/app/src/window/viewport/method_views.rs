@@ -31,14 +31,14 @@ pub struct MethodViews {
 
 /// The result of showing the views.
 pub struct Shown {
-    /// Whether a second drawing is worth it when nothing has changed for a while.
+    /// True if a second drawing is worth it when nothing has changed for a while.
     pub again: bool,
     /// The command that was clicked.
     pub command: Option<Command>,
 }
 
 impl MethodViews {
-    /// Whether every view shows its method's result for the present edit.
+    /// Returns true if every view shows its method's result for the present edit.
     pub fn are_settled(&self, comparison: &Comparison) -> bool {
         let alternatives = comparison.alternatives();
         let mut pairs = self.views.iter().zip(alternatives);
@@ -244,7 +244,7 @@ fn caption(ui: &Ui, cell: Rect, picture: Rect, alternative: &Alternative, proble
         );
         write(at + vec2(0.0, 32.0), &sheet::stretch(stretch), 11.0, colour);
     } else {
-        write(at + vec2(0.0, 17.0), "being bound …", 11.0, weak);
+        write(at + vec2(0.0, 17.0), "binding …", 11.0, weak);
     }
 }
 
@@ -253,7 +253,7 @@ fn button(ui: &Ui, cell: Rect, number: usize, alternative: &Alternative, is_own:
     let declaration = alternative.method.declaration();
     let response = ui.interact(cell, ui.scope_id().with(("method view", number)), Sense::click());
     response.widget_info(|| {
-        let label = format!("Take {}", declaration.title);
+        let label = format!("Use {}", declaration.title);
         egui::WidgetInfo::selected(egui::Role::Button, true, is_own, label)
     });
     let stroke = match (is_own, response.hovered() || response.has_focus()) {
