@@ -7,8 +7,9 @@ use crate::part::Part;
 use crate::shape::{Age, NewShape, TriangleSource, VertexSource};
 
 impl NewShape {
-    /// Deletes the chosen vertices of a part's surface (a flag for each) and the triangles that use them. Vertices that
-    /// only those triangles used go, too; all others keep their order.
+    /// Deletes the chosen vertices of a part's surface (a flag for each) and the triangles that use them. Triangles with
+    /// a corner that is not finite go, too, and so do vertices that only deleted triangles used; all others keep their
+    /// order.
     ///
     /// # Errors
     /// [`StitchError::NothingSelected`] and [`StitchError::NothingLeft`].
@@ -21,7 +22,8 @@ impl NewShape {
             let surface = part.model.drawn.surface_vertex(vertex);
             surface.is_some_and(|surface| delete.get(surface.index()) == Some(&true))
         };
-        let goes = |corners: &[DrawnVertex; 3]| corners.iter().any(|&corner| is_deleted(corner));
+        let goes =
+            |corners: &[DrawnVertex; 3]| part.is_broken(corners) || corners.iter().any(|&corner| is_deleted(corner));
         let (mut was_used, mut is_used) = (vec![false; drawn.positions.len()], vec![false; drawn.positions.len()]);
         for corners in &drawn.triangles {
             let stays = !goes(corners);

@@ -35,12 +35,30 @@ pub enum StitchError {
         /// Its fault.
         fault: BorderFault,
     },
+    /// The surface has no other borders than the outer ones of open sheets, and none was named.
+    #[error(
+        "the surface has no hole: the border at vertex {vertex} is the outer border of an open sheet, which is filled \
+         only if it is named by a vertex or by its length"
+    )]
+    OnlyOuterBorders {
+        /// A vertex of the longest.
+        vertex: u32,
+    },
     /// The cut would leave nothing.
     #[error("the selection holds every triangle: select less, so that something is left")]
     NothingLeft,
     /// The cut has no vertex.
     #[error("the selection holds no vertex: select at least one")]
     NothingSelected,
+    /// B's transform leaves triangles without an area, because it flattens them or moves them too far.
+    #[error(
+        "the transform of B flattens {triangles} of its triangles, or moves them too far to compute with: move it less \
+         far, and scale every axis by more than 0"
+    )]
+    Transform {
+        /// The number of these triangles.
+        triangles: usize,
+    },
     /// The method refused to bend a part.
     #[error("{part} can't be bent to the common border: {source}")]
     Bind {

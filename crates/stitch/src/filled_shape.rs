@@ -18,22 +18,26 @@ use crate::shape::{Age, NewShape, TriangleSource, VertexSource};
 const SMOOTH: f64 = 0.866;
 
 impl NewShape {
-    /// Takes a whole part, unchanged.
+    /// Takes a whole part, unchanged but for the triangles that belong to no surface because a corner is not finite.
     pub fn whole(part: &Part<'_>) -> Self {
-        let count = part.drawn.triangles.len() as u32;
         let vertices = (0..part.drawn.positions.len() as u32).map(DrawnVertex);
         let source = |triangle| TriangleSource {
             part: 0,
             triangle,
             age: Age::Old,
         };
+        let all = (0..).zip(&part.drawn.triangles);
+        let sound: Vec<u32> = all
+            .filter(|(_, corners)| !part.is_broken(corners))
+            .map(|(triangle, _)| triangle)
+            .collect();
         Self {
             vertices: vertices.map(|vertex| VertexSource::Old { part: 0, vertex }).collect(),
             positions: part.drawn.positions.clone(),
             file_vertices: part.drawn.file_vertex.clone(),
             file_vertex_count: part.drawn.file_vertex_count,
-            triangles: part.drawn.triangles.clone(),
-            triangle_sources: (0..count).map(source).collect(),
+            triangles: sound.iter().map(|&t| part.drawn.triangles[t as usize]).collect(),
+            triangle_sources: sound.into_iter().map(source).collect(),
             ..Self::default()
         }
     }

@@ -38,7 +38,7 @@ mod shape;
 
 pub use borders::{Border, Borders};
 pub use error::{BorderFault, StitchError};
-pub use fill::{Filled, FilledHole, Holes, fill};
-pub use merge::{Joins, MergeError, Merged, Pair, PlacementOfB, Seam, merge};
+pub use fill::{Filled, FilledHole, Holes, Reason, Unfilled, fill};
+pub use merge::{Joins, MergeError, Merged, Pair, PartBending, PlacementOfB, Seam, merge};
 pub use part::{Attributes, Part};
 pub use shape::{Age, NewShape, TriangleSource, VertexSource};

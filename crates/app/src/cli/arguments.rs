@@ -231,10 +231,10 @@ pub(crate) struct MergeArguments {
 pub(crate) struct FillArguments {
     /// The file with holes: glb, gltf, obj, ply, stl or off
     pub file: PathBuf,
-    /// Fill the N longest holes alone; without it and --at, every hole
+    /// Fill the N longest borders alone; without it and --at, every hole but the outer border of an open sheet
     #[arg(long, value_name = "N", conflicts_with = "at", value_parser = RangedU64ValueParser::<usize>::new().range(1..=100_000_000))]
     pub largest: Option<usize>,
-    /// Fill the hole whose rim passes this vertex of the file alone
+    /// Fill the border that passes this vertex of the file alone
     #[arg(long, value_name = "VERTEX")]
     pub at: Option<u32>,
     /// Where to write, and what may be replaced.

@@ -3,34 +3,23 @@
 use std::path::Path;
 
 use pliant_editor::Selector;
-use pliant_mesh::WeldOptions;
 use pliant_stitch::{Attributes, NewShape, Part};
 use serde_json::json;
 
 use super::look::{Channels, Dressed, Source};
 use super::shape_report::{Change, judged};
-use super::{Outputs, Replace, ShapeCounts, Stitched, counted, lost, refused};
+use super::{Remaking, ShapeCounts, Stitched, counted, lost, refused};
 use crate::EngineError;
-use crate::apply::check_not_empty;
 use crate::files::{self, Staging};
-use crate::loading::load;
 use crate::watch::Watch;
 
 /// The input of [`cut`].
 #[derive(Clone, Copy, Debug)]
 pub struct Cut<'a> {
-    /// The file to cut.
-    pub file: &'a Path,
+    /// The file to cut, and the file to write.
+    pub remaking: Remaking<'a>,
     /// The file of the selector whose vertices are deleted.
     pub delete: &'a Path,
-    /// The file to write.
-    pub output: &'a Path,
-    /// The file for the report, if one is wanted.
-    pub report: Option<&'a Path>,
-    /// Whether OUT may be FILE.
-    pub replace: Replace,
-    /// The joining of FILE's vertices.
-    pub weld: WeldOptions,
 }
 
 /// Deletes vertices of a file, with the triangles that use them, and writes the result beside its place.
@@ -38,28 +27,17 @@ pub struct Cut<'a> {
 /// # Errors
 /// Any refusal of the file, of the selection or of the result.
 pub fn cut(job: &Cut<'_>, watch: &Watch, staging: &Staging) -> Result<Stitched, EngineError> {
-    let &Cut {
-        file,
-        output,
-        report,
-        replace,
-        ..
-    } = job;
-    let outputs = Outputs {
-        output,
-        report,
-        replace,
-    };
-    outputs.check_paths()?;
+    let Remaking {
+        file, output, report, ..
+    } = job.remaking;
+    job.remaking.check_paths()?;
     watch.note_read("--delete", job.delete);
     let of_selector = |source| EngineError::Edit {
         edit: job.delete.to_owned(),
         source,
     };
     let selector = Selector::parse(&files::read_text(job.delete)?).map_err(of_selector)?;
-    let loaded = load(file, &job.weld, watch)?;
-    check_not_empty(file, &loaded.model)?;
-    outputs.refuse_inputs(file, watch)?;
+    let [loaded] = job.remaking.load([file], watch)?;
     let selection = selector.evaluate(&loaded.model).map_err(of_selector)?;
     let mut delete = vec![false; loaded.model.surface.positions.len()];
     selection.iter().for_each(|vertex| delete[vertex.index()] = true);
@@ -76,13 +54,14 @@ pub fn cut(job: &Cut<'_>, watch: &Watch, staging: &Staging) -> Result<Stitched, 
     };
     let mut shape = NewShape::cut(&part, &delete).map_err(|error| refused(file, error))?;
     let dressed = Dressed::of(&mut shape, &sources, Channels::of(&sources));
-    let gone = drawn.triangles.len() - dressed.triangles().len();
+    let broken = loaded.model.findings.non_finite_triangles.count;
+    let gone = drawn.triangles.len() - broken - dressed.triangles().len();
     let mut warnings = loaded.scene.notes().to_vec();
     warnings.extend(lost(&loaded, output)?);
     let after = report
         .map(|_| judged(&shape, dressed.triangles(), |_| Change::OfPart(0), watch))
         .transpose()?;
-    let (staged, warnings) = outputs.stage(
+    let (staged, warnings) = job.remaking.stage(
         (&shape, &dressed),
         |warnings| {
             json!({

@@ -1,18 +1,14 @@
 //! Fills holes: a file in, a file out.
 
-use std::path::Path;
 use std::time::Instant;
 
-use pliant_mesh::WeldOptions;
-use pliant_stitch::{Age, FilledHole, Holes, NewShape, Part};
+use pliant_stitch::{Age, FilledHole, Holes, NewShape, Part, Reason};
 use serde_json::json;
 
 use super::look::{Channels, Dressed, Source};
 use super::shape_report::{Change, judged};
-use super::{Outputs, Replace, ShapeCounts, Stitched, counted, lost, refused};
-use crate::apply::check_not_empty;
+use super::{Remaking, ShapeCounts, Stitched, counted, lost, refused};
 use crate::files::Staging;
-use crate::loading::load;
 use crate::report::ms_since;
 use crate::watch::Watch;
 use crate::{EngineError, memory};
@@ -20,18 +16,10 @@ use crate::{EngineError, memory};
 /// The input of [`fill`].
 #[derive(Clone, Copy, Debug)]
 pub struct Fill<'a> {
-    /// The file with holes.
-    pub file: &'a Path,
+    /// The file with holes, and the file to write.
+    pub remaking: Remaking<'a>,
     /// The holes to fill.
     pub holes: Holes,
-    /// The file to write.
-    pub output: &'a Path,
-    /// The file for the report, if one is wanted.
-    pub report: Option<&'a Path>,
-    /// Whether OUT may be FILE.
-    pub replace: Replace,
-    /// The joining of FILE's vertices.
-    pub weld: WeldOptions,
 }
 
 /// Fills holes of a file and writes the result beside its place.
@@ -39,23 +27,12 @@ pub struct Fill<'a> {
 /// # Errors
 /// Any refusal of the file, of the holes or of the result.
 pub fn fill(job: &Fill<'_>, watch: &Watch, staging: &Staging) -> Result<Stitched, EngineError> {
-    let &Fill {
-        file,
-        output,
-        report,
-        replace,
-        ..
-    } = job;
-    let outputs = Outputs {
-        output,
-        report,
-        replace,
-    };
-    outputs.check_paths()?;
+    let Remaking {
+        file, output, report, ..
+    } = job.remaking;
+    job.remaking.check_paths()?;
     let start = Instant::now();
-    let loaded = load(file, &job.weld, watch)?;
-    check_not_empty(file, &loaded.model)?;
-    outputs.refuse_inputs(file, watch)?;
+    let [loaded] = job.remaking.load([file], watch)?;
     let load_ms = ms_since(start);
 
     let progress = watch.begin("filling");
@@ -86,7 +63,7 @@ pub fn fill(job: &Fill<'_>, watch: &Watch, staging: &Staging) -> Result<Stitched
         (points + hole.points.len(), triangles + hole.triangles.len())
     });
     let mut warnings = loaded.scene.notes().to_vec();
-    warnings.extend(filled.passed_over.iter().map(ToString::to_string));
+    warnings.extend(filled.unfilled.iter().map(ToString::to_string));
     let flat = filled.holes.iter().filter(|hole| !hole.is_faired).count();
     if flat > 0 {
         let holes = counted(flat, "hole was", "holes were");
@@ -106,6 +83,10 @@ pub fn fill(job: &Fill<'_>, watch: &Watch, staging: &Staging) -> Result<Stitched
         let places = counted(crossings, "place", "places");
         warnings.push(format!("the new triangles pass through others in {places}"));
     }
+    let unfilled = |is_meant: &dyn Fn(Reason) -> bool| {
+        let own = filled.unfilled.iter().filter(|unfilled| is_meant(unfilled.reason));
+        own.map(|unfilled| unfilled.count).sum::<usize>()
+    };
     let hole_report = |hole: &FilledHole| {
         json!({
             "vertex": loaded.model.first_file_vertex(hole.border.vertices[0]).0,
@@ -116,12 +97,13 @@ pub fn fill(job: &Fill<'_>, watch: &Watch, staging: &Staging) -> Result<Stitched
             "faired": hole.is_faired,
         })
     };
-    let (staged, warnings) = outputs.stage(
+    let (staged, warnings) = job.remaking.stage(
         (&shape, &dressed),
         |warnings| {
             json!({
                 "holes_filled": filled.holes.len(),
-                "passed_over": filled.passed_over.len(),
+                "passed_over": unfilled(&|reason| reason != Reason::Outer),
+                "outer_borders": unfilled(&|reason| reason == Reason::Outer),
                 "vertices_added": points,
                 "triangles_added": triangles,
                 "before": ShapeCounts::of(&loaded.model),

@@ -161,7 +161,8 @@ fn a_noisy_sphere_with_many_holes_becomes_closed() {
         centres.iter().any(|c| p.normalize().distance(*c) < 0.08)
     }));
     let patches = filled(&holey, Holes::Every);
-    check_closed(&holey, &patches, patches.passed_over.len(), 0);
+    let open = patches.unfilled.iter().map(|unfilled| unfilled.count).sum();
+    check_closed(&holey, &patches, open, 0);
     assert!(patches.holes.iter().all(|hole| hole.is_faired));
 }
 
@@ -180,6 +181,24 @@ fn rims_of_hundreds_of_edges_and_slits_are_filled() {
         .map(|p| (p.length() - 1.0).abs())
         .fold(0.0, f64::max);
     assert!(off < 0.01, "{off}");
+}
+
+/// The shape of a large patch is found with few points; it is the same as that of a small one.
+#[test]
+fn a_cap_comes_back_for_any_number_of_edges_of_its_rim() {
+    let patch_of = |count: usize| {
+        let open = model(without(&shapes::uv_sphere(count / 3, count), |p| p.z > 0.85));
+        let filled = filled(&open, Holes::Every);
+        check_closed(&open, &filled, 0, 0);
+        filled.holes.into_iter().next().unwrap()
+    };
+    let diameter = 2.0 * (1.0_f64 - 0.85 * 0.85).sqrt();
+    for (count, least) in [(60, 0), (240, 0), (700, 8_000)] {
+        let hole = patch_of(count);
+        let off = hole.points.iter().map(|p| (p.length() - 1.0).abs()).fold(0.0, f64::max);
+        assert!(off < 0.02 * diameter, "{count}: {off}");
+        assert!(hole.points.len() > least, "{count}: {}", hole.points.len());
+    }
 }
 
 /// Needle edges in a rim don't ask for a patch of millions of points.

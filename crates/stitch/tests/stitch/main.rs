@@ -4,3 +4,4 @@
 mod fill;
 mod made;
 mod merge;
+mod open;
