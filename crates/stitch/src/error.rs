@@ -35,6 +35,22 @@ pub enum StitchError {
         /// Its fault.
         fault: BorderFault,
     },
+    /// Two given vertices are on one border.
+    #[error(
+        "vertices {} and {} are on one border, but a tube needs two: give a vertex of another border", .vertices[0], .vertices[1]
+    )]
+    SameBorder {
+        /// The vertices.
+        vertices: [u32; 2],
+    },
+    /// A vertex or an edge joins two borders, so that no tube fits between them.
+    #[error(
+        "the borders at vertices {} and {} touch, so no tube fits between them: delete the vertices there first", .vertices[0], .vertices[1]
+    )]
+    BordersTouch {
+        /// A vertex of each.
+        vertices: [u32; 2],
+    },
     /// The surface has no other borders than the outer ones of open sheets, and none was named.
     #[error(
         "the surface has no hole: the border at vertex {vertex} is the outer border of an open sheet, which is filled \
@@ -47,6 +63,17 @@ pub enum StitchError {
     /// The cut would leave nothing.
     #[error("the selection holds every triangle: select less, so that something is left")]
     NothingLeft,
+    /// The whole surface is on one side of the plane.
+    #[error(
+        "the plane does not cross the surface, which lies between the levels {from} and {to} along its unit normal: \
+         choose a level between these"
+    )]
+    PlaneMisses {
+        /// The lowest level of a vertex along the unit normal, in world units.
+        from: f64,
+        /// The highest.
+        to: f64,
+    },
     /// The cut has no vertex.
     #[error("the selection holds no vertex: select at least one")]
     NothingSelected,

@@ -34,6 +34,7 @@ mod fill;
 mod filled_shape;
 mod merge;
 mod part;
+mod plane;
 mod shape;
 
 pub use borders::{Border, Borders};
@@ -41,4 +42,5 @@ pub use error::{BorderFault, StitchError};
 pub use fill::{Filled, FilledHole, Holes, Reason, Unfilled, fill};
 pub use merge::{Joins, MergeError, Merged, Pair, PartBending, PlacementOfB, Seam, merge};
 pub use part::{Attributes, Part};
+pub use plane::{Keep, Plane};
 pub use shape::{Age, NewShape, TriangleSource, VertexSource};

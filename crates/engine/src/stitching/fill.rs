@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use pliant_stitch::{Age, FilledHole, Holes, NewShape, Part, Reason};
+use pliant_stitch::{Age, FilledHole, Holes, NewShape, Reason};
 use serde_json::json;
 
 use super::look::{Channels, Dressed, Source};
@@ -42,19 +42,8 @@ pub fn fill(job: &Fill<'_>, watch: &Watch, staging: &Staging) -> Result<Stitched
     let filled = filled.map_err(|error| refused(file, error))?;
     let drawn = loaded.model.rest();
     let sources = [Source::of(&loaded, &drawn)];
-    let [source] = &sources;
     let channels = Channels::of(&sources);
-    let value = |vertex, channel| channels.value(&source.look, vertex, channel);
-    let group = |triangle| source.group(triangle);
-    let normal = |vertex| source.normal(vertex);
-    let part = Part {
-        model: &loaded.model,
-        drawn: &drawn,
-        group: &group,
-        attributes: channels.attributes(&value),
-        normals: source.look.normals.is_some().then_some(&normal as _),
-    };
-    let shape = NewShape::filled(&part, &filled, budget, &watch.cancel);
+    let shape = sources[0].with_part(channels, |part| NewShape::filled(part, &filled, budget, &watch.cancel));
     let mut shape = shape.map_err(|error| refused(file, error))?;
     let dressed = Dressed::of(&mut shape, &sources, channels);
     let fill_ms = ms_since(start);
@@ -89,9 +78,9 @@ pub fn fill(job: &Fill<'_>, watch: &Watch, staging: &Staging) -> Result<Stitched
     };
     let hole_report = |hole: &FilledHole| {
         json!({
-            "vertex": loaded.model.first_file_vertex(hole.border.vertices[0]).0,
-            "edges": hole.border.vertices.len(),
-            "length": hole.border.length,
+            "vertex": loaded.model.first_file_vertex(hole.borders[0].vertices[0]).0,
+            "edges": hole.borders.iter().map(|border| border.vertices.len()).sum::<usize>(),
+            "length": hole.borders.iter().map(|border| border.length).sum::<f64>(),
             "points": hole.points.len(),
             "triangles": hole.triangles.len(),
             "faired": hole.is_faired,
@@ -119,10 +108,17 @@ pub fn fill(job: &Fill<'_>, watch: &Watch, staging: &Staging) -> Result<Stitched
         staging,
         watch,
     )?;
-    let holes = counted(filled.holes.len(), "hole", "holes");
+    let triangles = counted(triangles, "triangle", "triangles");
+    let done = match job.holes {
+        Holes::Between(_) => format!("joined 2 borders by a tube of {triangles}"),
+        _ => {
+            let holes = counted(filled.holes.len(), "hole", "holes");
+            format!("filled {holes} with {triangles}")
+        }
+    };
     Ok(Stitched {
         staged,
-        done: format!("filled {holes} with {}", counted(triangles, "triangle", "triangles")),
+        done,
         warnings,
         loaded: vec![loaded],
     })

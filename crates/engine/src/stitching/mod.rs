@@ -21,10 +21,10 @@ use crate::saving;
 use crate::watch::Watch;
 use look::Dressed;
 
-pub use cut::{Cut, cut};
+pub use cut::{Cut, CutAlong, cut};
 pub use fill::{Fill, fill};
 pub use merge::{Merge, merge};
-pub use pliant_stitch::Holes;
+pub use pliant_stitch::{Holes, Keep, Plane};
 pub use shape_report::ShapeCounts;
 
 /// Whether a new shape may take the place of the file that it was made from.

@@ -4,12 +4,12 @@ use std::fs;
 use std::path::Path;
 
 use pliant_engine::load;
-use pliant_engine::stitching::{Holes, Replace};
+use pliant_engine::stitching::{CutAlong, Holes, Keep, Plane, Replace};
 use pliant_engine::watch::Watch;
 use pliant_io::Format;
 use pliant_mesh::WeldOptions;
 
-use crate::made::{cut_out, filled, is_closed, merged, model, paths, textured_sphere};
+use crate::made::{cut_along, cut_out, filled, is_closed, merged, model, paths, textured_sphere};
 
 #[test]
 fn a_filled_file_of_every_format_is_closed_and_looks_as_before() {
@@ -219,4 +219,70 @@ fn a_part_that_did_not_settle_is_named() {
         let named = warnings.iter().any(|warning| warning.contains("had not settled"));
         assert_eq!(named, is_named, "{warnings:?}");
     }
+}
+
+/// Texture coordinates, normals and materials go on to the plane, in every format that has them.
+#[test]
+fn a_file_that_is_cut_along_a_plane_looks_as_before() {
+    let (_folder, [file]) = paths(["ball.obj"]);
+    textured_sphere(&file, 2.0);
+    let plane = Plane::of(glam::DVec3::new(0.1, 0.2, 1.0), 0.33).unwrap();
+    for format in Format::ALL {
+        let output = file.with_file_name(format!("half.{}", format.extension()));
+        cut_along(&file, CutAlong::Plane(plane, Keep::Negative), &output).unwrap();
+        let after = load(&output, &WeldOptions::default(), &Watch::default()).unwrap();
+        assert_eq!(after.model.topology.boundary_loops().len(), 1, "{format}");
+        let positions = after.model.rest_positions();
+        assert!(positions.iter().all(|&p| plane.distance(p) < 1e-6), "{format}");
+        let look = after.scene.appearance();
+        if matches!(format, Format::Glb | Format::Gltf | Format::Obj) {
+            assert_eq!(look.groups.len(), 2, "{format}");
+            let (uvs, normals) = (look.uvs.unwrap(), look.normals.unwrap());
+            for (v, position) in positions.iter().enumerate() {
+                let wanted = [0.5 + 0.4 * position.x, 0.5 - 0.4 * position.y];
+                let off = [0, 1].map(|k| (f64::from(uvs[v][k]) - wanted[k]).abs());
+                assert!(
+                    off[0].max(off[1]) < 1e-6,
+                    "{format}: {position} {:?} {wanted:?}",
+                    uvs[v]
+                );
+                let normal = glam::Vec3::from(normals[v]).as_dvec3();
+                assert!(normal.dot(position.normalize()) > 0.99, "{format}: {position} {normal}");
+            }
+        }
+    }
+}
+
+/// A sphere with two holes becomes a ring, and the texture coordinates of each border go on over its half of the tube.
+#[test]
+fn two_borders_of_a_file_are_joined_by_a_tube() {
+    let (_folder, [file, selector, open, output]) = paths(["ball.obj", "cut.json", "open.obj", "ring.glb"]);
+    textured_sphere(&file, 2.0);
+    let ends =
+        r#"{"union": [{"slab": {"axis": "z", "from": 0, "to": 0.1}}, {"slab": {"axis": "z", "from": 0.9, "to": 1}}]}"#;
+    fs::write(&selector, ends).unwrap();
+    cut_out(&file, &selector, &open).unwrap();
+    let before = model(&open);
+    let loops = before.topology.boundary_loops();
+    let ends = [0, 1].map(|k| before.first_file_vertex(loops[k][0]).0);
+    filled(&open, &output, Holes::Between(ends), Replace::Never).unwrap();
+    assert!(is_closed(&model(&output)));
+    let report = fs::read_to_string(output.with_extension("json")).unwrap();
+    let report: serde_json::Value = serde_json::from_str(&report).unwrap();
+    assert_eq!(
+        (&report["after"]["genus"], &report["after"]["components"]),
+        (&1.into(), &1.into())
+    );
+    let looks = load(&output, &WeldOptions::default(), &Watch::default())
+        .unwrap()
+        .scene
+        .appearance();
+    assert!(
+        looks
+            .uvs
+            .unwrap()
+            .iter()
+            .flatten()
+            .all(|number| (0.0..=1.0).contains(number))
+    );
 }

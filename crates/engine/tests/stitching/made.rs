@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use pliant_engine::files::Staging;
-use pliant_engine::stitching::{Cut, Fill, Holes, Merge, Remaking, Replace, Stitched, cut, fill, merge};
+use pliant_engine::stitching::{Cut, CutAlong, Fill, Holes, Merge, Remaking, Replace, Stitched, cut, fill, merge};
 use pliant_engine::watch::Watch;
 use pliant_engine::{EngineError, load};
 use pliant_mesh::{Model, WeldOptions, shapes};
@@ -58,9 +58,14 @@ pub fn filled(file: &Path, output: &Path, holes: Holes, replace: Replace) -> Res
 
 /// Cuts a file, and gives the warnings.
 pub fn cut_out(file: &Path, delete: &Path, output: &Path) -> Result<Vec<String>, EngineError> {
+    cut_along(file, CutAlong::Selector(delete), output)
+}
+
+/// Cuts a file in any way, and gives the warnings.
+pub fn cut_along(file: &Path, along: CutAlong<'_>, output: &Path) -> Result<Vec<String>, EngineError> {
     let job = Cut {
         remaking: remaking(file, output),
-        delete,
+        along,
     };
     committed(cut(&job, &Watch::default(), &Staging::default()))
 }

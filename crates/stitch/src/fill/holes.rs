@@ -21,6 +21,8 @@ pub enum Holes {
     Largest(usize),
     /// The borders that pass this vertex, numbered as in the file.
     At(u32),
+    /// A tube between the borders that pass these vertices, numbered as in the file.
+    Between([u32; 2]),
 }
 
 /// Borders that are not filled, for one reason.
@@ -68,7 +70,7 @@ impl std::fmt::Display for Unfilled {
 /// The share of a component's area from which on its area vector makes it an open sheet.
 const SHEET: f64 = 0.5;
 
-/// The numbers of the borders to fill, ascending, and the others that `holes` means.
+/// The numbers of the borders to fill, and the others that `holes` means.
 pub(super) fn chosen(
     model: &Model,
     borders: &Borders,
@@ -77,14 +79,23 @@ pub(super) fn chosen(
     if borders.sound.is_empty() && borders.faulty.is_empty() {
         return Err(StitchError::NoBorder);
     }
-    if let Holes::At(vertex) = holes {
+    let at = |vertex: u32| {
         let count = model.drawn.file_vertex_count();
         if vertex as usize >= count {
             return Err(StitchError::NoVertex { vertex, count });
         }
-        let of_file = model.surface_of_file();
-        let at = borders.at(vertex, of_file.of(FileVertex(vertex)), model)?;
-        return Ok((at, Vec::new()));
+        borders.at(vertex, model.surface_of_file().of(FileVertex(vertex)), model)
+    };
+    match holes {
+        Holes::At(vertex) => return Ok((at(vertex)?, Vec::new())),
+        Holes::Between(vertices) => {
+            let [one, other] = [at(vertices[0])?[0], at(vertices[1])?[0]];
+            if one == other {
+                return Err(StitchError::SameBorder { vertices });
+            }
+            return Ok((vec![one, other], Vec::new()));
+        }
+        Holes::Every | Holes::Largest(_) => {}
     }
     if borders.sound.is_empty() {
         return Err(borders.refusal(0, model));

@@ -10,6 +10,7 @@ mod holes;
 mod patch;
 mod refine;
 mod rim;
+mod strip;
 mod triangulate;
 
 use glam::DVec3;
@@ -17,7 +18,7 @@ use pliant_deform::{BindError, Budget};
 use pliant_mesh::{Cancel, Model, Progress, SurfaceVertex};
 use rayon::prelude::*;
 
-use crate::borders::{Border, Borders};
+use crate::borders::{Border, Borders, Loops};
 use crate::error::StitchError;
 use crate::part::face_beyond;
 use fair::{Surroundings, refine_and_fair};
@@ -25,16 +26,18 @@ use holes::chosen;
 pub use holes::{Holes, Reason, Unfilled};
 use patch::Patch;
 use rim::{Joined, Rim};
+use strip::strip;
 use triangulate::triangulate;
 
-/// The triangles that fill a hole.
+/// The triangles that fill a hole, or the tube between two borders.
 #[derive(Clone, PartialEq, Debug)]
 pub struct FilledHole {
-    /// The rim.
-    pub border: Border,
+    /// The rim: one border, or the two that the tube joins.
+    pub borders: Vec<Border>,
     /// The points inside.
     pub points: Vec<DVec3>,
-    /// They are counterclockwise. Corners below the rim's count are places in the rim; higher ones are points inside.
+    /// They are counterclockwise. Corners below the count of the borders' vertices are places in the list of these;
+    /// higher ones are points inside.
     pub triangles: Vec<[u32; 3]>,
     /// True if the points inside are faired. If the equations could not be solved, the patch has its shape after
     /// triangulation.
@@ -66,12 +69,25 @@ pub fn fill(
     cancel.check()?;
     let (chosen, unfilled) = chosen(model, &borders, holes)?;
     let shared = SharedVertices::of(&borders);
+    if let Holes::Between(_) = holes {
+        let tube = tube(model, &borders, &chosen, (&shared, budget, cancel))?;
+        return Ok(Filled {
+            holes: vec![tube],
+            unfilled,
+        });
+    }
     let done = std::sync::atomic::AtomicUsize::new(0);
     let filled: Vec<Result<FilledHole, StitchError>> = chosen
         .par_iter()
         .map(|&number| {
             cancel.check()?;
-            let hole = fill_one(model, &borders.sound[number], &shared.of_others(number), budget, cancel)?;
+            let hole = fill_one(
+                model,
+                &borders.sound[number],
+                &shared.of_others(&[number]),
+                budget,
+                cancel,
+            )?;
             let count = done.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1;
             progress.set(count as f32 / chosen.len() as f32);
             Ok(hole)
@@ -101,13 +117,13 @@ impl SharedVertices {
         }
     }
 
-    /// The other borders through a vertex of border `number`.
-    fn of_others(&self, number: usize) -> impl Fn(SurfaceVertex) -> Vec<u32> + '_ {
+    /// The borders through a vertex besides these.
+    fn of_others<'a>(&'a self, numbers: &'a [usize]) -> impl Fn(SurfaceVertex) -> Vec<u32> + 'a {
         move |vertex| {
             let first = self.borders.partition_point(|(own, _)| *own < vertex);
             let own = self.borders[first..].iter().take_while(|(own, _)| *own == vertex);
             own.map(|(_, border)| *border)
-                .filter(|border| *border != number as u32)
+                .filter(|border| !numbers.contains(&(*border as usize)))
                 .collect()
         }
     }
@@ -121,7 +137,8 @@ fn fill_one(
     budget: Budget,
     cancel: &Cancel,
 ) -> Result<FilledHole, StitchError> {
-    let site = Site::of(model, border, others);
+    let borders = vec![border.clone()];
+    let site = Site::of(model, &Loops::of(&borders), others);
     let rim = border.vertices.len();
     let outline = Rim {
         points: &site.points,
@@ -136,16 +153,53 @@ fn fill_one(
         scales.push(site.scales.iter().sum::<f64>() / rim as f64);
         (0..rim as u32).map(|k| [k, (k + 1) % rim as u32, rim as u32]).collect()
     });
-    let mut patch = Patch::new(points, rim, triangles, site.joined.clone());
-    let faired = refine_and_fair(&mut patch, scales, &site.around, budget, cancel);
-    let is_faired = match faired {
+    let patch = Patch::new(points, rim, triangles, site.joined);
+    finished(borders, patch, scales, &site.around, (budget, cancel))
+}
+
+/// Joins two borders by a tube.
+fn tube(
+    model: &Model,
+    borders: &Borders,
+    chosen: &[usize],
+    (shared, budget, cancel): (&SharedVertices, Budget, &Cancel),
+) -> Result<FilledHole, StitchError> {
+    let own: Vec<Border> = chosen.iter().map(|&number| borders.sound[number].clone()).collect();
+    let touch = || {
+        let at = |k: usize| model.first_file_vertex(own[k % own.len()].vertices[0]).0;
+        StitchError::BordersTouch {
+            vertices: [at(0), at(1)],
+        }
+    };
+    let loops = Loops::of(&own);
+    let mut distinct = loops.vertices.clone();
+    distinct.sort_unstable();
+    distinct.dedup();
+    if distinct.len() < loops.count() {
+        return Err(touch());
+    }
+    let site = Site::of(model, &loops, &shared.of_others(chosen));
+    let triangles = strip(&site.points, own[0].vertices.len(), &site.joined).ok_or_else(touch)?;
+    let patch = Patch::new(site.points.clone(), loops.count(), triangles, site.joined);
+    finished(own, patch, site.scales, &site.around, (budget, cancel))
+}
+
+/// The patch refined and faired.
+fn finished(
+    borders: Vec<Border>,
+    mut patch: Patch,
+    scales: Vec<f64>,
+    around: &Surroundings,
+    (budget, cancel): (Budget, &Cancel),
+) -> Result<FilledHole, StitchError> {
+    let is_faired = match refine_and_fair(&mut patch, scales, around, budget, cancel) {
         Ok(()) => true,
         Err(BindError::Cancelled(cancelled)) => return Err(cancelled.into()),
         Err(_) => false,
     };
     Ok(FilledHole {
-        border: border.clone(),
-        points: patch.points.split_off(rim),
+        borders,
+        points: patch.points.split_off(patch.rim),
         triangles: patch.triangles,
         is_faired,
     })
@@ -165,9 +219,9 @@ struct Site {
 }
 
 impl Site {
-    fn of(model: &Model, border: &Border, other_borders: &dyn Fn(SurfaceVertex) -> Vec<u32>) -> Self {
+    fn of(model: &Model, loops: &Loops, other_borders: &dyn Fn(SurfaceVertex) -> Vec<u32>) -> Self {
         let (surface, topology) = (&model.surface, &model.topology);
-        let rim = &border.vertices;
+        let rim = &loops.vertices;
         let position = |vertex: SurfaceVertex| surface.positions[vertex.index()];
         let mut place_of: Vec<(SurfaceVertex, u32)> = rim.iter().copied().zip(0..).collect();
         place_of.sort_unstable();
@@ -198,7 +252,7 @@ impl Site {
             triangles: triangles.collect(),
         };
         let beyond = (0..rim.len()).map(|k| {
-            let (from, to) = (rim[k], rim[(k + 1) % rim.len()]);
+            let (from, to) = (rim[k], rim[loops.next(k)]);
             let corners = face_beyond(model, from, to).map(|face| surface.triangles[face]);
             let third = corners.and_then(|corners| corners.into_iter().find(|v| *v != from && *v != to));
             position(third.unwrap_or(from))
@@ -214,7 +268,7 @@ impl Site {
             points: rim.iter().map(|&vertex| position(vertex)).collect(),
             beyond: beyond.collect(),
             scales: rim.iter().map(scale).collect(),
-            joined: joined(model, rim, place, other_borders),
+            joined: joined(model, loops, place, other_borders),
             around,
         }
     }
@@ -223,16 +277,16 @@ impl Site {
 /// The pairs of a rim's points that an edge of the surface joins, or that the patch of another hole could join.
 fn joined(
     model: &Model,
-    rim: &[SurfaceVertex],
+    loops: &Loops,
     place: impl Fn(SurfaceVertex) -> Option<u32>,
     other_borders: &dyn Fn(SurfaceVertex) -> Vec<u32>,
 ) -> Joined {
-    let last = rim.len() as u32 - 1;
     let mut joined = Joined::default();
-    for (own, &vertex) in (0..).zip(rim) {
+    for (own, &vertex) in (0..).zip(&loops.vertices) {
         let neighbours = model.topology.neighbours(vertex).iter();
         let others = neighbours.filter_map(|&other| place(other));
-        let is_inside = |other: &u32| own + 1 < *other && !(own == 0 && *other == last);
+        let beside = [loops.next(own as usize), loops.before(own as usize)];
+        let is_inside = |other: &u32| own < *other && !beside.contains(&(*other as usize));
         joined.edges.extend(others.filter(is_inside).map(|other| [own, other]));
         let borders = other_borders(vertex).into_iter();
         joined.on_others.extend(borders.map(|border| (own, border)));

@@ -5,3 +5,5 @@ mod fill;
 mod made;
 mod merge;
 mod open;
+mod plane;
+mod tube;

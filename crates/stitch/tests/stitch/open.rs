@@ -41,7 +41,7 @@ fn the_outer_border_of_a_sheet_is_filled_only_if_it_is_named() {
         for holes in [Holes::Largest(1), Holes::At(outer.vertex)] {
             let named = try_fill(&sheet, holes).unwrap();
             assert_eq!(named.holes.len(), 1);
-            assert!(named.holes[0].border.length > 3.0 && named.unfilled.is_empty());
+            assert!(named.holes[0].borders[0].length > 3.0 && named.unfilled.is_empty());
         }
     }
     let whole = model(shapes::grid(5, 5));
