@@ -4,6 +4,7 @@ mod apply;
 mod arguments;
 mod compare;
 mod console;
+mod cut_plane;
 mod diff;
 mod generate;
 mod info;
@@ -57,6 +58,7 @@ pub fn run(arguments: Vec<OsString>, console: &mut Console<'_>) -> u8 {
             Some(Command::Diff(arguments)) => diff::run(&arguments, console),
             Some(Command::Transfer(arguments)) => transfer::run(&arguments, console),
             Some(Command::Fill(arguments)) => stitch::fill(&arguments, console),
+            Some(Command::Bridge(arguments)) => stitch::bridge(&arguments, console),
             Some(Command::Cut(arguments)) => stitch::cut(&arguments, console),
             Some(Command::Merge(arguments)) => stitch::merge(&arguments, console),
             Some(Command::Generate(arguments)) => generate::run(&arguments, console),

@@ -379,7 +379,12 @@ impl Scene {
                 };
                 let list = stored.unread(kept);
                 let own = self.format.extension();
-                let sentence = || format!("The new shape leaves out {}: keep the .{own} for them.", list.join(", "));
+                let sentence = || {
+                    format!(
+                        "The new shape leaves out {}: keep the .{own} for them.",
+                        list.join(", ")
+                    )
+                };
                 (!list.is_empty()).then(sentence)
             }
             _ => self.unread_lost(format),
