@@ -1,0 +1,100 @@
+//! Pressure, which takes the divergence out of a velocity.
+//!
+//! The weak divergence of a velocity u that is constant on triangles is b_i = Σ_t A_t ∇φ_i · u_t over the triangles at
+//! vertex i, φ_i being the hat function there. The pressure p with −L p = b has the same divergence, so u − ∇p has none
+//! [SY04, Sta99]. No condition is set at borders: the natural one of the weak form lets no fluid through and lets it
+//! slip along. Velocities without divergence stay as they are, harmonic ones too: only a gradient is taken off.
+
+use glam::DVec2;
+use pliant_deform::PoissonEquation;
+use rayon::prelude::*;
+
+use crate::error::FlowError;
+use crate::fluid::Fluid;
+use crate::sums::{CHUNK, sum};
+
+/// Divergence below this share of the velocity over the mean edge is not corrected: rounding leaves about 1e-14.
+const ENOUGH: f64 = 1e-11;
+
+/// The most corrections: on thin triangles the factor's rounding leaves a little, which the next one takes.
+const MOST: usize = 4;
+
+/// The factored Laplacian, and memory for its fields.
+#[derive(Debug)]
+pub(crate) struct Pressure {
+    equation: PoissonEquation,
+    /// The weak divergence at each vertex.
+    load: Vec<f64>,
+    pressure: Vec<f64>,
+}
+
+impl Pressure {
+    pub fn new(equation: PoissonEquation, vertex_count: usize) -> Self {
+        Self {
+            equation,
+            load: vec![0.0; vertex_count],
+            pressure: vec![0.0; vertex_count],
+        }
+    }
+
+    /// The number of entries of the Laplacian's factor.
+    pub fn factor_len(&self) -> usize {
+        self.equation.factor_len()
+    }
+
+    /// Takes the gradient part off a velocity.
+    pub fn project(&mut self, fluid: &Fluid<'_>, velocity: &mut [DVec2]) -> Result<(), FlowError> {
+        for _ in 0..MOST {
+            divergence(fluid, velocity, &mut self.load);
+            if relative(fluid, velocity, &self.load) <= ENOUGH {
+                break;
+            }
+            let solved = self.equation.solve(&self.load, &mut self.pressure);
+            solved.map_err(|error| FlowError::of_solve(&error))?;
+            let pressure = &self.pressure;
+            let subtract = |(triangle, velocity): (usize, &mut DVec2)| {
+                let values = fluid.corners(triangle).map(|vertex| pressure[vertex]);
+                *velocity -= fluid.domain.charts[triangle].gradient(values);
+            };
+            velocity
+                .par_iter_mut()
+                .with_min_len(CHUNK)
+                .enumerate()
+                .for_each(subtract);
+        }
+        Ok(())
+    }
+}
+
+/// Fills `out` with the weak divergence at each vertex.
+fn divergence(fluid: &Fluid<'_>, velocity: &[DVec2], out: &mut [f64]) {
+    let of = |(vertex, out): (usize, &mut f64)| {
+        // A ∇φ is half the edge opposite, turned to the left.
+        let term = |&corner: &u32| {
+            let (triangle, k) = (corner as usize / 3, corner as usize % 3);
+            fluid.domain.charts[triangle].edge(k).perp_dot(velocity[triangle])
+        };
+        *out = 0.5 * fluid.domain.fans.corners(vertex).iter().map(term).sum::<f64>();
+    };
+    out.par_iter_mut().with_min_len(CHUNK).enumerate().for_each(of);
+}
+
+/// The norm of the divergence (squared, integrated, the root) in units of the velocity's norm over the mean edge.
+pub(crate) fn relative_divergence(fluid: &Fluid<'_>, velocity: &[DVec2]) -> f64 {
+    let mut load = vec![0.0; fluid.vertex_count()];
+    divergence(fluid, velocity, &mut load);
+    relative(fluid, velocity, &load)
+}
+
+fn relative(fluid: &Fluid<'_>, velocity: &[DVec2], load: &[f64]) -> f64 {
+    let squared = |vertex: usize| match fluid.masses[vertex] {
+        mass if mass > 0.0 => [load[vertex] * load[vertex] / mass],
+        _ => [0.0],
+    };
+    let [of_load] = sum(load.len(), squared);
+    let of_velocity: f64 = fluid.energies(velocity).iter().sum();
+    if of_velocity == 0.0 {
+        return 0.0;
+    }
+    (of_load / of_velocity).sqrt() * fluid.mean_edge
+}
