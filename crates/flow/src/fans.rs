@@ -8,7 +8,7 @@ use pliant_mesh::{Surface, SurfaceVertex, Topology};
 
 use crate::chart::Chart;
 use crate::hinges::{Hinges, WALL, corner_at, last, next};
-use crate::plane::{rotation_between, turned};
+use crate::plane::{rotation_between, small_rotation, turned};
 
 /// The corners around each vertex.
 #[derive(Clone, Debug)]
@@ -21,8 +21,11 @@ pub(crate) struct Fans {
     starts: Vec<f64>,
     /// Angle in the plane of a vertex over angle on the surface: 1 at borders.
     scales: Vec<f64>,
-    /// The rotation from each triangle's plane to that of each of its corners.
+    /// The rotations from each triangle's plane to that of each of its corners, in the middle of the corner.
     rotations: Vec<[DVec2; 3]>,
+    /// By how much the rotation at a corner's last edge is more than that at its first: the part of the vertex's angle
+    /// defect that the corner takes.
+    twists: Vec<[f64; 3]>,
 }
 
 /// Where a direction at a vertex leads.
@@ -44,6 +47,7 @@ impl Fans {
             starts: Vec::with_capacity(3 * charts.len()),
             scales: Vec::with_capacity(count),
             rotations: vec![[DVec2::X; 3]; charts.len()],
+            twists: vec![[0.0; 3]; charts.len()],
         };
         fans.offsets.push(0);
         for vertex in (0..count as u32).map(SurfaceVertex) {
@@ -70,6 +74,7 @@ impl Fans {
             let middle = turned(DVec2::from_angle(0.5 * angle), chart.edge((k + 2) % 3));
             let here = DVec2::from_angle(scale * (start + 0.5 * angle));
             self.rotations[corner as usize / 3][k] = rotation_between(middle, here);
+            self.twists[corner as usize / 3][k] = (scale - 1.0) * angle;
             self.corners.push(corner);
             self.starts.push(scale * start);
             start += angle;
@@ -89,7 +94,19 @@ impl Fans {
         self.rotations[corner as usize / 3][corner as usize % 3]
     }
 
-    /// The rotations from a triangle to the tangent planes of its vertices.
+    /// The rotation from a corner's triangle to the tangent plane of its vertex for vectors that come along the ray of
+    /// points at which the barycentric coordinates of the next and the last corner have the ratio of `after` to
+    /// `before`. So rays along an edge have the same rotation in both of its triangles, and a field that is interpolated
+    /// with these rotations is continuous across edges.
+    #[inline]
+    pub fn rotation_along(&self, corner: u32, after: f64, before: f64) -> DVec2 {
+        let both = after + before;
+        let share = if both > 0.0 { before / both - 0.5 } else { 0.0 };
+        let twist = self.twists[corner as usize / 3][corner as usize % 3];
+        turned(small_rotation(share * twist), self.rotation(corner))
+    }
+
+    /// The rotations from a triangle to the tangent planes of its vertices, in the middles of its corners.
     #[inline]
     pub fn rotations(&self, triangle: usize) -> [DVec2; 3] {
         self.rotations[triangle]

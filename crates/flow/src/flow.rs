@@ -10,7 +10,7 @@ use crate::conservation::{conserve, integrals};
 use crate::error::FlowError;
 use crate::fluid::Fluid;
 use crate::forces::{confine, pull};
-use crate::projection::{Pressure, relative_divergence};
+use crate::projection::{Pressure, divergence_norm};
 use crate::settings::FlowSettings;
 use crate::sheets::Sheets;
 use crate::sums::CHUNK;
@@ -198,10 +198,15 @@ impl<'a> Flow<'a> {
         0.5 * self.fluid.energies(&self.velocity).iter().sum::<f64>()
     }
 
-    /// The norm of the velocity's divergence (the root of its squared integral) over that of the velocity, times the
-    /// mean edge: about 1e-15 after a step.
-    pub fn relative_divergence(&self) -> f64 {
-        relative_divergence(&self.fluid, &self.velocity)
+    /// The root of the integral of the velocity's squared divergence, in world units per second. After a step it is
+    /// about 1e-15 of the root of twice the kinetic energy over the mean edge.
+    pub fn divergence(&self) -> f64 {
+        divergence_norm(&self.fluid, &self.velocity)
+    }
+
+    /// The mean length of an edge, in world units.
+    pub fn mean_edge(&self) -> f64 {
+        self.fluid.mean_edge
     }
 
     /// The number of vertices that were doubled where triangles don't meet as on a manifold: there the fluid of each

@@ -123,12 +123,31 @@ impl<'a> Fluid<'a> {
         out.par_iter_mut().with_min_len(CHUNK).enumerate().for_each(mean);
     }
 
-    /// Adds to each triangle's velocity the mean of its corners' `changes`.
+    /// Adds a change of the vertices' velocities to the triangles'.
+    ///
+    /// The change goes by way of its circulations along edges (the trapezoidal rule), of which each triangle takes the
+    /// Whitney form in its middle: ⅓ Σ c_ij (∇φ_j − ∇φ_i). If they are the differences of a function at the vertices,
+    /// this is the function's gradient, which pressure takes off again. A mean of the corners' vectors would leave a
+    /// part of every gradient behind, in one direction in triangles that point up and the other in those that point
+    /// down.
     pub fn add_to_triangles(&self, changes: &[DVec2], velocity: &mut [DVec2]) {
         let add = |(triangle, velocity): (usize, &mut DVec2)| {
-            let rotations = self.domain.fans.rotations(triangle);
+            let chart = &self.domain.charts[triangle];
             let corners = self.corners(triangle);
-            let sum: DVec2 = (0..3).map(|k| turned_back(rotations[k], changes[corners[k]])).sum();
+            let gradients = chart.gradients();
+            let mut sum = DVec2::ZERO;
+            for k in 0..3 {
+                let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+                let along = |corner: usize, after: f64| {
+                    let rotation = self
+                        .domain
+                        .fans
+                        .rotation_along((3 * triangle + corner) as u32, after, 1.0 - after);
+                    turned_back(rotation, changes[corners[corner]])
+                };
+                let circulation = 0.5 * chart.edge(k).dot(along(i, 1.0) + along(j, 0.0));
+                sum += (gradients[j] - gradients[i]) * circulation;
+            }
             *velocity += sum / 3.0;
         };
         velocity.par_iter_mut().with_min_len(CHUNK).enumerate().for_each(add);

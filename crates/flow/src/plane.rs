@@ -25,3 +25,17 @@ pub(crate) fn conjugate(rotation: DVec2) -> DVec2 {
 pub(crate) fn rotation_between(from: DVec2, to: DVec2) -> DVec2 {
     turned_back(from, to).normalize()
 }
+
+/// The rotation by an angle, which mostly is small.
+#[inline]
+pub(crate) fn small_rotation(angle: f64) -> DVec2 {
+    if angle.abs() > 0.02 {
+        return DVec2::from_angle(angle);
+    }
+    // The next terms are below 1e-16.
+    let square = angle * angle;
+    DVec2::new(
+        1.0 - square * (0.5 - square * (1.0 / 24.0 - square / 720.0)),
+        angle * (1.0 - square * (1.0 / 6.0 - square / 120.0)),
+    )
+}

@@ -44,9 +44,11 @@ impl Pressure {
 
     /// Takes the gradient part off a velocity.
     pub fn project(&mut self, fluid: &Fluid<'_>, velocity: &mut [DVec2]) -> Result<(), FlowError> {
+        // Of the velocity as it comes: if all of it is a gradient, only rounding is left.
+        let enough = ENOUGH * fluid.energies(velocity).iter().sum::<f64>().sqrt() / fluid.mean_edge;
         for _ in 0..MOST {
             divergence(fluid, velocity, &mut self.load);
-            if relative(fluid, velocity, &self.load) <= ENOUGH {
+            if norm(fluid, &self.load) <= enough {
                 break;
             }
             let solved = self.equation.solve(&self.load, &mut self.pressure);
@@ -79,22 +81,19 @@ fn divergence(fluid: &Fluid<'_>, velocity: &[DVec2], out: &mut [f64]) {
     out.par_iter_mut().with_min_len(CHUNK).enumerate().for_each(of);
 }
 
-/// The norm of the divergence (squared, integrated, the root) in units of the velocity's norm over the mean edge.
-pub(crate) fn relative_divergence(fluid: &Fluid<'_>, velocity: &[DVec2]) -> f64 {
+/// The root of the squared divergence's integral.
+pub(crate) fn divergence_norm(fluid: &Fluid<'_>, velocity: &[DVec2]) -> f64 {
     let mut load = vec![0.0; fluid.vertex_count()];
     divergence(fluid, velocity, &mut load);
-    relative(fluid, velocity, &load)
+    norm(fluid, &load)
 }
 
-fn relative(fluid: &Fluid<'_>, velocity: &[DVec2], load: &[f64]) -> f64 {
+/// The same of a weak divergence.
+fn norm(fluid: &Fluid<'_>, load: &[f64]) -> f64 {
     let squared = |vertex: usize| match fluid.masses[vertex] {
         mass if mass > 0.0 => [load[vertex] * load[vertex] / mass],
         _ => [0.0],
     };
-    let [of_load] = sum(load.len(), squared);
-    let of_velocity: f64 = fluid.energies(velocity).iter().sum();
-    if of_velocity == 0.0 {
-        return 0.0;
-    }
-    (of_load / of_velocity).sqrt() * fluid.mean_edge
+    let [squared] = sum(load.len(), squared);
+    squared.sqrt()
 }

@@ -50,13 +50,16 @@ impl Domain {
             false => self.fans.way(vertex, displacement, &self.hinges, &self.charts),
         };
         let (corner, left) = way.map_or((own, DVec2::ZERO), |way| (way.corner, way.direction));
+        let k = corner as usize % 3;
         let mut weights = [0.0; 3];
-        weights[corner as usize % 3] = 1.0;
+        weights[k] = 1.0;
+        let rates = self.charts[corner as usize / 3].gradients();
+        let [after, before] = [(k + 1) % 3, (k + 2) % 3].map(|other| rates[other].dot(left).max(0.0));
         Some(self.walk(Walk {
             triangle: corner / 3,
             weights,
             left,
-            rotation: conjugate(self.fans.rotation(corner)),
+            rotation: conjugate(self.fans.rotation_along(corner, after, before)),
         }))
     }
 
@@ -166,10 +169,11 @@ impl Domain {
     /// plane of the vertex from which the place was reached.
     #[inline]
     pub fn vector_at(&self, place: &Place, vertices: [usize; 3], field: &[DVec2]) -> DVec2 {
-        let rotations = self.fans.rotations(place.triangle as usize);
         let mut sum = DVec2::ZERO;
         for k in 0..3 {
-            sum += turned_back(rotations[k], field[vertices[k]]) * place.weights[k];
+            let [after, before] = [(k + 1) % 3, (k + 2) % 3].map(|other| place.weights[other]);
+            let rotation = self.fans.rotation_along(3 * place.triangle + k as u32, after, before);
+            sum += turned_back(rotation, field[vertices[k]]) * place.weights[k];
         }
         turned_back(place.rotation, sum)
     }
