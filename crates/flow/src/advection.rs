@@ -27,7 +27,9 @@ pub(crate) type Dye = [f64; 4];
 pub(crate) struct Room {
     /// The velocity, in the tangent planes.
     pub own: Vec<DVec2>,
-    /// The velocity after a first-order step.
+    /// The velocity that is carried.
+    carried: Vec<DVec2>,
+    /// It after a first-order step.
     first: Vec<DVec2>,
     /// The way forward, then the change of the velocity.
     pub change: Vec<DVec2>,
@@ -40,6 +42,7 @@ pub(crate) struct Room {
 impl Room {
     fn resize(&mut self, count: usize, has_dye: bool) {
         self.own.resize(count, DVec2::ZERO);
+        self.carried.resize(count, DVec2::ZERO);
         self.first.resize(count, DVec2::ZERO);
         self.change.resize(count, DVec2::ZERO);
         self.source.resize(count, 0);
@@ -50,8 +53,13 @@ impl Room {
 }
 
 /// Carries `velocity`, and `dye` unless it is empty, for `seconds`. `room.dye` is free afterwards.
+///
+/// Fluid on its way is also pushed by the pressure. Half of that comes before the way and half after it, or a turning
+/// sphere would slow by a share of the step. `pressure` is that of the last step, whose gradient the velocity has lost,
+/// and the number of such steps in this one. The half after the way is a gradient and needs not be subtracted.
 pub(crate) fn advect(
     fluid: &Fluid<'_>,
+    (pressure, steps): (&[f64], f64),
     velocity: &mut [DVec2],
     dye: &mut Vec<Dye>,
     (seconds, advection): (f64, Advection),
@@ -59,14 +67,19 @@ pub(crate) fn advect(
     cancel: &Cancel,
 ) -> Result<(), Cancelled> {
     room.resize(fluid.vertex_count(), !dye.is_empty());
-    fluid.to_vertices(velocity, &mut room.own);
+    let half_pushed = |triangle: usize| {
+        let values = fluid.corners(triangle).map(|corner| pressure[corner]);
+        velocity[triangle] - 0.5 * steps * fluid.domain.charts[triangle].gradient(values)
+    };
+    fluid.to_vertices(|triangle| velocity[triangle], &mut room.own);
+    fluid.to_vertices(half_pushed, &mut room.carried);
     backward(fluid, dye, seconds, room, cancel)?;
     match advection {
         Advection::FirstOrder => {
-            let pairs = room.change.par_iter_mut().zip(&room.first).zip(&room.own);
+            let pairs = room.change.par_iter_mut().zip(&room.first).zip(&room.carried);
             pairs
                 .with_min_len(CHUNK)
-                .for_each(|((change, first), own)| *change = first - own);
+                .for_each(|((change, first), carried)| *change = first - carried);
             std::mem::swap(dye, &mut room.first_dye);
         }
         Advection::SecondOrder => {
@@ -81,12 +94,12 @@ pub(crate) fn advect(
 /// The first-order step, and for each vertex the way forward and the triangle behind.
 fn backward(fluid: &Fluid<'_>, dye: &[Dye], seconds: f64, room: &mut Room, cancel: &Cancel) -> Result<(), Cancelled> {
     let domain = &fluid.domain;
-    let own = &room.own;
-    let at = |place: &Place| domain.vector_at(place, fluid.corners(place.triangle as usize), own);
+    let (own, carried) = (&room.own, &room.carried);
+    let at = |place: &Place, field: &[DVec2]| domain.vector_at(place, fluid.corners(place.triangle as usize), field);
     let of = |vertex: usize| {
         let here = own[vertex];
         let half = domain.trace(vertex, here * (-0.5 * seconds))?;
-        let middle = at(&half);
+        let middle = at(&half, own);
         let back = domain.trace(vertex, middle * -seconds)?;
         // The velocity half a step forward, by extrapolation.
         Some((back, (2.0 * here - middle) * seconds))
@@ -101,7 +114,7 @@ fn backward(fluid: &Fluid<'_>, dye: &[Dye], seconds: f64, room: &mut Room, cance
             for i in 0..first.len() {
                 let vertex = chunk * CHUNK + i;
                 let Some((back, ahead)) = of(vertex) else { continue };
-                first[i] = at(&back);
+                first[i] = at(&back, carried);
                 forward[i] = ahead;
                 source[i] = back.triangle;
                 if let Some(first_dye) = first_dye.get_mut(i) {
@@ -115,14 +128,15 @@ fn backward(fluid: &Fluid<'_>, dye: &[Dye], seconds: f64, room: &mut Room, cance
 /// Takes half the error of going forth and back off the first-order step.
 fn correct(fluid: &Fluid<'_>, dye: &[Dye], room: &mut Room, cancel: &Cancel) -> Result<(), Cancelled> {
     let Room {
-        own,
+        carried,
         first,
         change,
         source,
         first_dye,
         dye: new_dye,
+        ..
     } = room;
-    let (own, first, source, first_dye) = (&*own, &*first, &*source, &*first_dye);
+    let (carried, first, source, first_dye) = (&*carried, &*first, &*source, &*first_dye);
     let dyes = chunks_of(new_dye, fluid.vertex_count());
     let chunks = change.par_chunks_mut(CHUNK).zip(dyes);
     chunks.enumerate().try_for_each(|(chunk, (change, new_dye))| {
@@ -137,9 +151,9 @@ fn correct(fluid: &Fluid<'_>, dye: &[Dye], room: &mut Room, cancel: &Cancel) -> 
             let returned = fluid
                 .domain
                 .vector_at(&ahead, fluid.corners(ahead.triangle as usize), first);
-            let correction = 0.5 * (own[vertex] - returned);
-            let limited = correction.clamp_length_max(spread(fluid, triangle, own));
-            change[i] = first[vertex] + limited - own[vertex];
+            let correction = 0.5 * (carried[vertex] - returned);
+            let limited = correction.clamp_length_max(spread(fluid, triangle, carried));
+            change[i] = first[vertex] + limited - carried[vertex];
             if let Some(new_dye) = new_dye.get_mut(i) {
                 let returned = dye_at(fluid, &ahead, first_dye);
                 let bounds = fluid.corners(triangle).map(|corner| dye[corner]);

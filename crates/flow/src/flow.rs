@@ -29,6 +29,8 @@ pub struct Flow<'a> {
     dye: Vec<Dye>,
     /// The integral of the dye over each component, as poured.
     poured: Vec<Dye>,
+    /// The length of the last step; 0 before the first.
+    last_step: f64,
     room: Room,
 }
 
@@ -65,6 +67,7 @@ impl<'a> Flow<'a> {
             velocity: vec![DVec2::ZERO; fluid.triangle_count()],
             dye: Vec::new(),
             poured: vec![Dye::default(); fluid.component_count()],
+            last_step: 0.0,
             room: Room::default(),
             fluid,
         })
@@ -109,7 +112,7 @@ impl<'a> Flow<'a> {
     /// # Errors
     /// If the pressure can't be found.
     pub fn project(&mut self) -> Result<(), FlowError> {
-        self.pressure.project(&self.fluid, &mut self.velocity)
+        self.pressure.project_added(&self.fluid, &mut self.velocity)
     }
 
     /// Goes on by `seconds`. Without forces no component gains kinetic energy. A step that fails leaves the flow in the
@@ -126,28 +129,45 @@ impl<'a> Flow<'a> {
             ..
         } = self;
         // Velocities that were added may diverge, and what flows along must not.
-        self.pressure.project(fluid, velocity)?;
-        let before = fluid.energies(velocity);
-        if before.iter().any(|energy| !energy.is_finite()) {
+        self.pressure.project_added(fluid, velocity)?;
+        let mut allowed = fluid.speeds(velocity);
+        if allowed.iter().any(|speed| !speed.is_finite()) {
             return Err(FlowError::NotFinite);
         }
-        advect(fluid, velocity, dye, (seconds, settings.advection), room, cancel)?;
-        cap(fluid, &before, velocity);
+        let steps = if self.last_step > 0.0 {
+            seconds / self.last_step
+        } else {
+            0.0
+        };
+        self.last_step = seconds;
+        advect(
+            fluid,
+            (self.pressure.total(), steps),
+            velocity,
+            dye,
+            (seconds, settings.advection),
+            room,
+            cancel,
+        )?;
         if !dye.is_empty() {
             conserve(fluid, &self.poured, dye, &mut room.dye);
         }
         cancel.check()?;
-        if settings.gravity != DVec3::ZERO && !dye.is_empty() {
+        if settings.has_force() {
+            let before = fluid.speeds(velocity);
             pull(fluid, dye, settings.gravity, seconds, velocity);
-        }
-        if settings.confinement > 0.0 {
             confine(fluid, settings.confinement, seconds, velocity);
+            for ((allowed, before), after) in allowed.iter_mut().zip(before).zip(fluid.speeds(velocity)) {
+                *allowed += (after - before).max(0.0);
+            }
         }
         if settings.viscosity > 0.0 {
             let friction = self.friction.get_or_insert_with(|| Friction::of(fluid));
             friction.smooth(fluid, settings.viscosity * seconds, velocity);
         }
-        self.project()
+        self.pressure.project(fluid, velocity)?;
+        cap(fluid, &allowed, velocity);
+        Ok(())
     }
 
     /// The velocity of each triangle of the surface, in world units per second.
@@ -195,7 +215,12 @@ impl<'a> Flow<'a> {
 
     /// Half the integral of the squared speed: the kinetic energy for a density of 1.
     pub fn kinetic_energy(&self) -> f64 {
-        0.5 * self.fluid.energies(&self.velocity).iter().sum::<f64>()
+        0.5 * self
+            .fluid
+            .speeds(&self.velocity)
+            .iter()
+            .map(|speed| speed * speed)
+            .sum::<f64>()
     }
 
     /// The root of the integral of the velocity's squared divergence, in world units per second. After a step it is
@@ -221,11 +246,10 @@ impl<'a> Flow<'a> {
     }
 }
 
-/// Slows components that have gained kinetic energy by rounding or by the correction of advection.
-fn cap(fluid: &Fluid<'_>, before: &[f64], velocity: &mut [DVec2]) {
-    let after = fluid.energies(velocity);
-    let factor = |(&before, &after): (&f64, &f64)| if after > before { (before / after).sqrt() } else { 1.0 };
-    let factors: Vec<f64> = before.iter().zip(&after).map(factor).collect();
+/// Slows components that are faster than allowed: advection may have given them kinetic energy.
+fn cap(fluid: &Fluid<'_>, allowed: &[f64], velocity: &mut [DVec2]) {
+    let factor = |(&allowed, speed): (&f64, f64)| if speed > allowed { allowed / speed } else { 1.0 };
+    let factors: Vec<f64> = allowed.iter().zip(fluid.speeds(velocity)).map(factor).collect();
     if factors.iter().all(|factor| *factor == 1.0) {
         return;
     }

@@ -100,22 +100,23 @@ impl<'a> Fluid<'a> {
         a + (b - a + c - a) / 3.0
     }
 
-    /// Twice the kinetic energy of each component, for a density of 1: the integral of the squared speed.
-    pub fn energies(&self, velocity: &[DVec2]) -> Vec<f64> {
+    /// The norm of a velocity on each component: the root of the integral of the squared speed.
+    pub fn speeds(&self, velocity: &[DVec2]) -> Vec<f64> {
         let of = |t: usize| [self.domain.charts[t].area() * velocity[t].length_squared()];
         let component = |t: usize| self.component_of_triangle(t);
-        let energies = sums(self.triangle_count(), self.component_count(), component, of);
-        energies.into_iter().map(|[energy]| energy).collect()
+        let squares = sums(self.triangle_count(), self.component_count(), component, of);
+        squares.into_iter().map(|[square]| square.sqrt()).collect()
     }
 
-    /// Fills `out` with the mean velocity around each vertex, in its tangent plane: triangles count by area.
-    pub fn to_vertices(&self, velocity: &[DVec2], out: &mut [DVec2]) {
+    /// Fills `out` with the mean around each vertex of the triangles' vectors, in its tangent plane: triangles count by
+    /// area.
+    pub fn to_vertices(&self, velocity: impl Fn(usize) -> DVec2 + Sync, out: &mut [DVec2]) {
         let Domain { charts, fans, .. } = &self.domain;
         let mean = |(vertex, out): (usize, &mut DVec2)| {
             let mut sum = DVec2::ZERO;
             for &corner in fans.corners(vertex) {
                 let triangle = corner as usize / 3;
-                sum += turned(fans.rotation(corner), velocity[triangle]) * charts[triangle].area();
+                sum += turned(fans.rotation(corner), velocity(triangle)) * charts[triangle].area();
             }
             let mass = 3.0 * self.masses[vertex];
             *out = if mass > 0.0 { sum / mass } else { DVec2::ZERO };

@@ -7,8 +7,11 @@ use crate::advection::Dye;
 use crate::fluid::Fluid;
 use crate::sums::CHUNK;
 
-/// Adds gravity along the surface for `seconds`, in proportion to the coverage by dye.
+/// Adds gravity along the surface for `seconds`, in proportion to the coverage by dye; `dye` may be empty.
 pub(crate) fn pull(fluid: &Fluid<'_>, dye: &[Dye], gravity: DVec3, seconds: f64, velocity: &mut [DVec2]) {
+    if gravity == DVec3::ZERO || dye.is_empty() {
+        return;
+    }
     let add = |(triangle, velocity): (usize, &mut DVec2)| {
         let coverage = fluid
             .corners(triangle)
@@ -27,6 +30,9 @@ pub(crate) fn pull(fluid: &Fluid<'_>, dye: &[Dye], gravity: DVec3, seconds: f64,
 /// Vorticity confinement [FSJ01, equation 11] for `seconds`: pushes the fluid around the places at which it turns
 /// fastest, in proportion to the vorticity and to the size of the triangle.
 pub(crate) fn confine(fluid: &Fluid<'_>, strength: f64, seconds: f64, velocity: &mut [DVec2]) {
+    if strength == 0.0 {
+        return;
+    }
     let vorticity = vorticity(fluid, velocity);
     let add = |(triangle, velocity): (usize, &mut DVec2)| {
         let values = fluid.corners(triangle).map(|corner| vorticity[corner]);

@@ -26,6 +26,8 @@ pub(crate) struct Pressure {
     /// The weak divergence at each vertex.
     load: Vec<f64>,
     pressure: Vec<f64>,
+    /// All pressure of the last projection, whose gradient has the unit of a velocity.
+    total: Vec<f64>,
 }
 
 impl Pressure {
@@ -34,6 +36,7 @@ impl Pressure {
             equation,
             load: vec![0.0; vertex_count],
             pressure: vec![0.0; vertex_count],
+            total: vec![0.0; vertex_count],
         }
     }
 
@@ -42,10 +45,25 @@ impl Pressure {
         self.equation.factor_len()
     }
 
+    /// All pressure of the last projection: the velocity has lost its gradient.
+    pub fn total(&self) -> &[f64] {
+        &self.total
+    }
+
+    /// Takes the gradient part off a velocity if it is not without divergence already.
+    pub fn project_added(&mut self, fluid: &Fluid<'_>, velocity: &mut [DVec2]) -> Result<(), FlowError> {
+        let total = std::mem::take(&mut self.total);
+        let projected = self.project(fluid, velocity);
+        self.total = total;
+        projected
+    }
+
     /// Takes the gradient part off a velocity.
     pub fn project(&mut self, fluid: &Fluid<'_>, velocity: &mut [DVec2]) -> Result<(), FlowError> {
         // Of the velocity as it comes: if all of it is a gradient, only rounding is left.
-        let enough = ENOUGH * fluid.energies(velocity).iter().sum::<f64>().sqrt() / fluid.mean_edge;
+        let fastest = fluid.speeds(velocity).into_iter().fold(0.0, f64::max);
+        let enough = ENOUGH * fastest / fluid.mean_edge;
+        self.total.fill(0.0);
         for _ in 0..MOST {
             divergence(fluid, velocity, &mut self.load);
             if norm(fluid, &self.load) <= enough {
@@ -54,6 +72,10 @@ impl Pressure {
             let solved = self.equation.solve(&self.load, &mut self.pressure);
             solved.map_err(|error| FlowError::of_solve(&error))?;
             let pressure = &self.pressure;
+            self.total
+                .iter_mut()
+                .zip(pressure)
+                .for_each(|(total, pressure)| *total += pressure);
             let subtract = |(triangle, velocity): (usize, &mut DVec2)| {
                 let values = fluid.corners(triangle).map(|vertex| pressure[vertex]);
                 *velocity -= fluid.domain.charts[triangle].gradient(values);

@@ -26,3 +26,10 @@ pub struct FlowSettings {
     /// The accuracy of advection.
     pub advection: Advection,
 }
+
+impl FlowSettings {
+    /// Whether something may speed the fluid up.
+    pub(crate) fn has_force(&self) -> bool {
+        self.gravity != DVec3::ZERO || self.confinement > 0.0
+    }
+}
