@@ -53,6 +53,8 @@ pub(crate) enum Command {
     Fill(FillArguments),
     /// Delete vertices, with the triangles that use them
     Cut(CutArguments),
+    /// Let dye flow along the surface and save it as vertex colours
+    Flow(FlowArguments),
     /// Write the man pages, the completions for shells and the manual's pages of commands
     Generate(GenerateArguments),
 }
@@ -258,6 +260,32 @@ pub(crate) struct CutArguments {
     /// Where to write, and what may be replaced.
     #[command(flatten)]
     pub output: NewShapeArguments,
+    /// Which vertices are one.
+    #[command(flatten)]
+    pub weld: WeldArguments,
+    /// On how many threads, and with which vectors.
+    #[command(flatten)]
+    pub compute: ComputeArguments,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct FlowArguments {
+    /// The file along whose surface dye flows: glb, gltf, obj, ply, stl or off
+    pub file: PathBuf,
+    /// The dye, the velocities and the forces
+    #[arg(long, value_name = "FLOW.json")]
+    pub flow: PathBuf,
+    /// The file to write; its extension tells its format. With -#### before the extension, a file for the start and for
+    /// each step, with its number
+    #[arg(long, value_name = "OUT")]
+    pub output: PathBuf,
+    /// Where to write how the flow went and how long it took
+    #[arg(long, value_name = "REPORT.json")]
+    pub report: Option<PathBuf>,
+    /// The most memory that the pressure's factor may take beside the mesh, such as 8GB or 500MB; without it 16GiB, and
+    /// never more than the machine has left
+    #[arg(long, value_name = "SIZE", value_parser = pliant_engine::memory::bytes)]
+    pub memory: Option<u64>,
     /// Which vertices are one.
     #[command(flatten)]
     pub weld: WeldArguments,

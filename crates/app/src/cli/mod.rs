@@ -5,6 +5,7 @@ mod arguments;
 mod compare;
 mod console;
 mod diff;
+mod flow;
 mod generate;
 mod info;
 mod interrupt;
@@ -59,6 +60,7 @@ pub fn run(arguments: Vec<OsString>, console: &mut Console<'_>) -> u8 {
             Some(Command::Fill(arguments)) => stitch::fill(&arguments, console),
             Some(Command::Cut(arguments)) => stitch::cut(&arguments, console),
             Some(Command::Merge(arguments)) => stitch::merge(&arguments, console),
+            Some(Command::Flow(arguments)) => flow::run(&arguments, console),
             Some(Command::Generate(arguments)) => generate::run(&arguments, console),
             None => window::run(Source::of(arguments.file, arguments.edit)),
         },
