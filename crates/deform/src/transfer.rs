@@ -43,7 +43,12 @@ impl PosedShape<'_> {
 
     /// The diagonal of the box around its triangles at rest.
     fn diagonal(&self) -> f64 {
-        let corners: Vec<DVec3> = self.triangles.iter().flatten().map(|&corner| self.rest[corner]).collect();
+        let corners: Vec<DVec3> = self
+            .triangles
+            .iter()
+            .flatten()
+            .map(|&corner| self.rest[corner])
+            .collect();
         bounding_box(&corners).map_or(0.0, |bounds| bounds.diagonal())
     }
 

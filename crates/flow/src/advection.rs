@@ -15,6 +15,7 @@ use pliant_mesh::{Cancel, Cancelled};
 use rayon::prelude::*;
 
 use crate::fluid::Fluid;
+use crate::plane::turned_back;
 use crate::settings::Advection;
 use crate::sums::CHUNK;
 use crate::trace::Place;
@@ -181,7 +182,7 @@ fn chunks_of<T: Send>(field: &mut [T], count: usize) -> rayon::vec::IntoIter<&mu
 fn spread(fluid: &Fluid<'_>, triangle: usize, field: &[DVec2]) -> f64 {
     let rotations = fluid.domain.fans.rotations(triangle);
     let corners = fluid.corners(triangle);
-    let [a, b, c] = [0, 1, 2].map(|k| crate::plane::turned_back(rotations[k], field[corners[k]]));
+    let [a, b, c] = [0, 1, 2].map(|k| turned_back(rotations[k], field[corners[k]]));
     a.distance(b).max(b.distance(c)).max(c.distance(a))
 }
 

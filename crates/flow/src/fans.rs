@@ -1,5 +1,5 @@
 //! Tangent planes at vertices: the angles around each vertex, scaled to a full turn, and the rotations between a
-//! triangle's plane and those of its corners (Zhang, Mischaikow and Turk 2006; Knöppel et al. 2013).
+//! triangle's plane and those of its corners [ZMT06, KCPS13].
 
 use std::f64::consts::TAU;
 

@@ -131,9 +131,7 @@ impl<'a> Flow<'a> {
         // Velocities that were added may diverge, and what flows along must not.
         self.pressure.project_added(fluid, velocity)?;
         let mut allowed = fluid.speeds(velocity);
-        if allowed.iter().any(|speed| !speed.is_finite()) {
-            return Err(FlowError::NotFinite);
-        }
+        check_finite(&allowed)?;
         let steps = if self.last_step > 0.0 {
             seconds / self.last_step
         } else {
@@ -157,7 +155,9 @@ impl<'a> Flow<'a> {
             let before = fluid.speeds(velocity);
             pull(fluid, dye, settings.gravity, seconds, velocity);
             confine(fluid, settings.confinement, seconds, velocity);
-            for ((allowed, before), after) in allowed.iter_mut().zip(before).zip(fluid.speeds(velocity)) {
+            let after = fluid.speeds(velocity);
+            check_finite(&after)?;
+            for ((allowed, before), after) in allowed.iter_mut().zip(before).zip(after) {
                 *allowed += (after - before).max(0.0);
             }
         }
@@ -243,6 +243,13 @@ impl<'a> Flow<'a> {
     /// The number of entries that the Laplacian's factor stores, of eight bytes each.
     pub fn factor_len(&self) -> usize {
         self.pressure.factor_len()
+    }
+}
+
+fn check_finite(speeds: &[f64]) -> Result<(), FlowError> {
+    match speeds.iter().all(|speed| speed.is_finite()) {
+        true => Ok(()),
+        false => Err(FlowError::NotFinite),
     }
 }
 

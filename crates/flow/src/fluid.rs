@@ -4,7 +4,7 @@
 //! velocity that varies continuously: the mean of the triangles around each vertex, interpolated.
 
 use glam::{DVec2, DVec3};
-use pliant_mesh::face_normal;
+use pliant_mesh::{SurfaceVertex, face_normal};
 use rayon::prelude::*;
 
 use crate::chart::Chart;
@@ -68,9 +68,7 @@ impl<'a> Fluid<'a> {
     /// The component of a vertex.
     #[inline]
     pub fn component(&self, vertex: usize) -> usize {
-        self.sheets
-            .topology
-            .component(pliant_mesh::SurfaceVertex(vertex as u32)) as usize
+        self.sheets.topology.component(SurfaceVertex(vertex as u32)) as usize
     }
 
     /// The component of a triangle.

@@ -5,9 +5,9 @@ use glam::DVec3;
 /// The accuracy in time and space with which a flow is carried along itself.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub enum Advection {
-    /// Values are interpolated where they come from [Sta99]: edges of dye blur, and swirls calm down.
+    /// Values are interpolated where they come from \[Sta99\]: edges of dye blur, and swirls calm down.
     FirstOrder,
-    /// The error of going forth and back is taken off, as far as no new extremes arise [SFK+08].
+    /// The error of going forth and back is taken off, as far as no new extremes arise \[SFK+08\].
     #[default]
     SecondOrder,
 }
@@ -20,7 +20,7 @@ pub struct FlowSettings {
     pub gravity: DVec3,
     /// Kinematic viscosity, in squared world units per second: 0 or more.
     pub viscosity: f64,
-    /// The strength of vorticity confinement [FSJ01], per second: 0 or more. Swirls that are about as small as triangles
+    /// The strength of vorticity confinement \[FSJ01\], per second: 0 or more. Swirls that are about as small as triangles
     /// get energy back.
     pub confinement: f64,
     /// The accuracy of advection.

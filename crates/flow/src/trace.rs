@@ -11,7 +11,7 @@ use crate::hinges::{Hinges, WALL, last, next};
 use crate::plane::{conjugate, rotation_between, turned, turned_back};
 
 /// A way ends after this many edges. Only a velocity far above an edge a step, or a pile of needles, comes so far.
-const MOST_EDGES: usize = 4096;
+const MOST_EDGES: usize = 1024;
 
 /// A point on the surface, and the rotation of vectors that were carried to it.
 #[derive(Clone, Copy, Debug)]

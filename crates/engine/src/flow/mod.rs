@@ -4,7 +4,7 @@ mod colours;
 mod frames;
 mod report;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant;
 
 use pliant_deform::Budget;
@@ -228,12 +228,21 @@ fn refuse_format(output: &Path) -> Result<(), EngineError> {
     }
 }
 
-/// Refuses outputs that are files that were read; a single OUT may be FILE.
+/// Refuses outputs that are files that were read; a single OUT may be FILE. Frames have different names, so they are not
+/// compared with each other.
 fn refuse_inputs(job: &FlowJob<'_>, frames: &Frames, watch: &Watch) -> Result<(), EngineError> {
-    let places: Vec<PathBuf> = frames.all().collect();
-    let mut outputs: Vec<(&str, &Path)> = places.iter().map(|place| ("--output", &**place)).collect();
-    outputs.extend(job.report.map(|report| ("--report", report)));
-    watch.refuse_outputs(&outputs, (places.len() == 1).then_some(job.file))
+    let replaced = matches!(frames, Frames::Last(..)).then_some(job.file);
+    for place in frames.all() {
+        let output = ("--output", &*place);
+        watch.refuse_outputs(&[output], replaced)?;
+        if let Some(report) = job.report {
+            files::refuse_shared(("--report", report), [output])?;
+        }
+    }
+    match job.report {
+        Some(report) => watch.refuse_outputs(&[("--report", report)], None),
+        None => Ok(()),
+    }
 }
 
 /// The refusal of a flow, which names vertices by the file's numbers.
