@@ -4,7 +4,7 @@
 //! over each component is zero. So one vertex of each component is held at zero: its own equation follows from the
 //! others'.
 
-use pliant_mesh::{Cancel, Surface, SurfaceVertex, Topology, bounding_box};
+use pliant_mesh::{Cancel, Surface, Topology, bounding_box};
 use rayon::prelude::*;
 
 use super::membrane::membrane;
@@ -112,7 +112,7 @@ pub(crate) fn diagonal_of(surface: &Surface) -> f64 {
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "tests")]
 mod tests {
-    use pliant_mesh::{Progress, shapes};
+    use pliant_mesh::{Progress, SurfaceVertex, shapes};
 
     use super::*;
 
