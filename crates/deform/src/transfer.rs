@@ -8,18 +8,18 @@
 use std::collections::VecDeque;
 
 use glam::{DMat3, DVec3};
-use pliant_mesh::{Cancel, Surface, SurfaceVertex, Topology, bounding_box, face_gradient, is_without_area};
+use pliant_mesh::{Cancel, Surface, Topology, bounding_box, face_gradient, is_without_area};
 
 use crate::bilaplacian::factored::BilaplacianSystem;
 use crate::bilaplacian::loaded::{settled, write_field};
 use crate::bilaplacian::operator::BilaplacianOperator;
 use crate::bilaplacian::setup::bent_rows;
-use crate::bilaplacian::system_error::SystemError;
 use crate::operators::gradients::{Face, Gradients};
 use crate::operators::triangulation::Triangulation;
 use crate::poisson::membrane;
 use crate::region::slender;
 use crate::sparse::refactorisation::Refactorisation;
+use crate::sparse::system_error::SystemError;
 use crate::{BindError, Budget, Discretisation, Laplacian, Ordering, SolveError};
 
 /// A surface at rest and in a pose, as in its file.
@@ -40,7 +40,7 @@ impl PosedShape<'_> {
         face_gradient(corners.map(|v| self.rest[v]), corners.map(|v| self.posed[v]))
     }
 
-    /// Whether a triangle has a map: its area is zero neither at rest nor in the pose.
+    /// Returns true if a triangle has a map: its area is zero neither at rest nor in the pose.
     fn has_map(&self, triangle: usize) -> bool {
         let corners = self.triangles[triangle];
         [self.rest, self.posed]
@@ -104,9 +104,7 @@ impl<'a> DeformationTransfer<'a> {
         let diagonal = diagonal_of(surface);
         let operator = BilaplacianOperator::new(laplacian, &membrane(), diagonal);
         let elimination = ordering.elimination(&solved);
-        let refuse = |error: SystemError| {
-            error.into_bind_error(|vertex| topology.component(SurfaceVertex(vertex)), solved.len())
-        };
+        let refuse = |error: SystemError| error.into_bind_error(topology, solved.len());
         let mut system =
             BilaplacianSystem::new(operator, elimination, Refactorisation::Never, budget, cancel).map_err(refuse)?;
         let mut constant = vec![[1.0]; system.operator.field_len()];

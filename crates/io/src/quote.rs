@@ -38,7 +38,7 @@ pub(crate) fn listed(names: &[&str]) -> String {
     list.join(", ")
 }
 
-/// Whether a character controls a terminal or a line of text instead of being shown.
+/// Returns true if a character controls a terminal or a line of text instead of being shown.
 pub fn steers(letter: char) -> bool {
     letter.is_control()
         || matches!(letter, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')

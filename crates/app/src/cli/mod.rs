@@ -46,7 +46,7 @@ pub fn main() -> ExitCode {
     ExitCode::from(run(std::env::args_os().collect(), &mut console))
 }
 
-/// Does what the arguments request (the program's name comes first) and gives the exit status: 0 done, 1 refused, 2
+/// Executes the arguments' request (the program's name comes first) and gives the exit status: 0 done, 1 refused, 2
 /// wrong arguments. A refusal is one line on `console.err`.
 pub fn run(arguments: Vec<OsString>, console: &mut Console<'_>) -> u8 {
     let result = match arguments::parse(arguments) {

@@ -36,4 +36,4 @@ pub use field::FieldEntry;
 pub use joins::{JoinsFile, Placement};
 pub use project::{MeshReference, Project, StoredKept, geometry_hash};
 pub use selector::{Axis, Selector};
-pub use setup::{HandleSetup, Kept, Rest, Setup};
+pub use setup::{HandleSetup, Rest, Setup};

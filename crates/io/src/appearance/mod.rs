@@ -106,9 +106,9 @@ pub struct Material {
     pub emissive: [f32; 3],
     /// Multiplies it; sRGB.
     pub emissive_map: Option<Map>,
-    /// Whether the material is lit.
+    /// The material's lighting.
     pub lighting: Lighting,
-    /// Whether back faces are drawn.
+    /// True if back faces are drawn.
     pub double_sided: bool,
     /// The meaning of the base colour's alpha.
     pub alpha: AlphaMode,
@@ -168,7 +168,7 @@ pub struct Map {
     pub transform: [[f32; 3]; 2],
 }
 
-/// Whether a material is lit.
+/// The lighting of a material.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub enum Lighting {
     /// Lit.

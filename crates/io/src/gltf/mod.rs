@@ -72,13 +72,13 @@ pub(crate) fn join_glb(json: &[u8], bin: &[u8]) -> Option<Vec<u8>> {
 }
 
 /// The warning about a neighbour outside the file's folder that a save includes in its result.
-pub(crate) const FROM_OUTSIDE: &str =
-    "lies outside the file's own folder and was put into the result: share that only if you mean to share it too.";
+pub(crate) const FROM_OUTSIDE: &str = "is outside the file's own folder and was put into the result: share the result \
+                                       only if you mean to share it, too.";
 
 /// The warning about a neighbour that is named as an image and isn't one.
-pub(crate) const NO_IMAGE: &str = "lies outside the file's own folder and is no image, so it was left out.";
+pub(crate) const NO_IMAGE: &str = "is outside the file's own folder and is not an image, so it was left out.";
 
-/// Whether a neighbour's path stays in the file's own folder.
+/// Returns true if a neighbour's path stays in the file's own folder.
 pub(crate) fn stays_inside(path: &str) -> bool {
     uri::inside(path).is_some()
 }

@@ -45,8 +45,8 @@ pub(super) fn notes(elements: &[Element], vertex_element: Option<usize>) -> Vec<
     if let Some(vertex) = vertex_element.map(|number| &elements[number]) {
         if has_all(vertex, &["rot_0", "scale_0", "opacity"]) {
             notes.push(
-                "The vertices are Gaussian splats: an edit moves their centres, and their rotations, scales and \
-                 harmonics stay as they are, so that a bent scan turns into needles."
+                "The vertices are Gaussian splats: an edit moves their centres but keeps their rotations, scales and \
+                 harmonics, so a bent scan turns into needles."
                     .to_owned(),
             );
         }

@@ -311,7 +311,7 @@ impl Scene {
         let fault = |what: String| SaveError::CannotHold {
             what,
             format: save.format,
-            remedy: "this is a fault of the program, so report it with the file".to_owned(),
+            remedy: "this is a fault of the program: report it with the file".to_owned(),
         };
         let file = rest.files[0].bytes.clone();
         let written = read(
@@ -327,7 +327,7 @@ impl Scene {
             error => fault(error.to_string()),
         })?;
         if written.drawn.positions.len() != save.positions.len() {
-            return Err(fault("a shape whose vertices are not all written".to_owned()));
+            return Err(fault("a shape whose vertices are not all saved".to_owned()));
         }
         // The written positions were rounded to f32, so the displacements are applied to those.
         let ways = save.drawn.positions.iter().zip(save.positions);
@@ -379,7 +379,12 @@ impl Scene {
                 };
                 let list = stored.unread(kept);
                 let own = self.format.extension();
-                let sentence = || format!("The new shape leaves out {}: keep the .{own} for it.", list.join(", "));
+                let sentence = || {
+                    format!(
+                        "The new shape leaves out {}: keep the .{own} for them.",
+                        list.join(", ")
+                    )
+                };
                 (!list.is_empty()).then(sentence)
             }
             _ => self.unread_lost(format),
@@ -402,7 +407,7 @@ impl Scene {
         let own = self.format.extension();
         (!unread.is_empty()).then(|| {
             format!(
-                "{format} output leaves out {}: keep the .{own} for it.",
+                "{format} output leaves out {}: keep the .{own} for them.",
                 unread.join(", ")
             )
         })

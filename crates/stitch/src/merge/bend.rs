@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use pliant_deform::{
-    BilaplacianOrder, BindError, Bound, Budget, Constraints, Loose, Method, Problem, Role, SolveError, Target, fair,
+    BilaplacianOrder, BindError, Bound, Budget, Loose, Method, Problem, Role, SolveError, Target, fair,
 };
 use pliant_mesh::{Cancel, Progress, Surface, SurfaceVertex, Topology, distances_along_surface};
 
@@ -80,17 +80,10 @@ impl Bending<'_> {
             None => Role::Fixed,
         };
         let roles: Vec<Role> = (0..far.len()).map(role).collect();
+        let stiffness = vec![1.0; roles.len()];
         let problem = Problem {
-            surface: self.surface,
-            topology: self.topology,
-            roles: &roles,
-            handle_count: rims.values().map(|own| usize::from(own.handle) + 1).max().unwrap_or(0),
-            stiffness: &vec![1.0; roles.len()],
-            constraints: Constraints::default(),
             loose: Loose::Rest,
-            method: self.method,
-            attachments: &[],
-            revision: 0,
+            ..Problem::new((self.surface, self.topology), &roles, &stiffness, self.method)
         };
         let bind = |source: BindError| match source {
             BindError::Cancelled(cancelled) => cancelled.into(),

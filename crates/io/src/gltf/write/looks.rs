@@ -96,7 +96,7 @@ impl Looks {
             }
             None if found.encoded.is_empty() => {
                 out.warnings
-                    .push(format!("The image {name} was missing and could not be embedded."));
+                    .push(format!("The image {name} is missing and could not be embedded."));
                 None
             }
             None => {

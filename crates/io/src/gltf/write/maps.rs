@@ -85,7 +85,7 @@ pub(super) fn place(out: &mut Built, reference: &mut Value, rows: [[f32; 3]; 2])
         }
         None => {
             out.warnings
-                .push("An image whose place on the surface is skewed can't be placed in glTF: it was left out.".into());
+                .push("An image with skewed texture coordinates was left out, because glTF can't hold them.".into());
             None
         }
     }
