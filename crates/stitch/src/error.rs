@@ -43,7 +43,7 @@ pub enum StitchError {
         /// The vertices.
         vertices: [u32; 2],
     },
-    /// A vertex or an edge joins two borders, so that no tube fits between them.
+    /// Two borders have a vertex in common, so that no tube fits between them.
     #[error(
         "the borders at vertices {} and {} touch, so no tube fits between them: delete the vertices there first", .vertices[0], .vertices[1]
     )]

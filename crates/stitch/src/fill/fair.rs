@@ -61,10 +61,42 @@ pub(crate) fn refine_and_fair(
     fair_once(patch, around, budget, cancel)
 }
 
+/// Fairs those points inside a patch that are `near` its rim, and leaves the others where they are. `near` has an entry
+/// for each point inside.
+///
+/// # Errors
+/// The errors of fairing. The patch then has its shape before the failed round.
+pub(crate) fn fair_ends(
+    patch: &mut Patch,
+    near: &[bool],
+    around: &Surroundings,
+    budget: Budget,
+    cancel: &Cancel,
+) -> Result<(), BindError> {
+    let inside = (patch.rim as u32..).zip(near);
+    let free: Vec<u32> = inside.filter(|(_, near)| **near).map(|(point, _)| point).collect();
+    for _ in 0..ROUNDS {
+        fair_points(patch, &free, around, budget, cancel)?;
+    }
+    Ok(())
+}
+
 /// Fairs the points inside once.
 fn fair_once(patch: &mut Patch, around: &Surroundings, budget: Budget, cancel: &Cancel) -> Result<(), BindError> {
+    let free: Vec<u32> = (patch.rim as u32..patch.points.len() as u32).collect();
+    fair_points(patch, &free, around, budget, cancel)
+}
+
+/// Fairs the `free` points, ascending, once.
+fn fair_points(
+    patch: &mut Patch,
+    free: &[u32],
+    around: &Surroundings,
+    budget: Budget,
+    cancel: &Cancel,
+) -> Result<(), BindError> {
     let (inside, rim) = (patch.points.len(), patch.rim);
-    if inside == rim {
+    if free.is_empty() {
         return Ok(());
     }
     let mut triangles: Vec<[SurfaceVertex; 3]> = Vec::with_capacity(patch.triangles.len() + around.triangles.len());
@@ -93,18 +125,17 @@ fn fair_once(patch: &mut Patch, around: &Surroundings, budget: Budget, cancel: &
         .iter()
         .map(|point| (*point - centre).to_array())
         .collect();
-    let free: Vec<u32> = (rim as u32..inside as u32).collect();
     fair(
         &surface,
         &topology,
-        &free,
+        free,
         BilaplacianOrder::ThinPlate,
         &mut values,
         budget,
         cancel,
     )?;
-    for point in rim..inside {
-        patch.points[point] = DVec3::from_array(values[point]) + centre;
+    for &point in free {
+        patch.points[point as usize] = DVec3::from_array(values[point as usize]) + centre;
     }
     Ok(())
 }

@@ -89,11 +89,15 @@ pub(super) fn chosen(
     match holes {
         Holes::At(vertex) => return Ok((at(vertex)?, Vec::new())),
         Holes::Between(vertices) => {
-            let [one, other] = [at(vertices[0])?[0], at(vertices[1])?[0]];
-            if one == other {
-                return Err(StitchError::SameBorder { vertices });
-            }
-            return Ok((vec![one, other], Vec::new()));
+            let [first, second] = [at(vertices[0])?, at(vertices[1])?];
+            let mut pairs = first
+                .iter()
+                .flat_map(|one| second.iter().map(move |other| [*one, *other]));
+            let pair = pairs.find(|[one, other]| one != other);
+            return match pair {
+                Some(pair) => Ok((pair.to_vec(), Vec::new())),
+                None => Err(StitchError::SameBorder { vertices }),
+            };
         }
         Holes::Every | Holes::Largest(_) => {}
     }

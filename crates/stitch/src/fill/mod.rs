@@ -10,8 +10,8 @@ mod holes;
 mod patch;
 mod refine;
 mod rim;
-mod strip;
 mod triangulate;
+mod tube;
 
 use glam::DVec3;
 use pliant_deform::{BindError, Budget};
@@ -21,13 +21,13 @@ use rayon::prelude::*;
 use crate::borders::{Border, Borders, Loops};
 use crate::error::StitchError;
 use crate::part::face_beyond;
-use fair::{Surroundings, refine_and_fair};
+use fair::{Surroundings, fair_ends, refine_and_fair};
 use holes::chosen;
 pub use holes::{Holes, Reason, Unfilled};
 use patch::Patch;
 use rim::{Joined, Rim};
-use strip::strip;
 use triangulate::triangulate;
+use tube::Tube;
 
 /// The triangles that fill a hole, or the tube between two borders.
 #[derive(Clone, PartialEq, Debug)]
@@ -153,8 +153,9 @@ fn fill_one(
         scales.push(site.scales.iter().sum::<f64>() / rim as f64);
         (0..rim as u32).map(|k| [k, (k + 1) % rim as u32, rim as u32]).collect()
     });
-    let patch = Patch::new(points, rim, triangles, site.joined);
-    finished(borders, patch, scales, &site.around, (budget, cancel))
+    let mut patch = Patch::new(points, rim, triangles, site.joined);
+    let faired = refine_and_fair(&mut patch, scales, &site.around, budget, cancel);
+    finished(borders, patch, faired)
 }
 
 /// Joins two borders by a tube.
@@ -165,34 +166,28 @@ fn tube(
     (shared, budget, cancel): (&SharedVertices, Budget, &Cancel),
 ) -> Result<FilledHole, StitchError> {
     let own: Vec<Border> = chosen.iter().map(|&number| borders.sound[number].clone()).collect();
-    let touch = || {
-        let at = |k: usize| model.first_file_vertex(own[k % own.len()].vertices[0]).0;
-        StitchError::BordersTouch {
-            vertices: [at(0), at(1)],
-        }
-    };
     let loops = Loops::of(&own);
     let mut distinct = loops.vertices.clone();
     distinct.sort_unstable();
     distinct.dedup();
     if distinct.len() < loops.count() {
-        return Err(touch());
+        let at = |k: usize| model.first_file_vertex(own[k].vertices[0]).0;
+        return Err(StitchError::BordersTouch {
+            vertices: [at(0), at(1)],
+        });
     }
     let site = Site::of(model, &loops, &shared.of_others(chosen));
-    let triangles = strip(&site.points, own[0].vertices.len(), &site.joined).ok_or_else(touch)?;
-    let patch = Patch::new(site.points.clone(), loops.count(), triangles, site.joined);
-    finished(own, patch, site.scales, &site.around, (budget, cancel))
+    let spacing = site.scales.iter().sum::<f64>() / site.scales.len() as f64;
+    let tube = Tube::between(&site.points, own[0].vertices.len(), spacing);
+    let points = [&site.points[..], &tube.points].concat();
+    let mut patch = Patch::new(points, loops.count(), tube.triangles, site.joined);
+    let faired = fair_ends(&mut patch, &tube.is_near_border, &site.around, budget, cancel);
+    finished(own, patch, faired)
 }
 
-/// The patch refined and faired.
-fn finished(
-    borders: Vec<Border>,
-    mut patch: Patch,
-    scales: Vec<f64>,
-    around: &Surroundings,
-    (budget, cancel): (Budget, &Cancel),
-) -> Result<FilledHole, StitchError> {
-    let is_faired = match refine_and_fair(&mut patch, scales, around, budget, cancel) {
+/// The finished patch, if it was not cancelled.
+fn finished(borders: Vec<Border>, mut patch: Patch, faired: Result<(), BindError>) -> Result<FilledHole, StitchError> {
+    let is_faired = match faired {
         Ok(()) => true,
         Err(BindError::Cancelled(cancelled)) => return Err(cancelled.into()),
         Err(_) => false,

@@ -91,15 +91,38 @@ fn a_tube_adds_a_handle_or_joins_two_components() {
     check(&open, &try_tube(&open, [ends[0], ends[1]]).unwrap(), 1, 0);
 }
 
+/// However far apart the borders are, the tube is as wide as they are.
+#[test]
+fn a_long_tube_keeps_its_width() {
+    for gap in [3.0, 12.0, 40.0] {
+        let mut other = shapes::tube(24, 6, 1.0);
+        other.positions.iter_mut().for_each(|p| p.z += 1.0 + gap);
+        let open = model(joined(shapes::tube(24, 6, 1.0), other));
+        let loops = open.topology.boundary_loops();
+        let height = |own: &Vec<SurfaceVertex>| open.surface.positions[own[0].index()].z;
+        let inner = loops.iter().filter(|own| (0.5..1.5 + gap).contains(&height(own)));
+        let ends: Vec<u32> = inner.map(|own| open.first_file_vertex(own[0]).0).collect();
+        let tube = try_tube(&open, [ends[0], ends[1]]).unwrap();
+        check(&open, &tube, 1, 0);
+        for p in &tube.holes[0].points {
+            assert!((p.truncate().length() - 1.0).abs() < 0.05, "{gap}: {p}");
+        }
+    }
+}
+
 #[test]
 fn one_border_and_borders_that_touch_are_refused_in_words() {
     let open = model(shapes::tube(20, 4, 2.0));
     let refused = try_tube(&open, [0, 3]).unwrap_err();
     assert_eq!(refused, StitchError::SameBorder { vertices: [0, 3] });
-    // The single ring's two borders have no vertex in common, but every vertex of one has edges to the other.
-    let ring = model(shapes::tube(20, 1, 0.1));
-    let ends = on_borders(&ring);
-    let refused = try_tube(&ring, [ends[0], ends[1]]).unwrap_err();
+    // Two squares of a grid that meet at a corner.
+    let sheet = without(&shapes::grid(6, 6), |p| {
+        let cell = [p.x, p.y].map(|x| (6.0 * x) as u32);
+        cell == [2, 2] || cell == [3, 3]
+    });
+    let sheet = model(sheet);
+    let ends = on_borders(&sheet);
+    let refused = try_tube(&sheet, [ends[1], ends[2]]).unwrap_err();
     assert!(matches!(refused, StitchError::BordersTouch { .. }), "{refused}");
 }
 
