@@ -117,7 +117,7 @@ fn every_control_of_menus_and_dialogs_has_a_name() {
         assert_named(&mut session, menu);
         session.key(Key::Escape, Modifiers::NONE);
     }
-    for dialog in ["keys", "log", "memory", "compare two methods"] {
+    for dialog in ["keys", "log", "memory"] {
         session.palette(dialog);
         assert_named(&mut session, "the palette");
         session.key(Key::Enter, Modifiers::NONE);

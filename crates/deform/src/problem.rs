@@ -41,6 +41,32 @@ pub struct Problem<'a> {
 const ABOUT_ALIKE: f64 = 0.25;
 
 impl<'a> Problem<'a> {
+    /// The problem of these roles and this stiffness, with hard handles and without attachments; loose components
+    /// follow.
+    pub fn new(
+        (surface, topology): (&'a Surface, &'a Topology),
+        roles: &'a [Role],
+        stiffness: &'a [f64],
+        method: &'a Method,
+    ) -> Self {
+        let number = |role: &Role| match role {
+            Role::Handle(number) => Some(usize::from(*number) + 1),
+            Role::Fixed | Role::Free => None,
+        };
+        Self {
+            surface,
+            topology,
+            roles,
+            handle_count: roles.iter().filter_map(number).max().unwrap_or(0),
+            stiffness,
+            constraints: Constraints::default(),
+            loose: Loose::default(),
+            method,
+            attachments: &[],
+            revision: 0,
+        }
+    }
+
     /// The problem without its method.
     pub(crate) fn boundary(&self) -> BoundaryProblem<'a> {
         let examples = match self.attachment() {

@@ -165,7 +165,7 @@ fn data_that_the_new_file_lacks_is_named() {
     assert_eq!(
         plain,
         "The new shape leaves out the attribute TEXCOORD_1, ACME_lacquer, images with a third set of texture \
-         coordinates: keep the .glb for it."
+         coordinates: keep the .glb for them."
     );
     let as_obj = named(&maker, Format::Obj);
     assert!(

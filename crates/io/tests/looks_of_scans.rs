@@ -225,7 +225,7 @@ fn what_stays_behind_is_named() {
     let warnings = |opened: &SceneAndDrawn, format| save_as(opened, &opened.drawn.positions, format).warnings;
     let found = warnings(&opened, Format::Glb);
     let expected = "GLB output leaves out confidence of each 'vertex', red, green, blue of each 'face', the element \
-                    edge: keep the .ply for it.";
+                    edge: keep the .ply for them.";
     assert_eq!(found, [expected]);
     let off = open(
         b"OFF\n4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3 255 0 0\n",

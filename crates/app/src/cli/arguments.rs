@@ -11,6 +11,7 @@ use pliant_engine::stitching::Replace;
 use pliant_io::{MorphDeltas, MorphTarget, quoted};
 use pliant_mesh::{Vectors, WeldOptions};
 
+use super::cut_plane::{KeepArgument, PlaneArgument};
 use crate::version::VERSION;
 
 /// Bends scanned meshes.
@@ -51,8 +52,12 @@ pub(crate) enum Command {
     Merge(MergeArguments),
     /// Fill holes with new triangles
     Fill(FillArguments),
-    /// Delete vertices, with the triangles that use them
+    /// Join two borders of a file by a tube
+    Bridge(BridgeArguments),
+    /// Delete vertices with the triangles that use them, or cut along a plane
     Cut(CutArguments),
+    /// Let dye flow along the surface and save it as vertex colours
+    Flow(FlowArguments),
     /// Write man pages, shell completions and the manual's pages of commands
     Generate(GenerateArguments),
 }
@@ -231,12 +236,30 @@ pub(crate) struct MergeArguments {
 pub(crate) struct FillArguments {
     /// The file with holes: glb, gltf, obj, ply, stl or off
     pub file: PathBuf,
-    /// Fill only the N longest holes; without it and --at, fill every hole
+    /// Fill only the N longest borders; without it and --at, fill every hole except the outer border of an open sheet
     #[arg(long, value_name = "N", conflicts_with = "at", value_parser = RangedU64ValueParser::<usize>::new().range(1..=100_000_000))]
     pub largest: Option<usize>,
-    /// Fill only the hole whose rim contains this vertex of the file
+    /// Fill only the border that passes this vertex of the file
     #[arg(long, value_name = "VERTEX")]
     pub at: Option<u32>,
+    /// The output file and report.
+    #[command(flatten)]
+    pub output: NewShapeArguments,
+    /// The welding of vertices.
+    #[command(flatten)]
+    pub weld: WeldArguments,
+    /// The threads and vectors.
+    #[command(flatten)]
+    pub compute: ComputeArguments,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct BridgeArguments {
+    /// The file with the borders: glb, gltf, obj, ply, stl or off
+    pub file: PathBuf,
+    /// A vertex of each of the two borders to join, by their numbers in the file
+    #[arg(long, num_args = 2, value_names = ["VERTEX", "VERTEX"], required = true)]
+    pub borders: Vec<u32>,
     /// The output file and report.
     #[command(flatten)]
     pub output: NewShapeArguments,
@@ -253,11 +276,50 @@ pub(crate) struct CutArguments {
     /// The file to cut: glb, gltf, obj, ply, stl or off
     pub file: PathBuf,
     /// The vertices to delete, as a selector of the edit format
-    #[arg(long, value_name = "SELECTOR.json")]
-    pub delete: PathBuf,
+    #[arg(
+        long,
+        value_name = "SELECTOR.json",
+        required_unless_present = "plane",
+        conflicts_with = "plane"
+    )]
+    pub delete: Option<PathBuf>,
+    /// Cut along the plane of the points p with (NX, NY, NZ) · p = D, in world units, and split the triangles that it
+    /// crosses
+    #[arg(long, value_name = "NX,NY,NZ,D", allow_hyphen_values = true)]
+    pub plane: Option<PlaneArgument>,
+    /// The side of the plane to keep: the one to which (NX, NY, NZ) points, the other, or both, whose triangles are only
+    /// split
+    #[arg(long, value_enum, default_value_t = KeepArgument::Positive, requires = "plane")]
+    pub keep: KeepArgument,
     /// The output file and report.
     #[command(flatten)]
     pub output: NewShapeArguments,
+    /// The welding of vertices.
+    #[command(flatten)]
+    pub weld: WeldArguments,
+    /// The threads and vectors.
+    #[command(flatten)]
+    pub compute: ComputeArguments,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct FlowArguments {
+    /// The file along whose surface dye flows: glb, gltf, obj, ply, stl or off
+    pub file: PathBuf,
+    /// The dye, the velocities and the forces
+    #[arg(long, value_name = "FLOW.json")]
+    pub flow: PathBuf,
+    /// The file to write; its extension tells its format. With -#### before the extension, a file for the start and for
+    /// each step, with its number
+    #[arg(long, value_name = "OUT")]
+    pub output: PathBuf,
+    /// The file for the flow's figures and times
+    #[arg(long, value_name = "REPORT.json")]
+    pub report: Option<PathBuf>,
+    /// The most memory for the pressure's factor beside the mesh, such as 8GB or 500MB; without it 16GiB, and never more
+    /// than the machine has left
+    #[arg(long, value_name = "SIZE", value_parser = pliant_engine::memory::bytes)]
+    pub memory: Option<u64>,
     /// The welding of vertices.
     #[command(flatten)]
     pub weld: WeldArguments,

@@ -6,6 +6,7 @@ use glam::DVec3;
 
 use super::Arap;
 use super::lead::LedSolver;
+use crate::descent::prescribed::Prescribed;
 use crate::handles::finite::Finite;
 use crate::handles::offsets::Offsets;
 use crate::handles::turns::Followed;
@@ -92,11 +93,7 @@ impl DeformMethod for Arap {
 impl BoundMethod for LedSolver {
     fn step(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> Result<Stepped, SolveError> {
         clear(displacements);
-        for (own, motion) in self.solver.prescribed.iter().zip(motions) {
-            for vertex in own {
-                displacements[vertex.surface_vertex as usize] = vertex.goes(motion);
-            }
-        }
+        Prescribed::write(&self.solver.prescribed, motions, displacements);
         let (converged, energy) = LedSolver::step(self, motions, displacements);
         Ok(Stepped {
             converged,

@@ -10,6 +10,7 @@ use super::elements::Elements;
 use super::lead::Led;
 use super::{Descent, Lead, Shells, ShellsSolver};
 use crate::attachment::{AttachmentDeclaration, AttachmentKind};
+use crate::descent::prescribed::Prescribed;
 use crate::handles::finite::Finite;
 use crate::handles::offsets::Offsets;
 use crate::handles::turns::Followed;
@@ -110,11 +111,7 @@ impl DeformMethod for Shells {
 impl BoundMethod for ShellsSolver {
     fn step(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> Result<Stepped, SolveError> {
         clear(displacements);
-        for (own, motion) in self.prescribed.iter().zip(motions) {
-            for vertex in own {
-                displacements[vertex.surface_vertex as usize] = vertex.goes(motion);
-            }
-        }
+        Prescribed::write(&self.prescribed, motions, displacements);
         let mut outcome = (true, 0.0);
         // The whole step enters the pool once: otherwise each of the many short loops would wait for it.
         rayon::scope(|_| outcome = self.advance(motions));

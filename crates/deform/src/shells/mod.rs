@@ -70,6 +70,7 @@ use self::shape::{Energy, Shape, Slopes};
 use self::system::{Pattern, System};
 use self::unfolded::{Preconditioner, Unfolded};
 use crate::budget::bytes_of;
+use crate::descent::prescribed::Prescribed;
 use crate::handles::blend::HandleFrame;
 use crate::handles::offsets::Offsets;
 use crate::handles::{Handle, Motion};
@@ -174,24 +175,6 @@ struct Blending {
     preconditioner: Option<Preconditioner>,
 }
 
-/// A vertex that follows its handle exactly.
-#[derive(Clone, Copy, Debug)]
-struct Prescribed {
-    surface_vertex: u32,
-    /// [`elements::ABSENT`] if no element has it.
-    local: u32,
-    coordinates: [f64; 4],
-    /// The offset of its target from its handle's motion.
-    offset: DVec3,
-}
-
-impl Prescribed {
-    /// The displacement to its target.
-    fn goes(&self, motion: &Motion) -> DVec3 {
-        motion.displace(self.coordinates) + self.offset
-    }
-}
-
 impl ShellsSolver {
     /// Collects edges and hinges, analyses the matrix, and solves for the weights of `handles`.
     pub fn bind(
@@ -280,6 +263,8 @@ impl ShellsSolver {
         };
         progress.set(1.0);
         let current = energy.at_rest();
+        let local_of = energy.elements.local_of(problem.roles.len());
+        let prescribed = Prescribed::of(handles, &partition.soft, &problem.surface.positions, &local_of);
         Ok(Self {
             trial: current.clone(),
             current,
@@ -287,7 +272,7 @@ impl ShellsSolver {
             has_slopes: false,
             weights,
             handles: HandleFrame::of_all(handles, world_origin),
-            prescribed: prescribed(problem, partition, handles, &energy.elements),
+            prescribed,
             motions: vec![Motion::default(); handles.len()],
             has_converged: true,
             has_stalled: false,
@@ -332,10 +317,9 @@ impl ShellsSolver {
     /// Sets the offsets of handles' vertices from the motions; then the next step has new targets.
     pub fn set_offsets(&mut self, offsets: &Offsets) {
         for vertex in self.prescribed.iter_mut().flatten() {
-            vertex.offset = offsets.at(vertex.surface_vertex);
+            vertex.set_offset(offsets);
         }
-        let elements = &self.energy.elements;
-        self.energy.springs.set_offsets(&elements.vertices, offsets);
+        self.energy.springs.set_offsets(offsets);
         self.has_other_offsets = true;
         if let Some(Descent::Led(led)) = &mut self.descent {
             led.set_offsets(offsets);
@@ -357,11 +341,7 @@ impl ShellsSolver {
 
     /// True if neither a handle nor an example moves the present shape.
     fn is_at_rest(&self) -> bool {
-        let has_places = self
-            .prescribed
-            .iter()
-            .flatten()
-            .any(|vertex| vertex.offset != DVec3::ZERO);
+        let has_places = self.prescribed.iter().flatten().any(Prescribed::has_offset);
         !has_places
             && self.motions.iter().all(Motion::is_rest)
             && self.current.weights.iter().all(|weight| *weight == 0.0)
@@ -410,26 +390,6 @@ impl ShellsSolver {
         self.has_stalled = false;
         self.has_other_weights = self.energy.examples.given().any(|weight| weight != 0.0);
     }
-}
-
-fn prescribed(
-    problem: &BoundaryProblem,
-    partition: &Partition,
-    handles: &[Handle],
-    elements: &Elements,
-) -> Vec<Vec<Prescribed>> {
-    let local_of = elements.local_of(problem.roles.len());
-    let one = |(handle, soft): (&Handle, &Option<f64>)| {
-        let of = |&surface_vertex: &u32| Prescribed {
-            surface_vertex,
-            local: local_of[surface_vertex as usize],
-            coordinates: handle.coordinates(problem.surface.positions[surface_vertex as usize]),
-            offset: DVec3::ZERO,
-        };
-        let hard = handle.vertices.iter().filter(|_| soft.is_none());
-        hard.map(of).collect()
-    };
-    handles.iter().zip(&partition.soft).map(one).collect()
 }
 
 fn warnings(options: &Shells, energy: &Energy) -> Vec<String> {

@@ -266,7 +266,7 @@ fn what_is_no_cage_around_the_region_is_refused_in_words() {
         ("no finite position at its point 7", &|rest, _| rest[7].y = f64::NAN),
         ("no triangle at its vertex", &|rest, _| rest.push(DVec3::ONE)),
         ("but has", &|_, triangles| triangles[2][1] = count),
-        ("outside, and harmonic coordinates", &|rest, _| {
+        ("outside, but harmonic coordinates", &|rest, _| {
             rest.iter_mut().for_each(|p| *p *= 0.5);
         }),
     ];

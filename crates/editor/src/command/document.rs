@@ -179,6 +179,21 @@ pub(super) const COMPARE_METHODS: Entry<()> = Entry {
     }),
 };
 
+/// Shows one method's result large beside the view, or the results of all methods below it.
+pub(super) const ENLARGE_METHOD: Entry<Option<usize>> = Entry {
+    listed: &[],
+    scope: Scope::View,
+    unavailable: |state, _| {
+        let is_comparing = state.workspace.jobs.comparison.is_some();
+        unless(is_comparing, "No methods are compared: choose Compare methods first.")
+    },
+    action: Action::Do(|context, number| {
+        if let Some(comparison) = &mut context.workspace.jobs.comparison {
+            comparison.enlarge(number);
+        }
+    }),
+};
+
 /// Stops the running jobs; anything that needs them starts them again.
 pub(super) const CANCEL_JOBS: Entry<()> = Entry {
     listed: &[item((), "Stop", "Stops the computation.", "cancel abort", &[])],

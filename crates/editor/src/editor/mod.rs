@@ -6,7 +6,6 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use glam::DVec3;
-use pliant_deform::Method;
 use pliant_mesh::Model;
 
 use crate::Beginning;
@@ -15,7 +14,6 @@ use crate::document::{Document, SavedAs};
 use crate::event::Event;
 use crate::input::{Button, Key, Modifiers, Pointer};
 use crate::jobs::{Activity, Asked, Executor, JobDone, JobKind};
-use crate::snapshot::Snapshot;
 use crate::tool::{Adjust, Brush, Context, Gesture, Lit, Next, Overlay, ToolMode, ToolSettings, begin, hover};
 use crate::view::{Shading, View};
 use crate::workspace::{ColouredBy, Workspace, take_mirrored};
@@ -136,7 +134,6 @@ impl Editor {
             }
             Event::JobDone(done) => self.job_done(done),
             Event::Opened { model, name, beginning } => self.open(model, name, beginning),
-            Event::Follow { leader, method } => self.follow(&leader, &method),
             Event::Recovered(needed) => self.workspace.history.mark_unsaved(needed),
             Event::Saved(what, mark) => {
                 let Workspace { history, document, .. } = &mut self.workspace;
@@ -377,14 +374,6 @@ impl Editor {
         open(&mut self.workspace);
         self.view.open(size.map(|size| if size > 0.0 { size } else { 1.0 }));
         frame_all(&self.workspace, &mut self.view);
-    }
-
-    fn follow(&mut self, leader: &Snapshot, method: &Method) {
-        self.abort_gesture();
-        self.workspace.follow(&leader.work, method);
-        self.settings = leader.settings.clone();
-        self.view.look = leader.look;
-        self.view.travel(|camera| *camera = leader.camera);
     }
 
     fn is_looking(&self) -> bool {

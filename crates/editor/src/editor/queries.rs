@@ -19,7 +19,7 @@ use crate::snapshot::Snapshot;
 use crate::status::status;
 use crate::tool::{Gesture, ToolMode};
 use crate::view::{Cursor, Look, Pick};
-use crate::workspace::{SnapshotKey, Workspace, WorkspaceSnapshot, region_colour, rims};
+use crate::workspace::{SnapshotKey, Workspace, region_colour, rims};
 use crate::{EditFile, MeshReference, geometry_hash};
 
 impl Editor {
@@ -203,10 +203,9 @@ impl Editor {
     /// The present document, with an active drag; `None` before the first file.
     pub fn snapshot(&self) -> Option<Snapshot> {
         Some(Snapshot {
-            work: WorkspaceSnapshot::of(&self.workspace)?,
+            document: self.document().clone(),
+            model: Arc::clone(self.workspace.model()?),
             camera: *self.view.camera(),
-            look: self.view.look,
-            settings: self.settings.clone(),
         })
     }
 

@@ -13,6 +13,7 @@ mod inspection;
 mod intersections;
 mod job_queue;
 mod present_binding;
+mod requests;
 mod scheduler;
 mod slot;
 mod solved;

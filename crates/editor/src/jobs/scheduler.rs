@@ -7,19 +7,17 @@
 
 use std::sync::Arc;
 
-use glam::DVec3;
 use pliant_mesh::{Cancel, Model};
 
 use super::allowance::Allowance;
 use super::comparison::Comparison;
 use super::computed::Computed;
 use super::inspected::Asked;
-use super::inspection::inspect_work;
 use super::slot::{Ended, Scheduled, Slot, Unfinished, Work};
 use super::solved::{ControlPlaces, SolveResult, Solved};
 use super::solving::{controls_work, solve_work};
 use super::table::{Executor, JobDone, JobKind, Slots};
-use super::work::{bind_work, intersect_work, order_work, pick_work, region_work};
+use super::work::{bind_work, order_work, pick_work, region_work};
 use crate::document::Document;
 use crate::pickable::ShownTriangles;
 use crate::region::{Region, region_input};
@@ -47,9 +45,9 @@ pub(crate) struct Jobs {
     /// A different number for every measured region.
     pub(crate) roles_revision: Revision,
     /// The shape and the triangle of the last request for a joint.
-    joint_asked: Option<(Revision, u32)>,
+    pub(super) joint_asked: Option<(Revision, u32)>,
     /// The inspection job: its binding, and its targets if it depends on them, from its request on.
-    inspection: (Revision, Asked, Revision),
+    pub(super) inspection: (Revision, Asked, Revision),
 }
 
 /// The effect of a job's result on the editor.
@@ -88,7 +86,7 @@ impl Jobs {
     }
 
     /// A revision that was never used.
-    fn next_revision(&mut self) -> Revision {
+    pub(super) fn next_revision(&mut self) -> Revision {
         self.counter += 1;
         Revision(self.counter)
     }
@@ -150,86 +148,6 @@ impl Jobs {
         self.computed.newer_targets = Cancel::new();
     }
 
-    /// Requests a job that a person has asked for, in place of an earlier one.
-    pub(crate) fn ask<T>(&mut self, slot: fn(&mut Slots) -> &mut Slot<T>, work: Work<T>) {
-        self.stop_asking(slot);
-        slot(&mut self.computed.slots).request(work);
-    }
-
-    /// The job that a person has asked for is no longer wanted.
-    pub(crate) fn stop_asking<T>(&mut self, slot: fn(&mut Slots) -> &mut Slot<T>) {
-        let revision = self.next_revision();
-        slot(&mut self.computed.slots).renew(revision);
-    }
-
-    /// Whether the joint under a triangle of the present shape has not been requested yet.
-    pub(crate) fn asks_for_joint(&self, triangle: u32) -> bool {
-        self.joint_asked != Some((self.shape_revision(), triangle))
-    }
-
-    /// Requests the joint under a triangle of the present shape. The running search continues, so that a steadily
-    /// moving pointer still shows joints; the newest request waits.
-    pub(crate) fn look_for_joint(&mut self, triangle: u32, work: Work<Option<Arc<pliant_mesh::Joint>>>) {
-        let shape = self.shape_revision();
-        if self.joint_asked.is_some_and(|(asked, _)| asked != shape) {
-            self.forget_joint();
-        }
-        self.joint_asked = Some((shape, triangle));
-        let revision = self.next_revision();
-        self.computed.slots.joint.follow(revision);
-        self.computed.slots.joint.request(work);
-    }
-
-    /// A joint is no longer wanted.
-    pub(crate) fn forget_joint(&mut self) {
-        if self.joint_asked.take().is_some() {
-            self.stop_asking(|slots| &mut slots.joint);
-            self.computed.slots.joint.take();
-        }
-    }
-
-    /// Begins a comparison of the methods on the edit.
-    pub(crate) fn begin_comparing(&mut self, document: &Document) {
-        self.comparison = Some(Comparison::new(document));
-        // A new request also needs the ordering that was stopped before.
-        self.computed.slots.order.try_again();
-    }
-
-    /// Ends the comparison; the methods' bindings are dropped.
-    pub(crate) fn end_comparing(&mut self) {
-        self.comparison = None;
-        self.stop_asking(|slots| &mut slots.compare);
-    }
-
-    /// Requests the shown parts of the present binding, unless they are known or under way. If only the targets differ,
-    /// the running job continues, so that the base visibly bends during a drag; the newest request waits.
-    pub(crate) fn inspect(&mut self, asked: Asked, document: &Document) {
-        let has_binding = self.binds_something(document) && !self.computed.slots.bind.has_given_up();
-        let asked = if has_binding { asked } else { Asked::default() };
-        let targets = match asked.base {
-            true => self.computed.slots.solve.wanted(),
-            false => Revision(0),
-        };
-        let bound_revision = self.computed.slots.bind.made();
-        let wanted = (bound_revision, asked, targets);
-        if self.inspection == wanted || !(self.is_bound() || asked == Asked::default()) {
-            return;
-        }
-        let (bound, before, _) = std::mem::replace(&mut self.inspection, wanted);
-        let revision = self.next_revision();
-        let work = inspect_work(&self.computed, document, asked).filter(|_| asked != Asked::default());
-        let slot = &mut self.computed.slots.inspect;
-        if (bound, before) == (bound_revision, asked) {
-            slot.follow(revision);
-        } else {
-            slot.renew(revision);
-        }
-        match work {
-            Some(work) => slot.request(work),
-            None => drop(slot.take()),
-        }
-    }
-
     /// Restricts rays to these triangles.
     pub(crate) fn show_triangles(&mut self, shown: Option<Arc<Vec<u32>>>) {
         self.computed.shown = ShownTriangles {
@@ -244,20 +162,6 @@ impl Jobs {
         let revision = self.next_revision();
         self.computed.slots.pick.follow(revision);
         self.computed.slots.intersect.renew(revision);
-    }
-
-    /// Requests the places where the present shape, `displacements` away from the file's, passes through itself, once
-    /// its hierarchy exists.
-    pub(crate) fn intersect(&mut self, displacements: &Arc<Vec<DVec3>>) {
-        let Some(model) = self.computed.model.clone() else {
-            return;
-        };
-        if self.is_picking_current() && !self.computed.slots.intersect.is_current() {
-            self.want(
-                |slots| &mut slots.intersect,
-                |computed| intersect_work(computed, &model, displacements),
-            );
-        }
     }
 
     /// Solves that run or are done but have not arrived must no longer change the shape.
@@ -370,7 +274,11 @@ impl Jobs {
     }
 
     /// Requests a job for the present state, unless that is under way or was given up.
-    fn want<T>(&mut self, slot: fn(&mut Slots) -> &mut Slot<T>, work: impl FnOnce(&Computed) -> Option<Work<T>>) {
+    pub(super) fn want<T>(
+        &mut self,
+        slot: fn(&mut Slots) -> &mut Slot<T>,
+        work: impl FnOnce(&Computed) -> Option<Work<T>>,
+    ) {
         let own = slot(&mut self.computed.slots);
         if own.may_request()
             && let Some(work) = work(&self.computed)
@@ -385,7 +293,7 @@ impl Jobs {
     }
 
     /// Whether there is something to bind: handles, or control points or examples that move the surface without them.
-    fn binds_something(&self, document: &Document) -> bool {
+    pub(super) fn binds_something(&self, document: &Document) -> bool {
         !self.computed.region.handles.is_empty() || document.bends_without_handles()
     }
 

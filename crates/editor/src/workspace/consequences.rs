@@ -24,8 +24,7 @@ impl Workspace {
         self.jobs.inspect(asked, &self.document);
         let is_at_rest = activity == Activity::Still && self.document.is_settled();
         let is_bent = self.document.is_displaced() || self.document.is_applied();
-        // A workspace that follows another is shown, not edited.
-        if is_at_rest && is_bent && self.followed.is_none() {
+        if is_at_rest && is_bent {
             self.jobs.intersect(&self.document.from_file);
         }
         self.jobs.pump(&self.document, activity);

@@ -50,14 +50,6 @@ pub(crate) struct Workspace {
     pub(super) symmetry: Symmetry,
     /// Both sides of the plane of symmetry, once they are found.
     pub(super) both_sides: Option<Arc<BothSides>>,
-    pub(super) followed: Option<Followed>,
-}
-
-/// The state last taken over from another workspace.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub(super) struct Followed {
-    pub(super) model: Revision,
-    pub(super) versions: Versions,
 }
 
 impl Workspace {
@@ -84,7 +76,6 @@ impl Workspace {
             mirroring: None,
             symmetry: Symmetry::None,
             both_sides: None,
-            followed: None,
         }
     }
 
@@ -103,7 +94,6 @@ impl Workspace {
         self.mirroring = None;
         self.symmetry = Symmetry::None;
         self.both_sides = None;
-        self.followed = None;
         self.jobs.open(model);
         self.seen = *self.document.versions();
         self.shape_revision += 1;

@@ -5,7 +5,7 @@ use std::ops::Range;
 use glam::{DVec3, Vec3};
 use pliant_io::{Appearance, Group, Image, Material, OriginalMaterial, Polygons, UnsavedShape};
 use pliant_mesh::{Drawn, DrawnVertex, Model, vertex_normals};
-use pliant_stitch::{Age, Attributes, NewShape, VertexSource};
+use pliant_stitch::{Age, Attributes, NewShape, Part, VertexSource};
 
 use crate::loading::Loaded;
 
@@ -42,6 +42,20 @@ impl<'a> Source<'a> {
     pub fn normal(&self, vertex: DrawnVertex) -> DVec3 {
         let normals = self.look.normals.as_ref();
         normals.map_or(DVec3::ZERO, |normals| Vec3::from(normals[vertex.index()]).as_dvec3())
+    }
+
+    /// Calls `work` with the file as a part of a new shape, whose vertices have these channels.
+    pub fn with_part<T>(&self, channels: Channels, work: impl FnOnce(&Part<'_>) -> T) -> T {
+        let value = |vertex, channel| channels.value(&self.look, vertex, channel);
+        let group = |triangle| self.group(triangle);
+        let normal = |vertex| self.normal(vertex);
+        work(&Part {
+            model: self.model,
+            drawn: self.drawn,
+            group: &group,
+            attributes: channels.attributes(&value),
+            normals: self.look.normals.is_some().then_some(&normal as _),
+        })
     }
 
     /// Whether a drawn vertex belongs to triangles that are shown flat.

@@ -2,11 +2,13 @@
 
 pub(crate) mod colour;
 pub(crate) mod original;
+mod uv_set;
 
 use std::ops::Range;
 
 use crate::Bytes;
 pub use original::OriginalMaterial;
+pub use uv_set::UvSet;
 
 /// The data that a renderer or another file format needs besides positions and triangles; made on request, never
 /// edited.
@@ -164,15 +166,6 @@ pub struct Map {
     pub set: UvSet,
     /// The place of the look-up in the image: rows that multiply (u, v, 1).
     pub transform: [[f32; 3]; 2],
-}
-
-/// The set of texture coordinates of an image.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum UvSet {
-    /// [`Appearance::uvs`], those of the base colour.
-    Base,
-    /// [`Appearance::second_uvs`].
-    Second,
 }
 
 /// The lighting of a material.

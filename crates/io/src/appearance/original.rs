@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use serde_json::Value;
 
-use super::UvSet;
+use super::uv_set::UvSet;
 
 /// A glTF's material as written: its extensions, its extras, and the textures that it names.
 #[derive(Clone, PartialEq, Debug)]

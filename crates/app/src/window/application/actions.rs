@@ -194,7 +194,6 @@ impl Application {
                 });
                 theme::apply(context, self.settings.get());
             }
-            FileCommand::Compare => self.toggle_compare(context),
             FileCommand::Hints => self.settings.change(|settings| settings.hints_seen = false),
             FileCommand::SavePicture(kind) => self.choose(Purpose::SavePicture(kind)),
             FileCommand::Quit => self.unless_unsaved(Then::Close),

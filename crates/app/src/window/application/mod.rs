@@ -39,7 +39,6 @@ use super::threads::message::Message;
 use super::threads::workers::Workers;
 use super::viewport::Viewport;
 use super::viewport::before::{OriginalView, Split};
-use super::viewport::compare::Compare;
 use super::viewport::method_views::MethodViews;
 use super::widgets::{icon, theme};
 use crate::window::session::{Session, Source};
@@ -53,8 +52,6 @@ pub(super) const REST: Duration = Duration::from_millis(300);
 pub struct Application {
     pub(super) editor: Editor,
     pub(super) viewport: Viewport,
-    /// The second view, while two methods are compared.
-    pub(super) compare: Option<Compare>,
     /// The shape of the file, while it is shown along with the present one, and the position of the line between both.
     pub(super) original: Option<OriginalView>,
     pub(super) split: Split,
@@ -151,7 +148,6 @@ impl Application {
         let mut application = Self {
             editor: Editor::new(Box::new(workers.clone())),
             viewport,
-            compare: None,
             original: None,
             split: Split::default(),
             method_views: MethodViews::default(),
@@ -206,7 +202,6 @@ impl Application {
         };
         let system = |error: pliant_render::RenderError| EngineError::System(error.to_string());
         self.viewport = Viewport::new(state).map_err(system)?;
-        self.compare = None;
         self.original = None;
         self.method_views = MethodViews::default();
         self.workers.wake(context.egui_ctx.clone());
@@ -265,9 +260,8 @@ impl Application {
             .viewport
             .displacements()
             .is_some_and(|shown| Arc::ptr_eq(shown, view.drawn));
-        let compared = self.compare.as_ref().is_none_or(Compare::is_settled);
         let comparison = self.editor.comparison();
-        let compared = compared && comparison.is_none_or(|comparison| self.method_views.are_settled(comparison));
+        let compared = comparison.is_none_or(|comparison| self.method_views.are_settled(comparison));
         let original = self.original.as_ref().is_none_or(|original| original.is_settled(&view));
         let drawn = self.redrawing.is_none() && self.shows_what_is_turned();
         let is_idle = self.session.doing().is_none() && !self.is_saving() && !self.is_loading_textures();
@@ -282,20 +276,6 @@ impl Application {
     /// The place of the 3D view in the window, in points.
     pub fn view_rect(&self) -> egui::Rect {
         self.view_rect
-    }
-
-    /// The editor behind the second view, while two methods are compared.
-    pub fn compared(&self) -> Option<&Editor> {
-        self.compare.as_ref().map(Compare::editor)
-    }
-
-    /// Opens or closes the second view.
-    pub fn toggle_compare(&mut self, context: &egui::Context) {
-        self.compare = match self.compare.take() {
-            Some(_) => None,
-            None => Some(Compare::new(context, &self.viewport, &self.editor)),
-        };
-        self.last_change = Instant::now();
     }
 
     /// The number of times that the 3D view was drawn.
@@ -317,10 +297,9 @@ impl Application {
 
     /// The time that drawing has kept the window's thread busy so far.
     pub fn drawing_time(&self) -> Duration {
-        let second = self.compare.as_ref().map_or(Duration::ZERO, Compare::drawing_time);
         let original = self.original.as_ref();
         let original = original.map_or(Duration::ZERO, OriginalView::drawing_time);
-        self.viewport.drawing_time() + second + original + self.method_views.drawing_time()
+        self.viewport.drawing_time() + original + self.method_views.drawing_time()
     }
 
     /// Gives the editor a command, like a menu.

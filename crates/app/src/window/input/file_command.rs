@@ -50,8 +50,6 @@ pub enum FileCommand {
     NextTheme,
     /// Everything larger (above 0) or smaller, in tenths.
     Scale(i8),
-    /// Show or hide a second view bent by another method.
-    Compare,
     /// Show the first steps again.
     Hints,
     /// Save a picture of the view.
@@ -113,7 +111,6 @@ impl FileCommand {
             | Self::Keys
             | Self::Memory
             | Self::NextTheme
-            | Self::Compare
             | Self::Hints
             | Self::OpenPath(_)
             | Self::SavePicture(_) => None,
@@ -121,7 +118,7 @@ impl FileCommand {
     }
 
     /// All commands that need no path, in the order of the menu.
-    pub const LISTED: [Self; 19] = [
+    pub const LISTED: [Self; 18] = [
         Self::Open,
         Self::Save,
         Self::SaveAs,
@@ -141,7 +138,6 @@ impl FileCommand {
         Self::Keys,
         Self::Memory,
         Self::NextTheme,
-        Self::Compare,
         Self::Hints,
         Self::Quit,
     ];
@@ -166,7 +162,6 @@ impl FileCommand {
             Self::Memory => "Memory…",
             Self::NextTheme => "Light or dark",
             Self::Scale(_) => "Interface size",
-            Self::Compare => "Compare two methods",
             Self::Hints => "Canvas hints",
             Self::ExportEdit => "Export edit…",
             Self::SavePicture(_) => "Save picture…",
@@ -191,7 +186,6 @@ impl FileCommand {
             Self::Memory => "ram limit budget gigabytes settings preferences",
             Self::NextTheme => "theme dark mode",
             Self::Scale(_) => "ui zoom",
-            Self::Compare => "split view side by side",
             Self::Hints => "help first steps",
             Self::ExportEdit => "json command line",
             Self::SavePicture(_) => "screenshot render image png",

@@ -8,7 +8,6 @@ pub(in crate::window) mod axis_ball;
 pub(in crate::window) mod backdrop;
 pub(in crate::window) mod before;
 pub(in crate::window) mod coarseness;
-pub(in crate::window) mod compare;
 pub(in crate::window) mod context_menu;
 pub(in crate::window) mod drawn_key;
 pub(in crate::window) mod gpu;
