@@ -42,7 +42,7 @@ fn ctrl_c_at_any_stage_ends_with_one_sentence_and_leaves_nothing() {
         assert_eq!(status, Some(1), "{stage}: {said:?}");
         let sentence = said.rsplit("\x1b[K").next().unwrap();
         assert!(
-            sentence.lines().count() == 1 && sentence.starts_with("pliant: stopped"),
+            sentence.lines().count() == 1 && sentence.starts_with("pliant: the command was stopped"),
             "{stage}: {said:?}"
         );
         assert_eq!(fs::read_to_string(at("out.off")).unwrap(), "as it was", "{stage}");

@@ -58,7 +58,7 @@ fn a_whole_session_by_pointer_and_keys_comes_back_by_undo_redo_and_reopening() {
     assert!(handles(&first).is_empty());
     desktop.shoot("opened");
 
-    desktop.command("brush along the surface");
+    desktop.command("brush along surface");
     desktop.keys(&["1"]);
     desktop.drag((x - 6, y), (x + 6, y + 4));
     let one = once("one-handle", &|project| handles(project).len() == 1);

@@ -109,7 +109,7 @@ fn a_selects_all_handles_which_then_move_together() {
 
 #[test]
 fn a_drag_on_the_painted_handle_moves_it_and_one_beside_it_or_with_ctrl_paints() {
-    let mut rig = Rig::open(shapes::icosphere(3));
+    let mut rig = Rig::open(shapes::icosphere(4));
     rig.paint_handle();
     rig.drain();
     let (painted, beside_px) = (rig.editor.document().paint().to_vec(), CENTRE_PX + DVec2::X * 120.0);
@@ -129,13 +129,14 @@ fn a_drag_on_the_painted_handle_moves_it_and_one_beside_it_or_with_ctrl_paints()
     assert_eq!(rig.editor.document().paint(), painted);
     assert_eq!(rig.editor.history().undo_name(), Some("Move handle 1"));
     rig.undo();
+    rig.drain();
     assert_eq!(rig.editor.document().handles()[0].affine().translation, DVec3::ZERO);
 
     // A click on the handle is no step, and a stroke that begins beside it paints over its rim.
     let steps = rig.editor.history().names().1;
     rig.swipe(&[CENTRE_PX]);
     assert_eq!(rig.editor.history().names().1, steps);
-    rig.swipe(&[beside_px, CENTRE_PX]);
+    rig.swipe(&[beside_px, CENTRE_PX + DVec2::X * 60.0, CENTRE_PX]);
     assert_ne!(rig.editor.document().paint(), painted);
     rig.undo();
     let ctrl = Pointer {

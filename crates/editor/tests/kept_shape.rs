@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 use pliant_deform::{HandleFit, METHODS};
 use pliant_editor::{Command, GizmoPart, HandleId, HandleTransform, Key, Paint, Reach, ToolMode};
 use pliant_mesh::shapes;
-use rig::Rig;
+use rig::{CENTRE_PX, Rig};
 
 /// A sphere with a handle on the side that faces the eye, moved aside.
 fn bent(method: &str) -> Rig {
@@ -143,7 +143,12 @@ fn what_is_painted_fixed_on_a_bent_shape_is_a_pin_that_stays_whatever_is_dragged
 #[test]
 fn a_stroke_goes_through_the_gizmo_but_on_a_part_that_the_pointer_rests_on() {
     let mut rig = Rig::open(shapes::icosphere(4));
-    rig.paint_handle();
+    let aside = DVec2::X * 80.0;
+    rig.paint(
+        ToolMode::PaintHandle,
+        &[CENTRE_PX - aside, CENTRE_PX, CENTRE_PX + aside],
+    );
+    rig.command(Command::SetTool(ToolMode::PaintFree));
     rig.drain();
     let seen = rig.drawn();
     for part in [GizmoPart::Centre, GizmoPart::Arrow(0), GizmoPart::Ring(1)] {
@@ -157,7 +162,7 @@ fn a_stroke_goes_through_the_gizmo_but_on_a_part_that_the_pointer_rests_on() {
     }
     let painted = rig.editor.document().paint().to_vec();
     let place = rig.grip(GizmoPart::Centre).unwrap();
-    rig.swipe(&[place, place + DVec2::new(-9.0, 7.0)]);
+    rig.swipe(&[place, place + DVec2::new(-40.0, 30.0)]);
     rig.drain();
     assert!(
         seen == rig.drawn() && rig.editor.document().paint() != painted,

@@ -6,8 +6,9 @@ mod rig;
 use glam::{DVec2, DVec3};
 use pliant_deform::Loose;
 use pliant_editor::{
-    BrushMetric, Button, Command, Depth, Event, GizmoOrientation, GizmoPart, Handle, Key, Modifiers, ObjectAction,
-    Paint, PivotPlace, Pointer, Reach, RegionAction, StiffnessAction, StiffnessBrush, StrokeShape, ToolMode,
+    BrushMetric, Button, Command, Cursor, Depth, Event, GizmoOrientation, GizmoPart, Handle, Key, Modifiers,
+    ObjectAction, Paint, PivotPlace, Pointer, Reach, RegionAction, StiffnessAction, StiffnessBrush, StrokeShape,
+    ToolMode,
 };
 use pliant_mesh::{Drawn, Object, shapes};
 use rig::{Fingerprint, Random, Rig};
@@ -229,6 +230,12 @@ fn stiffness_stroke(rig: &mut Rig, random: &mut Random) {
     unmoved(rig, |rig| rig.swipe(&[from_px, to_px]));
 }
 
+/// Whether a press takes the painted handle along, which is no stroke.
+fn takes_handle(rig: &mut Rig, position_px: DVec2) -> bool {
+    rig.move_to(position_px);
+    rig.editor.view().cursor == Cursor::Grab
+}
+
 fn stroke(rig: &mut Rig, random: &mut Random) {
     rig.command(Command::SetTool(MODES[random.below(4) as usize]));
     rig.command(Command::SetBrushRadius(10.0 + 40.0 * random.unit()));
@@ -248,6 +255,9 @@ fn stroke(rig: &mut Rig, random: &mut Random) {
         [Depth::Visible, Depth::Through][random.below(2) as usize],
     ));
     let way_px: Vec<DVec2> = (0..1 + random.below(4)).map(|_| random.position_px()).collect();
+    if takes_handle(rig, way_px[0]) {
+        return rig.swipe(&way_px);
+    }
     if random.below(5) == 0 && shape != StrokeShape::Component {
         let before = rig.fingerprint();
         unmoved(rig, |rig| {
@@ -387,7 +397,7 @@ fn with_jobs_that_come_late_strokes_still_move_nothing_and_all_comes_back_in_the
 fn late_stroke(rig: &mut Rig, random: &mut Random) {
     rig.command(Command::SetTool(MODES[random.below(4) as usize]));
     let from_px = random.position_px();
-    if rig.editor.pick(from_px).is_none() {
+    if rig.editor.pick(from_px).is_none() || takes_handle(rig, from_px) {
         return;
     }
     let before = rig.drawn();

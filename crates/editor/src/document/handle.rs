@@ -132,8 +132,14 @@ impl Handle {
     /// Moves the pivot to a point of the rest shape; the map of positions stays the same.
     pub(crate) fn move_pivot(&mut self, pivot: DVec3) {
         let affine = self.affine();
-        if let HandleTransform::Trs { translation, .. } = &mut self.transform
-            && *translation != affine.transform_point3(pivot) - pivot
+        // A translation is the same about every pivot, to the bit.
+        if let HandleTransform::Trs {
+            translation,
+            rotation,
+            scale,
+            ..
+        } = &mut self.transform
+            && (rotation.xyz() != DVec3::ZERO || *scale != DVec3::ONE)
         {
             *translation = affine.transform_point3(pivot) - pivot;
         }
