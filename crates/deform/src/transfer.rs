@@ -10,17 +10,10 @@ use std::collections::VecDeque;
 use glam::{DMat3, DVec3};
 use pliant_mesh::{Cancel, Surface, Topology, bounding_box, face_gradient, is_without_area};
 
-use crate::bilaplacian::factored::BilaplacianSystem;
 use crate::bilaplacian::loaded::{settled, write_field};
-use crate::bilaplacian::operator::BilaplacianOperator;
-use crate::bilaplacian::setup::bent_rows;
 use crate::operators::gradients::{Face, Gradients};
-use crate::operators::triangulation::Triangulation;
-use crate::poisson::membrane;
-use crate::region::slender;
-use crate::sparse::refactorisation::Refactorisation;
-use crate::sparse::system_error::SystemError;
-use crate::{BindError, Budget, Discretisation, Laplacian, Ordering, SolveError};
+use crate::poisson::equation::{PoissonEquation, diagonal_of};
+use crate::{BindError, Budget, Ordering, SolveError};
 
 /// A surface at rest and in a pose, as in its file.
 #[derive(Clone, Copy, Debug)]
@@ -50,7 +43,13 @@ impl PosedShape<'_> {
 
     /// The diagonal of the box around its triangles at rest.
     fn diagonal(&self) -> f64 {
-        box_diagonal(self.triangles.iter().flatten().map(|&corner| self.rest[corner]))
+        let corners: Vec<DVec3> = self
+            .triangles
+            .iter()
+            .flatten()
+            .map(|&corner| self.rest[corner])
+            .collect();
+        bounding_box(&corners).map_or(0.0, |bounds| bounds.diagonal())
     }
 
     /// The displacement of a triangle's middle.
@@ -65,8 +64,9 @@ impl PosedShape<'_> {
 pub struct DeformationTransfer<'a> {
     surface: &'a Surface,
     topology: &'a Topology,
-    /// The target; `None` if no part has more than one vertex.
-    system: Option<(BilaplacianSystem, Gradients)>,
+    equation: PoissonEquation,
+    /// Of the target; `None` if no part has more than one vertex.
+    gradients: Option<Gradients>,
 }
 
 impl<'a> DeformationTransfer<'a> {
@@ -81,40 +81,17 @@ impl<'a> DeformationTransfer<'a> {
         budget: Budget,
         cancel: &Cancel,
     ) -> Result<Self, BindError> {
-        let mut is_held = vec![false; surface.positions.len()];
-        for component in 0..topology.components().len() {
-            if let Some(first) = topology.vertices_of(component as u32).next() {
-                is_held[first.index()] = true;
-            }
-        }
-        let solved: Vec<u32> = (0..is_held.len() as u32).filter(|&v| !is_held[v as usize]).collect();
-        if solved.is_empty() {
-            return Ok(Self {
-                surface,
-                topology,
-                system: None,
-            });
-        }
-        let triangulation = Triangulation::of_surface(surface, topology);
-        slender::check(&triangulation, &solved, slender::most_edges(1), Some(1))?;
-        let stiffness = vec![1.0; surface.positions.len()];
-        let rows = bent_rows(&triangulation, &solved, &[]);
-        let metric = Discretisation::CotangentArea;
-        let laplacian = Laplacian::on(&triangulation, &stiffness, &rows, metric, &|_, _| 1.0);
-        let diagonal = diagonal_of(surface);
-        let operator = BilaplacianOperator::new(laplacian, &membrane(), diagonal);
-        let elimination = ordering.elimination(&solved);
-        let refuse = |error: SystemError| error.into_bind_error(topology, solved.len());
-        let mut system =
-            BilaplacianSystem::new(operator, elimination, Refactorisation::Never, budget, cancel).map_err(refuse)?;
-        let mut constant = vec![[1.0]; system.operator.field_len()];
-        system.check(&mut constant, cancel).map_err(refuse)?;
-        let laplacian = &system.operator.laplacian;
-        let gradients = Gradients::of(surface, topology, &stiffness, laplacian, system.columns());
+        let equation = PoissonEquation::bind(surface, topology, ordering, budget, cancel)?;
+        let gradients = equation.system().map(|system| {
+            let stiffness = vec![1.0; surface.positions.len()];
+            let laplacian = &system.operator.laplacian;
+            Gradients::of(surface, topology, &stiffness, laplacian, system.columns())
+        });
         Ok(Self {
             surface,
             topology,
-            system: Some((system, gradients)),
+            equation,
+            gradients,
         })
     }
 
@@ -127,7 +104,7 @@ impl<'a> DeformationTransfer<'a> {
     /// If the solution stays too inaccurate, or is not finite.
     pub fn pose(&self, source: &PosedShape<'_>, partners: &[Option<usize>]) -> Result<Vec<DVec3>, SolveError> {
         let mut displacements = vec![DVec3::ZERO; self.surface.positions.len()];
-        let Some((system, gradients)) = &self.system else {
+        let (Some(system), Some(gradients)) = (self.equation.system(), &self.gradients) else {
             return Ok(displacements);
         };
         let with_maps = partners
@@ -144,11 +121,10 @@ impl<'a> DeformationTransfer<'a> {
             move |edge: DVec3| change * edge
         };
         gradients.change(of_face, &mut edges);
-        let operator = &system.operator;
-        gradients.divergence(&edges, operator.stretching + operator.bending, &mut load);
-        let mut field = vec![[0.0; 3]; operator.field_len()];
+        gradients.divergence(&edges, self.equation.load_factor(), &mut load);
+        let mut field = vec![[0.0; 3]; system.operator.field_len()];
         settled(system.solve_frame(&load, &mut field))?;
-        write_field(&field, operator.laplacian.vertices(), &mut displacements);
+        write_field(&field, system.operator.laplacian.vertices(), &mut displacements);
         self.place(source, &taken, &mut displacements);
         match displacements.iter().position(|d| !d.is_finite()) {
             Some(vertex) => Err(SolveError::NotFinite { vertex: vertex as u32 }),
@@ -203,14 +179,4 @@ impl<'a> DeformationTransfer<'a> {
             }
         }
     }
-}
-
-/// The diagonal of the box around a surface's triangles: bare points do not count.
-fn diagonal_of(surface: &Surface) -> f64 {
-    let corners = surface.triangles.iter().flatten();
-    box_diagonal(corners.map(|corner| surface.positions[corner.index()]))
-}
-
-fn box_diagonal(places: impl Iterator<Item = DVec3>) -> f64 {
-    bounding_box(&places.collect::<Vec<_>>()).map_or(0.0, |bounds| bounds.diagonal())
 }

@@ -73,9 +73,10 @@ pub use document::{
 pub use editor::Editor;
 pub use event::Event;
 pub use format::{
-    AttachmentEntry, Axis, Beginning, EDIT_VERSION, EditError, EditFile, ExampleEntry, ExampleSource, ExportError,
-    FieldEntry, HandleEntry, HandleSetup, JoinsFile, MeshReference, Placement, Project, Rest, SOFT_RANGE,
-    STIFFNESS_RANGE, Selector, Setup, StoredKept, geometry_hash,
+    Accuracy, AttachmentEntry, Axis, Beginning, DyeEntry, EDIT_VERSION, EditError, EditFile, ExampleEntry,
+    ExampleSource, ExportError, FieldEntry, FlowFile, FlowMotion, FlowStart, HandleEntry, HandleSetup, JoinsFile,
+    MeshReference, Placement, Project, Rest, SOFT_RANGE, STIFFNESS_RANGE, Selector, Setup, StoredKept, VelocityEntry,
+    geometry_hash,
 };
 pub use input::{Button, Key, Modifiers, Pointer};
 pub use jobs::{

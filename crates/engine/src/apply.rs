@@ -148,12 +148,11 @@ pub fn apply(apply: &Apply<'_>, watch: &Watch, staging: &Staging) -> Result<Repo
     let progress = watch.begin("saving");
     let start = Instant::now();
     let save = SaveAs {
-        positions: &solution.positions,
         inside_out: &setup.inside_out,
         deltas: apply.deltas,
         morph: apply.morph.as_ref(),
-        output: apply.output,
         beside: report_to.as_ref().map(|report| ("--report", report)),
+        ..SaveAs::shape(&solution.positions, apply.output)
     };
     let saved = saving::stage(&loaded, &save, staging, &progress, &watch.cancel)?;
     let save_ms = ms_since(start);

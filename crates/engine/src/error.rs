@@ -87,6 +87,14 @@ pub enum EngineError {
         /// The obstacle.
         source: pliant_stitch::StitchError,
     },
+    /// A flow can't be prepared or continued. Its vertices are the file's.
+    #[error("{}: {source}", shown(.file))]
+    Flow {
+        /// The file.
+        file: PathBuf,
+        /// The obstacle.
+        source: pliant_flow::FlowError,
+    },
     /// The result can't be stored as requested.
     #[error("{}: {source}", shown(.file))]
     Save {

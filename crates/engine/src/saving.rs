@@ -27,6 +27,8 @@ pub struct SaveAs<'a> {
     pub inside_out: &'a BTreeSet<u32>,
     /// The deltas of the file's morph targets: turning with the surface, or kept.
     pub deltas: MorphDeltas,
+    /// Other colours, linear and from 0 to 65535, one for each drawn vertex; the shape is then that at rest.
+    pub colours: Option<&'a [[u16; 4]]>,
     /// Saves the edit as a morph target beside the unchanged shape.
     pub morph: Option<&'a MorphTarget<'a>>,
     /// The file to write.
@@ -42,6 +44,7 @@ impl<'a> SaveAs<'a> {
             positions,
             inside_out: const { &BTreeSet::new() },
             deltas: MorphDeltas::default(),
+            colours: None,
             morph: None,
             output,
             beside: None,
@@ -98,9 +101,10 @@ pub fn stage(
         name: &name,
         placement: placement::placement(&loaded.path, &to),
     };
-    let saved = match what.morph {
-        None => loaded.scene.save(&save, &of_making, cancel),
-        Some(morph) => loaded.scene.save_as_morph(&save, morph, &of_making, cancel),
+    let saved = match (what.colours, what.morph) {
+        (Some(colours), _) => loaded.scene.save_with_colours(&save, colours, &of_making, cancel),
+        (None, None) => loaded.scene.save(&save, &of_making, cancel),
+        (None, Some(morph)) => loaded.scene.save_as_morph(&save, morph, &of_making, cancel),
     };
     let saved = saved.map_err(|error| refused(what.output, error))?;
     let triangles = saved.triangles.clone();

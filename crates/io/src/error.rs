@@ -103,6 +103,17 @@ pub enum SaveError {
     Cancelled(#[from] Cancelled),
 }
 
+impl SaveError {
+    /// The refusal of vertex colours in an STL.
+    pub fn without_colours() -> Self {
+        Self::CannotHold {
+            what: "colours of vertices".to_owned(),
+            format: Format::Stl,
+            remedy: "save as .glb, .gltf, .ply, .obj or .off".to_owned(),
+        }
+    }
+}
+
 /// The reason why an image could not be decoded.
 #[derive(Clone, PartialEq, Eq, Debug, thiserror::Error)]
 #[error("the image could not be decoded ({reason}): convert it to PNG or JPEG, or make it smaller")]

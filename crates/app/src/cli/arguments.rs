@@ -56,6 +56,8 @@ pub(crate) enum Command {
     Bridge(BridgeArguments),
     /// Delete vertices with the triangles that use them, or cut along a plane
     Cut(CutArguments),
+    /// Let dye flow along the surface and save it as vertex colours
+    Flow(FlowArguments),
     /// Write man pages, shell completions and the manual's pages of commands
     Generate(GenerateArguments),
 }
@@ -292,6 +294,32 @@ pub(crate) struct CutArguments {
     /// The output file and report.
     #[command(flatten)]
     pub output: NewShapeArguments,
+    /// The welding of vertices.
+    #[command(flatten)]
+    pub weld: WeldArguments,
+    /// The threads and vectors.
+    #[command(flatten)]
+    pub compute: ComputeArguments,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct FlowArguments {
+    /// The file along whose surface dye flows: glb, gltf, obj, ply, stl or off
+    pub file: PathBuf,
+    /// The dye, the velocities and the forces
+    #[arg(long, value_name = "FLOW.json")]
+    pub flow: PathBuf,
+    /// The file to write; its extension tells its format. With -#### before the extension, a file for the start and for
+    /// each step, with its number
+    #[arg(long, value_name = "OUT")]
+    pub output: PathBuf,
+    /// The file for the flow's figures and times
+    #[arg(long, value_name = "REPORT.json")]
+    pub report: Option<PathBuf>,
+    /// The most memory for the pressure's factor beside the mesh, such as 8GB or 500MB; without it 16GiB, and never more
+    /// than the machine has left
+    #[arg(long, value_name = "SIZE", value_parser = pliant_engine::memory::bytes)]
+    pub memory: Option<u64>,
     /// The welding of vertices.
     #[command(flatten)]
     pub weld: WeldArguments,

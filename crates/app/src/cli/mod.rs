@@ -6,6 +6,7 @@ mod compare;
 mod console;
 mod cut_plane;
 mod diff;
+mod flow;
 mod generate;
 mod info;
 mod interrupt;
@@ -61,6 +62,7 @@ pub fn run(arguments: Vec<OsString>, console: &mut Console<'_>) -> u8 {
             Some(Command::Bridge(arguments)) => stitch::bridge(&arguments, console),
             Some(Command::Cut(arguments)) => stitch::cut(&arguments, console),
             Some(Command::Merge(arguments)) => stitch::merge(&arguments, console),
+            Some(Command::Flow(arguments)) => flow::run(&arguments, console),
             Some(Command::Generate(arguments)) => generate::run(&arguments, console),
             None => window::run(Source::of(arguments.file, arguments.edit)),
         },

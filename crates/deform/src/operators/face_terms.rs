@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use crate::Discretisation;
 use crate::numerical::rows::CHUNK;
-use crate::operators::mollification::lack;
+use crate::operators::mollification::{lack, mollified_lengths};
 use crate::operators::triangulation::Triangulation;
 
 /// ½ cot 60°: an equilateral triangle's weight on each of its edges.
@@ -68,13 +68,8 @@ impl Metric {
                 mollified: false,
             };
         }
-        let lack = lack(lengths);
-        let mollified = lack > 0.0;
-        let lengths = if mollified {
-            lengths.map(|length| length + lack)
-        } else {
-            lengths
-        };
+        let mollified = lack(lengths) > 0.0;
+        let lengths = mollified_lengths(lengths);
         FaceTerms {
             half_cotangents: cotangents(lengths).map(|cotangent| 0.5 * stiffness * cotangent),
             areas: mixed_corner_areas(lengths),

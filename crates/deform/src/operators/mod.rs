@@ -22,6 +22,7 @@ pub(crate) mod triangulation;
 use pliant_mesh::{Surface, SurfaceVertex, Topology};
 use rayon::prelude::*;
 
+pub use self::mollification::mollified_lengths;
 pub(crate) use self::mollification::repairs;
 
 use crate::Discretisation;

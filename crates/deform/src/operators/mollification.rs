@@ -5,6 +5,13 @@ use crate::Remedy;
 /// The excess of two edges of a triangle over the third after mollification, in units of the longest.
 const MOLLIFICATION: f64 = 1e-5;
 
+/// A triangle's edge lengths with which its cotangents are computed: its own, or all longer by the same length if it is
+/// too flat.
+pub fn mollified_lengths(lengths: [f64; 3]) -> [f64; 3] {
+    let lack = lack(lengths).max(0.0);
+    lengths.map(|length| length + lack)
+}
+
 /// The increase of each edge of a triangle with which any two exceed the third by 1e-5 of the longest; negative if they
 /// already do.
 pub(crate) fn lack(lengths: [f64; 3]) -> f64 {

@@ -5,6 +5,7 @@
 //! `operators::gradients` makes the right-hand side, and `bilaplacian::loaded` solves.
 
 mod declaration;
+pub(crate) mod equation;
 mod membrane;
 mod options;
 pub(crate) mod propagation;
@@ -12,6 +13,7 @@ pub(crate) mod propagation;
 use glam::DVec3;
 
 pub(crate) use self::declaration::DECLARATION;
+pub use self::equation::PoissonEquation;
 pub(crate) use self::membrane::{membrane, stiffness_of};
 pub use self::options::{Poisson, Propagation};
 

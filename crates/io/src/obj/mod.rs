@@ -5,6 +5,7 @@
 //! materials. Every `v` line is a file vertex; [`corners`] describes the drawing of corners with texture coordinates
 //! and normals.
 
+mod coloured;
 mod corners;
 mod faces;
 mod materials;
@@ -243,6 +244,11 @@ impl Stored {
     /// A warning that names the parts of the materials that a file of another format does not have.
     pub(crate) fn materials_lost(&self, kind: &str) -> Option<String> {
         materials::unread_lost(&self.materials, kind)
+    }
+
+    /// The file with another colour for each of its vertices, in sRGB.
+    pub(crate) fn write_coloured(&self, colours: &[Option<[u8; 4]>]) -> Vec<u8> {
+        coloured::coloured(self, colours)
     }
 
     /// The file with the moved vertices' numbers changed, and warnings.

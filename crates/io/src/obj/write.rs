@@ -12,6 +12,7 @@ use crate::convert::faces::{for_each_face, lost, lost_where, merged};
 use crate::gltf::{FROM_OUTSIDE, NO_IMAGE};
 use crate::images::decodes;
 use crate::quote::quoted;
+use crate::save::colours::unit;
 use crate::save::course::Course;
 use crate::save::{OutputFile, Role, Saved, own_stem};
 use crate::text::{push_f32, push_f64};
@@ -121,13 +122,8 @@ fn push_vertices(
         let v = vertex.index();
         push_numbers(out, "v", &mesh.positions[v].to_array(), push_f64);
         if let Some(colours) = &mesh.appearance.colours {
-            let [r, g, b, _] = srgb.of_linear(colours[v]).map(|channel| f32::from(channel) / 255.0);
-            push_numbers(
-                out,
-                "",
-                &[r, g, b].map(|channel| (channel * 1e4).round() / 1e4),
-                push_f32,
-            );
+            let [r, g, b, _] = srgb.of_linear(colours[v]).map(unit);
+            push_numbers(out, "", &[r, g, b], push_f32);
         }
         out.push(b'\n');
     }

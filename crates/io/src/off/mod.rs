@@ -1,6 +1,7 @@
 //! OFF and its COFF, NOFF and STOFF variants, read with the place of every vertex, so that saving changes the moved
 //! vertices' coordinates (and normals) and no other byte: comments, colours and faces stay the same.
 
+mod coloured;
 mod header;
 mod patch;
 mod records;
@@ -91,6 +92,11 @@ impl Stored {
 
     pub(crate) fn polygons(&self) -> Option<Polygons> {
         self.polygons.clone()
+    }
+
+    /// The file with another colour for each of its vertices, in sRGB.
+    pub(crate) fn write_coloured(&self, colours: &[Option<[u8; 4]>]) -> Vec<u8> {
+        coloured::coloured(self, colours)
     }
 
     /// The file with the moved vertices' numbers changed, and warnings.

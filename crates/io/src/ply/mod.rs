@@ -4,6 +4,7 @@
 //! Elements and properties may come in any order and of any type; unknown ones are skipped and stay in the bytes. Faces
 //! are lists of corners or, in older scans, strips of triangles.
 
+mod coloured;
 mod face_normals;
 mod header;
 mod patch;
@@ -143,6 +144,11 @@ impl Stored {
     /// The number nearest to `value` that the column of a coordinate holds.
     pub(crate) fn nearest(&self, axis: usize, value: f64) -> f64 {
         patch::nearest(self, axis, value)
+    }
+
+    /// The file with another colour for each of its vertices, in sRGB.
+    pub(crate) fn write_coloured(&self, colours: &[Option<[u8; 4]>]) -> Result<Vec<u8>, SaveError> {
+        coloured::coloured(self, colours)
     }
 
     /// The file with the moved vertices' numbers changed, and warnings.

@@ -1,6 +1,7 @@
 //! The input and the output of a save.
 
 pub(crate) mod bits;
+pub(crate) mod colours;
 pub(crate) mod course;
 pub(crate) mod frames;
 pub(crate) mod moved;

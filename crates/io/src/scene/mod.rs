@@ -20,6 +20,7 @@ use crate::convert::faces::{lost, lost_where};
 use crate::convert::{NewMesh, Parting, Polygons};
 use crate::gltf::unread::MaterialsKept;
 use crate::save::bits::bit_equal;
+use crate::save::colours::of_file as colours_of_file;
 use crate::save::course::Course;
 use crate::save::moved::Moved;
 use crate::save::{MorphTarget, OutputFile, Placement, Save, Saved};
@@ -247,20 +248,81 @@ impl Scene {
             (Stored::Ply(stored), Format::Ply) => stored.write(&moved, course).map(own),
             (Stored::Stl(stored), Format::Stl) => stored.write(&moved, course).map(own),
             (Stored::Off(stored), Format::Off) => stored.write(&moved, course).map(own),
-            (_, format) => {
-                let appearance = self.appearance();
-                let has_normals = appearance.normals.is_some() && !moved.moves_nothing();
-                let (of_looks, course) = course.split(if has_normals { 0.4 } else { 0.0 });
-                let mesh = NewMesh::of(&moved, appearance, save.name, self.polygons(), parting, &of_looks)?;
-                let mut saved = write_new(&mesh, format, &course)?;
-                saved.warnings.extend(self.motion_lost(format));
-                saved.warnings.extend(self.unread_lost(format));
-                if let Stored::Obj(stored) = &self.stored {
-                    saved.warnings.extend(stored.materials_lost(&format.to_string()));
-                }
-                Ok(saved)
-            }
+            (_, format) => self.converted(&moved, self.appearance(), save, (format, parting), course),
         }
+    }
+
+    /// The file with other vertex colours: linear, from 0 to 65535, one for each drawn vertex. The shape stays as in the
+    /// file, so `save.positions` must be those at rest, and nothing may be turned. In the file's own format only colours
+    /// are added or replaced: `COLOR_0` in 16 bits in glTF, beside textures, sRGB bytes elsewhere.
+    ///
+    /// # Errors
+    /// A wrong number of colours; a format without colours of vertices; [`SaveError::Cancelled`] soon after `cancel` is
+    /// raised.
+    pub fn save_with_colours(
+        &self,
+        save: &Save<'_>,
+        colours: &[[u16; 4]],
+        progress: &Progress,
+        cancel: &Cancel,
+    ) -> Result<Saved, SaveError> {
+        let saved = self.coloured(save, colours, &Course::new(progress, cancel))?;
+        progress.set(1.0);
+        Ok(saved)
+    }
+
+    fn coloured(&self, save: &Save<'_>, colours: &[[u16; 4]], course: &Course<'_>) -> Result<Saved, SaveError> {
+        course.reach(0, 1)?;
+        let moved = Moved::of(save.drawn, save.positions, save.turned, save.format)?;
+        if colours.len() != save.drawn.positions.len() || !moved.is_nothing() {
+            return Err(SaveError::OtherScene {
+                given: colours.len(),
+                wanted: save.drawn.positions.len(),
+            });
+        }
+        let of_file = || colours_of_file(save.drawn, colours);
+        let (bytes, neighbours) = match (&self.stored, save.format) {
+            (Stored::Gltf(stored), Format::Glb | Format::Gltf) => {
+                return stored.save_with_colours(save, colours, course);
+            }
+            (_, Format::Stl) => return Err(SaveError::without_colours()),
+            (Stored::Obj(stored), Format::Obj) => (stored.write_coloured(&of_file()), stored.neighbours()),
+            (Stored::Ply(stored), Format::Ply) => (stored.write_coloured(&of_file())?, stored.neighbours()),
+            (Stored::Off(stored), Format::Off) => (stored.write_coloured(&of_file()), (Vec::new(), Vec::new())),
+            (_, format) => {
+                let appearance = Appearance {
+                    colours: Some(colours.to_vec()),
+                    ..self.appearance()
+                };
+                return self.converted(&moved, appearance, save, (format, Parting::ByName), course);
+            }
+        };
+        let saved = Saved::alone(save.name, bytes, Vec::new());
+        Ok(match save.placement {
+            Placement::OtherFolder => with_neighbours(saved, neighbours),
+            Placement::SameFile | Placement::SameFolder => saved,
+        })
+    }
+
+    /// The shape with `appearance` as a new file of another format.
+    fn converted(
+        &self,
+        moved: &Moved<'_>,
+        appearance: Appearance,
+        save: &Save<'_>,
+        (format, parting): (Format, Parting),
+        course: &Course<'_>,
+    ) -> Result<Saved, SaveError> {
+        let has_normals = appearance.normals.is_some() && !moved.moves_nothing();
+        let (of_looks, course) = course.split(if has_normals { 0.4 } else { 0.0 });
+        let mesh = NewMesh::of(moved, appearance, save.name, self.polygons(), parting, &of_looks)?;
+        let mut saved = write_new(&mesh, format, &course)?;
+        saved.warnings.extend(self.motion_lost(format));
+        saved.warnings.extend(self.unread_lost(format));
+        if let Stored::Obj(stored) = &self.stored {
+            saved.warnings.extend(stored.materials_lost(&format.to_string()));
+        }
+        Ok(saved)
     }
 
     /// The file with the edit as a morph target: the shape stays, and the displacements to `save.positions` are added

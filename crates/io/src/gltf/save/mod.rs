@@ -2,6 +2,7 @@
 
 mod accessors;
 mod changes;
+mod colours;
 mod copy_on_write;
 mod deliver;
 mod elsewhere;
@@ -77,6 +78,27 @@ impl Stored {
             patched = morph::with_target(document, meshes, pieces, &changes, target, save.format, &course)?;
         }
         course.reach(9, 10)?;
+        self.deliver(patched, save)
+    }
+
+    /// The file as GLB or `.gltf` with other colours, one for each drawn vertex, and its shape unchanged.
+    pub fn save_with_colours(
+        &self,
+        save: &Save<'_>,
+        colours: &[[u16; 4]],
+        course: &Course<'_>,
+    ) -> Result<Saved, SaveError> {
+        let Self {
+            document,
+            meshes,
+            pieces,
+            ..
+        } = self;
+        let old = self
+            .appearance()
+            .colours
+            .unwrap_or_else(|| vec![[u16::MAX; 4]; colours.len()]);
+        let patched = colours::with_colours(document, meshes, pieces, (&old, colours), save.format, course)?;
         self.deliver(patched, save)
     }
 

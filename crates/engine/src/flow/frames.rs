@@ -1,0 +1,86 @@
+//! The files of a flow: the last state, or one for each step.
+
+use std::path::{Path, PathBuf};
+
+/// The place of `#`s in a name: before its extension, after this.
+const BEFORE: char = '-';
+
+/// The files that are written.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub(super) enum Frames {
+    /// One file after this many steps.
+    Last(PathBuf, usize),
+    /// A file at the start and after each step.
+    Each {
+        /// Its folder and the name before the number.
+        before: PathBuf,
+        /// The least count of digits.
+        digits: usize,
+        /// The name after the number: the extension with its dot.
+        after: String,
+        /// The number of steps.
+        steps: usize,
+    },
+}
+
+impl Frames {
+    /// For an output, in whose name `#`s may stand for a number.
+    pub fn of(output: &Path, steps: usize) -> Self {
+        let stem = output.file_stem().and_then(|stem| stem.to_str()).unwrap_or_default();
+        let before = stem.trim_end_matches('#');
+        let digits = stem.len() - before.len();
+        if digits == 0 || !before.ends_with(BEFORE) {
+            return Self::Last(output.to_owned(), steps);
+        }
+        let extension = output.extension().map(|extension| extension.to_string_lossy());
+        Self::Each {
+            before: output.with_file_name(before),
+            digits,
+            after: extension.map_or(String::new(), |extension| format!(".{extension}")),
+            steps,
+        }
+    }
+
+    /// The file to write after so many steps.
+    pub fn at(&self, step: usize) -> Option<PathBuf> {
+        match self {
+            Self::Last(place, steps) => (step == *steps).then(|| place.clone()),
+            Self::Each {
+                before, digits, after, ..
+            } => {
+                let mut place = before.clone().into_os_string();
+                place.push(format!("{step:0digits$}{after}"));
+                Some(place.into())
+            }
+        }
+    }
+
+    /// All files.
+    pub fn all(&self) -> impl Iterator<Item = PathBuf> + '_ {
+        let (Self::Last(_, steps) | Self::Each { steps, .. }) = self;
+        (0..=*steps).filter_map(|step| self.at(step))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn number_signs_before_the_extension_are_numbers() {
+        let frames = Frames::of(Path::new("a/bust-####.glb"), 2);
+        let names: Vec<PathBuf> = frames.all().collect();
+        assert_eq!(
+            names,
+            ["a/bust-0000.glb", "a/bust-0001.glb", "a/bust-0002.glb"].map(PathBuf::from)
+        );
+        for name in ["bust.glb", "bust####.glb", "bust-####-b.glb", "####.glb"] {
+            let names: Vec<PathBuf> = Frames::of(Path::new(name), 2).all().collect();
+            assert_eq!(names, [PathBuf::from(name)]);
+        }
+        assert_eq!(
+            Frames::of(Path::new("b-#.ply"), 12).at(12),
+            Some(PathBuf::from("b-12.ply"))
+        );
+    }
+}

@@ -1,0 +1,269 @@
+//! Lets dye flow along a file's surface: a file in, the same file with other vertex colours out.
+
+mod colours;
+mod frames;
+mod report;
+
+use std::path::Path;
+use std::time::Instant;
+
+use pliant_deform::Budget;
+use pliant_editor::{Accuracy, FlowFile, FlowStart, Selection};
+use pliant_flow::{Advection, Flow, FlowError, FlowSettings};
+use pliant_io::{Format, SaveError};
+use pliant_mesh::{Model, Progress, SurfaceVertex, WeldOptions};
+
+use crate::EngineError;
+use crate::apply::check_not_empty;
+use crate::files::{self, Destination, NewFile, Staged, Staging};
+use crate::loading::{Loaded, load};
+use crate::report::{FrameTimes, ms_since};
+use crate::saving::{self, SaveAs};
+use crate::watch::Watch;
+use colours::Colours;
+use frames::Frames;
+
+pub use report::{FlowReport, FromTo};
+
+/// The input of [`flow`].
+#[derive(Clone, Copy, Debug)]
+pub struct FlowJob<'a> {
+    /// The file along whose surface dye flows.
+    pub file: &'a Path,
+    /// The flow.
+    pub flow: &'a FlowFile,
+    /// The place that the flow was read from, for messages.
+    pub flow_path: &'a Path,
+    /// The file to write. A name that ends in `-####` before its extension is written for the start and for each step,
+    /// with the step's number in place of the `#`s.
+    pub output: &'a Path,
+    /// The file for the report, if one is wanted.
+    pub report: Option<&'a Path>,
+    /// The joining of FILE's vertices.
+    pub weld: WeldOptions,
+    /// The memory that the Laplacian's factor may take.
+    pub budget: Budget,
+}
+
+/// Reads the file of a flow.
+///
+/// # Errors
+/// A file that can't be read, or a member that its format does not have, naming the file.
+pub fn read_flow(path: &Path, watch: &Watch) -> Result<FlowFile, EngineError> {
+    watch.note_read("--flow", path);
+    FlowFile::parse(&files::read_text(path)?).map_err(|source| EngineError::Edit {
+        edit: path.to_owned(),
+        source,
+    })
+}
+
+/// Runs a flow and writes the coloured file, or a file for each step, and the report, or nothing at all.
+///
+/// # Errors
+/// Any refusal of the file, of the flow or of the result. Nothing is written then.
+pub fn flow(job: &FlowJob<'_>, watch: &Watch, staging: &Staging) -> Result<FlowReport, EngineError> {
+    let frames = Frames::of(job.output, job.flow.steps());
+    for place in frames.all() {
+        Destination::of(&place)?;
+    }
+    refuse_format(job.output)?;
+    let report_to = job.report.map(Destination::of).transpose()?;
+    let start = Instant::now();
+    let loaded = load(job.file, &job.weld, watch)?;
+    let load_ms = ms_since(start);
+    check_not_empty(job.file, &loaded.model)?;
+    refuse_inputs(job, &frames, watch)?;
+    let resolved = job.flow.resolve(&loaded.model).map_err(|source| EngineError::Edit {
+        edit: job.flow_path.to_owned(),
+        source,
+    })?;
+    let progress = watch.begin("binding");
+    let start = Instant::now();
+    let model = &*loaded.model;
+    let refused = |error| refused(job.file, model, error);
+    let bound = Flow::bind(&model.surface, &model.topology, job.budget, &progress, &watch.cancel);
+    let mut flow = bound.map_err(refused)?;
+    begin(&mut flow, &resolved, model);
+    flow.project().map_err(refused)?;
+    let bind_ms = ms_since(start);
+    let mut run = Run {
+        job,
+        loaded: &loaded,
+        colours: Colours::of(&loaded),
+        beside: report_to.as_ref(),
+        staging,
+        watch,
+        staged: None,
+        warnings: loaded.scene.notes().to_vec(),
+        save_ms: 0.0,
+    };
+    let mut report = FlowReport::at_start(&loaded, job.flow, &flow);
+    (report.load_ms, report.bind_ms) = (load_ms, bind_ms);
+    report.steps = run.all_steps(&mut flow, &frames)?;
+    report.at_end(&flow);
+    report.save_ms = run.save_ms;
+    report.warnings = cut_sentence(&flow).into_iter().chain(run.warnings).collect();
+    let mut staged = run.staged;
+    if let Some(to) = report_to {
+        let text = report.to_json();
+        let file = NewFile {
+            to,
+            bytes: text.as_bytes(),
+        };
+        let written = staging.stage_watched(&[file], None, &Progress::new(), &watch.cancel)?;
+        staged = Some(joined(staged, written));
+    }
+    if watch.cancel.is_cancelled() {
+        return Err(EngineError::Interrupted);
+    }
+    if let Some(staged) = staged {
+        loaded.refuse_changed(&staged)?;
+        staged.commit()?;
+    }
+    Ok(report)
+}
+
+/// A flow that is being written.
+struct Run<'a> {
+    job: &'a FlowJob<'a>,
+    loaded: &'a Loaded,
+    colours: Colours,
+    beside: Option<&'a Destination>,
+    staging: &'a Staging,
+    watch: &'a Watch,
+    staged: Option<Staged>,
+    warnings: Vec<String>,
+    save_ms: f64,
+}
+
+impl Run<'_> {
+    /// Takes all steps and writes the frames. Returns the steps' times.
+    fn all_steps(&mut self, flow: &mut Flow<'_>, frames: &Frames) -> Result<FrameTimes, EngineError> {
+        let job = self.job;
+        let settings = FlowSettings {
+            gravity: job.flow.gravity,
+            viscosity: job.flow.viscosity,
+            confinement: job.flow.confinement,
+            advection: match job.flow.accuracy {
+                Accuracy::FirstOrder => Advection::FirstOrder,
+                Accuracy::SecondOrder => Advection::SecondOrder,
+            },
+        };
+        let count = job.flow.steps();
+        let mut times = Vec::with_capacity(count);
+        let mut progress = self.watch.begin("flowing");
+        for step in 0..=count {
+            if step > 0 {
+                let start = Instant::now();
+                let stepped = flow.step(job.flow.step, &settings, &self.watch.cancel);
+                stepped.map_err(|error| refused(job.file, &self.loaded.model, error))?;
+                times.push(ms_since(start));
+            }
+            if self.watch.cancel.is_cancelled() {
+                return Err(EngineError::Interrupted);
+            }
+            progress.set(step as f32 / count.max(1) as f32);
+            if let Some(place) = frames.at(step) {
+                if step == count {
+                    progress = self.watch.begin("saving");
+                }
+                self.write(&flow.dyes(), &place)?;
+            }
+        }
+        Ok(FrameTimes::of(&mut times, &mut []))
+    }
+
+    /// Writes the coloured file beside its place.
+    fn write(&mut self, dyes: &[[f64; 4]], place: &Path) -> Result<(), EngineError> {
+        let start = Instant::now();
+        let positions = self.loaded.model.rest_positions();
+        let colours = self.colours.with(dyes, &self.loaded.model);
+        let save = SaveAs {
+            colours: colours.as_deref(),
+            beside: self.beside.map(|report| ("--report", report)),
+            ..SaveAs::shape(&positions, place)
+        };
+        let saved = saving::stage(self.loaded, &save, self.staging, &Progress::new(), &self.watch.cancel)?;
+        for warning in saved.warnings {
+            if !self.warnings.contains(&warning) {
+                self.warnings.push(warning);
+            }
+        }
+        self.staged = Some(joined(self.staged.take(), saved.staged));
+        self.save_ms += ms_since(start);
+        Ok(())
+    }
+}
+
+fn joined(first: Option<Staged>, second: Staged) -> Staged {
+    match first {
+        Some(first) => first.and(second),
+        None => second,
+    }
+}
+
+/// Pours the dye and sets the velocities.
+fn begin(flow: &mut Flow<'_>, start: &FlowStart, model: &Model) {
+    let shares = |selection: &Selection| {
+        let mut shares = vec![0.0; model.surface.positions.len()];
+        selection.iter().for_each(|vertex| shares[vertex.index()] = 1.0);
+        shares
+    };
+    for (selection, colour) in &start.dye {
+        flow.pour(&shares(selection), colour.to_array());
+    }
+    for (selection, motion) in &start.velocity {
+        flow.add_velocity(&shares(selection), |position| motion.at(position));
+    }
+}
+
+/// Refuses a format without colours before anything is computed.
+fn refuse_format(output: &Path) -> Result<(), EngineError> {
+    match Format::of_name(&output.to_string_lossy())? {
+        Format::Stl => Err(EngineError::Save {
+            file: output.to_owned(),
+            source: SaveError::without_colours(),
+        }),
+        _ => Ok(()),
+    }
+}
+
+/// Refuses outputs that are files that were read; a single OUT may be FILE. Frames have different names, so they are not
+/// compared with each other.
+fn refuse_inputs(job: &FlowJob<'_>, frames: &Frames, watch: &Watch) -> Result<(), EngineError> {
+    let replaced = matches!(frames, Frames::Last(..)).then_some(job.file);
+    for place in frames.all() {
+        let output = ("--output", &*place);
+        watch.refuse_outputs(&[output], replaced)?;
+        if let Some(report) = job.report {
+            files::refuse_shared(("--report", report), [output])?;
+        }
+    }
+    match job.report {
+        Some(report) => watch.refuse_outputs(&[("--report", report)], None),
+        None => Ok(()),
+    }
+}
+
+/// The refusal of a flow, which names vertices by the file's numbers.
+fn refused(file: &Path, model: &Model, error: FlowError) -> EngineError {
+    match error {
+        FlowError::Cancelled(_) => EngineError::Interrupted,
+        other => EngineError::Flow {
+            file: file.to_owned(),
+            source: other.renumbered(|vertex| model.first_file_vertex(SurfaceVertex(vertex)).0),
+        },
+    }
+}
+
+/// A sentence about places where the surface was cut.
+fn cut_sentence(flow: &Flow<'_>) -> Option<String> {
+    let places = match flow.cut_vertices() {
+        0 => return None,
+        1 => "at 1 vertex".to_owned(),
+        count => format!("at {count} vertices"),
+    };
+    Some(format!(
+        "the fluid of different sheets stays apart {places} where triangles do not meet as on one surface"
+    ))
+}

@@ -1,0 +1,194 @@
+//! Carries velocity and dye along the velocity [SY04].
+//!
+//! Each vertex looks back along the velocity to the place from which its fluid comes (semi-Lagrangian), by the midpoint
+//! rule: with the velocity half a step back. Vectors found there are carried along the way to the vertex by parallel
+//! transport. With the second order, the same is done forward with the result, and half of the difference from the
+//! start corrects it (MacCormack) [SFK+08].
+//!
+//! Only changes of the vertices' velocities are added to the triangles'. A part of the triangles' velocity, the finer
+//! the larger, is lost in the vertices' means; it would be lost in each step if the means themselves went back to the
+//! triangles, and a turning sphere would stop in a few seconds. So this part stays where it is. A frequency of which the
+//! means keep the share s, and which a step multiplies by z, is multiplied by 1 − s + s z, so it does not grow.
+
+use glam::DVec2;
+use pliant_mesh::{Cancel, Cancelled};
+use rayon::prelude::*;
+
+use crate::fluid::Fluid;
+use crate::plane::turned_back;
+use crate::settings::Advection;
+use crate::sums::CHUNK;
+use crate::trace::Place;
+
+/// Dye at a vertex: red, green and blue, multiplied by the coverage, and the coverage, each from 0 to 1.
+pub(crate) type Dye = [f64; 4];
+
+/// Fields at the vertices, kept from step to step.
+#[derive(Debug, Default)]
+pub(crate) struct Room {
+    /// The velocity, in the tangent planes.
+    pub own: Vec<DVec2>,
+    /// The velocity that is carried.
+    carried: Vec<DVec2>,
+    /// It after a first-order step.
+    first: Vec<DVec2>,
+    /// The way forward, then the change of the velocity.
+    pub change: Vec<DVec2>,
+    /// The triangle from which the fluid comes.
+    source: Vec<u32>,
+    first_dye: Vec<Dye>,
+    pub dye: Vec<Dye>,
+}
+
+impl Room {
+    fn resize(&mut self, count: usize, has_dye: bool) {
+        self.own.resize(count, DVec2::ZERO);
+        self.carried.resize(count, DVec2::ZERO);
+        self.first.resize(count, DVec2::ZERO);
+        self.change.resize(count, DVec2::ZERO);
+        self.source.resize(count, 0);
+        let dyed = if has_dye { count } else { 0 };
+        self.first_dye.resize(dyed, Dye::default());
+        self.dye.resize(dyed, Dye::default());
+    }
+}
+
+/// Carries `velocity`, and `dye` unless it is empty, for `seconds`. `room.dye` is free afterwards.
+///
+/// Fluid on its way is also pushed by the pressure. Half of that comes before the way and half after it, or a turning
+/// sphere would slow by a share of the step. `pressure` is that of the last step, whose gradient the velocity has lost,
+/// and the number of such steps in this one. The half after the way is a gradient and needs not be subtracted.
+pub(crate) fn advect(
+    fluid: &Fluid<'_>,
+    (pressure, steps): (&[f64], f64),
+    velocity: &mut [DVec2],
+    dye: &mut Vec<Dye>,
+    (seconds, advection): (f64, Advection),
+    room: &mut Room,
+    cancel: &Cancel,
+) -> Result<(), Cancelled> {
+    room.resize(fluid.vertex_count(), !dye.is_empty());
+    let half_pushed = |triangle: usize| {
+        let values = fluid.corners(triangle).map(|corner| pressure[corner]);
+        velocity[triangle] - 0.5 * steps * fluid.domain.charts[triangle].gradient(values)
+    };
+    fluid.to_vertices(|triangle| velocity[triangle], &mut room.own);
+    fluid.to_vertices(half_pushed, &mut room.carried);
+    backward(fluid, dye, seconds, room, cancel)?;
+    match advection {
+        Advection::FirstOrder => {
+            let pairs = room.change.par_iter_mut().zip(&room.first).zip(&room.carried);
+            pairs
+                .with_min_len(CHUNK)
+                .for_each(|((change, first), carried)| *change = first - carried);
+            std::mem::swap(dye, &mut room.first_dye);
+        }
+        Advection::SecondOrder => {
+            correct(fluid, dye, room, cancel)?;
+            std::mem::swap(dye, &mut room.dye);
+        }
+    }
+    fluid.add_to_triangles(&room.change, velocity);
+    Ok(())
+}
+
+/// The first-order step, and for each vertex the way forward and the triangle behind.
+fn backward(fluid: &Fluid<'_>, dye: &[Dye], seconds: f64, room: &mut Room, cancel: &Cancel) -> Result<(), Cancelled> {
+    let domain = &fluid.domain;
+    let (own, carried) = (&room.own, &room.carried);
+    let at = |place: &Place, field: &[DVec2]| domain.vector_at(place, fluid.corners(place.triangle as usize), field);
+    let of = |vertex: usize| {
+        let here = own[vertex];
+        let half = domain.trace(vertex, here * (-0.5 * seconds))?;
+        let middle = at(&half, own);
+        let back = domain.trace(vertex, middle * -seconds)?;
+        // The velocity half a step forward, by extrapolation.
+        Some((back, (2.0 * here - middle) * seconds))
+    };
+    let dyes = chunks_of(&mut room.first_dye, fluid.vertex_count());
+    let velocities = room.first.par_chunks_mut(CHUNK).zip(room.change.par_chunks_mut(CHUNK));
+    let chunks = velocities.zip(room.source.par_chunks_mut(CHUNK)).zip(dyes);
+    chunks
+        .enumerate()
+        .try_for_each(|(chunk, (((first, forward), source), first_dye))| {
+            cancel.check()?;
+            for i in 0..first.len() {
+                let vertex = chunk * CHUNK + i;
+                let Some((back, ahead)) = of(vertex) else { continue };
+                first[i] = at(&back, carried);
+                forward[i] = ahead;
+                source[i] = back.triangle;
+                if let Some(first_dye) = first_dye.get_mut(i) {
+                    *first_dye = dye_at(fluid, &back, dye);
+                }
+            }
+            Ok(())
+        })
+}
+
+/// Takes half the error of going forth and back off the first-order step.
+fn correct(fluid: &Fluid<'_>, dye: &[Dye], room: &mut Room, cancel: &Cancel) -> Result<(), Cancelled> {
+    let Room {
+        carried,
+        first,
+        change,
+        source,
+        first_dye,
+        dye: new_dye,
+        ..
+    } = room;
+    let (carried, first, source, first_dye) = (&*carried, &*first, &*source, &*first_dye);
+    let dyes = chunks_of(new_dye, fluid.vertex_count());
+    let chunks = change.par_chunks_mut(CHUNK).zip(dyes);
+    chunks.enumerate().try_for_each(|(chunk, (change, new_dye))| {
+        cancel.check()?;
+        for i in 0..change.len() {
+            let vertex = chunk * CHUNK + i;
+            let Some(ahead) = fluid.domain.trace(vertex, change[i]) else {
+                change[i] = DVec2::ZERO;
+                continue;
+            };
+            let triangle = source[vertex] as usize;
+            let returned = fluid
+                .domain
+                .vector_at(&ahead, fluid.corners(ahead.triangle as usize), first);
+            let correction = 0.5 * (carried[vertex] - returned);
+            let limited = correction.clamp_length_max(spread(fluid, triangle, carried));
+            change[i] = first[vertex] + limited - carried[vertex];
+            if let Some(new_dye) = new_dye.get_mut(i) {
+                let returned = dye_at(fluid, &ahead, first_dye);
+                let bounds = fluid.corners(triangle).map(|corner| dye[corner]);
+                *new_dye = std::array::from_fn(|k| {
+                    let corrected = first_dye[vertex][k] + 0.5 * (dye[vertex][k] - returned[k]);
+                    let [a, b, c] = bounds.map(|bound| bound[k]);
+                    corrected.clamp(a.min(b).min(c), a.max(b).max(c))
+                });
+            }
+        }
+        Ok(())
+    })
+}
+
+/// The chunks of a field, or as many empty ones if it is empty.
+fn chunks_of<T: Send>(field: &mut [T], count: usize) -> rayon::vec::IntoIter<&mut [T]> {
+    let chunks = count.div_ceil(CHUNK);
+    let mut cut: Vec<&mut [T]> = field.chunks_mut(CHUNK).collect();
+    cut.resize_with(chunks, Default::default);
+    cut.into_par_iter()
+}
+
+/// The largest difference between the velocities at a triangle's corners: independent of the tangent planes' axes,
+/// unlike the bounds of components.
+fn spread(fluid: &Fluid<'_>, triangle: usize, field: &[DVec2]) -> f64 {
+    let rotations = fluid.domain.fans.rotations(triangle);
+    let corners = fluid.corners(triangle);
+    let [a, b, c] = [0, 1, 2].map(|k| turned_back(rotations[k], field[corners[k]]));
+    a.distance(b).max(b.distance(c)).max(c.distance(a))
+}
+
+/// The dye at a place.
+fn dye_at(fluid: &Fluid<'_>, place: &Place, dye: &[Dye]) -> Dye {
+    let [a, b, c] = fluid.corners(place.triangle as usize).map(|corner| dye[corner]);
+    let [u, v, w] = place.weights;
+    std::array::from_fn(|k| u * a[k] + v * b[k] + w * c[k])
+}

@@ -1,0 +1,159 @@
+//! Tangent planes at vertices: the angles around each vertex, scaled to a full turn, and the rotations between a
+//! triangle's plane and those of its corners [ZMT06, KCPS13].
+
+use std::f64::consts::TAU;
+
+use glam::DVec2;
+use pliant_mesh::{Surface, SurfaceVertex, Topology};
+
+use crate::chart::Chart;
+use crate::hinges::{Hinges, WALL, corner_at, last, next};
+use crate::plane::{rotation_between, small_rotation, turned};
+
+/// The corners around each vertex.
+#[derive(Clone, Debug)]
+pub(crate) struct Fans {
+    /// The start of each vertex's corners, and the end of the last one's.
+    offsets: Vec<u32>,
+    /// The corners of each vertex, counterclockwise.
+    corners: Vec<u32>,
+    /// The direction at which each of them begins, in the plane of its vertex.
+    starts: Vec<f64>,
+    /// Angle in the plane of a vertex over angle on the surface: 1 at borders.
+    scales: Vec<f64>,
+    /// The rotations from each triangle's plane to that of each of its corners, in the middle of the corner.
+    rotations: Vec<[DVec2; 3]>,
+    /// By how much the rotation at a corner's last edge is more than that at its first: the part of the vertex's angle
+    /// defect that the corner takes.
+    twists: Vec<[f64; 3]>,
+}
+
+/// Where a direction at a vertex leads.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Way {
+    /// The corner of the triangle that it enters.
+    pub corner: u32,
+    /// The direction in the plane of that triangle.
+    pub direction: DVec2,
+}
+
+impl Fans {
+    /// For a surface that has one fan at each vertex.
+    pub fn of(surface: &Surface, topology: &Topology, hinges: &Hinges, charts: &[Chart]) -> Self {
+        let count = surface.positions.len();
+        let mut fans = Self {
+            offsets: Vec::with_capacity(count + 1),
+            corners: Vec::with_capacity(3 * charts.len()),
+            starts: Vec::with_capacity(3 * charts.len()),
+            scales: Vec::with_capacity(count),
+            rotations: vec![[DVec2::X; 3]; charts.len()],
+            twists: vec![[0.0; 3]; charts.len()],
+        };
+        fans.offsets.push(0);
+        for vertex in (0..count as u32).map(SurfaceVertex) {
+            match topology.faces(vertex, &surface.triangles).next() {
+                Some(first) => fans.add(corner_at(surface, first, vertex), hinges, charts),
+                None => fans.scales.push(1.0),
+            }
+            fans.offsets.push(fans.corners.len() as u32);
+        }
+        fans
+    }
+
+    /// Lays out the fan of a corner.
+    fn add(&mut self, corner: u32, hinges: &Hinges, charts: &[Chart]) {
+        let (fan, is_closed) = hinges.fan(corner);
+        let angle = |&corner: &u32| charts[corner as usize / 3].angle(corner as usize % 3);
+        let total: f64 = fan.iter().map(angle).sum();
+        let scale = if is_closed && total > 0.0 { TAU / total } else { 1.0 };
+        let mut start = 0.0;
+        for corner in fan {
+            let (chart, k) = (&charts[corner as usize / 3], corner as usize % 3);
+            let angle = chart.angle(k);
+            // The middles of both agree, so that neither side of the triangle is preferred.
+            let middle = turned(DVec2::from_angle(0.5 * angle), chart.edge((k + 2) % 3));
+            let here = DVec2::from_angle(scale * (start + 0.5 * angle));
+            self.rotations[corner as usize / 3][k] = rotation_between(middle, here);
+            self.twists[corner as usize / 3][k] = (scale - 1.0) * angle;
+            self.corners.push(corner);
+            self.starts.push(scale * start);
+            start += angle;
+        }
+        self.scales.push(scale);
+    }
+
+    /// The corners at a vertex, counterclockwise.
+    #[inline]
+    pub fn corners(&self, vertex: usize) -> &[u32] {
+        &self.corners[self.offsets[vertex] as usize..self.offsets[vertex + 1] as usize]
+    }
+
+    /// The rotation from a corner's triangle to the tangent plane of its vertex.
+    #[inline]
+    pub fn rotation(&self, corner: u32) -> DVec2 {
+        self.rotations[corner as usize / 3][corner as usize % 3]
+    }
+
+    /// The rotation from a corner's triangle to the tangent plane of its vertex for vectors that come along the ray of
+    /// points at which the barycentric coordinates of the next and the last corner have the ratio of `after` to
+    /// `before`. So rays along an edge have the same rotation in both of its triangles, and a field that is interpolated
+    /// with these rotations is continuous across edges.
+    #[inline]
+    pub fn rotation_along(&self, corner: u32, after: f64, before: f64) -> DVec2 {
+        let both = after + before;
+        let share = if both > 0.0 { before / both - 0.5 } else { 0.0 };
+        let twist = self.twists[corner as usize / 3][corner as usize % 3];
+        turned(small_rotation(share * twist), self.rotation(corner))
+    }
+
+    /// The rotations from a triangle to the tangent planes of its vertices, in the middles of its corners.
+    #[inline]
+    pub fn rotations(&self, triangle: usize) -> [DVec2; 3] {
+        self.rotations[triangle]
+    }
+
+    /// The way that begins at a vertex with `direction`. A direction that leaves the surface at a border is projected
+    /// to the border's nearer edge. `None` if the vertex is bare or the direction points straight off the border.
+    #[inline]
+    pub fn way(&self, vertex: usize, direction: DVec2, hinges: &Hinges, charts: &[Chart]) -> Option<Way> {
+        let corners = self.corners(vertex);
+        let (&first, &end) = (corners.first()?, corners.last()?);
+        let starts = &self.starts[self.offsets[vertex] as usize..][..corners.len()];
+        let angle = direction.y.atan2(direction.x).rem_euclid(TAU);
+        let place = starts.iter().rposition(|&start| start <= angle).unwrap_or(0);
+        let corner = corners[place];
+        let (chart, k) = (&charts[corner as usize / 3], corner as usize % 3);
+        let inside = (angle - starts[place]) / self.scales[vertex];
+        if place + 1 == corners.len() && hinges.after(end) == WALL && inside > chart.angle(k) {
+            return self.along_border(vertex, direction, (first, end), charts);
+        }
+        let edge = chart.edge((k + 2) % 3).normalize();
+        Some(Way {
+            corner,
+            direction: turned(DVec2::from_angle(inside), edge) * direction.length(),
+        })
+    }
+
+    /// The way along the first or the last edge of an open fan, on which the direction's projection is larger.
+    fn along_border(&self, vertex: usize, direction: DVec2, (first, end): (u32, u32), charts: &[Chart]) -> Option<Way> {
+        let chart_of = |corner: u32| &charts[corner as usize / 3];
+        let total = self.starts[self.offsets[vertex + 1] as usize - 1] + chart_of(end).angle(end as usize % 3);
+        let (on_first, on_last) = (direction.x, direction.dot(DVec2::from_angle(total)));
+        if on_first.max(on_last) <= 0.0 {
+            return None;
+        }
+        Some(if on_first >= on_last {
+            let edge = chart_of(first).edge(last(first) as usize % 3).normalize();
+            Way {
+                corner: first,
+                direction: edge * on_first,
+            }
+        } else {
+            let edge = -chart_of(end).edge(next(end) as usize % 3).normalize();
+            Way {
+                corner: end,
+                direction: edge * on_last,
+            }
+        })
+    }
+}

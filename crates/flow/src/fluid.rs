@@ -1,0 +1,154 @@
+//! The surface as a flow sees it, and the ways between its two kinds of velocities.
+//!
+//! A velocity is constant on each triangle, because gradients of pressure are. Ways begin at vertices and need a
+//! velocity that varies continuously: the mean of the triangles around each vertex, interpolated.
+
+use glam::{DVec2, DVec3};
+use pliant_mesh::{SurfaceVertex, face_normal};
+use rayon::prelude::*;
+
+use crate::chart::Chart;
+use crate::fans::Fans;
+use crate::hinges::Hinges;
+use crate::plane::{turned, turned_back};
+use crate::sheets::Sheets;
+use crate::sums::{CHUNK, sum, sums};
+use crate::trace::Domain;
+
+/// A surface, laid out.
+#[derive(Debug)]
+pub(crate) struct Fluid<'a> {
+    pub sheets: Sheets<'a>,
+    pub domain: Domain,
+    /// A third of the area around each vertex.
+    pub masses: Vec<f64>,
+    /// The mean length of an edge.
+    pub mean_edge: f64,
+}
+
+impl<'a> Fluid<'a> {
+    pub fn of(sheets: Sheets<'a>) -> Self {
+        let (surface, topology) = (&*sheets.surface, &*sheets.topology);
+        let charts: Vec<Chart> = (0..surface.triangles.len())
+            .into_par_iter()
+            .with_min_len(CHUNK)
+            .map(|t| Chart::of(surface.corners(t)))
+            .collect();
+        let hinges = Hinges::of(surface, topology);
+        let fans = Fans::of(surface, topology, &hinges, &charts);
+        let third = |&corner: &u32| charts[corner as usize / 3].area() / 3.0;
+        let masses = (0..surface.positions.len())
+            .map(|vertex| fans.corners(vertex).iter().map(third).sum())
+            .collect();
+        let [lengths] = sum(charts.len(), |t| [(0..3).map(|k| charts[t].edge(k).length()).sum()]);
+        let mean_edge = lengths / (3 * charts.len()).max(1) as f64;
+        Self {
+            domain: Domain { charts, hinges, fans },
+            masses,
+            mean_edge,
+            sheets,
+        }
+    }
+
+    /// The number of vertices.
+    pub fn vertex_count(&self) -> usize {
+        self.masses.len()
+    }
+
+    /// The number of triangles.
+    pub fn triangle_count(&self) -> usize {
+        self.domain.charts.len()
+    }
+
+    /// The number of components.
+    pub fn component_count(&self) -> usize {
+        self.sheets.topology.components().len()
+    }
+
+    /// The component of a vertex.
+    #[inline]
+    pub fn component(&self, vertex: usize) -> usize {
+        self.sheets.topology.component(SurfaceVertex(vertex as u32)) as usize
+    }
+
+    /// The component of a triangle.
+    #[inline]
+    pub fn component_of_triangle(&self, triangle: usize) -> usize {
+        self.component(self.corners(triangle)[0])
+    }
+
+    /// The vertices of a triangle.
+    #[inline]
+    pub fn corners(&self, triangle: usize) -> [usize; 3] {
+        self.sheets.surface.triangles[triangle].map(|vertex| vertex.index())
+    }
+
+    /// The axes of a triangle's plane in space: along its first edge, and to the left of it.
+    pub fn axes(&self, triangle: usize) -> [DVec3; 2] {
+        let corners = self.sheets.surface.corners(triangle);
+        let x = (corners[1] - corners[0]).normalize_or(DVec3::X);
+        let y = face_normal(corners).cross(x);
+        // A triangle without area has no plane of its own: any one through its line serves.
+        [x, y.try_normalize().unwrap_or_else(|| x.any_orthonormal_vector())]
+    }
+
+    /// The middle of a triangle.
+    pub fn middle(&self, triangle: usize) -> DVec3 {
+        let [a, b, c] = self.sheets.surface.corners(triangle);
+        a + (b - a + c - a) / 3.0
+    }
+
+    /// The norm of a velocity on each component: the root of the integral of the squared speed.
+    pub fn speeds(&self, velocity: &[DVec2]) -> Vec<f64> {
+        let of = |t: usize| [self.domain.charts[t].area() * velocity[t].length_squared()];
+        let component = |t: usize| self.component_of_triangle(t);
+        let squares = sums(self.triangle_count(), self.component_count(), component, of);
+        squares.into_iter().map(|[square]| square.sqrt()).collect()
+    }
+
+    /// Fills `out` with the mean around each vertex of the triangles' vectors, in its tangent plane: triangles count by
+    /// area.
+    pub fn to_vertices(&self, velocity: impl Fn(usize) -> DVec2 + Sync, out: &mut [DVec2]) {
+        let Domain { charts, fans, .. } = &self.domain;
+        let mean = |(vertex, out): (usize, &mut DVec2)| {
+            let mut sum = DVec2::ZERO;
+            for &corner in fans.corners(vertex) {
+                let triangle = corner as usize / 3;
+                sum += turned(fans.rotation(corner), velocity(triangle)) * charts[triangle].area();
+            }
+            let mass = 3.0 * self.masses[vertex];
+            *out = if mass > 0.0 { sum / mass } else { DVec2::ZERO };
+        };
+        out.par_iter_mut().with_min_len(CHUNK).enumerate().for_each(mean);
+    }
+
+    /// Adds a change of the vertices' velocities to the triangles'.
+    ///
+    /// The change goes by way of its circulations along edges (the trapezoidal rule), of which each triangle takes the
+    /// Whitney form in its middle: ⅓ Σ c_ij (∇φ_j − ∇φ_i). If they are the differences of a function at the vertices,
+    /// this is the function's gradient, which pressure takes off again. A mean of the corners' vectors would leave a
+    /// part of every gradient behind, in one direction in triangles that point up and the other in those that point
+    /// down.
+    pub fn add_to_triangles(&self, changes: &[DVec2], velocity: &mut [DVec2]) {
+        let add = |(triangle, velocity): (usize, &mut DVec2)| {
+            let chart = &self.domain.charts[triangle];
+            let corners = self.corners(triangle);
+            let gradients = chart.gradients();
+            let mut sum = DVec2::ZERO;
+            for k in 0..3 {
+                let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+                let along = |corner: usize, after: f64| {
+                    let rotation = self
+                        .domain
+                        .fans
+                        .rotation_along((3 * triangle + corner) as u32, after, 1.0 - after);
+                    turned_back(rotation, changes[corners[corner]])
+                };
+                let circulation = 0.5 * chart.edge(k).dot(along(i, 1.0) + along(j, 0.0));
+                sum += (gradients[j] - gradients[i]) * circulation;
+            }
+            *velocity += sum / 3.0;
+        };
+        velocity.par_iter_mut().with_min_len(CHUNK).enumerate().for_each(add);
+    }
+}
