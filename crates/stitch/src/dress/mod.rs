@@ -67,30 +67,48 @@ impl DressedPatch {
         for (number, (run, _)) in of_triangle.iter().enumerate() {
             by_run.entry(*run).or_default().push(number);
         }
+        let mut first_of_run: BTreeMap<u32, usize> = BTreeMap::new();
+        for (edge, run) in rim.runs.iter().enumerate() {
+            first_of_run.entry(*run).or_insert(edge);
+        }
         for (run, numbers) in by_run {
-            let triangles: Vec<[u32; 3]> = numbers.iter().map(|&number| hole.triangles[number]).collect();
-            let on_rim: Vec<Option<DrawnVertex>> = (0..points.len())
-                .map(|point| if point < count { rim.vertex(point, run) } else { None })
+            // Only the points of this run's triangles: a rim may have as many runs as edges.
+            let corners = || numbers.iter().flat_map(|&number| hole.triangles[number]);
+            let mut used: Vec<u32> = corners().collect();
+            used.sort_unstable();
+            used.dedup();
+            let own = |point: u32| used.partition_point(|&other| other < point);
+            let on_rim: Vec<Option<DrawnVertex>> = used
+                .iter()
+                .map(|&point| {
+                    if (point as usize) < count {
+                        rim.vertex(point as usize, run)
+                    } else {
+                        None
+                    }
+                })
                 .collect();
             let known: Vec<bool> = on_rim.iter().map(Option::is_some).collect();
-            let mut rows = vec![0.0; points.len() * charts];
-            for (point, vertex) in on_rim.iter().enumerate() {
-                if let Some(vertex) = vertex {
-                    for channel in 0..charts {
-                        rows[point * charts + channel] = (part.attributes.value)(*vertex, channel);
-                    }
-                }
-            }
-            continue_values(&points, &triangles, &known, &mut rows, charts, (budget, cancel));
-            let like = rim.runs.iter().position(|own| *own == run).unwrap_or(0);
+            let value = |vertex: &Option<DrawnVertex>, channel: usize| {
+                vertex.map_or(0.0, |vertex| (part.attributes.value)(vertex, channel))
+            };
+            let row = |vertex| (0..charts).map(move |channel| value(vertex, channel));
+            let mut rows: Vec<f64> = on_rim.iter().flat_map(row).collect();
+            let places: Vec<DVec3> = used.iter().map(|&point| points[point as usize]).collect();
+            let triangles: Vec<[u32; 3]> = numbers
+                .iter()
+                .map(|&number| hole.triangles[number].map(|point| own(point) as u32))
+                .collect();
+            continue_values(&places, &triangles, &known, &mut rows, charts, (budget, cancel));
+            let like = first_of_run.get(&run).copied().unwrap_or(0);
             let mut number_of: Vec<Option<DressedCorner>> =
                 on_rim.iter().map(|vertex| vertex.map(DressedCorner::Old)).collect();
             for (&number, corners) in numbers.iter().zip(&triangles) {
-                corners_of[number] = corners.map(|point| {
-                    *number_of[point as usize].get_or_insert_with(|| {
-                        let point_row = point as usize * charts;
-                        let blend_row = point as usize * blends;
-                        patch.values.extend(&rows[point_row..point_row + charts]);
+                corners_of[number] = corners.map(|place| {
+                    *number_of[place as usize].get_or_insert_with(|| {
+                        let point = used[place as usize];
+                        let (chart_row, blend_row) = (place as usize * charts, point as usize * blends);
+                        patch.values.extend(&rows[chart_row..chart_row + charts]);
                         patch.values.extend(&blended[blend_row..blend_row + blends]);
                         patch.vertices.push((point, rim.ends[like][0]));
                         DressedCorner::New(patch.vertices.len() as u32 - 1)
