@@ -6,7 +6,7 @@ import zipfile
 from pathlib import Path
 
 
-# The system and the processor that a wheel's name ends with, and what Blender calls them.
+# The system and processor at the end of a wheel's name, and Blender's names for them.
 PLATFORMS = {
     ("linux", "x86_64"): "linux-x64",
     ("linux", "aarch64"): "linux-arm64",

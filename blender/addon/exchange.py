@@ -42,7 +42,7 @@ def write(obj, path):
 
 
 def edit_of(obj, transforms):
-    """What is chosen in the panel, in the edit format: method, handles with where they go, fixed vertices, stiffness."""
+    """The choices of the panel in the edit format: method, handles with their targets, fixed vertices, stiffness."""
     parts = parts_of(obj)
     numbers = lambda mask: {"vertices": np.flatnonzero(mask).tolist()}
     handles = []
@@ -61,10 +61,10 @@ def edit_of(obj, transforms):
 
 
 def open_window(obj, depsgraph):
-    """Opens the mesh in Pliant's window, with the handles where their targets have them if it is bent live."""
+    """Opens the mesh in Pliant's window; if it is bent live, with its handles at their targets."""
     path = program()
     if shutil.which(path) is None:
-        raise Refused(f"The program {path} is not there: give its path in the add-on's preferences")
+        raise Refused(f"The program {path} does not exist: give its path in the add-on's preferences")
     session = live.session_of(obj)
     edit = edit_of(obj, session.transforms(depsgraph) if session else {})
     folder = Path(tempfile.mkdtemp(prefix="pliant-"))
@@ -82,15 +82,15 @@ def import_shape(obj):
     if obj.session_uid not in opened:
         raise Refused(f"{obj.name} is not open in Pliant's window: open it first")
     if live.session_of(obj) is not None:
-        raise Refused(f"{obj.name} is bent live: bake or discard that first")
+        raise Refused(f"{obj.name} is bent live: bake or discard the shape first")
     file, written, _ = opened[obj.session_uid]
     if not file.is_file() or file.stat().st_mtime_ns == written:
-        raise Refused("Nothing was saved in Pliant's window yet: save there with Ctrl-S, then import the shape")
+        raise Refused("Pliant's window has saved nothing yet: save there with Ctrl-S, then import the shape")
     shape = pliant.load(file).vertices.astype(np.float32)
     if len(shape) != len(obj.data.vertices):
         raise Refused(
             f"{obj.name} has {len(obj.data.vertices)} vertices and the saved file {len(shape)}: "
-            "undo what changed the mesh since it was opened"
+            "undo the changes of the mesh since it was opened"
         )
     others = shape_keys.seen(obj, without=KEY)
     keys = obj.data.shape_keys

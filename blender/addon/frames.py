@@ -1,4 +1,4 @@
-"""A range of frames baked: to shape keys that are on in one frame each, or to a point cache."""
+"""Baking a range of frames to shape keys, each active in one frame, or to a point cache."""
 
 import struct
 from pathlib import Path
@@ -12,14 +12,14 @@ MODIFIER = "Pliant"
 
 
 def shapes(obj, first, last):
-    """Where the vertices are in each frame. Blender comes back to the present frame at the end."""
+    """The positions of the vertices in each frame. Blender returns to the present frame at the end."""
     scene, present = bpy.context.scene, bpy.context.scene.frame_current
     try:
         for frame in range(first, last + 1):
             scene.frame_set(frame)
             session = live.session_of(obj)
             if session is None:
-                raise Refused(live.notices.get(obj.session_uid) or f"{obj.name} is bent no longer")
+                raise Refused(live.notices.get(obj.session_uid) or f"{obj.name} is no longer bent: press Bend Live")
             if obj.session_uid in live.notices:
                 raise Refused(f"Frame {frame}: {live.notices[obj.session_uid]}")
             yield frame, session.shape.copy()
@@ -28,7 +28,7 @@ def shapes(obj, first, last):
 
 
 def to_keys(obj, first, last):
-    """A shape key for each frame, which is on in that frame alone and fades to its neighbours."""
+    """Makes a shape key for each frame, which is active only in that frame and fades to its neighbours."""
     session = live.session_of(obj)
     baked = list(shapes(obj, first, last))
     live.end(obj, keep=True)
@@ -49,7 +49,7 @@ def to_keys(obj, first, last):
 
 
 def curves(keys):
-    """The animation curves of shape keys, wherever this version of Blender has them."""
+    """The animation curves of shape keys in this version of Blender."""
     action = keys.animation_data.action
     if hasattr(action, "fcurves"):
         return list(action.fcurves)
@@ -57,7 +57,7 @@ def curves(keys):
 
 
 def to_cache(obj, first, last, path):
-    """A PC2 file, which a Mesh Cache modifier before all others plays."""
+    """Writes a PC2 file, which a Mesh Cache modifier before all others plays."""
     file = Path(bpy.path.abspath(path))
     count = len(obj.data.vertices)
     beside = file.with_name(file.name + ".part")

@@ -18,13 +18,13 @@ KEY = "Pliant"
 # The modifiers whose targets handles may have.
 MOVERS = {"HOOK", "ARMATURE"}
 
-# How long a method that iterates may take before Blender draws again, in seconds.
+# The most seconds that an iterative method may take before Blender draws again.
 FRAME = 0.03
 
 # By the objects' session numbers: names change, and pointers move.
 sessions = {}
 
-# What the panel tells of an object, by the same numbers: why a session has ended, or why it waits.
+# The panel's message about an object, by the same numbers: the reason why a session has ended or waits.
 notices = {}
 
 
@@ -32,14 +32,14 @@ class Session:
     """A bound mesh, and the shape key that it writes to."""
 
     def __init__(self, obj):
-        """Begins to bend an object from where it is seen."""
+        """Begins to bend an object from its visible shape."""
         check(obj)
         others = shape_keys.seen(obj)
         for handle in obj.pliant.handles:
             handle.rest_place = [number for row in targets.rest(handle) for number in row]
         self.bind(obj, others)
         self.key_name = shape_keys.add(obj, KEY).name
-        # What moved the mesh so far would move it twice.
+        # The modifiers that moved the mesh so far would move it twice.
         hidden = {own.name: (own.show_viewport, own.show_render) for own in obj.modifiers if own.type in MOVERS}
         obj.pliant.live_key, obj.pliant.hidden = self.key_name, json.dumps(hidden)
         show(obj, {name: (False, False) for name in hidden})
@@ -47,18 +47,18 @@ class Session:
 
     @classmethod
     def resumed(cls, obj):
-        """Goes on with what an object was bent by when its file was saved."""
+        """Goes on with the session that an object had when its file was saved."""
         check(obj)
         session = cls.__new__(cls)
         keys = obj.data.shape_keys
         if keys is None or obj.pliant.live_key not in keys.key_blocks:
-            raise Refused(f"{obj.name} has no shape key \"{obj.pliant.live_key}\", by which it was bent live")
+            raise Refused(f"{obj.name} has no shape key \"{obj.pliant.live_key}\", which bending needs: press Bend Live")
         session.bind(obj, shape_keys.seen(obj, without=obj.pliant.live_key))
         session.key_name = obj.pliant.live_key
         return session
 
     def bind(self, obj, others):
-        """Binds the mesh as the other shape keys have it."""
+        """Binds the mesh in the shape of the other shape keys."""
         mesh = obj.data
         self.number, self.name, self.others = obj.session_uid, obj.name, others
         mesh.calc_loop_triangles()
@@ -66,7 +66,7 @@ class Session:
         mesh.loop_triangles.foreach_get("vertices", corners.ravel())
         self.places = {handle.group: place_of(handle) for handle in obj.pliant.handles}
         self.bound = pliant.bind(others, corners, method=method_of(obj.pliant), **region_of(obj))
-        # A step with transforms (here those of rest) adds the warnings about parts that nothing holds: positions could
+        # A step with transforms (here those of rest) warns about parts without a fixed vertex: positions could
         # hold them.
         self.bound.step({}, iterations=1)
         self.shape = others.copy()
@@ -79,24 +79,24 @@ class Session:
 
     @property
     def object(self):
-        """The object, which is another one in memory after each undo."""
+        """The object, whose place in memory changes with each undo."""
         obj = bpy.data.objects.get(self.name)
         if obj is None or obj.session_uid != self.number:
             obj = next((own for own in bpy.data.objects if own.session_uid == self.number), None)
             if obj is None:
-                raise Refused(f"{self.name} is gone, so it is bent no longer: bend another mesh")
+                raise Refused(f"{self.name} no longer exists: bend another mesh")
             self.name = obj.name
         return obj
 
     def check(self):
-        """Refuses to go on with a mesh that is edited, or was."""
+        """Refuses to go on with a mesh that is or was edited."""
         obj = self.object
         if obj.mode == "EDIT" or counts(obj.data) != self.counts:
-            raise Refused(f"{obj.name} was edited while it was bent live, which has ended with the shape as it was then: "
-                          "press Bend Live to go on from there")
+            raise Refused(f"{obj.name} was edited, which ended its live bending and kept the shape: "
+                          "press Bend Live to go on")
 
     def transforms(self, depsgraph):
-        """How each handle moves, in the object's own coordinates."""
+        """The motion of each handle in the object's own coordinates."""
         obj = self.object
         world_from_object = obj.evaluated_get(depsgraph).matrix_world
         return {
@@ -106,7 +106,7 @@ class Session:
         }
 
     def follow(self, depsgraph):
-        """Takes the shape a frame further towards where the targets are. Whether it has changed."""
+        """Takes one step of the shape towards the targets. Returns true if it changed."""
         self.check()
         moved = self.transforms(depsgraph)
         is_new = self.seen is None or any(not np.array_equal(moved[name], self.seen.get(name)) for name in moved)
@@ -124,7 +124,7 @@ class Session:
         return True
 
     def settle(self, depsgraph):
-        """Takes the shape all the way to where the targets are, from where it is."""
+        """Settles the shape at the targets, from its present state."""
         self.check()
         self.seen = self.transforms(depsgraph)
         self.bound.step(self.seen, out=self.shape)
@@ -145,27 +145,27 @@ class Session:
 
 
 def check(obj):
-    """Refuses what can't be bent."""
+    """Refuses objects that can't be bent."""
     if obj.type != "MESH" or obj.mode != "OBJECT":
-        raise Refused(f"{obj.name} is no mesh in object mode: select one, and press Tab to leave edit mode")
+        raise Refused(f"{obj.name} is not a mesh in object mode: select a mesh, and press Tab to leave edit mode")
     if obj.data.users > 1:
         raise Refused(f"{obj.name} shares its mesh with other objects: choose Object, Relations, Make Single User, "
                       "Object & Data first")
 
 
 def counts(mesh):
-    """What an edit of a mesh changes."""
+    """The data that an edit of a mesh changes."""
     return len(mesh.vertices), len(mesh.edges), len(mesh.loops), len(mesh.polygons)
 
 
 def place_of(handle):
-    """The world matrix of a handle's target when the mesh began to be bent."""
+    """The world matrix of a handle's target at the beginning of bending."""
     numbers = list(handle.rest_place)
     return Matrix([numbers[4 * row : 4 * row + 4] for row in range(4)])
 
 
 def show(obj, modifiers):
-    """Sets where modifiers are shown, by their names."""
+    """Sets the visibility of modifiers by their names."""
     for name, (in_viewport, in_render) in modifiers.items():
         if name in obj.modifiers:
             obj.modifiers[name].show_viewport, obj.modifiers[name].show_render = in_viewport, in_render
@@ -179,12 +179,12 @@ def session_of(obj):
 def begin(obj):
     """Binds an object and follows its targets from now on."""
     if session_of(obj) is not None:
-        raise Refused(f"{obj.name} is bent live already: bake or discard that first")
+        raise Refused(f"{obj.name} is already bent live: bake or discard the shape first")
     return take(obj, Session(obj))
 
 
 def take(obj, session):
-    """Makes a session the object's."""
+    """Gives a session to its object."""
     sessions[obj.session_uid] = session
     notices.pop(obj.session_uid, None)
     if not bpy.app.timers.is_registered(settle_further):
@@ -193,7 +193,7 @@ def take(obj, session):
 
 
 def end(obj, keep):
-    """Ends the session of an object: it keeps its shape, or is as it was before."""
+    """Ends the session of an object, which keeps its shape or returns to the earlier one."""
     sessions.pop(obj.session_uid, None)
     notices.pop(obj.session_uid, None)
     settings = obj.pliant
@@ -207,7 +207,7 @@ def end(obj, keep):
 
 
 def each(act):
-    """Has every session act; one that can't go on ends. Whether a shape has changed."""
+    """Calls an action on every session and ends those that can't go on. Returns true if a shape changed."""
     has_changed = False
     for number, session in list(sessions.items()):
         try:
@@ -220,7 +220,7 @@ def each(act):
         except Refused as refusal:
             stop(number, session, str(refusal))
         except (ReferenceError, KeyError, AttributeError):
-            stop(number, session, f"{session.name} has lost its shape key or a handle, so it is bent no longer")
+            stop(number, session, f"{session.name} lost its shape key or a handle: press Bend Live")
         except ValueError as error:
             # A target that is scaled to nothing, for example: the shape waits for a better one.
             notices[number] = str(error)
@@ -228,7 +228,7 @@ def each(act):
 
 
 def stop(number, session, why):
-    """Ends a session that can't go on, and says why."""
+    """Ends a session that can't go on, with the reason."""
     sessions.pop(number, None)
     try:
         end(session.object, keep=True)
@@ -247,11 +247,11 @@ def resume():
             take(obj, Session.resumed(obj))
         except (Refused, ValueError) as refusal:
             end(obj, keep=False)
-            notices[obj.session_uid] = f"Bending can't go on as when the file was saved, and was discarded: {refusal}"
+            notices[obj.session_uid] = f"Bending could not go on in the opened file and was discarded: {refusal}"
 
 
 def is_playing():
-    """Whether frames follow each other on the screen, where a late one does more harm than an unsettled one."""
+    """True while frames follow each other on the screen, where a late frame is worse than an unsettled one."""
     screen = getattr(bpy.context, "screen", None)
     return screen is not None and screen.is_animation_playing and not bpy.app.is_job_running("RENDER")
 
@@ -297,7 +297,7 @@ def another_file_is_loaded(_file):
 
 
 def settle_further():
-    """Goes on with shapes that have not converged, while nothing moves."""
+    """Continues shapes that have not converged, while nothing moves."""
     if not sessions:
         return None
     if not is_playing():
@@ -310,7 +310,7 @@ def settle_further():
 
 
 def stop_settling():
-    """Takes the timer away."""
+    """Removes the timer."""
     if bpy.app.timers.is_registered(settle_further):
         bpy.app.timers.unregister(settle_further)
 

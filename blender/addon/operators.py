@@ -1,4 +1,4 @@
-"""What a person can do: each is one operator, whose refusals are shown where Blender shows them."""
+"""The operators of the add-on. Blender reports their refusals."""
 
 import bpy
 from bpy.props import EnumProperty, IntProperty, StringProperty
@@ -12,7 +12,7 @@ BESIDE_THE_FILE = {"PATH_SUPPORTS_BLEND_RELATIVE"} if bpy.app.version >= (4, 5) 
 
 
 class PliantOperator:
-    """On the active mesh; a refusal is reported as an error."""
+    """An operator on the active mesh, which reports a refusal as an error."""
 
     bl_options = {"REGISTER", "UNDO"}
 
@@ -59,7 +59,7 @@ class PLIANT_OT_remove_handle(PliantOperator, bpy.types.Operator):
 
 
 class PLIANT_OT_find_handles(PliantOperator, bpy.types.Operator):
-    """Makes handles of the mesh's hooks or of the bones that its armature has vertex groups for"""
+    """Makes handles of the mesh's hooks, or of its armature's bones with vertex groups"""
 
     bl_idname = "pliant.find_handles"
     bl_label = "Handles from Modifiers"
@@ -103,7 +103,7 @@ class PLIANT_OT_begin(PliantOperator, bpy.types.Operator):
 
 
 class PLIANT_OT_bake(PliantOperator, bpy.types.Operator):
-    """Keeps the shape, settled, as a shape key, and ends bending"""
+    """Keeps the settled shape as a shape key and ends bending"""
 
     bl_idname = "pliant.bake"
     bl_label = "Bake to Shape Key"
@@ -118,7 +118,7 @@ class PLIANT_OT_bake(PliantOperator, bpy.types.Operator):
 
 
 class PLIANT_OT_bake_frames(PliantOperator, bpy.types.Operator):
-    """Keeps the settled shape of each frame of a range, and ends bending"""
+    """Keeps the settled shape of each frame of a range and ends bending"""
 
     bl_idname = "pliant.bake_frames"
     bl_label = "Bake Frames"
@@ -147,17 +147,17 @@ class PLIANT_OT_bake_frames(PliantOperator, bpy.types.Operator):
 
     def act(self, _context, obj):
         if self.last < self.first:
-            raise Refused(f"Frame {self.last} comes before frame {self.first}: choose a later end")
+            raise Refused(f"The range ends at frame {self.last}, before frame {self.first}: choose a later end")
         if self.into == "KEYS":
             frames.to_keys(obj, self.first, self.last)
             return
         if self.filepath.startswith("//") and not bpy.data.filepath:
-            raise Refused("The file is to stand beside a .blend file that is not saved yet: save that first")
+            raise Refused("The PC2 file belongs beside the .blend file, which is not saved yet: save it first")
         frames.to_cache(obj, self.first, self.last, self.filepath)
 
 
 class PLIANT_OT_discard(PliantOperator, bpy.types.Operator):
-    """Ends bending and leaves the mesh as it was"""
+    """Ends bending and restores the mesh"""
 
     bl_idname = "pliant.discard"
     bl_label = "Discard"
@@ -183,7 +183,7 @@ class PLIANT_OT_open_window(PliantOperator, bpy.types.Operator):
 
 
 class PLIANT_OT_import_shape(PliantOperator, bpy.types.Operator):
-    """Imports what was saved in Pliant's window as a shape key, vertex by vertex"""
+    """Imports the shape saved in Pliant's window as a shape key, vertex by vertex"""
 
     bl_idname = "pliant.import_shape"
     bl_label = "Import Shape"

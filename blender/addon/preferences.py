@@ -1,4 +1,4 @@
-"""The add-on's preferences: where Pliant's program is."""
+"""The add-on's preferences: the path of Pliant's program."""
 
 import shutil
 
@@ -11,7 +11,7 @@ class PliantPreferences(bpy.types.AddonPreferences):
 
     program: StringProperty(
         name="Pliant",
-        description="The program whose window meshes are opened in; empty for the one in the path",
+        description="The program that opens meshes in its window; if empty, the one in PATH",
         subtype="FILE_PATH",
     )
 

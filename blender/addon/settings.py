@@ -1,4 +1,4 @@
-"""What is kept with each object: the method, the handles and what else an edit has."""
+"""The data kept with each object: the method, the handles and the edit's other members."""
 
 import bpy
 import numpy as np
@@ -21,7 +21,7 @@ METHODS = [(name, own["title"], own["when_to_use"]) for name, own in DECLARED.it
 
 
 def property_of(name, option):
-    """A field of Blender for an option, as the engine declares it. It begins as in Pliant's window."""
+    """A Blender property for an option that the engine declares. Its initial value is that of Pliant's window."""
     words = {"name": name.replace("_", " ").title(), "description": sentence(option)}
     first = option["first_choice"]
     if "choices" in option:
@@ -36,7 +36,7 @@ def property_of(name, option):
 
 
 def sentence(option):
-    """What an option does and takes, as Blender's tooltips are written: a capital first, no full stop."""
+    """An option's effect and values, in the form of Blender's tooltips: a capital first, no full stop."""
     help = option["help"][:1].upper() + option["help"][1:]
     return f"{help}. It is {option['allowed']} {option['unit']}".rstrip()
 
@@ -59,28 +59,28 @@ OPTIONS = {
 
 
 class PliantHandle(bpy.types.PropertyGroup):
-    """A vertex group, and what moves it."""
+    """A vertex group and its target."""
 
     group: StringProperty(name="Vertex Group", description="The vertices that the target moves")
     target: PointerProperty(
-        type=bpy.types.Object, name="Target", description="The empty, the armature or any object that moves them"
+        type=bpy.types.Object, name="Target", description="The empty, armature or other object that moves them"
     )
     bone: StringProperty(name="Bone", description="The bone of the armature that moves them")
     is_soft: BoolProperty(name="Soft", description="The handle only pulls at its vertices")
     weight: FloatProperty(
-        name="Weight", description="How firmly a soft handle pulls", default=1.0, min=1e-6, max=1e6, soft_max=100.0
+        name="Weight", description="A larger weight pulls harder", default=1.0, min=1e-6, max=1e6, soft_max=100.0
     )
-    # Where the target was when the mesh began to be bent live, row by row.
+    # The target's world matrix at the beginning of live bending, row by row.
     rest_place: FloatVectorProperty(size=16, options={"HIDDEN"})
 
 
 class PliantSettings(bpy.types.PropertyGroup):
-    """How an object is bent."""
+    """The settings by which an object is bent."""
 
-    method: EnumProperty(name="Method", description="How the surface follows its handles", items=METHODS, default="arap")
+    method: EnumProperty(name="Method", description="The method that bends the surface", items=METHODS, default="arap")
     handles: CollectionProperty(type=PliantHandle)
     active_handle: IntProperty()
-    fixed: StringProperty(name="Fixed", description="The vertex group that is held still")
+    fixed: StringProperty(name="Fixed", description="The vertex group of the fixed vertices")
     stiffness: StringProperty(name="Stiffness", description="The vertex group whose weights stiffen the surface")
     stiffest: FloatProperty(
         name="Maximum",
@@ -122,7 +122,7 @@ def index_of(obj, name, what):
     """The index of a vertex group."""
     group = obj.vertex_groups.get(name)
     if group is None:
-        raise Refused(f"{obj.name} has no vertex group \"{name}\", which is its {what}: choose another one")
+        raise Refused(f"{obj.name} has no vertex group \"{name}\", its {what}: choose another one")
     return group.index
 
 
@@ -133,7 +133,7 @@ def group_of(obj, name, what):
 
 
 def weights(mesh, wanted):
-    """The weights of all vertices in each vertex group whose index is wanted, 0 outside of it, read in one pass."""
+    """The weights of all vertices in each of the given vertex groups, 0 outside of it, read in one pass."""
     found = {index: np.zeros(len(mesh.vertices)) for index in wanted}
     for vertex, of_vertex in enumerate(mesh.vertices):
         for own in of_vertex.groups:
@@ -150,7 +150,7 @@ def region_of(obj):
 
 
 def parts_of(obj):
-    """The same, of an object that may have no handle yet."""
+    """The same for an object that may have no handle yet."""
     settings = obj.pliant
     named = [(handle.group, "handle") for handle in settings.handles]
     named += [(name, what) for name, what in ((settings.fixed, "fixed part"), (settings.stiffness, "stiffness")) if name]

@@ -1,4 +1,4 @@
-"""Where a mesh with shape keys is seen, and one key that takes it elsewhere whatever the others do."""
+"""The visible shape of a mesh with shape keys, and one key that changes it, whatever the others do."""
 
 import numpy as np
 
@@ -13,14 +13,14 @@ def coordinates(points):
 
 
 def seen(obj, without=None):
-    """Where the vertices are before the modifiers, by all shape keys that are on but the one called `without`."""
+    """The vertices' positions before the modifiers, by all active shape keys except the one named `without`."""
     keys = obj.data.shape_keys
     if keys is None:
         return coordinates(obj.data.vertices)
     if not keys.use_relative:
         raise Refused(f"{obj.name} has absolute shape keys: turn on Relative in the list of shape keys")
     if obj.show_only_shape_key:
-        raise Refused(f"{obj.name} shows one shape key alone: turn off the pin beside the list of shape keys")
+        raise Refused(f"{obj.name} shows only one shape key: turn off the pin beside the list of shape keys")
     basis = keys.reference_key
     out = coordinates(basis.data).astype(np.float64)
     for key in keys.key_blocks:
@@ -43,7 +43,7 @@ def add(obj, name):
 
 
 def write(obj, name, shape, others):
-    """Has a key that is on take the vertices to `shape`, from `others`, where the other keys that are on take them."""
+    """Makes an active key move the vertices to `shape` from `others`, their positions by the other active keys."""
     keys = obj.data.shape_keys
     basis = coordinates(keys.reference_key.data).astype(np.float64)
     keys.key_blocks[name].data.foreach_set("co", (basis + (shape - others.astype(np.float64))).astype(np.float32).ravel())
@@ -51,7 +51,7 @@ def write(obj, name, shape, others):
 
 
 def remove(obj, name):
-    """Removes a key, and the basis if it is left alone."""
+    """Removes a key, and the basis if no other key is left."""
     keys = obj.data.shape_keys
     if keys is not None and name in keys.key_blocks:
         obj.shape_key_remove(keys.key_blocks[name])

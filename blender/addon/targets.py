@@ -1,4 +1,4 @@
-"""Where the targets of the handles are: empties and other objects, bones of armatures, and hooks."""
+"""The transforms of the handles' targets: empties and other objects, bones of armatures, and hooks."""
 
 import numpy as np
 
@@ -21,7 +21,7 @@ def place(handle, depsgraph=None):
 
 
 def motion(world_rest, world_now, world_from_object):
-    """How the object's own coordinates move, as a matrix of numpy, when a target goes from one place to another."""
+    """The motion of the object's own coordinates, as a numpy matrix, when a target moves from one place to another."""
     object_from_world = world_from_object.inverted_safe()
     moved = object_from_world @ world_now @ world_rest.inverted_safe() @ world_from_object
     matrix = np.array(moved, dtype=np.float64)
@@ -30,7 +30,7 @@ def motion(world_rest, world_now, world_from_object):
 
 
 def rest(handle):
-    """The place of a target that moves nothing: where a bone rests in its armature, and where anything else is now."""
+    """The place of a target that moves nothing: a bone's rest position in its armature, another object's present place."""
     now = place(handle)
     if not handle.bone:
         return now

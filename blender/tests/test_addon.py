@@ -340,7 +340,7 @@ def test_a_mesh_that_is_edited_ends_its_session_with_a_sentence(addon, bent):
     target.location.x = 0.9
     bpy.context.view_layer.update()
     assert addon.live.sessions == {}
-    assert "was edited while it was bent live" in addon.live.notices[obj.session_uid]
+    assert "was edited, which ended its live bending" in addon.live.notices[obj.session_uid]
     assert np.abs(shown(obj)[: len(now)] - now).max() < 1e-5
     assert len(shown(obj)) > len(now)
     # And it can be bent on.
@@ -476,7 +476,7 @@ def test_an_undo_of_the_target_s_move_is_followed(addon, bent):
         bpy.context.view_layer.update()
         bpy.ops.ed.undo_push(message="move")
     assert bpy.ops.ed.undo() == {"FINISHED"}
-    # What was before the undo is another object in memory.
+    # The object from before the undo has another place in memory.
     obj, target = (bpy.data.objects[name] for name in names)
     bpy.context.view_layer.update()
     for x in (0.5, 0.2):
@@ -487,7 +487,7 @@ def test_an_undo_of_the_target_s_move_is_followed(addon, bent):
     assert bpy.ops.pliant.bake() == {"FINISHED"} and addon.live.sessions == {}
 
 
-# In the place of the window's person: makes the edit, bends what comes of it further, and saves it.
+# Replaces the person at the window: applies the edit, bends the result further and saves it.
 WINDOW = """#!{python}
 import json, sys, pliant
 file, option, edit = sys.argv[1:]

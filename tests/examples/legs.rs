@@ -32,10 +32,7 @@ fn main() {
         let setup = setup.resolve(model).unwrap();
         let problem = setup.problem(model);
         let mut bound = problem.bind(None, &Progress::new(), &Cancel::new()).unwrap();
-        bound.set_targets(&setup.targets(1.0)).unwrap();
-        if let Some(moved) = setup.controls(1.0) {
-            bound.set_controls(&moved).unwrap();
-        }
+        setup.targets_at(1.0).set(&mut bound).unwrap();
         let mut displacements = vec![DVec3::ZERO; model.surface.positions.len()];
         let is_done = (0..STEPS).any(|_| bound.step(&mut displacements).unwrap().converged);
         let places = problem.roles.iter().zip(&model.surface.positions);

@@ -114,7 +114,7 @@ fn is_path_separator(tokens: &[TokenTree], at: usize) -> bool {
     is_joint && is_colon(tokens.get(at)) && is_colon(tokens.get(at + 1))
 }
 
-/// Whether there is a `#[cfg(test)]` at `at`.
+/// Returns true if there is a `#[cfg(test)]` at `at`.
 fn is_test_attribute(tokens: &[TokenTree], at: usize) -> bool {
     let Some([TokenTree::Punct(hash), TokenTree::Group(attribute)]) = tokens.get(at..at + 2) else {
         return false;

@@ -23,7 +23,7 @@ const DRAG_STEPS: u32 = 3;
 pub enum Outcome {
     /// A shape that meets all requirements.
     Bent {
-        /// Whether its system had to be regularised, which is reported.
+        /// The regularisation of its system, which is reported.
         regularised: Regularised,
         /// The number of solved vertices.
         solved_count: usize,
@@ -32,7 +32,7 @@ pub enum Outcome {
     Refused(String),
 }
 
-/// Whether a system was factored without changes.
+/// The need of regularisation: none if a system was factored without changes.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Regularised {
     No,
@@ -275,7 +275,7 @@ impl Trial {
     }
 }
 
-/// Whether a position is within `radius` diagonals of a vertex.
+/// Returns true if a position is within `radius` diagonals of a vertex.
 fn around(model: &Model, diagonal: f64, centre: usize, radius: f64) -> impl Fn(DVec3) -> bool + use<> {
     let centre = model.surface.positions[centre];
     move |p: DVec3| p.distance(centre) <= radius * diagonal

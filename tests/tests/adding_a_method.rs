@@ -21,39 +21,54 @@ use pliant_mesh::shapes;
 use pliant_tests::{Folder, bend, open, run};
 use serde_json::{Value, json};
 
-#[test]
-fn no_file_of_the_program_but_its_folder_its_module_and_the_list_names_it() {
-    fn search(folder: &Path, found: &mut Vec<String>) {
+/// The sources of the program whose code, without comments and unit tests, contains one of these texts, by path below
+/// the crates' folder.
+fn naming(texts: &[String]) -> Vec<String> {
+    fn search(folder: &Path, texts: &[String], found: &mut Vec<String>) {
         for entry in std::fs::read_dir(folder).unwrap() {
             let path = entry.unwrap().path();
             if path.is_dir() {
-                search(&path, found);
+                search(&path, texts, found);
             } else if path.extension().is_some_and(|extension| extension == "rs") {
                 let text = std::fs::read_to_string(&path).unwrap();
-                if text.contains("identity::") || text.contains("mod identity") || text.contains("\"identity\"") {
-                    found.push(
-                        path.strip_prefix(env!("CARGO_MANIFEST_DIR"))
-                            .map_or_else(|_| path.display().to_string(), |path| path.display().to_string()),
-                    );
+                let code = text.split("\nmod tests {").next().unwrap_or_default();
+                let mut lines = code.lines().filter(|line| !line.trim_start().starts_with("//"));
+                if lines.any(|line| texts.iter().any(|text| line.contains(text))) {
+                    found.push(path.display().to_string().replace('\\', "/"));
                 }
             }
         }
     }
+    let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates");
     let mut found = Vec::new();
-    for name in ["app", "deform", "editor", "engine", "io", "mesh", "render"] {
-        let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates");
-        search(&crates.join(name).join("src"), &mut found);
+    for name in [
+        "app", "deform", "editor", "engine", "io", "mesh", "python", "render", "stitch",
+    ] {
+        search(&crates.join(name).join("src"), texts, &mut found);
     }
+    let from = crates.display().to_string().replace('\\', "/");
+    let below = |path: String| path.trim_start_matches(&from).trim_start_matches('/').to_owned();
+    found = found.into_iter().map(below).collect();
     found.sort();
-    let ends = [
-        "deform/src/identity/mod.rs",
-        "deform/src/lib.rs",
-        "deform/src/registry.rs",
-    ];
-    assert_eq!(found.len(), ends.len(), "{found:?}");
-    for (path, end) in found.iter().zip(ends) {
-        assert!(path.ends_with(end), "{found:?}");
+    found
+}
+
+#[test]
+fn no_file_of_the_program_but_those_of_its_folder_names_a_method() {
+    for method in METHODS {
+        let name = method.name;
+        let folder = format!("deform/src/{}/", name.replace('-', "_"));
+        let mut found = naming(&[format!("\"{name}\""), format!("`{name}`")]);
+        assert!(found.iter().any(|path| path.starts_with(&folder)), "{name}");
+        found.retain(|path| !path.starts_with(&folder));
+        assert!(found.is_empty(), "{name} is named by {found:?}");
     }
+}
+
+#[test]
+fn the_smallest_method_is_in_no_file_but_its_own_the_list_of_modules_and_the_registry() {
+    let found = naming(&["identity::".to_owned(), "mod identity".to_owned()]);
+    assert_eq!(found, ["deform/src/lib.rs", "deform/src/registry.rs"]);
 }
 
 #[test]
@@ -61,11 +76,11 @@ fn the_help_lists_it_with_its_options() {
     let help = run(["apply", "--help"]).done().out;
     let declaration = METHODS.iter().find(|method| method.name == "identity").unwrap();
     assert!(
-        help.contains("  identity: Moves the handles and leaves the rest where it is."),
+        help.contains("  identity: Moves the handles and leaves the rest in place."),
         "{help}"
     );
     assert!(
-        help.contains("share: how far the handles go of their way; 0 to 1; default 1"),
+        help.contains("share: share of the handles' motion; 0 to 1; default 1"),
         "{help}"
     );
     assert_eq!(declaration.options.len(), 1);
@@ -166,7 +181,7 @@ fn the_palette_and_the_panel_have_it() {
     assert_eq!(harness.state().editor().document().method().name(), "identity");
 
     // The panel shows its sentence, and a widget for its option below.
-    harness.get_by_label("Moves the handles and leaves the rest where it is.");
+    harness.get_by_label("Moves the handles and leaves the rest in place.");
     harness.get_by_label("Options").click();
     harness.run_steps(8);
     assert!(harness.query_all_by_label("Share").next().is_some());

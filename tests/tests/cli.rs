@@ -390,7 +390,7 @@ fn foreign_text_neither_steers_the_terminal_nor_fills_it() {
     let arguments = [
         "apply", "a.off", "--edit", "e.json", "--output", "b.off", "--method", &option,
     ];
-    let refused = run(arguments).refused(2, &["takes nothing", "`energy`"]);
+    let refused = run(arguments).refused(2, &["takes no value", "`energy`"]);
     for ended in ended.into_iter().chain([refused]) {
         let length = ended.err.chars().count();
         assert!(length < 750, "{length} characters");

@@ -190,7 +190,7 @@ fn what_is_no_cage_and_no_lattice_is_refused_by_its_place() {
         ),
         (
             cage(json!({ "vertices": vertices, "triangles": triangles, "moved": [[0, 0, 0]] })),
-            &["method.cage", "1 moved points where 8 are expected"],
+            &["method.cage", "1 moved points, but 8 points"],
         ),
         (
             cage(json!({ "vertices": vertices, "triangles": [[0, 1, 9], [0, 1, 2]] })),
@@ -218,7 +218,7 @@ fn what_is_no_cage_and_no_lattice_is_refused_by_its_place() {
         ),
         (
             lattice(json!([4, 4, 4]), json!({ "moved": [[0, 0, 0]] })),
-            &["method.lattice", "1 moved points where 64 are expected"],
+            &["method.lattice", "1 moved points, but 64 points"],
         ),
         (
             lattice(json!([4, 4, 4]), json!({ "cells": 3 })),

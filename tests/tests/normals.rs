@@ -5,7 +5,7 @@ use std::collections::HashMap;
 
 use glam::{DAffine3, DVec3, Mat3, Vec3};
 use pliant_app::drawing::Drawing;
-use pliant_deform::{Constraints, Loose, Method, Problem, Role};
+use pliant_deform::{Method, Problem, Role};
 use pliant_io::Appearance;
 use pliant_mesh::{Cancel, Drawn, Model, Progress, shapes};
 
@@ -20,18 +20,8 @@ fn bent(drawn: Drawn) -> (Model, Vec<DVec3>, Vec<Mat3>) {
     };
     let roles: Vec<Role> = model.surface.positions.iter().map(role).collect();
     let method = Method::from_name("rbf").unwrap();
-    let problem = Problem {
-        surface: &model.surface,
-        topology: &model.topology,
-        roles: &roles,
-        handle_count: 1,
-        stiffness: &vec![1.0; roles.len()],
-        constraints: Constraints::default(),
-        loose: Loose::Follow,
-        method: &method,
-        attachments: &[],
-        revision: 0,
-    };
+    let stiffness = vec![1.0; roles.len()];
+    let problem = Problem::new((&model.surface, &model.topology), &roles, &stiffness, &method);
     let mut bound = problem.bind(None, &Progress::new(), &Cancel::new()).unwrap();
     let turn = DAffine3::from_axis_angle(DVec3::new(0.8, 0.6, 0.0), 0.6);
     bound

@@ -87,7 +87,7 @@ fn no_output_of_any_command_is_a_file_that_it_reads() {
                 ]
                 .concat(),
             ] {
-                run(arguments(&words, &folder)).refused(2, &["--report", "as well"]);
+                run(arguments(&words, &folder)).refused(2, &["--report", "is also"]);
                 assert_eq!(contents(&files), before, "{words:?}");
                 assert!(!folder.at("out.glb").exists() && !folder.at("sheet.png").exists());
                 asked += 1;
@@ -100,7 +100,7 @@ fn no_output_of_any_command_is_a_file_that_it_reads() {
         &["apply", "bar.off", "--edit", "cage.json", "--output", "cage.off"],
         &["transfer", "bar.off", "bar.off", "rest.gltf", "--output", "bar.off"],
     ] {
-        run(arguments(words, &folder)).refused(2, &["--output", "as well"]);
+        run(arguments(words, &folder)).refused(2, &["--output", "is also"]);
         assert_eq!(contents(&files), before, "{words:?}");
         asked += 1;
     }

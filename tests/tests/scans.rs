@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use glam::{DAffine3, DMat3, DVec3};
-use pliant_deform::{Bound, Constraints, Loose, Method, Ordering, Problem, RigidMotion, Role};
+use pliant_deform::{Bound, Method, Ordering, Problem, RigidMotion, Role};
 use pliant_mesh::{Cancel, Model, Progress, Surface};
 use pliant_tests::largest_distance;
 use pliant_tests::trials::scans;
@@ -40,18 +40,8 @@ impl<'a> Setting<'a> {
     }
 
     fn bind(&self) -> Bound {
-        let problem = Problem {
-            surface: &self.surface,
-            topology: &self.model.topology,
-            roles: &self.roles,
-            handle_count: 2,
-            stiffness: &self.stiffness,
-            constraints: Constraints::default(),
-            loose: Loose::Follow,
-            method: &Method::default(),
-            attachments: &[],
-            revision: 0,
-        };
+        let (mesh, method) = ((&self.surface, &self.model.topology), Method::default());
+        let problem = Problem::new(mesh, &self.roles, &self.stiffness, &method);
         problem.bind(self.ordering, &Progress::new(), &Cancel::new()).unwrap()
     }
 }

@@ -22,7 +22,7 @@ use pliant_tests::{Folder, assets, diagonal, largest_distance, open, run};
 use rig::{Random, Rig, VIEWPORT_PX};
 use serde_json::{Value, json};
 
-/// The largest distance between the shapes, in diagonals: a linear solution is found anew to its rounding.
+/// The largest distance between the shapes, in diagonals: a linear solution is found again to its rounding.
 const ALIKE: f64 = 1e-6;
 
 /// A program with a file of this mesh open, and with `edit`, if there is one.

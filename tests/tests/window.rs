@@ -399,7 +399,7 @@ fn all_methods_are_compared_in_small_views_and_a_click_takes_one() {
         .zip(METHODS)
         .find(|(_, method)| method.name != own && method.name != "identity")
         .unwrap();
-    let label = format!("Take {}", other.title);
+    let label = format!("Use {}", other.title);
     let middle = session.harness.get_by_label(&label).rect().center();
     session.pointer(middle, Some(true));
     session.pointer(middle, Some(false));
@@ -434,16 +434,29 @@ fn all_methods_are_compared_in_small_views_and_a_click_takes_one() {
     assert_eq!(session.harness.state().view_rect().height(), height);
 }
 
-/// Two views side by side: one drag by two methods; closing the second leaves the first unchanged.
+/// One of the compared methods large beside the view: one drag by two methods; making it small again leaves the first
+/// unchanged.
 #[test]
 fn two_methods_are_compared_on_the_same_drag() {
     let Some(mut session) = Session::begin() else { return };
     let top = session.point_of(|positions| *positions.iter().max_by(|a, b| a.y.total_cmp(&b.y)).unwrap());
     session.stroke(top + vec2(0.0, 6.0), top + vec2(0.0, 16.0));
-    let context = session.harness.ctx.clone();
-    let width = session.harness.state().view_rect().width();
-    session.harness.state_mut().toggle_compare(&context);
     session.settle();
+    let width = session.harness.state().view_rect().width();
+    session.harness.state_mut().command(Command::CompareMethods);
+    session.settle();
+    let own = session.harness.state().editor().document().method().name();
+    let other = (0..METHODS.len()).find(|&number| METHODS[number].name != own).unwrap();
+    let label = format!("Enlarge {}", METHODS[other].title);
+    let middle = session.harness.get_by_label(&label).rect().center();
+    session.pointer(middle, Some(true));
+    session.pointer(middle, Some(false));
+    session.settle();
+    assert_eq!(
+        session.harness.state().editor().comparison().unwrap().large(),
+        Some(other)
+    );
+    assert_eq!(session.harness.state().editor().document().method().name(), own);
     assert!(
         session.harness.state().view_rect().width() < 0.6 * width,
         "half of the view is the second's"
@@ -453,28 +466,19 @@ fn two_methods_are_compared_on_the_same_drag() {
     }
     session.settle();
     let first = session.shape();
-    let application = session.harness.state();
-    let (one, two) = (
-        application.editor().document(),
-        application.compared().unwrap().document(),
-    );
-    assert_eq!(one.handles(), two.handles());
-    assert_ne!(one.method(), two.method());
+    let bent = |session: &Session| {
+        let comparison = session.harness.state().editor().comparison().unwrap();
+        comparison.alternatives()[other].shape.to_vec()
+    };
     assert!(
-        moved(two.from_file()) > 0 && **two.from_file() != first,
+        moved(&bent(&session)) > 0 && bent(&session) != first,
         "the second bends otherwise"
-    );
-    assert_eq!(
-        application.editor().view().camera,
-        application.compared().unwrap().view().camera
     );
     session.key(Key::Z, Modifiers::COMMAND);
     session.settle();
-    let compared = session.harness.state().compared().unwrap();
-    assert_eq!(moved(compared.document().from_file()), 0, "it goes back along");
-    session.harness.state_mut().toggle_compare(&context);
+    assert_eq!(moved(&bent(&session)), 0, "it goes back along");
+    session.harness.state_mut().command(Command::EnlargeMethod(None));
     session.settle();
-    assert!(session.harness.state().compared().is_none());
     assert_eq!(session.harness.state().view_rect().width(), width);
     session.key(Key::Z, Modifiers::COMMAND | Modifiers::SHIFT);
     session.settle();
@@ -646,14 +650,14 @@ fn escape_closes_the_window_on_top_and_then_means_the_editor_again() {
         session.palette(name);
         session.key(Key::Enter, Modifiers::NONE);
     }
-    let (of_log, of_keys) = ("Copy all", "The program's own keys");
+    let (of_log, of_keys) = ("Copy all", "Default keys");
     assert!(has(&session, of_log) && has(&session, of_keys));
     // The palette closes first.
     session.palette("log");
     session.key(Key::Escape, Modifiers::NONE);
     assert!(has(&session, of_log) && has(&session, of_keys));
     // Then the wait for a key.
-    session.harness.get_by_label("Key of Undo").click();
+    session.harness.get_by_label("Key for Undo").click();
     session.harness.run_steps(2);
     session.key(Key::Escape, Modifiers::NONE);
     assert!(has(&session, of_log) && has(&session, of_keys));
@@ -691,7 +695,7 @@ fn a_key_that_the_window_has_is_refused_by_name_and_another_is_awaited() {
     let Some(mut session) = Session::begin() else { return };
     session.palette("keys");
     session.key(Key::Enter, Modifiers::NONE);
-    session.harness.get_by_label("Key of Undo").click();
+    session.harness.get_by_label("Key for Undo").click();
     session.harness.run_steps(2);
     session.key(Key::S, Modifiers::COMMAND);
     assert!(

@@ -309,8 +309,8 @@ fn a_save_waits_until_the_shape_has_settled() {
     session.key(Key::R, Modifiers::NONE);
     session.key(Key::Num9, Modifiers::NONE);
     session.key(Key::S, Modifiers::COMMAND);
-    await_words(&mut session, "Save as it is now");
-    click(&mut session, "Save as it is now");
+    await_words(&mut session, "Save now");
+    click(&mut session, "Save now");
     session.key(Key::Enter, Modifiers::NONE);
     session.settle();
     assert!(session.harness.state().editor().view().unsaved);

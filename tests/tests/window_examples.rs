@@ -149,7 +149,10 @@ fn a_file_is_taken_as_an_example_weighed_undone_and_saved() {
     slide(&mut session, "pose", 0.25, 0.75);
     let weight = examples(&session).unwrap().weights[0].unwrap();
     assert!((weight - 1.0).abs() < 0.1, "{weight}");
-    assert_eq!(session.harness.state().editor().view().undo, Some("Weigh example"));
+    assert_eq!(
+        session.harness.state().editor().view().undo,
+        Some("Change example weight")
+    );
     session
         .harness
         .state_mut()

@@ -177,8 +177,8 @@ fn across(y: f64) -> impl Iterator<Item = DVec2> {
 fn strokes(timed: &mut Timed) {
     timed.command(Command::SetStrokeShape(StrokeShape::Brush));
     for (metric, name) in [
-        (BrushMetric::Screen, "as seen"),
-        (BrushMetric::Surface, "along the surface"),
+        (BrushMetric::Screen, "visible"),
+        (BrushMetric::Surface, "along surface"),
         (BrushMetric::Through, "through"),
     ] {
         for radius_px in [30.0, 100.0] {

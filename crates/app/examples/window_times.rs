@@ -47,7 +47,8 @@ impl Session {
         self.harness.step();
     }
 
-    /// Whether the shape in the buffers has the handle at the pointer's place: an earlier move's result does not.
+    /// Returns true if the shape in the buffers has the handle at the pointer's place: an earlier move's result does
+    /// not.
     fn shows_handle(&self, size: f64) -> bool {
         let application = self.harness.state();
         let document = application.editor().document();
@@ -216,12 +217,11 @@ fn menus(session: &mut Session) {
         session.settle();
         longest.push((session.harness.state_mut().take_longest_frame(), name));
     }
-    let context = session.harness.ctx.clone();
-    session.harness.state_mut().toggle_compare(&context);
+    session.harness.state_mut().command(Command::CompareMethods);
     session.settle();
     longest.push((
         session.harness.state_mut().take_longest_frame(),
-        "a second view".to_owned(),
+        "views of all methods".to_owned(),
     ));
     longest.sort();
     for (time, name) in longest.iter().rev().take(6) {

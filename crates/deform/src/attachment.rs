@@ -47,8 +47,8 @@ pub enum Attachment {
 pub struct Examples {
     /// The shapes.
     pub shapes: Arc<Vec<ExampleShape>>,
-    /// Each shape's weight, from −[`LARGEST_WEIGHT`] to it: 0 is rest, 1 the shape itself, and more goes beyond. `None`:
-    /// the solver finds it.
+    /// Each shape's weight, from −[`LARGEST_WEIGHT`] to it: 0 is rest, 1 the shape itself, and more goes beyond.
+    /// `None`: the solver finds it.
     pub weights: Vec<Option<f64>>,
 }
 
@@ -118,8 +118,8 @@ impl Attachment {
         }
     }
 
-    /// Whether the two differ only in the moved positions of their points, or in names and weights: then no new binding
-    /// is needed.
+    /// Returns true if the two differ only in the moved positions of their points, or in names and weights: then no new
+    /// binding is needed.
     pub fn rests_as(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Mesh(a), Self::Mesh(b)) => {

@@ -6,7 +6,7 @@
 #[non_exhaustive]
 pub enum AttachmentRefused {
     /// The method does not declare it, or declares another kind.
-    #[error("is nothing that this method takes: leave it out")]
+    #[error("is not an input of this method: leave it out")]
     Kind,
     /// The number of its points is too small or too large.
     #[error("has {found} points: give {least} to {most}")]
@@ -19,9 +19,7 @@ pub enum AttachmentRefused {
         most: usize,
     },
     /// `moved` has a wrong length.
-    #[error(
-        "has {found} moved points where {expected} are expected: give one for each of its points, or leave `moved` out"
-    )]
+    #[error("has {found} moved points, but {expected} points: give one for each of its points, or leave `moved` out")]
     MovedCount {
         /// The length.
         found: usize,
@@ -70,8 +68,8 @@ pub enum AttachmentRefused {
     NoVolume,
     /// Vertices that must be within it are not.
     #[error(
-        "leaves {count} of the region's vertices outside, and {coordinates} coordinates are for those inside: make it \
-         larger, or take mean-value coordinates"
+        "leaves {count} of the region's vertices outside, but {coordinates} coordinates are only for those inside: \
+         make it larger, or take mean-value coordinates"
     )]
     Outside {
         /// The number of vertices.
@@ -81,7 +79,8 @@ pub enum AttachmentRefused {
     },
     /// Vertices are at places without a node of the harmonic grid.
     #[error(
-        "comes closer than the grid is fine to {count} of the region's vertices: move it away from them or raise `grid`"
+        "is closer than one cell of the grid to {count} of the region's vertices: move it away from them or raise \
+         `grid`"
     )]
     Close {
         /// The number of vertices.
@@ -106,7 +105,9 @@ pub enum AttachmentRefused {
         axis: char,
     },
     /// An example's number of vertices differs from the surface's.
-    #[error("can't be taken: {name:?} has {found} vertices where the surface has {expected}")]
+    #[error(
+        "can't be used: {name:?} has {found} vertices, but the surface has {expected}: give examples of the same mesh"
+    )]
     VertexCount {
         /// The example's name.
         name: String,
@@ -116,7 +117,7 @@ pub enum AttachmentRefused {
         expected: usize,
     },
     /// The number of weights is too small or too large.
-    #[error("can't be taken with {found} weights: give one for each of the {expected}")]
+    #[error("can't be used with {found} weights: give one for each of the {expected}")]
     WeightCount {
         /// The number of weights.
         found: usize,
@@ -124,7 +125,7 @@ pub enum AttachmentRefused {
         expected: usize,
     },
     /// A weight that is not finite or too large.
-    #[error("can't be taken with the weight of number {place}: give −{most} to {most}")]
+    #[error("can't be used with the weight of number {place}: give −{most} to {most}")]
     Weight {
         /// The example's number.
         place: usize,

@@ -12,7 +12,7 @@ pub enum BindError {
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
     /// A table's length differs from the surface's.
-    #[error("{table} has {found} entries where {expected} are expected: give one for each")]
+    #[error("{table} has {found} entries, but {expected} are expected: give one for each")]
     Length {
         /// The table.
         table: &'static str,
@@ -34,7 +34,7 @@ pub enum BindError {
         handle_count: usize,
     },
     /// A handle without vertices.
-    #[error("handle {handle} holds no vertex: select at least one for it or remove it")]
+    #[error("handle {handle} has no vertex: select at least one for it or remove it")]
     EmptyHandle {
         /// The handle.
         handle: usize,
@@ -83,7 +83,7 @@ pub enum BindError {
     },
     /// The surface has only points, and the method bends surfaces.
     #[error(
-        "there is no triangle, and {method} bends surfaces: take {}, which bend points and lines",
+        "the file has no triangle, but {method} bends surfaces: take {}, which bend points and lines",
         Remedy::OfSpace
     )]
     NoTriangles {
@@ -92,7 +92,8 @@ pub enum BindError {
     },
     /// The ordering was made for another mesh or another power.
     #[error(
-        "the ordering is for {found} vertices and power {found_power}, not for {expected} and {expected_power}: make one from this surface"
+        "the ordering is for {found} vertices and power {found_power}, not for {expected} vertices and power \
+         {expected_power}: make one from this surface"
     )]
     Ordering {
         /// The ordering's vertices.
@@ -150,8 +151,8 @@ pub enum BindError {
     },
     /// The solved region is too long and thin for the computation.
     #[error(
-        "vertex {vertex} lies {edges} edges from all that holds it, too far to be solved for: fix vertices on the way, make \
-         the mesh coarser, {}or take {}",
+        "vertex {vertex} is {edges} edges from the nearest fixed vertex or handle, too far to be solved for: fix \
+         vertices between them, make the mesh coarser, {}or take {}",
         .order.map_or(String::new(), |order| format!("lower the method's `order` from {order}, ")),
         Remedy::OfSpace
     )]
@@ -312,7 +313,7 @@ impl SolveError {
 #[non_exhaustive]
 pub enum SolveError {
     /// The number of transforms is not the number of handles.
-    #[error("{found} transforms came for {expected} handles: give one for each")]
+    #[error("{found} transforms are given for {expected} handles: give one for each")]
     TargetCount {
         /// The number of transforms.
         found: usize,
@@ -327,7 +328,7 @@ pub enum SolveError {
     },
     /// A handle's vertices have places, and the method takes no places.
     #[error(
-        "{method} moves all of a handle by one map and takes no positions for its vertices: give a transform, or take {}",
+        "{method} moves a handle as a whole and takes no positions for its vertices: give a transform, or take {}",
         Remedy::TakingPlaces
     )]
     NoPlaces {
@@ -335,13 +336,13 @@ pub enum SolveError {
         method: &'static str,
     },
     /// The number of places is not the number of the handle's vertices.
-    #[error("{found} positions came for the {expected} surface vertices of handle {handle}: give one for each")]
+    #[error("{found} positions are given for the {expected} surface vertices of handle {handle}: give one for each")]
     PlaceCount {
         /// The handle.
         handle: usize,
-        /// How many came.
+        /// The given number.
         found: usize,
-        /// How many vertices there are.
+        /// The number of the handle's vertices.
         expected: usize,
     },
     /// A place holds a NaN or an infinity.
@@ -361,7 +362,7 @@ pub enum SolveError {
         refused: AttachmentRefused,
     },
     /// Control points were moved, but the binding has none.
-    #[error("control points were moved that the binding does not have: bind with a cage or a lattice")]
+    #[error("the binding has no control points to move: bind with a cage or a lattice")]
     NoControls,
     /// The output's length differs from the surface's.
     #[error("room for {found} displacements was given for {expected} surface vertices: give one for each")]

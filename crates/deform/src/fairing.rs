@@ -11,10 +11,10 @@ use crate::bilaplacian::factored::BilaplacianSystem;
 use crate::bilaplacian::operator::BilaplacianOperator;
 use crate::bilaplacian::refine::TOLERANCE;
 use crate::bilaplacian::setup::bent_rows;
-use crate::bilaplacian::system_error::SystemError;
 use crate::operators::triangulation::Triangulation;
 use crate::region::slender;
 use crate::sparse::refactorisation::Refactorisation;
+use crate::sparse::system_error::SystemError;
 use crate::{Bilaplacian, BilaplacianOrder, BindError, Budget, Discretisation, Laplacian, Ordering};
 
 /// Replaces the values of the vertices `free` (ascending) by the smoothest ones of the given order that fit the other
@@ -65,8 +65,7 @@ pub fn fair(
     let diagonal = bounding_box(&surface.positions).map_or(1.0, |bounds| bounds.diagonal());
     let operator = BilaplacianOperator::new(laplacian, &options, diagonal);
     let ordering = Ordering::of(topology, power, &Progress::new(), cancel)?;
-    let refuse =
-        |error: SystemError| error.into_bind_error(|vertex| topology.component(SurfaceVertex(vertex)), free.len());
+    let refuse = |error: SystemError| error.into_bind_error(topology, free.len());
     let elimination = ordering.elimination(free);
     let mut system =
         BilaplacianSystem::new(operator, elimination, Refactorisation::Never, budget, cancel).map_err(refuse)?;

@@ -16,7 +16,7 @@
 //!
 //! ```
 //! use glam::{DAffine3, DVec3};
-//! use pliant_deform::{Constraints, Loose, Method, Problem, Role};
+//! use pliant_deform::{Method, Problem, Role};
 //! use pliant_mesh::{Cancel, Progress, shapes};
 //!
 //! let model = shapes::model(shapes::bar(10, 2, 2));
@@ -29,18 +29,8 @@
 //!     .collect();
 //! let method = Method::from_name("arap").unwrap_or_default();
 //! let (progress, cancel) = (Progress::new(), Cancel::new());
-//! let problem = Problem {
-//!     surface: &model.surface,
-//!     topology: &model.topology,
-//!     roles: &roles,
-//!     handle_count: 1,
-//!     stiffness: &vec![1.0; roles.len()],
-//!     constraints: Constraints::default(),
-//!     loose: Loose::Follow,
-//!     method: &method,
-//!     attachments: &[],
-//!     revision: 0,
-//! };
+//! let stiffness = vec![1.0; roles.len()];
+//! let problem = Problem::new((&model.surface, &model.topology), &roles, &stiffness, &method);
 //! let ordering = method.ordering(&model.topology, &progress, &cancel)?;
 //! let mut bound = problem.bind(&ordering, &progress, &cancel)?;
 //!
@@ -68,6 +58,7 @@ mod bound;
 mod budget;
 mod cage;
 mod coarse;
+mod descent;
 mod embedded;
 mod error;
 mod fairing;
@@ -84,6 +75,7 @@ mod needs;
 mod numerical;
 mod operators;
 mod option;
+mod picture;
 mod poisson;
 mod primo;
 mod problem;
@@ -126,7 +118,8 @@ pub use needs::{ConstraintKind, HandleFit, Needs, Solve};
 pub use numerical::rigid_fit::RigidMotion;
 pub use operators::discretisation::{Discretisation, TriangulationKind};
 pub use operators::{Laplacian, mollified_lengths};
-pub use option::{OptionDeclaration, OptionKind, OptionRefused, OptionValue};
+pub use option::{OptionDeclaration, OptionKind, OptionRefused, OptionSlider, OptionValue};
+pub use picture::Picture;
 pub use poisson::{Poisson, PoissonEquation, Propagation};
 pub use primo::Primo;
 pub use problem::Problem;

@@ -11,10 +11,23 @@ pub struct OptionDeclaration {
     pub help: &'static str,
     /// Its kind of values.
     pub kind: OptionKind,
-    /// Whether it is an expert option: the window folds such options away.
+    /// True if it is an expert option: the window folds such options away.
     pub is_advanced: bool,
     /// The choice option, and its names with which this option has an effect.
     pub only_with: Option<(&'static str, &'static [&'static str])>,
+}
+
+/// A slider of an option, on a logarithmic scale.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct OptionSlider {
+    /// The option, a number.
+    pub option: &'static str,
+    /// The words at the ends.
+    pub ends: [&'static str; 2],
+    /// The values at the ends.
+    pub range: [f64; 2],
+    /// Its effect.
+    pub help: &'static str,
 }
 
 /// The values of an option.
@@ -70,7 +83,7 @@ pub struct OptionRefused {
 }
 
 impl OptionKind {
-    /// Whether `value` is of this kind and within its range.
+    /// Returns true if `value` is of this kind and within its range.
     pub fn takes(&self, value: OptionValue) -> bool {
         match (self, value) {
             (
@@ -149,7 +162,7 @@ impl OptionDeclaration {
         let has_effect = matches!(value(other), Some(OptionValue::Name(name)) if names.contains(&name));
         (!has_effect).then(|| {
             let names = joined(names.iter().map(|name| format!("\"{name}\"")), "or");
-            format!("Counts only where {other} is {names}.")
+            format!("Takes effect only if {other} is {names}.")
         })
     }
 

@@ -41,6 +41,32 @@ pub struct Problem<'a> {
 const ABOUT_ALIKE: f64 = 0.25;
 
 impl<'a> Problem<'a> {
+    /// The problem of these roles and this stiffness, with hard handles and without attachments; loose components
+    /// follow.
+    pub fn new(
+        (surface, topology): (&'a Surface, &'a Topology),
+        roles: &'a [Role],
+        stiffness: &'a [f64],
+        method: &'a Method,
+    ) -> Self {
+        let number = |role: &Role| match role {
+            Role::Handle(number) => Some(usize::from(*number) + 1),
+            Role::Fixed | Role::Free => None,
+        };
+        Self {
+            surface,
+            topology,
+            roles,
+            handle_count: roles.iter().filter_map(number).max().unwrap_or(0),
+            stiffness,
+            constraints: Constraints::default(),
+            loose: Loose::default(),
+            method,
+            attachments: &[],
+            revision: 0,
+        }
+    }
+
     /// The problem without its method.
     pub(crate) fn boundary(&self) -> BoundaryProblem<'a> {
         let examples = match self.attachment() {
@@ -78,8 +104,8 @@ impl<'a> Problem<'a> {
         let factor = former / now;
         ((factor.ln().abs() > ABOUT_ALIKE) && factor.is_finite()).then(|| {
             format!(
-                "`{option}` counts in the size of what bends ({now:.4}), no longer in the diagonal of the scene's box \
-                 ({former:.4}): an edit from before that bends as it did with {:.3} times the value",
+                "the unit of `{option}` is the size of the bending part ({now:.4}), no longer the diagonal of the \
+                 scene's box ({former:.4}): multiply the value of an older edit by {:.3} to bend as before",
                 factor.powi(power)
             )
         })

@@ -31,6 +31,16 @@ impl Method {
         let declaration = METHODS.iter().find(|declaration| declaration.name == name)?;
         Some((declaration.default)())
     }
+
+    /// The method of a new document.
+    pub fn of_new_documents() -> Self {
+        (crate::arap::DECLARATION.first_choice)()
+    }
+
+    /// The method of a merge that names none.
+    pub fn of_merges() -> Self {
+        (crate::poisson::DECLARATION.default)()
+    }
 }
 
 impl Default for Method {
@@ -50,6 +60,7 @@ impl fmt::Display for Remedy {
                 Self::OfSpaceForManyHandles => bends_space && method.implementation().handle_row_bytes() == 0,
                 Self::Heeding(constraint) => declaration.heeds(*constraint),
                 Self::TakingPlaces => method.implementation().takes_places(),
+                Self::FollowingTurns(degrees) => method.implementation().advised_for_degrees() >= *degrees,
             }
         };
         let most = if *self == Self::OfSpace { 2 } else { METHODS.len() };

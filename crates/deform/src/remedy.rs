@@ -14,4 +14,6 @@ pub enum Remedy {
     Heeding(ConstraintKind),
     /// All methods in which each vertex of a handle can have its own target position.
     TakingPlaces,
+    /// The methods that follow turns of this many degrees between handles.
+    FollowingTurns(u16),
 }

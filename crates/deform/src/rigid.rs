@@ -133,8 +133,8 @@ impl Softened {
         let count = self.held_count;
         (count > 0).then(|| {
             format!(
-                "{count} free vertices are painted rigid together with some that are held still, so they stay: widen the \
-                 handle's reach or the region over the whole part, or paint less of it rigid"
+                "{count} free vertices are painted rigid together with fixed ones, so they stay: widen the handle's \
+                 reach or the region over the whole part, or paint less of it rigid"
             )
             .into()
         })

@@ -33,7 +33,7 @@ impl PosedShape<'_> {
         face_gradient(corners.map(|v| self.rest[v]), corners.map(|v| self.posed[v]))
     }
 
-    /// Whether a triangle has a map: its area is zero neither at rest nor in the pose.
+    /// Returns true if a triangle has a map: its area is zero neither at rest nor in the pose.
     fn has_map(&self, triangle: usize) -> bool {
         let corners = self.triangles[triangle];
         [self.rest, self.posed]

@@ -45,13 +45,14 @@ impl Warning {
         }
     }
 
-    /// Whether the warning is that nothing holds a component that handles move. Vertices with places hold a component,
-    /// so targets can make the warning void.
+    /// Returns true if the warning is that nothing holds a component that handles move. Vertices with places hold a
+    /// component, so targets can make the warning void.
     pub fn is_of_unheld(&self) -> bool {
         !self.unheld.is_empty()
     }
 
-    /// Whether vertices of the handles in `placed`, which have places, hold every component that the warning names.
+    /// Returns true if vertices of the handles in `placed`, which have places, hold every component that the warning
+    /// names.
     pub(crate) fn is_void(&self, placed: &[bool]) -> bool {
         let is_placed = |&&(handle, _): &&(usize, usize)| placed.get(handle).is_some_and(|placed| *placed);
         let count =

@@ -10,9 +10,9 @@ use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 use glam::DVec3;
 use pliant_deform::{
-    Arap, ArapEnergy, Attachment, Bilaplacian, BilaplacianOrder, BindError, Budget, CageCoordinates, Constraints,
-    Detail, ExampleShape, Examples, Frames, Limit, Loose, METHODS, Method, OptionKind, OptionValue, Primo, Problem,
-    Propagation, Rbf, Role, Shells, Transforms, Wrinkles,
+    Arap, ArapEnergy, Attachment, Bilaplacian, BilaplacianOrder, BindError, Budget, CageCoordinates, Detail,
+    ExampleShape, Examples, Frames, Limit, METHODS, Method, OptionKind, OptionValue, Primo, Problem, Propagation, Rbf,
+    Role, Shells, Transforms, Wrinkles,
 };
 use pliant_mesh::{Cancel, Drawn, DrawnVertex, Model, Progress, shapes};
 
@@ -115,17 +115,10 @@ impl Scene {
     /// before.
     fn bind(&self, budget: Budget) -> (Result<usize, BindError>, usize, usize) {
         let stiffness = vec![1.0; self.roles.len()];
+        let mesh = (&self.model.surface, &self.model.topology);
         let problem = Problem {
-            surface: &self.model.surface,
-            topology: &self.model.topology,
-            roles: &self.roles,
-            handle_count: 1,
-            stiffness: &stiffness,
-            constraints: Constraints::default(),
-            loose: Loose::Follow,
-            method: &self.method,
             attachments: &self.attachments,
-            revision: 0,
+            ..Problem::new(mesh, &self.roles, &stiffness, &self.method)
         };
         let (progress, cancel) = (Progress::new(), Cancel::new());
         let before = HELD.load(Relaxed);
@@ -270,7 +263,7 @@ fn binding_allocates_as_the_mesh_grows_and_within_its_budget() {
                 });
                 let [(peak, allocated), (twice, all_twice)] = measured;
                 assert!(twice < 3 * peak, "{name}, {method:?}: {peak} {twice} held");
-                // Each correction allocates its memory anew, and at a crowded vertex order 3 needs more corrections for
+                // Each correction allocates its memory again, and at a crowded vertex order 3 needs more corrections for
                 // more neighbours.
                 let order = method.0.options::<Bilaplacian>().map(|options| options.order);
                 let corrects_more = name == "vertex" && order == Some(BilaplacianOrder::CurvatureVariation);

@@ -6,7 +6,6 @@
 use std::sync::Arc;
 
 use glam::DVec2;
-use pliant_deform::Method;
 use pliant_mesh::Model;
 
 use crate::Beginning;
@@ -14,7 +13,6 @@ use crate::command::{Command, KeyMap};
 use crate::document::{SaveMark, SavedAs};
 use crate::input::{Button, Key, Modifiers, Pointer};
 use crate::jobs::JobDone;
-use crate::snapshot::Snapshot;
 
 /// An event. No event carries the time: the editor has no clock.
 #[derive(Debug)]
@@ -48,7 +46,7 @@ pub enum Event {
         /// The ratio of the fingers' distances since the last event.
         factor: f64,
     },
-    /// How hard the pen presses, 0 to 1; `None` for a device that reports no force.
+    /// The pen's pressure, 0 to 1; `None` for a device that reports no force.
     Pressure(Option<f64>),
     /// A key went down (repeats of a held key included). Characters come in lower case, one event per key.
     Key(Key, Modifiers),
@@ -75,14 +73,6 @@ pub enum Event {
         name: String,
         /// Regions, handles and transforms to begin with; `None` begins afresh.
         beginning: Option<Beginning>,
-    },
-    /// Takes over another editor's document, except the method: the same handles, bent by `method`. The results of this
-    /// editor's own jobs come by [`Event::JobDone`].
-    Follow {
-        /// The other editor's state.
-        leader: Box<Snapshot>,
-        /// The method of this editor.
-        method: Method,
     },
     /// The document was recovered from a session that ended without saving, or carried over to a file that another
     /// program has changed: no file has it, and one is needed.

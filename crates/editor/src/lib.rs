@@ -43,6 +43,7 @@
 //! assert_eq!(editor.document().handles()[0].affine().translation.x, 0.2);
 //! ```
 
+mod bending;
 mod command;
 mod document;
 mod editor;
@@ -62,24 +63,26 @@ mod view;
 mod warning;
 mod workspace;
 
+pub use bending::{Bent, Carried, Kept, Start, Targets, Until, settle};
 pub use command::{Command, KeyMap, Listed, Shortcut, WITHOUT_EXAMPLES};
 pub use document::{
     Access, Carries, Content, Document, HANDLE_COLOURS, HISTORY_BYTES, Handle, HandleId, HandleTransform, History,
     KeptShape, ObjectAction, Paint, PivotPlace, Pose, Reach, SaveMark, SavedAs, SmallParts, Tips, Twin, object_name,
+    sum_of_shapes,
 };
 pub use editor::Editor;
 pub use event::Event;
 pub use format::{
     Accuracy, AttachmentEntry, Axis, Beginning, DyeEntry, EDIT_VERSION, EditError, EditFile, ExampleEntry,
-    ExampleSource, ExportError, FieldEntry, FlowFile, FlowMotion, FlowStart, HandleEntry, HandleSetup, JoinsFile, Kept,
+    ExampleSource, ExportError, FieldEntry, FlowFile, FlowMotion, FlowStart, HandleEntry, HandleSetup, JoinsFile,
     MeshReference, Placement, Project, Rest, SOFT_RANGE, STIFFNESS_RANGE, Selector, Setup, StoredKept, VelocityEntry,
     geometry_hash,
 };
 pub use input::{Button, Key, Modifiers, Pointer};
 pub use jobs::{
     Alternative, BothSides, Compared, Comparison, ControlPlaces, Descent, Executor, Figures, InlineExecutor,
-    Inspectable, Inspected, IntersectionPlace, Intersections, Job, JobDone, JobKind, JobOutcome, JobQueue, Running,
-    Solved, Symmetry,
+    Inspectable, Inspected, IntersectionPlace, Intersections, Job, JobDone, JobKind, JobOutcome, JobQueue, JobResult,
+    PresentBinding, Running, SolveResult, Solved, Symmetry, Unfinished,
 };
 pub use region::{Counts, Region, Rim};
 pub use revision::Revision;

@@ -85,7 +85,7 @@ pub struct SceneView<'a> {
     pub pressure: Option<f64>,
     /// The axes of the gizmo.
     pub orientation: GizmoOrientation,
-    /// Whether the next click moves the pivot.
+    /// True if the next click moves the pivot.
     pub wants_pivot: bool,
     /// The brush's radius in points.
     pub brush_radius_px: f64,
@@ -107,9 +107,9 @@ pub struct SceneView<'a> {
     pub undo: Option<&'a str>,
     /// The step that Redo makes again.
     pub redo: Option<&'a str>,
-    /// Whether the document changed since it was opened or saved.
+    /// True if the document changed since it was opened or saved.
     pub unsaved: bool,
-    /// Whether shape and regions are final: no job runs that could change them, and no drag is active.
+    /// True if shape and regions are final: no job runs that could change them, and no drag is active.
     pub settled: bool,
 }
 
@@ -122,6 +122,6 @@ pub struct ControlPoints {
     pub count: usize,
     /// The number of selected points.
     pub selected: usize,
-    /// Whether it is the document's; if not, the method has made it.
+    /// True if it is the document's; if not, the method has made it.
     pub is_own: bool,
 }

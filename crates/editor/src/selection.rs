@@ -19,12 +19,12 @@ impl Selection {
         }
     }
 
-    /// Whether the set has this vertex.
+    /// Returns true if the set has this vertex.
     pub fn contains(&self, vertex: SurfaceVertex) -> bool {
         self.selected[vertex.index()]
     }
 
-    /// Whether the set has no vertex.
+    /// Returns true if the set has no vertex.
     pub fn is_empty(&self) -> bool {
         !self.selected.contains(&true)
     }

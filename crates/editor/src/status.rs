@@ -17,10 +17,10 @@ pub(crate) fn status(
         return "Open a mesh, or drop one here".to_owned();
     };
     if model.surface.positions.is_empty() {
-        return "This file holds no triangle and no point: open another".to_owned();
+        return "This file has no triangle and no point: open another file".to_owned();
     }
     if let Err(refused) = workspace.document.method().check_bends(&model.surface) {
-        return format!("This file holds points alone: {refused}");
+        return format!("This file has only points: {refused}");
     }
     let now = gesture.and_then(|gesture| gesture.status(workspace, view));
     let now = now.unwrap_or_else(|| hint(workspace, settings));
@@ -41,7 +41,7 @@ fn descent(workspace: &Workspace) -> Option<String> {
     let said = match document.is_settled() {
         false => "Settling",
         true if descent.converged => "Settled",
-        true if descent.finished => "Stopped at its limit of steps",
+        true if descent.finished => "Stopped at the step limit",
         true => return None,
     };
     Some(said.to_owned())
@@ -64,25 +64,25 @@ fn hint(workspace: &Workspace, settings: &ToolSettings) -> String {
         "Click a point of the cage or lattice and drag it, or paint a handle (1)"
     } else if document.handles().is_empty() {
         match settings.mode {
-            ToolMode::PaintHandle => "Paint what you want to move",
-            ToolMode::PaintFree => "Paint what may bend, then a handle (1)",
-            ToolMode::PaintFixed => "Paint the part that is held still, then a handle (1)",
-            ToolMode::Pose => {
-                "Point at a limb and drag it: it turns about its joint, with Ctrl it twists, with Shift it grows"
+            ToolMode::PaintHandle => "Paint the part that you want to move",
+            ToolMode::PaintFree => "Paint the part that may bend, then a handle (1)",
+            ToolMode::PaintFixed => "Paint the part that stays fixed, then a handle (1)",
+            ToolMode::Pose => "Drag a limb to turn it about its joint; Ctrl twists it, Shift scales it",
+            ToolMode::Correct => "Brush over the shape to correct it",
+            ToolMode::Erase | ToolMode::Select | ToolMode::PaintStiffness => {
+                "Press 1 and paint the part that you want to move"
             }
-            ToolMode::Correct => "Stroke the shape where it is to be corrected",
-            ToolMode::Erase | ToolMode::Select | ToolMode::PaintStiffness => "Press 1 and paint what you want to move",
         }
     } else if settings.wants_pivot {
-        "Click the point that the handle turns about"
+        "Click the pivot about which the handle turns"
     } else if workspace.selection.wants_new_handle {
         "Paint the new handle"
     } else if workspace.selection.selected().is_none() {
         "Press Tab to select a handle, or paint a new one"
     } else if document.is_displaced() {
-        "Drag the gizmo, paint on from this shape, or save"
+        "Drag the handle or its gizmo, paint on from this shape, or save"
     } else {
-        "Drag the gizmo, or press G, R or S to move, turn or scale"
+        "Drag the handle or its gizmo, or press G, R or S to move, turn or scale"
     };
     let Counts { fixed, free, handle } = workspace.computed().region.counts;
     let [handle, free, fixed] = [handle, free, fixed].map(thousands);
@@ -92,20 +92,18 @@ fn hint(workspace: &Workspace, settings: &ToolSettings) -> String {
 /// The background computation for which a person waits.
 fn working(workspace: &Workspace, is_dragging: bool) -> Option<String> {
     let (jobs, document) = (&workspace.jobs, &workspace.document);
-    let mut needed = [JobKind::Order, JobKind::Region, JobKind::Bind].into_iter();
-    if needed.any(|kind| jobs.has_given_up(kind)) && !document.handles().is_empty() {
-        return Some("Nothing is bound: handles move alone until the regions change".to_owned());
+    if jobs.has_given_up_binding() && !document.handles().is_empty() {
+        return Some("The method is not bound: only handles move until the regions change".to_owned());
     }
     let (kind, fraction) = jobs.running().into_iter().rfind(|(kind, _)| match kind {
-        JobKind::Solve | JobKind::Compare | JobKind::Inspect | JobKind::Joint | JobKind::Intersect => false,
-        JobKind::Pick => workspace.computed().pickable.is_none(),
+        JobKind::Pick => workspace.computed().pickable().is_none(),
         JobKind::Order => !document.handles().is_empty(),
-        JobKind::Region | JobKind::Bind | JobKind::Mirror | JobKind::Symmetry | JobKind::Enclose => true,
+        kind => kind.is_named(),
     })?;
     let doing = kind.doing();
     let waits = is_dragging || !document.is_settled();
     let doing = if waits && kind != JobKind::Pick {
-        format!("{doing}, the surface will catch up")
+        format!("{doing}; the surface follows soon")
     } else {
         doing.to_owned()
     };

@@ -158,17 +158,17 @@ fn a_member_that_stands_twice_is_refused_by_name_and_place() {
     for (text, said) in [
         (
             format!(r#"{{{method}, "method": {{"name": "arap"}}}}"#),
-            "`method` stands twice in the edit",
+            "`method` appears twice in the edit",
         ),
         (
             format!(
                 r#"{{{method}, "handles": [{{"select": "all", "transform": {{"scale": [1, 1, 1], "scale": [2, 2, 2]}}}}]}}"#
             ),
-            "`scale` stands twice in handles[0].transform",
+            "`scale` appears twice in handles[0].transform",
         ),
         (
             r#"{"version": 1, "method": {"name": "bilaplacian", "order": 1, "order": 2}}"#.to_owned(),
-            "`order` stands twice in method",
+            "`order` appears twice in method",
         ),
     ] {
         let refused = EditFile::parse(&text).unwrap_err().to_string();

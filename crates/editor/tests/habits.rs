@@ -7,7 +7,7 @@ mod rig;
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
-use pliant_editor::{Button, Command, Event, Key, Modifiers, NamedView, Paint, Pointer, ToolMode};
+use pliant_editor::{Button, Command, Cursor, Event, Key, Modifiers, NamedView, Paint, Pointer, ToolMode};
 use pliant_mesh::shapes;
 use rig::{CENTRE_PX, Rig, VIEWPORT_PX, at};
 
@@ -104,6 +104,73 @@ fn a_selects_all_handles_which_then_move_together() {
     rig.drain();
     for handle in rig.editor.document().handles() {
         assert!(handle.affine().translation.distance(DVec3::Y * 0.2) < 1e-12);
+    }
+}
+
+#[test]
+fn a_drag_on_the_painted_handle_moves_it_and_one_beside_it_or_with_ctrl_paints() {
+    let mut rig = Rig::open(shapes::icosphere(3));
+    rig.paint_handle();
+    rig.drain();
+    let (painted, beside_px) = (rig.editor.document().paint().to_vec(), CENTRE_PX + DVec2::X * 120.0);
+    rig.move_to(CENTRE_PX);
+    assert_eq!(rig.editor.view().cursor, Cursor::Grab);
+    assert!(rig.editor.view().brush_ring.is_empty(), "no brush is offered");
+    rig.move_to(beside_px);
+    assert_ne!(rig.editor.view().cursor, Cursor::Grab);
+    rig.swipe(&[CENTRE_PX, CENTRE_PX + DVec2::Y * 30.0, CENTRE_PX + DVec2::Y * 60.0]);
+    rig.drain();
+    let way = rig.editor.document().handles()[0].affine().translation;
+    let to_camera = rig.editor.view().camera.forward();
+    assert!(
+        way.y < -0.01 && way.dot(to_camera).abs() < 1e-9,
+        "{way} is in the picture's plane"
+    );
+    assert_eq!(rig.editor.document().paint(), painted);
+    assert_eq!(rig.editor.history().undo_name(), Some("Move handle 1"));
+    rig.undo();
+    assert_eq!(rig.editor.document().handles()[0].affine().translation, DVec3::ZERO);
+
+    // A click on the handle is no step, and a stroke that begins beside it paints over its rim.
+    let steps = rig.editor.history().names().1;
+    rig.swipe(&[CENTRE_PX]);
+    assert_eq!(rig.editor.history().names().1, steps);
+    rig.swipe(&[beside_px, CENTRE_PX]);
+    assert_ne!(rig.editor.document().paint(), painted);
+    rig.undo();
+    let ctrl = Pointer {
+        position_px: CENTRE_PX,
+        modifiers: Modifiers::CTRL,
+    };
+    rig.send(Event::PointerMoved(ctrl));
+    assert!(!rig.editor.view().brush_ring.is_empty(), "the brush is back");
+    rig.send(Event::PointerPressed(ctrl, Button::Primary));
+    rig.send(Event::PointerReleased(ctrl, Button::Primary));
+    assert_ne!(rig.editor.document().paint(), painted, "Ctrl erases");
+    rig.undo();
+    assert_eq!(rig.editor.document().paint(), painted);
+}
+
+#[test]
+fn after_every_tools_stroke_the_editor_rests() {
+    let tools = [
+        ToolMode::Correct,
+        ToolMode::PaintHandle,
+        ToolMode::PaintFree,
+        ToolMode::PaintFixed,
+        ToolMode::PaintStiffness,
+        ToolMode::Select,
+        ToolMode::Erase,
+        ToolMode::Pose,
+        ToolMode::Correct,
+    ];
+    let mut rig = Rig::open(shapes::icosphere(3));
+    for tool in tools {
+        rig.paint(tool, &[CENTRE_PX, CENTRE_PX + DVec2::new(40.0, 20.0)]);
+        rig.drain();
+        let view = rig.editor.view();
+        assert!(view.settled, "{tool:?}: the picture stays coarse, and frames never end");
+        assert!(view.jobs.is_empty(), "{tool:?}: {:?}", rig.jobs.waiting());
     }
 }
 

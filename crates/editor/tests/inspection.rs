@@ -84,7 +84,7 @@ fn the_weights_are_those_of_the_selected_handle_and_follow_method_and_options() 
 #[test]
 fn the_smooth_base_is_shown_in_place_of_the_surface_and_nothing_else_changes() {
     let mut rig = tube();
-    assert!(why_not(&rig, &Command::ToggleBase).contains("Nothing is bound"));
+    assert!(why_not(&rig, &Command::ToggleBase).contains("not bound yet"));
     rig.choose("bilaplacian");
     rig.paint_handle();
     rig.drain();

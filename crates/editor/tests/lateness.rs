@@ -4,7 +4,7 @@
 mod rig;
 
 use glam::DVec2;
-use pliant_editor::{Command, Event, GizmoPart, JobKind, JobOutcome, Key, Paint, StrokeShape, ToolMode};
+use pliant_editor::{Command, Event, GizmoPart, JobKind, Key, Paint, StrokeShape, ToolMode, Unfinished};
 use pliant_mesh::shapes;
 use rig::{CENTRE_PX, Rig};
 
@@ -254,7 +254,7 @@ fn a_failed_job_is_said_once_and_not_tried_again_until_something_changes() {
     rig.paint_handle();
     rig.run(JobKind::Region);
     let mut done = rig.jobs.take(JobKind::Bind).unwrap().run();
-    done.outcome = JobOutcome::Failed("the plate is broken: mend it".to_owned());
+    done.outcome = Err(Unfinished::Failed("the plate is broken: mend it".to_owned()));
     rig.editor.handle(Event::JobDone(done));
     assert_eq!(rig.editor.view().problem, Some("the plate is broken: mend it"));
     rig.drain();
@@ -308,7 +308,7 @@ fn what_is_done_while_a_lasso_looks_waits_and_nothing_is_left_of_one_that_is_sto
             "tool" => rig.command(Command::SetTool(ToolMode::PaintFixed)),
             _ => {
                 let mut job = rig.jobs.take(JobKind::Enclose).unwrap();
-                job.work = Box::new(|| JobOutcome::Failed("it broke".to_owned()));
+                job.work = Box::new(|| Err(Unfinished::Failed("it broke".to_owned())));
                 rig.editor.handle(Event::JobDone(job.run()));
                 assert_eq!(rig.editor.view().problem, Some("it broke"));
             }

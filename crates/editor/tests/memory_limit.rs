@@ -19,7 +19,7 @@ fn open() -> Rig {
     rig
 }
 
-/// Allows bindings this many bytes. Returns whether something is bound anew.
+/// Allows bindings this many bytes. Returns whether something is bound again.
 fn allow(rig: &mut Rig, most: Option<u64>) -> bool {
     rig.send(Event::Memory(most));
     let is_bound_anew = !rig.editor.view().settled;

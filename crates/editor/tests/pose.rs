@@ -118,7 +118,7 @@ fn a_press_before_the_joint_is_found_loses_nothing_of_the_drag() {
         hasty.editor.document().handles().is_empty(),
         "its joint is not known yet"
     );
-    assert!(hasty.editor.view().status.contains("Looking for the joint"));
+    assert!(hasty.editor.view().status.contains("Finding the joint"));
     hasty.drain();
     let [patient, hasty] = [&patient, &hasty].map(|rig| rig.editor.document().handles()[0].clone());
     assert_eq!(hasty.pivot, patient.pivot);

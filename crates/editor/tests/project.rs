@@ -161,7 +161,7 @@ fn what_a_project_can_not_be_is_refused_in_a_sentence() {
         (
             "\"settled\":",
             "\"version\": 1, \"settled\":",
-            "`version` stands twice in the project",
+            "`version` appears twice in the project",
         ),
         ("\"arap\"", "\"arab\"", "arab"),
         ("\"radii\": 3.0", "\"radii\": -3.0", "reach"),

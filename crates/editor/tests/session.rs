@@ -340,7 +340,7 @@ fn a_drag_that_another_method_ends_says_so() {
     rig.drain();
     rig.type_keys("gx.1");
     rig.choose("bilaplacian");
-    assert!(rig.editor.view().problem.unwrap().contains("taken back"));
+    assert!(rig.editor.view().problem.unwrap().contains("was cancelled"));
     assert_eq!(rig.largest_displacement(), 0.0);
     rig.move_by('x', ".1");
     rig.drain();

@@ -5,12 +5,11 @@
 //! measures their time.
 
 use std::path::Path;
-use std::sync::Arc;
 use std::time::Instant;
 
 use glam::DVec3;
 use pliant_deform::{BindError, Bound, Budget, ExampleShape, Method, Ordering, SolveError, Step};
-use pliant_editor::{Beginning, Intersections, Setup};
+use pliant_editor::{Beginning, Intersections, Setup, Start, Until, sum_of_shapes};
 use pliant_io::{MorphDeltas, MorphTarget};
 use pliant_mesh::{Bvh, Cancel, Damage, Model, Progress, SurfaceVertex, WeldOptions, vertex_normals};
 
@@ -240,7 +239,7 @@ fn faults(model: &Model, method: &Method, solution: &Solution, watch: &Watch) ->
     let damage = Damage::of(surface, topology, &solution.surface_positions);
     let mut bvh = Bvh::build(&surface.positions, &surface.triangles);
     bvh.refit(|v| solution.surface_positions[v.index()]);
-    let progress = watch.begin("looking for where the shape passes through itself");
+    let progress = watch.begin("finding places where the shape passes through itself");
     let crossings = bvh.new_self_intersections(surface, topology, MOST_CROSSINGS, &progress, &watch.cancel);
     let crossings = crossings.map_err(|_| EngineError::Interrupted)?;
     let mut sentences = Intersections::of(&crossings, damage).sentences();
@@ -252,7 +251,7 @@ fn faults(model: &Model, method: &Method, solution: &Solution, watch: &Watch) ->
             .any(|option| option.name == "max_iterations");
         let more = if is_limited { "raise `max_iterations`, " } else { "" };
         sentences.push(format!(
-            "the shape had not settled when the steps ended: {more}lower the strength, or take another method"
+            "the shape did not settle within the step limit: {more}lower the strength, or take another method"
         ));
     }
     Ok(sentences)
@@ -448,48 +447,6 @@ struct Bent {
     last: Step,
 }
 
-/// Steps towards the set targets until the shape has converged or met the limit of the method's options, or at the
-/// latest after `most` steps. `displacements` has one entry per surface vertex. Stops after the step during which
-/// `cancel` was raised.
-///
-/// # Errors
-/// Those of [`Bound::step`].
-pub fn settle(
-    bound: &mut Bound,
-    displacements: &mut [DVec3],
-    most: usize,
-    cancel: &Cancel,
-) -> Result<Step, SolveError> {
-    bound.set_cancel(cancel);
-    let mut last = bound.step(displacements)?;
-    for _ in 1..most {
-        if last.finished || cancel.is_cancelled() {
-            break;
-        }
-        last = bound.step(displacements)?;
-    }
-    Ok(last)
-}
-
-/// The solution for the handles at the time of the kept shape; `None` if none was kept.
-fn at_first(setup: &Setup, bound: &mut Bound, cancel: &Cancel) -> Result<Option<Vec<DVec3>>, SolveError> {
-    let Some(kept) = &setup.kept else { return Ok(None) };
-    let mut displacements = kept.shape.shape.to_vec();
-    bound.set_targets(&kept.targets)?;
-    // Points and weights of another method do not apply to this one.
-    let controls = kept.shape.controls.as_ref();
-    let own = setup.controls(1.0);
-    let is_same = |kept: &&Arc<Vec<DVec3>>| own.as_ref().is_some_and(|own| own.len() == kept.len());
-    if let Some(controls) = controls.filter(is_same).or(own.as_ref()) {
-        bound.set_controls(controls)?;
-    }
-    if bound.weights().len() == kept.shape.weights.len() {
-        bound.set_weights(&kept.shape.weights)?;
-    }
-    settle(bound, &mut displacements, usize::MAX, cancel)?;
-    Ok(Some(displacements))
-}
-
 /// Moves the handles to their targets frame by frame.
 fn bend(
     file: &Path,
@@ -504,61 +461,47 @@ fn bend(
         source: error.renumbered(|vertex| model.first_file_vertex(SurfaceVertex(vertex)).0),
     };
     let progress = watch.begin("bending");
-    let mut displacements = vec![DVec3::ZERO; model.surface.positions.len()];
-    let mut from_file = Vec::new();
     let mut positions = Vec::new();
     let mut normals = Vec::new();
     let (mut solve_ms, mut normals_ms) = (Vec::with_capacity(count), Vec::with_capacity(count));
     let mut surface_positions = model.surface.positions.clone();
     let (mut iterations, mut last) = (0_u64, Step::default());
-    let at_first = at_first(setup, bound, &watch.cancel).map_err(refuse)?;
-    if let (Some(at_first), 1) = (&at_first, count) {
+    bound.set_cancel(&watch.cancel);
+    let mut start = match (&setup.kept, count) {
         // Starts at the end of the descent to which the kept shape is compared.
-        displacements.clone_from(at_first);
-    }
+        (Some(kept), 1) => Start::Kept(kept.clone()),
+        (kept, _) => Start::replay(kept.clone(), bound, &setup.targets_at(1.0), &watch.cancel).map_err(refuse)?,
+    };
+    let rest = setup.rest.as_ref().map(|rest| &rest.displacements);
     for frame in 1..=count {
         if watch.cancel.is_cancelled() {
             return Err(EngineError::Interrupted);
         }
-        let targets = setup.targets(frame as f64 / count as f64);
-        let start = Instant::now();
-        bound.set_targets(&targets).map_err(refuse)?;
-        if let Some(moved) = setup.controls(frame as f64 / count as f64) {
-            bound.set_controls(&moved).map_err(refuse)?;
-        }
-        if let Some(weights) = setup.weights(frame as f64 / count as f64) {
-            bound.set_weights(&weights).map_err(refuse)?;
-        }
-        last = settle(bound, &mut displacements, usize::MAX, &watch.cancel).map_err(refuse)?;
-        match (&setup.kept, &at_first) {
-            (Some(kept), Some(at_first)) => from_file = kept.shape.carried(at_first, &displacements),
-            _ => from_file.clone_from(&displacements),
-        }
-        if let Some(rest) = &setup.rest {
-            from_file
-                .iter_mut()
-                .zip(rest.displacements.iter())
-                .for_each(|(d, rest)| *d += *rest);
-        }
+        let targets = setup.targets_at(frame as f64 / count as f64);
+        let began = Instant::now();
+        let bent = start.bend(bound, &targets, Until::End, &watch.cancel).map_err(refuse)?;
+        last = bent.step;
+        let from_file = sum_of_shapes(rest, &bent.shown);
+        start = bent.next();
         model.drawn_positions(&from_file, &mut positions);
-        solve_ms.push(ms_since(start));
+        solve_ms.push(ms_since(began));
         iterations += u64::from(last.iteration);
 
         for ((new, rest), d) in surface_positions
             .iter_mut()
             .zip(&model.surface.positions)
-            .zip(&from_file)
+            .zip(from_file.iter())
         {
             *new = *rest + *d;
         }
-        let start = Instant::now();
+        let began = Instant::now();
         vertex_normals(
             &model.surface.triangles,
             &model.topology,
             &surface_positions,
             &mut normals,
         );
-        normals_ms.push(ms_since(start));
+        normals_ms.push(ms_since(began));
         progress.set(frame as f32 / count as f32);
     }
     Ok(Bent {

@@ -22,7 +22,7 @@ pub enum EngineError {
     #[error(transparent)]
     Read(pliant_io::ReadError),
     /// A file without anything to edit.
-    #[error("{} holds no triangle and no point, so there is nothing to edit: choose a file with a shape", shown(.0))]
+    #[error("{} has no triangle and no point, so there is nothing to edit: choose a file with a shape", shown(.0))]
     Empty(PathBuf),
     /// The edit can't be read, or does not fit the file.
     #[error("{}: {source}", shown(.edit))]
@@ -34,7 +34,7 @@ pub enum EngineError {
     },
     /// An example with other vertices or triangles.
     #[error(
-        "{}: it has {what}, and {} has {expected}: give an example of the same vertices and triangles",
+        "{}: it has {what}, but {} has {expected}: give an example of the same vertices and triangles",
         shown(.example), shown(.file)
     )]
     Example {
@@ -49,7 +49,7 @@ pub enum EngineError {
     },
     /// A project's mesh is missing or is another one.
     #[error(
-        "{}: its mesh {} is {what}: put the one it was made on there, or beside the project", shown(.project),
+        "{}: its mesh {} is {what}: put the original mesh there, or beside the project", shown(.project),
         shown(.mesh)
     )]
     ProjectMesh {
@@ -61,7 +61,7 @@ pub enum EngineError {
         what: &'static str,
     },
     /// A project in place of a mesh.
-    #[error("{} is a project, and FILE must be a mesh: give the mesh, and the project as --edit", shown(.0))]
+    #[error("{} is a project, but FILE must be a mesh: give the mesh, and the project as --edit", shown(.0))]
     ProjectAsFile(PathBuf),
     /// The problem could not be factored. Its vertices are the file's.
     #[error("{}: {source}", shown(.file))]
@@ -105,8 +105,8 @@ pub enum EngineError {
     },
     /// The written file does not read back correctly; nothing was replaced.
     #[error(
-        "{}: what was written does not read back as it was to be saved ({what}), so nothing was replaced: this is a \
-         fault of the program or the disk; save as another kind, and report it with the file", shown(.file)
+        "{}: the written file differs from the intended one ({what}), so nothing was replaced: the program or the \
+         disk is at fault; save in another format, and report it with the file", shown(.file)
     )]
     ReadBack {
         /// The file to write.
@@ -121,7 +121,7 @@ pub enum EngineError {
     )]
     Changed(PathBuf),
     /// Ctrl-C.
-    #[error("stopped before the end, so nothing was written: run the command again for a result")]
+    #[error("the command was stopped, so nothing was written: run it again for a result")]
     Interrupted,
     /// A feature that this version does not have.
     #[error("{0}")]

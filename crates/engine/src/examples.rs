@@ -58,7 +58,7 @@ fn displacements_to(path: &Path, loaded: &Loaded, watch: &Watch) -> Result<Vec<D
     let positions = positions_in_pose((path, &other.scene, &other.drawn), (&loaded.path, &loaded.scene, &own))?;
     if let Some(vertex) = positions.iter().position(|position| !position.is_finite()) {
         let shown = shown(path);
-        let sentence = format!("{shown}: vertex {vertex} has no finite position: give an example without gaps");
+        let sentence = format!("{shown}: vertex {vertex} has no finite position: repair the example");
         return Err(EngineError::Unsupported(sentence));
     }
     let each = positions.iter().zip(&own.positions);
@@ -99,7 +99,7 @@ fn morph_target(target: &str, loaded: &Loaded, watch: &Watch) -> Result<Vec<DVec
     found.map_err(EngineError::Read)?.ok_or_else(|| {
         let known = loaded.scene.morph_targets();
         let remedy = match known.is_empty() {
-            true => "it has none, so name a `file`".to_owned(),
+            true => "it has none: name a `file`".to_owned(),
             false => format!("it has {}", known.join(", ")),
         };
         let shown = shown(&loaded.path);

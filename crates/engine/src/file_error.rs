@@ -63,7 +63,7 @@ pub(crate) fn reason(error: &io::Error) -> String {
         ErrorKind::NotFound => "there is no such file or folder; check the path".to_owned(),
         ErrorKind::PermissionDenied => "permission is denied; check the rights of the file and its folder".to_owned(),
         ErrorKind::IsADirectory => "it is a folder; give the path of a file".to_owned(),
-        ErrorKind::NotADirectory => "a part of its path is a file and no folder; check the path".to_owned(),
+        ErrorKind::NotADirectory => "a part of its path is a file, not a folder; check the path".to_owned(),
         ErrorKind::StorageFull => "the disk is full; make room or choose another place".to_owned(),
         ErrorKind::QuotaExceeded => "the disk quota is used up; make room or choose another place".to_owned(),
         ErrorKind::ReadOnlyFilesystem => "its file system is read-only; choose another place".to_owned(),

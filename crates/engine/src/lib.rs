@@ -64,7 +64,7 @@ pub mod stitching;
 mod transfer;
 pub mod watch;
 
-pub use apply::{Apply, Prepared, Solved, apply, bind, check_bends, check_not_empty, order, prepare, settle, solved};
+pub use apply::{Apply, Prepared, Solved, apply, bind, check_bends, check_not_empty, order, prepare, solved};
 pub use difference::{Compared, differences};
 pub use edit::read_edit;
 pub use error::EngineError;

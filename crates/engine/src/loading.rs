@@ -135,7 +135,7 @@ fn welded(opened: SceneAndDrawn, path: &Path, weld: &WeldOptions, watch: &Watch)
     })
 }
 
-/// Whether a path has the extension of a project.
+/// Returns true if a path has the extension of a project.
 pub fn is_project(path: &Path) -> bool {
     path.extension()
         .is_some_and(|extension| extension.eq_ignore_ascii_case("pliant"))

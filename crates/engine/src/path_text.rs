@@ -1,4 +1,4 @@
-//! How paths are written in texts and messages.
+//! The form of paths in texts and messages.
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};

@@ -31,7 +31,7 @@ pub struct Report {
     pub frames: FrameTimes,
     /// The mean number of iterations per frame.
     pub iterations: f64,
-    /// Whether the last frame converged.
+    /// True if the last frame converged.
     pub converged: bool,
     /// The deformation energy.
     pub energy: Energy,

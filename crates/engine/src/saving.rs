@@ -25,7 +25,7 @@ pub struct SaveAs<'a> {
     pub positions: &'a [DVec3],
     /// The connected parts that are turned inside out, by their numbers.
     pub inside_out: &'a BTreeSet<u32>,
-    /// Whether the deltas of the file's morph targets turn with the surface.
+    /// The deltas of the file's morph targets: turning with the surface, or kept.
     pub deltas: MorphDeltas,
     /// Other colours, linear and from 0 to 65535, one for each drawn vertex; the shape is then that at rest.
     pub colours: Option<&'a [[u16; 4]]>,
@@ -80,7 +80,7 @@ pub fn stage(
         && loaded.scene.morph_targets().iter().any(|name| name == morph.name)
     {
         return Err(EngineError::Unsupported(format!(
-            "{} has a morph target called {} already: give the new one another name",
+            "{} already has a morph target called {}: give the new one another name",
             files::shown(&loaded.path),
             quoted(morph.name)
         )));

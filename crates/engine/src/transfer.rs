@@ -31,7 +31,7 @@ pub struct Transfer<'a> {
     pub output: &'a Path,
     /// The joining of TARGET's vertices.
     pub weld: WeldOptions,
-    /// Whether the deltas of the target file's own morph targets turn with the surface.
+    /// The deltas of the target file's own morph targets: turning with the surface, or kept.
     pub deltas: MorphDeltas,
     /// Saves the pose as a morph target beside the unchanged shape.
     pub morph: Option<MorphTarget<'a>>,
@@ -128,7 +128,7 @@ fn partners(
         None if target.triangles == source.triangles => (0..source.triangles.len()).map(Some).collect(),
         None => {
             return Err(EngineError::Unsupported(format!(
-                "{} has {} triangles and {} has {} others: say with --correspondences which belong together",
+                "{} has {} triangles and {} has {} different ones: give the pairs with --correspondences",
                 shown(job.target),
                 target.triangles.len(),
                 shown(job.source),
@@ -150,7 +150,7 @@ fn on_surface(of_drawn: &[Option<usize>], model: &Model) -> (Vec<Option<usize>>,
     let resting = has_partner.iter().filter(|has| !**has).count();
     let warnings = (resting > 0).then(|| {
         format!(
-            "{resting} of {} parts have no triangle that belongs to one of SOURCE: they rest",
+            "{resting} of {} parts have no triangle that corresponds to one of SOURCE, so they stay",
             has_partner.len()
         )
     });
@@ -165,7 +165,7 @@ fn read_correspondences(path: &Path, sources: usize, targets: usize) -> Result<V
     let value: Value = serde_json::from_str(&text).map_err(|error| {
         let (line, column) = (error.line(), error.column());
         refuse(format!(
-            "it is no JSON at line {line}, column {column}: write {{\"triangles\": [[SOURCE, TARGET], ..]}}"
+            "it is not JSON at line {line}, column {column}: write {{\"triangles\": [[SOURCE, TARGET], ..]}}"
         ))
     })?;
     let pairs = value.get("triangles").and_then(Value::as_array);
@@ -179,25 +179,25 @@ fn read_correspondences(path: &Path, sources: usize, targets: usize) -> Result<V
         });
         let (source, target) = numbers.ok_or_else(|| {
             refuse(format!(
-                "triangles[{number}] is no pair of numbers: give a triangle of SOURCE and one of TARGET"
+                "triangles[{number}] is not a pair of numbers: give a triangle of SOURCE and one of TARGET"
             ))
         })?;
         if source >= sources as u64 || target >= targets as u64 {
             return Err(refuse(format!(
-                "triangles[{number}] is [{source}, {target}], and SOURCE has {sources} triangles and TARGET {targets}: \
-                 they are numbered from 0"
+                "triangles[{number}] is [{source}, {target}], but SOURCE has {sources} triangles and TARGET \
+                 {targets}: number them from 0"
             )));
         }
         let partner = &mut partners[target as usize];
         if partner.is_some() {
             return Err(refuse(format!(
-                "triangles[{number}] names TARGET's triangle {target} once more: name it once"
+                "triangles[{number}] names TARGET's triangle {target} again: name it once"
             )));
         }
         *partner = Some(source as usize);
     }
     if pairs.is_empty() {
-        return Err(refuse("its list `triangles` is empty: name one pair at least".into()));
+        return Err(refuse("its list `triangles` is empty: name at least one pair".into()));
     }
     Ok(partners)
 }

@@ -145,7 +145,7 @@ pub(crate) fn of_bytes(a: &[u8], b: &[u8]) -> Option<Difference> {
     let at = a.iter().zip(b).position(|(a, b)| a != b);
     let at = at.or((a.len() != b.len()).then_some(a.len().min(b.len())))?;
     Some(Difference {
-        place: "what is beside the shape".to_owned(),
+        place: "data beside the shape".to_owned(),
         what: What::Bytes { at },
     })
 }

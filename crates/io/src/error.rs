@@ -4,7 +4,7 @@ use pliant_mesh::Cancelled;
 
 use crate::{Format, quoted};
 
-/// Why a file could not be read.
+/// The reason why a file could not be read.
 #[derive(Clone, PartialEq, Eq, Debug, thiserror::Error)]
 pub enum ReadError {
     /// The bytes are not in the format.
@@ -18,7 +18,7 @@ pub enum ReadError {
         reason: String,
     },
     /// The file is whole but uses a feature that is not read.
-    #[error("{} uses {feature}, which is not read: {remedy}", quoted(.name))]
+    #[error("{} uses {feature}, which is not supported: {remedy}", quoted(.name))]
     Unsupported {
         /// The file's name.
         name: String,
@@ -28,7 +28,7 @@ pub enum ReadError {
         remedy: String,
     },
     /// A neighbour with geometry could not be read.
-    #[error("{} names {}, which could not be read ({reason}): put it back beside the file", quoted(.name), quoted(.uri))]
+    #[error("{} names {}, which could not be read ({reason}): put it beside the file", quoted(.name), quoted(.uri))]
     Neighbour {
         /// The file's name.
         name: String,
@@ -39,7 +39,7 @@ pub enum ReadError {
     },
     /// The file asks for more than its bytes can justify.
     #[error(
-        "{} asks for {what}, more than a file of its size can hold: it is damaged or not meant to be opened",
+        "{} declares {what}, more than a file of its size can hold: it is damaged, so export it again",
         quoted(.name)
     )]
     TooLarge {
@@ -53,12 +53,13 @@ pub enum ReadError {
     Cancelled(#[from] Cancelled),
 }
 
-/// Why a scene could not be saved; nothing was written.
+/// The reason why a scene could not be saved; nothing was written.
 #[derive(Clone, PartialEq, Eq, Debug, thiserror::Error)]
 pub enum SaveError {
     /// A position is beyond single precision, which nearly every reader uses.
     #[error(
-        "vertex {file_vertex} would be saved at a position that single precision can't hold, beyond 3.4e38 or no number: undo the last edit, or scale the file down before it is edited"
+        "vertex {file_vertex} would be saved at a position that single precision can't hold (beyond 3.4e38, or not a \
+         number): undo the last edit, or scale the file down before you edit it"
     )]
     NotFinite {
         /// The vertex in the file's numbering.
@@ -84,7 +85,7 @@ pub enum SaveError {
     },
     /// A neighbour would have to be written outside OUT's folder.
     #[error(
-        "{} lies outside the file's own folder and is never written there: save as .glb, which holds everything",
+        "{} is outside the file's own folder, where nothing is written: save as .glb, which contains everything",
         quoted(.uri)
     )]
     NeighbourOutside {
@@ -92,7 +93,7 @@ pub enum SaveError {
         uri: String,
     },
     /// The output would be larger than its format allows.
-    #[error("the result is larger than the 4 GiB that {format} can hold: save as .gltf or as another kind")]
+    #[error("the result is larger than the 4 GiB that {format} can hold: save as .gltf or in another format")]
     TooLarge {
         /// The kind of OUT.
         format: Format,
@@ -113,7 +114,7 @@ impl SaveError {
     }
 }
 
-/// Why an image could not be decoded.
+/// The reason why an image could not be decoded.
 #[derive(Clone, PartialEq, Eq, Debug, thiserror::Error)]
 #[error("the image could not be decoded ({reason}): convert it to PNG or JPEG, or make it smaller")]
 pub struct ImageError {

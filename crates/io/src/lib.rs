@@ -63,7 +63,9 @@ mod stl;
 mod summary;
 mod text;
 
-pub use appearance::{AlphaMode, Appearance, Group, Image, Lighting, Map, Material, Origin, UvSet, Wrap};
+pub use appearance::{
+    AlphaMode, Appearance, Group, Image, Lighting, Map, Material, Origin, OriginalMaterial, UvSet, Wrap,
+};
 pub use bytes::Bytes;
 pub use convert::Polygons;
 pub use difference::{Difference, What};

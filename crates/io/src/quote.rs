@@ -26,7 +26,19 @@ pub fn quoted(text: &str) -> String {
     out
 }
 
-/// Whether a character controls a terminal or a line of text instead of being shown.
+/// The most names in a list of [`listed`].
+const MOST_NAMES: usize = 8;
+
+/// Names as a message lists them: each [`quoted`], with a count in place of those beyond the eighth.
+pub(crate) fn listed(names: &[&str]) -> String {
+    let mut list: Vec<String> = names.iter().take(MOST_NAMES).map(|name| quoted(name)).collect();
+    if names.len() > MOST_NAMES {
+        list.push(format!("{} more", names.len() - MOST_NAMES));
+    }
+    list.join(", ")
+}
+
+/// Returns true if a character controls a terminal or a line of text instead of being shown.
 pub fn steers(letter: char) -> bool {
     letter.is_control()
         || matches!(letter, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')

@@ -264,7 +264,7 @@ fn what_can_not_be_read_is_one_sentence() {
             let indices = maker.indices(&[0, 1, 9]);
             maker.root["meshes"][0]["primitives"][0]["indices"] = indices.into();
         }),
-        ("asks for 4000000000 vertices", |maker| {
+        ("declares 4000000000 vertices", |maker| {
             maker.root["accessors"][0]["count"] = 4_000_000_000_u64.into()
         }),
         ("without bytes", |maker| {
@@ -275,12 +275,12 @@ fn what_can_not_be_read_is_one_sentence() {
             maker.root["accessors"][0]["bufferView"] = 99.into()
         }),
         ("more than buffer view", |maker| maker.bin.truncate(20)),
-        ("Draco data that is not there", |maker| {
+        ("missing Draco data", |maker| {
             maker.root["accessors"][0].as_object_mut().unwrap().remove("bufferView");
             maker.root["meshes"][0]["primitives"][0]["extensions"] =
                 json!({ "KHR_draco_mesh_compression": { "attributes": { "POSITION": 0 } } });
         }),
-        ("compressed buffer view 0, which does not say its buffer", |maker| {
+        ("compressed buffer view 0, which has no buffer", |maker| {
             let buffers = maker.root["buffers"].as_array_mut().unwrap();
             buffers.push(json!({ "byteLength": 48 }));
             maker.root["bufferViews"][0]["buffer"] = 1.into();
@@ -293,7 +293,7 @@ fn what_can_not_be_read_is_one_sentence() {
         ("names gone.bin", |maker| {
             maker.root["buffers"][0]["uri"] = "gone.bin".into()
         }),
-        ("not a file's", |maker| {
+        ("not the address of a file", |maker| {
             maker.root["buffers"][0]["uri"] = "https://x.org/a.bin".into()
         }),
     ];

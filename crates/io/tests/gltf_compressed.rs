@@ -400,7 +400,7 @@ fn broken_compressed_data_is_refused_in_a_sentence() {
     assert!(refusal(&draco.glb()).contains("mesh 0 primitive 0 has Draco data"));
     let mut draco = with_draco(DRACO[0], 1);
     draco.root["accessors"][3]["count"] = 57.into();
-    assert!(refusal(&draco.glb()).contains("18 triangles where accessor 3 has 57 corners"));
+    assert!(refusal(&draco.glb()).contains("18 triangles, but accessor 3 has 57 corners"));
     let mut meshopt = with_meshopt(&grid(3), "EXT_meshopt_compression", 0);
     meshopt.bin[..40].fill(0);
     assert!(refusal(&meshopt.glb()).contains("compressed buffer view 0, which is broken"));

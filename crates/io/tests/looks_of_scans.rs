@@ -224,8 +224,8 @@ fn what_stays_behind_is_named() {
     assert!(opened.scene.notes()[0].contains("colours of its faces"));
     let warnings = |opened: &SceneAndDrawn, format| save_as(opened, &opened.drawn.positions, format).warnings;
     let found = warnings(&opened, Format::Glb);
-    let expected = "GLB output leaves out confidence of each 'vertex', red, green, blue of each 'face', the element edge: \
-        keep the .ply for it.";
+    let expected = "GLB output leaves out confidence of each 'vertex', red, green, blue of each 'face', the element \
+                    edge: keep the .ply for them.";
     assert_eq!(found, [expected]);
     let off = open(
         b"OFF\n4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3 255 0 0\n",
@@ -347,7 +347,7 @@ fn libraries_whose_names_have_blanks_are_found_and_what_is_missing_is_told() {
     assert_eq!(colours[..2], [[1.0, 0.0, 0.0, 1.0], [0.0, 0.0, 1.0, 1.0]]);
     let notes = opened.scene.notes();
     assert!(
-        notes[0].contains("'blue' is called 'Blue'") && notes[1].contains("'green'"),
+        notes[0].contains("no material 'blue', so its material 'Blue'") && notes[1].contains("'green'"),
         "{notes:?}"
     );
     assert_eq!(notes.len(), 2);

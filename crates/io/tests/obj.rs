@@ -439,7 +439,7 @@ fn a_copy_in_another_folder_brings_its_materials_along() {
         (saved.files[0].bytes.as_slice(), saved.files[1].bytes.as_slice()),
         (text.as_slice(), library.as_bytes())
     );
-    assert!(saved.warnings[0].contains("copy them by hand"));
+    assert!(saved.warnings[0].contains("copy them yourself"));
     assert_eq!(save(Placement::SameFolder).files.len(), 1);
 }
 

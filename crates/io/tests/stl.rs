@@ -89,7 +89,7 @@ fn bytes_behind_the_facets_are_kept_whatever_the_header_begins_with() {
 fn a_wrong_count_is_refused_when_too_large_and_noted_when_too_small() {
     let mut bytes = binary(b"x", 3);
     bytes[80] = 4;
-    assert!(refusal(&bytes, Format::Stl).contains("4 facets but holds only 3"));
+    assert!(refusal(&bytes, Format::Stl).contains("4 facets but has only 3"));
     bytes[80] = 2;
     let opened = open(&bytes, Format::Stl);
     assert_eq!(opened.drawn.triangles.len(), 2);

@@ -1,4 +1,4 @@
-//! Laws of a watched save: it reports its progress all along, stops wherever it is asked to, and produces the same
+//! Laws of a watched save: it reports its progress all along, stops at any point on request, and produces the same
 //! bytes as an unwatched one.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test fails by panicking")]
 

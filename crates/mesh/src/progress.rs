@@ -89,7 +89,7 @@ impl Cancel {
         self.0.is_raised.store(true, Ordering::Relaxed);
     }
 
-    /// Whether the flag is raised.
+    /// Returns true if the flag is raised.
     pub fn is_cancelled(&self) -> bool {
         if let Some(left) = &self.0.looks_left
             && left

@@ -41,7 +41,7 @@ impl Vectors {
         Self::ALL.into_iter().find(|vectors| vectors.name() == name)
     }
 
-    /// Whether this processor has them.
+    /// Returns true if this processor has them.
     pub fn is_available(self) -> bool {
         self.arch().is_some()
     }

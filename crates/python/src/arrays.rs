@@ -16,7 +16,12 @@ use crate::refusal::refused;
 /// `ValueError` naming `place`, for any other value.
 pub fn array<'py>(any: &Bound<'py, PyAny>, place: &str) -> PyResult<Bound<'py, PyAny>> {
     let array = any.py().import("numpy")?.call_method1("asarray", (any,));
-    array.map_err(|error| refused(format!("{place} is no array ({}): give numbers", error.value(any.py()))))
+    array.map_err(|error| {
+        refused(format!(
+            "{place} is not an array ({}): give numbers",
+            error.value(any.py())
+        ))
+    })
 }
 
 /// The kind of an array's elements, numpy's `dtype.kind`.
@@ -189,7 +194,7 @@ pub fn numbers(any: &Bound<'_, PyAny>, place: &str, vertex_count: usize) -> PyRe
     }
 }
 
-/// Whether a flat list or array has names among its elements, such as "rigid".
+/// Returns true if a flat list or array has names among its elements, such as "rigid".
 pub fn has_names(any: &Bound<'_, PyAny>) -> PyResult<bool> {
     let array = array(any, "")?;
     Ok("UO".contains(kind(&array)?) && shape(&array)?.len() == 1)

@@ -4,9 +4,9 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use glam::DVec3;
 use pliant_deform::{Bound as Solver, Solve, SolveError, Step, Target};
-use pliant_editor::Setup;
+use pliant_editor::{Setup, settle};
 use pliant_engine::watch::Watch;
-use pliant_engine::{check_bends, check_not_empty, memory, prepare, settle};
+use pliant_engine::{check_bends, check_not_empty, memory, prepare};
 use pliant_mesh::{Cancel, Drawn, Model, SurfaceVertex};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -55,7 +55,7 @@ struct Solving {
     /// One for each surface vertex.
     displacements: Vec<DVec3>,
     last: Step,
-    /// Whether targets were set before.
+    /// True if targets were set before.
     has_targets: bool,
 }
 
@@ -318,6 +318,7 @@ impl BoundMesh {
         let stepped = pool.install(|| {
             solver.set_places(&targets.of_solver)?;
             *has_targets = true;
+            solver.set_cancel(cancel);
             *last = settle(solver, displacements, most, cancel)?;
             let mut positions = Vec::new();
             self.model.drawn_positions(displacements, &mut positions);

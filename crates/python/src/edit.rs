@@ -1,6 +1,6 @@
 //! Arguments as an edit: those of `bind` are the edit format's members, with arrays of vertices as selections.
 
-use pliant_deform::Arap;
+use pliant_deform::Method;
 use pliant_editor::{EDIT_VERSION, EditFile};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList, PyString, PyTuple};
@@ -47,7 +47,7 @@ impl Arguments<'_> {
         members.insert("version".to_owned(), EDIT_VERSION.into());
         let method = match &self.method {
             // The options follow.
-            None => json!({ "name": "arap" }),
+            None => json!({ "name": Method::of_new_documents().name() }),
             Some(method) => match method.cast::<PyString>() {
                 Ok(name) => json!({ "name": name.to_cow()? }),
                 Err(_) => value(method, "method")?,
@@ -75,7 +75,7 @@ impl Arguments<'_> {
         }
         let mut edit = EditFile::from_value(&Value::Object(members)).map_err(refused)?;
         if self.method.is_none() {
-            edit.method = Arap::first_choice().into();
+            edit.method = Method::of_new_documents();
         }
         refuse_files(&mut edit)?;
         Ok(Edit { file: edit, orders })

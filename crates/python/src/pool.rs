@@ -28,7 +28,7 @@ pub fn pool() -> PyResult<Arc<ThreadPool>> {
     }
     let pool = ThreadPoolBuilder::new().build().map_err(|error| {
         PyRuntimeError::new_err(format!(
-            "the system gives no threads to compute with ({error}): set RAYON_NUM_THREADS to fewer"
+            "the system can't start the threads ({error}): set RAYON_NUM_THREADS to fewer"
         ))
     })?;
     let pool = Arc::new(pool);

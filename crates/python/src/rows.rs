@@ -19,7 +19,7 @@ pub struct Rows {
     drawn: Vec<(u32, u32)>,
     /// Rows of vertices in the same place, which must be equal.
     alike: Vec<(u32, u32)>,
-    /// Rows of vertices that stand apart but are welded, which must move together.
+    /// Rows of vertices at different positions that are welded and must move together.
     welded: Vec<(u32, u32)>,
 }
 
@@ -70,12 +70,12 @@ impl Rows {
                 Some(&[place]) => DrawnVertex(place),
                 Some(_) => {
                     return Err(format!(
-                        "takes no positions: vertex {number} is shown in several places; give a transform"
+                        "takes no positions, because vertex {number} is shown in several places: give a transform"
                     ));
                 }
                 None => {
                     return Err(format!(
-                        "takes no positions: vertex {number} has no finite position; give a transform"
+                        "takes no positions, because vertex {number} has no finite position: give a transform"
                     ));
                 }
             };
@@ -96,8 +96,8 @@ impl Rows {
             let Some(&row) = first_of_surface.get(&vertex) else {
                 let number = model.first_file_vertex(SurfaceVertex(vertex)).0;
                 return Err(format!(
-                    "takes no positions: it moves vertex {number} along, which is rigid with its own and has no row; give a \
-                     transform, or make less of it rigid"
+                    "takes no positions, because it also moves vertex {number}, which is rigid with its own and has \
+                     no row: give a transform, or make less of it rigid"
                 ));
             };
             rows.of_surface.push((SurfaceVertex(vertex), row));
@@ -134,8 +134,8 @@ impl Rows {
         if let Some(&(first, second)) = self.alike.iter().find(|&&(first, second)| at(first) != at(second)) {
             let number = |row: u32| self.numbers[row as usize];
             return Err(format!(
-                "sends the vertices {} and {} apart (rows {first} and {second}), which are in the same place and so are one: \
-                 give both the same position",
+                "moves the vertices {} and {} apart (rows {first} and {second}), which are at one position: give both \
+                 the same position",
                 number(first),
                 number(second)
             ));
@@ -148,8 +148,8 @@ impl Rows {
         if let Some(&(first, second)) = self.welded.iter().find(is_torn) {
             let number = |row: u32| self.numbers[row as usize];
             return Err(format!(
-                "tears the vertices {} and {} apart (rows {first} and {second}), which are welded: move both by the same, or \
-                 give a smaller `weld`",
+                "moves the welded vertices {} and {} apart (rows {first} and {second}): move both equally, or give a \
+                 smaller `weld`",
                 number(first),
                 number(second)
             ));

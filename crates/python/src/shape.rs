@@ -32,7 +32,7 @@ pub fn shape(any: &Bound<'_, PyAny>, place: &str) -> PyResult<Shape> {
     let is_pair = any.is_instance_of::<PyTuple>() || any.is_instance_of::<PyList>();
     if !is_pair || any.len()? != 2 {
         return Err(refused(format!(
-            "{place} is no mesh: give what `load` returned, or a pair (vertices, faces)"
+            "{place} is not a mesh: give a result of `load`, or a pair (vertices, faces)"
         )));
     }
     let positions = arrays::points(&any.get_item(0)?, &format!("{place}[0]"))?;

@@ -1,6 +1,7 @@
 //! Each handle's target in world space: a transform from rest, or a position for each of its vertices.
 
 use glam::{DAffine3, DMat3, DVec3};
+use pliant_deform::Method;
 use pliant_editor::{EDIT_VERSION, EditFile, HandleTransform, Setup};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList, PyTuple};
@@ -42,7 +43,7 @@ pub fn goals(
             let Some(handle) = handles.iter().position(|handle| handle.name == name) else {
                 let known: Vec<String> = handles.iter().map(|handle| format!("{:?}", handle.name)).collect();
                 return Err(refused(format!(
-                    "transforms names the handle {name:?}, which there is not: known are {}",
+                    "transforms names the unknown handle {name:?}: known are {}",
                     known.join(", ")
                 )));
             };
@@ -99,7 +100,7 @@ fn is_transform(dict: &Bound<'_, PyDict>) -> PyResult<bool> {
     Ok(false)
 }
 
-/// Whether a value could be a handle's whole goal, for a handle that is called like a transform's member.
+/// Returns true if a value could be a handle's whole goal, for a handle that is called like a transform's member.
 fn is_whole(any: &Bound<'_, PyAny>) -> bool {
     let is_array = || reals(any, "").is_ok_and(|(shape, _)| matches!(shape[..], [_, 3] | [3, 4] | [4, 4]));
     any.is_instance_of::<PyDict>() || is_array()
@@ -130,8 +131,8 @@ fn goal(any: &Bound<'_, PyAny>, place: &str, pivot: DVec3) -> PyResult<Goal> {
     } else {
         let unknown = |found: &str| {
             refused(format!(
-                "{place} is no transform{found}: give a 3×4 or 4×4 matrix, a translation, a pair of a 3×3 matrix and a \
-                 translation, a dict, or a position for each of the handle's vertices"
+                "{place} is not a transform{found}: give a 3×4 or 4×4 matrix, a translation, a pair of a 3×3 matrix \
+                 and a translation, a dict, or a position for each of the handle's vertices"
             ))
         };
         let Ok((shape, numbers)) = reals(any, place) else {
@@ -179,7 +180,7 @@ fn affine(entry: impl Fn(usize, usize) -> f64, translation: &[f64]) -> DAffine3 
 fn of_format(any: &Bound<'_, PyAny>, place: &str, pivot: DVec3) -> PyResult<DAffine3> {
     let edit = json!({
         "version": EDIT_VERSION,
-        "method": { "name": "bilaplacian" },
+        "method": { "name": Method::default().name() },
         "handles": [{ "select": "none", "transform": value(any, place)? }],
     });
     let edit = EditFile::from_value(&edit)

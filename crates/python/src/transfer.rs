@@ -35,8 +35,8 @@ pub fn transfer<'py>(
         None if to.drawn().triangles == own.triangles => (0..triangle_count).map(Some).collect(),
         None => {
             return Err(refused(format!(
-                "target has {triangle_count} triangles and source has {} others: give correspondences, pairs of a triangle of \
-                 source and one of target",
+                "target has {triangle_count} triangles and source has {} different ones: give correspondences, pairs \
+                 of a triangle of source and one of target",
                 own.triangles.len()
             )));
         }
@@ -102,7 +102,7 @@ fn partners(pairs: &Bound<'_, PyAny>, sources: usize, targets: usize) -> PyResul
     let mut partners = vec![None; targets];
     let pairs = arrays::pairs(pairs, "correspondences")?;
     if pairs.is_empty() {
-        return Err(refused("correspondences is empty: name one pair at least"));
+        return Err(refused("correspondences is empty: name at least one pair"));
     }
     for (row, [source, target]) in pairs.into_iter().enumerate() {
         let below = |number: i64, count: usize| usize::try_from(number).ok().filter(|number| *number < count);
@@ -111,13 +111,13 @@ fn partners(pairs: &Bound<'_, PyAny>, sources: usize, targets: usize) -> PyResul
             below(target, targets).map(|at| &mut partners[at]),
         ) else {
             return Err(refused(format!(
-                "correspondences[{row}] is [{source}, {target}], and source has {sources} triangles and target {targets}: \
-                 they are numbered from 0"
+                "correspondences[{row}] is [{source}, {target}], but source has {sources} triangles and target \
+                 {targets}: number them from 0"
             )));
         };
         if partner.replace(source).is_some() {
             return Err(refused(format!(
-                "correspondences[{row}] names target's triangle {target} once more: name it once"
+                "correspondences[{row}] names target's triangle {target} again: name it once"
             )));
         }
     }

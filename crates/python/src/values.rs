@@ -77,7 +77,7 @@ fn at_depth(any: &Bound<'_, PyAny>, place: &str, depth: usize) -> PyResult<Value
 /// `ValueError` if it is not a distance.
 pub fn weld_options(weld: Option<f64>) -> PyResult<WeldOptions> {
     if weld.is_some_and(|distance| !(distance.is_finite() && distance >= 0.0)) {
-        return Err(refused("weld is not a distance: give a number from 0"));
+        return Err(refused("weld is not a distance: give a number of at least 0"));
     }
     Ok(WeldOptions { distance: weld })
 }

@@ -284,9 +284,9 @@ def test_meshes_that_are_none_are_refused(vertices, faces, said):
 @pytest.mark.parametrize(
     "transforms, said",
     [
-        ({"bottom": np.eye(4)}, '"bottom", which there is not: known are "top"'),
+        ({"bottom": np.eye(4)}, 'unknown handle "bottom": known are "top"'),
         ({"top": np.eye(3)}, r'transforms\["top"\] has 3 positions, but the handle has 48 vertices'),
-        ({"top": np.eye(2)}, r'transforms\["top"\] is no transform .*\[2, 2\].*a 3×4 or 4×4 matrix'),
+        ({"top": np.eye(2)}, r'transforms\["top"\] is not a transform .*\[2, 2\].*a 3×4 or 4×4 matrix'),
         ([np.eye(4), np.eye(4)], "2 entries, but there are 1 handles"),
         ([], "0 entries"),
         ({"top": np.zeros((4, 4))}, "last row"),

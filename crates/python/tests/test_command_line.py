@@ -49,8 +49,8 @@ def test_a_rigid_pose_is_transferred_rigidly_by_correspondences(mesh):
     expected = fine[0] @ matrix[:3, :3].T
     assert np.abs((posed - posed.mean(0)) - (expected - expected.mean(0))).max() < 1e-6
     for wrong, said in [
-        ([[0, 10**6]], r"correspondences\[0\] is \[0, 1000000\], and source has"),
-        ([[0, 1], [1, 1]], r"correspondences\[1\] names target's triangle 1 once more"),
+        ([[0, 10**6]], r"correspondences\[0\] is \[0, 1000000\], but source has"),
+        ([[0, 1], [1, 1]], r"correspondences\[1\] names target's triangle 1 again"),
         ([[0, 1, 2]], r"shape \[1, 3\]"),
         ([], "correspondences is empty"),
         (None, "give correspondences"),
@@ -59,7 +59,7 @@ def test_a_rigid_pose_is_transferred_rigidly_by_correspondences(mesh):
             pliant.transfer(mesh, pose, fine, correspondences=wrong)
     with pytest.raises(ValueError, match="pose has 479 rows, but source has 480"):
         pliant.transfer(mesh, pose[1:], mesh)
-    with pytest.raises(ValueError, match="target is no mesh: give what `load` returned"):
+    with pytest.raises(ValueError, match="target is not a mesh: give a result of `load`"):
         pliant.transfer(mesh, pose, vertices)
 
 

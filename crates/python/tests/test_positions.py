@@ -82,12 +82,12 @@ def test_positions_hold_a_component_that_nothing_else_holds(mesh, ends):
     rows = vertices[held] + np.where(vertices[held, 1:2] > 0.5, [0.2, 0, 0], 0)
     bent = bound.step({"all": rows})
     assert np.array_equal(bent[held], rows)
-    assert not any("nothing holds" in said for said in bound.warnings)
+    assert not any("as a whole" in said for said in bound.warnings)
     bound.step({"all": np.eye(4)})
-    assert any("nothing holds" in said for said in bound.warnings)
+    assert any("as a whole" in said for said in bound.warnings)
     one = pliant.bind(*mesh, handles={"tip": [470]})
     one.step({"tip": vertices[[470]] + [0.1, 0, 0]})
-    assert any("nothing holds" in said for said in one.warnings), "a single point holds nothing"
+    assert any("as a whole" in said for said in one.warnings), "a single point holds nothing"
 
 
 def test_a_soft_handle_pulls_towards_its_rows(mesh, ends):
@@ -131,7 +131,7 @@ def test_rows_of_welded_vertices_move_together(mesh, ends):
     rows = vertices[both] + [0, 0.1, 0]
     assert np.array_equal(bound.step({"top": rows})[both], rows)
     rows[-1] += [0.1, 0, 0]
-    with pytest.raises(ValueError, match="which are welded: move both by the same"):
+    with pytest.raises(ValueError, match="the welded vertices .* apart .*: move both equally"):
         bound.step({"top": rows})
 
 
@@ -146,7 +146,7 @@ def test_rows_that_do_not_fit_are_refused(mesh, ends):
         one.step([[0.1, 0, 0]])
     assert np.array_equal(one.step(vertices[[470]] + 0.1)[470], vertices[470] + 0.1)
     rigid = np.where(vertices[:, 1] > 0.8, np.inf, 1)
-    with pytest.raises(ValueError, match="takes no positions: it moves vertex .* rigid"):
+    with pytest.raises(ValueError, match="takes no positions, because it also moves vertex .* rigid"):
         pliant.bind(*mesh, **ends, stiffness=rigid).step({"top": vertices[top]})
     assert np.array_equal(bound.step({"top": waved(vertices[top])}), before) or bound.converged
 

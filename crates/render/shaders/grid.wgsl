@@ -17,7 +17,7 @@ struct Grid {
     along_v: vec3f,
     // Strength of the lines between the tenths, 0 to 1.
     fine_share: f32,
-    // Where the world axes cross, in steps from the middle.
+    // The crossing of the world axes, in steps from the middle.
     axes: vec2f,
     padding: vec2f,
     // sRGB with straight alpha.

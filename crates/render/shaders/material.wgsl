@@ -24,7 +24,7 @@ struct Material {
     occlusion_strength: f32,
     // Factor of the light on back faces; 0 hides the back faces of blended materials.
     back_share: f32,
-    // Which textures there are, and whether the material is lit: the bits below.
+    // The bits below: the textures that exist, and the material's lighting.
     flags: u32,
     padding: vec2f,
     metallic_roughness: Map,

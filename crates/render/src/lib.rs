@@ -1,7 +1,7 @@
 //! Rendering with wgpu: slices of numbers go in, a texture or picked triangle ids come out.
 //!
 //! A [`Renderer`] draws on one device, its [`Gpu`]. A [`Surface`] is a triangle mesh in GPU buffers, made from the
-//! slices of a [`SurfaceData`] and updated in place while it moves. A [`Frame`] says what to draw and from where.
+//! slices of a [`SurfaceData`] and updated in place while it moves. A [`Frame`] has the things to draw and the view.
 //! [`Renderer::draw`] draws it into a [`Target`], an offscreen texture that a window shows as an image;
 //! [`Renderer::draw_to_image`] draws the same frame into memory. [`Renderer::pick`] finds the triangles in a rectangle
 //! of pixels. [`Headless`] is a renderer without a window.

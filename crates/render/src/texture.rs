@@ -18,11 +18,11 @@ pub struct TextureData<'a> {
     pub height: u32,
     /// `4 · width · height` bytes.
     pub rgba: &'a [u8],
-    /// How the bytes are encoded.
+    /// The encoding of the bytes.
     pub encoding: Encoding,
 }
 
-/// How an image's bytes are encoded.
+/// The encoding of an image's bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Encoding {
     /// Colours in sRGB.

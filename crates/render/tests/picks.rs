@@ -64,7 +64,7 @@ fn the_id_in_each_pixel_is_the_triangle_that_a_ray_hits() {
     }
 }
 
-/// Whether a ray a hundredth of a pixel away hits the shape: rounding decides such a pixel.
+/// Returns true if a ray a hundredth of a pixel away hits the shape: rounding decides such a pixel.
 fn is_beside_a_miss(shape: &Shape, view: &View, x: u32, y: u32) -> bool {
     let (origin, direction) = ray(view, x, y);
     [Vec3::X, -Vec3::X, Vec3::Y, -Vec3::Y]

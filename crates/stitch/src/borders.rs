@@ -1,5 +1,7 @@
 //! The borders of a surface: closed lines of edges that have one triangle.
 
+use std::ops::Range;
+
 use glam::DVec3;
 use pliant_mesh::{Model, SurfaceVertex};
 use rayon::prelude::*;
@@ -84,6 +86,55 @@ impl Borders {
             vertex: model.first_file_vertex(vertex).0,
             fault,
         }
+    }
+}
+
+/// The vertices of one or more borders in one list, border after border.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub(crate) struct Loops {
+    pub vertices: Vec<SurfaceVertex>,
+    /// The start of each border, and the count of all vertices.
+    starts: Vec<usize>,
+}
+
+impl Loops {
+    pub fn of(borders: &[Border]) -> Self {
+        let mut loops = Self {
+            vertices: Vec::new(),
+            starts: vec![0],
+        };
+        for border in borders {
+            loops.vertices.extend(&border.vertices);
+            loops.starts.push(loops.vertices.len());
+        }
+        loops
+    }
+
+    /// The count of all vertices.
+    pub fn count(&self) -> usize {
+        self.vertices.len()
+    }
+
+    /// The places of each border.
+    pub fn ranges(&self) -> impl Iterator<Item = Range<usize>> + '_ {
+        self.starts.windows(2).map(|pair| pair[0]..pair[1])
+    }
+
+    /// The place after a place on its border.
+    pub fn next(&self, place: usize) -> usize {
+        let own = self.border_of(place);
+        if place + 1 < own.end { place + 1 } else { own.start }
+    }
+
+    /// The place before a place on its border.
+    pub fn before(&self, place: usize) -> usize {
+        let own = self.border_of(place);
+        if place > own.start { place - 1 } else { own.end - 1 }
+    }
+
+    fn border_of(&self, place: usize) -> Range<usize> {
+        let next = self.starts.partition_point(|&start| start <= place);
+        self.starts[next - 1]..self.starts[next]
     }
 }
 

@@ -7,8 +7,9 @@ use crate::part::Part;
 use crate::shape::{Age, NewShape, TriangleSource, VertexSource};
 
 impl NewShape {
-    /// Deletes the chosen vertices of a part's surface (a flag for each) and the triangles that use them. Vertices that
-    /// only those triangles used go, too; all others keep their order.
+    /// Deletes the chosen vertices of a part's surface (a flag for each) and the triangles that use them. Triangles with
+    /// a corner that is not finite go, too, and so do vertices that only deleted triangles used; all others keep their
+    /// order.
     ///
     /// # Errors
     /// [`StitchError::NothingSelected`] and [`StitchError::NothingLeft`].
@@ -21,7 +22,8 @@ impl NewShape {
             let surface = part.model.drawn.surface_vertex(vertex);
             surface.is_some_and(|surface| delete.get(surface.index()) == Some(&true))
         };
-        let goes = |corners: &[DrawnVertex; 3]| corners.iter().any(|&corner| is_deleted(corner));
+        let goes =
+            |corners: &[DrawnVertex; 3]| part.is_broken(corners) || corners.iter().any(|&corner| is_deleted(corner));
         let (mut was_used, mut is_used) = (vec![false; drawn.positions.len()], vec![false; drawn.positions.len()]);
         for corners in &drawn.triangles {
             let stays = !goes(corners);
@@ -34,6 +36,24 @@ impl NewShape {
             return Err(StitchError::NothingLeft);
         }
         let stays = |v: usize| is_used[v] || (!was_used[v] && !is_deleted(DrawnVertex(v as u32)));
+        let mut shape = Self::of_vertices(part, stays);
+        let number = shape.numbers(drawn.positions.len());
+        for (triangle, corners) in (0..).zip(&drawn.triangles) {
+            if !goes(corners) {
+                shape.triangles.push(corners.map(|corner| number[corner.index()]));
+                shape.triangle_sources.push(TriangleSource {
+                    part: 0,
+                    triangle,
+                    age: Age::Old,
+                });
+            }
+        }
+        Ok(shape)
+    }
+
+    /// The vertices of a part that stay, in their order, without triangles.
+    pub(crate) fn of_vertices(part: &Part<'_>, stays: impl Fn(usize) -> bool) -> Self {
+        let drawn = part.drawn;
         let mut file_number = vec![u32::MAX; drawn.file_vertex_count];
         for v in (0..drawn.positions.len()).filter(|&v| stays(v)) {
             file_number[drawn.file_vertex[v].index()] = 0;
@@ -47,9 +67,7 @@ impl NewShape {
             file_vertex_count: file_vertex_count as usize,
             ..Self::default()
         };
-        let mut number = vec![DrawnVertex(u32::MAX); drawn.positions.len()];
         for v in (0..drawn.positions.len()).filter(|&v| stays(v)) {
-            number[v] = DrawnVertex(shape.positions.len() as u32);
             let vertex = DrawnVertex(v as u32);
             shape.vertices.push(VertexSource::Old { part: 0, vertex });
             shape.positions.push(drawn.positions[v]);
@@ -57,16 +75,17 @@ impl NewShape {
                 .file_vertices
                 .push(FileVertex(file_number[drawn.file_vertex[v].index()]));
         }
-        for (triangle, corners) in (0..).zip(&drawn.triangles) {
-            if !goes(corners) {
-                shape.triangles.push(corners.map(|corner| number[corner.index()]));
-                shape.triangle_sources.push(TriangleSource {
-                    part: 0,
-                    triangle,
-                    age: Age::Old,
-                });
+        shape
+    }
+
+    /// The number here of each of the `count` drawn vertices of the part; no vertex for those that are not left.
+    pub(crate) fn numbers(&self, count: usize) -> Vec<DrawnVertex> {
+        let mut number = vec![DrawnVertex(u32::MAX); count];
+        for (own, source) in (0..).zip(&self.vertices) {
+            if let VertexSource::Old { vertex, .. } = source {
+                number[vertex.index()] = DrawnVertex(own);
             }
         }
-        Ok(shape)
+        number
     }
 }

@@ -35,12 +35,57 @@ pub enum StitchError {
         /// Its fault.
         fault: BorderFault,
     },
+    /// Two given vertices are on one border.
+    #[error(
+        "vertices {} and {} are on one border, but a tube needs two: give a vertex of another border", .vertices[0], .vertices[1]
+    )]
+    SameBorder {
+        /// The vertices.
+        vertices: [u32; 2],
+    },
+    /// Two borders have a vertex in common, so that no tube fits between them.
+    #[error(
+        "the borders at vertices {} and {} touch, so no tube fits between them: delete the vertices there first", .vertices[0], .vertices[1]
+    )]
+    BordersTouch {
+        /// A vertex of each.
+        vertices: [u32; 2],
+    },
+    /// The surface has no other borders than the outer ones of open sheets, and none was named.
+    #[error(
+        "the surface has no hole: the border at vertex {vertex} is the outer border of an open sheet, which is filled \
+         only if it is named by a vertex or by its length"
+    )]
+    OnlyOuterBorders {
+        /// A vertex of the longest.
+        vertex: u32,
+    },
     /// The cut would leave nothing.
     #[error("the selection holds every triangle: select less, so that something is left")]
     NothingLeft,
+    /// The whole surface is on one side of the plane.
+    #[error(
+        "the plane does not cross the surface, which lies between the levels {from} and {to} along its unit normal: \
+         choose a level between these"
+    )]
+    PlaneMisses {
+        /// The lowest level of a vertex along the unit normal, in world units.
+        from: f64,
+        /// The highest.
+        to: f64,
+    },
     /// The cut has no vertex.
     #[error("the selection holds no vertex: select at least one")]
     NothingSelected,
+    /// B's transform leaves triangles without an area, because it flattens them or moves them too far.
+    #[error(
+        "the transform of B flattens {triangles} of its triangles, or moves them too far to compute with: move it less \
+         far, and scale every axis by more than 0"
+    )]
+    Transform {
+        /// The number of these triangles.
+        triangles: usize,
+    },
     /// The method refused to bend a part.
     #[error("{part} can't be bent to the common border: {source}")]
     Bind {

@@ -7,6 +7,7 @@ use pliant_deform::Budget;
 use pliant_mesh::{Cancel, DrawnVertex, FileVertex, SurfaceVertex};
 use rayon::prelude::*;
 
+use crate::borders::Loops;
 use crate::dress::{DressedCorner, DressedPatch};
 use crate::error::StitchError;
 use crate::fill::Filled;
@@ -18,22 +19,26 @@ use crate::shape::{Age, NewShape, TriangleSource, VertexSource};
 const SMOOTH: f64 = 0.866;
 
 impl NewShape {
-    /// Takes a whole part, unchanged.
+    /// Takes a whole part, unchanged but for the triangles that belong to no surface because a corner is not finite.
     pub fn whole(part: &Part<'_>) -> Self {
-        let count = part.drawn.triangles.len() as u32;
         let vertices = (0..part.drawn.positions.len() as u32).map(DrawnVertex);
         let source = |triangle| TriangleSource {
             part: 0,
             triangle,
             age: Age::Old,
         };
+        let all = (0..).zip(&part.drawn.triangles);
+        let sound: Vec<u32> = all
+            .filter(|(_, corners)| !part.is_broken(corners))
+            .map(|(triangle, _)| triangle)
+            .collect();
         Self {
             vertices: vertices.map(|vertex| VertexSource::Old { part: 0, vertex }).collect(),
             positions: part.drawn.positions.clone(),
             file_vertices: part.drawn.file_vertex.clone(),
             file_vertex_count: part.drawn.file_vertex_count,
-            triangles: part.drawn.triangles.clone(),
-            triangle_sources: (0..count).map(source).collect(),
+            triangles: sound.iter().map(|&t| part.drawn.triangles[t as usize]).collect(),
+            triangle_sources: sound.into_iter().map(source).collect(),
             ..Self::default()
         }
     }
@@ -54,9 +59,10 @@ impl NewShape {
         let mut at_rims: BTreeMap<SurfaceVertex, DVec3> = BTreeMap::new();
         for (hole, dressed) in filled.holes.iter().zip(dressed) {
             let Some(dressed) = dressed else { continue };
-            let rim = hole.border.vertices.len();
+            let border = Loops::of(&hole.borders).vertices;
+            let rim = border.len();
             let position = |point: u32| match (point as usize).checked_sub(rim) {
-                None => part.model.surface.positions[hole.border.vertices[point as usize].index()],
+                None => part.model.surface.positions[border[point as usize].index()],
                 Some(inside) => hole.points[inside],
             };
             let mut normals = vec![DVec3::ZERO; rim + hole.points.len()];
@@ -65,10 +71,10 @@ impl NewShape {
                 let area = (b - a).cross(c - a);
                 corners.iter().for_each(|&corner| normals[corner as usize] += area);
             }
-            for (vertex, normal) in hole.border.vertices.iter().zip(&normals) {
+            for (vertex, normal) in border.iter().zip(&normals) {
                 *at_rims.entry(*vertex).or_default() += *normal;
             }
-            shape.add_patch(part, (rim, &hole.border.vertices), &dressed, position, &normals);
+            shape.add_patch(part, (rim, &border), &dressed, position, &normals);
         }
         if part.normals.is_some() {
             turn_rims(part, &at_rims, &mut shape);

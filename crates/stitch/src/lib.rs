@@ -34,11 +34,13 @@ mod fill;
 mod filled_shape;
 mod merge;
 mod part;
+mod plane;
 mod shape;
 
 pub use borders::{Border, Borders};
 pub use error::{BorderFault, StitchError};
-pub use fill::{Filled, FilledHole, Holes, fill};
-pub use merge::{Joins, MergeError, Merged, Pair, PlacementOfB, Seam, merge};
+pub use fill::{Filled, FilledHole, Holes, Reason, Unfilled, fill};
+pub use merge::{Joins, MergeError, Merged, Pair, PartBending, PlacementOfB, Seam, merge};
 pub use part::{Attributes, Part};
+pub use plane::{Keep, Plane};
 pub use shape::{Age, NewShape, TriangleSource, VertexSource};

@@ -29,6 +29,14 @@ pub struct Attributes<'a> {
     pub value: &'a (dyn Fn(DrawnVertex, usize) -> f64 + Sync),
 }
 
+impl Part<'_> {
+    /// True for a drawn triangle with a corner that is not finite: it belongs to no surface.
+    pub(crate) fn is_broken(&self, corners: &[DrawnVertex; 3]) -> bool {
+        let of_drawn = &self.model.drawn;
+        corners.iter().any(|&corner| of_drawn.surface_vertex(corner).is_none())
+    }
+}
+
 impl std::fmt::Debug for Part<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Attributes { charted, blended, .. } = self.attributes;

@@ -10,14 +10,14 @@ pub const HELP: &str = "\
 usage: cargo xtask COMMAND
 
   run [FILE] [--yes]         build Pliant and open its window on the sample, or on FILE; without a display,
-                             do the sample's edit headless and say where the result is
+                             apply the sample's edit headless and print the paths of the results
   test [FILTER..] [--yes]    run all checks: formatting, clippy, every test
   check                      run the fast checks: formatting, clippy, unit tests
   bench [SECTION..] [--full] measure, and print tables
   assets [NAME..] [--triangles N] [--output DIR]
                              make the samples; with --triangles the creature at that size (60k, 600k, 5M)
   gallery                    draw the samples' edits by every method into docs/gallery and docs/methods.md
-  package                    make the packages that this system can make, and say what is left
+  package                    make the packages that this system can make, and list the others
   manual                     build the manual as a site, and check its links
   python                     build the Python package and the Blender add-on, and run their tests and the notebook
 
@@ -32,14 +32,14 @@ pub enum Command {
     Run {
         /// A mesh instead of the sample.
         file: Option<PathBuf>,
-        /// Whether packages may be installed without asking.
+        /// The consent to installing packages without asking.
         consent: Consent,
     },
     /// Run all checks.
     Test {
         /// Filters of test names. With filters, formatting and clippy are skipped.
         filters: Vec<String>,
-        /// Whether packages may be installed without asking.
+        /// The consent to installing packages without asking.
         consent: Consent,
     },
     /// Run the fast checks.
@@ -121,7 +121,7 @@ pub fn parse(words: &[String]) -> Result<Command, String> {
         "bench" => Ok(Command::Bench { sections: names, scale }),
         "assets" => Ok(Command::Assets(Order { names, ..order })),
         "gallery" | "package" | "manual" | "python" if !names.is_empty() => Err(format!(
-            "`cargo xtask {command}` takes no names, and `{}` is one.",
+            "`cargo xtask {command}` takes no names; leave out `{}`.",
             names[0]
         )),
         "gallery" => Ok(Command::Gallery),
@@ -143,7 +143,7 @@ fn count(word: &str) -> Result<usize, String> {
     match digits.parse::<usize>().ok().and_then(|n| n.checked_mul(factor)) {
         Some(n) if (1_000..=20_000_000).contains(&n) => Ok(n),
         _ => Err(format!(
-            "`{word}` is no number of triangles from 1000 to 20M; write 600k or 5M."
+            "`{word}` is not a number of triangles from 1000 to 20M; write 600k or 5M."
         )),
     }
 }

@@ -7,7 +7,7 @@ use crate::process;
 use crate::requirement::{Requirement, missing_packages};
 use crate::system::{self, System};
 
-/// Whether packages may be installed without asking.
+/// The consent to installing packages without asking.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Consent {
     /// Ask first.
@@ -42,7 +42,7 @@ pub fn prepare(requirements: &[&[Requirement]], purpose: &str, consent: Consent)
     }
     if !matches!(system, System::Debian { .. }) || process::program("apt-get").is_none() {
         return Ok(Prepared::Without(format!(
-            "{} has no apt, so {purpose} are skipped; they need what Debian calls {}.",
+            "{} has no apt, so {purpose} are skipped; they need Debian's packages {}.",
             system.name(),
             packages.join(" ")
         )));
@@ -70,7 +70,7 @@ pub fn prepare(requirements: &[&[Requirement]], purpose: &str, consent: Consent)
         Ok(Prepared::Complete)
     } else {
         Err(format!(
-            "The packages {} were installed, but what {purpose} need from them was not found.",
+            "The packages {} were installed, but {purpose} still don't find them.",
             missing.join(" ")
         ))
     }

@@ -22,7 +22,7 @@ pub fn make_assets(order: &Order) -> Result<(), String> {
     }
     if let Some(triangles) = order.triangles {
         if let Some(name) = order.names.iter().find(|name| *name != "creature") {
-            return Err(format!("`--triangles` sizes the creature alone, not `{name}`."));
+            return Err(format!("`--triangles` sizes only the creature, not `{name}`."));
         }
         let folder = order
             .output

@@ -70,7 +70,7 @@ impl System {
     }
 }
 
-/// Whether the loader finds the shared library with this exact name (`libvulkan.so.1`).
+/// Returns true if the loader finds the shared library with this exact name (`libvulkan.so.1`).
 pub fn has_library(name: &str) -> bool {
     let cached = process::output("ldconfig", &["-p"]).unwrap_or_default();
     let listed = cached.lines().any(|line| line.split_whitespace().next() == Some(name));
@@ -111,7 +111,7 @@ pub fn software_vulkan_driver() -> Option<PathBuf> {
     })
 }
 
-/// Whether Khronos' validation layer is installed.
+/// Returns true if Khronos' validation layer is installed.
 pub fn has_validation_layer() -> bool {
     ["/etc", "/usr/local/share", "/usr/share"].iter().any(|folder| {
         Path::new(folder)
@@ -120,7 +120,7 @@ pub fn has_validation_layer() -> bool {
     })
 }
 
-/// Whether this process runs as root.
+/// Returns true if this process runs as root.
 pub fn is_root() -> bool {
     process::output("id", &["-u"]).is_some_and(|answer| answer.trim() == "0")
 }

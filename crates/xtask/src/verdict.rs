@@ -16,7 +16,7 @@ pub struct Verdict {
     failures: Vec<String>,
     steps: Vec<String>,
     skipped: BTreeSet<String>,
-    /// Whether the current lines are output of passing tests, which follows "successes:".
+    /// True if the current lines are output of passing tests, which follows "successes:".
     in_successes: bool,
 }
 
@@ -25,7 +25,7 @@ pub struct Verdict {
 pub enum Skips {
     /// They are only listed: a user's machine may have neither, nor may a system with unknown packages.
     Named,
-    /// They count as failures: continuous integration installed what both need.
+    /// They count as failures: continuous integration installed the needs of both.
     Failures,
 }
 

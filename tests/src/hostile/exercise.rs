@@ -29,7 +29,7 @@ pub struct Used {
 pub trait Meter {
     /// Called before a command runs, with its words.
     fn begin(&mut self, words: &[OsString]);
-    /// Returns what the command used.
+    /// Returns the command's resources.
     fn end(&mut self) -> Used;
 }
 

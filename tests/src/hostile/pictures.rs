@@ -79,7 +79,7 @@ pub(super) fn draw(case: &Case, root: &Path, runner: &mut Runner<'_>) {
     }
 }
 
-/// Whether a file is a complete PNG of [`SIZE`]: its first chunk has the size, and its last chunk ends it.
+/// Returns true if a file is a complete PNG of [`SIZE`]: its first chunk has the size, and its last chunk ends it.
 fn is_picture(bytes: &[u8]) -> bool {
     let size = SIZE.map(u32::to_be_bytes);
     bytes.starts_with(b"\x89PNG\r\n\x1a\n")

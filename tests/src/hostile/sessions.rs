@@ -385,7 +385,7 @@ impl Desk {
     }
 }
 
-/// Whether a place has the name of a kept original or of a project's mesh.
+/// Returns true if a place has the name of a kept original or of a project's mesh.
 fn is_kept(place: &Path) -> bool {
     let name = place.file_name().unwrap_or_default().to_string_lossy();
     name.contains(".original") || name.contains(".source")

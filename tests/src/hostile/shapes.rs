@@ -11,7 +11,7 @@ use super::case::Case;
 /// The corners of a model's triangles.
 pub type Shape = Vec<[DVec3; 3]>;
 
-/// Whether two shapes are the same to the bit, so that a NaN equals itself.
+/// Returns true if two shapes are the same to the bit, so that a NaN equals itself.
 pub fn is_same(a: &Shape, b: &Shape) -> bool {
     let bits = |p: &DVec3| p.to_array().map(f64::to_bits);
     a.as_flattened().iter().map(bits).eq(b.as_flattened().iter().map(bits))
@@ -32,8 +32,8 @@ pub fn of_folder(case: &Case, root: &Path) -> BTreeMap<PathBuf, Shape> {
     paths.filter_map(|path| Some((path.clone(), shape(&path)?))).collect()
 }
 
-/// Whether a file may have faces with more than three corners. The lines of an OBJ or an OFF show it, except continued
-/// ones; a PLY may always have them.
+/// Returns true if a file may have faces with more than three corners. The lines of an OBJ or an OFF show it, except
+/// continued ones; a PLY may always have them.
 pub fn may_hold_polygons(path: &Path) -> bool {
     let kind = crate::extension(path).to_lowercase();
     let text = || String::from_utf8_lossy(&std::fs::read(path).unwrap_or_default()).into_owned();

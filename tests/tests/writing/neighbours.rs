@@ -31,7 +31,7 @@ fn no_output_may_be_a_file_that_is_read_or_written_otherwise() {
         "./scene.bin",
     ] {
         let report = folder.at(report);
-        apply(&gltf, &edit, &out, &["--report".as_ref(), report.as_ref()]).refused(2, &["--report", "as well"]);
+        apply(&gltf, &edit, &out, &["--report".as_ref(), report.as_ref()]).refused(2, &["--report", "is also"]);
         assert_eq!(contents(folder.path()), before, "{}", report.display());
     }
     apply(&gltf, &edit, &folder.at("edit.gltf"), &[]).refused(2, &["--output", "--edit"]);

@@ -11,6 +11,7 @@ use pliant_engine::stitching::Replace;
 use pliant_io::{MorphDeltas, MorphTarget, quoted};
 use pliant_mesh::{Vectors, WeldOptions};
 
+use super::cut_plane::{KeepArgument, PlaneArgument};
 use crate::version::VERSION;
 
 /// Bends scanned meshes.
@@ -18,15 +19,15 @@ use crate::version::VERSION;
 #[command(
     name = "pliant",
     version = VERSION,
-    about = "Bends scanned meshes: opens glb, gltf, obj, ply, stl and off, and saves them back with nothing lost but \
-             the old shape",
+    about = "Bends scanned meshes: opens glb, gltf, obj, ply, stl and off files and saves them back, changing only \
+             the shape",
     args_conflicts_with_subcommands = true,
     disable_help_subcommand = true
 )]
 pub(crate) struct Arguments {
-    /// The file to open in the window; without it, the built-in sample
+    /// The file to open in the window; by default the built-in sample
     pub file: Option<PathBuf>,
-    /// Begin with this edit, in the window on FILE
+    /// Open the window with this edit on FILE
     #[arg(long, value_name = "EDIT.json", requires = "file")]
     pub edit: Option<PathBuf>,
     #[command(subcommand)]
@@ -35,33 +36,35 @@ pub(crate) struct Arguments {
 
 #[derive(Subcommand, Debug)]
 pub(crate) enum Command {
-    /// Say what a file holds and what is wrong with its mesh
+    /// List a file's contents and its mesh's faults
     Info(InfoArguments),
     /// Apply an edit to a file
     Apply(ApplyArguments),
     /// Draw a file as a picture
     Render(RenderArguments),
-    /// Draw one edit by several methods into one picture, with their figures
+    /// Draw one edit by several methods into one picture, with figures
     Compare(CompareArguments),
-    /// Say in words what differs between two files
+    /// List the differences between two files
     Diff(DiffArguments),
     /// Put a pose of one mesh onto another
     Transfer(TransferArguments),
     /// Put a part of one file onto another, without a crack
     Merge(MergeArguments),
-    /// Fill holes
+    /// Fill holes with new triangles
     Fill(FillArguments),
-    /// Delete vertices, with the triangles that use them
+    /// Join two borders of a file by a tube
+    Bridge(BridgeArguments),
+    /// Delete vertices with the triangles that use them, or cut along a plane
     Cut(CutArguments),
     /// Let dye flow along the surface and save it as vertex colours
     Flow(FlowArguments),
-    /// Write the man pages, the completions for shells and the manual's pages of commands
+    /// Write man pages, shell completions and the manual's pages of commands
     Generate(GenerateArguments),
 }
 
 #[derive(Args, Debug)]
 pub(crate) struct GenerateArguments {
-    /// The folder to write them into; it is made if it is missing
+    /// The output folder, which is made if it is missing
     pub folder: PathBuf,
 }
 
@@ -72,7 +75,7 @@ pub(crate) struct InfoArguments {
     /// Print JSON instead of text
     #[arg(long)]
     pub json: bool,
-    /// Which vertices are one.
+    /// The welding of vertices.
     #[command(flatten)]
     pub weld: WeldArguments,
 }
@@ -98,10 +101,10 @@ pub(crate) struct ApplyArguments {
     /// The file to write; its extension tells its format
     #[arg(long, value_name = "OUT")]
     pub output: PathBuf,
-    /// Where to write what was done, how long it took and how far the shape was distorted
+    /// Write a report to this file: times, iterations, distortion and warnings
     #[arg(long, value_name = "REPORT.json")]
     pub report: Option<PathBuf>,
-    /// As a shape or as a morph target.
+    /// The kind of the output.
     #[command(flatten)]
     pub morph: MorphArguments,
     /// Replay the edit as a drag of N frames (1 to 100000) instead of one solve
@@ -110,61 +113,61 @@ pub(crate) struct ApplyArguments {
     /// Use this method instead of the edit's, with its defaults or with options set: NAME[:OPTION=VALUE..]
     #[arg(long, value_name = "NAME")]
     pub method: Option<String>,
-    /// The most memory that binding may take beside the mesh, such as 8GB or 500MB; without it 16GiB, and never more
-    /// than the machine has left. What does not fit is solved in a way that takes less, or refused
+    /// The most memory for binding, beside the mesh, such as 8GB or 500MB; by default 16GiB, and at most the free
+    /// memory. A larger system is solved with less memory in more time, or refused
     #[arg(long, value_name = "SIZE", value_parser = pliant_engine::memory::bytes)]
     pub memory: Option<u64>,
-    /// Which vertices are one.
+    /// The welding of vertices.
     #[command(flatten)]
     pub weld: WeldArguments,
-    /// On how many threads, and with which vectors.
+    /// The threads and vectors.
     #[command(flatten)]
     pub compute: ComputeArguments,
 }
 
-/// Which vertices of a file are one.
+/// The welding of a file's vertices.
 #[derive(Args, Clone, Copy, PartialEq, Debug, Default)]
 pub struct WeldArguments {
-    /// Join vertices that are closer than this, in the file's units, before anything else; 0 joins equal ones alone.
-    /// Without it, the distance follows from the mesh's edges and from how the file rounds its numbers
+    /// Weld vertices that are closer than this, in the file's units; 0 welds only vertices at equal positions. By
+    /// default the distance follows from the mesh's edges and the rounding of the file's numbers
     #[arg(long, value_name = "DISTANCE", value_parser = length)]
     pub weld: Option<f64>,
 }
 
 impl WeldArguments {
-    /// The same for loading.
+    /// The options of loading.
     pub fn options(self) -> WeldOptions {
         WeldOptions { distance: self.weld }
     }
 }
 
-/// Whether what comes out is a shape or a morph target.
+/// The kind of the output: a shape or a morph target.
 #[derive(Args, Debug)]
 pub(crate) struct MorphArguments {
-    /// Leave the shape as it is and save the new one as a morph target of this name (without one, that of the edit's or
-    /// the pose's file): OUT is glb or gltf
+    /// Keep the shape and save the new one as a morph target with this name (by default the name of the edit's or the
+    /// pose's file); OUT must be glb or gltf
     #[arg(long, value_name = "NAME", num_args = 0..=1, default_missing_value = "")]
     pub as_morph: Option<String>,
-    /// How far the morph target shows by default, from 0 to 1
+    /// The morph target's default weight, from 0 to 1
     #[arg(long, value_name = "W", default_value = "1", requires = "as_morph", value_parser = unit_number)]
     pub morph_weight: f64,
-    /// Whether the deltas of the file's own morph targets turn with the surface: `turn` or `stay`. Without it they turn
-    /// where they would else be off by more than 30 degrees
+    /// Turn the deltas of the file's own morph targets with the surface, or keep them: `turn` or `stay`. By default
+    /// they turn if they would otherwise be wrong by more than 30 degrees
     #[arg(long, value_name = "HOW", conflicts_with = "as_morph")]
     pub morph_deltas: Option<Deltas>,
 }
 
-/// Whether deltas of morph targets turn with the surface.
+/// The deltas of morph targets under an edit.
 #[derive(ValueEnum, Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Deltas {
-    /// They do.
+    /// They turn with the surface.
     Turn,
     /// They stay as they are stored.
     Stay,
 }
 
 impl MorphArguments {
-    /// Whether the deltas of the file's own morph targets turn with the surface.
+    /// The choice for the deltas of the file's own morph targets.
     pub fn deltas(&self) -> MorphDeltas {
         match self.morph_deltas {
             None => MorphDeltas::WhereFarOff,
@@ -173,7 +176,7 @@ impl MorphArguments {
         }
     }
 
-    /// The morph target that was asked for, called `own_name` where it was given no name.
+    /// The morph target to add, with the name `own_name` if the arguments give none.
     pub fn target<'a>(&'a self, own_name: &'a str) -> Option<MorphTarget<'a>> {
         let name = self.as_morph.as_deref()?;
         Some(MorphTarget {
@@ -189,22 +192,22 @@ pub(crate) struct TransferArguments {
     pub source: PathBuf,
     /// The same vertices and triangles in the pose
     pub pose: PathBuf,
-    /// The mesh that is to take it on
+    /// The mesh that takes on the pose
     pub target: PathBuf,
     /// The file to write; its extension tells its format
     #[arg(long, value_name = "OUT")]
     pub output: PathBuf,
-    /// Which triangles of SOURCE and TARGET belong together, numbered from 0: {"triangles": [[SOURCE, TARGET], ..]}.
-    /// Without it, both must have the same triangles
+    /// The pairs of corresponding triangles, numbered from 0: {"triangles": [[SOURCE, TARGET], ..]}. Without it, both
+    /// must have the same triangles
     #[arg(long, value_name = "PAIRS.json")]
     pub correspondences: Option<PathBuf>,
-    /// As a shape or as a morph target.
+    /// The kind of the output.
     #[command(flatten)]
     pub morph: MorphArguments,
-    /// Which vertices are one.
+    /// The welding of vertices.
     #[command(flatten)]
     pub weld: WeldArguments,
-    /// On how many threads, and with which vectors.
+    /// The threads and vectors.
     #[command(flatten)]
     pub compute: ComputeArguments,
 }
@@ -213,18 +216,18 @@ pub(crate) struct TransferArguments {
 pub(crate) struct MergeArguments {
     /// The file that stays where it is: glb, gltf, obj, ply, stl or off
     pub first: PathBuf,
-    /// The file that is put onto it
+    /// The file that is joined to it
     pub second: PathBuf,
-    /// What to delete of both, and which places belong together
+    /// The parts to delete and the places to join
     #[arg(long, value_name = "JOINS.json")]
     pub joins: PathBuf,
-    /// Where to write, and what may be replaced.
+    /// The output file and report.
     #[command(flatten)]
     pub output: NewShapeArguments,
-    /// Which vertices are one.
+    /// The welding of vertices.
     #[command(flatten)]
     pub weld: WeldArguments,
-    /// On how many threads, and with which vectors.
+    /// The threads and vectors.
     #[command(flatten)]
     pub compute: ComputeArguments,
 }
@@ -233,19 +236,37 @@ pub(crate) struct MergeArguments {
 pub(crate) struct FillArguments {
     /// The file with holes: glb, gltf, obj, ply, stl or off
     pub file: PathBuf,
-    /// Fill the N longest holes alone; without it and --at, every hole
+    /// Fill only the N longest borders; without it and --at, fill every hole except the outer border of an open sheet
     #[arg(long, value_name = "N", conflicts_with = "at", value_parser = RangedU64ValueParser::<usize>::new().range(1..=100_000_000))]
     pub largest: Option<usize>,
-    /// Fill the hole whose rim passes this vertex of the file alone
+    /// Fill only the border that passes this vertex of the file
     #[arg(long, value_name = "VERTEX")]
     pub at: Option<u32>,
-    /// Where to write, and what may be replaced.
+    /// The output file and report.
     #[command(flatten)]
     pub output: NewShapeArguments,
-    /// Which vertices are one.
+    /// The welding of vertices.
     #[command(flatten)]
     pub weld: WeldArguments,
-    /// On how many threads, and with which vectors.
+    /// The threads and vectors.
+    #[command(flatten)]
+    pub compute: ComputeArguments,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct BridgeArguments {
+    /// The file with the borders: glb, gltf, obj, ply, stl or off
+    pub file: PathBuf,
+    /// A vertex of each of the two borders to join, by their numbers in the file
+    #[arg(long, num_args = 2, value_names = ["VERTEX", "VERTEX"], required = true)]
+    pub borders: Vec<u32>,
+    /// The output file and report.
+    #[command(flatten)]
+    pub output: NewShapeArguments,
+    /// The welding of vertices.
+    #[command(flatten)]
+    pub weld: WeldArguments,
+    /// The threads and vectors.
     #[command(flatten)]
     pub compute: ComputeArguments,
 }
@@ -255,15 +276,28 @@ pub(crate) struct CutArguments {
     /// The file to cut: glb, gltf, obj, ply, stl or off
     pub file: PathBuf,
     /// The vertices to delete, as a selector of the edit format
-    #[arg(long, value_name = "SELECTOR.json")]
-    pub delete: PathBuf,
-    /// Where to write, and what may be replaced.
+    #[arg(
+        long,
+        value_name = "SELECTOR.json",
+        required_unless_present = "plane",
+        conflicts_with = "plane"
+    )]
+    pub delete: Option<PathBuf>,
+    /// Cut along the plane of the points p with (NX, NY, NZ) · p = D, in world units, and split the triangles that it
+    /// crosses
+    #[arg(long, value_name = "NX,NY,NZ,D", allow_hyphen_values = true)]
+    pub plane: Option<PlaneArgument>,
+    /// The side of the plane to keep: the one to which (NX, NY, NZ) points, the other, or both, whose triangles are only
+    /// split
+    #[arg(long, value_enum, default_value_t = KeepArgument::Positive, requires = "plane")]
+    pub keep: KeepArgument,
+    /// The output file and report.
     #[command(flatten)]
     pub output: NewShapeArguments,
-    /// Which vertices are one.
+    /// The welding of vertices.
     #[command(flatten)]
     pub weld: WeldArguments,
-    /// On how many threads, and with which vectors.
+    /// The threads and vectors.
     #[command(flatten)]
     pub compute: ComputeArguments,
 }
@@ -279,37 +313,37 @@ pub(crate) struct FlowArguments {
     /// each step, with its number
     #[arg(long, value_name = "OUT")]
     pub output: PathBuf,
-    /// Where to write how the flow went and how long it took
+    /// The file for the flow's figures and times
     #[arg(long, value_name = "REPORT.json")]
     pub report: Option<PathBuf>,
-    /// The most memory that the pressure's factor may take beside the mesh, such as 8GB or 500MB; without it 16GiB, and
-    /// never more than the machine has left
+    /// The most memory for the pressure's factor beside the mesh, such as 8GB or 500MB; without it 16GiB, and never more
+    /// than the machine has left
     #[arg(long, value_name = "SIZE", value_parser = pliant_engine::memory::bytes)]
     pub memory: Option<u64>,
-    /// Which vertices are one.
+    /// The welding of vertices.
     #[command(flatten)]
     pub weld: WeldArguments,
-    /// On how many threads, and with which vectors.
+    /// The threads and vectors.
     #[command(flatten)]
     pub compute: ComputeArguments,
 }
 
-/// Where a new shape goes.
+/// The output of a new shape.
 #[derive(Args, Debug)]
 pub(crate) struct NewShapeArguments {
     /// The file to write; its extension tells its format
     #[arg(long, value_name = "OUT")]
     pub output: PathBuf,
-    /// Where to write what was done
+    /// Write a report to this file
     #[arg(long, value_name = "REPORT.json")]
     pub report: Option<PathBuf>,
-    /// OUT may be the file that is read; the original is kept beside it
+    /// Allow OUT to be an input file; the original is kept beside it
     #[arg(long)]
     pub replace: bool,
 }
 
 impl NewShapeArguments {
-    /// Whether OUT may be the file that is read.
+    /// The choice for an OUT that is an input file.
     pub fn replace(&self) -> Replace {
         match self.replace {
             true => Replace::WithOriginalKept,
@@ -325,14 +359,14 @@ pub(crate) struct CompareArguments {
     /// The edit
     #[arg(long, value_name = "EDIT.json")]
     pub edit: PathBuf,
-    /// The methods to compare, divided by commas, or `all` of them; each is NAME[:OPTION=VALUE..]. The edit's own keeps
-    /// the edit's options where it is given by its name alone
+    /// The methods to compare, separated by commas, or `all`; each is NAME[:OPTION=VALUE..]. The name of the edit's
+    /// own method alone keeps the edit's options
     #[arg(long, value_name = "NAME,..", value_delimiter = ',', required = true, num_args = 1)]
     pub methods: Vec<String>,
     /// The picture to write: a cell for each method
     #[arg(long, value_name = "SHEET.png")]
     pub output: PathBuf,
-    /// Where to write each method's report
+    /// Write each method's report to this file
     #[arg(long, value_name = "REPORT.json")]
     pub report: Option<PathBuf>,
     /// Replay the edit as a drag of N frames (1 to 100000) instead of one solve
@@ -341,26 +375,25 @@ pub(crate) struct CompareArguments {
     /// The picture's size in pixels
     #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1600x1000")]
     pub size: PictureSize,
-    /// From where, and in which colours.
+    /// The view and the colours.
     #[command(flatten)]
     pub look: LookArguments,
-    /// Which vertices are one.
+    /// The welding of vertices.
     #[command(flatten)]
     pub weld: WeldArguments,
-    /// On how many threads, and with which vectors.
+    /// The threads and vectors.
     #[command(flatten)]
     pub compute: ComputeArguments,
 }
 
-/// What is computed with. The result is the same whatever it is.
+/// The threads and vectors of a computation. They do not change the result.
 #[derive(Args, Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub struct ComputeArguments {
-    /// How many threads to use (at most four a core); without it, all cores. The result is the same whatever their
-    /// number
+    /// The number of threads, at most four a core; by default all cores. The result does not depend on it
     #[arg(long, value_name = "N", value_parser = RangedU64ValueParser::<usize>::new().range(1..=65_536))]
     pub threads: Option<usize>,
-    /// Which of the processor's vectors to use: avx512, avx2 or baseline; without it, the widest. The result is the
-    /// same whichever they are
+    /// The processor's vectors to use: avx512, avx2 or baseline; by default the widest. The result does not depend on
+    /// them
     #[arg(long, value_name = "VECTORS", value_parser = vectors)]
     pub vectors: Option<Vectors>,
 }
@@ -369,25 +402,25 @@ pub struct ComputeArguments {
 fn vectors(name: &str) -> Result<Vectors, String> {
     Vectors::from_name(name).ok_or_else(|| {
         let names = Vectors::ALL.map(Vectors::name).join(", ");
-        format!("there are {names}")
+        format!("use {names}")
     })
 }
 
-/// From where a picture looks, and in which colours.
+/// The view and the colours of a picture.
 #[derive(Args, Clone, Copy, PartialEq, Eq, Debug)]
 pub struct LookArguments {
     /// The axis that points up
     #[arg(long, value_enum, default_value = "y")]
     pub up: Up,
-    /// From where to look
+    /// The direction of view
     #[arg(long, value_enum, default_value = "three-quarter")]
     pub view: View,
-    /// How to colour the surface
+    /// The surface's colours
     #[arg(long, value_enum, default_value = "clay")]
     pub shading: Shading,
 }
 
-/// What `pliant render` draws, and how.
+/// The arguments of `pliant render`.
 #[derive(Args, Clone, PartialEq, Debug)]
 pub struct RenderArguments {
     /// The file to draw: glb, gltf, obj, ply, stl or off
@@ -401,26 +434,25 @@ pub struct RenderArguments {
     /// The picture's size in pixels
     #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1280x800")]
     pub size: PictureSize,
-    /// From where, and in which colours.
+    /// The view and the colours.
     #[command(flatten)]
     pub look: LookArguments,
-    /// Which clay `--shading clay` and `regions` take
+    /// The clay of `--shading clay` and `regions`
     #[arg(long, default_value = "clay", value_parser = clay())]
     pub clay: Clay,
-    /// How depth looks
+    /// The projection
     #[arg(long, value_enum, default_value = "perspective")]
     pub projection: ProjectionName,
-    /// Show each triangle flat instead of interpolating normals
+    /// Shade each triangle flat instead of interpolating normals
     #[arg(long)]
     pub flat: bool,
     /// Draw the triangles' edges
     #[arg(long)]
     pub wireframe: bool,
-    /// Mark edges where the surface ends, and those that more than two triangles share
+    /// Mark edges where the surface ends and edges that more than two triangles share
     #[arg(long)]
     pub borders: bool,
-    /// Outline the edit's handles, and draw the line where the free region meets what is held; `--shading regions` does
-    /// so, too
+    /// Outline the edit's handles and the free region; `--shading regions` does so, too
     #[arg(long)]
     pub outlines: bool,
     /// Draw the ground's grid
@@ -432,10 +464,10 @@ pub struct RenderArguments {
     /// Leave the background transparent
     #[arg(long)]
     pub transparent: bool,
-    /// Write N pictures all around the up axis (2 to 9999), as OUT-0001.png and so on
+    /// Write N pictures around the up axis (2 to 9999), as OUT-0001.png and so on
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=9999))]
     pub turntable: Option<u32>,
-    /// Which vertices are one.
+    /// The welding of vertices.
     #[command(flatten)]
     pub weld: WeldArguments,
 }
@@ -448,7 +480,7 @@ pub enum Up {
     Z,
 }
 
-/// From where a picture looks.
+/// The direction of view of a picture.
 #[derive(ValueEnum, Clone, Copy, PartialEq, Eq, Debug)]
 #[expect(missing_docs, reason = "each variant is what its name says")]
 pub enum View {
@@ -461,10 +493,10 @@ pub enum View {
     ThreeQuarter,
 }
 
-/// How a picture colours the surface.
+/// The surface's colours in a picture.
 #[derive(ValueEnum, Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Shading {
-    /// Clay: shape and nothing else
+    /// Clay, which shows the shape alone
     Clay,
     /// The file's materials
     Material,
@@ -484,7 +516,7 @@ pub enum Shading {
     Normals,
 }
 
-/// How depth looks in a picture.
+/// The projection of a picture.
 #[derive(ValueEnum, Clone, Copy, PartialEq, Eq, Debug)]
 pub enum ProjectionName {
     Perspective,
@@ -494,9 +526,9 @@ pub enum ProjectionName {
 /// A picture's size in pixels, 1 to 16384 each way.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct PictureSize {
-    /// How wide.
+    /// The width.
     pub width: u32,
-    /// How high.
+    /// The height.
     pub height: u32,
 }
 
@@ -549,7 +581,7 @@ pub(crate) fn definition() -> clap::Command {
 
 /// Each method with its options, for the help.
 fn methods_help() -> String {
-    let mut help = "Methods and their options, as they stand in the edit's `method`:".to_owned();
+    let mut help = "Methods and their options, as members of the edit's `method`:".to_owned();
     for declaration in METHODS {
         help += &format!("\n  {}: {}", declaration.name, declaration.when_to_use);
         let default = (declaration.default)();
@@ -574,13 +606,13 @@ fn methods_help() -> String {
         heeding(ConstraintKind::Continuity),
     );
     help + &format!(
-        "\n\nWhat holds the surface, as members of the edit:\n  \
-         handles[].soft ({soft}): weight of a handle that only pulls, 1e-6 to 1e6; at 1 handle and surface give way to \
-         each other; without it the handle holds exactly\n  \
-         handles[].continuity ({joints}): how the surface joins this handle, 0 a hinge, 1 equal tangents, 2 equal \
-         curvature, or between; at most the order less 1; default 2\n  \
-         continuity ({joints}): the same for all that is held: a number, or a list of {{\"select\": .., \"value\": ..}} \
-         in which the later entry wins"
+        "\n\nConstraints, as members of the edit:\n  \
+         handles[].soft ({soft}): weight of a handle that only pulls, 1e-6 to 1e6; at 1 handle and surface yield \
+         equally; without it the handle is exact\n  \
+         handles[].continuity ({joints}): smoothness of the surface at this handle, 0 for a hinge, 1 for equal \
+         tangents, 2 for equal curvature, or between; at most the order less 1; default 2\n  \
+         continuity ({joints}): the same for all handles and fixed vertices: a number, or a list of \
+         {{\"select\": .., \"value\": ..}} in which the later entry wins"
     )
 }
 

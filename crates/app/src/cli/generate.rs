@@ -82,7 +82,7 @@ fn command_line() -> String {
 
 /// The window's commands with their keys as a page in Markdown.
 fn commands() -> String {
-    let mut page = "# Commands and keys\n\n| command | key | what it does |\n|---|---|---|\n".to_owned();
+    let mut page = "# Commands and keys\n\n| command | key | effect |\n|---|---|---|\n".to_owned();
     for listed in Command::all_listed() {
         let keys: Vec<String> = listed.shortcuts.iter().map(Shortcut::label).collect();
         let cells = [listed.name, &keys.join(", "), listed.tooltip].map(|cell| cell.replace('|', "\\|"));

@@ -88,7 +88,7 @@ fn as_text(
         ),
     );
     if inspection.surface_vertices == 0 {
-        line("triangles", "none: there is nothing to edit in it".to_owned());
+        line("triangles", "none: the file has nothing to edit".to_owned());
     } else if inspection.surface_triangles == 0 {
         let space = pliant_deform::Remedy::OfSpace;
         line("triangles", format!("none: {space} bend the points"));

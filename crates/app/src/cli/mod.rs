@@ -4,6 +4,7 @@ mod apply;
 mod arguments;
 mod compare;
 mod console;
+mod cut_plane;
 mod diff;
 mod flow;
 mod generate;
@@ -46,7 +47,7 @@ pub fn main() -> ExitCode {
     ExitCode::from(run(std::env::args_os().collect(), &mut console))
 }
 
-/// Does what the arguments request (the program's name comes first) and gives the exit status: 0 done, 1 refused, 2
+/// Executes the arguments' request (the program's name comes first) and gives the exit status: 0 done, 1 refused, 2
 /// wrong arguments. A refusal is one line on `console.err`.
 pub fn run(arguments: Vec<OsString>, console: &mut Console<'_>) -> u8 {
     let result = match arguments::parse(arguments) {
@@ -58,6 +59,7 @@ pub fn run(arguments: Vec<OsString>, console: &mut Console<'_>) -> u8 {
             Some(Command::Diff(arguments)) => diff::run(&arguments, console),
             Some(Command::Transfer(arguments)) => transfer::run(&arguments, console),
             Some(Command::Fill(arguments)) => stitch::fill(&arguments, console),
+            Some(Command::Bridge(arguments)) => stitch::bridge(&arguments, console),
             Some(Command::Cut(arguments)) => stitch::cut(&arguments, console),
             Some(Command::Merge(arguments)) => stitch::merge(&arguments, console),
             Some(Command::Flow(arguments)) => flow::run(&arguments, console),

@@ -51,7 +51,7 @@ pub(super) fn check_png(output: &Path) -> Result<(), EngineError> {
     }
     let output = files::shown(output);
     Err(EngineError::Arguments(format!(
-        "--output {output} is no .png: pictures are written as PNG"
+        "--output {output} is not a .png: give a name that ends with .png"
     )))
 }
 
@@ -341,12 +341,7 @@ impl Shape {
             let Some(job) = executor.take(kind) else { break };
             // A picture needs no hierarchy for rays, and a shape at rest needs no solver: without an ordering nothing
             // is bound.
-            let is_needed = match kind {
-                JobKind::Pick | JobKind::Compare | JobKind::Inspect | JobKind::Joint => false,
-                JobKind::Order => posed == Posed::Bent,
-                _ => true,
-            };
-            if is_needed {
+            if kind.is_awaited() && (kind != JobKind::Order || posed == Posed::Bent) {
                 editor.handle(Event::JobDone(job.run()));
             }
         }

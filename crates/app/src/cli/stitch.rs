@@ -1,44 +1,65 @@
-//! `pliant fill`, `pliant cut` and `pliant merge`: new shapes.
+//! `pliant fill`, `pliant bridge`, `pliant cut` and `pliant merge`: new shapes.
+
+use std::path::Path;
 
 use pliant_engine::EngineError;
 use pliant_engine::files;
-use pliant_engine::stitching::{self, Cut, Fill, Holes, Merge, Stitched};
+use pliant_engine::stitching::{self, Cut, CutAlong, Fill, Holes, Merge, Remaking, Stitched};
 use pliant_io::Format;
 use pliant_mesh::Progress;
 
-use super::arguments::{CutArguments, FillArguments, MergeArguments, NewShapeArguments};
+use super::arguments::{
+    BridgeArguments, ComputeArguments, CutArguments, FillArguments, MergeArguments, NewShapeArguments, WeldArguments,
+};
 use crate::cli::console::{Console, print, warn};
 use crate::cli::threads::on_threads;
 use crate::files::original::{Kept, Original};
 
 pub(super) fn fill(arguments: &FillArguments, console: &mut Console<'_>) -> Result<(), EngineError> {
-    check_format(&arguments.output)?;
-    let job = Fill {
-        file: &arguments.file,
-        holes: match (arguments.largest, arguments.at) {
-            (_, Some(vertex)) => Holes::At(vertex),
-            (Some(count), None) => Holes::Largest(count),
-            (None, None) => Holes::Every,
-        },
-        output: &arguments.output.output,
-        report: arguments.output.report.as_deref(),
-        replace: arguments.output.replace(),
-        weld: arguments.weld.options(),
+    let remaking = remaking(&arguments.file, &arguments.output, &arguments.weld)?;
+    let holes = match (arguments.largest, arguments.at) {
+        (_, Some(vertex)) => Holes::At(vertex),
+        (Some(count), None) => Holes::Largest(count),
+        (None, None) => Holes::Every,
     };
+    filled(
+        &Fill { remaking, holes },
+        (&arguments.output, arguments.compute),
+        console,
+    )
+}
+
+pub(super) fn bridge(arguments: &BridgeArguments, console: &mut Console<'_>) -> Result<(), EngineError> {
+    let remaking = remaking(&arguments.file, &arguments.output, &arguments.weld)?;
+    let [first, second] = arguments.borders[..] else {
+        return Err(EngineError::Arguments("--borders takes two vertices".to_owned()));
+    };
+    let holes = Holes::Between([first, second]);
+    filled(
+        &Fill { remaking, holes },
+        (&arguments.output, arguments.compute),
+        console,
+    )
+}
+
+fn filled(
+    job: &Fill<'_>,
+    (output, compute): (&NewShapeArguments, ComputeArguments),
+    console: &mut Console<'_>,
+) -> Result<(), EngineError> {
     let (watch, staging) = (&console.watch, &console.staging);
-    let stitched = on_threads(arguments.compute, || stitching::fill(&job, watch, staging))??;
-    conclude(stitched, &arguments.output, console)
+    let stitched = on_threads(compute, || stitching::fill(job, watch, staging))??;
+    conclude(stitched, output, console)
 }
 
 pub(super) fn cut(arguments: &CutArguments, console: &mut Console<'_>) -> Result<(), EngineError> {
-    check_format(&arguments.output)?;
     let job = Cut {
-        file: &arguments.file,
-        delete: &arguments.delete,
-        output: &arguments.output.output,
-        report: arguments.output.report.as_deref(),
-        replace: arguments.output.replace(),
-        weld: arguments.weld.options(),
+        remaking: remaking(&arguments.file, &arguments.output, &arguments.weld)?,
+        along: match (&arguments.plane, &arguments.delete) {
+            (Some(plane), _) => CutAlong::Plane(plane.0, arguments.keep.into()),
+            (None, Some(delete)) => CutAlong::Selector(delete),
+            (None, None) => return Err(EngineError::Arguments("give --delete or --plane".to_owned())),
+        },
     };
     let (watch, staging) = (&console.watch, &console.staging);
     let stitched = on_threads(arguments.compute, || stitching::cut(&job, watch, staging))??;
@@ -46,26 +67,27 @@ pub(super) fn cut(arguments: &CutArguments, console: &mut Console<'_>) -> Result
 }
 
 pub(super) fn merge(arguments: &MergeArguments, console: &mut Console<'_>) -> Result<(), EngineError> {
-    check_format(&arguments.output)?;
     let job = Merge {
-        first: &arguments.first,
+        remaking: remaking(&arguments.first, &arguments.output, &arguments.weld)?,
         second: &arguments.second,
         joins: &arguments.joins,
-        output: &arguments.output.output,
-        report: arguments.output.report.as_deref(),
-        replace: arguments.output.replace(),
-        weld: arguments.weld.options(),
     };
     let (watch, staging) = (&console.watch, &console.staging);
     let stitched = on_threads(arguments.compute, || stitching::merge(&job, watch, staging))??;
     conclude(stitched, &arguments.output, console)
 }
 
-/// Refuses an OUT of no known format as a wrong argument.
-fn check_format(to: &NewShapeArguments) -> Result<(), EngineError> {
+/// The file to read and the files to write. Refuses an OUT of no known format as a wrong argument.
+fn remaking<'a>(file: &'a Path, to: &'a NewShapeArguments, weld: &WeldArguments) -> Result<Remaking<'a>, EngineError> {
     let format = Format::of_name(&to.output.to_string_lossy());
     format.map_err(|error| EngineError::Arguments(format!("--output: {error}")))?;
-    Ok(())
+    Ok(Remaking {
+        file,
+        output: &to.output,
+        report: to.report.as_deref(),
+        replace: to.replace(),
+        weld: weld.options(),
+    })
 }
 
 /// Keeps the original of a file that is replaced, commits, and says what was done.

@@ -15,7 +15,7 @@ pub(super) fn on_threads<T: Send>(asked: ComputeArguments, work: impl FnOnce() -
         let others = Vectors::ALL.into_iter().filter(|other| other.is_available());
         let others: Vec<&str> = others.map(Vectors::name).collect();
         return Err(EngineError::Arguments(format!(
-            "--vectors {}: this processor does not have them; leave it out, or give {}",
+            "--vectors {}: this processor does not have these vectors; leave it out, or give {}",
             vectors.name(),
             others.join(" or ")
         )));

@@ -20,7 +20,7 @@ pub enum Field {
 }
 
 impl Field {
-    /// Whether it follows from the shape, unlike the others.
+    /// Returns true if it follows from the shape, unlike the others.
     pub fn is_of_shape(self) -> bool {
         !matches!(self, Self::Stiffness | Self::Weight)
     }

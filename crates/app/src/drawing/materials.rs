@@ -109,7 +109,7 @@ impl EncodedMaterials {
             .collect()
     }
 
-    /// Whether any material has an image.
+    /// Returns true if any material has an image.
     pub fn has_images(&self) -> bool {
         !self.wanted.is_empty()
     }
@@ -187,7 +187,8 @@ fn shrunk_note(name: &str, image: &DecodedImage, budget: u64) -> Option<String> 
     let shown = &image.pixels;
     (shown.width < width || shown.height < height).then(|| {
         format!(
-            "the image {name} of {width} by {height} pixels is shown with {} by {}: all images together may take {} MiB",
+            "the image {name} of {width} by {height} pixels is shown with {} by {}, so that all images together fit \
+             {} MiB",
             shown.width,
             shown.height,
             budget >> 20

@@ -24,7 +24,7 @@ pub struct Relative {
     pub centre: DVec3,
     /// In world units.
     unit: f64,
-    /// Whether so many triangles are so small that normals need double precision.
+    /// True if so many triangles are so small that normals need double precision.
     pub is_fine: bool,
 }
 

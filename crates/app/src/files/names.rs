@@ -72,7 +72,7 @@ fn name_with(path: &Path, tail: &str, extension: Option<&OsStr>) -> PathBuf {
     path.with_file_name(name)
 }
 
-/// Whether a path is that of a glTF whose buffers are beside it.
+/// Returns true if a path is that of a glTF whose buffers are beside it.
 pub fn is_gltf(path: &Path) -> bool {
     path.extension()
         .is_some_and(|extension| extension.eq_ignore_ascii_case("gltf"))

@@ -107,7 +107,7 @@ impl Original {
         free_or_same(original_names(&self.path).filter(|name| !taken.contains(name)), bytes)
     }
 
-    /// Whether it is the open file as it was read, and its path now has another one.
+    /// Returns true if it is the open file as it was read, and its path now has another one.
     pub fn is_former(&self, loaded: &Loaded) -> bool {
         matches!(self.content, Content::Open) && !is_as_read(&self.path, loaded)
     }
@@ -177,7 +177,7 @@ pub fn free_or_same(names: impl Iterator<Item = PathBuf>, bytes: &[u8]) -> Resul
     )))
 }
 
-/// Whether the file at `path` and its neighbours are those that were opened, and unchanged.
+/// Returns true if the file at `path` and its neighbours are those that were opened, and unchanged.
 pub fn is_as_read(path: &Path, loaded: &Loaded) -> bool {
     loaded.stamp.is_some()
         && files::is_same(&loaded.path, path)

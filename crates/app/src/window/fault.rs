@@ -32,7 +32,7 @@ fn report(info: &PanicHookInfo<'_>, kept: Option<&Path>, folder: &Path) -> std::
         .map_or(0, |since| since.as_secs());
     let kept = kept.map_or("there was none".to_owned(), pliant_engine::files::shown);
     let text = format!(
-        "Pliant {VERSION} on {} stopped by a fault of its own.\n\n{info}\n\nUnsaved work: {kept}\n\n{}\n",
+        "Pliant {VERSION} on {} stopped because of an internal error.\n\n{info}\n\nUnsaved work: {kept}\n\n{}\n",
         std::env::consts::OS,
         Backtrace::force_capture()
     );

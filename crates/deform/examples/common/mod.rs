@@ -5,7 +5,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use glam::{DAffine3, DMat3, DVec3};
-use pliant_deform::{Constraints, Loose, Method, Problem, Role};
+use pliant_deform::{Loose, Method, Problem, Role};
 use pliant_mesh::{Cancel, Drawn, DrawnVertex, Model, Progress, SurfaceVertex, Vectors, WeldOptions};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
@@ -42,16 +42,8 @@ pub fn read(off: &Path) -> Model {
 /// A problem with one handle, and defaults for missing inputs.
 pub fn one_handle<'a>(model: &'a Model, roles: &'a [Role], stiffness: &'a [f64], method: &'a Method) -> Problem<'a> {
     Problem {
-        surface: &model.surface,
-        topology: &model.topology,
-        roles,
-        handle_count: 1,
-        stiffness,
-        constraints: Constraints::default(),
         loose: Loose::Rest,
-        method,
-        attachments: &[],
-        revision: 0,
+        ..Problem::new((&model.surface, &model.topology), roles, stiffness, method)
     }
 }
 

@@ -104,7 +104,7 @@ impl Cells {
     }
 }
 
-/// Whether a cell's vertex is solved for.
+/// The state of a cell's vertex in the solve.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Solved {
     /// It is solved for.

@@ -11,12 +11,13 @@ use pliant_mesh::{Cancel, Progress};
 use rayon::prelude::*;
 
 use super::ArapSolver;
+use super::cells::vector;
 use super::history::Field;
 use super::shape::{Guesses, IDENTITY, Rotation, Shape, wide};
-use super::state::State;
 use crate::coarse::clustered::{Share, Shares, on_clusters, shares, transposed};
 use crate::coarse::clusters::Clusters;
 use crate::coarse::domain::{ABSENT, Domain};
+use crate::descent::rule::State;
 use crate::handles::blend::Origin;
 use crate::handles::offsets::Offsets;
 use crate::handles::{Handle, Motion};
@@ -109,7 +110,7 @@ impl Coarse {
         })
     }
 
-    /// Whether every fine cell has a coarse one near it; small parts may have none.
+    /// Returns true if every fine cell has a coarse one near it; small parts may have none.
     pub fn leads_all(&self) -> bool {
         self.leads_all
     }
@@ -158,8 +159,8 @@ impl Coarse {
             ..
         } = solver;
         cells.evaluate(current, Guesses::Own, scratch);
-        springs.add_energy(current);
-        springs.add_gradient(current);
+        current.add_energy_of(springs);
+        current.add_gradient_of(springs);
         let (offsets, members) = (&self.offsets, &self.members);
         let units = (unit / cells.unit()) as f32;
         let gathered = |vertex: usize| {
@@ -183,7 +184,7 @@ impl Coarse {
             .map(|(own, wanted)| std::array::from_fn(|k| own[k] - wanted[k]))
             .collect();
         current.gradient = wanted;
-        current.energy += springs.load_energy(current);
+        current.energy += springs.load_energy(|vertex| vector(current.displacements[vertex]));
         solver.state = State::Descending;
         self.followed.copy_from_slice(&current.rotations);
     }

@@ -6,6 +6,7 @@ use glam::DVec3;
 
 use super::Arap;
 use super::lead::LedSolver;
+use crate::descent::prescribed::Prescribed;
 use crate::handles::finite::Finite;
 use crate::handles::offsets::Offsets;
 use crate::handles::turns::Followed;
@@ -13,14 +14,24 @@ use crate::handles::{Motion, clear};
 use crate::method::{BindInput, BoundMethod, DeformMethod, MethodDeclaration, Stepped};
 use crate::needs::{ConstraintKind, Needs, Solve};
 use crate::operators::repairs;
-use crate::{BindError, SolveError};
+use crate::{BindError, OptionSlider, Picture, SolveError};
+
+/// From a hundredth of the default to a hundred times it: the logarithmic slider begins in its middle.
+const RIGID_TO_SMOOTH: OptionSlider = OptionSlider {
+    option: "smoothness",
+    ends: ["Rigid", "smooth"],
+    range: [3e-5, 0.3],
+    help: "Rigid keeps details and bends only where it must; smooth spreads the bend evenly. The slider sets `smoothness`.",
+};
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "arap",
     title: "As rigid as possible",
-    when_to_use: "Keeps every neighbourhood as rigid as it can, step by step, for large turns and long drags: with the \
-                  energy \"smooth\" it bends and twists evenly, with \"spokes-and-rims\" it binds sooner and may crease.",
+    when_to_use: "Keeps every neighbourhood as rigid as possible, step by step, for large turns and long drags. The \
+                  energy \"smooth\" bends and twists evenly; \"spokes-and-rims\" binds sooner and may crease.",
     keywords: "arap as-rigid-as-possible",
+    picture: Picture::Blocks,
+    slider: Some(&RIGID_TO_SMOOTH),
     options: Arap::OPTIONS,
     attachments: &[],
     heeds: &[ConstraintKind::SoftHandles, ConstraintKind::Stiffness],
@@ -36,6 +47,10 @@ impl DeformMethod for Arap {
     /// A neck can be so short that stretching it costs less than the twist around it.
     fn follows_turns(&self) -> Option<Followed> {
         Some(Followed::by_necks(140.0))
+    }
+
+    fn advised_for_degrees(&self) -> u16 {
+        140
     }
 
     fn needs(&self) -> Needs {
@@ -78,11 +93,7 @@ impl DeformMethod for Arap {
 impl BoundMethod for LedSolver {
     fn step(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> Result<Stepped, SolveError> {
         clear(displacements);
-        for (own, motion) in self.solver.prescribed.iter().zip(motions) {
-            for vertex in own {
-                displacements[vertex.surface_vertex as usize] = vertex.goes(motion);
-            }
-        }
+        Prescribed::write(&self.solver.prescribed, motions, displacements);
         let (converged, energy) = LedSolver::step(self, motions, displacements);
         Ok(Stepped {
             converged,

@@ -1,17 +1,15 @@
-//! One descent step with a line search.
+//! ARAP's energy as it descends.
 
 use rayon::prelude::*;
 
 use super::ArapSolver;
+use super::end::End;
 use super::history::Field;
 use super::shape::{Guesses, Shape};
-use super::state::{End, State};
-use crate::numerical::line_search::Trial;
+use crate::descent::energy::{Energy, lower};
+use crate::descent::rule::Rule;
 use crate::numerical::rows::CHUNK;
 use crate::numerical::sums::CHUNKS_A_TASK;
-
-/// Lengths that a line search tries.
-const TRIALS: u32 = 10;
 
 /// Energies below this share of the rest shape's scale are rounding of rotations and gradients in single precision.
 const NOTHING: f64 = 3.6e-15;
@@ -21,38 +19,16 @@ const ROUNDED: f64 = 1e-6;
 
 impl ArapSolver {
     /// Takes one step that lowers the energy, or finds that there is none.
-    ///
-    /// A shape has converged if the quadratic model promises a decrease below the tolerance's share of the energy and
-    /// the last step gained less than that too. In exact arithmetic a plain local/global step always descends: if even
-    /// that fails and promises little, only rounding is left; if it promises more, the descent has stalled.
     pub(super) fn descend(&mut self) {
         self.finish_step();
         self.map_gradient();
-        loop {
-            let factors = self.history.factors(&self.trial.gradient, &self.current.gradient);
-            let along = self
-                .history
-                .direction(&factors, &self.current.gradient, &mut self.direction);
-            let slope = -along * self.unit * self.unit;
-            let before = self.current.energy;
-            if slope < 0.0 && self.search(slope) {
-                let (gained, enough) = (
-                    before - self.current.energy,
-                    self.options.tolerance * self.current.energy + NOTHING * self.cells.scale,
-                );
-                if -0.5 * slope <= enough && gained <= enough {
-                    self.state = State::Converged;
-                }
-                return;
-            }
-            if self.history.is_empty() {
-                let little = self.options.tolerance.max(ROUNDED) * before + NOTHING * self.cells.scale;
-                let is_little = -0.5 * slope <= little;
-                self.state = if is_little { State::Converged } else { State::Stalled };
-                return;
-            }
-            self.history.clear();
-        }
+        let rule = Rule {
+            tolerance: self.options.tolerance,
+            nothing: NOTHING * self.cells.scale,
+            rounded: ROUNDED,
+        };
+        let lowered = lower(self);
+        self.state = rule.state(lowered, self.current.energy);
     }
 
     /// Computes the gradient at the end of the last step, and adds the step to the history.
@@ -62,7 +38,7 @@ impl ArapSolver {
             return;
         }
         self.cells.find_gradient(&mut self.current, &self.scratch);
-        self.springs.add_gradient(&mut self.current);
+        self.current.add_gradient_of(&self.springs);
         let End::Stepped(length) = end else { return };
         self.history.stepped(length, &mut self.direction);
     }
@@ -74,31 +50,40 @@ impl ArapSolver {
         self.preconditioner
             .map(gradient, &mut self.history.mapped, &mut self.map_room);
     }
+}
 
-    /// Moves against the direction, by its whole length if that lowers the energy enough. Returns whether any length
-    /// did.
-    fn search(&mut self, slope: f64) -> bool {
-        let before = self.current.energy;
-        let mut length = 1.0;
-        for _ in 0..TRIALS {
-            moved(&self.current, &self.direction, -length * self.unit, &mut self.trial);
-            let guesses = Guesses::Given(&self.current.rotations);
-            self.cells.measure(&mut self.trial, guesses, &mut self.scratch);
-            self.springs.add_energy(&mut self.trial);
-            let trial = Trial {
-                length,
-                before,
-                after: self.trial.energy,
-                slope,
-            };
-            if trial.is_sufficient() {
-                self.end = End::Stepped(length);
-                std::mem::swap(&mut self.current, &mut self.trial);
-                return true;
-            }
-            length = trial.next_length();
+impl Energy for ArapSolver {
+    fn value(&self) -> f64 {
+        self.current.energy
+    }
+
+    fn aim(&mut self) -> f64 {
+        let factors = self.history.factors(&self.trial.gradient, &self.current.gradient);
+        let along = self
+            .history
+            .direction(&factors, &self.current.gradient, &mut self.direction);
+        -along * self.unit * self.unit
+    }
+
+    fn try_length(&mut self, length: f64) -> f64 {
+        moved(&self.current, &self.direction, -length * self.unit, &mut self.trial);
+        let guesses = Guesses::Given(&self.current.rotations);
+        self.cells.measure(&mut self.trial, guesses, &mut self.scratch);
+        self.trial.add_energy_of(&self.springs);
+        self.trial.energy
+    }
+
+    fn accept(&mut self, length: f64) {
+        self.end = End::Stepped(length);
+        std::mem::swap(&mut self.current, &mut self.trial);
+    }
+
+    fn forget(&mut self) -> bool {
+        let has_steps = !self.history.is_empty();
+        if has_steps {
+            self.history.clear();
         }
-        false
+        has_steps
     }
 }
 

@@ -65,7 +65,7 @@ impl History {
         self.spare.extend(self.pending.take());
     }
 
-    /// Whether nothing is remembered.
+    /// Returns true if nothing is remembered.
     pub fn is_empty(&self) -> bool {
         self.pairs.is_empty()
     }

@@ -10,9 +10,11 @@ use pliant_mesh::{Cancel, Progress};
 use rayon::prelude::*;
 
 use super::coarse::Coarse;
+use super::end::End;
 use super::shape::{Guesses, IDENTITY};
-use super::state::{End, State};
 use super::{Arap, ArapSolver};
+use crate::descent::corrections::Corrections;
+use crate::descent::rule::State;
 use crate::handles::blend::{Origin, Screws};
 use crate::handles::offsets::Offsets;
 use crate::handles::{Handle, Motion};
@@ -58,7 +60,7 @@ impl LedSolver {
         Ok(Self {
             solver,
             coarse,
-            corrections: Corrections::default(),
+            corrections: Corrections::after(1, RAREST),
         })
     }
 
@@ -99,39 +101,17 @@ impl LedSolver {
     }
 }
 
-/// The schedule of corrections.
-#[derive(Clone, Copy, Debug)]
-struct Corrections {
-    /// Fine steps from one correction to the next.
-    every: u32,
-    /// Fine steps before the next one.
-    left: u32,
-    /// The decrease by the last fine step.
-    gained: f64,
-}
-
-impl Default for Corrections {
-    fn default() -> Self {
-        Self {
-            every: 1,
-            left: 1,
-            gained: f64::INFINITY,
-        }
-    }
-}
-
 impl ArapSolver {
     /// A step towards `motions`, led by `coarse`.
     fn step_led(&mut self, coarse: &mut Coarse, corrections: &mut Corrections, motions: &[Motion]) {
         if self.takes_other(motions) {
             self.start_led(coarse, corrections, motions);
-        } else if self.state == State::Descending && corrections.left == 0 {
+        } else if self.state == State::Descending && corrections.is_due() {
             self.correct(coarse, corrections);
         } else if self.state == State::Descending {
             let before = self.current.energy;
             self.descend();
-            corrections.gained = before - self.current.energy;
-            corrections.left -= 1;
+            corrections.stepped(before - self.current.energy);
         }
     }
 
@@ -140,11 +120,11 @@ impl ArapSolver {
     /// From the rest shape only the blend is used: it is exact if everything moves rigidly, and the coarse level
     /// corrects it next.
     fn start_led(&mut self, coarse: &mut Coarse, corrections: &mut Corrections, motions: &[Motion]) {
-        *corrections = Corrections::default();
+        *corrections = Corrections::after(1, RAREST);
         if self.motions.iter().all(Motion::is_rest) {
             coarse.aim();
             self.start(motions);
-            corrections.left = 0;
+            corrections.hurry();
             return;
         }
         self.finish_step();
@@ -185,10 +165,7 @@ impl ArapSolver {
         self.trial.rotations.copy_from_slice(&self.current.rotations);
         self.prolongate(coarse);
         let gained = self.current.energy - self.trial.energy;
-        let is_worth_it = gained > 2.0 * corrections.gained;
-        let every = if is_worth_it { 1 } else { 2 * corrections.every };
-        corrections.every = every.min(RAREST);
-        corrections.left = corrections.every;
+        corrections.corrected(gained, 2.0);
         if gained > 0.0 {
             let factor = self.unit.recip();
             self.direction
@@ -220,6 +197,6 @@ impl ArapSolver {
             ..
         } = self;
         cells.measure(trial, Guesses::Own, scratch);
-        springs.add_energy(trial);
+        trial.add_energy_of(springs);
     }
 }

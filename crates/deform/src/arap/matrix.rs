@@ -6,9 +6,9 @@ use rayon::prelude::*;
 
 use super::cells::{Cells, vector};
 use super::spokes::{floored, largest_weights};
-use super::springs::Spring;
 use crate::budget::reserved;
 use crate::coarse::domain::Domain;
+use crate::descent::springs::Spring;
 use crate::numerical::rows::CHUNK;
 use crate::sparse::factor_error::FactorError;
 use crate::sparse::matrix::ScaledMatrix;

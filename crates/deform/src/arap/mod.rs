@@ -8,8 +8,8 @@
 //!
 //! Parts: `domain` numbers the vertices, `rims` and `spokes` make the two energies' `cells` and `bending` adds the
 //! smooth one's term, `shape` evaluates them in a `fit_pass` and a `gradient_pass`, `matrix` and `precondition` make
-//! the global step and the handles' weights, `start` chooses the first shape, `springs` are the soft handles, `history`
-//! gives the direction and `descent` takes the step. For a large surface `clusters` make a small one, whose solver is
+//! the global step and the handles' weights, `start` chooses the first shape, `history` gives the direction and `descent`
+//! makes the energy one that [`crate::descent`] lowers. For a large surface `clusters` make a small one, whose solver is
 //! the `coarse` level and takes the `lead`.
 
 mod bend;
@@ -18,6 +18,7 @@ mod cells;
 pub(crate) mod coarse;
 mod declaration;
 mod descent;
+mod end;
 mod fit_pass;
 mod gradient_pass;
 mod history;
@@ -29,9 +30,7 @@ mod rims;
 mod rotation;
 mod shape;
 mod spokes;
-mod springs;
 mod start;
-mod state;
 
 use glam::DVec3;
 use pliant_mesh::{Cancel, Progress, SurfaceVertex};
@@ -41,13 +40,15 @@ pub(crate) use self::declaration::DECLARATION;
 pub use self::options::{Arap, ArapEnergy};
 
 use self::cells::{Cells, quad, vector};
+use self::end::End;
 use self::history::{Field, History};
 use self::matrix::System;
 use self::precondition::{MapRoom, Preconditioner, WeightInput};
 use self::shape::{Guesses, IDENTITY, Scratch, Shape};
-use self::springs::Springs;
-use self::state::{End, State};
 use crate::coarse::domain::Domain;
+use crate::descent::prescribed::Prescribed;
+use crate::descent::rule::State;
+use crate::descent::springs::Springs;
 use crate::handles::blend::HandleFrame;
 use crate::handles::offsets::Offsets;
 use crate::handles::{Handle, Motion};
@@ -64,7 +65,7 @@ pub(crate) struct ArapSolver {
     options: Arap,
     domain: Domain,
     cells: Cells,
-    springs: Springs,
+    springs: Springs<f32>,
     preconditioner: Preconditioner,
     /// Handles' harmonic weights, one row per cell.
     weights: Vec<f64>,
@@ -86,9 +87,9 @@ pub(crate) struct ArapSolver {
     unit: f64,
     /// The motions of the `current` shape.
     motions: Vec<Motion>,
-    /// Whether vertices of handles have offsets from the motions.
+    /// True if vertices of handles have offsets from the motions.
     has_offsets: bool,
-    /// Whether the offsets changed since the last step.
+    /// True if the offsets changed since the last step.
     has_other_offsets: bool,
     state: State,
     /// The number of further targets without a try of the blend from the rest shape, and the number of targets to skip
@@ -96,23 +97,6 @@ pub(crate) struct ArapSolver {
     until_blend: u32,
     patience: u32,
     mollified_faces: usize,
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Prescribed {
-    surface_vertex: u32,
-    /// The local vertex of each surface vertex; [`domain::ABSENT`] if no cell sees it.
-    local: u32,
-    coordinates: [f64; 4],
-    /// The offset of its target from its handle's motion.
-    offset: DVec3,
-}
-
-impl Prescribed {
-    /// The displacement to its target.
-    fn goes(&self, motion: &Motion) -> DVec3 {
-        motion.displace(self.coordinates) + self.offset
-    }
 }
 
 impl ArapSolver {
@@ -141,7 +125,14 @@ impl ArapSolver {
         cancel.check()?;
         progress.set(0.3);
         let (cells, bending) = cells_of(problem, options, &laplacian, &domain);
-        let springs = Springs::of(problem, partition, handles, &domain, &laplacian, bending, cells.unit());
+        let springs = Springs::of(
+            (handles, &partition.soft),
+            &surface.positions,
+            |vertex| Some(laplacian.inverse_areas()[laplacian.local(vertex)?].recip()),
+            |square_wave_number| square_wave_number + bending * square_wave_number.powi(2),
+            |vertex| Some(domain.local_of[vertex as usize]),
+            cells.unit(),
+        );
         let system = match options.energy {
             ArapEnergy::Spokes | ArapEnergy::SpokesAndRims => {
                 matrix::assemble(&laplacian, &domain, springs.all(), options.energy)
@@ -170,7 +161,7 @@ impl ArapSolver {
             preconditioner,
             weights,
             handles: HandleFrame::of_all(handles, world_origin),
-            prescribed: prescribed(problem, partition, handles, &domain),
+            prescribed: Prescribed::of(handles, &partition.soft, &surface.positions, &domain.local_of),
             rest,
             current: at_rest.clone(),
             trial: at_rest,
@@ -211,21 +202,21 @@ impl ArapSolver {
         self.cells.measure(&mut shape, Guesses::Own, &mut Scratch::default());
         let mut springs = self.springs.clone();
         springs.aim(motions);
-        springs.add_energy(&mut shape);
+        shape.add_energy_of(&springs);
         self.relative(shape.energy)
     }
 
     /// Sets the offsets of handles' vertices from their handles' motions.
     pub fn set_offsets(&mut self, offsets: &Offsets) {
         for vertex in self.prescribed.iter_mut().flatten() {
-            vertex.offset = offsets.at(vertex.surface_vertex);
+            vertex.set_offset(offsets);
         }
-        self.springs.set_offsets(&self.domain, offsets);
+        self.springs.set_offsets(offsets);
         self.has_offsets = !offsets.is_empty();
         self.has_other_offsets = true;
     }
 
-    /// Whether these motions or the offsets differ from the last step's.
+    /// Returns true if these motions or the offsets differ from the last step's.
     fn takes_other(&mut self, motions: &[Motion]) -> bool {
         std::mem::take(&mut self.has_other_offsets) || self.motions != motions
     }
@@ -246,7 +237,7 @@ impl ArapSolver {
         self.state = State::Converged;
     }
 
-    /// Whether the descent has stalled: no step lowers the energy although the shape has not converged.
+    /// Returns true if the descent has stalled: no step lowers the energy although the shape has not converged.
     pub fn has_stalled(&self) -> bool {
         self.state == State::Stalled
     }
@@ -312,7 +303,7 @@ fn preconditioner(
         unheld: &unheld,
     };
     Preconditioner::of(system, ends, &input, partition.budget, cancel)
-        .map_err(|error| error.into_bind_error(domain, component))
+        .map_err(|error| error.into_bind_error(problem.topology, domain.solved_count))
 }
 
 /// The cells of the options' energy, and the stiffness κ A of its bending term, 0 without one.
@@ -329,26 +320,4 @@ fn cells_of(problem: &BoundaryProblem, options: &Arap, laplacian: &Laplacian, do
             (cells, bending)
         }
     }
-}
-
-/// Each handle's vertices that move exactly with it; none for a soft handle.
-fn prescribed(
-    problem: &BoundaryProblem,
-    partition: &Partition,
-    handles: &[Handle],
-    domain: &Domain,
-) -> Vec<Vec<Prescribed>> {
-    let one = |(handle, soft): (&Handle, &Option<f64>)| {
-        if soft.is_some() {
-            return Vec::new();
-        }
-        let of = |&surface_vertex: &u32| Prescribed {
-            surface_vertex,
-            local: domain.local_of[surface_vertex as usize],
-            coordinates: handle.coordinates(problem.surface.positions[surface_vertex as usize]),
-            offset: DVec3::ZERO,
-        };
-        handle.vertices.iter().map(of).collect()
-    };
-    handles.iter().zip(&partition.soft).map(one).collect()
 }

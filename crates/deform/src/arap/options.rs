@@ -9,9 +9,9 @@ options! {
         /// The edges of a vertex's cell.
         energy: ArapEnergy = Choice {
             default: ArapEnergy::SpokesAndRims,
-            help: "what a neighbourhood keeps: its vertex's edges (\"spokes\"), its triangles (\"spokes-and-rims\", quick, \
-                   for folds and creases), or these and how it bends (\"smooth\", for even bends and twists and for \
-                   handles of single points)",
+            help: "the shape that a neighbourhood keeps: its vertex's edges (\"spokes\"), its triangles \
+                   (\"spokes-and-rims\", quick, for folds and creases), or its triangles and their bending \
+                   (\"smooth\", for even bends and twists and for handles of single points)",
         }; advanced,
         /// κ of the smooth energy (see [`ArapEnergy::Smooth`]), which bends like ½ κ A ∫ |Hess p'|², A being the area
         /// of the surface that can move: it has no unit and is independent of the mesh's size and density. Other
@@ -21,7 +21,7 @@ options! {
             // From hardly smoother than the rims alone to nearly a thin plate that keeps its curvature.
             range: [1e-6, 10.0],
             unit: "",
-            help: "how much the energy \"smooth\" resists bending, whatever the mesh's size and density",
+            help: "resistance of the energy \"smooth\" to bending, independent of the mesh's size and density",
         }; only_with("energy", &["smooth"]),
         /// Iteration ends when a step lowers the energy by less than this share of it; above 0.
         tolerance: f64 = iteration::TOLERANCE; advanced,

@@ -1,12 +1,11 @@
 //! The factored Laplacian: a global step, and the handles' harmonic weights.
 
-use pliant_mesh::{Cancel, Cancelled};
+use pliant_mesh::Cancel;
 use rayon::prelude::*;
 
 use super::cells::Quad;
 use super::matrix::System;
-use crate::BindError;
-use crate::budget::{Budget, Limit, filled};
+use crate::budget::{Budget, filled};
 use crate::coarse::domain::Domain;
 use crate::numerical::rows::CHUNK;
 use crate::numerical::sums::CHUNKS_A_TASK;
@@ -14,6 +13,7 @@ use crate::sparse::cholesky::Factor;
 use crate::sparse::factor_error::FactorError;
 use crate::sparse::solve::rhs::{Real, Rhs};
 use crate::sparse::solve::substitution::{Room, Substitution};
+use crate::sparse::system_error::SystemError;
 
 /// An approximate inverse of the system on the solved vertices.
 ///
@@ -38,52 +38,13 @@ pub(crate) struct MapRoom {
     double: (Vec<Rhs<f64>>, Room<f64>),
 }
 
-/// The reason why there is none.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum PreconditionError {
-    /// The pivot of this solved vertex is not positive.
-    Pivot(usize),
-    /// The solution of a constant has this error at this solved vertex.
-    Inaccurate(usize, f64),
-    Memory,
-    Budget(Limit),
-    Cancelled,
-}
-
-impl From<FactorError> for PreconditionError {
-    fn from(error: FactorError) -> Self {
-        match error {
-            FactorError::Pivot(column) => Self::Pivot(column),
-            FactorError::Memory => Self::Memory,
-            FactorError::Budget(limit) => Self::Budget(limit),
-            FactorError::Cancelled => Self::Cancelled,
-        }
-    }
-}
-
-impl PreconditionError {
-    /// The error as the caller sees it; `component` is that of a local vertex.
-    pub fn into_bind_error(self, domain: &Domain, component: impl Fn(usize) -> u32) -> BindError {
-        let free_count = domain.solved_count;
-        match self {
-            Self::Pivot(local) => BindError::NotPositiveDefinite {
-                component: component(local),
-                vertex: domain.vertices[local],
-            },
-            Self::Inaccurate(local, error) => BindError::Inaccurate {
-                component: component(local),
-                vertex: domain.vertices[local],
-                error,
-            },
-            Self::Memory => BindError::OutOfMemory { free_count },
-            Self::Budget(limit) => BindError::budget(free_count, limit),
-            Self::Cancelled => BindError::Cancelled(Cancelled),
-        }
-    }
-}
-
 /// The largest allowed error of a constant's solution: accurate enough for a descent direction.
 const TOLERANCE: f64 = 1e-2;
+
+/// A factorisation's refusal, whose columns are the domain's vertices.
+fn refused(error: FactorError, domain: &Domain) -> SystemError {
+    SystemError::of(error, |local| domain.vertices[local])
+}
 
 impl Preconditioner {
     /// Factors and checks the system, whose supernodes end at `ends`; also returns each handle's weights (see
@@ -94,9 +55,10 @@ impl Preconditioner {
         weights: &WeightInput<'_>,
         budget: Budget,
         cancel: &Cancel,
-    ) -> Result<(Self, Vec<f64>), PreconditionError> {
+    ) -> Result<(Self, Vec<f64>), SystemError> {
         // The factor is copied twice, once in half the bytes.
-        let factor = Factor::to_descend_by(&system.matrix, ends, budget.shared_by(2.5), cancel)?;
+        let factor = Factor::to_descend_by(&system.matrix, ends, budget.shared_by(2.5), cancel);
+        let factor = factor.map_err(|error| refused(error, weights.domain))?;
         Self::checked(&factor, system, weights, cancel)
     }
 
@@ -105,20 +67,22 @@ impl Preconditioner {
         system: &System,
         weights: &WeightInput<'_>,
         cancel: &Cancel,
-    ) -> Result<(Self, Vec<f64>), PreconditionError> {
+    ) -> Result<(Self, Vec<f64>), SystemError> {
         let scale = system.matrix.scale.clone();
+        let refuse = |error| refused(error, weights.domain);
         let double = Self {
-            solver: Solver::Double(factor.substitution()?),
+            solver: Solver::Double(factor.substitution().map_err(refuse)?),
             scale: scale.clone(),
         };
         let (vertex, error) = double.miss(system);
         if error > TOLERANCE {
-            return Err(PreconditionError::Inaccurate(vertex, error));
+            let vertex = weights.domain.vertices[vertex];
+            return Err(SystemError::Inaccurate { vertex, error });
         }
-        let weights = double.weights(system, weights)?;
-        cancel.check().map_err(|_| PreconditionError::Cancelled)?;
+        let weights = double.weights(system, weights).map_err(refuse)?;
+        cancel.check().map_err(|_| SystemError::Cancelled)?;
         let single = Self {
-            solver: Solver::Single(factor.substitution()?),
+            solver: Solver::Single(factor.substitution().map_err(refuse)?),
             scale,
         };
         let (_, error) = single.miss(system);
@@ -262,7 +226,7 @@ pub(crate) struct WeightInput<'a> {
     pub handle_count: usize,
     /// The handle of a local vertex.
     pub handle_of: &'a dyn Fn(u32) -> Option<usize>,
-    /// Whether nothing is fixed around a local vertex.
+    /// True if nothing is fixed around a local vertex.
     pub unheld: &'a dyn Fn(u32) -> bool,
 }
 

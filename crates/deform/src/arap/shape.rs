@@ -7,11 +7,12 @@
 use pliant_mesh::vectors;
 use rayon::prelude::*;
 
-use super::cells::{Cells, Quad, minus};
+use super::cells::{Cells, Quad, minus, vector};
 use super::fit_pass::{FitPass, Out, Turning};
 use super::gradient_pass::{GradientPass, Laplacians, Turn, turn_of};
 use super::history::Field;
 pub(crate) use super::rotation::{IDENTITY, Rotation, narrow, wide};
+use crate::descent::springs::Springs;
 use crate::numerical::rows::CHUNK;
 
 /// A shape. Rotations and energy are valid after a measurement of the displacements, the gradient after it was
@@ -51,6 +52,17 @@ pub(crate) enum Guesses<'a> {
 }
 
 impl Shape {
+    /// Adds the energy of springs and loads.
+    pub fn add_energy_of(&mut self, springs: &Springs<f32>) {
+        self.energy = springs.added_energy(self.energy, |vertex| vector(self.displacements[vertex]));
+    }
+
+    /// Adds the forces of springs and loads to the gradient.
+    pub fn add_gradient_of(&mut self, springs: &Springs<f32>) {
+        let displacements = &self.displacements;
+        springs.add_gradient(|vertex| vector(displacements[vertex]), &mut self.gradient);
+    }
+
     /// The rest shape of `vertex_count` vertices.
     pub fn at_rest(vertex_count: usize, cell_count: usize, solved_count: usize) -> Self {
         Self {

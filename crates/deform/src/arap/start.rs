@@ -3,11 +3,13 @@
 use glam::{DQuat, DVec3};
 use rayon::prelude::*;
 
+use super::ArapSolver;
 use super::cells::{quad, vector};
+use super::end::End;
 use super::shape::{Guesses, Shape, narrow, wide};
-use super::state::{End, State};
-use super::{ArapSolver, Prescribed};
 use crate::coarse::domain::ABSENT;
+use crate::descent::prescribed::Prescribed;
+use crate::descent::rule::State;
 use crate::handles::Motion;
 use crate::handles::blend::{Origin, Screw, Screws, carried};
 use crate::numerical::rows::CHUNK;
@@ -40,7 +42,10 @@ impl ArapSolver {
             self.until_blend -= 1;
             return Origin::Current;
         }
-        let onwards = self.current.energy - self.springs.load_energy(&self.current);
+        let onwards = self.current.energy
+            - self
+                .springs
+                .load_energy(|vertex| vector(self.current.displacements[vertex]));
         let loads = std::mem::take(&mut self.springs.loads);
         self.carry(&from_rest, Origin::Rest);
         let origin = if self.trial.energy < onwards || !onwards.is_finite() {
@@ -65,8 +70,8 @@ impl ArapSolver {
             self.relax_trial();
         }
         self.cells.evaluate(&mut self.trial, Guesses::Own, &mut self.scratch);
-        self.springs.add_energy(&mut self.trial);
-        self.springs.add_gradient(&mut self.trial);
+        self.trial.add_energy_of(&self.springs);
+        self.trial.add_gradient_of(&self.springs);
     }
 
     /// Like [`ArapSolver::carry`], without an evaluation.
@@ -110,7 +115,7 @@ impl ArapSolver {
             ..
         } = self;
         cells.find_pull(trial, scratch);
-        springs.add_gradient(trial);
+        trial.add_gradient_of(springs);
         let unit = self.unit;
         self.direction.resize(trial.gradient.len(), Default::default());
         self.preconditioner

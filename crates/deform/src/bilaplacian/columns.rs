@@ -8,9 +8,9 @@ use rayon::prelude::*;
 use crate::bilaplacian::factored::BilaplacianSystem;
 use crate::bilaplacian::parts::StiffParts;
 use crate::bilaplacian::setup::Prescribed;
-use crate::bilaplacian::system_error::SystemError;
 use crate::budget::filled;
 use crate::handles::bases::Stored;
+use crate::sparse::system_error::SystemError;
 
 /// The owners of columns: the handles, then the stiff parts.
 #[derive(Clone, Copy)]

@@ -15,13 +15,15 @@ use crate::needs::{ConstraintKind, Needs, Solve};
 use crate::operators::triangulation::Triangulation;
 use crate::option::OptionRefused;
 use crate::region::boundary_problem::BoundaryProblem;
-use crate::{Bilaplacian, BindError, Detail, HandleBases, ReusableFactor, SolveError};
+use crate::{Bilaplacian, BindError, Detail, HandleBases, Picture, ReusableFactor, SolveError};
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "bilaplacian",
     title: "Thin plate",
-    when_to_use: "Bends like a thin plate, at once: for small turns and smooth bulges.",
+    when_to_use: "Bends like a thin plate, in one step: for small turns and smooth bulges.",
     keywords: "bilaplacian bi-laplacian biharmonic linear shell laplacian",
+    picture: Picture::Plate,
+    slider: None,
     options: Bilaplacian::OPTIONS,
     attachments: &[],
     heeds: &[
@@ -68,7 +70,7 @@ impl DeformMethod for Bilaplacian {
         }
         Err(OptionRefused {
             option: "bending".to_owned(),
-            allowed: "a number above 0 where `stretching` is 0".to_owned(),
+            allowed: "a number above 0 if `stretching` is 0".to_owned(),
         })
     }
 

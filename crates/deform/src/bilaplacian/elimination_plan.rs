@@ -3,9 +3,9 @@
 use pliant_mesh::{Cancel, Topology};
 
 use crate::BindError;
-use crate::bilaplacian::system_error::SystemError;
 use crate::budget::{Budget, ORDERING_ROW, bytes_of, plate_bytes};
 use crate::method::BindInput;
+use crate::sparse::system_error::SystemError;
 use crate::sparse::{Elimination, Ordering};
 
 /// The order of elimination given to the binding, and the source of another one.
@@ -13,7 +13,7 @@ pub(crate) struct EliminationPlan<'a> {
     ordering: &'a Ordering,
     topology: &'a Topology,
     solved: &'a [u32],
-    /// Whether the factor of the Laplacian can replace the method's own.
+    /// True if the factor of the Laplacian can replace the method's own.
     takes_first_power: bool,
 }
 

@@ -16,13 +16,14 @@ use crate::bilaplacian::held::HeldReach;
 use crate::bilaplacian::hubs::Hubs;
 use crate::bilaplacian::operator::BilaplacianOperator;
 use crate::bilaplacian::solution::Solution;
-use crate::bilaplacian::system_error::SystemError;
 use crate::budget::{Budget, Limit, bytes_of};
 use crate::numerical::rows::CHUNK;
 use crate::sparse::Elimination;
+use crate::sparse::factor_error::FactorError;
 use crate::sparse::low_rank::LowRank;
 use crate::sparse::matrix::CONSTRAINED;
 use crate::sparse::refactorisation::{Refactorisation, RenewableFactor};
+use crate::sparse::system_error::SystemError;
 
 /// The factored system over the local vertices of its Laplacian.
 #[derive(Debug)]
@@ -197,15 +198,15 @@ fn direct(
     let rank = hubs.rank(operator);
     let of_hubs = bytes_of(LowRank::stored_at_rank(columns.len(), rank), size_of::<f64>());
     let budget = budget.without(of_hubs).map_err(SystemError::Budget)?;
-    let refused = |error| SystemError::of(error, operator, &columns);
-    let matrix = assemble_bilaplacian(operator, &columns, &column_of, &hubs, budget).map_err(refused)?;
+    let refuse = |error| refused(error, operator, &columns);
+    let matrix = assemble_bilaplacian(operator, &columns, &column_of, &hubs, budget).map_err(refuse)?;
     cancel.check().map_err(|_| SystemError::Cancelled)?;
     let factored =
-        RenewableFactor::of(matrix, elimination, &SHIFTS, refactorisation, budget, cancel).map_err(refused)?;
+        RenewableFactor::of(matrix, elimination, &SHIFTS, refactorisation, budget, cancel).map_err(refuse)?;
     let mut low_rank = None;
     if !hubs.is_empty() {
         let (vectors, c) = hubs.correction(operator, &column_of, factored.scale());
-        low_rank = Some(LowRank::of(&factored.factor, vectors, &c).map_err(refused)?);
+        low_rank = Some(LowRank::of(&factored.factor, vectors, &c).map_err(refuse)?);
     }
     Ok(((columns, column_of), Solution::Factor(Arc::new(factored), low_rank)))
 }
@@ -225,13 +226,21 @@ fn by_laplacian(
     let membrane = BilaplacianOperator::membrane(std::mem::take(&mut operator.laplacian));
     let matrix = assemble_bilaplacian(&membrane, &columns, &column_of, &Hubs::default(), budget);
     operator.laplacian = membrane.laplacian;
-    let refused = |error| SystemError::of(error, operator, &columns);
-    let matrix = matrix.map_err(refused)?;
+    let refuse = |error| refused(error, operator, &columns);
+    let matrix = matrix.map_err(refuse)?;
     cancel.check().map_err(|_| SystemError::Cancelled)?;
     let factored =
-        RenewableFactor::of(matrix, elimination, &SHIFTS, refactorisation, budget, cancel).map_err(refused)?;
+        RenewableFactor::of(matrix, elimination, &SHIFTS, refactorisation, budget, cancel).map_err(refuse)?;
     let taken = bytes_of(factored.factor.stored(), size_of::<f64>());
     let left = budget.without(taken).map_err(SystemError::Budget)?;
     let capacitance = Capacitance::new(operator, (&columns, &column_of), factored, left, cancel);
     Ok(((columns, column_of), Solution::Capacitance(Box::new(capacitance))))
+}
+
+/// A factorisation's refusal, whose columns are the local vertices `columns`.
+fn refused(error: FactorError, operator: &BilaplacianOperator, columns: &[u32]) -> SystemError {
+    SystemError::of(error, |column| {
+        let local = columns.get(column).map_or(0, |&local| local as usize);
+        operator.laplacian.vertices()[local]
+    })
 }

@@ -58,7 +58,7 @@ impl HeldReach {
     }
 }
 
-/// Whether a local vertex or one beside it is reached.
+/// Returns true if a local vertex or one beside it is reached.
 fn sees_reached(laplacian: &Laplacian, is_reached: &[bool], local: usize) -> bool {
     let mut beside = laplacian.neighbours(local).iter();
     is_reached[local] || beside.any(|&other| is_reached[other as usize])

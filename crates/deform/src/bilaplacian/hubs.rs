@@ -67,12 +67,12 @@ impl Hubs {
         hubs
     }
 
-    /// Whether there is none.
+    /// Returns true if there is none.
     pub fn is_empty(&self) -> bool {
         self.locals.is_empty()
     }
 
-    /// Whether the curvature at a local vertex is left out of the matrix.
+    /// Returns true if the curvature at a local vertex is left out of the matrix.
     #[inline]
     pub fn contains(&self, local: u32) -> bool {
         self.is_hub.get(local as usize).copied().unwrap_or(false)

@@ -6,7 +6,6 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use pliant_mesh::SurfaceVertex;
 use rayon::prelude::*;
 
 use crate::bilaplacian::elimination_plan::EliminationPlan;
@@ -14,14 +13,14 @@ use crate::bilaplacian::factored::BilaplacianSystem;
 use crate::bilaplacian::operator::BilaplacianOperator;
 use crate::bilaplacian::refine::Outcome;
 use crate::bilaplacian::setup::{Boundaries, Prescribed, operator};
-use crate::bilaplacian::system_error::SystemError;
 use crate::handles::offsets::Offsets;
 use crate::handles::{FRAME_CHUNK, Motion, clear};
-use crate::method::BindInput;
+use crate::method::{BindInput, FactoredSystem};
 use crate::operators::repairs;
 use crate::region::boundary_problem::BoundaryProblem;
 use crate::region::slender;
 use crate::sparse::refactorisation::Refactorisation;
+use crate::sparse::system_error::SystemError;
 use crate::{Bilaplacian, BindError, ReusableFactor, SolveError};
 
 /// The factored system, and the data for setting up and reading its fields: one row for each local vertex of its
@@ -173,19 +172,18 @@ impl LoadedSystem {
     pub fn vertices(&self) -> &[u32] {
         self.system.operator.laplacian.vertices()
     }
+}
 
-    /// The number of entries that the factor stores.
-    pub fn factor_len(&self) -> usize {
+impl FactoredSystem for LoadedSystem {
+    fn factor_len(&self) -> usize {
         self.system.factor_len()
     }
 
-    /// The data that the next binding can reuse.
-    pub fn reusable_factor(&self) -> ReusableFactor {
+    fn reusable_factor(&self) -> ReusableFactor {
         ReusableFactor(Arc::clone(self.system.factored()))
     }
 
-    /// Sentences about repairs.
-    pub fn warnings(&self) -> Vec<String> {
+    fn warnings(&self) -> Vec<String> {
         let mut sentences: Vec<String> = repairs(self.operator().laplacian.mollified_faces())
             .into_iter()
             .collect();
@@ -223,6 +221,5 @@ pub(crate) fn settled(Outcome { error, .. }: Outcome) -> Result<(), SolveError> 
 
 /// The refusal of a system in the caller's terms.
 pub(crate) fn refused(error: SystemError, input: &BindInput<'_>) -> BindError {
-    let component_of = |vertex: u32| input.problem.topology.component(SurfaceVertex(vertex));
-    error.into_bind_error(component_of, input.partition.solved.len())
+    error.into_bind_error(input.problem.topology, input.partition.solved.len())
 }

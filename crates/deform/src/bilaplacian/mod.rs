@@ -23,7 +23,6 @@ pub(crate) mod setup;
 mod solution;
 pub(crate) mod solver;
 mod springs;
-pub(crate) mod system_error;
 
 pub(crate) use declaration::DECLARATION;
 pub(crate) use options::STRETCHING;

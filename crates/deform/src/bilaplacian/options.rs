@@ -11,7 +11,7 @@ pub(crate) const STRETCHING: Number = Number {
     default: 0.0,
     range: [0.0, LARGEST],
     unit: "k_b/d²",
-    help: "resistance k_s to stretching, d being the size of what bends (a rod's length, a ball's diagonal)",
+    help: "resistance k_s to stretching, where d is the size of the bending part (a rod's length, a ball's diagonal)",
 };
 
 options! {
@@ -29,14 +29,14 @@ options! {
         /// The derivative of the displacement that is kept small.
         order: BilaplacianOrder = Choice {
             default: BilaplacianOrder::ThinPlate,
-            help: "what resists: the area, the bending, or its change",
+            help: "the resisted change: of the area, of the curvature, or of its variation",
         },
         /// k_b, the resistance to the order's derivative. With 0 there is only stretching, a membrane.
         bending: f64 = Number {
             default: 1.0,
             range: [0.0, LARGEST],
             unit: "",
-            help: "resistance k_b to what the order names",
+            help: "resistance k_b to the change that `order` names",
         },
         /// k_s, the resistance to stretching, in units of k_b per squared size at order 2 and per the fitting power
         /// of it at the others.
@@ -49,8 +49,8 @@ options! {
         /// The triangles of the Laplacian.
         triangulation: TriangulationKind = Choice {
             default: TriangulationKind::AsIs,
-            help: "triangles of the Laplacian: as they are, or without negative weights (\"tufted\" on non-manifold \
-                   meshes, too)",
+            help: "triangles of the Laplacian: the mesh's own, or triangles without negative weights (\"tufted\" also \
+                   on non-manifold meshes)",
         }; advanced,
         /// From 0, the surface as it is in space, to 1, as if it were stretched along the principal axes of the part
         /// that may move until that varied alike along all of them, though by at most a factor of 10: stiffer along
@@ -59,25 +59,27 @@ options! {
             default: 0.0,
             range: [0.0, 1.0],
             unit: "",
-            help: "stiffer along what is long: 0 not at all, 1 as if the part that may move were as wide as long",
+            help: "extra stiffness along long axes: 0 is none, 1 is as if the part that may move were as wide as it \
+                   is long",
         }; advanced,
         /// The way of putting details back on the bent base.
         detail: Detail = Choice {
             default: Detail::None,
-            help: "how details follow: not at all (\"none\", they shear), turned with the smooth surface below them \
-                   (\"normal-displacements\"), with their volume kept over it (\"displacement-volumes\"), or bent as it \
-                   is (\"deformation-transfer\")",
+            help: "motion of details: none (\"none\", they shear), turned with the smooth surface below them \
+                   (\"normal-displacements\"), with their volume over it kept (\"displacement-volumes\"), or deformed \
+                   like it (\"deformation-transfer\")",
         },
         /// The order k of the smooth base L^k x = 0. Only `detail` uses it.
         base_order: BilaplacianOrder = Choice {
             default: BilaplacianOrder::ThinPlate,
-            help: "for details: how smooth the surface below them is, from a membrane to the least change of curvature",
+            help: "for details: smoothness of the surface below them, from a membrane to the least change of \
+                   curvature",
         }; advanced; only_with("detail", &["normal-displacements", "displacement-volumes", "deformation-transfer"]),
         /// The number of corrections of displacement volumes in a frame.
         volume_iterations: u32 = Whole {
             default: 8,
             range: [1, 1000],
-            help: "for \"displacement-volumes\": how often the volumes are corrected",
+            help: "for \"displacement-volumes\": number of corrections of the volumes",
         }; advanced; only_with("detail", &["displacement-volumes"]),
     }
 }

@@ -4,8 +4,8 @@ use crate::bilaplacian::elimination_plan::EliminationPlan;
 use crate::bilaplacian::factored::BilaplacianSystem;
 use crate::bilaplacian::parts::StiffParts;
 use crate::bilaplacian::setup::{Boundaries, Prescribed, operator};
-use crate::bilaplacian::system_error::SystemError;
 use crate::method::BindInput;
+use crate::sparse::system_error::SystemError;
 use crate::{Bilaplacian, Detail};
 
 /// The factored system, the values that its handles and stiff parts prescribe, and the parts.
@@ -14,7 +14,7 @@ pub(crate) struct Plate {
     /// The handles' places, then the parts'.
     pub prescribed: Vec<Prescribed>,
     pub parts: StiffParts,
-    /// Whether natural boundaries were left out, because their factor does not fit.
+    /// True if natural boundaries were left out, because their factor does not fit.
     pub is_plain: bool,
 }
 
@@ -76,5 +76,5 @@ impl Plate {
 }
 
 /// The sentence about natural boundaries that were left out.
-pub(crate) const PLAIN: &str = "the plate's own factor does not fit the memory that is left, so stiff parts may shear, \
-                                soft ones swell, and free borders curl: raise the memory limit, or take arap";
+pub(crate) const PLAIN: &str = "the plate's own factor does not fit the free memory, so stiff parts may shear, soft \
+                                ones swell, and free borders curl: raise the memory limit, or take arap";

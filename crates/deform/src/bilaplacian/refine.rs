@@ -10,9 +10,9 @@ use pliant_mesh::Cancel;
 use rayon::prelude::*;
 
 use crate::bilaplacian::factored::BilaplacianSystem;
-use crate::bilaplacian::system_error::SystemError;
 use crate::numerical::rows::CHUNK;
 use crate::sparse::matrix::CONSTRAINED;
+use crate::sparse::system_error::SystemError;
 
 /// The most corrections of a solve, the first one included.
 const STEPS: usize = 8;

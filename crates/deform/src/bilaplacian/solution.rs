@@ -47,12 +47,12 @@ impl Solution {
         }
     }
 
-    /// Whether solutions are found by iteration.
+    /// Returns true if solutions are found by iteration.
     pub fn is_iterative(&self) -> bool {
         matches!(self, Self::Capacitance(_))
     }
 
-    /// Whether solves must follow each other in a fixed order.
+    /// Returns true if solves must follow each other in a fixed order.
     pub fn is_learning(&self) -> bool {
         match self {
             Self::Factor(..) => false,
@@ -71,7 +71,8 @@ impl Solution {
     pub fn warnings(&self) -> Vec<String> {
         let stiffened = |shift: f64| {
             format!(
-                "the system was barely stable on this mesh: it was stiffened by {shift:.0e} of its diagonal and refined"
+                "the system was barely stable on this mesh, so it was stiffened by {shift:.0e} of its diagonal and \
+                 refined"
             )
         };
         let mut sentences = Vec::new();

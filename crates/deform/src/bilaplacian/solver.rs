@@ -12,7 +12,6 @@ use crate::bilaplacian::factored::BilaplacianSystem;
 use crate::bilaplacian::parts::StiffParts;
 use crate::bilaplacian::plate::{PLAIN, Plate};
 use crate::bilaplacian::setup::Prescribed;
-use crate::bilaplacian::system_error::SystemError;
 use crate::handles::bases::{Stored, frame};
 use crate::handles::finite::Finite;
 use crate::handles::offsets::Offsets;
@@ -23,6 +22,7 @@ use crate::region::boundary_problem::BoundaryProblem;
 use crate::region::partition::Partition;
 use crate::region::slender;
 use crate::sparse::refactorisation::RenewableFactor;
+use crate::sparse::system_error::SystemError;
 use crate::{Bilaplacian, BindError, HandleBases, SolveError};
 
 /// The bound bi-Laplacian, with handle bases of the precision `T`.
@@ -36,7 +36,7 @@ pub(crate) struct BilaplacianSolver<T = f32> {
     parts: StiffParts,
     /// The offsets of handles' vertices from their handles' motions.
     offsets: Arc<Offsets>,
-    /// Whether natural boundaries were left out.
+    /// True if natural boundaries were left out.
     is_plain: bool,
     /// E = ½ Σ_hk tr(X_hᵀ G_hk X_k) over the motions' 4×3 matrices X; row-major, one 4×4 block a pair of handles.
     energy_blocks: Vec<[[f64; 4]; 4]>,
@@ -58,7 +58,7 @@ impl<T: Stored> BilaplacianSolver<T> {
         } = input;
         let solved = &partition.solved;
         let component_of = |vertex: u32| problem.topology.component(SurfaceVertex(vertex));
-        let refuse = |error: SystemError| of_order(options, error.into_bind_error(component_of, solved.len()));
+        let refuse = |error: SystemError| of_order(options, error.into_bind_error(problem.topology, solved.len()));
         let order = options.operator_power();
         slender::check(
             &partition.triangulation,
@@ -81,13 +81,7 @@ impl<T: Stored> BilaplacianSolver<T> {
         for column in &columns {
             let (vertex, error) = (column.vertex, column.error);
             if error.is_nan() || error > TOLERANCE {
-                let component = component_of(vertex);
-                let refused = BindError::Inaccurate {
-                    component,
-                    vertex,
-                    error,
-                };
-                return Err(of_order(options, refused));
+                return Err(refuse(SystemError::Inaccurate { vertex, error }));
             }
         }
         let free_count = solved.len();
@@ -125,7 +119,7 @@ impl<T: Stored> BilaplacianSolver<T> {
         self.offsets = Arc::clone(offsets);
     }
 
-    /// Whether no vertex has an offset, so that the bases give the frame.
+    /// Returns true if no vertex has an offset, so that the bases give the frame.
     pub fn is_affine(&self) -> bool {
         self.offsets.is_empty()
     }
@@ -135,7 +129,7 @@ impl<T: Stored> BilaplacianSolver<T> {
         self.system.factored()
     }
 
-    /// Whether no stiff part moves between the handles.
+    /// Returns true if no stiff part moves between the handles.
     pub fn is_driven_by_handles_alone(&self) -> bool {
         self.parts.len() == 0
     }

@@ -66,7 +66,7 @@ pub enum Target {
     Places(Vec<DVec3>),
 }
 
-/// Whether a method may take its short cut, if it has one.
+/// The computation of a step: the method's shortest one, or back-substitution.
 #[derive(Clone, Copy, Debug)]
 enum Way {
     Shortest,
@@ -76,14 +76,15 @@ enum Way {
 /// The result of one step.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct Step {
-    /// Whether further steps to the same targets would change nothing. Linear methods: always.
+    /// True if further steps to the same targets would change nothing. Linear methods: always.
     pub converged: bool,
-    /// Whether further steps to the same targets do nothing: it converged, found no lower energy, or met the method's
+    /// True if further steps to the same targets do nothing: it converged, found no lower energy, or met the method's
     /// limit.
     pub finished: bool,
     /// The deformation energy, 0 at rest, without unit and independent of the model's scale. For the bi-Laplacian it is
     /// ½ dᵀ A d (see [`crate::Bilaplacian`]) and the energy of the soft handles' springs; for ARAP its own energy and
-    /// its springs', divided by ½ Σ w |e|² of the rest shape; for gradient editing likewise. Components without a handle are left out.
+    /// its springs', divided by ½ Σ w |e|² of the rest shape; for gradient editing likewise. Components without a
+    /// handle are left out.
     pub energy: f64,
     /// The number of steps taken towards these targets, this one included.
     pub iteration: u32,
@@ -190,8 +191,8 @@ impl Bound {
         }
     }
 
-    /// Whether nothing is moved by a handle, by hand or by an example. An example whose weight is to be found moves
-    /// nothing by itself.
+    /// Returns true if nothing is moved by a handle, by hand or by an example. An example whose weight is to be found
+    /// moves nothing by itself.
     fn is_at_rest(&self) -> bool {
         let are_moved = self.method.controls().is_some_and(|controls| controls.are_moved());
         let are_weighed = self.weights.iter().flatten().any(|weight| *weight != 0.0);

@@ -18,6 +18,7 @@ use super::rows::{harmonic_rows, mean_value_rows};
 use super::stored_field::stored_bytes;
 use super::{Cage, CageCoordinates, brought};
 use crate::BindError;
+use crate::Picture;
 use crate::attachment::{Attachment, AttachmentDeclaration, AttachmentKind};
 use crate::attachment_refused::AttachmentRefused;
 use crate::budget::{Limit, bytes_of};
@@ -29,22 +30,24 @@ use crate::space::affine::AffineParts;
 use crate::space::falloff::Falloff;
 use crate::space::field::{FIELD_ROW, LinearField, moving};
 use crate::space::fit_samples::{RegionBox, holds, samples};
-use crate::sparse::factor_error::FactorError;
+use crate::sparse::system_error::SystemError;
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "cage",
     title: "Cage",
-    when_to_use: "Bends the space in a coarse cage around the surface, which the handles drive: for broad bends of \
-                  anything inside it, loose pieces included; with harmonic coordinates limbs that are near \
-                  each other stay apart. It fits the handles as well as the cage can, not exactly.",
+    when_to_use: "Bends the space in a coarse cage around the surface: for broad bends of everything inside it, \
+                  including loose pieces. The cage fits the handles closely, not exactly; harmonic coordinates keep \
+                  limbs that are near each other apart.",
     keywords: "cage mean value harmonic green coordinates conformal space",
+    picture: Picture::Hull,
+    slider: None,
     options: Cage::OPTIONS,
     attachments: &[AttachmentDeclaration {
         name: "cage",
         title: "cage",
-        help: "a cage of your own, a closed mesh of triangles around the region: its `vertices` and `triangles`, or the \
-               `file` (OBJ, PLY, OFF, GLB, ..) that has them, and where its vertices are `moved` to; without it, one \
-               around the region as fine as `detail`",
+        help: "a cage of your own, a closed mesh of triangles around the region: its `vertices` and `triangles`, or a \
+               `file` (OBJ, PLY, OFF, GLB, ..) with them, and the positions to which its vertices are `moved`; \
+               without it, one around the region as fine as `detail`",
         kind: AttachmentKind::ControlMesh,
     }],
     heeds: &[ConstraintKind::SoftHandles],
@@ -165,7 +168,9 @@ impl DeformMethod for Cage {
                 };
                 let step = chosen.voxel / f64::from(self.grid);
                 let harmonic = Harmonic::solved(cage, step, budget, &part, input.cancel);
-                let harmonic = harmonic.map_err(|failed| refused(failed, solved_count))?;
+                let harmonic = harmonic.map_err(|failed| {
+                    SystemError::of_definite(failed).into_bind_error(input.problem.topology, solved_count)
+                })?;
                 if is_brought {
                     warnings.extend(told_close(&harmonic, unit, &world_points).map_err(of_cage)?);
                 }
@@ -233,13 +238,4 @@ fn by_rows(driven: &Mat<f64>) -> Vec<[f64; 4]> {
         handles.map(move |handle| [0, 1, 2, 3].map(|k| driven[(vertex, 4 * handle + k)]))
     };
     (0..driven.nrows()).flat_map(row).collect()
-}
-
-fn refused(failed: FactorError, free_count: usize) -> BindError {
-    match failed {
-        FactorError::Cancelled => pliant_mesh::Cancelled.into(),
-        FactorError::Budget(limit) => BindError::budget(free_count, limit),
-        // Its diagonal dominates, so no pivot fails.
-        FactorError::Memory | FactorError::Pivot(_) => BindError::OutOfMemory { free_count },
-    }
 }

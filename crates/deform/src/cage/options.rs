@@ -8,27 +8,28 @@ options! {
         /// The coordinates by which a point follows the cage.
         coordinates: CageCoordinates = Choice {
             default: CageCoordinates::MeanValue,
-            help: "how points follow the cage: mean-value is quick and smooth; harmonic follows only what is near inside \
-                   the cage, so that legs stay apart; green keeps angles, so that details turn and do not shear",
+            help: "coordinates of points in the cage: mean-value is quick and smooth; harmonic follows only the near \
+                   parts inside the cage, so that legs stay apart; green keeps angles, so that details turn and do \
+                   not shear",
         },
         /// The number of cells of the cage along its longest side.
         detail: u32 = Whole {
             default: 6,
             range: [2, 12],
-            help: "how fine the cage is: its cells along the longest side of the region",
+            help: "fineness of the cage: its cells along the longest side of the region",
         },
         /// The number of cells of the harmonic grid in one cell of the cage.
         grid: u32 = Whole {
             default: 5,
             range: [5, 10],
-            help: "how fine the grid of harmonic coordinates is: its cells along one cell of the cage",
+            help: "fineness of the grid of harmonic coordinates: its cells along one cell of the cage",
         }; advanced,
         /// The distance over which the field fades towards fixed vertices.
         falloff: f64 = Number {
             default: 0.1,
             range: [0.0, 1.0],
             unit: "diagonals of the region",
-            help: "how far from what is fixed the deformation fades in",
+            help: "distance from the fixed part over which the deformation fades in",
         },
     }
 }

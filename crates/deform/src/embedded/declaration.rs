@@ -16,15 +16,17 @@ use crate::needs::{ConstraintKind, Needs, Solve};
 use crate::region::nodes::spread_alike;
 use crate::space::blend::{Affine, Blend, Share};
 use crate::space::shaping::shaping;
-use crate::sparse::factor_error::FactorError;
-use crate::{BindError, SolveError};
+use crate::sparse::system_error::SystemError;
+use crate::{BindError, Picture, SolveError};
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "embedded",
     title: "Embedded graph",
-    when_to_use: "A few hundred nodes bend as rigidly as they can and carry everything around them, step by step: for \
-                  large bends of large scans, and of loose or broken pieces.",
+    when_to_use: "Bends a few hundred nodes as rigidly as possible, step by step, and moves everything around them \
+                  along: for large bends of large scans, and of loose or broken pieces.",
     keywords: "embedded deformation graph nodes sumner rigid nonlinear space points soup",
+    picture: Picture::Graph,
+    slider: None,
     options: Embedded::OPTIONS,
     attachments: &[],
     heeds: &[ConstraintKind::SoftHandles, ConstraintKind::Stiffness],
@@ -99,11 +101,9 @@ pub(super) fn bound(options: &Embedded, input: &BindInput<'_>) -> Result<BoundEm
     let graph = Graph::of(input, &nodes, &moving, &places)?;
     input.progress.set(0.5);
     let energy = Energy::of(input, &graph, &sets);
-    let refused = |error| match error {
-        FactorError::Budget(limit) => BindError::budget(input.partition.solved.len(), limit),
-        _ => BindError::OutOfMemory {
-            free_count: input.partition.solved.len(),
-        },
+    let refused = |error| {
+        let free_count = input.partition.solved.len();
+        SystemError::of_definite(error).into_bind_error(input.problem.topology, free_count)
     };
     let system = System::of(&energy, &graph, budget).map_err(refused)?;
     let is_held = energy.constraints.iter().any(|constraint| constraint.handle.is_none());

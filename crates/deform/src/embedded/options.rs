@@ -10,7 +10,7 @@ options! {
         nodes: u32 = Whole {
             default: 300,
             range: [4, 1000],
-            help: "how many nodes are spread over the part that moves: more bend in more places, and take longer",
+            help: "number of nodes on the moving part: more nodes bend in more places and take longer",
         },
         /// The end of iteration.
         tolerance: f64 = TOLERANCE; advanced,

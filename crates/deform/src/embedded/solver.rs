@@ -6,14 +6,13 @@ use glam::{DMat3, DVec3};
 use super::energy::{DOF, Energy, NodeMap};
 use super::graph::Graph;
 use super::system::System;
+use crate::descent;
+use crate::descent::energy::lower;
+use crate::descent::rule::{Rule, State};
 use crate::handles::Motion;
 use crate::handles::blend::{HandleFrame, Screw, Screws, carried};
 use crate::numerical::dense;
-use crate::numerical::line_search::Trial;
 use crate::space::blend::Affine;
-
-/// Lengths that a line search tries.
-const TRIALS: u32 = 12;
 
 /// Energies below this share of the number of nodes are rounding.
 const NOTHING: f64 = 1e-24;
@@ -33,7 +32,7 @@ pub(super) struct Solver {
     /// E at `maps`.
     value: f64,
     has_converged: bool,
-    /// Whether the descent has stalled: no step was found that lowers the energy, though the maps have not converged.
+    /// True if the descent has stalled: no step was found that lowers the energy, though the maps have not converged.
     has_stalled: bool,
     tolerance: f64,
 }
@@ -73,7 +72,8 @@ impl Solver {
         self.system.stored()
     }
 
-    /// Whether the descent has stalled: no step was found that lowers the energy, though the maps have not converged.
+    /// Returns true if the descent has stalled: no step was found that lowers the energy, though the maps have not
+    /// converged.
     pub fn has_stalled(&self) -> bool {
         self.has_stalled
     }
@@ -170,40 +170,59 @@ impl Solver {
             return;
         }
         let uphill = self.system.solve(&gradient);
-        let slope = -2.0
-            * gradient
-                .as_flattened()
-                .iter()
-                .zip(uphill.as_flattened())
-                .map(|(a, b)| a * b)
-                .sum::<f64>();
-        let mut length = 1.0;
-        for _ in 0..TRIALS {
-            if slope >= 0.0 || slope.is_nan() {
-                break;
-            }
-            let maps: Vec<NodeMap> = self
-                .maps
-                .iter()
-                .zip(&uphill)
-                .map(|(map, x)| moved(map, x, -length))
-                .collect();
-            let trial = Trial {
-                length,
-                before,
-                after: self.energy.evaluate(&maps, &self.motions, None),
-                slope,
-            };
-            if trial.is_sufficient() {
-                let enough = self.tolerance * trial.after + nothing;
-                self.has_converged = -0.5 * slope <= enough && before - trial.after <= enough;
-                (self.maps, self.value) = (maps, trial.after);
-                return;
-            }
-            length = trial.next_length();
-        }
-        self.has_converged = -0.5 * slope <= self.tolerance * before + nothing;
-        self.has_stalled = !self.has_converged;
+        let products = gradient.as_flattened().iter().zip(uphill.as_flattened());
+        let slope = -2.0 * products.map(|(a, b)| a * b).sum::<f64>();
+        self.value = before;
+        let lowered = lower(&mut Step {
+            trial: self.maps.clone(),
+            trial_value: before,
+            solver: self,
+            uphill,
+            slope,
+        });
+        let rule = Rule {
+            tolerance: self.tolerance,
+            nothing,
+            rounded: 0.0,
+        };
+        let state = rule.state(lowered, self.value);
+        self.has_converged = state == State::Converged;
+        self.has_stalled = state == State::Stalled;
+    }
+}
+
+/// A Gauss–Newton step, and the maps that it tries.
+struct Step<'a> {
+    solver: &'a mut Solver,
+    uphill: Vec<[f64; DOF]>,
+    slope: f64,
+    trial: Vec<NodeMap>,
+    trial_value: f64,
+}
+
+impl descent::energy::Energy for Step<'_> {
+    fn value(&self) -> f64 {
+        self.solver.value
+    }
+
+    fn aim(&mut self) -> f64 {
+        self.slope
+    }
+
+    fn try_length(&mut self, length: f64) -> f64 {
+        let each = self.solver.maps.iter().zip(&self.uphill);
+        self.trial = each.map(|(map, x)| moved(map, x, -length)).collect();
+        self.trial_value = self.solver.energy.evaluate(&self.trial, &self.solver.motions, None);
+        self.trial_value
+    }
+
+    fn accept(&mut self, _: f64) {
+        std::mem::swap(&mut self.solver.maps, &mut self.trial);
+        self.solver.value = self.trial_value;
+    }
+
+    fn forget(&mut self) -> bool {
+        false
     }
 }
 

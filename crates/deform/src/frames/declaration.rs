@@ -9,16 +9,19 @@ use crate::handles::finite::Finite;
 use crate::handles::offsets::Offsets;
 use crate::handles::turns::Followed;
 use crate::handles::{Motion, only_moved};
-use crate::method::{BindInput, BoundMethod, DeformMethod, MethodDeclaration, Stepped};
+use crate::method::{BindInput, BoundMethod, DeformMethod, FactoredSystem, MethodDeclaration, Stepped};
 use crate::needs::{ConstraintKind, Needs, Solve};
-use crate::{BindError, ReusableFactor, SolveError, Warning};
+use crate::{BindError, Picture, SolveError, Warning};
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "frames",
     title: "Rotation-invariant coordinates",
-    when_to_use: "Solves for how the surface turns and then for where it lies: for turns of several handles by less than \
-                  half a turn, at once. A handle that is only moved turns nothing unless `iterations` are added.",
+    when_to_use: "Solves for the surface's turns and then for its positions, in one step: for turns of several \
+                  handles by less than half a turn. A handle that is only moved turns nothing unless `iterations` are \
+                  added.",
     keywords: "frames rotation-invariant coordinates local frames linear",
+    picture: Picture::Frames,
+    slider: None,
     options: Frames::OPTIONS,
     attachments: &[],
     heeds: &[ConstraintKind::SoftHandles, ConstraintKind::Stiffness],
@@ -88,25 +91,12 @@ impl BoundMethod for FramesSolver {
         Some(FramesSolver::energy_of(self, motions, displacements))
     }
 
-    fn reusable_factor(&self) -> Option<ReusableFactor> {
-        Some(self.system.reusable_factor())
+    fn system(&self) -> Option<&dyn FactoredSystem> {
+        Some(&self.system)
     }
 
     fn solved_count(&self) -> usize {
         self.system.columns().len()
-    }
-
-    fn factor_len(&self) -> usize {
-        self.system.factor_len()
-    }
-
-    /// A frame costs a back-substitution, not a product.
-    fn step_cost(&self) -> usize {
-        4 * self.solved_count()
-    }
-
-    fn warnings(&self) -> Vec<String> {
-        self.system.warnings()
     }
 
     fn blind_to(&self, motions: &[Motion]) -> Vec<Warning> {
@@ -118,8 +108,8 @@ impl BoundMethod for FramesSolver {
                 let degrees = turn.to_degrees();
                 Warning::of_handle(handle, |handle| {
                     format!(
-                        "{handle} turns by {degrees:.0}°, and frames knows no turn beyond half a turn: take poisson, \
-                         which follows a drag beyond that"
+                        "{handle} turns by {degrees:.0}°, but frames follows less than half a turn: take poisson, \
+                         which follows larger turns"
                     )
                 })
             })

@@ -11,8 +11,8 @@ options! {
         iterations: u32 = Whole {
             default: 0,
             range: [0, 10_000],
-            help: "how often the linear shape is improved by fitting frames and positions in turn: with some dozens the \
-                   surface turns for moves too",
+            help: "number of steps that fit frames and positions in turn after the linear shape: with a few dozen the \
+                   surface also turns for moves",
         },
     }
 }

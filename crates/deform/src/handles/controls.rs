@@ -96,7 +96,7 @@ impl Controls {
         self.attachment = self.attachment.with_moved(moved);
     }
 
-    /// Whether the hand has moved a point.
+    /// Returns true if the hand has moved a point.
     pub fn are_moved(&self) -> bool {
         let moves = |hand: &Hand| {
             hand.displacements

@@ -106,7 +106,7 @@ impl Motion {
         self.linear * DVec3::new(coordinates[0], coordinates[1], coordinates[2]) + self.shift * coordinates[3]
     }
 
-    /// Whether nothing moves.
+    /// Returns true if nothing moves.
     pub fn is_rest(&self) -> bool {
         *self == Self::default()
     }
@@ -130,8 +130,8 @@ pub(crate) fn only_moved(method: &str, motions: &[Motion], is_held: bool) -> Opt
         && (is_held || motions.iter().any(|motion| motion.shift != first));
     let sentence = || {
         format!(
-            "{method} is blind to moves: the handles are moved and not turned, so the surface shears between them; turn \
-             a handle, or take laplacian or arap"
+            "{method} turns nothing for moves, and the handles only move, so the surface shears between them: turn a \
+             handle, or take laplacian or arap"
         )
     };
     (moves && motions.iter().all(is_only_moved)).then(|| sentence().into())

@@ -17,7 +17,7 @@ pub(crate) struct Offsets {
 }
 
 impl Offsets {
-    /// Whether no vertex has an offset.
+    /// Returns true if no vertex has an offset.
     pub fn is_empty(&self) -> bool {
         self.of_vertices.is_empty()
     }

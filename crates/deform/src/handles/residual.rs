@@ -47,8 +47,8 @@ impl HandleResidual {
         let share = distance / self.size;
         (share > UNSEEN).then(|| {
             format!(
-                "{} only fits the handles and misses them by up to {:.1}% of the size of what bends: refine it by its options, \
-                 or take {}, which meets them",
+                "{} fits the handles only approximately and misses them by up to {:.1}% of the size of the bending \
+                 part: refine it by its options, or take {}, which meets them",
                 self.method,
                 100.0 * share,
                 Remedy::OfSpace

@@ -4,7 +4,7 @@ use glam::DQuat;
 
 use super::polar::Polar;
 use super::{Handle, Motion};
-use crate::Warning;
+use crate::{Remedy, Warning};
 
 /// The largest turn between handles, or between a handle and a fixed vertex, that leaves a limb at least about 0.7 of
 /// its radius everywhere, by `tests/large_turns.rs`.
@@ -28,7 +28,7 @@ impl Followed {
     pub fn by_necks(most_degrees: f64) -> Self {
         Self {
             most_degrees,
-            beyond: "narrows the limb where it is thin",
+            beyond: "narrows the limb at thin places",
         }
     }
 
@@ -46,15 +46,12 @@ impl Followed {
 pub(crate) struct TurnLimit {
     pub method: &'static str,
     pub followed: Followed,
-    /// Whether something is fixed.
+    /// True if something is fixed.
     pub is_held: bool,
 }
 
 /// The warning waits for this much more than the limit, so that a turn by the limit itself gives none.
 const ROOM_DEGREES: f64 = 5.0;
-
-/// ARAP also follows turns up to this.
-const OF_ARAP_DEGREES: f64 = 140.0;
 
 impl TurnLimit {
     /// A sentence about two turns that differ by more than the method's limit.
@@ -79,16 +76,12 @@ impl TurnLimit {
             }
         }
         let (degrees, number) = worst;
-        let others = if degrees > OF_ARAP_DEGREES {
-            "poisson"
-        } else {
-            "arap or poisson"
-        };
+        let others = Remedy::FollowingTurns(degrees.ceil() as u16);
         (degrees > most_degrees + ROOM_DEGREES).then(|| {
             Warning::of_handle(number, |handle| {
                 format!(
-                    "{handle} turns by {degrees:.0}° against what it bends. From about {most_degrees:.0}° on {} \
-                     {beyond}: take {others}, or turn it in parts",
+                    "{handle} turns by {degrees:.0}° against the other end of its region. From about \
+                     {most_degrees:.0}° on, {} {beyond}: take {others}, or turn it in parts",
                     self.method
                 )
             })

@@ -10,13 +10,15 @@ use crate::handles::{Motion, clear};
 use crate::method::{BindInput, BoundMethod, DeformMethod, MethodDeclaration, Stepped};
 use crate::needs::{Needs, Solve};
 use crate::option::{Number, options};
-use crate::{BindError, SolveError};
+use crate::{BindError, Picture, SolveError};
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "identity",
     title: "Handles alone",
-    when_to_use: "Moves the handles and leaves the rest where it is.",
+    when_to_use: "Moves the handles and leaves the rest in place.",
     keywords: "identity nothing",
+    picture: Picture::Bar,
+    slider: None,
     options: Identity::OPTIONS,
     attachments: &[],
     heeds: &[],
@@ -32,7 +34,7 @@ options! {
             default: 1.0,
             range: [0.0, 1.0],
             unit: "",
-            help: "how far the handles go of their way",
+            help: "share of the handles' motion",
         },
     }
 }

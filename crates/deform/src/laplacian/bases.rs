@@ -7,12 +7,11 @@ use super::coupled::{CoupledEnergy, DOF};
 use super::implicit::ImplicitSystem;
 use crate::BindError;
 use crate::bilaplacian::loaded::{LoadedSystem, TOLERANCE, refused};
-use crate::bilaplacian::system_error::SystemError;
 use crate::budget::{bytes_of, filled};
 use crate::handles::Motion;
 use crate::method::BindInput;
 use crate::numerical::rows::CHUNK;
-use crate::sparse::factor_error::FactorError;
+use crate::sparse::system_error::SystemError;
 
 /// The number of solutions that are computed at once.
 const AT_ONCE: usize = 6;
@@ -41,16 +40,10 @@ impl ImplicitBases {
             free_count: solved,
         })?;
         let at = |local: usize| system.vertices()[local];
-        let of_factor = |error| match error {
-            FactorError::Pivot(local) => SystemError::NotPositiveDefinite { vertex: at(local) },
-            FactorError::Memory => SystemError::OutOfMemory,
-            FactorError::Budget(limit) => SystemError::Budget(limit),
-            FactorError::Cancelled => SystemError::Cancelled,
-        };
         let refuse = |error| refused(error, input);
         let elimination = input.ordering()?.elimination(&partition.solved);
-        let mut implicit =
-            ImplicitSystem::of(energy, &elimination, budget, cancel).map_err(|error| refuse(of_factor(error)))?;
+        let mut implicit = ImplicitSystem::of(energy, &elimination, budget, cancel)
+            .map_err(|error| refuse(SystemError::of(error, at)))?;
         let check = |error: f64, local: u32| {
             cancel.check()?;
             // NaN is an error too. If nothing is free there is no vertex to name, and no error.

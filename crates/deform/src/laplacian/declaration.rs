@@ -6,16 +6,19 @@ use super::{LaplacianEditing, LaplacianSolver, Transforms};
 use crate::handles::Motion;
 use crate::handles::finite::Finite;
 use crate::handles::polar::{Polar, polars_of};
-use crate::method::{BindInput, BoundMethod, DeformMethod, MethodDeclaration, Stepped};
+use crate::method::{BindInput, BoundMethod, DeformMethod, FactoredSystem, MethodDeclaration, Stepped};
 use crate::needs::{ConstraintKind, Needs, Solve};
-use crate::{BindError, ReusableFactor, SolveError, Warning};
+use crate::{BindError, Picture, SolveError, Warning};
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "laplacian",
     title: "Laplacian editing",
-    when_to_use: "Turns details with the surface, at once, for moves and for turns of wide parts up to about 90°; limbs \
-                  give way from about 70° on, and beyond 90° it bulges and shrinks unless `steps` divides the way.",
+    when_to_use: "Turns details with the surface, in one step: for moves, and for turns of wide parts up to about \
+                  90°. Limbs collapse from about 70° on, and beyond 90° the surface bulges and shrinks unless `steps` \
+                  divides the motion.",
     keywords: "laplacian differential coordinates detail similarity implicit",
+    picture: Picture::Spikes,
+    slider: None,
     options: LaplacianEditing::OPTIONS,
     attachments: &[],
     heeds: &[
@@ -84,25 +87,17 @@ impl BoundMethod for LaplacianSolver {
         LaplacianSolver::energy_of(self, motions, displacements)
     }
 
-    fn reusable_factor(&self) -> Option<ReusableFactor> {
-        Some(self.system.reusable_factor())
+    fn system(&self) -> Option<&dyn FactoredSystem> {
+        Some(&self.system)
     }
 
     fn solved_count(&self) -> usize {
         self.system.columns().len()
     }
 
-    fn factor_len(&self) -> usize {
-        self.system.factor_len()
-    }
-
     /// A frame is a back-substitution or two, not a product.
     fn step_cost(&self) -> usize {
         8 * self.options.steps as usize * self.solved_count()
-    }
-
-    fn warnings(&self) -> Vec<String> {
-        self.system.warnings()
     }
 
     fn blind_to(&self, motions: &[Motion]) -> Vec<Warning> {
@@ -116,7 +111,7 @@ impl BoundMethod for LaplacianSolver {
         match self.options.transforms {
             Transforms::None if turn > SMALL_RAD => vec![Warning::of_handle(handle, |handle| {
                 format!(
-                    "laplacian turns no details where `transforms` is \"none\", and {handle} turns by {degrees:.0}°: \
+                    "laplacian turns no details if `transforms` is \"none\", but {handle} turns by {degrees:.0}°: \
                      take \"implicit\""
                 )
             })],
@@ -124,7 +119,7 @@ impl BoundMethod for LaplacianSolver {
                 let steps = (turn / LARGE_RAD).ceil();
                 vec![Warning::of_handle(handle, |handle| {
                     format!(
-                        "{handle} turns by {degrees:.0}°, and laplacian follows about 90° a step: set `steps` to \
+                        "{handle} turns by {degrees:.0}°, but laplacian follows about 90° a step: set `steps` to \
                          {steps:.0}, or take poisson or arap"
                     )
                 })]

@@ -8,25 +8,25 @@ options! {
         /// The source of each vertex' transformation of its differential coordinate.
         transforms: Transforms = Choice {
             default: Transforms::Implicit,
-            help: "how details turn: as the new shape asks (\"implicit\"), as a first shape without turns asks \
-                   (\"initial-guess\"), or not at all (\"none\")",
+            help: "turns of details: those of the new shape (\"implicit\"), those of a first shape solved without \
+                   turns (\"initial-guess\"), or none (\"none\")",
         },
         /// The treatment of the scale of implicit transformations.
         scale: LocalScale = Choice {
             default: LocalScale::Normalised,
-            help: "whether details keep their size (\"normalised\") or grow where the surface is pulled (\"free\")",
+            help: "size of details: kept (\"normalised\"), or growing with a pulled surface (\"free\")",
         },
         /// The distance in edges of the neighbours from which transformations are estimated; implicit ones use 1 first.
         ring: u32 = Whole {
             default: 1,
             range: [1, 5],
-            help: "how many edges wide the neighbourhoods are from which turns are estimated: wide ones are smoother",
+            help: "width in edges of the neighbourhoods from which turns are estimated: wide ones are smoother",
         }; advanced,
         /// The number of parts into which the handles' motion is divided.
         steps: u32 = Whole {
             default: 1,
             range: [1, 100],
-            help: "into how many steps the handles' way is divided: one for each 90° of their turn",
+            help: "number of steps into which the handles' motion is divided: one for each 90° of their turn",
         },
     }
 }

@@ -57,7 +57,7 @@ impl Rings {
         }
     }
 
-    /// Whether the rings have only the nearest neighbours.
+    /// Returns true if the rings have only the nearest neighbours.
     pub fn are_nearest(&self) -> bool {
         self.offsets.is_empty()
     }

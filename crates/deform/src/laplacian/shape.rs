@@ -79,7 +79,7 @@ impl LaplacianSolver {
             .collect()
     }
 
-    /// Whether the bases' shape is the last one: it solves for implicit transformations that keep their scale.
+    /// Returns true if the bases' shape is the last one: it solves for implicit transformations that keep their scale.
     pub(super) fn is_settled_by_bases(&self) -> bool {
         self.implicit.is_some() && self.options.scale == LocalScale::Free && self.options.steps == 1
     }

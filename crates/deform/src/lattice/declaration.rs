@@ -18,21 +18,23 @@ use crate::space::falloff::Falloff;
 use crate::space::field::{Coefficients, FIELD_ROW, LinearField, SpaceMap, moving};
 use crate::space::fit_samples::{RegionBox, holds, samples};
 use crate::space::hand_field::HandField;
-use crate::{BindError, SolveError};
+use crate::{BindError, Picture, SolveError};
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "lattice",
     title: "Lattice",
-    when_to_use: "Bends a box around the surface by a coarse lattice: for broad, soft bends and stretches of anything, \
-                  loose pieces included. It fits the handles as well as the lattice can, not exactly.",
+    when_to_use: "Bends a box around the surface by a coarse lattice: for broad, soft bends and stretches of \
+                  everything inside it, including loose pieces. The lattice fits the handles closely, not exactly.",
     keywords: "lattice ffd free-form deformation box spline space",
+    picture: Picture::Lattice,
+    slider: None,
     options: Lattice::OPTIONS,
     attachments: &[AttachmentDeclaration {
         name: "lattice",
         title: "lattice",
-        help: "a lattice of your own: its `counts` of control points along x, y and z, its `box` with `min` and `max`, and \
-               where its points are `moved` to, x running fastest; without it, one around the region with the cells of \
-               `resolution`",
+        help: "a lattice of your own: its `counts` of control points along x, y and z, its `box` with `min` and \
+               `max`, and the positions to which its points are `moved`, x running fastest; without it, one around \
+               the region with the cells of `resolution`",
         kind: AttachmentKind::ControlLattice,
     }],
     heeds: &[ConstraintKind::SoftHandles],

@@ -21,35 +21,36 @@ options! {
             help: "cells of the lattice along each axis; more follow the handles more closely and bend more locally",
         },
         /// Cells along x, instead of `resolution`.
-        resolution_x: u32 = of_axis("cells along x, or 0 for as many as `resolution` says"),
+        resolution_x: u32 = of_axis("cells along x, or 0 to use `resolution`"),
         /// Cells along y, instead of `resolution`.
-        resolution_y: u32 = of_axis("cells along y, or 0 for as many as `resolution` says"),
+        resolution_y: u32 = of_axis("cells along y, or 0 to use `resolution`"),
         /// Cells along z, instead of `resolution`.
-        resolution_z: u32 = of_axis("cells along z, or 0 for as many as `resolution` says"),
+        resolution_z: u32 = of_axis("cells along z, or 0 to use `resolution`"),
         /// The functions that weight the control points.
         basis: LatticeBasis = Choice {
             default: LatticeBasis::BSpline,
-            help: "b-spline: a control point moves what is near it; bernstein: it moves everything a little",
+            help: "functions of the control points: with b-spline a point moves its surroundings; with bernstein it \
+                   moves everything a little",
         },
         /// The degree of B-splines.
         degree: u32 = Whole {
             default: 3,
             range: [1, 3],
-            help: "how smooth b-splines are: 1 has creases, 2 has even tangents, 3 even curvature; bernstein has the \
-                   resolution for its degree",
+            help: "smoothness of b-splines: 1 has creases, 2 has continuous tangents, 3 has continuous curvature; \
+                   bernstein's degree is the resolution",
         }; advanced,
         /// The criterion if the handles leave a choice.
         norm: LatticeNorm = Choice {
             default: LatticeNorm::Bending,
-            help: "what the lattice does where handles leave it a choice: bend as little as it can, or (displacement) \
-                   move as little as it can, which stays close to the handles",
+            help: "choice among lattices that fit the handles equally well: the one that bends least, or \
+                   (\"displacement\") the one that moves least, which stays close to the handles",
         }; advanced,
         /// The fading of the field towards fixed vertices.
         falloff: f64 = Number {
             default: 0.1,
             range: [0.0, 1.0],
             unit: "diagonals of the region",
-            help: "how far from what is fixed the deformation fades in",
+            help: "distance from the fixed part over which the deformation fades in",
         },
     }
 }

@@ -29,8 +29,8 @@ pub(crate) trait BoundMethod: Debug + Send + Sync {
         self.step(motions, displacements)
     }
 
-    /// Sets the flag that ends a step which only settles a shape: once it is raised, the step returns with the shape that
-    /// it has reached.
+    /// Sets the flag that ends a step which only settles a shape: once it is raised, the step returns with the shape
+    /// that it has reached.
     fn set_cancel(&mut self, _cancel: &Cancel) {}
 
     /// Called when all handles are back at rest: the next step begins at rest.
@@ -65,9 +65,14 @@ pub(crate) trait BoundMethod: Debug + Send + Sync {
         None
     }
 
+    /// The system, if a frame is one back-substitution with it.
+    fn system(&self) -> Option<&dyn FactoredSystem> {
+        None
+    }
+
     /// The factor, if the next binding can reuse parts of it.
     fn reusable_factor(&self) -> Option<ReusableFactor> {
-        None
+        self.system().map(FactoredSystem::reusable_factor)
     }
 
     /// Its control points, if it has some.
@@ -104,17 +109,18 @@ pub(crate) trait BoundMethod: Debug + Send + Sync {
 
     /// The number of entries that its factors store, 8 bytes each.
     fn factor_len(&self) -> usize {
-        0
+        self.system().map_or(0, FactoredSystem::factor_len)
     }
 
-    /// The approximate cost of a step, in vertices of a method with cheap steps.
+    /// The approximate cost of a step, in vertices of a method whose step is a product.
     fn step_cost(&self) -> usize {
-        self.solved_count()
+        let of_back_substitution = if self.system().is_some() { 4 } else { 1 };
+        of_back_substitution * self.solved_count()
     }
 
     /// Sentences about repairs.
     fn warnings(&self) -> Vec<String> {
-        Vec::new()
+        self.system().map(FactoredSystem::warnings).unwrap_or_default()
     }
 
     /// Sentences about motions that the method can't follow.
@@ -123,17 +129,29 @@ pub(crate) trait BoundMethod: Debug + Send + Sync {
     }
 }
 
+/// A factored system that several methods share.
+pub(crate) trait FactoredSystem {
+    /// The data that the next binding can reuse.
+    fn reusable_factor(&self) -> ReusableFactor;
+
+    /// The number of entries that the factor stores.
+    fn factor_len(&self) -> usize;
+
+    /// Sentences about repairs.
+    fn warnings(&self) -> Vec<String>;
+}
+
 /// The result of a step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Stepped {
-    /// Whether further steps to the same motions would change nothing, and the shape is a minimum.
+    /// True if further steps to the same motions would change nothing, and the shape is a minimum.
     pub converged: bool,
-    /// Whether further steps would change nothing although the shape is no minimum: no step was found that lowers the
+    /// True if further steps would change nothing although the shape is no minimum: no step was found that lowers the
     /// energy.
     pub stalled: bool,
     /// See [`crate::Step::energy`].
     pub energy: f64,
-    /// Whether all displacements are finite, if that was checked while they were computed.
+    /// The finiteness of all displacements, if it was checked while they were computed.
     pub finite: Finite,
 }
 

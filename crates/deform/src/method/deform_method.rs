@@ -1,4 +1,4 @@
-//! A method as its options: what it declares, and how it is bound.
+//! A method as its options: its declaration and its binding.
 
 use std::any::Any;
 use std::fmt::Debug;
@@ -11,7 +11,7 @@ use crate::operators::triangulation::Triangulation;
 use crate::region::boundary_problem::BoundaryProblem;
 use crate::{
     Attachment, AttachmentDeclaration, AttachmentRefused, BindError, ConstraintKind, ControlLattice, HandleFit, Needs,
-    OptionDeclaration, OptionRefused, OptionValue, Solve,
+    OptionDeclaration, OptionRefused, OptionSlider, OptionValue, Picture, Solve,
 };
 
 /// A method with its options: the law by which a surface follows its handles.
@@ -28,6 +28,10 @@ pub struct MethodDeclaration {
     pub when_to_use: &'static str,
     /// Its other names, in lower case.
     pub keywords: &'static str,
+    /// The elements that its picture shows.
+    pub picture: Picture,
+    /// The slider of the option that counts most, if it has one; shown while the option has an effect.
+    pub slider: Option<&'static OptionSlider>,
     /// Its options, in the order of the window.
     pub options: &'static [OptionDeclaration],
     /// Its inputs beside handles, such as a cage. The method makes those that are not brought.
@@ -46,7 +50,7 @@ impl MethodDeclaration {
         self.attachments.iter().find(|attachment| attachment.name == name)
     }
 
-    /// Whether it supports this constraint.
+    /// Returns true if it supports this constraint.
     pub fn heeds(&self, constraint: ConstraintKind) -> bool {
         self.heeds.contains(&constraint)
     }
@@ -94,8 +98,8 @@ pub(crate) trait DeformMethod: Options {
         Ok(())
     }
 
-    /// Whether examples bend the surface by their weights, 0 being rest. Otherwise they only add to the handles'
-    /// effect, and a weight multiplies its example's addition.
+    /// Returns true if examples bend the surface by their weights, 0 being rest. Otherwise they only add to the
+    /// handles' effect, and a weight multiplies its example's addition.
     fn examples_bend(&self) -> bool {
         true
     }
@@ -110,7 +114,7 @@ pub(crate) trait DeformMethod: Options {
         HandleFit::Exact
     }
 
-    /// Whether [`crate::Constraints::continuity`] has an effect.
+    /// Returns true if [`crate::Constraints::continuity`] has an effect.
     fn has_continuity(&self) -> bool {
         false
     }
@@ -126,13 +130,19 @@ pub(crate) trait DeformMethod: Options {
         None
     }
 
-    /// Whether it can be bound with an ordering of power 1 instead of its own, by the Laplacian's factor, which takes
+    /// The largest turn between handles for which it is advised instead of a method that follows less; 0 for none.
+    fn advised_for_degrees(&self) -> u16 {
+        0
+    }
+
+    /// Returns true if it can be bound with an ordering of power 1 instead of its own, by the Laplacian's factor, which takes
     /// less memory and more time.
     fn takes_first_power(&self) -> bool {
         false
     }
 
-    /// Whether each vertex of a handle can have its own place, by an offset from the handle's motion ([`crate::handles::offsets::Offsets`]).
+    /// Returns true if each vertex of a handle can have its own place, by an offset from the handle's motion
+    /// ([`crate::handles::offsets::Offsets`]).
     fn takes_places(&self) -> bool {
         false
     }

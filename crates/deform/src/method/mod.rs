@@ -12,7 +12,7 @@ use glam::DVec3;
 use pliant_mesh::{Cancel, Cancelled, Progress, Surface, Topology};
 
 pub(crate) use self::bind_input::BindInput;
-pub(crate) use self::bound_method::{BoundMethod, Stepped};
+pub(crate) use self::bound_method::{BoundMethod, FactoredSystem, Stepped};
 pub(crate) use self::deform_method::{DeformMethod, Options};
 pub use self::deform_method::{Method, MethodDeclaration};
 use crate::budget::plate_bytes;
@@ -38,8 +38,8 @@ impl Method {
         self.declaration().name
     }
 
-    /// Whether [`crate::Constraints::continuity`] sets the smoothness at constrained vertices; other methods have no
-    /// choice, and neither has the membrane.
+    /// Returns true if [`crate::Constraints::continuity`] sets the smoothness at constrained vertices; other methods
+    /// have no choice, and neither has the membrane.
     pub fn has_continuity(&self) -> bool {
         self.0.has_continuity()
     }
@@ -111,8 +111,8 @@ impl Method {
         self.0.handle_fit()
     }
 
-    /// Whether its examples bend the surface by their weights, 0 being rest. Otherwise they only add to the handles'
-    /// effect, and a weight multiplies its example's addition, 1 without a weight.
+    /// Returns true if its examples bend the surface by their weights, 0 being rest. Otherwise they only add to the
+    /// handles' effect, and a weight multiplies its example's addition, 1 without a weight.
     pub fn examples_bend(&self) -> bool {
         self.0.examples_bend()
     }
@@ -158,7 +158,7 @@ impl Method {
                 let names = options.iter().map(|option| format!("`{}`", option.name));
                 return Err(OptionRefused {
                     option: name.to_owned(),
-                    allowed: format!("nothing: {} has {}", self.name(), joined(names, "and")),
+                    allowed: format!("no value: {} has only {}", self.name(), joined(names, "and")),
                 });
             };
             if !option.kind.takes(value) {

@@ -6,6 +6,7 @@ use super::moments::Entry;
 use super::points::Points;
 use super::{Mls, MlsTransforms};
 use crate::BindError;
+use crate::Picture;
 use crate::handles::turns::Followed;
 use crate::method::{BindInput, BoundMethod, DeformMethod, MethodDeclaration};
 use crate::needs::{ConstraintKind, Needs, Solve};
@@ -14,9 +15,11 @@ use crate::space::field::FIELD_ROW;
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "mls",
     title: "Moving least squares",
-    when_to_use: "Each place turns and moves as the handles around it do, at once: for quick poses of scans of loose or \
-                  broken pieces; what is near in space moves along, whether it is connected or not.",
+    when_to_use: "Turns and moves each place like the handles around it, in one step: for quick poses of scans of \
+                  loose or broken pieces. Everything near in space moves along, connected or not.",
     keywords: "mls moving least squares schaefer rigid similarity affine space points soup warp",
+    picture: Picture::Moves,
+    slider: None,
     options: Mls::OPTIONS,
     attachments: &[],
     heeds: &[ConstraintKind::SoftHandles],

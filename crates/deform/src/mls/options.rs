@@ -8,16 +8,16 @@ options! {
         /// The map fitted at each place.
         transforms: MlsTransforms = Choice {
             default: MlsTransforms::Rigid,
-            help: "what each place may do: turn (\"rigid\"), turn and grow (\"similarity\"), or also stretch and shear \
-                   (\"affine\")",
+            help: "motion of each place: turns (\"rigid\"), turns and growth (\"similarity\"), or also stretch and \
+                   shear (\"affine\")",
         },
         /// The falloff of a handle's influence: its weight is one over this power of the distance.
         falloff: f64 = Number {
             default: 4.0,
             range: [2.0, 8.0],
             unit: "",
-            help: "how fast a handle's influence falls off with the distance, as a power: the higher it is, the more of \
-                   the surface around a handle moves just as the handle does",
+            help: "power of the distance by which a handle's influence falls off: with a higher power, more of the \
+                   surface around a handle moves exactly with it",
         },
     }
 }

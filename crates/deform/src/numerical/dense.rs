@@ -54,7 +54,7 @@ impl Lu {
     }
 }
 
-/// Whether a symmetric matrix is positive definite: whether it has a Cholesky factor.
+/// Returns true if a symmetric matrix is positive definite, so that it has a Cholesky factor.
 pub(crate) fn is_positive_definite(mut a: Mat<f64>) -> bool {
     let scratch = llt::factor::cholesky_in_place_scratch::<f64>(a.nrows(), Par::Seq, Default::default());
     let mut room = MemBuffer::new(scratch);

@@ -106,7 +106,7 @@ impl Fits {
         s
     }
 
-    /// Fits one lane anew, without a guess.
+    /// Fits one lane again, without a guess.
     #[cold]
     fn refit(&mut self, lane: usize) {
         let [xx, xy, xz, yy, yz, zz] = self.rest.map(|value| value.0[lane]);

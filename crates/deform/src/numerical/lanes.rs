@@ -116,7 +116,7 @@ impl<S: Simd> Vector<S> {
         }
     }
 
-    /// Where it is less; false if either is NaN.
+    /// True in each lane that is less; false if either is NaN.
     #[inline(always)]
     pub(crate) fn less(self, other: Self) -> Mask<S> {
         Mask {

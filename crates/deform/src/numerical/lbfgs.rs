@@ -35,7 +35,7 @@ impl Memory {
         self.pairs.clear();
     }
 
-    /// Whether nothing is remembered.
+    /// Returns true if nothing is remembered.
     pub fn is_empty(&self) -> bool {
         self.pairs.is_empty()
     }

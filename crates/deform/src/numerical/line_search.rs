@@ -16,7 +16,7 @@ pub(crate) struct Trial {
 }
 
 impl Trial {
-    /// Whether the energy falls, and by a large enough share of the slope's prediction.
+    /// Returns true if the energy falls, and by a large enough share of the slope's prediction.
     pub fn is_sufficient(&self) -> bool {
         let Self {
             length,

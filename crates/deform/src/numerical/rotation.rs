@@ -3,7 +3,7 @@
 //! It uses Newton's method on the rotations, started from the last one. With B = Rᵀ S, a the axial vector of B's skew
 //! part and H = tr(B) I − sym(B), the step is R ← R exp(H⁻¹ a), and a rotation is the maximum exactly if a = 0 and H is
 //! positive semidefinite: every other critical point is a saddle or a minimum. So one or two steps from a warm start
-//! are enough, reflected and flat cells need no special case, and cells that the test of H refuses are solved anew by
+//! are enough, reflected and flat cells need no special case, and cells that the test of H refuses are solved again by
 //! the largest eigenvector of Horn's 4×4 matrix (see `rigid_fit`), which is always a proper rotation.
 
 use glam::{DMat3, DQuat, DVec3};

@@ -17,7 +17,7 @@ pub(crate) struct FaceTerms {
     pub half_cotangents: [f64; 3],
     /// By corner: its share of the area.
     pub areas: [f64; 3],
-    /// Whether the triangle was too flat for its own cotangents.
+    /// True if the triangle was too flat for its own cotangents.
     pub mollified: bool,
 }
 

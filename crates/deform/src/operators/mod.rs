@@ -277,7 +277,7 @@ impl Laplacian {
         &self.weights[self.offsets[local] as usize..self.offsets[local + 1] as usize]
     }
 
-    /// Whether the row of `local` has all its neighbours. Every surface vertex has at least one.
+    /// Returns true if the row of `local` has all its neighbours. Every surface vertex has at least one.
     pub fn is_full(&self, local: usize) -> bool {
         self.offsets[local] < self.offsets[local + 1]
     }

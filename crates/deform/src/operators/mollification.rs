@@ -29,6 +29,6 @@ pub(crate) fn repairs(mollified_faces: usize) -> Option<String> {
         count => format!("{count} degenerate triangles were given the smallest safe shape"),
     };
     Some(format!(
-        "{done}: where they bend badly, take {space}, which needs no triangles"
+        "{done}: if they bend badly, take {space}, which needs no triangles"
     ))
 }

@@ -9,16 +9,19 @@ use crate::handles::Motion;
 use crate::handles::finite::Finite;
 use crate::handles::offsets::Offsets;
 use crate::handles::polar::Polar;
-use crate::method::{BindInput, BoundMethod, DeformMethod, MethodDeclaration, Stepped};
+use crate::method::{BindInput, BoundMethod, DeformMethod, FactoredSystem, MethodDeclaration, Stepped};
 use crate::needs::{ConstraintKind, Needs, Solve};
-use crate::{BindError, ReusableFactor, SolveError, Warning};
+use crate::{BindError, Picture, SolveError, Warning};
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "poisson",
     title: "Gradient editing",
-    when_to_use: "Spreads the handles' turns and stretches over the surface, at once and beyond half a turn: for bends \
-                  and twists of detailed shapes. A handle that is only moved turns nothing, and details shear there.",
+    when_to_use: "Spreads the handles' turns and stretches over the surface, in one step and beyond half a turn: for \
+                  bends and twists of detailed shapes. A handle that is only moved turns nothing, and details shear \
+                  there.",
     keywords: "poisson gradient harmonic geodesic material propagation",
+    picture: Picture::Arrows,
+    slider: None,
     options: Poisson::OPTIONS,
     attachments: &[],
     heeds: &[ConstraintKind::SoftHandles, ConstraintKind::Stiffness],
@@ -29,6 +32,10 @@ pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
 impl DeformMethod for Poisson {
     fn declaration(&self) -> &'static MethodDeclaration {
         &DECLARATION
+    }
+
+    fn advised_for_degrees(&self) -> u16 {
+        u16::MAX
     }
 
     fn needs(&self) -> Needs {
@@ -74,25 +81,12 @@ impl BoundMethod for PoissonSolver {
         true
     }
 
-    fn reusable_factor(&self) -> Option<ReusableFactor> {
-        Some(self.system.reusable_factor())
+    fn system(&self) -> Option<&dyn FactoredSystem> {
+        Some(&self.system)
     }
 
     fn solved_count(&self) -> usize {
         self.system.columns().len()
-    }
-
-    fn factor_len(&self) -> usize {
-        self.system.factor_len()
-    }
-
-    /// A frame is a back-substitution, not a product.
-    fn step_cost(&self) -> usize {
-        4 * self.solved_count()
-    }
-
-    fn warnings(&self) -> Vec<String> {
-        self.system.warnings()
     }
 
     fn blind_to(&self, motions: &[Motion]) -> Vec<Warning> {

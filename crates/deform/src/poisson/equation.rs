@@ -4,7 +4,7 @@
 //! over each component is zero. So one vertex of each component is held at zero: its own equation follows from the
 //! others'.
 
-use pliant_mesh::{Cancel, Surface, SurfaceVertex, Topology, bounding_box};
+use pliant_mesh::{Cancel, Surface, Topology, bounding_box};
 use rayon::prelude::*;
 
 use super::membrane::membrane;
@@ -12,11 +12,11 @@ use crate::bilaplacian::factored::BilaplacianSystem;
 use crate::bilaplacian::loaded::settled;
 use crate::bilaplacian::operator::BilaplacianOperator;
 use crate::bilaplacian::setup::bent_rows;
-use crate::bilaplacian::system_error::SystemError;
 use crate::numerical::rows::CHUNK;
 use crate::operators::triangulation::Triangulation;
 use crate::region::slender;
 use crate::sparse::refactorisation::Refactorisation;
+use crate::sparse::system_error::SystemError;
 use crate::{BindError, Budget, Discretisation, Laplacian, Ordering, SolveError};
 
 /// The factored Laplacian of a whole surface, with one vertex of each component held at zero.
@@ -56,9 +56,7 @@ impl PoissonEquation {
         let laplacian = Laplacian::on(&triangulation, &stiffness, &rows, metric, &|_, _| 1.0);
         let operator = BilaplacianOperator::new(laplacian, &membrane(), diagonal_of(surface));
         let elimination = ordering.elimination(&solved);
-        let refuse = |error: SystemError| {
-            error.into_bind_error(|vertex| topology.component(SurfaceVertex(vertex)), solved.len())
-        };
+        let refuse = |error: SystemError| error.into_bind_error(topology, solved.len());
         let mut system =
             BilaplacianSystem::new(operator, elimination, Refactorisation::Never, budget, cancel).map_err(refuse)?;
         let mut constant = vec![[1.0]; system.operator.field_len()];
@@ -114,7 +112,7 @@ pub(crate) fn diagonal_of(surface: &Surface) -> f64 {
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "tests")]
 mod tests {
-    use pliant_mesh::{Progress, shapes};
+    use pliant_mesh::{Progress, SurfaceVertex, shapes};
 
     use super::*;
 

@@ -35,7 +35,7 @@ pub(crate) struct PoissonSolver {
     handles: Vec<Handle>,
     /// The handles' maps at the last step. Turns continue from them, so that one beyond half a turn is kept.
     polars: Vec<Polar>,
-    /// Whether something is fixed.
+    /// True if something is fixed.
     is_held: bool,
     room: Room,
 }

@@ -8,8 +8,8 @@ options! {
         /// The spreading of the handles' rotations and stretches.
         propagation: Propagation = Choice {
             default: Propagation::Harmonic,
-            help: "how turns and stretches spread from the handles: evenly (\"harmonic\"), by distance along the surface \
-                   (\"geodesic\"), or so that stiffly painted parts turn as a whole (\"material\")",
+            help: "spreading of the handles' turns and stretches: even (\"harmonic\"), by distance along the surface \
+                   (\"geodesic\"), or with stiffly painted parts turning as a whole (\"material\")",
         },
     }
 }

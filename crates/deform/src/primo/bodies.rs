@@ -9,9 +9,11 @@ use super::joints::Joints;
 use super::pose::Pose;
 use super::springs::Springs;
 use crate::budget::{Budget, bytes_of};
+use crate::descent::rule;
 use crate::handles::blend::HandleFrame;
 use crate::handles::{Handle, Motion};
 use crate::numerical::lbfgs::Memory;
+use crate::numerical::sums::Field;
 use crate::sparse::factor_error::FactorError;
 
 /// The bodies, with their present pose.
@@ -28,12 +30,14 @@ pub(crate) struct Bodies {
     pub current: Pose,
     pub(super) trial: Pose,
     pub(super) memory: Memory,
+    /// The last direction uphill.
+    pub(super) uphill: Field,
     /// The motions of the `current` pose.
     pub(super) motions: Vec<Motion>,
     pub(super) state: State,
     /// Steps towards the present targets since the matrix was last factored.
     pub(super) age: u32,
-    /// Whether the matrix was factored at another pose than the rest pose.
+    /// True if the matrix was factored at another pose than the rest pose.
     pub(super) is_renewed: bool,
     /// The relative decrease of the energy below which iteration ends.
     pub(super) tolerance: f64,
@@ -44,12 +48,8 @@ pub(crate) struct Bodies {
 pub(super) enum State {
     /// Prisms are folded onto their neighbours: local sweeps come first.
     Folded(u32),
-    /// Not finished.
-    Descending,
-    /// Converged: at a minimum, to the tolerance.
-    Converged,
-    /// Stalled: no step was found that lowers the energy, though the quadratic model promises one.
-    Stalled,
+    /// Steps lower the energy.
+    Steps(rule::State),
 }
 
 impl Bodies {
@@ -82,8 +82,9 @@ impl Bodies {
             current: at_rest.clone(),
             trial: at_rest,
             memory: Memory::default(),
+            uphill: Field::new(),
             motions: vec![Motion::default(); handles.len()],
-            state: State::Converged,
+            state: State::Steps(rule::State::Converged),
             age: 0,
             is_renewed: false,
             tolerance,
@@ -109,7 +110,7 @@ impl Bodies {
         self.motions.fill(Motion::default());
         self.current = Pose::at_rest(self.joints.count(), 1 + self.handles.len());
         self.memory.clear();
-        self.state = State::Converged;
+        self.state = State::Steps(rule::State::Converged);
         // The following steps must be the same as after binding.
         if std::mem::take(&mut self.is_renewed)
             && let Preconditioner::Direct(factored) = &mut self.preconditioner
@@ -125,14 +126,14 @@ impl Bodies {
         }
         match self.state {
             State::Folded(left) => self.unfold(left),
-            State::Descending => self.descend(),
-            State::Converged | State::Stalled => {}
+            State::Steps(rule::State::Descending) => self.descend(),
+            State::Steps(_) => {}
         }
     }
 
-    /// Whether no step lowers the energy although the pose has not converged.
+    /// Returns true if no step lowers the energy although the pose has not converged.
     pub fn has_stalled(&self) -> bool {
-        self.state == State::Stalled
+        self.state == State::Steps(rule::State::Stalled)
     }
 
     /// Returns whether the last step converged, and its energy. If it is not finite the next targets begin afresh.
@@ -142,6 +143,9 @@ impl Bodies {
             self.rest();
             return (true, energy);
         }
-        (self.state == State::Converged, self.relative(energy))
+        (
+            self.state == State::Steps(rule::State::Converged),
+            self.relative(energy),
+        )
     }
 }

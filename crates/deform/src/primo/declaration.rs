@@ -8,13 +8,15 @@ use crate::handles::turns::Followed;
 use crate::handles::{Motion, clear};
 use crate::method::{BindInput, BoundMethod, DeformMethod, MethodDeclaration, Stepped};
 use crate::needs::{ConstraintKind, Needs, Solve};
-use crate::{BindError, SolveError};
+use crate::{BindError, Picture, SolveError};
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "primo",
     title: "Coupled prisms",
     when_to_use: "Bends like a rubber sheet of a thickness you choose, step by step: for even bends and twists.",
     keywords: "primo rubber nonlinear shell",
+    picture: Picture::Prisms,
+    slider: None,
     options: Primo::OPTIONS,
     attachments: &[],
     heeds: &[ConstraintKind::Stiffness],

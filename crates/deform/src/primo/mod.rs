@@ -41,7 +41,7 @@ mod system;
 mod vertices;
 
 use glam::DVec3;
-use pliant_mesh::{Cancel, Progress, SurfaceVertex};
+use pliant_mesh::{Cancel, Progress};
 
 pub(crate) use self::declaration::DECLARATION;
 pub use self::options::Primo;
@@ -57,8 +57,8 @@ use crate::region::boundary_problem::BoundaryProblem;
 use crate::region::partition::Partition;
 use crate::region::slender;
 use crate::sparse::Elimination;
-use crate::sparse::factor_error::FactorError;
 use crate::sparse::ordering::graph::elimination;
+use crate::sparse::system_error::SystemError;
 
 /// The bound method, with its present pose.
 #[derive(Debug)]
@@ -112,7 +112,9 @@ impl PrimoSolver {
             let corner = surface.triangles[prisms.faces[prism] as usize][0];
             (topology.component(corner), corner)
         };
-        let refused = |error| bind_error(error, partition.free_count, component);
+        let refused = |error| {
+            SystemError::of(error, |prism| component(prism).1.0).into_bind_error(topology, partition.free_count)
+        };
         let unheld = |prism: usize| !partition.held[component(prism).0 as usize];
         let bodies = Bodies::of(
             joints,
@@ -156,20 +158,6 @@ impl PrimoSolver {
             self.vertices.write(&self.bodies.current, displacements);
         });
         self.bodies.outcome()
-    }
-}
-
-/// The meaning of a factorisation's error for a problem with `free_count` free vertices. `component` gives a prism's
-/// component and a vertex of it.
-fn bind_error(error: FactorError, free_count: usize, component: impl Fn(usize) -> (u32, SurfaceVertex)) -> BindError {
-    match error {
-        FactorError::Pivot(prism) => {
-            let (component, SurfaceVertex(vertex)) = component(prism);
-            BindError::NotPositiveDefinite { component, vertex }
-        }
-        FactorError::Budget(limit) => BindError::budget(free_count, limit),
-        FactorError::Memory => BindError::OutOfMemory { free_count },
-        FactorError::Cancelled => BindError::Cancelled(pliant_mesh::Cancelled),
     }
 }
 

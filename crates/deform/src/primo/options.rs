@@ -11,8 +11,9 @@ options! {
         thickness: f64 = Number {
             default: 0.1,
             range: [0.001, 1.0],
-            unit: "sizes of what bends",
-            help: "the prisms' height, in sizes of what bends (a rod's length, a ball's diagonal): how much bending is resisted against stretching",
+            unit: "sizes of the bending part",
+            help: "the prisms' height, in sizes of the bending part (a rod's length, a ball's diagonal): a large \
+                   height resists bending most, a small one stretching",
         },
         /// Iteration ends when a step lowers the energy by less than this share of it; above 0.
         tolerance: f64 = iteration::TOLERANCE; advanced,

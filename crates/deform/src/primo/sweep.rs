@@ -11,6 +11,7 @@ use super::bodies::{Bodies, State};
 use super::colours::Colours;
 use super::joints::Joints;
 use super::pose::Pose;
+use crate::descent::rule;
 use crate::numerical::rotation::fit;
 use crate::numerical::rows::CHUNK;
 
@@ -47,7 +48,7 @@ impl Pose {
         fit(&sum, self.rotations[prism])
     }
 
-    /// Whether some prism is rotated by more than a quarter turn from a neighbour.
+    /// Returns true if some prism is rotated by more than a quarter turn from a neighbour.
     pub fn is_folded(&self, joints: &Joints) -> bool {
         (0..joints.count()).into_par_iter().with_min_len(CHUNK).any(|prism| {
             let own = self.rotations[prism];
@@ -63,7 +64,7 @@ impl Bodies {
         if self.current.is_folded(&self.joints) {
             State::Folded(SWEEPS)
         } else {
-            State::Descending
+            State::Steps(rule::State::Descending)
         }
     }
 
@@ -74,13 +75,13 @@ impl Bodies {
         self.trial.settle(&self.joints, &self.springs);
         self.trial.evaluate(&self.joints);
         if self.trial.energy >= self.current.energy || !self.trial.energy.is_finite() {
-            self.state = State::Descending;
+            self.state = State::Steps(rule::State::Descending);
             return;
         }
         self.memory.clear();
         std::mem::swap(&mut self.current, &mut self.trial);
         if left == 1 || !self.current.is_folded(&self.joints) {
-            self.state = State::Descending;
+            self.state = State::Steps(rule::State::Descending);
         } else {
             self.state = State::Folded(left - 1);
         }

@@ -7,6 +7,7 @@ use super::centres::fitted;
 use super::constraints::Constraints;
 use super::kernel::{Sum, Weights};
 use crate::BindError;
+use crate::Picture;
 use crate::budget::bytes_of;
 use crate::handles::turns::Followed;
 use crate::method::{BindInput, BoundMethod, DeformMethod, MethodDeclaration};
@@ -17,9 +18,11 @@ use crate::space::linear::BoundLinear;
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "rbf",
     title: "Radial basis functions",
-    when_to_use: "Bends the space around the surface as smoothly as can be, at once: for scans of loose or broken \
-                  pieces. What is near in space moves along, whether it is connected or not.",
+    when_to_use: "Bends the space around the surface as smoothly as possible, in one step: for scans of loose or \
+                  broken pieces. Everything near in space moves along, connected or not.",
     keywords: "rbf radial triharmonic space points soup warp",
+    picture: Picture::Circles,
+    slider: None,
     options: Rbf::OPTIONS,
     attachments: &[],
     heeds: &[],
@@ -90,8 +93,8 @@ impl DeformMethod for Rbf {
         };
         let missed = (fitted.error > self.tolerance).then(|| {
             format!(
-                "rbf misses its constraints by up to {:.1e} of the handles' way with {} centres: allow more `centres`, \
-                 or a larger `tolerance`",
+                "rbf misses its constraints by up to {:.1e} of the handles' motion with {} centres: allow more \
+                 `centres`, or a larger `tolerance`",
                 fitted.error,
                 fitted.weights.centres.len()
             )

@@ -1,5 +1,5 @@
 //! Triharmonic radial basis functions [BK05]: d(p) = Σ_k c_k |p − x_k|³ + a + B p, through the displacements of the
-//! handles and of the fixed vertices. Of all fields through these it has the least ∫ |∇³ d|².
+//! handles and of the fixed vertices. It has the least ∫ |∇³ d|² of all fields through these.
 //!
 //! Parts: `centres` chooses the x_k among the constraints, `system` solves for the effect of each handle's affine
 //! motions on the coefficients, and `kernel` evaluates sums of the kernel and their gradients. Frames are those of

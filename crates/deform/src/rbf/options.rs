@@ -10,14 +10,14 @@ options! {
             default: 1e-4,
             range: [1e-9, 0.1],
             unit: "",
-            help: "the largest error at the constraints, as a share of how far the handles move: centres are added until \
+            help: "the largest error at the constraints, as a share of the handles' motion: centres are added until \
                    it is met",
         }; advanced,
         /// The most centres.
         centres: u32 = Whole {
             default: 1500,
             range: [8, 5000],
-            help: "the most centres, chosen among the constraints",
+            help: "the largest number of centres, which are chosen among the constraints",
         }; advanced,
     }
 }

@@ -1,4 +1,4 @@
-//! The problem without its method: a surface, and what holds it and moves it.
+//! The problem without its method: a surface and its constraints.
 
 use pliant_mesh::{Bounds, Surface, SurfaceVertex, Topology, bounding_box};
 
@@ -42,7 +42,7 @@ impl BoundaryProblem<'_> {
         size::size(self.surface, self.topology, self.roles)
     }
 
-    /// Whether a vertex is free or held softly.
+    /// Returns true if a vertex is free or held softly.
     pub fn may_move(&self, vertex: SurfaceVertex) -> bool {
         match self.roles.get(vertex.index()) {
             Some(Role::Free) => true,

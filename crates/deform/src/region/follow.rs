@@ -340,7 +340,7 @@ fn thinned(patch: Vec<SurfaceVertex>) -> Vec<SurfaceVertex> {
 }
 
 impl Followers {
-    /// Whether nothing follows.
+    /// Returns true if nothing follows.
     pub fn is_empty(&self) -> bool {
         self.rigid.is_empty() && self.bending.is_empty()
     }

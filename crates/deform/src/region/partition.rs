@@ -49,7 +49,7 @@ pub(crate) struct Demands {
     pub needs: Needs,
     /// The constraints that it supports.
     pub heeds: &'static [ConstraintKind],
-    /// Whether examples bend the surface by themselves.
+    /// True if examples bend the surface by themselves.
     pub examples_bend: bool,
 }
 
@@ -250,7 +250,7 @@ fn moving(problem: &BoundaryProblem, strays: &[u32]) -> Vec<u32> {
         .collect()
 }
 
-/// Whether a surface method does not solve for a vertex, because no triangle uses it.
+/// Returns true if a surface method does not solve for a vertex, because no triangle uses it.
 fn is_bare(problem: &BoundaryProblem, demands: &Demands, vertex: usize) -> bool {
     let is_alone = || problem.topology.neighbours(SurfaceVertex(vertex as u32)).is_empty();
     demands.needs != Needs::Points && is_alone()
@@ -341,7 +341,7 @@ fn unheeded(problem: &BoundaryProblem, demands: &Demands) -> Vec<Warning> {
     if let Some(handle) = soft.filter(|_| is_unheeded(ConstraintKind::SoftHandles, true)) {
         let remedy = remedy(ConstraintKind::SoftHandles, "soft handles");
         warnings.push(Warning::of_handle(handle, |handle| {
-            format!("{handle} is soft, and {name} holds every handle hard: {remedy}")
+            format!("{handle} is soft, but {name} treats every handle as hard: {remedy}")
         }));
     }
     if is_unheeded(ConstraintKind::Continuity, has_joints) {
@@ -350,7 +350,7 @@ fn unheeded(problem: &BoundaryProblem, demands: &Demands) -> Vec<Warning> {
     }
     if is_unheeded(ConstraintKind::Stiffness, is_painted) {
         let remedy = remedy(ConstraintKind::Stiffness, "parts that are stiffer than others");
-        warnings.push(format!("{name} takes no notice of painted stiffness: {remedy}").into());
+        warnings.push(format!("{name} ignores painted stiffness: {remedy}").into());
     }
     warnings
 }
@@ -366,7 +366,7 @@ fn warning_of_points(problem: &BoundaryProblem, points: &[u32], loose_of: &[Loos
         (0, 0) => return None,
         (0, _) => "stay".to_owned(),
         (_, 0) => "follow the nearest deformed surface".to_owned(),
-        (_, resting) => format!("follow the nearest deformed surface, but for {resting} that stay"),
+        (_, resting) => format!("follow the nearest deformed surface, except for {resting} that stay"),
     };
     Some(format!(
         "points that no triangle uses ({}) {does}: {} bends them with the space around",
@@ -401,7 +401,7 @@ fn warnings(problem: &BoundaryProblem, loose: &[u32], loose_of: &[Loose]) -> Vec
                 "bend along with the nearest deformed surface",
             ],
         ),
-        (Loose::Rest, ["stays and follows nothing", "stay and follow nothing"]),
+        (Loose::Rest, ["stays in place", "stay in place"]),
     ] {
         let alike = loose
             .iter()
@@ -410,8 +410,8 @@ fn warnings(problem: &BoundaryProblem, loose: &[u32], loose_of: &[Loose]) -> Vec
         let alike: Vec<u32> = alike.collect();
         if alike.len() > NAMED {
             sentences.push(format!(
-                "{} components ({} vertices, from component {} on) hold no handle and no fixed vertex: they {they}; {} \
-                 bends them with the space around",
+                "{} components ({} vertices, from component {} on) have no handle and no fixed vertex: they {they}; \
+                 {} bends them with the space around",
                 alike.len(),
                 sum(&alike),
                 alike[0],
@@ -421,7 +421,7 @@ fn warnings(problem: &BoundaryProblem, loose: &[u32], loose_of: &[Loose]) -> Vec
         }
         for component in alike {
             sentences.push(format!(
-                "component {component} ({} vertices) holds no handle and no fixed vertex: it {it}",
+                "component {component} ({} vertices) has no handle and no fixed vertex: it {it}",
                 size(component),
             ));
         }
@@ -450,7 +450,7 @@ fn warnings_of_unheld(problem: &BoundaryProblem, unheld: &[u32], handles: &[Vec<
     if unheld.len() <= NAMED {
         let one = |(&component, holders): (&u32, Vec<(usize, usize)>)| {
             let sentence = format!(
-                "component {component} ({} vertices) holds a handle but no fixed vertex: nothing holds it back",
+                "component {component} ({} vertices) has a handle but no fixed vertex, so it can move as a whole",
                 size(component)
             );
             Warning::of_unheld(sentence, vec![holders])
@@ -458,7 +458,8 @@ fn warnings_of_unheld(problem: &BoundaryProblem, unheld: &[u32], handles: &[Vec<
         return unheld.iter().zip(holders).map(one).collect();
     }
     let sentence = format!(
-        "{} components ({} vertices, from component {} on) hold a handle but no fixed vertex: nothing holds them back",
+        "{} components ({} vertices, from component {} on) have a handle but no fixed vertex, so they can move as \
+         wholes",
         unheld.len(),
         unheld.iter().map(|&component| size(component)).sum::<usize>(),
         unheld[0]

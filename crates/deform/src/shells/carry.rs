@@ -138,7 +138,9 @@ impl Carrier {
                 sum.to_array()
             })
             .collect();
-        energy.springs.add_gradient(&shape.displacements, &mut pull);
+        energy
+            .springs
+            .add_gradient(|vertex| shape.displacements[vertex], &mut pull);
         pull
     }
 }

@@ -10,32 +10,42 @@ use super::elements::Elements;
 use super::lead::Led;
 use super::{Descent, Lead, Shells, ShellsSolver};
 use crate::attachment::{AttachmentDeclaration, AttachmentKind};
+use crate::descent::prescribed::Prescribed;
 use crate::handles::finite::Finite;
 use crate::handles::offsets::Offsets;
 use crate::handles::turns::Followed;
 use crate::handles::{Motion, clear};
 use crate::method::{BindInput, BoundMethod, DeformMethod, MethodDeclaration, Stepped};
 use crate::needs::{ConstraintKind, Needs, Solve};
-use crate::{BindError, SolveError};
+use crate::{BindError, OptionSlider, Picture, SolveError};
 
 /// The attachment's name.
 pub(super) const EXAMPLES: &str = "examples";
 
+/// The bending of materials.
+const PAPER_TO_RUBBER: OptionSlider = OptionSlider {
+    option: "bending",
+    ends: ["Paper", "rubber"],
+    range: Shells::PAPER_TO_RUBBER,
+    help: "Paper keeps its lengths and creases; thick rubber bends evenly and stretches. The slider sets `bending`.",
+};
+
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "shells",
     title: "Discrete shells",
-    when_to_use: "Keeps lengths and angles of the surface and, if you wish, its volume, step by step: for what should \
-                  bend like a skin, a sheet or a balloon, from paper, which creases and keeps its lengths (`bending` \
-                  1e-6), to thick rubber, which bends evenly (1e-2). Poses that you keep as examples lead it, and their \
-                  weights alone blend shapes along arcs.",
+    when_to_use: "Keeps the surface's lengths and angles and, if you wish, its volume, step by step: for skin, sheets \
+                  and balloons, from paper, which creases (`bending` 1e-6), to thick rubber, which bends evenly \
+                  (1e-2). Poses that you keep as examples guide it, and their weights alone blend shapes along arcs.",
     keywords: "discrete shells nonlinear thin shell paper cloth rubber balloon volume isometric developable examples pose blend interpolation grinspun",
+    picture: Picture::Triangles,
+    slider: Some(&PAPER_TO_RUBBER),
     options: Shells::OPTIONS,
     attachments: &[AttachmentDeclaration {
         name: EXAMPLES,
         title: "examples",
-        help: "further shapes of the same vertices and triangles, which say what lengths, angles, areas and volumes the \
-               surface may have: a list with the `file` or the `morph_target` of each and its `weight`, 0 for rest and \
-               1 for the example; a weight that is left out is found",
+        help: "further shapes of the same vertices and triangles, whose lengths, angles, areas and volumes the \
+               surface may take on: a list with the `file` or the `morph_target` of each and its `weight`, 0 for rest \
+               and 1 for the example; the solver finds a weight that is left out",
         kind: AttachmentKind::Shapes,
     }],
     heeds: &[ConstraintKind::SoftHandles, ConstraintKind::Stiffness],
@@ -101,11 +111,7 @@ impl DeformMethod for Shells {
 impl BoundMethod for ShellsSolver {
     fn step(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> Result<Stepped, SolveError> {
         clear(displacements);
-        for (own, motion) in self.prescribed.iter().zip(motions) {
-            for vertex in own {
-                displacements[vertex.surface_vertex as usize] = vertex.goes(motion);
-            }
-        }
+        Prescribed::write(&self.prescribed, motions, displacements);
         let mut outcome = (true, 0.0);
         // The whole step enters the pool once: otherwise each of the many short loops would wait for it.
         rayon::scope(|_| outcome = self.advance(motions));

@@ -1,28 +1,18 @@
-//! One Newton step with a line search, or one quasi-Newton step of a surface that a coarse level leads.
+//! Shells' energy as it descends: by one Newton step, or by one quasi-Newton step of a surface that a coarse level leads.
 
 use pliant_mesh::Cancel;
 
 use super::shape::{Energy, Slopes};
 use super::system::System;
 use super::{Descent, ShellsSolver};
-use crate::numerical::line_search::Trial;
+use crate::descent;
+use crate::descent::energy::lower;
+use crate::descent::rule::{Lowered, Rule, State};
 use crate::numerical::sums::{Field, dot};
 use crate::sparse::factor_error::FactorError;
 
-/// The most lengths that a line search tries.
-const TRIALS: u32 = 12;
-
 /// Energies below this share of the surface's area are rounding.
 pub(super) const NOTHING: f64 = 1e-20;
-
-/// The decreases that a step promised and reached.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Lowered {
-    /// The decrease that the quadratic model promised.
-    pub promised: f64,
-    /// The decrease of the energy; 0 if no length lowered it.
-    pub gained: f64,
-}
 
 impl ShellsSolver {
     /// Takes one step towards the present motions; the shape must not have converged.
@@ -46,8 +36,7 @@ impl ShellsSolver {
         self.descent = Some(descent);
     }
 
-    /// Takes a Newton step. A shape has converged if the quadratic model promises a decrease below the tolerance's
-    /// share of the energy and the last step gained less than that too. A cancelled step changes nothing.
+    /// Takes a Newton step. A cancelled step changes nothing.
     pub(super) fn step_newton(&mut self, system: &mut System, cancel: &Cancel) {
         loop {
             match system.factor(&self.energy, &self.current, &self.slopes, cancel) {
@@ -60,11 +49,10 @@ impl ShellsSolver {
             self.memory.clear();
             if lowered.gained > 0.0 {
                 system.relax();
-                self.has_converged = self.is_little(lowered);
-                return;
             }
-            if self.is_little(lowered) {
-                self.has_converged = true;
+            let state = self.rule().state(lowered, self.current.energy);
+            if state != State::Stalled {
+                self.has_converged = state == State::Converged;
                 return;
             }
             if !system.damp() {
@@ -74,10 +62,13 @@ impl ShellsSolver {
         self.has_stalled = true;
     }
 
-    /// True if a step gained next to nothing.
-    pub(super) fn is_little(&self, lowered: Lowered) -> bool {
-        let enough = self.tolerance * self.current.energy + self.nothing();
-        lowered.promised <= enough && lowered.gained <= enough
+    /// The rule of convergence.
+    pub(super) fn rule(&self) -> Rule {
+        Rule {
+            tolerance: self.tolerance,
+            nothing: self.nothing(),
+            rounded: 0.0,
+        }
     }
 
     fn nothing(&self) -> f64 {
@@ -85,49 +76,12 @@ impl ShellsSolver {
     }
 
     /// Takes a step that lowers the energy, if there is one, on top of `precondition`, which applies an inverse.
-    pub(super) fn lower(&mut self, mut precondition: impl FnMut(&Energy, &Slopes, &mut [[f64; 3]])) -> Lowered {
-        let before = self.current.energy;
-        loop {
-            let (energy, slopes) = (&self.energy, &self.slopes);
-            let uphill = self
-                .memory
-                .direction(&slopes.energy, |x| precondition(energy, slopes, x));
-            let slope = -dot(&uphill, &slopes.energy);
-            let is_lower = slope < 0.0 && self.search(&uphill, slope);
-            if is_lower {
-                self.learn();
-            }
-            if is_lower || self.memory.is_empty() {
-                return Lowered {
-                    promised: -0.5 * slope,
-                    gained: before - self.current.energy,
-                };
-            }
-            self.memory.clear();
-        }
-    }
-
-    /// Moves against `uphill`, by its whole length if that lowers the energy enough. Returns true if some length did.
-    fn search(&mut self, uphill: &Field, slope: f64) -> bool {
-        let before = self.current.energy;
-        let mut length = 1.0;
-        for _ in 0..TRIALS {
-            self.trial.clone_from(&self.current);
-            self.trial.move_by(uphill, -length);
-            self.energy.evaluate(&mut self.trial, &self.energy.springs);
-            let trial = Trial {
-                length,
-                before,
-                after: self.trial.energy,
-                slope,
-            };
-            if trial.is_sufficient() {
-                std::mem::swap(&mut self.current, &mut self.trial);
-                return true;
-            }
-            length = trial.next_length();
-        }
-        false
+    pub(super) fn lower(&mut self, precondition: impl FnMut(&Energy, &Slopes, &mut [[f64; 3]])) -> Lowered {
+        lower(&mut Step {
+            solver: self,
+            precondition,
+            uphill: Field::new(),
+        })
     }
 
     /// Finds the gradient at the current shape and remembers the step from the trial shape to it.
@@ -145,5 +99,49 @@ impl ShellsSolver {
             .map(|(now, then)| std::array::from_fn(|k| now[k] - then[k]))
             .collect();
         self.memory.push(step, change);
+    }
+}
+
+/// A step on top of an inverse.
+struct Step<'a, P> {
+    solver: &'a mut ShellsSolver,
+    /// Applies the inverse.
+    precondition: P,
+    uphill: Field,
+}
+
+impl<P: FnMut(&Energy, &Slopes, &mut [[f64; 3]])> descent::energy::Energy for Step<'_, P> {
+    fn value(&self) -> f64 {
+        self.solver.current.energy
+    }
+
+    fn aim(&mut self) -> f64 {
+        let ShellsSolver {
+            energy, slopes, memory, ..
+        } = &*self.solver;
+        let precondition = &mut self.precondition;
+        self.uphill = memory.direction(&slopes.energy, |x| precondition(energy, slopes, x));
+        -dot(&self.uphill, &slopes.energy)
+    }
+
+    fn try_length(&mut self, length: f64) -> f64 {
+        let ShellsSolver {
+            current, trial, energy, ..
+        } = &mut *self.solver;
+        trial.clone_from(current);
+        trial.move_by(&self.uphill, -length);
+        energy.evaluate(trial, &energy.springs);
+        trial.energy
+    }
+
+    fn accept(&mut self, _: f64) {
+        std::mem::swap(&mut self.solver.current, &mut self.solver.trial);
+        self.solver.learn();
+    }
+
+    fn forget(&mut self) -> bool {
+        let has_steps = !self.solver.memory.is_empty();
+        self.solver.memory.clear();
+        has_steps
     }
 }

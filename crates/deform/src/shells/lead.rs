@@ -16,6 +16,8 @@ use super::system::{Pattern, System};
 use super::unfolded::Preconditioner;
 use super::{Blending, Leader, Means, ShellsSolver};
 use crate::budget::Budget;
+use crate::descent::corrections::Corrections;
+use crate::descent::rule::State;
 use crate::handles::Motion;
 use crate::handles::blend::{Origin, Screw, Screws, carried};
 use crate::handles::offsets::Offsets;
@@ -46,11 +48,8 @@ pub(super) struct Led {
     pub preconditioner: Preconditioner,
     pub coarse: Coarse,
     pub carrier: Carrier,
-    /// Fine steps from one correction to the next, and those left before the next one.
-    every: u32,
-    left: u32,
-    /// The decreases of the last fine step and the last correction.
-    gained: f64,
+    corrections: Corrections,
+    /// The decrease of the last correction.
     corrected: f64,
     /// Steps since the targets changed.
     steps: u32,
@@ -95,9 +94,7 @@ impl Led {
             preconditioner,
             coarse,
             carrier,
-            every: 1,
-            left: 0,
-            gained: f64::INFINITY,
+            corrections: Corrections::after(0, RAREST),
             corrected: f64::INFINITY,
             steps: 0,
             settling: matrix.map_or(Settling::TooLarge, not_analysed),
@@ -107,8 +104,8 @@ impl Led {
 
     /// Forgets the earlier steps.
     pub fn forget(&mut self) {
-        (self.every, self.left, self.steps) = (1, 0, 0);
-        (self.gained, self.corrected) = (f64::INFINITY, f64::INFINITY);
+        self.corrections = Corrections::after(0, RAREST);
+        (self.corrected, self.steps) = (f64::INFINITY, 0);
         if let Settling::Analysed(system) = &mut self.settling {
             system.undamp();
         }
@@ -225,25 +222,21 @@ impl ShellsSolver {
         }
         led.steps += 1;
         let before = self.current.energy;
-        if led.left == 0 {
+        if led.corrections.is_due() {
             self.correct(led);
             led.corrected = before - self.current.energy;
-            let gains = led.corrected > 0.0 && led.corrected >= led.gained;
-            led.every = if gains { 1 } else { RAREST.min(2 * led.every) };
-            led.left = led.every;
+            led.corrections.corrected(led.corrected, 1.0);
             return;
         }
-        led.left -= 1;
         let preconditioner = &mut led.preconditioner;
         let lowered = self.lower(|_, _, x| preconditioner.apply(x));
-        led.gained = lowered.gained;
-        if lowered.gained <= 0.0 {
-            self.has_converged = self.is_little(lowered);
-            self.has_stalled = !self.has_converged;
-        } else if self.is_little(lowered) {
+        led.corrections.stepped(lowered.gained);
+        let state = self.rule().state(lowered, self.current.energy);
+        self.has_stalled = state == State::Stalled;
+        if state == State::Converged {
             // It has not converged if the coarse level's last correction gained more.
-            self.has_converged = led.corrected <= self.tolerance * self.current.energy;
-            led.left = 0;
+            self.has_converged = lowered.gained <= 0.0 || led.corrected <= self.tolerance * self.current.energy;
+            led.corrections.hurry();
         }
     }
 

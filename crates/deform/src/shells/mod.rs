@@ -57,7 +57,7 @@ mod unfolded;
 use std::fmt::Debug;
 
 use glam::DVec3;
-use pliant_mesh::{Cancel, Cancelled, Progress, SurfaceVertex};
+use pliant_mesh::{Cancel, Progress};
 
 pub(crate) use self::declaration::DECLARATION;
 pub use self::options::Shells;
@@ -70,6 +70,7 @@ use self::shape::{Energy, Shape, Slopes};
 use self::system::{Pattern, System};
 use self::unfolded::{Preconditioner, Unfolded};
 use crate::budget::bytes_of;
+use crate::descent::prescribed::Prescribed;
 use crate::handles::blend::HandleFrame;
 use crate::handles::offsets::Offsets;
 use crate::handles::{Handle, Motion};
@@ -77,7 +78,7 @@ use crate::numerical::lbfgs::Memory;
 use crate::region::boundary_problem::BoundaryProblem;
 use crate::region::partition::Partition;
 use crate::region::slender;
-use crate::sparse::factor_error::FactorError;
+use crate::sparse::system_error::SystemError;
 use crate::{BindError, Budget};
 
 /// Bytes of a solved vertex in the tables of a led surface: shares, turns, factors, positions, and the last steps with
@@ -174,24 +175,6 @@ struct Blending {
     preconditioner: Option<Preconditioner>,
 }
 
-/// A vertex that follows its handle exactly.
-#[derive(Clone, Copy, Debug)]
-struct Prescribed {
-    surface_vertex: u32,
-    /// [`elements::ABSENT`] if no element has it.
-    local: u32,
-    coordinates: [f64; 4],
-    /// The offset of its target from its handle's motion.
-    offset: DVec3,
-}
-
-impl Prescribed {
-    /// The displacement to its target.
-    fn goes(&self, motion: &Motion) -> DVec3 {
-        motion.displace(self.coordinates) + self.offset
-    }
-}
-
 impl ShellsSolver {
     /// Collects edges and hinges, analyses the matrix, and solves for the weights of `handles`.
     pub fn bind(
@@ -225,15 +208,8 @@ impl ShellsSolver {
         let free_count = partition.free_count;
         let energy = Energy::of(problem, options, partition, handles, elements);
         let elements = &energy.elements;
-        let refused = |error| match error {
-            FactorError::Pivot(local) => {
-                let vertex = elements.vertices[local];
-                let component = problem.topology.component(SurfaceVertex(vertex));
-                BindError::NotPositiveDefinite { component, vertex }
-            }
-            FactorError::Memory => BindError::OutOfMemory { free_count },
-            FactorError::Budget(limit) => BindError::budget(free_count, limit),
-            FactorError::Cancelled => BindError::Cancelled(Cancelled),
+        let refused = |error| {
+            SystemError::of(error, |local| elements.vertices[local]).into_bind_error(problem.topology, free_count)
         };
         let is_led = elements.solved_count > options.led_above;
         let examples = energy.examples.count();
@@ -287,6 +263,8 @@ impl ShellsSolver {
         };
         progress.set(1.0);
         let current = energy.at_rest();
+        let local_of = energy.elements.local_of(problem.roles.len());
+        let prescribed = Prescribed::of(handles, &partition.soft, &problem.surface.positions, &local_of);
         Ok(Self {
             trial: current.clone(),
             current,
@@ -294,7 +272,7 @@ impl ShellsSolver {
             has_slopes: false,
             weights,
             handles: HandleFrame::of_all(handles, world_origin),
-            prescribed: prescribed(problem, partition, handles, &energy.elements),
+            prescribed,
             motions: vec![Motion::default(); handles.len()],
             has_converged: true,
             has_stalled: false,
@@ -339,10 +317,9 @@ impl ShellsSolver {
     /// Sets the offsets of handles' vertices from the motions; then the next step has new targets.
     pub fn set_offsets(&mut self, offsets: &Offsets) {
         for vertex in self.prescribed.iter_mut().flatten() {
-            vertex.offset = offsets.at(vertex.surface_vertex);
+            vertex.set_offset(offsets);
         }
-        let elements = &self.energy.elements;
-        self.energy.springs.set_offsets(&elements.vertices, offsets);
+        self.energy.springs.set_offsets(offsets);
         self.has_other_offsets = true;
         if let Some(Descent::Led(led)) = &mut self.descent {
             led.set_offsets(offsets);
@@ -364,11 +341,7 @@ impl ShellsSolver {
 
     /// True if neither a handle nor an example moves the present shape.
     fn is_at_rest(&self) -> bool {
-        let has_places = self
-            .prescribed
-            .iter()
-            .flatten()
-            .any(|vertex| vertex.offset != DVec3::ZERO);
+        let has_places = self.prescribed.iter().flatten().any(Prescribed::has_offset);
         !has_places
             && self.motions.iter().all(Motion::is_rest)
             && self.current.weights.iter().all(|weight| *weight == 0.0)
@@ -419,30 +392,10 @@ impl ShellsSolver {
     }
 }
 
-fn prescribed(
-    problem: &BoundaryProblem,
-    partition: &Partition,
-    handles: &[Handle],
-    elements: &Elements,
-) -> Vec<Vec<Prescribed>> {
-    let local_of = elements.local_of(problem.roles.len());
-    let one = |(handle, soft): (&Handle, &Option<f64>)| {
-        let of = |&surface_vertex: &u32| Prescribed {
-            surface_vertex,
-            local: local_of[surface_vertex as usize],
-            coordinates: handle.coordinates(problem.surface.positions[surface_vertex as usize]),
-            offset: DVec3::ZERO,
-        };
-        let hard = handle.vertices.iter().filter(|_| soft.is_none());
-        hard.map(of).collect()
-    };
-    handles.iter().zip(&partition.soft).map(one).collect()
-}
-
 fn warnings(options: &Shells, energy: &Energy) -> Vec<String> {
     let mut sentences = Vec::new();
     if options.volume > 0.0 && energy.enclosed.parts.is_empty() {
-        let sentence = "nothing that is bent is closed, so it has no volume to keep: `volume` changes nothing";
+        let sentence = "no bent part is closed, so there is no volume to keep: `volume` has no effect";
         sentences.push(sentence.to_owned());
     }
     sentences.extend(crate::operators::repairs(energy.elements.flat_faces));

@@ -11,7 +11,7 @@ options! {
             default: 1.0,
             range: [1e-3, 1e3],
             unit: "",
-            help: "how much the surface resists being stretched and sheared, compared with the other two",
+            help: "resistance to stretching and shearing, compared with the other two",
         },
         /// k_b: the resistance to bending, in units of `stretching` times the squared size of the bending region. A
         /// sheet of the thickness t has about k_b = k_s (t / D)² / 48.
@@ -19,15 +19,14 @@ options! {
             default: 1e-4,
             range: [1e-8, 0.1],
             unit: "squared sizes of stretching",
-            help: "how much it resists being bent: little for paper, which creases, much for thick rubber",
+            help: "resistance to bending: little for paper, which creases, much for thick rubber",
         },
         /// k_v: the resistance of closed parts to a change of their volume, without unit; with 0 the volume is free.
         volume: f64 = Number {
             default: 0.0,
             range: [0.0, 1e6],
             unit: "",
-            help: "how much closed parts resist a change of the volume that they enclose, compared with stretching; 1000 \
-                   keeps it",
+            help: "resistance of closed parts to a change of their volume, compared with stretching; 1000 keeps it",
         },
         /// Iteration ends at this tolerance.
         tolerance: f64 = TOLERANCE; advanced,

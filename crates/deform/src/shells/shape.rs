@@ -11,7 +11,8 @@ use super::examples::Examples;
 use super::face::{self, Barrier};
 use super::frames::Frame;
 use super::hinge;
-use super::springs::Springs;
+use super::springs::springs;
+use crate::descent::springs::Springs;
 use crate::handles::Handle;
 use crate::numerical::rows::CHUNK;
 use crate::numerical::sums::{CHUNKS_A_TASK, Field};
@@ -51,7 +52,7 @@ pub(super) struct Energy {
     pub elements: Elements,
     pub enclosed: Enclosed,
     pub examples: Examples,
-    pub springs: Springs,
+    pub springs: Springs<f64>,
     /// Components that only examples move.
     pub frames: Vec<Frame>,
     /// The addition to the matrices' diagonal at these solved vertices, which belong to `frames`: all together they may
@@ -149,7 +150,7 @@ impl Energy {
             examples,
             frames,
             inertia,
-            springs: Springs::of(problem, options, partition, handles, &elements),
+            springs: springs(problem, options, partition, handles, &elements),
             unit: if elements.area > 0.0 {
                 elements.area.recip()
             } else {
@@ -249,7 +250,7 @@ impl Energy {
     }
 
     /// Finds the angles, the weights and the energy with these springs.
-    pub fn evaluate(&self, shape: &mut Shape, springs: &Springs) {
+    pub fn evaluate(&self, shape: &mut Shape, springs: &Springs<f64>) {
         let (elements, examples) = (&self.elements, &self.examples);
         if examples.are_free() {
             self.follow_angles(shape);
@@ -290,7 +291,8 @@ impl Energy {
         for (number, part) in self.enclosed.parts.iter().enumerate() {
             energy += part.weight * (part.volume_at(&at) - part.volume - examples.volume(number, weights)).powi(2);
         }
-        shape.energy = 0.5 * energy + examples.energy(weights) + springs.energy(&shape.displacements);
+        shape.energy =
+            0.5 * energy + examples.energy(weights) + springs.added_energy(0.0, |vertex| shape.displacements[vertex]);
     }
 
     /// Finds the angles.
@@ -378,7 +380,8 @@ impl Energy {
                     .for_each(|(own, slope)| *own += pressure * slope);
             }
         }
-        self.springs.add_gradient(displacements, &mut slopes.energy);
+        self.springs
+            .add_gradient(|vertex| displacements[vertex], &mut slopes.energy);
     }
 }
 

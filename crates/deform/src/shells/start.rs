@@ -7,7 +7,8 @@ use rayon::prelude::*;
 use super::carry::{Base, Strains};
 use super::elements::ABSENT;
 use super::shape::Energy;
-use super::{Blending, Descent, Prescribed, ShellsSolver};
+use super::{Blending, Descent, ShellsSolver};
+use crate::descent::prescribed::Prescribed;
 use crate::handles::Motion;
 use crate::handles::blend::{Origin, Screw, Screws, carried};
 use crate::numerical::rows::CHUNK;
@@ -62,7 +63,10 @@ impl ShellsSolver {
             self.memory.clear();
         } else {
             self.energy.springs.loads = loads;
-            self.current.energy += self.energy.springs.load_energy(&self.current.displacements);
+            self.current.energy += self
+                .energy
+                .springs
+                .load_energy(|vertex| self.current.displacements[vertex]);
         }
         best.1
     }

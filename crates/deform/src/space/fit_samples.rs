@@ -77,7 +77,7 @@ impl RegionBox {
         self.low + 0.5 * self.extent
     }
 
-    /// Whether a point is in it.
+    /// Returns true if a point is in it.
     pub fn contains(&self, point: DVec3) -> bool {
         point.cmpge(self.low).all() && point.cmple(self.low + self.extent).all()
     }

@@ -15,15 +15,17 @@ use crate::needs::{ConstraintKind, Needs, Solve};
 use crate::primo::bodies::Bodies;
 use crate::space::blend::{Affine, Blend, Share};
 use crate::space::neighbours::Neighbours;
-use crate::sparse::factor_error::FactorError;
-use crate::{BindError, SolveError};
+use crate::sparse::system_error::SystemError;
+use crate::{BindError, Picture, SolveError};
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "space-primo",
     title: "Rigid cells",
-    when_to_use: "The space around the shape bends like rubber, step by step: for even bends and twists of closed \
+    when_to_use: "Bends the space around the shape like rubber, step by step: for even bends and twists of closed \
                   shapes, and of loose or broken pieces.",
     keywords: "space primo rigid cells octree botsch rubber solid nonlinear points soup",
+    picture: Picture::Cells,
+    slider: None,
     options: SpacePrimo::OPTIONS,
     attachments: &[],
     heeds: &[ConstraintKind::SoftHandles, ConstraintKind::Stiffness],
@@ -104,11 +106,8 @@ pub(super) fn bound(options: &SpacePrimo, input: &BindInput<'_>) -> Result<Bound
         budget,
         input.cancel,
     );
-    let bodies = bodies.map_err(|error| match error {
-        FactorError::Budget(limit) => over(limit),
-        FactorError::Cancelled => BindError::Cancelled(pliant_mesh::Cancelled),
-        FactorError::Memory | FactorError::Pivot(_) => BindError::OutOfMemory { free_count },
-    })?;
+    let bodies =
+        bodies.map_err(|error| SystemError::of_definite(error).into_bind_error(input.problem.topology, free_count))?;
     input.progress.set(0.7);
     let world_centres: Vec<DVec3> = (0..octree.cells.len()).map(|cell| octree.world_centre(cell)).collect();
     let tree = Neighbours::of(&world_centres);

@@ -57,7 +57,7 @@ impl Grid {
         boxed(IVec3::ZERO, self.counts - 1)
     }
 
-    /// Whether the grid contains this cube.
+    /// Returns true if the grid contains this cube.
     pub fn has(&self, cube: IVec3) -> bool {
         cube.cmpge(IVec3::ZERO).all() && cube.cmplt(self.counts).all()
     }

@@ -10,8 +10,8 @@ options! {
         cells: u32 = Whole {
             default: 2000,
             range: [8, 20_000],
-            help: "about how many cells the space around the part that moves is cut into: more follow the shape more \
-                   closely, and take longer",
+            help: "approximate number of cells of the space around the moving part: more cells follow the shape more \
+                   closely and take longer",
         },
         /// The end of iteration.
         tolerance: f64 = TOLERANCE; advanced,

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-/// Whether the triangle meets the cube about the origin with this half side.
+/// Returns true if the triangle meets the cube about the origin with this half side.
 pub(super) fn overlap(corners: [DVec3; 3], half: f64) -> bool {
     let [a, b, c] = corners;
     let (low, high) = (a.min(b).min(c), a.max(b).max(c));

@@ -12,6 +12,7 @@ pub(crate) mod ordering;
 pub(crate) mod refactorisation;
 pub(crate) mod solve;
 pub(crate) mod symbolic;
+pub(crate) mod system_error;
 
 pub use ordering::Ordering;
 pub(crate) use ordering::elimination::Elimination;

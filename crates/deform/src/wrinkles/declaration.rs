@@ -15,22 +15,23 @@ use crate::method::{BindInput, BoundMethod, DeformMethod, MethodDeclaration, Ste
 use crate::needs::{Needs, Solve};
 use crate::operators::triangulation::Triangulation;
 use crate::region::boundary_problem::BoundaryProblem;
-use crate::{BindError, ReusableFactor, SolveError};
+use crate::{BindError, Picture, ReusableFactor, SolveError};
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "wrinkles",
     title: "Wrinkles from examples",
-    when_to_use: "Bends like a thin plate, at once, and adds the wrinkles that its examples have where the surface is \
-                  strained as in them: for faces and for cloth whose folds you have sculpted in a few poses. Without \
-                  examples it is the thin plate.",
+    when_to_use: "Bends like a thin plate, in one step, and adds the wrinkles of its examples where the surface is \
+                  strained like them: for faces and cloth whose folds you sculpted in a few poses. Without examples \
+                  it is the thin plate.",
     keywords: "wrinkles folds creases face facial skin examples pose-space deformation bickel learnt strain detail",
+    picture: Picture::Waves,
+    slider: None,
     options: Wrinkles::OPTIONS,
     attachments: &[AttachmentDeclaration {
         name: "examples",
         title: "examples",
-        help: "further shapes of the same vertices and triangles, with the wrinkles that they have: a list with the \
-               `file` or the `morph_target` of each and its `weight`, by which its wrinkles are multiplied; a weight \
-               that is left out is 1",
+        help: "further shapes of the same vertices and triangles with wrinkles: a list with the `file` or the \
+               `morph_target` of each and its `weight`, which multiplies its wrinkles and is 1 by default",
         kind: AttachmentKind::Shapes,
     }],
     heeds: crate::bilaplacian::DECLARATION.heeds,
@@ -140,8 +141,8 @@ impl BoundMethod for Wrinkled {
     fn warnings(&self) -> Vec<String> {
         let unlearnt = self.unlearnt.iter().map(|name| {
             format!(
-                "most details of the example {name:?} are where its handles strain nothing, so no pose brings them back: \
-                 put a handle where the example moves"
+                "most details of the example {name:?} are in places that the handles do not strain, so no pose brings \
+                 them back: put a handle where the example moves"
             )
         });
         self.bending.warnings().into_iter().chain(unlearnt).collect()

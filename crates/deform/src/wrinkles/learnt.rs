@@ -69,7 +69,7 @@ impl Learnt {
         }
     }
 
-    /// Whether the strain restores at least half of each example's visible details.
+    /// For each example, true if the strain restores at least half of its visible details.
     pub fn are_learnt(&self, diagonal: f64) -> Vec<bool> {
         let of = |example: usize| {
             let places = (example..self.details.len()).step_by(self.examples);

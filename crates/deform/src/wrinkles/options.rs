@@ -13,7 +13,8 @@ options! {
         samples: u32 = Whole {
             default: 200,
             range: [4, 5000],
-            help: "at how many places the strain is measured: with more of them, wrinkles depend on what is nearer",
+            help: "number of places at which the strain is measured: with more places, wrinkles depend on nearer \
+                   strain",
         }; advanced,
     }
 }

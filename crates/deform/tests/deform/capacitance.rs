@@ -32,7 +32,7 @@ fn within(scene: &Scene, bytes: u64) -> Result<Bound, BindError> {
     problem.bind_within(ordering.as_ref(), budget, &progress, &cancel)
 }
 
-/// Whether the binding reports a solution by the Laplacian's factor.
+/// Returns true if the binding reports a solution by the Laplacian's factor.
 fn says_so(bound: &Bound) -> bool {
     bound
         .warnings()

@@ -106,7 +106,7 @@ fn moved_there_and_back_everything_rests_to_the_bit_and_unmoved_the_handles_do_w
         bound.set_controls(&moved(&scene, bent)).unwrap();
         assert_ne!(settle(&mut bound, &target).0, without, "{name}");
         bound.set_controls(&moved(&scene, |_, p| p)).unwrap();
-        // What iterates goes on from where it was, and forgets that at rest.
+        // An iterative method continues from its last shape, and forgets that shape at rest.
         step(&mut bound, &[DAffine3::IDENTITY]);
         assert_eq!(settle(&mut bound, &target).0, without, "{name}");
         let rest = step(&mut bound, &[DAffine3::IDENTITY]);
@@ -266,7 +266,7 @@ fn what_is_no_cage_around_the_region_is_refused_in_words() {
         ("no finite position at its point 7", &|rest, _| rest[7].y = f64::NAN),
         ("no triangle at its vertex", &|rest, _| rest.push(DVec3::ONE)),
         ("but has", &|_, triangles| triangles[2][1] = count),
-        ("outside, and harmonic coordinates", &|rest, _| {
+        ("outside, but harmonic coordinates", &|rest, _| {
             rest.iter_mut().for_each(|p| *p *= 0.5);
         }),
     ];
@@ -347,7 +347,7 @@ fn what_is_no_lattice_and_what_does_not_fit_the_binding_is_refused_in_words() {
         moved: Arc::new(vec![DVec3::ZERO; 5]),
         ..lattice
     };
-    assert!(of(short).contains("has 5 moved points where 343 are expected"));
+    assert!(of(short).contains("has 5 moved points, but 343 points"));
     let mut bound = scene.bind();
     let nowhere = bound.set_controls(&Arc::new(vec![DVec3::NAN; 343])).unwrap_err();
     assert!(matches!(

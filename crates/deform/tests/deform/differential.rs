@@ -8,7 +8,7 @@ use glam::{DAffine3, DVec3};
 use pliant_deform::{Method, OptionValue, Role};
 use pliant_mesh::{Drawn, shapes};
 
-/// Every method with the options that change what it computes.
+/// Every method with the options that change its result.
 pub fn methods() -> Vec<Method> {
     let with = |name: &str, options: &[(&str, OptionValue)]| {
         let method = Method::from_name(name).unwrap();

@@ -319,7 +319,9 @@ fn what_does_not_fit_is_refused_by_name() {
     let scene = with_examples(scene, vec![short], &[Some(1.0)]);
     let refused = scene.try_bind().unwrap_err();
     let expected = scene.positions().len();
-    let sentence = format!("the examples can't be taken: \"example\" has 5 vertices where the surface has {expected}");
+    let sentence = format!(
+        "the examples can't be used: \"example\" has 5 vertices, but the surface has {expected}: give examples of the same mesh"
+    );
     assert_eq!(refused.to_string(), sentence);
     for weight in [f64::NAN, 11.0] {
         let mut scene = armed(1.0);

@@ -37,7 +37,12 @@ fn the_linear_shape_is_blind_to_moves_and_says_so() {
     let bound = &mut scene.bind();
     let target = [DAffine3::from_translation(MOVE)];
     let moved = step(bound, &target);
-    assert!(bound.warnings().iter().any(|said| said.contains("blind to moves")));
+    assert!(
+        bound
+            .warnings()
+            .iter()
+            .any(|said| said.contains("turns nothing for moves"))
+    );
     let mut membrane = Bilaplacian::default();
     membrane.order = BilaplacianOrder::Membrane;
     scene.method = membrane.into();

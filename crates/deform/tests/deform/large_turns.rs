@@ -54,7 +54,7 @@ fn twisted(name: &str, degrees: f64, neck: f64) -> (f64, f64) {
     )
 }
 
-/// Whether two points are at the same place around the limb.
+/// Returns true if two points are at the same place around the limb.
 fn on_one_line(p: DVec3, q: DVec3) -> bool {
     p.truncate().angle_to(q.truncate()).abs() < 1e-6
 }

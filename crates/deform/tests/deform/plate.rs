@@ -25,7 +25,7 @@ impl Clamp {
         }
     }
 
-    /// Whether the errors on meshes of twice the resolution fall at the expected rate.
+    /// Returns true if the errors on meshes of twice the resolution fall at the expected rate.
     fn falls(self, errors: [f64; 3]) -> bool {
         let (most, least) = match self {
             Self::Innermost => (0.65, 0.35),

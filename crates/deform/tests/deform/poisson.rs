@@ -75,7 +75,12 @@ fn it_is_blind_to_moves_and_says_so() {
         let bound = &mut scene.bind();
         let target = [DAffine3::from_translation(DVec3::new(-0.2, 0.1, 1.0))];
         let moved = step(bound, &target);
-        assert!(bound.warnings().iter().any(|said| said.contains("blind to moves")));
+        assert!(
+            bound
+                .warnings()
+                .iter()
+                .any(|said| said.contains("turns nothing for moves"))
+        );
         // Each face keeps its direction: the shape is that of a membrane, which has no turns.
         let mut membrane = Bilaplacian::default();
         membrane.order = BilaplacianOrder::Membrane;

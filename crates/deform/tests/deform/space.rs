@@ -9,7 +9,7 @@ use glam::{DAffine3, DMat3, DVec3};
 use pliant_deform::{Bound, Method, MlsTransforms, OptionValue, Role};
 use pliant_mesh::{Drawn, DrawnVertex, shapes};
 
-/// Every method with the options that change what it computes.
+/// Every method with the options that change its result.
 pub fn methods() -> Vec<Method> {
     let with = |name: &str| Method::from_name(name).unwrap();
     let set = |name: &str, option: &str, value: OptionValue| with(name).with([(option, value)]).unwrap();
@@ -264,7 +264,7 @@ fn jacobians_are_the_derivatives_of_the_displacements() {
         ];
         let (displacements, _) = settle(bound, &targets);
         let jacobians = bound.jacobians().unwrap();
-        // Welding numbers the vertices anew.
+        // Welding numbers the vertices again.
         let numbers: HashMap<[u64; 3], usize> = (0..)
             .zip(scene.positions())
             .map(|(vertex, p)| (p.to_array().map(f64::to_bits), vertex))

@@ -10,7 +10,7 @@ pub(super) const MAKE_CONTROLS: Entry<()> = Entry {
     listed: &[item(
         (),
         "Make cage or lattice",
-        "Has the method make its cage or lattice around the region, in place of the document's own.",
+        "Replaces your own cage or lattice with a new one around the region.",
         "control points generate new detail resolution",
         &[],
     )],
@@ -20,7 +20,7 @@ pub(super) const MAKE_CONTROLS: Entry<()> = Entry {
             let is_own = state.workspace.document.attachment().is_some();
             unless(
                 is_own,
-                "It is made by the method already: drag one of its points to make it your own.",
+                "The method already makes it: drag one of its points to make it your own.",
             )
         })
     },
@@ -32,7 +32,7 @@ pub(super) const RESET_CONTROLS: Entry<()> = Entry {
     listed: &[item(
         (),
         "Reset points",
-        "Takes the points of the cage or lattice back to where they rest; handles stay.",
+        "Moves the points of the cage or lattice back to their rest positions. Handles stay.",
         "control cage lattice undo moves",
         &[],
     )],
@@ -69,7 +69,7 @@ pub(super) const DESELECT_CONTROLS: Entry<()> = Entry {
     listed: &[item(
         (),
         "Deselect points",
-        "Lets go of the points of the cage or lattice: the gizmo is the handle's again.",
+        "Deselects the points of the cage or lattice, so that the gizmo moves the handle again.",
         "control cage lattice none",
         &[],
     )],
@@ -102,5 +102,5 @@ fn without_controls(state: &State<'_>) -> Option<Reason> {
 
 fn not_shown(state: &State<'_>) -> Option<Reason> {
     let is_shown = state.workspace.shown_controls().is_some();
-    unless(is_shown, "Its points are not there yet: they come with the binding.")
+    unless(is_shown, "The points appear once the method is bound: wait a moment.")
 }

@@ -13,7 +13,7 @@ pub(super) const UNDO: Entry<()> = Entry {
     scope: Scope::History,
     unavailable: |state, ()| {
         let undo = state.workspace.history.undo_name();
-        unless(undo.is_some(), "Nothing was done that could be taken back.")
+        unless(undo.is_some(), "There is nothing to undo.")
     },
     action: Action::Do(|context, ()| context.workspace.undo()),
 };
@@ -30,7 +30,7 @@ pub(super) const REDO: Entry<()> = Entry {
     scope: Scope::History,
     unavailable: |state, ()| {
         let redo = state.workspace.history.redo_name();
-        unless(redo.is_some(), "Nothing was taken back that could be done again.")
+        unless(redo.is_some(), "There is nothing to redo.")
     },
     action: Action::Do(|context, ()| context.workspace.redo()),
 };
@@ -41,7 +41,7 @@ pub(super) const GO_TO_STEP: Entry<usize> = Entry {
     scope: Scope::History,
     unavailable: |state, steps| {
         let is_there = *steps <= state.workspace.history.names().0.len();
-        unless(is_there, "The history has no such step any more.")
+        unless(is_there, "The history no longer has this step.")
     },
     action: Action::Do(|context, steps| context.workspace.go_to_step(steps)),
 };
@@ -58,7 +58,7 @@ pub(super) const APPLY: Entry<()> = Entry {
     scope: Scope::Document,
     unavailable: |state, ()| {
         let is_bent = state.workspace.document.is_displaced();
-        unless(is_bent, "Nothing is bent that could be applied: move a handle first.")
+        unless(is_bent, "Nothing is bent yet: move a handle first.")
     },
     action: Action::Do(|context, ()| apply_shape(context.workspace)),
 };
@@ -76,7 +76,7 @@ pub(super) const RESET_SHAPE: Entry<()> = Entry {
     unavailable: |state, ()| {
         let document = &state.workspace.document;
         let is_other = document.is_displaced() || document.is_applied();
-        unless(is_other, "The shape is as in the file already.")
+        unless(is_other, "The shape is already the file's shape.")
     },
     action: Action::Do(|context, ()| reset_shape(context.workspace)),
 };
@@ -94,14 +94,14 @@ pub(super) const SET_STRENGTH: Entry<f64> = Entry {
         item(
             0.5,
             "Half strength",
-            "Shows half of the edit: every handle goes half its way and turns by half its angle.",
+            "Shows half of the edit: every handle moves half its way and turns by half its angle.",
             "amount intensity blend 50%",
             &[],
         ),
         item(
             0.0,
             "No strength",
-            "Shows the shape without the edit, which is kept: the strength in the panel brings it back.",
+            "Shows the shape without the edit. The strength in the panel brings the edit back.",
             "amount intensity blend off 0%",
             &[],
         ),
@@ -110,7 +110,7 @@ pub(super) const SET_STRENGTH: Entry<f64> = Entry {
     unavailable: |state, _| {
         let document = &state.workspace.document;
         let is_moved = document.is_moved() || document.strength() < 1.0;
-        let nothing = "Nothing is bent that could be shown in part: move a handle first.";
+        let nothing = "Nothing is bent yet: move a handle first.";
         state.unopened().or(unless(is_moved, nothing))
     },
     action: Action::Do(|context, share| set_strength(context.workspace, share)),
@@ -121,7 +121,7 @@ pub(super) const CLEAR_REGIONS: Entry<()> = Entry {
     listed: &[item(
         (),
         "Clear regions",
-        "Removes all handles and regions. The shape stays bent: Reset shape brings the file's shape back.",
+        "Removes all handles and regions. The shape stays bent; Reset shape restores the file's shape.",
         "remove delete all handles",
         &[],
     )],
@@ -179,13 +179,28 @@ pub(super) const COMPARE_METHODS: Entry<()> = Entry {
     }),
 };
 
+/// Shows one method's result large beside the view, or the results of all methods below it.
+pub(super) const ENLARGE_METHOD: Entry<Option<usize>> = Entry {
+    listed: &[],
+    scope: Scope::View,
+    unavailable: |state, _| {
+        let is_comparing = state.workspace.jobs.comparison.is_some();
+        unless(is_comparing, "No methods are compared: choose Compare methods first.")
+    },
+    action: Action::Do(|context, number| {
+        if let Some(comparison) = &mut context.workspace.jobs.comparison {
+            comparison.enlarge(number);
+        }
+    }),
+};
+
 /// Stops the running jobs; anything that needs them starts them again.
 pub(super) const CANCEL_JOBS: Entry<()> = Entry {
     listed: &[item((), "Stop", "Stops the computation.", "cancel abort", &[])],
     scope: Scope::View,
     unavailable: |state, ()| {
         let mut running = state.workspace.jobs.running().into_iter();
-        unless(running.any(|(kind, _)| kind != JobKind::Pick), "Nothing is under way.")
+        unless(running.any(|(kind, _)| kind != JobKind::Pick), "Nothing is running.")
     },
     action: Action::Do(|context, ()| {
         let workspace = &mut *context.workspace;

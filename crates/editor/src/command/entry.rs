@@ -88,7 +88,7 @@ impl State<'_> {
     /// The reason if a handle no longer exists.
     pub(super) fn gone(&self, id: HandleId) -> Option<Reason> {
         let handle = self.workspace.document.handle(id);
-        unless(handle.is_some(), "That handle is not there any more.")
+        unless(handle.is_some(), "This handle no longer exists.")
     }
 }
 

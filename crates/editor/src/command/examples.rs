@@ -9,8 +9,8 @@ use crate::workspace::{add_example, examples_name, keep_example, remove_example,
 pub(super) const KEEP_EXAMPLE: Entry<()> = Entry {
     listed: &[item(
         (),
-        "Keep this pose as an example",
-        "Keeps the present shape as an example that Discrete shells is led by, or that Wrinkles learns from.",
+        "Keep as example",
+        "Keeps the present shape as an example for Discrete shells or Wrinkles from examples.",
         "pose shape blend morph interpolate in-between example",
         &[],
     )],
@@ -19,7 +19,7 @@ pub(super) const KEEP_EXAMPLE: Entry<()> = Entry {
         without_examples(state).or_else(|| {
             let document = &state.workspace.document;
             let is_bent = document.is_displaced();
-            unless(is_bent, "Nothing is bent that could be kept: move a handle first.")
+            unless(is_bent, "Nothing is bent yet: move a handle first.")
         })
     },
     action: Action::Do(|context, ()| keep_example(context.workspace)),
@@ -32,7 +32,7 @@ pub(super) const ADD_EXAMPLE: Entry<ExampleShape> = Entry {
     unavailable: |state, shape| {
         without_examples(state).or_else(|| {
             let fits = shape.displacements.len() == state.workspace.document.rest().len();
-            unless(fits, "That example is of another mesh.")
+            unless(fits, "This example belongs to another mesh.")
         })
     },
     action: Action::Do(|context, shape| add_example(context.workspace, shape)),
@@ -77,6 +77,6 @@ fn gone(state: &State<'_>, place: usize) -> Option<Reason> {
     without_examples(state).or_else(|| {
         let examples = state.workspace.document.examples();
         let is_there = examples.is_some_and(|examples| place < examples.shapes.len());
-        unless(is_there, "That example is not there any more.")
+        unless(is_there, "This example no longer exists.")
     })
 }

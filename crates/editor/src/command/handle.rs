@@ -15,8 +15,8 @@ use crate::workspace::{
 pub(super) const WIDEN: Entry<()> = Entry {
     listed: &[item(
         (),
-        "Widen reach",
-        "Sets by the pointer how far the surface follows the selected handle.",
+        "Set reach",
+        "Sets with the pointer how far the surface follows the selected handle.",
         "region of influence roi falloff radius distance",
         &[character('e')],
     )],
@@ -48,21 +48,21 @@ pub(super) const MAKE_TWIN: Entry<usize> = Entry {
         item(
             0,
             "Twin across x",
-            "Makes a mirrored handle on the other side that follows: drag left, and right follows.",
+            "Makes a mirrored handle on the other side: drag the left one, and the right one follows.",
             "mirror symmetry",
             &[shift('m')],
         ),
         item(
             1,
             "Twin across y",
-            "Makes a mirrored handle above or below that follows.",
+            "Makes a mirrored handle above or below, which follows.",
             "mirror symmetry",
             &[],
         ),
         item(
             2,
             "Twin across z",
-            "Makes a mirrored handle in front or behind that follows.",
+            "Makes a mirrored handle in front or behind, which follows.",
             "mirror symmetry",
             &[],
         ),
@@ -71,7 +71,7 @@ pub(super) const MAKE_TWIN: Entry<usize> = Entry {
     unavailable: |state, _| match state.unlocked() {
         Err(reason) => Some(reason),
         Ok(handle) if handle.twin.is_some() => {
-            Some(format!("{} has a twin already: part them first.", handle.name).into())
+            Some(format!("{} already has a twin: part them first.", handle.name).into())
         }
         Ok(_) => None,
     },
@@ -105,7 +105,7 @@ pub(super) const RESET_REGION: Entry<()> = Entry {
     listed: &[item(
         (),
         "Reset region",
-        "Resets the selected handle and its region to the file's shape, and nothing else.",
+        "Resets only the selected handle and its region to the file's shape.",
         "original revert",
         &[],
     )],
@@ -159,7 +159,7 @@ pub(super) const SELECT_ALL: Entry<()> = Entry {
     listed: &[item(
         (),
         "Select all handles",
-        "Selects all handles, which are then moved together.",
+        "Selects all handles, so that they move together.",
         "every everything",
         &[character('a')],
     )],
@@ -192,7 +192,13 @@ pub(super) const NEXT_HANDLE: Entry<()> = Entry {
 
 /// Selects no handle.
 pub(super) const DESELECT: Entry<()> = Entry {
-    listed: &[item((), "Deselect", "Selects no handle.", "unselect none", &[alt('a')])],
+    listed: &[item(
+        (),
+        "Deselect",
+        "Deselects all handles.",
+        "unselect none",
+        &[alt('a')],
+    )],
     scope: Scope::Document,
     unavailable: with_selected,
     action: Action::Do(|context, ()| context.workspace.selection.put_alone(None)),
@@ -203,7 +209,7 @@ pub(super) const DELETE_HANDLE: Entry<()> = Entry {
     listed: &[item(
         (),
         "Delete handle",
-        "Deletes the selected handle; the shape stays as it is.",
+        "Deletes the selected handle. The shape stays.",
         "remove",
         &[plain(Key::Delete), character('x')],
     )],
@@ -217,7 +223,7 @@ pub(super) const PIN: Entry<()> = Entry {
     listed: &[item(
         (),
         "Pin or unpin",
-        "Pins the selected handle where it is, or turns a pin into a handle again.",
+        "Pins the selected handle, or unpins it.",
         "hold stay here keep fix unpin",
         &[],
     )],

@@ -19,14 +19,16 @@ impl KeyMap {
         let (mut map, mut problems) = (Self::default(), Vec::new());
         for (name, keys) in names {
             let Some(listed) = Command::all_listed().find(|listed| listed.name == name) else {
-                problems.push(format!("No command is called \"{name}\": its keys are left out."));
+                problems.push(format!("No command has the name \"{name}\", so its keys are ignored."));
                 continue;
             };
             let mut shortcuts = Vec::new();
             for key in keys {
                 match Shortcut::parse(key) {
                     Some(shortcut) => shortcuts.push(shortcut),
-                    None => problems.push(format!("\"{key}\" for \"{name}\" is no key: write it as Ctrl+Shift+Z.")),
+                    None => problems.push(format!(
+                        "\"{key}\" for \"{name}\" is not a key: write it like Ctrl+Shift+Z."
+                    )),
                 }
             }
             map.chosen.push((listed.command.clone(), shortcuts));

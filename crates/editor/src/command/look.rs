@@ -10,42 +10,42 @@ pub(super) const SET_CLAY: Entry<Clay> = Entry {
         item(
             Clay::Clay,
             "Plain clay",
-            "Warm grey modelling clay: shape and nothing else.",
+            "Shades like warm grey modelling clay, which shows the shape alone.",
             "clay matcap shading",
             &[],
         ),
         item(
             Clay::Plaster,
             "Plaster",
-            "White plaster in soft daylight: the finest shades.",
+            "Shades like white plaster in soft daylight, which shows the finest changes.",
             "clay matcap shading",
             &[],
         ),
         item(
             Clay::Wax,
             "Wax",
-            "Red wax with a soft gloss, as sculptors take it.",
+            "Shades like red sculptors' wax with a soft gloss.",
             "clay matcap shading",
             &[],
         ),
         item(
             Clay::Bronze,
             "Bronze",
-            "Dark bronze: highlights that run along every ridge.",
+            "Shades like dark bronze, with highlights along every ridge.",
             "clay matcap shading",
             &[],
         ),
         item(
             Clay::Porcelain,
             "Porcelain",
-            "Glazed porcelain: sharp lamps that show every dent.",
+            "Shades like glazed porcelain under sharp lamps, which show every dent.",
             "clay matcap shading",
             &[],
         ),
         item(
             Clay::Graphite,
             "Graphite",
-            "Graphite lit from the side: relief.",
+            "Shades like graphite lit from the side, which shows relief.",
             "clay matcap shading",
             &[],
         ),
@@ -78,14 +78,14 @@ pub(super) const SET_SHADING: Entry<Shading> = Entry {
         item(
             Shading::Stretch,
             "Edge stretch",
-            "Colours the surface by how much longer or shorter its edges are than at rest.",
+            "Colours the surface by the ratio of its edges' lengths to those at rest.",
             "strain distortion",
             &[],
         ),
         item(
             Shading::Area,
             "Area change",
-            "Colours the surface by how much larger or smaller it is than at rest.",
+            "Colours the surface by the ratio of its area to that at rest.",
             "distortion",
             &[],
         ),
@@ -99,14 +99,14 @@ pub(super) const SET_SHADING: Entry<Shading> = Entry {
         item(
             Shading::Weights,
             "Handle's weights",
-            "Colours the surface by how much of the selected handle's turn and stretch it takes on.",
+            "Colours the surface by the share of the selected handle's turn and stretch that it follows.",
             "heat map influence propagation",
             &[],
         ),
         item(
             Shading::Curvature,
             "Curvature",
-            "Colours the surface by its mean curvature: red bulges, blue is hollow.",
+            "Colours the surface by its mean curvature: red where it bulges, blue where it is hollow.",
             "bulge",
             &[],
         ),
@@ -135,7 +135,7 @@ pub(super) const SET_SHADING: Entry<Shading> = Entry {
 
 /// The reason why no handle's weights can be shown.
 fn no_weights(state: &State<'_>) -> Option<Reason> {
-    let why = |title: &str| format!("{title} uses no weights: take a method that does, such as Gradient editing.");
+    let why = |title: &str| format!("{title} uses no weights: choose a method that does, such as Gradient editing.");
     let inspectable = |inspectable: Inspectable| inspectable.weights;
     state
         .selected()
@@ -151,10 +151,10 @@ fn not_in_binding(
 ) -> Option<Reason> {
     let workspace = state.workspace;
     if !workspace.jobs.is_bound() {
-        return Some("Nothing is bound yet: paint a handle, or wait until it is bound.".into());
+        return Some("The method is not bound yet: paint a handle, or wait.".into());
     }
     let title = workspace.document.method().declaration().title;
-    (!is_there(workspace.computed().inspectable)).then(|| why(title).into())
+    (!is_there(workspace.computed().inspectable())).then(|| why(title).into())
 }
 
 /// Shows the smooth base instead of the surface, or the surface again.
@@ -162,14 +162,14 @@ pub(super) const TOGGLE_BASE: Entry<()> = Entry {
     listed: &[item(
         (),
         "Smooth base",
-        "Shows the smooth base without the details, as the handles bend it.",
+        "Shows the smooth base that the handles bend, without the details.",
         "fairing multiresolution detail",
         &[],
     )],
     scope: Scope::View,
     unavailable: |state, ()| {
         let why =
-            |title: &str| format!("{title} has no smooth base here: take Thin plate, and choose its option detail.");
+            |title: &str| format!("{title} has no smooth base here: choose Thin plate and set its option detail.");
         let reason = || not_in_binding(state, |inspectable| inspectable.base, why);
         // An active display can always be turned off.
         (!state.view.look.base).then(reason).flatten()
@@ -182,7 +182,7 @@ pub(super) const TOGGLE_ORIGINAL: Entry<()> = Entry {
     listed: &[item(
         (),
         "Original",
-        "Shows the shape as it was opened, for as long as the key is held.",
+        "Shows the shape as it was opened while you hold the key.",
         "before after compare undeformed rest ghost",
         &[character('o')],
     )],
@@ -197,14 +197,14 @@ pub(super) const TOGGLE_BEFORE: Entry<Before> = Entry {
         item(
             Before::Split,
             "Before and after",
-            "Shows the shape as it was opened on the left of a line that you can drag, and the present one on the right.",
+            "Shows the opened shape on the left of a line that you can drag, and the present shape on the right.",
             "split compare original slider wipe",
             &[alt('o')],
         ),
         item(
             Before::Ghost,
-            "Ghost of the original",
-            "Shows the shape as it was opened through the present one.",
+            "Original as ghost",
+            "Shows the opened shape through the present shape.",
             "onion skin overlay compare before transparent",
             &[shift('o')],
         ),
@@ -222,7 +222,7 @@ pub(super) const TOGGLE_FLAT: Entry<()> = Entry {
     listed: &[item(
         (),
         "Flat faces",
-        "Shows each triangle flat, or normals interpolated.",
+        "Shades each triangle flat, or with interpolated normals.",
         "facets smooth shading",
         &[],
     )],
@@ -236,7 +236,7 @@ pub(super) const TOGGLE_BORDERS: Entry<()> = Entry {
     listed: &[item(
         (),
         "Borders",
-        "Marks edges where the surface ends, and those that more than two triangles share.",
+        "Marks edges where the surface ends and edges that more than two triangles share.",
         "boundary holes edges",
         &[],
     )],

@@ -12,21 +12,21 @@ pub(super) const OBJECT_HERE: Entry<ObjectAction> = Entry {
         item(
             ObjectAction::Hide,
             "Hide object",
-            "Hides the object under the pointer. It can't be picked or painted, but still follows.",
+            "Hides the object under the pointer. It can't be picked or painted, but still follows the surface.",
             "invisible",
             &[character('h')],
         ),
         item(
             ObjectAction::Solo,
-            "Show only this object",
-            "Hides all objects but the one under the pointer. Again: shows everything.",
+            "Isolate object",
+            "Hides all objects but the one under the pointer, or shows everything again.",
             "solo",
             &[shift('h')],
         ),
         item(
             ObjectAction::Lock,
             "Lock object",
-            "Locks the object under the pointer: it is held still, whatever is painted on it.",
+            "Locks the object under the pointer, so that it stays fixed, whatever is painted on it.",
             "freeze protect",
             &[],
         ),
@@ -60,7 +60,7 @@ pub(super) const TOGGLE_SMALL_SHOWN: Entry<()> = Entry {
     listed: &[item(
         (),
         "Hide small parts",
-        "Hides connected parts with few vertices, or shows them again: the panel says how few, under Objects.",
+        "Hides connected parts with few vertices, or shows them again. Objects in the panel sets the limit.",
         "debris floaters isolated pieces islands components clean noise delete",
         &[],
     )],
@@ -78,7 +78,7 @@ pub(super) const TOGGLE_SMALL_LOCKED: Entry<()> = Entry {
     listed: &[item(
         (),
         "Lock small parts",
-        "Locks connected parts with few vertices, so that they are held still, or unlocks them.",
+        "Locks connected parts with few vertices, so that they stay fixed, or unlocks them.",
         "debris floaters isolated pieces islands components freeze",
         &[],
     )],
@@ -96,7 +96,7 @@ pub(super) const ISOLATE: Entry<()> = Entry {
     listed: &[item(
         (),
         "Isolate part",
-        "Hides all connected parts but the one under the pointer. Again: shows the others.",
+        "Hides all connected parts but the one under the pointer, or shows them again.",
         "solo local view component",
         &[character('/')],
     )],

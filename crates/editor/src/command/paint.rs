@@ -28,14 +28,14 @@ pub(super) const SET_TOOL: Entry<ToolMode> = Entry {
         item(
             ToolMode::PaintFixed,
             "Paint fixed",
-            "Paints the part that is held still.",
+            "Paints the part that stays fixed.",
             "brush pin anchor hold",
             &[character('3')],
         ),
         item(
             ToolMode::Erase,
             "Erase",
-            "Takes paint away.",
+            "Removes paint.",
             "unpaint rubber",
             &[character('4')],
         ),
@@ -56,14 +56,14 @@ pub(super) const SET_TOOL: Entry<ToolMode> = Entry {
         item(
             ToolMode::Pose,
             "Pose",
-            "Point at a limb and drag it: it turns about its joint. Ctrl twists it, Shift scales it.",
+            "Turns the limb that you drag about its joint. Ctrl twists it, Shift scales it.",
             "bend limb arm leg joint rotate brush",
             &[character('7')],
         ),
         item(
             ToolMode::Correct,
             "Correct",
-            "Smooths, relaxes or grabs the shape by hand, where a bend has left a crease.",
+            "Smooths, relaxes or grabs the shape by hand, for example where a bend leaves a crease.",
             "sculpt brush armpit crease smooth relax grab",
             &[character('8')],
         ),
@@ -120,22 +120,23 @@ pub(super) const SET_BRUSH_METRIC: Entry<BrushMetric> = Entry {
     listed: &[
         item(
             BrushMetric::Screen,
-            "Brush as seen",
-            "The brush paints everything under its disc that faces you.",
+            "Brush visible",
+            "Sets the brush to paint everything under it that faces you.",
             "screen",
             &[],
         ),
         item(
             BrushMetric::Surface,
-            "Brush along the surface",
-            "The brush paints everything within its radius along the surface: into folds and around edges, seen or not.",
+            "Brush along surface",
+            "Sets the brush to paint everything within its radius along the surface, into folds and around edges, \
+             visible or not.",
             "geodesic",
             &[],
         ),
         item(
             BrushMetric::Through,
             "Brush through",
-            "The brush paints everything under its disc, through to the back of the model.",
+            "Sets the brush to paint everything under it, through to the back of the model.",
             "x-ray occluded",
             &[],
         ),
@@ -150,15 +151,15 @@ pub(super) const SET_DEPTH: Entry<Depth> = Entry {
     listed: &[
         item(
             Depth::Visible,
-            "Lasso the visible surface",
-            "A lasso or a box takes only the surface that you see.",
+            "Lasso visible",
+            "Sets the lasso and the box to paint only the visible surface.",
             "",
             &[],
         ),
         item(
             Depth::Through,
             "Lasso through",
-            "A lasso or a box takes everything inside, to the back of the model.",
+            "Sets the lasso and the box to paint everything inside, through to the back of the model.",
             "",
             &[],
         ),
@@ -202,7 +203,7 @@ pub(super) const SET_SYMMETRY: Entry<Symmetry> = Entry {
         item(
             Symmetry::None,
             "No symmetry",
-            "Paints and poses each side by itself.",
+            "Paints and poses one side at a time.",
             "mirror one side",
             &[alt('x')],
         ),
@@ -261,13 +262,13 @@ pub(super) const SIZE_BRUSH: Entry<()> = Entry {
     listed: &[item(
         (),
         "Size brush",
-        "Sets the size of the brush by the pointer. Ctrl and the wheel do so, too.",
+        "Sets the size of the brush with the pointer, as Ctrl and the wheel do.",
         "radius larger smaller",
         &[character('f')],
     )],
     scope: Scope::Gesture,
     unavailable: |state, ()| {
-        let why = "This tool has no brush: choose one that paints.";
+        let why = "This tool has no brush: choose a tool that paints.";
         unless(state.settings.mode.has_brush(), why)
     },
     action: Action::Begin(|context, ()| {

@@ -8,7 +8,7 @@ pub(super) const KEEP_POSE: Entry<()> = Entry {
     listed: &[item(
         (),
         "Keep pose",
-        "Keeps where handles and control points stand under a name, to come back to.",
+        "Keeps the positions of handles and control points under a name.",
         "save store library snapshot bookmark",
         &[],
     )],
@@ -16,7 +16,7 @@ pub(super) const KEEP_POSE: Entry<()> = Entry {
     unavailable: |state, ()| {
         let document = &state.workspace.document;
         let is_posed = !document.handles().is_empty() || document.bends_without_handles();
-        let nothing = "There is nothing that could stand in a pose: paint a handle first.";
+        let nothing = "There is no handle or control point to keep: paint a handle first.";
         state.unopened().or(unless(is_posed, nothing))
     },
     action: Action::Do(|context, ()| keep_pose(context.workspace)),
@@ -56,5 +56,5 @@ pub(super) const REMOVE_POSE: Entry<usize> = Entry {
 
 fn gone(state: &State<'_>, place: usize) -> Option<Reason> {
     let poses = state.workspace.document.poses();
-    unless(place < poses.len(), "That pose is not there any more.")
+    unless(place < poses.len(), "This pose no longer exists.")
 }

@@ -48,8 +48,8 @@ pub(super) const REGION: Entry<RegionAction> = Entry {
         ),
         item(
             RegionAction::EverythingBut,
-            "Everything but",
-            "Fixes everything outside the selected region. If the fixed region is selected, frees everything else.",
+            "Fix the rest",
+            "Fixes everything outside the selected region, or frees it if the fixed region is selected.",
             "inverse complement",
             &[],
         ),
@@ -76,29 +76,29 @@ pub(super) const REGION: Entry<RegionAction> = Entry {
         ),
         item(
             RegionAction::ToFree,
-            "Make it the region",
+            "Make region",
             "Frees the selected region, so that it bends.",
             "copy assign free roi",
             &[],
         ),
         item(
             RegionAction::ToFixed,
-            "Make it fixed",
+            "Make fixed",
             "Fixes the selected region.",
             "copy assign pin anchor",
             &[],
         ),
         item(
             RegionAction::ToHandle,
-            "Make it a handle",
+            "Make handle",
             "Makes the selected region a new handle.",
             "copy assign",
             &[],
         ),
     ],
     scope: Scope::Document,
-    unavailable: |state, _| match state.settings.role_in_hand(state.workspace.selection.selected()) {
-        None => Some("No region is selected: select a handle, or take the brush for free or fixed.".into()),
+    unavailable: |state, _| match state.settings.selected_role(state.workspace.selection.selected()) {
+        None => Some("No region is selected: select a handle, or choose Paint region or Paint fixed.".into()),
         Some(Paint::Handle(id)) => {
             let handle = state.workspace.document.handle(id);
             handle.ok_or_else(|| NO_HANDLE.into()).and_then(unlocked).err()
@@ -107,7 +107,7 @@ pub(super) const REGION: Entry<RegionAction> = Entry {
     },
     action: Action::Do(|context, action| {
         let selected = context.workspace.selection.selected();
-        if let Some(role) = context.settings.role_in_hand(selected) {
+        if let Some(role) = context.settings.selected_role(selected) {
             act_on_region(context.workspace, role, action);
         }
     }),
@@ -118,15 +118,15 @@ pub(super) const SET_TIPS: Entry<Tips> = Entry {
     listed: &[
         item(
             Tips::Held,
-            "Hold the tips",
+            "Fix tips",
             "Fixes the parts that a handle's reach cuts off from the body: fingertips, ears, the rest of a limb.",
             "extremity extremities limb island region pin keep",
             &[],
         ),
         item(
             Tips::ComeAlong,
-            "Take the tips along",
-            "Lets the parts that a handle's reach cuts off from the body follow: fingertips, ears, the rest of a limb.",
+            "Free tips",
+            "Frees the parts that a handle's reach cuts off from the body: fingertips, ears, the rest of a limb.",
             "extremity extremities limb island region topological",
             &[],
         ),
@@ -135,8 +135,8 @@ pub(super) const SET_TIPS: Entry<Tips> = Entry {
     unavailable: |state, tips| {
         state.unopened().or_else(|| {
             let reason = match tips {
-                Tips::Held => "The tips are held already.",
-                Tips::ComeAlong => "The tips come along already.",
+                Tips::Held => "The tips are already fixed.",
+                Tips::ComeAlong => "The tips are already free.",
             };
             unless(state.workspace.document.tips() != *tips, reason)
         })
@@ -191,7 +191,7 @@ pub(super) const CLEAR_STIFFNESS: Entry<()> = Entry {
     listed: &[item(
         (),
         "Clear stiffness",
-        "Makes the whole surface equally stiff.",
+        "Resets the stiffness of the whole surface to 1.",
         "reset rigidity material",
         &[],
     )],

@@ -134,6 +134,8 @@ commands! {
     RemovePose(place: usize) = pose::REMOVE_POSE;
     /// Begins or ends a comparison of the methods on the edit.
     CompareMethods = document::COMPARE_METHODS;
+    /// Shows a method large during a comparison, by its number; with `None` all are small.
+    EnlargeMethod(number: Option<usize>) = document::ENLARGE_METHOD;
     /// Stops the running jobs; anything that needs them starts them again.
     CancelJobs = document::CANCEL_JOBS;
     /// Chooses the left button's tool on the surface.

@@ -25,21 +25,21 @@ pub(super) const SET_ORIENTATION: Entry<GizmoOrientation> = Entry {
         item(
             GizmoOrientation::World,
             "World axes",
-            "The gizmo stands along the world's axes.",
+            "Aligns the gizmo with the world's axes.",
             "global orientation",
             &[],
         ),
         item(
             GizmoOrientation::Local,
             "Own axes",
-            "The gizmo turns along with its handle.",
+            "Aligns the gizmo with the handle's own axes.",
             "local orientation",
             &[],
         ),
         item(
             GizmoOrientation::View,
             "Screen axes",
-            "The gizmo stands along the screen.",
+            "Aligns the gizmo with the screen.",
             "view orientation",
             &[],
         ),
@@ -54,7 +54,7 @@ pub(super) const PICK_PIVOT: Entry<()> = Entry {
     listed: &[item(
         (),
         "Pick pivot",
-        "The next click on the surface is the point that the handle turns about.",
+        "Sets the pivot, about which the handle turns, with the next click on the surface.",
         "origin centre center",
         &[shift('p')],
     )],
@@ -126,14 +126,16 @@ pub(super) const RESET_HANDLE: Entry<()> = Entry {
     listed: &[item(
         (),
         "Reset handle",
-        "Takes the selected handle back to where it rests.",
+        "Moves the selected handle back to its rest position.",
         "clear transform",
         &[alt('g')],
     )],
     scope: Scope::Document,
     unavailable: |state, ()| match state.selected() {
         Err(reason) => Some(reason),
-        Ok(handle) if !handle.is_displaced() => Some(format!("{} stands where it was painted.", handle.name).into()),
+        Ok(handle) if !handle.is_displaced() => {
+            Some(format!("{} is already at its rest position.", handle.name).into())
+        }
         Ok(_) => None,
     },
     action: Action::Do(|context, ()| {

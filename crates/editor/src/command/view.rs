@@ -30,7 +30,7 @@ pub(super) const FRAME_SELECTED: Entry<()> = Entry {
     listed: &[item(
         (),
         "Frame selected",
-        "Shows the selected handle, or the whole surface where none is selected.",
+        "Shows the selected handle, or the whole surface if none is selected.",
         "zoom fit focus",
         &[character('.')],
     )],
@@ -67,7 +67,7 @@ pub(super) const FRAME_FILE_VERTEX: Entry<u32> = Entry {
 pub(super) const FRAME_INTERSECTION: Entry<usize> = Entry {
     listed: &[item(
         0,
-        "Go to where the shape passes through itself",
+        "Go to self-intersection",
         "Moves the view to the largest place where the bent surface passes through itself.",
         "self-intersection crossing collision overlap penetrate",
         &[],
@@ -76,7 +76,7 @@ pub(super) const FRAME_INTERSECTION: Entry<usize> = Entry {
     unavailable: |state, place| {
         let found = state.workspace.intersections();
         let is_there = found.is_some_and(|found| *place < found.places.len());
-        unless(is_there, "The bent shape has no crossings that the file does not have.")
+        unless(is_there, "The bent shape has no new self-intersection.")
     },
     action: Action::Do(|context, place| {
         let found = context.workspace.intersections();
@@ -90,7 +90,7 @@ pub(super) const FRAME_INTERSECTION: Entry<usize> = Entry {
 pub(super) const CAMERA_BACK: Entry<()> = Entry {
     listed: &[item(
         (),
-        "View before",
+        "Previous view",
         "Goes back to the previous view.",
         "camera back",
         &[alt('[')],
@@ -98,7 +98,7 @@ pub(super) const CAMERA_BACK: Entry<()> = Entry {
     scope: Scope::View,
     unavailable: |state, ()| {
         let is_any = state.view.history().has(CameraStep::Back);
-        unless(is_any, "The view was nowhere else before.")
+        unless(is_any, "There is no previous view.")
     },
     action: Action::Do(|context, ()| context.view.step(CameraStep::Back)),
 };
@@ -107,33 +107,33 @@ pub(super) const CAMERA_BACK: Entry<()> = Entry {
 pub(super) const CAMERA_FORTH: Entry<()> = Entry {
     listed: &[item(
         (),
-        "View after",
-        "Goes forward to the view that you came back from.",
+        "Next view",
+        "Goes forward to the view that you left with Previous view.",
         "camera forth forward",
         &[alt(']')],
     )],
     scope: Scope::View,
     unavailable: |state, ()| {
         let is_any = state.view.history().has(CameraStep::Forth);
-        unless(is_any, "The view was not taken back anywhere.")
+        unless(is_any, "There is no next view.")
     },
     action: Action::Do(|context, ()| context.view.step(CameraStep::Forth)),
 };
 
-/// The axis that points up on the screen. The model is framed anew, because another axis shows another side of it.
+/// The axis that points up on the screen. The model is framed again, because another axis shows another side of it.
 pub(super) const SET_UP: Entry<UpAxis> = Entry {
     listed: &[
         item(
             UpAxis::Y,
             "Y is up",
-            "Shows the model with its Y axis upwards, as glTF has it.",
+            "Shows the model with its Y axis upwards, as in glTF.",
             "axis turn upright",
             &[],
         ),
         item(
             UpAxis::Z,
             "Z is up",
-            "Shows the model with its Z axis upwards, as scanners and CAD have it.",
+            "Shows the model with its Z axis upwards, as in scanners and CAD.",
             "axis turn upright",
             &[],
         ),
@@ -173,14 +173,14 @@ pub(super) const SET_ORBIT: Entry<Orbit> = Entry {
         item(
             Orbit::Turntable,
             "Turntable",
-            "Dragging turns the view about the up axis; the horizon stays level.",
+            "Makes a drag turn the view about the up axis; the horizon stays level.",
             "orbit",
             &[],
         ),
         item(
             Orbit::Trackball,
             "Trackball",
-            "Dragging rolls the view like a ball.",
+            "Makes a drag roll the view like a ball.",
             "orbit arcball",
             &[],
         ),

@@ -25,9 +25,9 @@ pub struct Access {
 pub struct SmallParts {
     /// Parts with less than this share (0 to 1) of the largest part's vertices are small.
     pub share: f64,
-    /// Whether they are hidden.
+    /// True if they are hidden.
     pub hidden: bool,
-    /// Whether they are fixed.
+    /// True if they are fixed.
     pub locked: bool,
 }
 
@@ -91,12 +91,12 @@ impl Access {
         access
     }
 
-    /// Whether everything is shown.
+    /// Returns true if everything is shown.
     pub fn shows_all(&self) -> bool {
         self.hidden.is_empty() && self.isolated.is_none() && !self.small.hidden
     }
 
-    /// Whether anything is fixed.
+    /// Returns true if anything is fixed.
     pub(crate) fn locks_any(&self) -> bool {
         self.small.locked || !self.locked.is_empty()
     }

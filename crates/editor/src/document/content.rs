@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use glam::DVec3;
-use pliant_deform::{Arap, Attachment, Loose, Method};
+use pliant_deform::{Attachment, Loose, Method};
 
 use super::access::Access;
 use super::handle::{Handle, HandleId};
@@ -62,7 +62,7 @@ pub struct Content {
     pub(crate) access: Arc<Access>,
     /// The rest shape's displacements from the file's.
     pub(crate) rest: Arc<Vec<DVec3>>,
-    /// Whether a shape was applied; if not, `rest` is zero.
+    /// True if a shape was applied; if not, `rest` is zero.
     pub(crate) applied: bool,
     /// The present shape's displacements from the rest shape.
     pub(crate) from_rest: Arc<Vec<DVec3>>,
@@ -72,7 +72,7 @@ pub struct Content {
     pub(crate) kept: Option<Arc<KeptShape>>,
     /// The present shape's corrections by hand, as far as they are still visible; `None` without any.
     pub(crate) corrections: Option<Arc<Vec<DVec3>>>,
-    /// Whether `from_rest` is final for the handles' transforms.
+    /// True if `from_rest` is final for the handles' transforms.
     pub(crate) settled: bool,
     /// The full values of which handles and attachments are a share; `None` if they are shown in full.
     pub(crate) strength: Option<Arc<Strength>>,
@@ -90,7 +90,7 @@ impl Content {
             next_handle: 0,
             stiffness: None,
             continuity: None,
-            method: Arap::first_choice().into(),
+            method: Method::of_new_documents(),
             attachments: Arc::default(),
             tips: Tips::default(),
             loose: Loose::default(),
@@ -118,7 +118,7 @@ impl Content {
 /// The drawn shape: the rest shape's displacements, if there are any, plus those from it.
 ///
 /// If nothing is added, the bits of the rest shape stay, so that applying a shape moves nothing.
-pub(crate) fn sum_of_shapes(rest: Option<&Arc<Vec<DVec3>>>, from_rest: &Arc<Vec<DVec3>>) -> Arc<Vec<DVec3>> {
+pub fn sum_of_shapes(rest: Option<&Arc<Vec<DVec3>>>, from_rest: &Arc<Vec<DVec3>>) -> Arc<Vec<DVec3>> {
     match rest {
         None => Arc::clone(from_rest),
         Some(rest) => Arc::new(

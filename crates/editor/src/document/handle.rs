@@ -32,11 +32,11 @@ pub struct Handle {
     pub reach: Reach,
     /// Its weight, in [`crate::SOFT_RANGE`], if it only pulls at its vertices.
     pub soft: Option<f64>,
-    /// Whether its colour and its gizmo are shown.
+    /// True if its colour and its gizmo are shown.
     pub visible: bool,
-    /// Whether it is locked against being moved, painted and deleted.
+    /// True if it is locked against being moved, painted and deleted.
     pub locked: bool,
-    /// Whether it is a pin: it holds its vertices at their visible positions and can't be moved.
+    /// True if it is a pin: it holds its vertices at their visible positions and can't be moved.
     pub is_pin: bool,
     /// The continuity with which the surface joins it, in [`pliant_deform::CONTINUITY_RANGE`]; `None` is the document's
     /// continuity at its vertices.
@@ -137,7 +137,7 @@ impl Handle {
         self.pivot = pivot;
     }
 
-    /// Whether it is away from its rest position.
+    /// Returns true if it is away from its rest position.
     pub fn is_displaced(&self) -> bool {
         !self.transform.is_identity()
     }

@@ -31,7 +31,7 @@ impl HandleTransform {
         pivot: None,
     };
 
-    /// Whether every point stays exactly where it is.
+    /// Returns true if every point stays exactly where it is.
     pub fn is_identity(&self) -> bool {
         match *self {
             Self::Trs {
@@ -44,7 +44,7 @@ impl HandleTransform {
         }
     }
 
-    /// Whether no direction is flattened; the formats require this too. A tiny scale is allowed.
+    /// Returns true if no direction is flattened; the formats require this too. A tiny scale is allowed.
     pub fn can_be_undone(&self) -> bool {
         match self {
             Self::Trs { scale, .. } => scale.is_finite() && !scale.cmpeq(DVec3::ZERO).any(),
@@ -144,8 +144,8 @@ impl Default for HandleTransform {
     }
 }
 
-/// Whether a column is zero or in the plane of the other two, to the precision of f64. A small or uneven scale does not
-/// matter.
+/// Returns true if a column is zero or in the plane of the other two, to the precision of f64. A small or uneven scale
+/// does not matter.
 fn is_singular(linear: &DMat3) -> bool {
     let unit = |column: DVec3| {
         // Scaled first, so that the length of a tiny column is not zero.

@@ -44,7 +44,7 @@ pub(crate) enum Change {
     Attachments(Arc<BTreeMap<&'static str, Attachment>>),
     /// The rest shape, and whether it differs from the file's.
     Rest(Sparse<DVec3>, bool),
-    /// Whether tips are free.
+    /// The state of the tips: free or fixed.
     Tips(Tips),
     /// The parts that are turned inside out.
     InsideOut(Arc<BTreeSet<u32>>),
@@ -52,7 +52,7 @@ pub(crate) enum Change {
     Access(Arc<Access>),
     /// The shape at the last change of the constraints.
     Kept(Option<Arc<KeptShape>>),
-    /// Whether the shape is final for the handles' transforms.
+    /// True if the shape is final for the handles' transforms.
     Settled(bool),
     /// The full values of which handles and attachments are a share.
     Strength(Option<Arc<Strength>>),
@@ -188,7 +188,7 @@ impl History {
         self.done.iter().chain(&self.undone).map(Step::bytes).sum()
     }
 
-    /// Whether the document differs from the saved one: the project, if there is one, else the model.
+    /// Returns true if the document differs from the saved one: the project, if there is one, else the model.
     pub fn is_unsaved(&self) -> bool {
         !self.saved.has(self.state())
     }

@@ -80,7 +80,7 @@ impl KeptShape {
         })
     }
 
-    /// Whether both have the same shape with the same transforms and corrections.
+    /// Returns true if both have the same shape with the same transforms and corrections.
     pub(crate) fn is_of(
         &self,
         handles: &[Handle],

@@ -16,7 +16,7 @@ pub struct Matching {
     pub(super) of_new: Vec<Option<u32>>,
     /// For each connected part of the new mesh, the old part of its first matched vertex.
     pub(super) of_new_part: Vec<Option<u32>>,
-    /// Whether both files draw the same triangles, for any joining of their vertices.
+    /// True if both files draw the same triangles, for any joining of their vertices.
     pub(super) draws_the_same: bool,
 }
 

@@ -23,7 +23,7 @@ mod version;
 mod vertex_access;
 
 pub use access::{Access, ObjectAction, SmallParts, object_name};
-pub(crate) use content::sum_of_shapes;
+pub use content::sum_of_shapes;
 pub use content::{Content, Paint, Tips};
 pub use handle::{Handle, HandleId, PivotPlace, Reach, Twin};
 pub use handle_colour::HANDLE_COLOURS;

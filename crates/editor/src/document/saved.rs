@@ -22,7 +22,7 @@ pub struct SaveMark {
     pub(super) state: u64,
     /// The shape that was shown.
     pub(super) shape: Version,
-    /// Whether no other shape can arrive for this state.
+    /// True if no other shape can arrive for this state.
     pub(super) is_final: bool,
 }
 
@@ -70,7 +70,7 @@ impl Saved {
         };
     }
 
-    /// Whether the file without which changes are lost has this state.
+    /// Returns true if the file without which changes are lost has this state.
     pub(super) fn has(&self, state: u64) -> bool {
         let file = match self.needed {
             SavedAs::Model => self.model,

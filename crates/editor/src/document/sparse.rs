@@ -22,7 +22,7 @@ impl<T: Copy> Sparse<T> {
         self.indices.len() * size_of::<u32>() + self.values.len() * size_of::<T>()
     }
 
-    /// Whether it has no element.
+    /// Returns true if it has no element.
     pub(super) fn is_empty(&self) -> bool {
         self.indices.is_empty()
     }
@@ -56,7 +56,7 @@ impl Sparse<DVec3> {
     }
 }
 
-/// Whether two vectors are the same bits: −0 is not 0 here, because undo restores the exact value.
+/// Returns true if two vectors are the same bits: −0 is not 0 here, because undo restores the exact value.
 pub(crate) fn bits_equal(a: DVec3, b: DVec3) -> bool {
     a.to_array().map(f64::to_bits) == b.to_array().map(f64::to_bits)
 }

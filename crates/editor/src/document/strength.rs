@@ -1,6 +1,6 @@
 //! The shown share of an edit: everything that a person has moved, at a share of its displacement from rest.
 //!
-//! The *input* is scaled (handles, control points, weights of examples), and the method solves for it anew. Blending
+//! The *input* is scaled (handles, control points, weights of examples), and the method solves for it again. Blending
 //! the displacements instead would be cheaper, but a vertex that turns by 90 degrees would move along the chord, and
 //! the surface would shrink in between: half of a bent arm would be a thin arm. A share of each handle's turn is a
 //! turn, so every share is a pose at which a drag could have stopped: the one that `--frames` passes there.
@@ -47,7 +47,7 @@ impl Stance {
         }
     }
 
-    /// Whether its path is that of the transform alone, which has no full turns.
+    /// Returns true if its path is that of the transform alone, which has no full turns.
     pub(crate) fn goes_the_short_way(&self) -> bool {
         match self.transform {
             HandleTransform::Trs { rotation, .. } => is_short(rotation, self.turn_deg),

@@ -19,7 +19,7 @@ pub(crate) fn rotation_of(turn_deg: DVec3) -> DQuat {
     DQuat::from_euler(EulerRot::XYZ, x, y, z)
 }
 
-/// Whether angles in degrees are a rotation, to the precision of numbers of that size.
+/// Returns true if angles in degrees are a rotation, to the precision of numbers of that size.
 pub(crate) fn means(turn_deg: DVec3, rotation: DQuat) -> bool {
     turn_deg.is_finite() && rotation_of(turn_deg).dot(rotation).abs() > 1.0 - 1e-9
 }
@@ -67,7 +67,7 @@ pub(crate) fn part_of(rotation: DQuat, turn_deg: DVec3, t: f64) -> DQuat {
     DQuat::from_axis_angle(axis, t * (angle + turns * TAU))
 }
 
-/// Whether a rotation is counted the short way round.
+/// Returns true if a rotation is counted the short way round.
 pub(crate) fn is_short(rotation: DQuat, turn_deg: DVec3) -> bool {
     full_turns(if rotation.w < 0.0 { -rotation } else { rotation }, turn_deg) == 0.0
 }

@@ -17,7 +17,7 @@ pub(crate) enum Aspect {
     Method,
     /// The rest state of the methods' inputs beside handles.
     Attachments,
-    /// Whether tips are free.
+    /// The state of the tips: free or fixed.
     Tips,
     /// The behaviour of loose parts.
     Loose,
@@ -93,17 +93,17 @@ impl Versions {
         self.0[aspect as usize]
     }
 
-    /// Whether an aspect differs from that in `other`.
+    /// Returns true if an aspect differs from that in `other`.
     pub(crate) fn differ(&self, other: &Self, aspect: Aspect) -> bool {
         self.of(aspect) != other.of(aspect)
     }
 
-    /// Whether region and factorisation of one are invalid for the other.
+    /// Returns true if region and factorisation of one are invalid for the other.
     pub(crate) fn are_other_problem(&self, other: &Self) -> bool {
         Aspect::OF_PROBLEM.iter().any(|&aspect| self.differ(other, aspect))
     }
 
-    /// Whether they differ in an aspect from which region and factorisation of every method follow.
+    /// Returns true if they differ in an aspect from which region and factorisation of every method follow.
     pub(crate) fn are_other_edit(&self, other: &Self) -> bool {
         let mut aspects = Aspect::OF_PROBLEM.iter().filter(|&&aspect| aspect != Aspect::Method);
         aspects.any(|&aspect| self.differ(other, aspect))

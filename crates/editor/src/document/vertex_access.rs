@@ -9,13 +9,13 @@ use super::access::Access;
 /// The effect of an [`Access`] on a model; `None` if it changes nothing.
 #[derive(Debug, Default)]
 pub(crate) struct VertexAccess {
-    /// Whether each drawn triangle is shown.
+    /// For each drawn triangle, true if it is shown.
     pub(crate) drawn: Option<Arc<Vec<bool>>>,
     /// The shown triangles of the surface, ascending.
     pub(crate) triangles: Option<Arc<Vec<u32>>>,
-    /// Whether some triangle shows each surface vertex.
+    /// For each surface vertex, true if some triangle shows it.
     shown: Option<Vec<bool>>,
-    /// Whether a lock holds each surface vertex.
+    /// For each surface vertex, true if it is locked.
     locked: Option<Vec<bool>>,
 }
 
@@ -35,33 +35,33 @@ impl VertexAccess {
         }
     }
 
-    /// Whether a triangle of the surface is shown.
+    /// Returns true if a triangle of the surface is shown.
     pub(crate) fn shows_triangle(&self, surface_triangle: u32) -> bool {
         let shown = self.triangles.as_ref();
         shown.is_none_or(|shown| shown.binary_search(&surface_triangle).is_ok())
     }
 
-    /// Whether a vertex is visible.
+    /// Returns true if a vertex is visible.
     pub(crate) fn is_shown(&self, vertex: usize) -> bool {
         self.shown.as_ref().is_none_or(|shown| shown[vertex])
     }
 
-    /// Whether any vertex is locked.
+    /// Returns true if any vertex is locked.
     pub(crate) fn locks_any(&self) -> bool {
         self.locked.is_some()
     }
 
-    /// Whether a lock holds a vertex.
+    /// Returns true if a lock holds a vertex.
     pub(crate) fn is_locked(&self, vertex: usize) -> bool {
         self.locked.as_ref().is_some_and(|locked| locked[vertex])
     }
 
-    /// Whether a vertex may be painted.
+    /// Returns true if a vertex may be painted.
     pub(crate) fn may_be_painted(&self, vertex: usize) -> bool {
         self.is_shown(vertex) && !self.is_locked(vertex)
     }
 
-    /// Whether every vertex may be painted.
+    /// Returns true if every vertex may be painted.
     pub(crate) fn opens_all(&self) -> bool {
         self.shown.is_none() && self.locked.is_none()
     }

@@ -6,7 +6,6 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use glam::DVec3;
-use pliant_deform::Method;
 use pliant_mesh::Model;
 
 use crate::Beginning;
@@ -14,8 +13,7 @@ use crate::command::{Command, KeyMap, Scope, frame_all};
 use crate::document::{Document, SavedAs};
 use crate::event::Event;
 use crate::input::{Button, Key, Modifiers, Pointer};
-use crate::jobs::{Activity, Arrival, Asked, Executor, JobDone, JobKind};
-use crate::snapshot::Snapshot;
+use crate::jobs::{Activity, Asked, Executor, JobDone, JobKind};
 use crate::tool::{Adjust, Brush, Context, Gesture, Lit, Next, Overlay, ToolMode, ToolSettings, begin, hover};
 use crate::view::{Shading, View};
 use crate::workspace::{ColouredBy, Workspace, take_mirrored};
@@ -83,9 +81,8 @@ impl Editor {
         let lit = self.gesture.as_ref().map_or((Lit::Pointed, Vec::new()), |gesture| {
             (gesture.lit(), gesture.shapes(&self.view))
         });
-        let pointer_px = self.pointer.map(|pointer| pointer.position_px);
         self.overlay
-            .renew(lit, &self.workspace, &self.view, &self.settings, pointer_px);
+            .renew(lit, &self.workspace, &self.view, &self.settings, self.pointer);
     }
 
     fn dispatch(&mut self, event: Event) {
@@ -137,7 +134,6 @@ impl Editor {
             }
             Event::JobDone(done) => self.job_done(done),
             Event::Opened { model, name, beginning } => self.open(model, name, beginning),
-            Event::Follow { leader, method } => self.follow(&leader, &method),
             Event::Recovered(needed) => self.workspace.history.mark_unsaved(needed),
             Event::Saved(what, mark) => {
                 let Workspace { history, document, .. } = &mut self.workspace;
@@ -186,7 +182,7 @@ impl Editor {
         (&mut self.gesture, context)
     }
 
-    /// Passes an event to the active gesture, if there is one, and returns what comes next.
+    /// Passes an event to the active gesture, if there is one, and returns the next step.
     fn ask_gesture(&mut self, ask: impl FnOnce(&mut dyn Gesture, &mut Context<'_>) -> Next) -> Option<Next> {
         let (gesture, mut context) = self.parts();
         let next = ask(gesture.as_deref_mut()?, &mut context);
@@ -266,8 +262,7 @@ impl Editor {
             self.workspace.refusal = None;
         }
         if activity == Some(Activity::Dragging) && scope == Scope::Document {
-            self.workspace
-                .refuse("The drag that was under way has been taken back: drag once more.");
+            self.workspace.refuse("The active drag was cancelled: drag again.");
         }
         // Undo during a drag aborts the drag, and nothing before it.
         if !(had_gesture && scope == Scope::History) {
@@ -330,13 +325,14 @@ impl Editor {
         let kind = done.kind;
         let arrival = self.workspace.jobs.accept(done);
         match self.workspace.take_arrival(arrival) {
-            Some(Arrival::Enclosed(inside)) => {
+            Some(JobKind::Enclose) => {
+                let inside = self.workspace.jobs.computed.slots.enclose.take().unwrap_or_default();
                 self.ask_gesture(|gesture, context| gesture.found(context, inside));
             }
-            Some(Arrival::Joint) => {
+            Some(JobKind::Joint) => {
                 self.ask_gesture(|gesture, context| gesture.found_joint(context));
             }
-            Some(Arrival::Mirrored(image)) => take_mirrored(&mut self.workspace, image, self.gesture.is_none()),
+            Some(JobKind::Mirror) => take_mirrored(&mut self.workspace, self.gesture.is_none()),
             _ => {}
         }
         // The search has ended without a result: it was stopped, or it failed.
@@ -380,20 +376,12 @@ impl Editor {
         frame_all(&self.workspace, &mut self.view);
     }
 
-    fn follow(&mut self, leader: &Snapshot, method: &Method) {
-        self.abort_gesture();
-        self.workspace.follow(&leader.work, method);
-        self.settings = leader.settings.clone();
-        self.view.look = leader.look;
-        self.view.travel(|camera| *camera = leader.camera);
-    }
-
     fn is_looking(&self) -> bool {
         self.gesture.as_ref().is_some_and(|gesture| gesture.is_looking())
     }
 
-    /// Whether the event must wait: for the hierarchy of the drawn shape, for the result of an outline, or for events
-    /// that wait already.
+    /// Returns true if the event must wait: for the hierarchy of the drawn shape, for the result of an outline, or for
+    /// events that wait already.
     fn must_wait(&mut self, event: &Event) -> bool {
         let waits = !self.waiting.is_empty() || self.is_looking();
         match event {

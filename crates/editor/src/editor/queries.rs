@@ -19,7 +19,7 @@ use crate::snapshot::Snapshot;
 use crate::status::status;
 use crate::tool::{Gesture, ToolMode};
 use crate::view::{Cursor, Look, Pick};
-use crate::workspace::{SnapshotKey, Workspace, WorkspaceSnapshot, region_colour, rims};
+use crate::workspace::{SnapshotKey, Workspace, region_colour, rims};
 use crate::{EditFile, MeshReference, geometry_hash};
 
 impl Editor {
@@ -28,7 +28,7 @@ impl Editor {
         let (workspace, view, settings) = (&self.workspace, &self.view, &self.settings);
         let gesture = self.gesture.as_deref();
         let document = &workspace.document;
-        let inspected = &workspace.computed().inspected;
+        let computed = workspace.computed();
         SceneView {
             model: workspace.model(),
             camera: view.camera(),
@@ -38,13 +38,10 @@ impl Editor {
             original: &workspace.original,
             drawn: match view.look {
                 Look { original: true, .. } => &workspace.original,
-                Look { base: true, .. } => inspected.base.as_ref().unwrap_or(document.from_file()),
+                Look { base: true, .. } => computed.base().unwrap_or(document.from_file()),
                 _ => document.from_file(),
             },
-            weights: inspected
-                .weights
-                .as_ref()
-                .filter(|_| workspace.selection.selected().is_some()),
+            weights: computed.weights().filter(|_| workspace.selection.selected().is_some()),
             regions_revision: workspace.colours().regions_revision(),
             rims_revision: workspace.colours().rims_revision(),
             overlay_revision: self.overlay.revision,
@@ -100,6 +97,7 @@ impl Editor {
         match &self.gesture {
             Some(gesture) => gesture.cursor(),
             None if self.overlay.hovered.is_some() || self.overlay.pointed_control.is_some() => Cursor::Grab,
+            None if self.overlay.takes_handle => Cursor::Grab,
             None if self.settings.mode == ToolMode::Pose && !self.overlay.shapes.is_empty() => Cursor::Grab,
             None if self.overlay.is_over_surface && self.settings.mode != ToolMode::Select => Cursor::Brush,
             None => Cursor::Arrow,
@@ -150,8 +148,7 @@ impl Editor {
     /// Sentences about the present binding and shape: the behaviour of loose parts, repairs, and motions of the handles
     /// that the method can't follow.
     pub fn warnings(&self) -> Vec<String> {
-        let computed = self.workspace.computed();
-        let warnings = computed.warnings.iter().chain(&computed.blind_to);
+        let warnings = self.workspace.computed().warnings();
         warnings.map(|warning| warning.worded(self.document())).collect()
     }
 
@@ -206,10 +203,9 @@ impl Editor {
     /// The present document, with an active drag; `None` before the first file.
     pub fn snapshot(&self) -> Option<Snapshot> {
         Some(Snapshot {
-            work: WorkspaceSnapshot::of(&self.workspace)?,
+            document: self.document().clone(),
+            model: Arc::clone(self.workspace.model()?),
             camera: *self.view.camera(),
-            look: self.view.look,
-            settings: self.settings.clone(),
         })
     }
 
@@ -253,7 +249,7 @@ impl Editor {
         self.key_map.shortcuts(command)
     }
 
-    /// Whether the command has an effect now.
+    /// Returns true if the command has an effect now.
     pub fn is_enabled(&self, command: &Command) -> bool {
         self.unavailable_because(command).is_none()
     }
@@ -267,32 +263,23 @@ impl Editor {
         })
     }
 
-    /// Whether a gesture is active that Esc ends: a stroke, a drag, picking a pivot.
+    /// Returns true if a gesture is active that Esc ends: a stroke, a drag, picking a pivot.
     pub fn is_acting(&self) -> bool {
         self.gesture.is_some() || self.settings.wants_pivot
     }
 
-    /// Whether shape and regions are final: no drag or stroke is active, and no job runs except those that prepare for
-    /// the pointer or the first drag.
+    /// Returns true if shape and regions are final: no drag or stroke is active, and no job runs except those that
+    /// prepare for the pointer or the first drag.
     pub fn is_settled(&self) -> bool {
-        let awaited = |kind| match kind {
-            JobKind::Pick | JobKind::Compare | JobKind::Joint | JobKind::Intersect => false,
-            JobKind::Order => self.document().is_displaced(),
-            JobKind::Region
-            | JobKind::Bind
-            | JobKind::Solve
-            | JobKind::Mirror
-            | JobKind::Symmetry
-            | JobKind::Enclose
-            | JobKind::Inspect => true,
-        };
+        let is_displaced = self.document().is_displaced();
+        let awaited = |kind: JobKind| kind.is_awaited() && (kind != JobKind::Order || is_displaced);
         let jobs = &self.workspace.jobs;
-        let is_busy = || JobKind::ALL.into_iter().any(|kind| awaited(kind) && jobs.is_busy(kind));
+        let is_busy = || JobKind::ALL.iter().any(|&kind| awaited(kind) && jobs.is_busy(kind));
         self.gesture.is_none() && self.waiting.is_empty() && !is_busy()
     }
 
     /// The revision of the shape that jobs are stamped with, for tests of lateness.
     pub fn shape_stamp(&self) -> Revision {
-        self.workspace.jobs.shape_revision
+        self.workspace.jobs.shape_revision()
     }
 }

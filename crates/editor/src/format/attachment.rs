@@ -172,7 +172,7 @@ fn given(name: &'static str, entry: AttachmentEntry) -> Result<Attachment, EditE
         AttachmentEntry::Examples(_) => String::new(),
     };
     let unread = EditError::custom(format!(
-        "names the file {file:?}, which is not read here: give its numbers"
+        "names the file {file:?}, which can't be read here: give its numbers"
     ));
     Err(unread.under(name))
 }

@@ -41,7 +41,7 @@ impl Beginning {
         }
     }
 
-    /// Whether nothing would move.
+    /// Returns true if nothing would move.
     pub fn changes_nothing(&self) -> bool {
         match self {
             Self::Edit(edit) => edit.changes_nothing(),

@@ -20,8 +20,8 @@ pub enum EditError {
     ProjectVersion(String),
     /// The project was made on another mesh.
     #[error(
-        "the project was made on another mesh than {name} (its hash is {found}, the project's {expected}): give the mesh \
-         it was made on"
+        "the project was made on another mesh than {name} (its hash is {found}, the project's {expected}): give the \
+         project's mesh"
     )]
     OtherMesh {
         /// The open mesh.
@@ -80,7 +80,7 @@ pub enum EditError {
         allowed: String,
     },
     /// A member that occurs twice in the same object.
-    #[error("`{member}` stands twice in {place}: keep one of them")]
+    #[error("`{member}` appears twice in {place}: keep one of them")]
     Duplicate {
         /// The member's name.
         member: String,

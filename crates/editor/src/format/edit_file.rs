@@ -315,8 +315,8 @@ impl EditFile {
         format!("{:#}\n", self.to_value())
     }
 
-    /// Whether no handle of the edit, no control point moved by hand and no example's weight moves anything, or the
-    /// share is 0.
+    /// Returns true if no handle of the edit, no control point moved by hand and no example's weight moves anything, or
+    /// the share is 0.
     pub fn changes_nothing(&self) -> bool {
         // Without handles nothing is solved: the kept shape is the result.
         if self.kept.is_some() && !self.handles.is_empty() {

@@ -173,7 +173,7 @@ pub(super) fn resolved(name: &str, entries: &[ExampleEntry], model: &Model) -> R
                 Arc::new(lowest.map(|file_vertex| points[file_vertex as usize]).collect())
             }
             (None, ExampleSource::File(source) | ExampleSource::MorphTarget(source)) => {
-                let unread = EditError::custom(format!("names {source:?}, which is not read here: give its numbers"));
+                let unread = EditError::custom(format!("names {source:?}, which can't be read here: give its numbers"));
                 return Err(unread.under(&format!("[{place}]")));
             }
         };

@@ -23,11 +23,12 @@ pub enum ExportError {
     NoFile,
     /// The rest shape differs from the file's.
     #[error(
-        "a shape was applied, and an edit starts from the file's shape: save the mesh, open it and go on from there"
+        "the document has an applied shape, but an edit starts from the file's shape: save the mesh and open it, then \
+         bend it further"
     )]
     Applied,
     /// A file vertex is drawn twice, and its two places have different roles.
-    #[error("{count} vertices are shown through two nodes and were painted differently there: paint both places alike")]
+    #[error("{count} vertices are shown by two nodes and are painted differently there: paint both places alike")]
     SharedVertices {
         /// The number of surface vertices that come out differently.
         count: usize,

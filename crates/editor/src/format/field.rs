@@ -104,7 +104,7 @@ pub(crate) struct FieldKind {
     /// With its article: "a stiffness".
     pub name: &'static str,
     pub range: RangeInclusive<f64>,
-    /// Whether it may also be "rigid".
+    /// True if it may also be "rigid".
     pub may_be_rigid: bool,
 }
 

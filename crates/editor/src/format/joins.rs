@@ -22,17 +22,17 @@ pub struct JoinsFile {
     pub delete_of_b: Selector,
     /// The transform of B. Its default pivot is the mean of B's welded vertices that are left.
     pub transform: Option<HandleTransform>,
-    /// Whether B is moved rigidly onto A's borders after that.
+    /// The placement of B after that.
     pub placement: Placement,
     /// Vertices of A and of B that belong together, by the files' numbers.
     pub pairs: Vec<[u32; 2]>,
-    /// How far from the borders each part may bend, as a share of its diagonal.
+    /// The distance from the borders within which each part may bend, as a share of its diagonal.
     pub reach: f64,
     /// The method by which both bend.
     pub method: Method,
 }
 
-/// Whether B is moved rigidly onto A's borders before both are bent.
+/// The placement of B before both are bent.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Deserialize)]
 #[serde(rename_all = "lowercase", expecting = "\"fitted\" or \"kept\"")]
 pub enum Placement {
@@ -57,7 +57,7 @@ struct StoredJoins {
     pairs: Vec<[u32; 2]>,
     #[serde(default = "a_fifth")]
     reach: f64,
-    #[serde(default = "poisson")]
+    #[serde(default = "default_method")]
     method: Value,
 }
 
@@ -95,8 +95,8 @@ fn a_fifth() -> f64 {
     0.2
 }
 
-fn poisson() -> Value {
-    json!({ "name": "poisson" })
+fn default_method() -> Value {
+    json!({ "name": Method::of_merges().name() })
 }
 
 impl JoinsFile {
@@ -124,7 +124,9 @@ impl JoinsFile {
         of_part(&stored.b.delete, "b")?;
         let (method, attachments) = read_method(&stored.method).map_err(|error| error.under("method"))?;
         if let Some(name) = attachments.keys().next() {
-            return Err(EditError::custom(format!("has `{name}`, and joins take none: leave it out")).under("method"));
+            return Err(
+                EditError::custom(format!("has `{name}`, which joins do not allow: leave it out")).under("method"),
+            );
         }
         if !(stored.reach > 0.0 && stored.reach <= 10.0) {
             let found = json!(stored.reach);

@@ -128,7 +128,7 @@ impl<'de> Visitor<'de> for Unique<'_> {
                     place: String::new(),
                 };
                 *self.duplicate.borrow_mut() = Some(self.place.complete(error));
-                return Err(A::Error::custom("a member stands twice"));
+                return Err(A::Error::custom("a member appears twice"));
             }
             values.insert(name, value);
         }

@@ -38,4 +38,4 @@ pub use flow_file::{Accuracy, DyeEntry, FlowFile, FlowMotion, FlowStart, Velocit
 pub use joins::{JoinsFile, Placement};
 pub use project::{MeshReference, Project, StoredKept, geometry_hash};
 pub use selector::{Axis, Selector};
-pub use setup::{HandleSetup, Kept, Rest, Setup};
+pub use setup::{HandleSetup, Rest, Setup};

@@ -101,11 +101,11 @@ impl Selector {
                 }
             },
             Self::Slab { from, to, .. } if from > to => {
-                let allowed = format!("a fraction that is not greater than `to` ({to})");
+                let allowed = format!("a fraction of at most `to` ({to})");
                 Err(out_of_range(from, &allowed).under("slab.from"))
             }
             Self::Box { min, max } if !min.cmple(*max).all() => {
-                Err(out_of_range(&min.to_array(), "a corner that is nowhere above `max`").under("box.min"))
+                Err(out_of_range(&min.to_array(), "a corner with no coordinate above that of `max`").under("box.min"))
             }
             Self::Sphere { radius, .. } if *radius < 0.0 => {
                 Err(out_of_range(radius, "a radius of at least 0").under("sphere.radius"))

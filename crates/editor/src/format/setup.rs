@@ -12,7 +12,8 @@ use super::edit_error::EditError;
 use super::edit_file::EditFile;
 use super::exchange::with_pivot;
 use crate::HandleTransform;
-use crate::document::{Document, HandleId, KeptShape, attachment_part};
+use crate::bending::{Kept, Targets};
+use crate::document::{Document, HandleId, attachment_part};
 use crate::region::Region;
 use crate::warning::{shortened, worded};
 
@@ -43,26 +44,6 @@ pub struct Setup {
     pub rest: Option<Rest>,
     /// The kept visible shape, if it differs from the solution for the handles' transforms.
     pub kept: Option<Kept>,
-}
-
-/// The visible shape at the last change of the constraints or correction by hand.
-#[derive(Clone, PartialEq, Debug)]
-pub struct Kept {
-    /// The shape, as displacements from the rest shape.
-    pub shape: Arc<KeptShape>,
-    /// The handles' maps at that time.
-    pub targets: Vec<DAffine3>,
-}
-
-impl Kept {
-    /// `None` for a handle that did not exist yet.
-    fn of(shape: &Arc<KeptShape>, handles: impl Iterator<Item = HandleId>) -> Option<Self> {
-        let targets: Option<Vec<DAffine3>> = handles.map(|id| shape.targets.get(&id).copied()).collect();
-        Some(Self {
-            shape: Arc::clone(shape),
-            targets: targets?,
-        })
-    }
 }
 
 /// A rest shape.
@@ -163,26 +144,10 @@ impl Setup {
         warnings.iter().map(sentence).collect()
     }
 
-    /// The positions of the control points of the method's attachment at the share `t` of their motion, 0 at rest and 1
-    /// at the end; `None` if none was brought.
-    pub fn controls(&self, t: f64) -> Option<Arc<Vec<DVec3>>> {
-        let attachment = self.attachment()?;
-        attachment.moved()?;
-        attachment_part(&self.method, attachment, t).moved().cloned()
-    }
-
     /// The examples of the method, if some were brought.
     pub fn examples(&self) -> Option<&Examples> {
         match self.attachment()? {
             Attachment::Shapes(examples) => Some(examples),
-            _ => None,
-        }
-    }
-
-    /// The weights of the examples at the share `t` of the motion: those that are set and bend the surface, times `t`.
-    pub fn weights(&self, t: f64) -> Option<Vec<Option<f64>>> {
-        match attachment_part(&self.method, self.attachment()?, t) {
-            Attachment::Shapes(examples) => Some(examples.weights),
             _ => None,
         }
     }
@@ -193,6 +158,13 @@ impl Setup {
         let mut own = self.attachments.iter();
         let (_, attachment) = own.find(|(name, _)| declared.attachment(name).is_some())?;
         Some(attachment)
+    }
+
+    /// The targets at the share `t` of the motion, 0 at rest and 1 at the end: the handles' maps, the method's control
+    /// points, and the weights of those examples that bend the surface, times `t`.
+    pub fn targets_at(&self, t: f64) -> Targets {
+        let part = |attachment| attachment_part(&self.method, attachment, t);
+        Targets::new(self.targets(t), self.attachment().map(part).as_ref())
     }
 
     /// The handles' maps at the share `t` of the motion, 0 at rest and 1 at their targets.

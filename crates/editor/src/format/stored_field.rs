@@ -65,7 +65,7 @@ impl Field {
     ) -> Result<(), EditError> {
         let bytes = STANDARD
             .decode(&self.f64_base64)
-            .map_err(|error| EditError::Project(format!("`{name}` is no base64 ({error}): save it again")))?;
+            .map_err(|error| EditError::Project(format!("`{name}` is not base64 ({error}): save it again")))?;
         let mut numbers = bytes
             .chunks_exact(8)
             .map(|bytes| bytes.try_into().map_or(f64::NAN, f64::from_le_bytes));
@@ -76,7 +76,7 @@ impl Field {
             .sum();
         if bytes.len() as u64 != stored * (8 * N) as u64 {
             return Err(EditError::Project(format!(
-                "`{name}` has {} bytes for {stored} vertices, and each takes {}: save it again",
+                "`{name}` has {} bytes for {stored} vertices, but each needs {}: save it again",
                 bytes.len(),
                 8 * N
             )));
@@ -119,7 +119,7 @@ impl Field {
         })?;
         match refused {
             Some(value) => Err(EditError::Project(format!(
-                "`{name}` has {value}, and goes from {} to {}: save it again",
+                "`{name}` has {value}, which is not from {} to {}: save it again",
                 range.start(),
                 range.end()
             ))),
@@ -161,7 +161,7 @@ pub(crate) fn for_each_drawn(
     for &[first, last] in ranges {
         if first > last || last as usize >= count {
             return Err(EditError::Project(format!(
-                "`{name}` names the vertices {first} to {last}, and the mesh has {count}: save it again"
+                "`{name}` names the vertices {first} to {last}, but the mesh has {count}: save it again"
             )));
         }
         for vertex in first..=last {

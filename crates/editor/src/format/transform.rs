@@ -95,7 +95,7 @@ impl<'de> Deserialize<'de> for Rotation {
         // Scaled first, so that neither tiny nor huge numbers leave the range of f64 when squared.
         let largest = x.abs().max(y.abs()).max(z.abs()).max(w.abs());
         if largest == 0.0 {
-            return refused("0, 0, 0, 0", "a quaternion x, y, z, w whose length is not 0");
+            return refused("0, 0, 0, 0", "a quaternion x, y, z, w with a length above 0");
         }
         let raw = DQuat::from_xyzw(x / largest, y / largest, z / largest, w / largest);
         // A quaternion that is normalised already keeps its bits, so that writing and reading an edit changes nothing.
@@ -119,7 +119,7 @@ impl<'de> Deserialize<'de> for Scale {
         };
         if !transform.can_be_undone() {
             let found = format!("{}, {}, {}", scale.x, scale.y, scale.z);
-            return refused(&found, "three factors other than 0, which flattens the handle");
+            return refused(&found, "three factors other than 0");
         }
         Ok(Self(scale))
     }

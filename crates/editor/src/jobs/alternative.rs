@@ -9,13 +9,14 @@ use pliant_mesh::{Distortion, Model, SurfaceVertex, bounding_box};
 use super::allowance::Allowance;
 use super::compared::{Binding, Compared, Edit, Figures};
 use super::computed::Computed;
-use super::job::{JobOutcome, Solved, Work};
+use super::slot::{Unfinished, Work};
+use super::solved::Solved;
 use super::solving::Wanted;
 use crate::Setup;
 use crate::document::Document;
 
 /// The message about a method whose job a person has stopped.
-const STOPPED: &str = "it was stopped: compare again to go on";
+const STOPPED: &str = "it was stopped: compare again";
 
 /// One method's result for the present edit.
 #[derive(Debug)]
@@ -74,7 +75,7 @@ impl Alternative {
         computed: &Computed,
         allowance: Allowance,
         clock_ms: fn() -> f64,
-    ) -> Option<Work> {
+    ) -> Option<Work<Box<Compared>>> {
         let model = computed.model.clone()?;
         let ordering = match self.method.ordering_power() {
             Some(power) => Some(computed.ordering(power)?),
@@ -86,7 +87,7 @@ impl Alternative {
             .as_ref()
             .map_or_else(rest, |binding| Arc::clone(&binding.from_rest));
         let carried = self.binding.as_ref().and_then(|binding| binding.carried.as_ref());
-        let wanted = Wanted::of(document, &computed.region.handles, &from_rest, carried)?;
+        let wanted = Wanted::of(document, &self.method, &computed.region.handles, &from_rest, carried)?;
         let (document, region, binding) = (document.clone(), computed.region.clone(), self.binding.clone());
         let method = self.method.clone();
         let of = Edit::of(&document);
@@ -116,8 +117,8 @@ impl Alternative {
                             carried: None,
                             frame_ms: 0.0,
                         },
-                        Err(_) if cancel.is_cancelled() => return JobOutcome::Cancelled,
-                        Err(error) => return JobOutcome::Failed(error.renumbered(known).to_string()),
+                        Err(_) if cancel.is_cancelled() => return Err(Unfinished::Cancelled),
+                        Err(error) => return Err(Unfinished::Failed(error.renumbered(known).to_string())),
                     }
                 }
             };
@@ -126,7 +127,7 @@ impl Alternative {
             let solved = wanted.solve(&mut bound, cancel);
             drop(bound);
             let frame_ms = binding.frame_ms + clock_ms() - start_ms;
-            JobOutcome::Compared(Box::new(match solved {
+            Ok(Box::new(match solved {
                 Err(error) => Compared {
                     shape: Err(error.renumbered(known).to_string()),
                     figures: None,
@@ -138,9 +139,9 @@ impl Alternative {
     }
 
     /// Stores the result of a job for this edit.
-    pub(super) fn take(&mut self, outcome: JobOutcome, of: Edit) {
+    pub(super) fn take(&mut self, outcome: Result<Box<Compared>, Unfinished>, of: Edit) {
         match outcome {
-            JobOutcome::Compared(compared) => {
+            Ok(compared) => {
                 self.binding = Some(compared.binding);
                 match compared.shape {
                     Err(sentence) => self.refuse(sentence, of),
@@ -154,9 +155,9 @@ impl Alternative {
                     }
                 }
             }
-            JobOutcome::Failed(sentence) => self.refuse(sentence, of),
+            Err(Unfinished::Failed(sentence)) => self.refuse(sentence, of),
             // Something else stopped it: beginning again at once could go on for ever.
-            _ => self.refuse(STOPPED.to_owned(), of),
+            Err(Unfinished::Cancelled) => self.refuse(STOPPED.to_owned(), of),
         }
     }
 

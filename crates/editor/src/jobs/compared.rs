@@ -7,7 +7,7 @@ use glam::{DAffine3, DVec3};
 use pliant_deform::{Attachment, Bound};
 use pliant_mesh::Bounds;
 
-use super::carried::Carried;
+use crate::bending::Carried;
 use crate::document::{Document, HandleId, KeptShape, Versions};
 
 /// The result of a comparison's job.

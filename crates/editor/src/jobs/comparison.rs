@@ -7,9 +7,9 @@ use pliant_deform::METHODS;
 
 use super::allowance::Allowance;
 use super::alternative::Alternative;
-use super::compared::Edit;
+use super::compared::{Compared, Edit};
 use super::computed::Computed;
-use super::job::{JobOutcome, Work};
+use super::slot::{Unfinished, Work};
 use crate::document::Document;
 
 /// Each method's result for the present edit.
@@ -20,6 +20,8 @@ pub struct Comparison {
     under_way: Option<(usize, Edit)>,
     /// The method whose turn it is.
     next: usize,
+    /// The method that is shown large, and has its turn before the others.
+    large: Option<usize>,
 }
 
 impl Comparison {
@@ -34,12 +36,23 @@ impl Comparison {
             alternatives: alternatives.collect(),
             under_way: None,
             next: 0,
+            large: None,
         }
     }
 
     /// One for each method, in the order of the window.
     pub fn alternatives(&self) -> &[Alternative] {
         &self.alternatives
+    }
+
+    /// The number of the method that is shown large.
+    pub fn large(&self) -> Option<usize> {
+        self.large
+    }
+
+    /// Shows a method large, or all of them in the same size.
+    pub(crate) fn enlarge(&mut self, number: Option<usize>) {
+        self.large = number.filter(|&number| number < self.alternatives.len());
     }
 
     /// Whether every shape is for the present edit, or refused for it.
@@ -75,7 +88,7 @@ impl Comparison {
         document: &Document,
         computed: &Computed,
         (allowance, clock_ms): (Allowance, fn() -> f64),
-    ) -> Option<Work> {
+    ) -> Option<Work<Box<Compared>>> {
         let number = self.turn()?;
         let work = self.alternatives[number].work(document, computed, allowance, clock_ms)?;
         self.under_way = Some((number, Edit::of(document)));
@@ -84,7 +97,7 @@ impl Comparison {
     }
 
     /// Stores the result of a job.
-    pub(super) fn take(&mut self, outcome: JobOutcome) {
+    pub(super) fn take(&mut self, outcome: Result<Box<Compared>, Unfinished>) {
         let Some((number, of)) = self.under_way.take() else {
             return;
         };
@@ -100,10 +113,11 @@ impl Comparison {
             .for_each(|alternative| alternative.stop(document));
     }
 
-    /// The next method that is not current, after the last one that had its turn.
+    /// The next method that is not current: the large one, or the one after the last that had its turn.
     fn turn(&self) -> Option<usize> {
         let count = self.alternatives.len();
-        let mut numbers = (0..count).map(|step| (self.next + step) % count);
+        let others = (0..count).map(|step| (self.next + step) % count);
+        let mut numbers = self.large.into_iter().chain(others);
         numbers.find(|&number| !self.alternatives[number].is_current)
     }
 }

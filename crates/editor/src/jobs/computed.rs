@@ -1,14 +1,16 @@
 //! The last results of jobs, and their model.
 
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
 
-use pliant_deform::{Bound, Ordering, ReusableFactor};
+use glam::DVec3;
+use pliant_deform::Ordering;
 use pliant_mesh::{Cancel, Joint, Model};
 
 use super::bound_controls::BoundControls;
-use super::carried::Carried;
-use super::inspected::{Inspectable, Inspected};
+use super::inspected::Inspectable;
 use super::intersections::Intersections;
+use super::table::Slots;
+use crate::bending::Carried;
 use crate::pickable::{Pickable, ShownTriangles};
 use crate::region::{FileContacts, Region};
 use crate::revision::Revision;
@@ -17,35 +19,23 @@ use crate::warning::HandleWarning;
 /// The last results.
 pub(crate) struct Computed {
     pub(crate) model: Option<Arc<Model>>,
-    pub(crate) pickable: Option<Pickable>,
+    pub(crate) slots: Slots,
     /// The triangles for rays.
     pub(super) shown: ShownTriangles,
     /// One ordering per power of the Laplacian that a method has asked for.
     pub(super) orderings: Vec<Arc<Ordering>>,
+    /// The region, from the beginning on.
     pub(crate) region: Region,
     /// The contacts of the model's components.
     pub(super) contacts: FileContacts,
-    pub(super) bound: Option<Arc<Mutex<Bound>>>,
-    /// The binding's control points.
-    pub(crate) controls: Option<BoundControls>,
+    /// The targets for which the binding's control points have their positions.
+    pub(super) controls_revision: Revision,
     /// Raised when newer targets wait, so that a solve for the older ones takes no long steps.
     pub(super) newer_targets: Cancel,
     /// The state from which a solve with a kept shape continues, with this factorisation.
     pub(super) carried: Option<Carried>,
-    /// The parts of the binding that can be shown.
-    pub(crate) inspectable: Inspectable,
-    /// The shown parts of it.
-    pub(crate) inspected: Inspected,
-    /// The parts of the last binding that the next one can reuse.
-    pub(super) reusable_factor: Option<ReusableFactor>,
-    /// The joint of the limb under the pointer.
-    pub(super) joint: Option<Arc<Joint>>,
-    /// The places where a shape passes through itself, and the shape's revision.
-    pub(super) intersections: Option<(Revision, Intersections)>,
-    /// Warnings about the last binding.
-    pub(crate) warnings: Vec<HandleWarning>,
     /// Warnings about the targets of the last solve.
-    pub(crate) blind_to: Vec<HandleWarning>,
+    pub(super) blind_to: Vec<HandleWarning>,
     /// The examples' weights that the last solve used or found.
     pub(crate) example_weights: Vec<f64>,
 }
@@ -54,21 +44,14 @@ impl Default for Computed {
     fn default() -> Self {
         Self {
             model: None,
-            pickable: None,
+            slots: Slots::default(),
             shown: ShownTriangles::default(),
             orderings: Vec::new(),
             region: Region::still(0),
             contacts: FileContacts::default(),
-            bound: None,
-            controls: None,
+            controls_revision: Revision(0),
             newer_targets: Cancel::new(),
             carried: None,
-            inspectable: Inspectable::default(),
-            inspected: Inspected::default(),
-            reusable_factor: None,
-            joint: None,
-            intersections: None,
-            warnings: Vec::new(),
             blind_to: Vec::new(),
             example_weights: Vec::new(),
         }
@@ -80,5 +63,48 @@ impl Computed {
     pub(super) fn ordering(&self, power: u32) -> Option<Arc<Ordering>> {
         let mut orderings = self.orderings.iter();
         orderings.find(|ordering| ordering.power() == power).cloned()
+    }
+
+    /// The data that answer rays.
+    pub(crate) fn pickable(&self) -> Option<&Pickable> {
+        self.slots.pick.last()
+    }
+
+    /// The last binding's control points.
+    pub(crate) fn controls(&self) -> Option<&BoundControls> {
+        self.slots.bind.last()?.controls.as_ref()
+    }
+
+    /// The parts of the last binding that can be shown.
+    pub(crate) fn inspectable(&self) -> Inspectable {
+        let binding = self.slots.bind.last();
+        binding.map_or(Inspectable::default(), |binding| binding.inspectable)
+    }
+
+    /// The shown handle's weight at each surface vertex, from 0 to 1.
+    pub(crate) fn weights(&self) -> Option<&Arc<Vec<f64>>> {
+        self.slots.inspect.last()?.weights.as_ref()
+    }
+
+    /// The shown smooth base, as displacements of the surface's vertices from the file's shape.
+    pub(crate) fn base(&self) -> Option<&Arc<Vec<DVec3>>> {
+        self.slots.inspect.last()?.base.as_ref()
+    }
+
+    /// The last joint that was found.
+    pub(crate) fn joint(&self) -> Option<&Arc<Joint>> {
+        self.slots.joint.last()?.as_ref()
+    }
+
+    /// The places where the present shape passes through itself; `None` before the search.
+    pub(crate) fn intersections(&self) -> Option<&Intersections> {
+        self.slots.intersect.current()
+    }
+
+    /// Warnings about the last binding, and about the targets of the last solve.
+    pub(crate) fn warnings(&self) -> impl Iterator<Item = &HandleWarning> {
+        let binding = self.slots.bind.last();
+        let of_binding = binding.map_or(&[][..], |binding| &binding.warnings);
+        of_binding.iter().chain(&self.blind_to)
     }
 }

@@ -7,7 +7,7 @@ use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::rc::Rc;
 
-use super::job::{Executor, Job, JobDone, JobKind};
+use super::table::{Executor, Job, JobDone, JobKind};
 
 /// A list of waiting jobs. Clones share the list: one goes to the editor, one stays with the caller.
 #[derive(Clone, Debug, Default)]

@@ -7,26 +7,24 @@ use pliant_deform::Bound;
 
 use super::computed::Computed;
 use super::inspected::{Asked, Inspected};
-use super::job::{JobOutcome, Work};
-use super::solving::targets;
+use super::slot::Work;
+use super::solving::maps;
 use crate::document::{Document, HandleId, sum_of_shapes};
 
 /// Queries the present binding; `None` while there is none.
-pub(super) fn inspect_work(computed: &Computed, document: &Document, asked: Asked) -> Option<Work> {
-    let bound = computed.bound.clone()?;
+pub(super) fn inspect_work(computed: &Computed, document: &Document, asked: Asked) -> Option<Work<Inspected>> {
+    let bound = Arc::clone(&computed.slots.bind.last()?.bound);
     let handles = computed.region.handles.clone();
-    let is_base_wanted = asked.base && computed.inspectable.base;
-    let targets = is_base_wanted.then(|| targets(document, &handles)).flatten();
+    let is_base_wanted = asked.base && computed.inspectable().base;
+    let targets = is_base_wanted.then(|| maps(document, &handles)).flatten();
     let rest = document.applied.then(|| Arc::clone(&document.rest));
     Some(Box::new(move |_, cancel| {
-        if cancel.is_cancelled() {
-            return JobOutcome::Cancelled;
-        }
+        cancel.check()?;
         let mut bound = bound.lock().unwrap_or_else(PoisonError::into_inner);
         let number = |id: HandleId| handles.iter().position(|handle| *handle == id);
         let weights = asked.weights_of.and_then(number);
         let base = targets.and_then(|targets| bent_base(&mut bound, &targets));
-        JobOutcome::Inspected(Inspected {
+        Ok(Inspected {
             weights: weights.and_then(|number| bound.handle_weights(number)).map(Arc::new),
             base: base.map(|base| sum_of_shapes(rest.as_ref(), &Arc::new(base))),
         })

@@ -1,125 +1,86 @@
-//! Bending: steps towards the handles' targets, from the shown shape or from a kept one.
+//! Bending: frames towards the handles' targets, from the shown shape or from a kept one.
 
-use std::collections::BTreeMap;
 use std::sync::{Arc, PoisonError};
 
 use glam::{DAffine3, DVec3};
-use pliant_deform::{Attachment, Bound, Solve, SolveError, Step};
+use pliant_deform::{Bound, Method, Solve, SolveError};
 use pliant_mesh::{Cancel, SurfaceVertex};
 
-use super::carried::Carried;
 use super::computed::Computed;
-use super::job::{ControlPlaces, Descent, JobOutcome, Solved, Work};
-use crate::document::{Document, HandleId, KeptShape, sum_of_shapes};
+use super::slot::{Unfinished, Work};
+use super::solved::{ControlPlaces, Descent, SolveResult, Solved};
+use crate::bending::{Carried, Kept, Start, Targets, Until};
+use crate::document::{Document, HandleId, sum_of_shapes};
 use crate::warning::HandleWarning;
 
-/// A solve takes steps for this many vertices before it shows its shape: about as many as fit into a frame. The editor
-/// has no clock.
-const VERTEX_STEPS: usize = 100_000;
-
-/// The most steps of one solve, even with few vertices.
-const MOST_STEPS: usize = 16;
-
-/// The solution at a kept shape gets this many times the steps of one solve: it is so close to the end of the descent
-/// that the drag hides the rest.
-const MOST_FIRST_ROUNDS: usize = 8;
-
 /// Takes steps towards the handles' targets; `None` while nothing is bound.
-pub(super) fn solve_work(computed: &Computed, document: &Document) -> Option<Work> {
-    let (bound, model) = (computed.bound.clone()?, computed.model.clone()?);
-    let handles = &computed.region.handles;
-    let wanted = Wanted::of(document, handles, &document.from_rest, computed.carried.as_ref())?;
+pub(super) fn solve_work(computed: &Computed, document: &Document) -> Option<Work<SolveResult>> {
+    let (bound, model) = (Arc::clone(&computed.slots.bind.last()?.bound), computed.model.clone()?);
+    let (handles, carried) = (&computed.region.handles, computed.carried.as_ref());
+    let wanted = Wanted::of(document, &document.method, handles, &document.from_rest, carried)?;
     let newer_targets = computed.newer_targets.clone();
     Some(Box::new(move |_, cancel| {
-        if cancel.is_cancelled() {
-            return JobOutcome::Cancelled;
-        }
+        cancel.check()?;
         let mut bound = bound.lock().unwrap_or_else(PoisonError::into_inner);
         bound.set_cancel(&newer_targets);
         let is_from_file = wanted.rest.is_none();
-        match wanted.solve(&mut bound, cancel) {
-            Err(error) => JobOutcome::Failed(
-                error
-                    .renumbered(|vertex| model.first_file_vertex(SurfaceVertex(vertex)).0)
-                    .to_string(),
-            ),
-            Ok(mut solved) => {
-                if is_from_file && solved.carried.is_none() {
-                    solved.jacobians = bound.jacobians();
-                }
-                JobOutcome::Solved(solved)
-            }
+        let solved = wanted.solve(&mut bound, cancel);
+        let mut solved = solved.map_err(|error| {
+            let error = error.renumbered(|vertex| model.first_file_vertex(SurfaceVertex(vertex)).0);
+            Unfinished::Failed(error.to_string())
+        })?;
+        if is_from_file && solved.carried.is_none() {
+            solved.jacobians = bound.jacobians();
         }
+        Ok(SolveResult::Shape(solved))
     }))
 }
 
 /// Computes the control points' positions for the document's targets, whose shape is known; `None` while nothing is
 /// bound.
-pub(super) fn controls_work(computed: &Computed, document: &Document) -> Option<Work> {
-    let bound = computed.bound.clone()?;
-    let handles = targets(document, &computed.region.handles)?;
-    let attachments = Arc::clone(&document.attachments);
+pub(super) fn controls_work(computed: &Computed, document: &Document) -> Option<Work<SolveResult>> {
+    let bound = Arc::clone(&computed.slots.bind.last()?.bound);
+    let targets = targets(document, &document.method, &computed.region.handles)?;
     Some(Box::new(move |_, cancel| {
-        if cancel.is_cancelled() {
-            return JobOutcome::Cancelled;
-        }
+        cancel.check()?;
         let mut bound = bound.lock().unwrap_or_else(PoisonError::into_inner);
-        let own = bound.attachment().and_then(|(name, _)| attachments.get(name));
-        let targets = Targets {
-            handles: &handles,
-            controls: own.and_then(Attachment::moved),
-            weights: &[],
-        };
-        match targets.set(&mut bound) {
-            Err(error) => JobOutcome::Failed(error.to_string()),
-            Ok(()) => ControlPlaces::of(&bound).map_or(JobOutcome::Cancelled, JobOutcome::Controls),
-        }
+        let set = targets.set(&mut bound);
+        set.map_err(|error| Unfinished::Failed(error.to_string()))?;
+        let places = ControlPlaces::of(&bound).ok_or(Unfinished::Cancelled)?;
+        Ok(SolveResult::Controls(places))
     }))
 }
 
 /// The task of a solve, and its start.
 pub(super) struct Wanted {
     handles: Vec<HandleId>,
-    targets: Vec<DAffine3>,
-    beginning: Beginning,
-    attachments: Arc<BTreeMap<&'static str, Attachment>>,
-    /// The weights of the examples.
-    weights: Vec<Option<f64>>,
-    /// The shown shape.
-    from_rest: Arc<Vec<DVec3>>,
+    targets: Targets,
+    start: Start,
     /// The rest shape, if it is not the file's.
     rest: Option<Arc<Vec<DVec3>>>,
 }
 
 impl Wanted {
-    /// The document's targets for `handles`, from the shown shape and from the last solution, if that continues a kept
-    /// shape; `None` if a handle no longer exists.
+    /// The document's targets for `handles` and a method, from the shown shape and from the last solution, if that
+    /// continues a kept shape; `None` if a handle no longer exists.
     pub(super) fn of(
         document: &Document,
+        method: &Method,
         handles: &[HandleId],
         from_rest: &Arc<Vec<DVec3>>,
         carried: Option<&Carried>,
     ) -> Option<Self> {
         Some(Self {
             handles: handles.to_vec(),
-            targets: targets(document, handles)?,
-            beginning: Beginning::of(document, handles, from_rest, carried)?,
-            attachments: Arc::clone(&document.attachments),
-            weights: document.example_weights().to_vec(),
-            from_rest: Arc::clone(from_rest),
+            targets: targets(document, method, handles)?,
+            start: start(document, handles, from_rest, carried)?,
             rest: document.applied.then(|| Arc::clone(&document.rest)),
         })
     }
 
     /// Takes steps until the shape is worth showing.
     pub(super) fn solve(self, bound: &mut Bound, cancel: &Cancel) -> Result<Solved, SolveError> {
-        let own = bound.attachment().and_then(|(name, _)| self.attachments.get(name));
-        let targets = Targets {
-            handles: &self.targets,
-            controls: own.and_then(Attachment::moved),
-            weights: &self.weights,
-        };
-        let bent = self.beginning.solve(bound, &targets, &self.from_rest, cancel)?;
+        let bent = self.start.bend(bound, &self.targets, Until::Frame, cancel)?;
         let step = bent.step;
         Ok(Solved {
             jacobians: None,
@@ -139,145 +100,40 @@ impl Wanted {
     }
 }
 
-/// The targets of handles and control points, and the weights of the examples.
-struct Targets<'a> {
-    handles: &'a [DAffine3],
-    /// The brought points, moved by hand.
-    controls: Option<&'a Arc<Vec<DVec3>>>,
-    /// The weights, `None` for one to be found.
-    weights: &'a [Option<f64>],
-}
-
-impl Targets<'_> {
-    fn set(&self, bound: &mut Bound) -> Result<(), SolveError> {
-        bound.set_targets(self.handles)?;
-        // Another method's binding has no examples.
-        if bound.weights().len() == self.weights.len() {
-            bound.set_weights(self.weights)?;
-        }
-        self.controls.map_or(Ok(()), |moved| bound.set_controls(moved))
+/// The start of the document's next solve; `None` if a handle did not exist yet when the shape was kept.
+fn start(
+    document: &Document,
+    handles: &[HandleId],
+    from_rest: &Arc<Vec<DVec3>>,
+    carried: Option<&Carried>,
+) -> Option<Start> {
+    let Some(kept) = &document.kept else {
+        return Some(Start::Shape(Arc::clone(from_rest)));
+    };
+    let Some(carried) = carried.filter(|carried| Arc::ptr_eq(&carried.kept, kept)) else {
+        return Kept::of(kept, handles.iter().copied()).map(Start::Kept);
+    };
+    let mut carried = carried.clone();
+    if !Arc::ptr_eq(&carried.shown, from_rest) {
+        // Undo has brought another shape: its path is computed again from the beginning.
+        carried.solution = Arc::clone(&carried.at_first);
     }
+    Some(Start::Carried(carried))
 }
 
-/// The result of a solve.
-struct Bent {
-    /// The shown shape, as displacements from the rest shape.
-    shown: Arc<Vec<DVec3>>,
-    /// The start of the next solve, if a shape was kept.
-    carried: Option<Carried>,
-    /// The progress of the descent.
-    step: Step,
-}
-
-/// The start of a solve.
-enum Beginning {
-    /// The shown shape.
-    Shown,
-    /// A kept shape for the first time: its solution must be found, with its own targets.
-    Kept(Arc<KeptShape>, Vec<DAffine3>),
-    /// The last solution, with the residual.
-    Carried(Carried),
-}
-
-impl Beginning {
-    fn of(
-        document: &Document,
-        handles: &[HandleId],
-        from_rest: &Arc<Vec<DVec3>>,
-        carried: Option<&Carried>,
-    ) -> Option<Self> {
-        let Some(kept) = &document.kept else {
-            return Some(Self::Shown);
-        };
-        if let Some(carried) = carried.filter(|carried| Arc::ptr_eq(&carried.kept, kept)) {
-            let mut carried = carried.clone();
-            if !Arc::ptr_eq(&carried.shown, from_rest) {
-                // Undo has brought another shape: its path is computed again from the beginning.
-                carried.solution = Arc::clone(&carried.at_first);
-            }
-            return Some(Self::Carried(carried));
-        }
-        let handles = handles.iter();
-        let first: Option<Vec<DAffine3>> = handles.map(|id| kept.targets.get(id).copied()).collect();
-        first.map(|first| Self::Kept(Arc::clone(kept), first))
-    }
-
-    /// The next shown shape, and the start of the following solve.
-    fn solve(
-        self,
-        bound: &mut Bound,
-        targets: &Targets<'_>,
-        from_rest: &Arc<Vec<DVec3>>,
-        cancel: &Cancel,
-    ) -> Result<Bent, SolveError> {
-        let (kept, at_first, mut solution) = match self {
-            Self::Shown => {
-                let mut solution = from_rest.to_vec();
-                let step = steps(bound, targets, &mut solution, cancel)?;
-                return Ok(Bent {
-                    shown: Arc::new(solution),
-                    carried: None,
-                    step,
-                });
-            }
-            Self::Kept(kept, first) => {
-                let mut at_first = kept.shape.to_vec();
-                // Points of another attachment do not apply to the one in force.
-                let is_same = |kept: &&Arc<Vec<DVec3>>| targets.controls.is_some_and(|own| own.len() == kept.len());
-                let first_controls = kept.controls.as_ref().filter(is_same).or(targets.controls);
-                let first = Targets {
-                    handles: &first,
-                    controls: first_controls,
-                    weights: &kept.weights,
-                };
-                for _ in 0..MOST_FIRST_ROUNDS {
-                    if steps(bound, &first, &mut at_first, cancel)?.finished || cancel.is_cancelled() {
-                        break;
-                    }
-                }
-                (kept, Arc::new(at_first.clone()), at_first)
-            }
-            Self::Carried(carried) => (carried.kept, carried.at_first, carried.solution.to_vec()),
-        };
-        let step = steps(bound, targets, &mut solution, cancel)?;
-        let shown = Arc::new(kept.carried(&at_first, &solution));
-        let carried = Carried {
-            corrections: kept.corrections_left(&at_first, &solution),
-            kept,
-            at_first,
-            solution: Arc::new(solution),
-            shown: Arc::clone(&shown),
-        };
-        Ok(Bent {
-            shown,
-            carried: Some(carried),
-            step,
-        })
-    }
-}
-
-/// Takes steps towards the targets until the shape is worth showing; it continues from the end of the last solve.
-fn steps(
-    bound: &mut Bound,
-    targets: &Targets<'_>,
-    displacements: &mut [DVec3],
-    cancel: &Cancel,
-) -> Result<Step, SolveError> {
-    targets.set(bound)?;
-    let mut step = bound.step(displacements)?;
-    for _ in 1..(VERTEX_STEPS / bound.step_cost().max(1)).clamp(1, MOST_STEPS) {
-        if step.finished || cancel.is_cancelled() {
-            break;
-        }
-        step = bound.step(displacements)?;
-    }
-    Ok(step)
+/// The document's targets for handles in the region's order and for a method; `None` if a handle no longer exists.
+fn targets(document: &Document, method: &Method, handles: &[HandleId]) -> Option<Targets> {
+    let declared = method.declaration();
+    let mut attachments = document.attachments.iter();
+    let own = attachments.find(|(name, _)| declared.attachment(name).is_some());
+    Some(Targets::new(
+        maps(document, handles)?,
+        own.map(|(_, attachment)| attachment),
+    ))
 }
 
 /// The maps of the handles in the region's order; `None` if one of them no longer exists.
-pub(super) fn targets(document: &Document, handles: &[HandleId]) -> Option<Vec<DAffine3>> {
-    handles
-        .iter()
-        .map(|&id| document.handle(id).map(|handle| handle.affine()))
-        .collect()
+pub(super) fn maps(document: &Document, handles: &[HandleId]) -> Option<Vec<DAffine3>> {
+    let map = |id: &HandleId| document.handle(*id).map(|handle| handle.affine());
+    handles.iter().map(map).collect()
 }

@@ -8,9 +8,9 @@ use pliant_mesh::{Bvh, Damage, Model, SurfaceVertex};
 
 use super::allowance::Allowance;
 use super::computed::Computed;
-use super::inspected::Inspectable;
 use super::intersections::Intersections;
-use super::job::{JobOutcome, Work};
+use super::present_binding::PresentBinding;
+use super::slot::{Unfinished, Work};
 use crate::Setup;
 use crate::document::Document;
 use crate::pickable::Pickable;
@@ -20,26 +20,20 @@ use crate::region::{Region, RegionInput};
 const MOST_PAIRS: usize = 20_000;
 
 /// Makes the ordering for a power of the Laplacian.
-pub(super) fn order_work(model: &Arc<Model>, power: u32) -> Option<Work> {
+pub(super) fn order_work(model: &Arc<Model>, power: u32) -> Option<Work<Arc<Ordering>>> {
     let model = Arc::clone(model);
     Some(Box::new(move |progress, cancel| {
-        match Ordering::of(&model.topology, power, progress, cancel) {
-            Ok(ordering) => JobOutcome::Ordered(Arc::new(ordering)),
-            Err(_) => JobOutcome::Cancelled,
-        }
+        Ok(Arc::new(Ordering::of(&model.topology, power, progress, cancel)?))
     }))
 }
 
 /// Measures the region.
-pub(super) fn region_work(input: RegionInput) -> Option<Work> {
-    Some(Box::new(move |_, cancel| match Region::measure(&input, cancel) {
-        Ok(region) => JobOutcome::Region(region),
-        Err(_) => JobOutcome::Cancelled,
-    }))
+pub(super) fn region_work(input: RegionInput) -> Option<Work<Region>> {
+    Some(Box::new(move |_, cancel| Ok(Region::measure(&input, cancel)?)))
 }
 
 /// Builds or refits the hierarchy for rays.
-pub(super) fn pick_work(computed: &Computed, model: &Arc<Model>, document: &Document) -> Option<Work> {
+pub(super) fn pick_work(computed: &Computed, model: &Arc<Model>, document: &Document) -> Option<Work<Pickable>> {
     let (model, displacements, shown) = (
         Arc::clone(model),
         Arc::clone(&document.from_file),
@@ -47,14 +41,11 @@ pub(super) fn pick_work(computed: &Computed, model: &Arc<Model>, document: &Docu
     );
     let is_of_shown = |pickable: &&Pickable| pickable.shown.revision == shown.revision;
     let bvh = computed
-        .pickable
-        .as_ref()
+        .pickable()
         .filter(is_of_shown)
         .map(|pickable| pickable.bvh.clone());
     Some(Box::new(move |_, cancel| {
-        if cancel.is_cancelled() {
-            return JobOutcome::Cancelled;
-        }
+        cancel.check()?;
         let surface = &model.surface;
         let mut bvh = bvh.unwrap_or_else(|| match &shown.triangles {
             None => Bvh::build(&surface.positions, &surface.triangles),
@@ -64,7 +55,7 @@ pub(super) fn pick_work(computed: &Computed, model: &Arc<Model>, document: &Docu
             }
         });
         bvh.refit(|vertex| surface.positions[vertex.index()] + displacements[vertex.index()]);
-        JobOutcome::Pick(Pickable { bvh, shown })
+        Ok(Pickable { bvh, shown })
     }))
 }
 
@@ -75,13 +66,13 @@ pub(super) fn bind_work(
     document: &Document,
     revision: u64,
     allowance: Allowance,
-) -> Option<Work> {
+) -> Option<Work<Box<PresentBinding>>> {
     let ordering = match document.method.ordering_power() {
         Some(power) => Some(computed.ordering(power)?),
         None => None,
     };
     let (model, document, region) = (Arc::clone(model), document.clone(), computed.region.clone());
-    let reusable_factor = computed.reusable_factor.clone();
+    let reusable_factor = computed.slots.bind.last().and_then(|last| last.reusable_factor.clone());
     Some(Box::new(move |progress, cancel| {
         let setup = Setup::of_document(&document, &region);
         let problem = Problem {
@@ -90,32 +81,31 @@ pub(super) fn bind_work(
         };
         let (ordering, reusable_factor) = (ordering.as_deref(), reusable_factor.as_ref());
         match problem.rebind_within(ordering, reusable_factor, allowance.budget(), progress, cancel) {
-            Ok(bound) => {
-                let inspectable = Inspectable::of(&bound);
-                JobOutcome::Bound(Box::new(bound), inspectable)
-            }
-            Err(BindError::Cancelled(_)) => JobOutcome::Cancelled,
-            Err(error) => JobOutcome::Failed(
+            Ok(bound) => Ok(Box::new(PresentBinding::of(bound, &region.handles))),
+            Err(BindError::Cancelled(cancelled)) => Err(cancelled.into()),
+            Err(error) => Err(Unfinished::Failed(
                 error
                     .renumbered(|vertex| model.first_file_vertex(SurfaceVertex(vertex)).0)
                     .to_string(),
-            ),
+            )),
         }
     }))
 }
 
 /// Searches the hierarchy for rays, which has the shown triangles, and checks all triangles and edges.
-pub(super) fn intersect_work(computed: &Computed, model: &Arc<Model>, displacements: &Arc<Vec<DVec3>>) -> Option<Work> {
-    let (bvh, model) = (computed.pickable.as_ref()?.bvh.clone(), Arc::clone(model));
+pub(super) fn intersect_work(
+    computed: &Computed,
+    model: &Arc<Model>,
+    displacements: &Arc<Vec<DVec3>>,
+) -> Option<Work<Intersections>> {
+    let (bvh, model) = (computed.pickable()?.bvh.clone(), Arc::clone(model));
     let displacements = Arc::clone(displacements);
     Some(Box::new(move |progress, cancel| {
         let (surface, topology) = (&model.surface, &model.topology);
-        let Ok(found) = bvh.new_self_intersections(surface, topology, MOST_PAIRS, progress, cancel) else {
-            return JobOutcome::Cancelled;
-        };
+        let found = bvh.new_self_intersections(surface, topology, MOST_PAIRS, progress, cancel)?;
         let moved = surface.positions.iter().zip(displacements.iter());
         let deformed: Vec<DVec3> = moved.map(|(rest, displacement)| *rest + *displacement).collect();
         let damage = Damage::of(surface, topology, &deformed);
-        JobOutcome::Intersections(Intersections::of(&found, damage))
+        Ok(Intersections::of(&found, damage))
     }))
 }

@@ -42,7 +42,7 @@ pub(crate) struct RegionInput {
     pub(crate) loose_parts: Arc<BTreeMap<u32, Loose>>,
     pub(crate) access: Arc<Access>,
     pub(crate) contacts: FileContacts,
-    /// Whether the method has control points or examples, which move the surface even without handles.
+    /// True if the method has control points or examples, which move the surface even without handles.
     pub(crate) has_controls: bool,
 }
 

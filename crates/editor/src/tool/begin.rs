@@ -13,6 +13,7 @@ use super::paint::PaintStroke;
 use super::pose::PoseDrag;
 use super::smooth::SmoothStroke;
 use super::stiffness::StiffnessStroke;
+use super::taken_handle::is_taken_along;
 use super::transform::TransformDrag;
 use super::transform_measure::TransformKind;
 use crate::document::Paint;
@@ -82,6 +83,10 @@ pub(crate) fn begin(context: &mut Context<'_>, pointer: Pointer, button: Button)
             stroke.finish_with(context.workspace, |stroke, workspace| stroke.take(workspace, part));
             None
         }
+        _ if is_taken_along(context.workspace, context.settings, &pick, modifiers) => {
+            let drag = TransformDrag::begin(context, TransformKind::Move, Constraint::Free, pointer.position_px)?;
+            Some(Box::new(drag.held(button, None)))
+        }
         _ => {
             let mut stroke = PaintStroke::begin(context.workspace, context.settings, pointer)?;
             stroke.dab(context, pointer.position_px);
@@ -90,7 +95,7 @@ pub(crate) fn begin(context: &mut Context<'_>, pointer: Pointer, button: Button)
     }
 }
 
-/// Whether Shift changes the tool's effect on the surface: a brush smooths, a limb grows.
+/// Returns true if Shift changes the tool's effect on the surface: a brush smooths, a limb grows.
 fn heeds_shift(context: &Context<'_>) -> bool {
     let settings = &*context.settings;
     let is_brush = settings.mode.has_brush() && settings.stroke_shape == StrokeShape::Brush;
@@ -106,7 +111,7 @@ fn control_under(context: &Context<'_>, pointer: Pointer) -> Option<u32> {
     (!is_gizmo).then_some(point)
 }
 
-/// Whether a box or a lasso selects control points.
+/// Returns true if a box or a lasso selects control points.
 fn boxes_controls(context: &Context<'_>) -> bool {
     context.settings.mode == ToolMode::Select && !context.overlay.control_points.is_empty()
 }

@@ -16,7 +16,7 @@ pub(crate) struct ControlBox {
     shape: StrokeShape,
     /// Corners in points of the view.
     points_px: Vec<DVec2>,
-    /// Whether the points inside are added to the present selection.
+    /// True if the points inside are added to the present selection.
     adds: bool,
 }
 
@@ -40,7 +40,7 @@ impl Gesture for ControlBox {
     }
 
     fn status(&self, _: &Workspace, _: &View) -> Option<String> {
-        Some("Let go to select the points inside, Esc to leave it".to_owned())
+        Some("Release to select the points inside, Esc to cancel".to_owned())
     }
 
     fn outline_px(&self) -> Vec<DVec2> {
@@ -84,7 +84,7 @@ impl Gesture for ControlBox {
     fn abort(&mut self, _: &mut Context<'_>) {}
 }
 
-/// Whether a closed line goes around a point, by the number of its crossings with a ray to the right.
+/// Returns true if a closed line goes around a point, by the number of its crossings with a ray to the right.
 fn encloses(outline: &[DVec2], point: DVec2) -> bool {
     let next = outline.iter().cycle().skip(1);
     let crossings = outline.iter().zip(next).filter(|(a, b)| {

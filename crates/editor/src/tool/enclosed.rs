@@ -34,7 +34,7 @@ impl Search {
         Some(Self {
             model: Arc::clone(workspace.model()?),
             displacements: Arc::clone(workspace.document.from_file()),
-            pickable: workspace.computed().pickable.clone()?,
+            pickable: workspace.computed().pickable().cloned()?,
             camera: *view.camera(),
             viewport_px: view.viewport_px(),
             is_current: workspace.jobs.is_picking_current(),
@@ -109,7 +109,7 @@ impl ClosedLine {
         Some(Self { low, high, bands })
     }
 
-    /// Whether a point is inside, by the number of edges to its right.
+    /// Returns true if a point is inside, by the number of edges to its right.
     fn holds(&self, p: DVec2) -> bool {
         if !(p.cmpge(self.low).all() && p.cmple(self.high).all()) {
             return false;

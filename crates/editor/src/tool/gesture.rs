@@ -55,17 +55,17 @@ pub(crate) trait Gesture: std::fmt::Debug {
         Vec::new()
     }
 
-    /// Whether it moves the camera: then intermediate views do not enter the camera's history.
+    /// Returns true if it moves the camera: then intermediate views do not enter the camera's history.
     fn moves_camera(&self) -> bool {
         false
     }
 
-    /// Whether it measures with the camera of its beginning: then nothing else may zoom.
+    /// Returns true if it measures with the camera of its beginning: then nothing else may zoom.
     fn holds_camera(&self) -> bool {
         false
     }
 
-    /// Whether it waits for a job: a search for the vertices inside an outline, or for a joint.
+    /// Returns true if it waits for a job: a search for the vertices inside an outline, or for a joint.
     fn is_looking(&self) -> bool {
         false
     }

@@ -14,7 +14,7 @@ pub(super) struct HiddenPoints {
 }
 
 impl HiddenPoints {
-    /// Whether each point is hidden.
+    /// For each point, true if it is hidden.
     pub(super) fn are_hidden(&self) -> &[bool] {
         &self.are_hidden
     }

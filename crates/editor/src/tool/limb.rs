@@ -6,7 +6,7 @@ use std::sync::Arc;
 use pliant_mesh::{Joint, Shape, joint_of};
 
 use crate::document::{Document, HandleId, Paint};
-use crate::jobs::{JobKind, JobOutcome};
+use crate::jobs::JobKind;
 use crate::view::{Pick, View};
 use crate::workspace::Workspace;
 
@@ -49,10 +49,7 @@ pub(crate) fn hover(workspace: &mut Workspace, view: &View, pointer_px: Option<g
                 topology: &model.topology,
                 positions: &positions,
             };
-            match joint_of(&shape, pick.triangle, pick.point, cancel) {
-                Ok(joint) => JobOutcome::Joint(joint.map(Arc::new)),
-                Err(_) => JobOutcome::Cancelled,
-            }
+            Ok(joint_of(&shape, pick.triangle, pick.point, cancel)?.map(Arc::new))
         }),
     );
 }
@@ -64,7 +61,7 @@ pub(crate) fn limb_under(workspace: &Workspace, pick: &Pick) -> Limb {
     if let Some(id) = handle_at(document, pick) {
         return Limb::Posed(id);
     }
-    match workspace.jobs.joint() {
+    match workspace.computed().joint() {
         Some(joint) if joint.limb.binary_search(&pick.vertex).is_ok() => match handle_on(document, joint) {
             Some(id) => Limb::Posed(id),
             None => Limb::Untouched(Arc::clone(joint)),

@@ -34,6 +34,7 @@ mod stiffness;
 mod stiffness_brush;
 mod stroke;
 mod symmetry;
+mod taken_handle;
 mod transform;
 mod transform_measure;
 mod widen;

@@ -23,12 +23,12 @@ pub enum ToolMode {
 }
 
 impl ToolMode {
-    /// Whether it paints with a brush.
+    /// Returns true if it paints with a brush.
     pub(crate) fn has_brush(self) -> bool {
         !matches!(self, Self::Select | Self::Pose)
     }
 
-    /// Whether it paints vertices' roles.
+    /// Returns true if it paints vertices' roles.
     pub(crate) fn paints_roles(self) -> bool {
         matches!(
             self,

@@ -55,7 +55,7 @@ impl Gesture for Navigate {
             Way::Orbit => "Turning the view",
             Way::Pan(_) => "Moving the view",
         };
-        Some(format!("{doing}: Esc takes it back"))
+        Some(format!("{doing}: Esc to cancel"))
     }
 
     fn moves_camera(&self) -> bool {

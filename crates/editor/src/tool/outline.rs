@@ -11,7 +11,7 @@ use super::overlay::Lit;
 use super::paint::PaintStroke;
 use super::stroke::StrokeGesture;
 use crate::input::{Button, Pointer};
-use crate::jobs::{Activity, JobOutcome};
+use crate::jobs::Activity;
 use crate::view::{Cursor, View};
 use crate::workspace::Workspace;
 
@@ -62,8 +62,8 @@ impl Gesture for OutlineStroke {
     fn status(&self, _: &Workspace, _: &View) -> Option<String> {
         let shape = if self.shape == StrokeShape::Box { "box" } else { "lasso" };
         Some(match self.phase {
-            Phase::Drawing => format!("Drawing a {shape}: let go to paint what is inside, Esc to leave it"),
-            Phase::Looking => format!("Looking for what is in the {shape}: Esc to leave it"),
+            Phase::Drawing => format!("Drawing a {shape}: release to paint everything inside, Esc to cancel"),
+            Phase::Looking => format!("Finding the vertices in the {shape}: Esc to cancel"),
         })
     }
 
@@ -99,11 +99,8 @@ impl Gesture for OutlineStroke {
         let Some(search) = Search::of(context.workspace, context.view, &outline_px, depth) else {
             return self.found(context, Vec::new());
         };
-        let work = Box::new(move |progress: &_, cancel: &_| match search.run(progress, cancel) {
-            Ok(vertices) => JobOutcome::Enclosed(vertices),
-            Err(_) => JobOutcome::Cancelled,
-        });
-        context.workspace.jobs.enclose(work);
+        let work = Box::new(move |progress: &_, cancel: &_| Ok(search.run(progress, cancel)?));
+        context.workspace.jobs.ask(|slots| &mut slots.enclose, work);
         self.phase = Phase::Looking;
         Next::Stay
     }
@@ -115,7 +112,7 @@ impl Gesture for OutlineStroke {
     }
 
     fn abort(&mut self, context: &mut Context<'_>) {
-        context.workspace.jobs.stop_enclosing();
+        context.workspace.jobs.stop_asking(|slots| &mut slots.enclose);
         self.stroke.abort(context);
     }
 }

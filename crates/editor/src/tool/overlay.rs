@@ -12,7 +12,9 @@ use super::mode::{StrokeShape, ToolMode};
 use super::pose::{Limb, joint_shapes, limb_under};
 use super::settings::ToolSettings;
 use super::symmetry::symmetry_shapes;
+use super::taken_handle::is_taken_along;
 use crate::document::HandleTransform;
+use crate::input::Pointer;
 use crate::view::{
     Camera, ControlShape, GizmoAxes, GizmoPart, GizmoShape, ShownPoint, View, control_at, control_shapes, gizmo_shapes,
     hit_gizmo,
@@ -40,6 +42,8 @@ pub(crate) struct Overlay {
     /// The part of the gizmo under the pointer, without a gesture.
     pub(crate) hovered: Option<GizmoPart>,
     pub(crate) is_over_surface: bool,
+    /// Whether a press would take the painted handle under the pointer along.
+    pub(crate) takes_handle: bool,
     pub(crate) revision: u64,
     /// The method's cage or lattice, and its points one by one.
     pub(crate) controls: Vec<ControlShape>,
@@ -71,16 +75,17 @@ impl Overlay {
         self.rested = part.filter(|part| !matches!(part, GizmoPart::Centre | GizmoPart::Square(_)));
     }
 
-    /// Computes the overlay anew, with the shapes of a gesture; its revision grows if it looks different.
+    /// Computes the overlay again, with the shapes of a gesture; its revision grows if it looks different.
     pub(crate) fn renew(
         &mut self,
         (lit, mut shapes): (Lit, Vec<ControlShape>),
         workspace: &Workspace,
         view: &View,
         settings: &ToolSettings,
-        pointer_px: Option<DVec2>,
+        pointer: Option<Pointer>,
     ) {
         let (camera, viewport_px) = (view.camera(), view.viewport_px());
+        let pointer_px = pointer.map(|pointer| pointer.position_px);
         let gizmo_of = |part| gizmo(lit, workspace, camera, viewport_px, settings, part).unwrap_or_default();
         let mut gizmo = gizmo_of(None);
         let highlighted = match (lit, pointer_px) {
@@ -102,21 +107,23 @@ impl Overlay {
                 shape.colour[3] = (f64::from(shape.colour[3]) * FADED) as u8;
             }
         }
-        let (mut line, mut is_over_surface) = (Vec::new(), false);
-        if let (Some(pointer_px), Some(picking)) = (pointer_px, workspace.picking(view))
+        let (mut line, mut is_over_surface, mut takes_handle) = (Vec::new(), false, false);
+        if let (Some(pointer), Some(picking)) = (pointer, workspace.picking(view))
             && !matches!(lit, Lit::Gizmo(_) | Lit::Pivot)
             && highlighted.is_none()
-            && let Some(pick) = picking.at(pointer_px)
+            && let Some(pick) = picking.at(pointer.position_px)
         {
             is_over_surface = true;
+            takes_handle = lit == Lit::Pointed && is_taken_along(workspace, settings, &pick, pointer.modifiers);
             let has_ring = !matches!(settings.mode, ToolMode::Select | ToolMode::Pose)
                 && settings.stroke_shape == StrokeShape::Brush;
-            if has_ring && !settings.wants_pivot {
-                line = ring(&picking, pointer_px, &pick, &settings.brush);
+            if has_ring && !settings.wants_pivot && !takes_handle {
+                line = ring(&picking, pointer.position_px, &pick, &settings.brush);
             }
         }
         self.hovered = highlighted.filter(|_| lit == Lit::Pointed);
         self.is_over_surface = is_over_surface;
+        self.takes_handle = takes_handle;
         let takes_points = lit == Lit::Pointed && highlighted.is_none();
         let control_px = pointer_px.filter(|_| takes_points && (settings.mode == ToolMode::Select || !is_over_surface));
         let controls = self.renew_controls(workspace, view, control_px);

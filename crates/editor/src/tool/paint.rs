@@ -77,8 +77,8 @@ impl Stroke for PaintStroke {
     fn doing(&self, workspace: &Workspace) -> String {
         match self.paint {
             Paint::Bare => "Erasing".to_owned(),
-            Paint::Fixed => "Painting the part that is held still".to_owned(),
-            Paint::Free => "Painting what may bend".to_owned(),
+            Paint::Fixed => "Painting the fixed part".to_owned(),
+            Paint::Free => "Painting the region".to_owned(),
             Paint::Handle(id) => {
                 let handle = workspace.document.handle(id);
                 format!("Painting {}", handle.map_or("a handle", |handle| handle.name.as_str()))

@@ -20,13 +20,13 @@ pub(crate) struct ToolSettings {
     pub(crate) pressure: Option<f64>,
     pub(crate) gizmo_mode: GizmoMode,
     pub(crate) orientation: GizmoOrientation,
-    /// Whether the next click moves the selected handle's pivot.
+    /// True if the next click moves the selected handle's pivot.
     pub(crate) wants_pivot: bool,
 }
 
 impl ToolSettings {
     /// The role for region commands: the tool's, else the selected handle's.
-    pub(crate) fn role_in_hand(&self, selected: Option<HandleId>) -> Option<Paint> {
+    pub(crate) fn selected_role(&self, selected: Option<HandleId>) -> Option<Paint> {
         match self.mode {
             ToolMode::PaintFree => Some(Paint::Free),
             ToolMode::PaintFixed => Some(Paint::Fixed),

@@ -45,7 +45,7 @@ impl Gesture for SizeBrush {
 
     fn status(&self, _: &Workspace, _: &View) -> Option<String> {
         let radius = self.radius_px;
-        Some(format!("Brush of {radius:.0} px: click to keep it, Esc to leave it"))
+        Some(format!("Brush of {radius:.0} px: click to keep it, Esc to cancel"))
     }
 
     fn outline_px(&self) -> Vec<DVec2> {

@@ -52,7 +52,7 @@ impl StiffnessStroke {
 impl Stroke for StiffnessStroke {
     fn doing(&self, _: &Workspace) -> String {
         match self.brush.action {
-            StiffnessAction::Rigid => "Painting what moves as one body".to_owned(),
+            StiffnessAction::Rigid => "Painting rigid parts".to_owned(),
             _ => "Painting stiffness".to_owned(),
         }
     }

@@ -31,7 +31,7 @@ pub(crate) trait Stroke: std::fmt::Debug {
         Cursor::Brush
     }
 
-    /// Whether it measures with the camera of its beginning.
+    /// Returns true if it measures with the camera of its beginning.
     fn holds_camera(&self) -> bool {
         false
     }
@@ -90,7 +90,7 @@ impl<S: Stroke> Gesture for StrokeGesture<S> {
     }
 
     fn status(&self, workspace: &Workspace, _: &View) -> Option<String> {
-        Some(format!("{}: Esc takes it back", self.stroke.doing(workspace)))
+        Some(format!("{}: Esc to cancel", self.stroke.doing(workspace)))
     }
 
     fn holds_camera(&self) -> bool {

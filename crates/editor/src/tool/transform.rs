@@ -1,4 +1,5 @@
-//! Moving, turning and scaling a handle or control points, by the gizmo or by G, R and S: begin, preview, commit or abort.
+//! Moving, turning and scaling a handle or control points, by the gizmo or by G, R and S: begin, preview, commit or
+//! abort.
 //!
 //! A drag of the gizmo ends when its button goes up; a transform begun by a key follows the pointer without a button
 //! and ends with a click or Enter. Both understand x, y, z (with Shift: every axis except that one), typed numbers, and
@@ -37,7 +38,7 @@ pub(crate) struct TransformDrag {
     subject: Subject,
     measure: Measure,
     ending: Ending,
-    /// Whether the pointer has moved far enough.
+    /// True if the pointer has moved far enough.
     is_armed: bool,
 }
 
@@ -250,10 +251,10 @@ impl Gesture for TransformDrag {
     fn status(&self, _: &Workspace, view: &View) -> Option<String> {
         let end = match self.ending {
             Ending::Click => "click or Enter to keep it",
-            Ending::Release(_) => "let go to keep it",
+            Ending::Release(_) => "release to keep it",
         };
         Some(format!(
-            "{}{} by {}: x, y, z hold it to an axis, numbers type, {end}, Esc to leave it",
+            "{}{} by {}: x, y or z chooses an axis, digits set the amount, {end}, Esc to cancel",
             self.measure.kind.doing(),
             self.measure.constraint.label(),
             self.measure.label(view),

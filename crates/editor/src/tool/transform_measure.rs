@@ -42,7 +42,7 @@ pub(super) struct Measure {
     /// The turn so far, which may exceed a full circle.
     turned_rad: f64,
     pub(super) number: NumberEntry,
-    /// Whether Ctrl snaps the pointer's movement to round numbers, and objects near the ground to it.
+    /// True if Ctrl snaps the pointer's movement to round numbers, and objects near the ground to it.
     snaps: bool,
     /// The height of the object's lowest point above the ground at the beginning.
     above_ground: Option<f64>,

@@ -58,7 +58,7 @@ impl Gesture for Widen {
             _ => self.start_length,
         };
         Some(format!(
-            "Reach {length:.4}: move away from the handle to widen it, click to keep it, Esc to leave it"
+            "Reach {length:.4}: move away from the handle to widen it, click to keep it, Esc to cancel"
         ))
     }
 

@@ -142,7 +142,7 @@ pub struct Ray {
 }
 
 impl Camera {
-    /// Whether it is a valid view: everything finite, distances above zero.
+    /// Returns true if it is a valid view: everything finite, distances above zero.
     pub(crate) fn is_usable(&self) -> bool {
         self.target.is_finite()
             && [self.yaw_rad, self.pitch_rad, self.roll_rad]
@@ -254,7 +254,7 @@ impl Camera {
     pub(super) fn level_axes(&self) -> DMat3 {
         let (sin_yaw, cos_yaw) = self.yaw_rad.sin_cos();
         let (sin_pitch, cos_pitch) = self.pitch_rad.sin_cos();
-        // With y up: the eye stands at (sin yaw cos pitch, sin pitch, cos yaw cos pitch) from the target.
+        // With y up: the eye is at (sin yaw cos pitch, sin pitch, cos yaw cos pitch) from the target.
         let right = DVec3::new(cos_yaw, 0.0, -sin_yaw);
         let backward = DVec3::new(sin_yaw * cos_pitch, sin_pitch, cos_yaw * cos_pitch);
         let up = backward.cross(right);

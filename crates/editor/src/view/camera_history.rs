@@ -50,7 +50,7 @@ impl CameraHistory {
         Some(next)
     }
 
-    /// Whether there is a place in that direction.
+    /// Returns true if there is a place in that direction.
     pub(crate) fn has(&self, step: CameraStep) -> bool {
         match step {
             CameraStep::Back => !self.behind.is_empty(),

@@ -7,23 +7,23 @@ pub struct Look {
     pub shading: Shading,
     /// The clay.
     pub clay: Clay,
-    /// Whether each triangle is flat, instead of having interpolated normals.
+    /// True if each triangle is flat, instead of having interpolated normals.
     pub flat: bool,
-    /// Whether the triangles' edges are shown.
+    /// True if the triangles' edges are shown.
     pub wireframe: bool,
-    /// Whether edges that a closed surface does not have are marked.
+    /// True if edges that a closed surface does not have are marked.
     pub borders: bool,
-    /// Whether the regions' colours are shown.
+    /// True if the regions' colours are shown.
     pub regions: bool,
-    /// Whether handles are outlined, and the line between the free region and the fixed part is drawn.
+    /// True if handles are outlined, and the line between the free region and the fixed part is drawn.
     pub outlines: bool,
-    /// Whether the ground's grid is shown.
+    /// True if the ground's grid is shown.
     pub grid: bool,
-    /// Whether the surface casts a shadow on the ground.
+    /// True if the surface casts a shadow on the ground.
     pub shadow: bool,
-    /// Whether the file's own shape is shown instead of the present one.
+    /// True if the file's own shape is shown instead of the present one.
     pub original: bool,
-    /// Whether the smooth base is shown instead of the surface, if the method has one.
+    /// True if the smooth base is shown instead of the surface, if the method has one.
     pub base: bool,
     /// The way in which the file's own shape is shown with the present one.
     pub before: Before,

@@ -20,7 +20,7 @@ pub struct Pick {
     pub point: DVec3,
     /// The unit normal of the triangle on the side of the hit.
     pub normal: DVec3,
-    /// Whether the hit is on the outer side.
+    /// True if the hit is on the outer side.
     pub front: bool,
 }
 
@@ -37,7 +37,7 @@ pub(crate) struct Picking<'a> {
     pub(crate) viewport_px: DVec2,
     /// The camera, prepared for many points.
     pub(crate) sight: Sight,
-    /// Whether the hierarchy for rays is that of the present shape.
+    /// True if the hierarchy for rays is that of the present shape.
     pub(crate) is_current: bool,
 }
 
@@ -72,7 +72,8 @@ impl<'a> Picking<'a> {
         self.model.surface.triangles[triangle as usize].map(|vertex| self.position(vertex))
     }
 
-    /// Whether any triangle at the vertex faces the eye with its front, or else with its back; a bare point has both.
+    /// Returns true if any triangle at the vertex faces the eye with its front, or else with its back; a bare point has
+    /// both.
     pub(crate) fn shows(&self, vertex: SurfaceVertex, position: DVec3, front: bool) -> bool {
         let to_eye = self.sight.towards_eye(position);
         let model = &self.model;
@@ -85,7 +86,7 @@ impl<'a> Picking<'a> {
             })
     }
 
-    /// Whether nothing is between the eye and a vertex at `position`, and the surface there faces it.
+    /// Returns true if nothing is between the eye and a vertex at `position`, and the surface there faces it.
     pub(crate) fn is_seen(&self, vertex: SurfaceVertex, position: DVec3, eye: DVec3) -> bool {
         if !self.shows(vertex, position, true) {
             return false;

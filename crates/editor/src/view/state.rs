@@ -14,7 +14,7 @@ pub(crate) struct View {
     viewport_px: DVec2,
     /// Grows when camera or viewport changed.
     revision: u64,
-    /// Whether the camera has not been moved since everything was framed.
+    /// True if the camera has not been moved since everything was framed.
     is_framed: bool,
     orbit: Orbit,
     pub(crate) look: Look,
@@ -53,7 +53,7 @@ impl View {
         self.revision
     }
 
-    /// Whether a change of the view's size frames everything again.
+    /// Returns true if a change of the view's size frames everything again.
     pub(crate) fn is_framed(&self) -> bool {
         self.is_framed
     }

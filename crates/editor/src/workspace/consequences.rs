@@ -7,7 +7,7 @@ use super::colour_revisions::{ColouredBy, Sources};
 use super::state::Workspace;
 use super::symmetry::take_symmetry;
 use crate::document::{Aspect, Paint, VertexAccess};
-use crate::jobs::{Activity, Arrival, Asked, Finality, Solved};
+use crate::jobs::{Activity, Arrival, Asked, Finality, JobKind, Solved};
 
 impl Workspace {
     /// Computes the consequences of an event's changes: revisions grow, and jobs are requested.
@@ -24,8 +24,7 @@ impl Workspace {
         self.jobs.inspect(asked, &self.document);
         let is_at_rest = activity == Activity::Still && self.document.is_settled();
         let is_bent = self.document.is_displaced() || self.document.is_applied();
-        // A workspace that follows another is shown, not edited.
-        if is_at_rest && is_bent && self.followed.is_none() {
+        if is_at_rest && is_bent {
             self.jobs.intersect(&self.document.from_file);
         }
         self.jobs.pump(&self.document, activity);
@@ -89,7 +88,7 @@ impl Workspace {
     /// The hidden and locked parts, triangle by triangle.
     fn renew_vertex_access(&mut self) {
         let Some(model) = self.model() else { return };
-        let of = (self.jobs.model_revision, self.document.versions().of(Aspect::Access));
+        let of = (self.jobs.model_revision(), self.document.versions().of(Aspect::Access));
         if self.vertex_access_of == Some(of) {
             return;
         }
@@ -101,14 +100,14 @@ impl Workspace {
         }
     }
 
-    /// Stores a job's result; a result for a gesture or for a waiting action is returned.
-    pub(crate) fn take_arrival(&mut self, arrival: Arrival) -> Option<Arrival> {
+    /// Stores a job's result; returns its kind if that may be for a gesture or for a waiting action.
+    pub(crate) fn take_arrival(&mut self, arrival: Arrival) -> Option<JobKind> {
         match arrival {
-            Arrival::Nothing | Arrival::Picking => {}
+            Arrival::Nothing => {}
             Arrival::Problem(sentence) => self.refuse(sentence),
             Arrival::Shape(solved, finality) => self.take_shape(solved, finality),
-            Arrival::Symmetry(found) => take_symmetry(self, found),
-            Arrival::Enclosed(_) | Arrival::Mirrored(_) | Arrival::Joint => return Some(arrival),
+            Arrival::Result(JobKind::Symmetry) => take_symmetry(self),
+            Arrival::Result(kind) => return Some(kind),
         }
         None
     }

@@ -18,7 +18,7 @@ impl Workspace {
         let document = &self.document;
         let method = document.method();
         let own = document.attachment();
-        let bound = self.computed().controls.as_ref();
+        let bound = self.computed().controls();
         let bound = bound.filter(|bound| method.declaration().attachment(bound.name).is_some());
         let Some((name, attachment)) = own else {
             return bound.cloned();
@@ -57,10 +57,7 @@ pub(crate) fn bring(workspace: &mut Workspace, attachment: Attachment) {
     let declaration = workspace.document.method().declaration();
     let declared = declaration.attachments.iter().find(|own| own.kind == attachment.kind());
     let Some(declared) = declared else {
-        let why = format!(
-            "{} takes nothing of this kind: choose another method first.",
-            declaration.title
-        );
+        let why = format!("{} has no such input: choose another method first.", declaration.title);
         workspace.refuse(why);
         return;
     };
@@ -70,7 +67,7 @@ pub(crate) fn bring(workspace: &mut Workspace, attachment: Attachment) {
         return;
     }
     workspace.controls.put([]);
-    workspace.change(format!("Bring {}", declared.title), |document| {
+    workspace.change(format!("Load {}", declared.title), |document| {
         let mut attachments = Arc::clone(&document.attachments);
         Arc::make_mut(&mut attachments).insert(declared.name, attachment);
         put_other(document, attachments);
@@ -99,7 +96,7 @@ pub(crate) fn reset(workspace: &mut Workspace) {
     });
 }
 
-/// Sets another cage or lattice: the shape is solved anew, from the rest shape alone.
+/// Sets another cage or lattice: the shape is solved again, from the rest shape alone.
 fn put_other(document: &mut Document, attachments: Arc<BTreeMap<&'static str, Attachment>>) {
     document.unsettle_if_displaced();
     document.set_attachments(attachments);

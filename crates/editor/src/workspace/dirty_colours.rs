@@ -23,7 +23,7 @@ impl DirtyColours {
         self.vertices.extend_from_slice(vertices);
     }
 
-    /// Whether there are vertices without a revision.
+    /// Returns true if there are vertices without a revision.
     pub(crate) fn is_pending(&self) -> bool {
         self.filed < self.vertices.len()
     }

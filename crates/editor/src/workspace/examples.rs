@@ -46,7 +46,7 @@ fn push(workspace: &mut Workspace, step: &'static str, shape: ExampleShape) {
 
 /// Sets the weight of an example; with `None` the solver finds it.
 pub(crate) fn set_example_weight(workspace: &mut Workspace, place: usize, weight: Option<f64>) {
-    change(workspace, "Weigh example", |examples| {
+    change(workspace, "Change example weight", |examples| {
         if let Some(own) = examples.weights.get_mut(place) {
             *own = weight;
         }

@@ -55,7 +55,7 @@ pub(crate) fn set_turn(workspace: &mut Workspace, id: HandleId, turn_deg: glam::
 pub(crate) fn set_reach(workspace: &mut Workspace, id: HandleId, reach: Reach) {
     let (Reach::Radii(size) | Reach::Length(size)) = reach;
     if !(size.is_finite() && size >= 0.0) {
-        workspace.refuse("A reach is a length of at least 0: enter another number.");
+        workspace.refuse("The reach is out of range: enter a length of at least 0.");
         return;
     }
     if workspace.document.handle(id).is_none_or(|handle| handle.reach == reach) {
@@ -71,7 +71,7 @@ pub(crate) fn set_reach(workspace: &mut Workspace, id: HandleId, reach: Reach) {
 /// Sets the continuity with which the surface joins a handle; `None` is the painted one.
 pub(crate) fn set_continuity(workspace: &mut Workspace, id: HandleId, continuity: Option<f64>) {
     if continuity.is_some_and(|value| !CONTINUITY_RANGE.contains(&value)) {
-        workspace.refuse("A continuity is from 0 (a hinge) to 2 (smooth): enter another number.");
+        workspace.refuse("The continuity is out of range: enter 0 (a hinge) to 2 (smooth).");
         return;
     }
     workspace.change("Change continuity", |document| {
@@ -90,7 +90,7 @@ pub(crate) fn set_soft(workspace: &mut Workspace, id: HandleId, soft: Option<f64
     if soft.is_some_and(|weight| !SOFT_RANGE.contains(&weight)) {
         let (least, most) = (SOFT_RANGE.start(), SOFT_RANGE.end());
         workspace.refuse(format!(
-            "A soft handle's weight is from {least} to {most}: enter another number."
+            "The soft handle's weight is out of range: enter {least} to {most}."
         ));
         return;
     }

@@ -18,7 +18,7 @@ pub(crate) fn held_because(workspace: &Workspace, id: HandleId) -> Option<String
     }
     if handle.is_pin {
         return Some(format!(
-            "{} stays where it is: choose *Unpin* to move it as a handle.",
+            "{} is pinned: choose *Unpin* to move it as a handle.",
             handle.name
         ));
     }
@@ -27,7 +27,7 @@ pub(crate) fn held_because(workspace: &Workspace, id: HandleId) -> Option<String
     let is_held = access.locks_any() && members(&workspace.document, id).into_iter().all(is_locked);
     is_held.then(|| {
         format!(
-            "{} lies on a locked object: unlock that in the list of objects to move it.",
+            "{} is on a locked object: unlock the object in the list of objects to move it.",
             handle.name
         )
     })

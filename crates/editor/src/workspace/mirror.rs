@@ -10,7 +10,6 @@ use super::mirror_request::{Mirroring, Purpose};
 use super::painting::{members_of, name_of, repaint};
 use super::state::Workspace;
 use crate::document::{Aspect, HandleId, Paint, link_twins};
-use crate::jobs::JobOutcome;
 
 /// The number of vertices between two updates of the progress.
 const BATCH: usize = 16_384;
@@ -31,23 +30,22 @@ pub(crate) fn mirror(workspace: &mut Workspace, purpose: Purpose, axis: usize) {
         plane,
         paint: workspace.document.versions().of(Aspect::Paint),
     });
-    workspace.jobs.mirror(Box::new(move |progress, cancel| {
+    let work = Box::new(move |progress: &_, cancel: &_| {
         let bvh = bvh.unwrap_or_else(|| Bvh::build(&model.surface.positions, &model.surface.triangles));
-        match mirrored(&model, &bvh, &is_member, plane, progress, cancel) {
-            Ok(image) => JobOutcome::Mirrored(image),
-            Err(_) => JobOutcome::Cancelled,
-        }
-    }));
+        Ok(mirrored(&model, &bvh, &is_member, plane, progress, cancel)?)
+    });
+    workspace.jobs.ask(|slots| &mut slots.mirror, work);
 }
 
 /// Executes the action on an image, if no gesture is active and the paint is unchanged.
-pub(crate) fn take_mirrored(workspace: &mut Workspace, image: Vec<usize>, is_idle: bool) {
-    let Some(Mirroring { purpose, plane, paint }) = workspace.mirroring.take() else {
+pub(crate) fn take_mirrored(workspace: &mut Workspace, is_idle: bool) {
+    let image = workspace.jobs.computed.slots.mirror.take();
+    let (Some(image), Some(Mirroring { purpose, plane, paint })) = (image, workspace.mirroring.take()) else {
         return;
     };
     let is_other = workspace.document.versions().of(Aspect::Paint) != paint;
     if is_other || !is_idle {
-        workspace.refuse("The regions have changed while the mirror image was looked for: mirror again.");
+        workspace.refuse("The regions changed while the mirror image was computed: mirror again.");
         return;
     }
     match purpose {
@@ -77,8 +75,10 @@ fn twin_of(workspace: &mut Workspace, id: HandleId, image: &[usize], plane: Mirr
         .filter(|&vertex| !matches!(workspace.document.paint[vertex], Paint::Handle(_)))
         .collect();
     if image.is_empty() {
-        workspace
-            .refuse("The handle has no mirror image on the surface that is free: choose another axis, or paint it.");
+        workspace.refuse(
+            "The handle's mirror image has no vertex that can become its twin: choose another axis, or paint the \
+             twin.",
+        );
         return;
     }
     workspace.jobs.drop_solves();
@@ -94,7 +94,7 @@ fn twin_of(workspace: &mut Workspace, id: HandleId, image: &[usize], plane: Mirr
 /// The hierarchy of the file's own shape, if it exists.
 pub(super) fn rest_bvh(workspace: &Workspace) -> Option<Bvh> {
     let is_as_in_file = !workspace.document.applied && !workspace.document.is_displaced();
-    let ready = workspace.computed().pickable.as_ref();
+    let ready = workspace.computed().pickable();
     ready
         .filter(|pickable| is_as_in_file && pickable.shown.triangles.is_none() && workspace.jobs.is_picking_current())
         .map(|pickable| pickable.bvh.clone())

@@ -7,7 +7,6 @@ mod control_selection;
 mod controls;
 mod dirty_colours;
 mod examples;
-mod following;
 mod handle_values;
 mod handles;
 mod mirror;
@@ -50,7 +49,6 @@ pub(crate) use poses::{keep_pose, remove_pose, rename_pose, renew_pose, take_pos
 pub use regions::RegionAction;
 pub(crate) use regions::act_on_region;
 pub use snapshot::SnapshotKey;
-pub(crate) use snapshot::WorkspaceSnapshot;
 pub(crate) use state::Workspace;
 pub use stiffness::StiffnessChange;
 pub(crate) use stiffness::{change_stiffness, clear_stiffness, set_stiffness};

@@ -16,7 +16,7 @@ pub(crate) fn act_on_objects(workspace: &mut Workspace, action: ObjectAction, ob
     };
     let all = model.all_objects();
     if objects.iter().any(|&object| object as usize >= all.len()) {
-        workspace.refuse("The file has no such object: choose one of the list.");
+        workspace.refuse("The file has no such object: choose one from the list.");
         return;
     }
     let access = workspace.document.access.after(action, objects, all.len() as u32);
@@ -89,7 +89,7 @@ pub(crate) fn turn_inside_out(workspace: &mut Workspace) {
         None => shown_parts(&model, workspace.document.access()),
     };
     let name = match parts.len() {
-        0 => return workspace.refuse("Nothing that has triangles is shown: show an object first."),
+        0 => return workspace.refuse("No visible object has triangles: show one first."),
         1 => "Turn 1 part inside out".to_owned(),
         several => format!("Turn {several} parts inside out"),
     };
@@ -134,4 +134,4 @@ fn set_access(workspace: &mut Workspace, name: String, access: Access) {
     });
 }
 
-const NOTHING_HERE: &str = "There is nothing under the pointer: put it over a part of the surface and press the key.";
+const NOTHING_HERE: &str = "There is nothing under the pointer: point at a part of the surface and press the key.";

@@ -58,7 +58,7 @@ pub(super) fn at_rest(document: &Document) -> Arc<BTreeMap<&'static str, Attachm
 /// Shows a share (0 to 1) of the whole edit.
 pub(crate) fn set_strength(workspace: &mut Workspace, share: f64) {
     if !STRENGTH_RANGE.contains(&share) {
-        workspace.refuse("A strength is from 0 to 100 percent: enter another number.");
+        workspace.refuse("The strength is out of range: enter 0 to 100 percent.");
         return;
     }
     workspace.change("Change strength", |document| document.set_strength(share));
@@ -108,8 +108,8 @@ fn carried_over(document: &Document, method: &Method) -> Arc<BTreeMap<&'static s
 /// Chooses whether the parts that a reach cuts off from the body are free.
 pub(crate) fn set_tips(workspace: &mut Workspace, tips: Tips) {
     let name = match tips {
-        Tips::ComeAlong => "Take the tips along",
-        Tips::Held => "Hold the tips",
+        Tips::ComeAlong => "Free tips",
+        Tips::Held => "Fix tips",
     };
     workspace.change(name, |document| {
         if document.tips() != tips {
@@ -130,9 +130,7 @@ pub(crate) fn set_loose(workspace: &mut Workspace, loose: Loose) {
 pub(crate) fn set_loose_part(workspace: &mut Workspace, part: u32, loose: Option<Loose>) {
     let count = workspace.model().map_or(0, |model| model.topology.components().len());
     if part as usize >= count {
-        workspace.refuse(format!(
-            "The mesh has {count} parts and none of this number: choose one of the list."
-        ));
+        workspace.refuse(format!("The mesh has only {count} parts: choose one from the list."));
         return;
     }
     workspace.change("Change loose part", |document| {

@@ -40,8 +40,8 @@ pub(super) fn name_of(workspace: &Workspace, role: Paint) -> String {
             handle.map_or(String::new(), |handle| handle.name.clone())
         }
         Paint::Free => "region".to_owned(),
-        Paint::Fixed => "what is fixed".to_owned(),
-        Paint::Bare => "what is bare".to_owned(),
+        Paint::Fixed => "fixed part".to_owned(),
+        Paint::Bare => "bare part".to_owned(),
     }
 }
 

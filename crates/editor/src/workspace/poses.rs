@@ -30,7 +30,7 @@ pub(crate) fn take_pose(workspace: &mut Workspace, place: usize) {
 
 /// Replaces a pose by the shown state.
 pub(crate) fn renew_pose(workspace: &mut Workspace, place: usize) {
-    workspace.change("Renew pose", |document| {
+    workspace.change("Update pose", |document| {
         if let Some(name) = document.poses().get(place).map(|pose| pose.name.clone()) {
             let pose = document.present_pose(name);
             document.change_poses(|poses| poses[place] = pose);

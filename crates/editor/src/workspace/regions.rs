@@ -38,13 +38,14 @@ pub enum RegionAction {
 }
 
 impl RegionAction {
-    /// Its name in the history.
-    fn name(self) -> &'static str {
+    /// Its name in the history, for the region of a role.
+    fn name(self, role: Paint) -> &'static str {
         match self {
             Self::Grow => "Grow",
             Self::Shrink => "Shrink",
             Self::Invert => "Invert",
-            Self::EverythingBut => "Everything but",
+            Self::EverythingBut if role == Paint::Fixed => "Free all but",
+            Self::EverythingBut => "Fix all but",
             Self::SmoothBorder => "Smooth border of",
             Self::FillParts => "Fill parts of",
             Self::Mirror(_) => "Mirror",
@@ -62,7 +63,7 @@ pub(crate) fn act_on_region(workspace: &mut Workspace, role: Paint, action: Regi
     };
     let is_member = members_of(workspace, role);
     if !is_member.contains(&true) {
-        workspace.refuse("There is nothing painted to do this with: paint first.");
+        workspace.refuse("Nothing is painted: paint a region first.");
         return;
     }
     let what = name_of(workspace, role);
@@ -129,7 +130,13 @@ pub(crate) fn act_on_region(workspace: &mut Workspace, role: Paint, action: Regi
             target
         }
     };
-    repaint(workspace, format!("{} {what}", action.name()), role, target, changes);
+    repaint(
+        workspace,
+        format!("{} {what}", action.name(role)),
+        role,
+        target,
+        changes,
+    );
 }
 
 /// Vertices beside members, ascending.

@@ -7,7 +7,7 @@ use crate::document::{Document, HandleId};
 pub(crate) struct HandleSelection {
     selected: Option<HandleId>,
     companions: Vec<HandleId>,
-    /// Whether the next stroke of the handle brush makes a new handle.
+    /// True if the next stroke of the handle brush makes a new handle.
     pub(crate) wants_new_handle: bool,
 }
 

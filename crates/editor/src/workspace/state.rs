@@ -50,14 +50,6 @@ pub(crate) struct Workspace {
     pub(super) symmetry: Symmetry,
     /// Both sides of the plane of symmetry, once they are found.
     pub(super) both_sides: Option<Arc<BothSides>>,
-    pub(super) followed: Option<Followed>,
-}
-
-/// The state last taken over from another workspace.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub(super) struct Followed {
-    pub(super) model: Revision,
-    pub(super) versions: Versions,
 }
 
 impl Workspace {
@@ -84,7 +76,6 @@ impl Workspace {
             mirroring: None,
             symmetry: Symmetry::None,
             both_sides: None,
-            followed: None,
         }
     }
 
@@ -103,14 +94,13 @@ impl Workspace {
         self.mirroring = None;
         self.symmetry = Symmetry::None;
         self.both_sides = None;
-        self.followed = None;
         self.jobs.open(model);
         self.seen = *self.document.versions();
         self.shape_revision += 1;
         self.colours.change_all();
     }
 
-    /// Whether anything was painted at the end of the last event outside a stroke.
+    /// Returns true if anything was painted at the end of the last event outside a stroke.
     pub(crate) fn is_painted(&self) -> bool {
         self.painted.0
     }
@@ -137,7 +127,7 @@ impl Workspace {
 
     /// The places where the settled shape passes through itself; `None` before the search, and while it moves.
     pub(crate) fn intersections(&self) -> Option<&Intersections> {
-        self.jobs.intersections().filter(|_| self.document.is_settled())
+        self.computed().intersections().filter(|_| self.document.is_settled())
     }
 
     pub(crate) fn colours(&self) -> &Colours {
@@ -198,7 +188,7 @@ impl Workspace {
         self.step(name, |workspace| change(&mut workspace.document))
     }
 
-    /// Whether a widget is adjusting a step.
+    /// Returns true if a widget is adjusting a step.
     pub(crate) fn is_adjusting(&self) -> bool {
         self.adjusting.is_some()
     }
@@ -258,7 +248,7 @@ impl Workspace {
         Some(Picking::of(
             self.model()?,
             self.document.from_file(),
-            self.computed().pickable.as_ref()?,
+            self.computed().pickable()?,
             (view.camera(), view.viewport_px()),
             self.jobs.is_picking_current(),
         ))

@@ -110,7 +110,7 @@ pub(crate) fn set_stiffness(workspace: &mut Workspace, field: Vec<f64>) {
     } else if let Some(bad) = bad {
         let (low, high) = (STIFFNESS_RANGE.start(), STIFFNESS_RANGE.end());
         workspace.refuse(format!(
-            "A stiffness of {bad} is not between {low} and {high}, and not rigid: paint another."
+            "The stiffness {bad} is out of range: paint {low} to {high}, or rigid."
         ));
     } else {
         put_stiffness(workspace, "Change stiffness", field);

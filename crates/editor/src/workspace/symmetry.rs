@@ -11,7 +11,7 @@ use super::mirror::{mirror_plane, rest_bvh};
 use super::painting::members;
 use super::state::Workspace;
 use crate::document::{HandleId, Paint};
-use crate::jobs::{BothSides, JobOutcome, Symmetry};
+use crate::jobs::{BothSides, Symmetry};
 
 impl Workspace {
     /// Both sides, once they are found.
@@ -30,7 +30,7 @@ pub(crate) fn set_symmetry(workspace: &mut Workspace, symmetry: Symmetry) {
     if workspace.symmetry == symmetry {
         return;
     }
-    workspace.jobs.stop_looking_for_symmetry();
+    workspace.jobs.stop_asking(|slots| &mut slots.symmetry);
     workspace.symmetry = Symmetry::None;
     workspace.both_sides = None;
     let Some(model) = workspace.model().cloned() else {
@@ -43,19 +43,18 @@ pub(crate) fn set_symmetry(workspace: &mut Workspace, symmetry: Symmetry) {
     };
     let bvh = rest_bvh(workspace);
     workspace.symmetry = symmetry;
-    workspace.jobs.look_for_symmetry(Box::new(move |progress, cancel| {
-        match BothSides::find(&model, bvh, given, progress, cancel) {
-            Ok(found) => JobOutcome::Symmetry(found.map(Arc::new)),
-            Err(_) => JobOutcome::Cancelled,
-        }
-    }));
+    let work = Box::new(move |progress: &_, cancel: &_| {
+        Ok(BothSides::find(&model, bvh, given, progress, cancel)?.map(Arc::new))
+    });
+    workspace.jobs.ask(|slots| &mut slots.symmetry, work);
 }
 
 /// Stores the result.
-pub(crate) fn take_symmetry(workspace: &mut Workspace, found: Option<Arc<BothSides>>) {
+pub(crate) fn take_symmetry(workspace: &mut Workspace) {
+    let found = workspace.jobs.computed.slots.symmetry.take().flatten();
     if found.is_none() {
         workspace.symmetry = Symmetry::None;
-        workspace.refuse("This shape has no plane of symmetry: choose an axis for one, or paint each side by itself.");
+        workspace.refuse("This shape has no plane of symmetry: choose an axis, or paint one side at a time.");
     }
     workspace.both_sides = found;
 }

@@ -70,7 +70,7 @@ impl Destination {
         }
         if !metadata.is_file() {
             return refuse(in_words(
-                "a device, a pipe or a socket stands there; choose another place",
+                "a device, a pipe or a socket has this path; choose another place",
             ));
         }
         // A rename would replace it anyway, but a file was made read-only for a reason.

@@ -46,7 +46,7 @@ pub(super) fn real_name(name: &str) -> String {
     }
 }
 
-/// Whether a neighbour has a passing name.
+/// Returns true if a neighbour has a passing name.
 pub(super) fn is_passing(name: &str) -> bool {
     behind_passing(name).is_some()
 }
@@ -57,7 +57,7 @@ fn behind_passing(name: &str) -> Option<&str> {
     is_ours.then_some(flat)
 }
 
-/// Whether a name is that of a temporary file of a save. Other files may begin and end like these.
+/// Returns true if a name is that of a temporary file of a save. Other files may begin and end like these.
 fn is_temporary(name: &str) -> bool {
     let middle = name.strip_prefix(PREFIX).and_then(|rest| {
         let ends = [TEMPORARY, REPLACED];

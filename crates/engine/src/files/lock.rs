@@ -91,7 +91,7 @@ impl FolderLock {
             }
             if start.elapsed() > PATIENCE {
                 return Err(in_words(
-                    "another save in its folder does not end; wait for it or stop it, and save again",
+                    "another save in its folder is still running; wait for it or stop it, and save again",
                 ));
             }
             std::thread::sleep(pause);
@@ -123,7 +123,9 @@ fn open(path: &Path) -> io::Result<File> {
     for _ in 0..1000 {
         match fs::symlink_metadata(path) {
             Ok(metadata) if !metadata.is_file() => {
-                return Err(in_words(format!("{NAME} in its folder is no ordinary file; remove it")));
+                return Err(in_words(format!(
+                    "{NAME} in its folder is not an ordinary file; remove it"
+                )));
             }
             Ok(_) => match File::open(path) {
                 Err(error) if error.kind() == ErrorKind::NotFound => last = error,
@@ -166,7 +168,7 @@ fn remove(file: &File, path: &Path) {
     }
 }
 
-/// Whether the open file is still the one at the path.
+/// Returns true if the open file is still the one at the path.
 fn is_at(file: &File, path: &Path) -> bool {
     #[cfg(unix)]
     {

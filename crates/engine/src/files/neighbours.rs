@@ -110,7 +110,7 @@ impl Neighbours {
         let too_large = || {
             let budget = self.budget as f64 / f64::from(1 << 30);
             in_words(format!(
-                "with it the file's neighbours would take more than the {budget} GiB that they may in all"
+                "with it, the files that this file names exceed {budget} GiB in all; use smaller files"
             ))
         };
         if metadata.len() > left {
@@ -144,13 +144,12 @@ impl Resolver for Neighbours {
 /// A path in its shortest form, so that all spellings of it are equal, or a sentence that says why it is not followed.
 fn relative(uri: &str) -> Result<String, String> {
     if uri.contains("://") {
-        return Err("it is an address and no path; download it and name it by its path".to_owned());
+        return Err("it is an address, not a path; download it and name it by its path".to_owned());
     }
     let is_drive = uri.as_bytes().get(1) == Some(&b':') && uri.as_bytes()[0].is_ascii_alphabetic();
     if is_drive || uri.starts_with(['/', '\\']) {
         return Err(
-            "it is an absolute path, and only files by relative paths are read; name it relative to this file"
-                .to_owned(),
+            "it is an absolute path, but only relative paths are read; name it relative to this file".to_owned(),
         );
     }
     let mut steps: Vec<&str> = Vec::new();
@@ -160,7 +159,7 @@ fn relative(uri: &str) -> Result<String, String> {
             ".." if steps.last().is_some_and(|last| *last != "..") => {
                 steps.pop();
             }
-            step if is_reserved(step) => return Err(format!("{step} is no file's name on this system")),
+            step if is_reserved(step) => return Err(format!("{step} is not a valid file name on this system")),
             step => steps.push(step),
         }
     }
@@ -170,7 +169,7 @@ fn relative(uri: &str) -> Result<String, String> {
     Ok(steps.join("/"))
 }
 
-/// Whether a name is a device, or a stream within a file, on Windows.
+/// Returns true if a name is a device, or a stream within a file, on Windows.
 fn is_reserved(step: &str) -> bool {
     if !cfg!(windows) {
         return false;
@@ -189,7 +188,7 @@ fn is_reserved(step: &str) -> bool {
 fn refuse_strange(metadata: &fs::Metadata) -> io::Result<()> {
     match metadata {
         _ if metadata.is_dir() => Err(ErrorKind::IsADirectory.into()),
-        _ if !metadata.is_file() => Err(in_words("it is no ordinary file; give the path of one")),
+        _ if !metadata.is_file() => Err(in_words("it is not an ordinary file; give the path of one")),
         _ => Ok(()),
     }
 }

@@ -45,11 +45,11 @@ pub struct Settled {
     pub file: usize,
     /// Its path.
     pub at: Destination,
-    /// Whether it is written.
+    /// Its treatment.
     pub action: Action,
 }
 
-/// Whether a neighbour is written.
+/// The treatment of a neighbour.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Action {
     /// It is written.
@@ -105,7 +105,7 @@ pub fn settle(saved: &mut Saved, format: Format, output: &Destination) -> Result
         }
         if name != wanted {
             saved.warnings.push(format!(
-                "{} was written as {}: another file of that name is there, which is not this document's.",
+                "{} was written as {}, because that name belongs to a file outside this document.",
                 quoted(&wanted),
                 quoted(&name)
             ));

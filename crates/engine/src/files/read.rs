@@ -36,7 +36,7 @@ fn ordinary(path: &Path) -> Result<Metadata, FileError> {
         return Err(refuse(ErrorKind::IsADirectory.into()));
     }
     if !metadata.is_file() {
-        return Err(refuse(in_words("it is no ordinary file; give the path of one")));
+        return Err(refuse(in_words("it is not an ordinary file; give the path of one")));
     }
     Ok(metadata)
 }
@@ -60,7 +60,7 @@ pub fn read_text_stamped(path: &Path) -> Result<(String, Stamp), FileError> {
     Ok((text, stamp))
 }
 
-/// Whether an ordinary file has exactly these bytes.
+/// Returns true if an ordinary file has exactly these bytes.
 pub fn holds(path: &Path, bytes: &[u8]) -> bool {
     let has_length = ordinary(path).is_ok_and(|metadata| metadata.len() == bytes.len() as u64);
     let Some(mut file) = has_length.then(|| File::open(path).ok()).flatten() else {

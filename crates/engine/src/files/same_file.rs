@@ -33,7 +33,7 @@ pub fn follow(path: &Path) -> io::Result<PathBuf> {
             _ => return Ok(at),
         }
     }
-    Err(in_words("its links lead in a circle; remove them"))
+    Err(in_words("its links form a circle; remove them"))
 }
 
 /// A file's identity in the system.
@@ -68,8 +68,8 @@ pub(super) fn identity(path: &Path) -> Option<Identity> {
     }))
 }
 
-/// Whether two paths lead to one file, by links, hard links or another spelling. Files that don't exist yet are one if
-/// they would become one.
+/// Returns true if two paths lead to one file, by links, hard links or another spelling. Files that don't exist yet are
+/// one if they would become one.
 pub fn is_same(a: &Path, b: &Path) -> bool {
     a == b || identity(a).is_some_and(|a| identity(b) == Some(a))
 }
@@ -88,13 +88,13 @@ impl FileSet {
         self.paths.insert(path);
     }
 
-    /// Whether a path leads to one of the files.
+    /// Returns true if a path leads to one of the files.
     pub fn contains(&self, path: &Path) -> bool {
         self.paths.contains(path) || identity(path).is_some_and(|identity| self.identities.contains(&identity))
     }
 }
 
-/// Whether a folder's file system ignores case in names, tested with the folder's own name.
+/// Returns true if a folder's file system ignores case in names, tested with the folder's own name.
 fn folds_case(folder: &Path) -> bool {
     let Some(name) = folder.file_name().and_then(OsStr::to_str) else {
         return cfg!(any(windows, target_os = "macos"));
@@ -139,7 +139,7 @@ pub fn refuse_shared<'a, 'b>(
     for (other_role, other) in others {
         if is_same(path, other) {
             return Err(EngineError::Arguments(format!(
-                "{role} {} is {other_role} as well: give it another name",
+                "{role} {} is also {other_role}: give it another name",
                 shown(path)
             )));
         }

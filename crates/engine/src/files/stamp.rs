@@ -79,18 +79,18 @@ impl Stamp {
         })
     }
 
-    /// Whether both have the same content.
+    /// Returns true if both have the same content.
     pub fn has_content_of(&self, other: &Self) -> bool {
         self.digest == other.digest
     }
 
-    /// Whether the file at `path` has this content now.
+    /// Returns true if the file at `path` has this content now.
     pub fn is_current(&self, path: &Path) -> bool {
         let has_length = fs::metadata(path).is_ok_and(|metadata| metadata.len() == self.metadata.length);
         has_length && Self::read(path).is_ok_and(|now| self.has_content_of(&now))
     }
 
-    /// Whether the file at `path` was not written since, judged without reading it.
+    /// Returns true if the file at `path` was not written since, judged without reading it.
     pub fn looks_current(&self, path: &Path) -> bool {
         fs::metadata(path).is_ok_and(|metadata| Marks::of(path, &metadata) == self.metadata)
     }
@@ -116,7 +116,7 @@ impl KnownFiles {
         known.map(|(_, stamp)| stamp)
     }
 
-    /// Whether a file is known and has another content now. A missing one has no content to lose.
+    /// Returns true if a file is known and has another content now. A missing one has no content to lose.
     pub fn is_changed(&self, path: &Path) -> bool {
         path.exists() && self.stamp(path).is_some_and(|stamp| !stamp.is_current(path))
     }

@@ -1,93 +1,91 @@
 //! Cuts a part out of a file: a file in, a file out.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
-use pliant_editor::Selector;
-use pliant_mesh::WeldOptions;
-use pliant_stitch::{Attributes, NewShape, Part};
+use pliant_editor::{Selection, Selector};
+use pliant_mesh::Model;
+use pliant_stitch::{Age, Keep, NewShape, Part, Plane, StitchError, VertexSource};
 use serde_json::json;
 
 use super::look::{Channels, Dressed, Source};
 use super::shape_report::{Change, judged};
-use super::{Outputs, Replace, ShapeCounts, Stitched, counted, lost, refused};
+use super::{Remaking, ShapeCounts, Stitched, counted, lost, refused};
 use crate::EngineError;
-use crate::apply::check_not_empty;
 use crate::files::{self, Staging};
-use crate::loading::load;
 use crate::watch::Watch;
 
 /// The input of [`cut`].
 #[derive(Clone, Copy, Debug)]
 pub struct Cut<'a> {
-    /// The file to cut.
-    pub file: &'a Path,
-    /// The file of the selector whose vertices are deleted.
-    pub delete: &'a Path,
-    /// The file to write.
-    pub output: &'a Path,
-    /// The file for the report, if one is wanted.
-    pub report: Option<&'a Path>,
-    /// Whether OUT may be FILE.
-    pub replace: Replace,
-    /// The joining of FILE's vertices.
-    pub weld: WeldOptions,
+    /// The file to cut, and the file to write.
+    pub remaking: Remaking<'a>,
+    /// The part that goes.
+    pub along: CutAlong<'a>,
 }
 
-/// Deletes vertices of a file, with the triangles that use them, and writes the result beside its place.
+/// The line along which a file is cut.
+#[derive(Clone, Copy, Debug)]
+pub enum CutAlong<'a> {
+    /// The border of the vertices that the selector in this file deletes, with every triangle that uses one.
+    Selector(&'a Path),
+    /// A plane; triangles that it crosses are split.
+    Plane(Plane, Keep),
+}
+
+/// Cuts a file and writes the result beside its place.
 ///
 /// # Errors
-/// Any refusal of the file, of the selection or of the result.
+/// Any refusal of the file, of the selection, of the plane or of the result.
 pub fn cut(job: &Cut<'_>, watch: &Watch, staging: &Staging) -> Result<Stitched, EngineError> {
-    let &Cut {
-        file,
-        output,
-        report,
-        replace,
-        ..
-    } = job;
-    let outputs = Outputs {
-        output,
-        report,
-        replace,
+    let Remaking {
+        file, output, report, ..
+    } = job.remaking;
+    job.remaking.check_paths()?;
+    let selector = match job.along {
+        CutAlong::Selector(path) => Some((path, read_selector(path, watch)?)),
+        CutAlong::Plane(..) => None,
     };
-    outputs.check_paths()?;
-    watch.note_read("--delete", job.delete);
-    let of_selector = |source| EngineError::Edit {
-        edit: job.delete.to_owned(),
-        source,
-    };
-    let selector = Selector::parse(&files::read_text(job.delete)?).map_err(of_selector)?;
-    let loaded = load(file, &job.weld, watch)?;
-    check_not_empty(file, &loaded.model)?;
-    outputs.refuse_inputs(file, watch)?;
-    let selection = selector.evaluate(&loaded.model).map_err(of_selector)?;
-    let mut delete = vec![false; loaded.model.surface.positions.len()];
-    selection.iter().for_each(|vertex| delete[vertex.index()] = true);
+    let [loaded] = job.remaking.load([file], watch)?;
+    let selection = selector.map(|(path, selector)| {
+        let of_selector = |source| EngineError::Edit {
+            edit: path.to_owned(),
+            source,
+        };
+        selector.evaluate(&loaded.model).map_err(of_selector)
+    });
+    let selection = selection.transpose()?;
 
     watch.begin("cutting");
     let drawn = loaded.model.rest();
     let sources = [Source::of(&loaded, &drawn)];
-    let part = Part {
-        model: &loaded.model,
-        drawn: &drawn,
-        group: &|_| 0,
-        attributes: Attributes::NONE,
-        normals: None,
-    };
-    let mut shape = NewShape::cut(&part, &delete).map_err(|error| refused(file, error))?;
-    let dressed = Dressed::of(&mut shape, &sources, Channels::of(&sources));
-    let gone = drawn.triangles.len() - dressed.triangles().len();
+    let channels = Channels::of(&sources);
+    let shape = sources[0].with_part(channels, |part| match (job.along, &selection) {
+        (CutAlong::Plane(plane, keep), _) => NewShape::cut_along(part, &plane, keep),
+        (CutAlong::Selector(_), selection) => deleted(part, &loaded.model, selection.as_ref()),
+    });
+    let mut shape = shape.map_err(|error| refused(file, error))?;
+    let dressed = Dressed::of(&mut shape, &sources, channels);
+    let left = Left::of(&shape);
+    let broken = loaded.model.findings.non_finite_triangles.count;
+    let gone = drawn.triangles.len() - broken - left.whole - left.split;
     let mut warnings = loaded.scene.notes().to_vec();
     warnings.extend(lost(&loaded, output)?);
+    let change = |place: usize| match shape.triangle_sources[place].age {
+        Age::New => Change::Changed,
+        Age::Old => Change::OfPart(0),
+    };
     let after = report
-        .map(|_| judged(&shape, dressed.triangles(), |_| Change::OfPart(0), watch))
+        .map(|_| judged(&shape, dressed.triangles(), change, watch))
         .transpose()?;
-    let (staged, warnings) = outputs.stage(
+    let (staged, warnings) = job.remaking.stage(
         (&shape, &dressed),
         |warnings| {
             json!({
-                "vertices_deleted": drawn.file_vertex_count - shape.file_vertex_count,
+                "vertices_deleted": drawn.file_vertex_count - left.vertices,
+                "vertices_added": shape.file_vertex_count - left.vertices,
                 "triangles_deleted": gone,
+                "triangles_split": left.split,
                 "before": ShapeCounts::of(&loaded.model),
                 "after": after.map(|(counts, _)| counts),
                 "warnings": warnings,
@@ -97,10 +95,57 @@ pub fn cut(job: &Cut<'_>, watch: &Watch, staging: &Staging) -> Result<Stitched, 
         staging,
         watch,
     )?;
+    let split = match left.split {
+        0 => String::new(),
+        count => format!(" and split {}", counted(count, "triangle", "triangles")),
+    };
     Ok(Stitched {
         staged,
-        done: format!("deleted {}", counted(gone, "triangle", "triangles")),
+        done: format!("deleted {}{split}", counted(gone, "triangle", "triangles")),
         warnings,
         loaded: vec![loaded],
     })
+}
+
+fn read_selector(path: &Path, watch: &Watch) -> Result<Selector, EngineError> {
+    watch.note_read("--delete", path);
+    let selector = Selector::parse(&files::read_text(path)?);
+    selector.map_err(|source| EngineError::Edit {
+        edit: path.to_owned(),
+        source,
+    })
+}
+
+/// The shape without the selected vertices.
+fn deleted(part: &Part<'_>, model: &Model, selection: Option<&Selection>) -> Result<NewShape, StitchError> {
+    let mut delete = vec![false; model.surface.positions.len()];
+    let selected = selection.into_iter().flat_map(Selection::iter);
+    selected.for_each(|vertex| delete[vertex.index()] = true);
+    NewShape::cut(part, &delete)
+}
+
+/// The counts of a file's own vertices and triangles in a new shape.
+struct Left {
+    /// The file's vertices.
+    vertices: usize,
+    /// Triangles that are as they were.
+    whole: usize,
+    /// Triangles of which pieces are left.
+    split: usize,
+}
+
+impl Left {
+    fn of(shape: &NewShape) -> Self {
+        let mut is_old = vec![false; shape.file_vertex_count];
+        for (source, file) in shape.vertices.iter().zip(&shape.file_vertices) {
+            is_old[file.index()] |= matches!(source, VertexSource::Old { .. });
+        }
+        let of_age = |age| shape.triangle_sources.iter().filter(move |source| source.age == age);
+        let split: BTreeSet<u32> = of_age(Age::New).map(|source| source.triangle).collect();
+        Self {
+            vertices: is_old.iter().filter(|is_old| **is_old).count(),
+            whole: of_age(Age::Old).count(),
+            split: split.len(),
+        }
+    }
 }

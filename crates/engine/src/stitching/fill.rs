@@ -1,18 +1,14 @@
 //! Fills holes: a file in, a file out.
 
-use std::path::Path;
 use std::time::Instant;
 
-use pliant_mesh::WeldOptions;
-use pliant_stitch::{Age, FilledHole, Holes, NewShape, Part};
+use pliant_stitch::{Age, FilledHole, Holes, NewShape, Reason};
 use serde_json::json;
 
 use super::look::{Channels, Dressed, Source};
 use super::shape_report::{Change, judged};
-use super::{Outputs, Replace, ShapeCounts, Stitched, counted, lost, refused};
-use crate::apply::check_not_empty;
+use super::{Remaking, ShapeCounts, Stitched, counted, lost, refused};
 use crate::files::Staging;
-use crate::loading::load;
 use crate::report::ms_since;
 use crate::watch::Watch;
 use crate::{EngineError, memory};
@@ -20,18 +16,10 @@ use crate::{EngineError, memory};
 /// The input of [`fill`].
 #[derive(Clone, Copy, Debug)]
 pub struct Fill<'a> {
-    /// The file with holes.
-    pub file: &'a Path,
+    /// The file with holes, and the file to write.
+    pub remaking: Remaking<'a>,
     /// The holes to fill.
     pub holes: Holes,
-    /// The file to write.
-    pub output: &'a Path,
-    /// The file for the report, if one is wanted.
-    pub report: Option<&'a Path>,
-    /// Whether OUT may be FILE.
-    pub replace: Replace,
-    /// The joining of FILE's vertices.
-    pub weld: WeldOptions,
 }
 
 /// Fills holes of a file and writes the result beside its place.
@@ -39,23 +27,12 @@ pub struct Fill<'a> {
 /// # Errors
 /// Any refusal of the file, of the holes or of the result.
 pub fn fill(job: &Fill<'_>, watch: &Watch, staging: &Staging) -> Result<Stitched, EngineError> {
-    let &Fill {
-        file,
-        output,
-        report,
-        replace,
-        ..
-    } = job;
-    let outputs = Outputs {
-        output,
-        report,
-        replace,
-    };
-    outputs.check_paths()?;
+    let Remaking {
+        file, output, report, ..
+    } = job.remaking;
+    job.remaking.check_paths()?;
     let start = Instant::now();
-    let loaded = load(file, &job.weld, watch)?;
-    check_not_empty(file, &loaded.model)?;
-    outputs.refuse_inputs(file, watch)?;
+    let [loaded] = job.remaking.load([file], watch)?;
     let load_ms = ms_since(start);
 
     let progress = watch.begin("filling");
@@ -65,19 +42,8 @@ pub fn fill(job: &Fill<'_>, watch: &Watch, staging: &Staging) -> Result<Stitched
     let filled = filled.map_err(|error| refused(file, error))?;
     let drawn = loaded.model.rest();
     let sources = [Source::of(&loaded, &drawn)];
-    let [source] = &sources;
     let channels = Channels::of(&sources);
-    let value = |vertex, channel| channels.value(&source.look, vertex, channel);
-    let group = |triangle| source.group(triangle);
-    let normal = |vertex| source.normal(vertex);
-    let part = Part {
-        model: &loaded.model,
-        drawn: &drawn,
-        group: &group,
-        attributes: channels.attributes(&value),
-        normals: source.look.normals.is_some().then_some(&normal as _),
-    };
-    let shape = NewShape::filled(&part, &filled, budget, &watch.cancel);
+    let shape = sources[0].with_part(channels, |part| NewShape::filled(part, &filled, budget, &watch.cancel));
     let mut shape = shape.map_err(|error| refused(file, error))?;
     let dressed = Dressed::of(&mut shape, &sources, channels);
     let fill_ms = ms_since(start);
@@ -86,7 +52,7 @@ pub fn fill(job: &Fill<'_>, watch: &Watch, staging: &Staging) -> Result<Stitched
         (points + hole.points.len(), triangles + hole.triangles.len())
     });
     let mut warnings = loaded.scene.notes().to_vec();
-    warnings.extend(filled.passed_over.iter().map(ToString::to_string));
+    warnings.extend(filled.unfilled.iter().map(ToString::to_string));
     let flat = filled.holes.iter().filter(|hole| !hole.is_faired).count();
     if flat > 0 {
         let holes = counted(flat, "hole was", "holes were");
@@ -106,22 +72,27 @@ pub fn fill(job: &Fill<'_>, watch: &Watch, staging: &Staging) -> Result<Stitched
         let places = counted(crossings, "place", "places");
         warnings.push(format!("the new triangles pass through others in {places}"));
     }
+    let unfilled = |is_meant: &dyn Fn(Reason) -> bool| {
+        let own = filled.unfilled.iter().filter(|unfilled| is_meant(unfilled.reason));
+        own.map(|unfilled| unfilled.count).sum::<usize>()
+    };
     let hole_report = |hole: &FilledHole| {
         json!({
-            "vertex": loaded.model.first_file_vertex(hole.border.vertices[0]).0,
-            "edges": hole.border.vertices.len(),
-            "length": hole.border.length,
+            "vertex": loaded.model.first_file_vertex(hole.borders[0].vertices[0]).0,
+            "edges": hole.borders.iter().map(|border| border.vertices.len()).sum::<usize>(),
+            "length": hole.borders.iter().map(|border| border.length).sum::<f64>(),
             "points": hole.points.len(),
             "triangles": hole.triangles.len(),
             "faired": hole.is_faired,
         })
     };
-    let (staged, warnings) = outputs.stage(
+    let (staged, warnings) = job.remaking.stage(
         (&shape, &dressed),
         |warnings| {
             json!({
                 "holes_filled": filled.holes.len(),
-                "passed_over": filled.passed_over.len(),
+                "passed_over": unfilled(&|reason| reason != Reason::Outer),
+                "outer_borders": unfilled(&|reason| reason == Reason::Outer),
                 "vertices_added": points,
                 "triangles_added": triangles,
                 "before": ShapeCounts::of(&loaded.model),
@@ -137,10 +108,17 @@ pub fn fill(job: &Fill<'_>, watch: &Watch, staging: &Staging) -> Result<Stitched
         staging,
         watch,
     )?;
-    let holes = counted(filled.holes.len(), "hole", "holes");
+    let triangles = counted(triangles, "triangle", "triangles");
+    let done = match job.holes {
+        Holes::Between(_) => format!("joined 2 borders by a tube of {triangles}"),
+        _ => {
+            let holes = counted(filled.holes.len(), "hole", "holes");
+            format!("filled {holes} with {triangles}")
+        }
+    };
     Ok(Stitched {
         staged,
-        done: format!("filled {holes} with {}", counted(triangles, "triangle", "triangles")),
+        done,
         warnings,
         loaded: vec![loaded],
     })

@@ -3,9 +3,9 @@
 use std::ops::Range;
 
 use glam::{DVec3, Vec3};
-use pliant_io::{Appearance, Group, Image, Material, Polygons, UnsavedShape};
+use pliant_io::{Appearance, Group, Image, Material, OriginalMaterial, Polygons, UnsavedShape};
 use pliant_mesh::{Drawn, DrawnVertex, Model, vertex_normals};
-use pliant_stitch::{Age, Attributes, NewShape, VertexSource};
+use pliant_stitch::{Age, Attributes, NewShape, Part, VertexSource};
 
 use crate::loading::Loaded;
 
@@ -27,7 +27,7 @@ impl<'a> Source<'a> {
         Self {
             model: &loaded.model,
             drawn,
-            look: loaded.scene.appearance(),
+            look: loaded.scene.appearance_with_originals(),
             polygons: loaded.scene.polygons(),
         }
     }
@@ -42,6 +42,20 @@ impl<'a> Source<'a> {
     pub fn normal(&self, vertex: DrawnVertex) -> DVec3 {
         let normals = self.look.normals.as_ref();
         normals.map_or(DVec3::ZERO, |normals| Vec3::from(normals[vertex.index()]).as_dvec3())
+    }
+
+    /// Calls `work` with the file as a part of a new shape, whose vertices have these channels.
+    pub fn with_part<T>(&self, channels: Channels, work: impl FnOnce(&Part<'_>) -> T) -> T {
+        let value = |vertex, channel| channels.value(&self.look, vertex, channel);
+        let group = |triangle| self.group(triangle);
+        let normal = |vertex| self.normal(vertex);
+        work(&Part {
+            model: self.model,
+            drawn: self.drawn,
+            group: &group,
+            attributes: channels.attributes(&value),
+            normals: self.look.normals.is_some().then_some(&normal as _),
+        })
     }
 
     /// Whether a drawn vertex belongs to triangles that are shown flat.
@@ -216,6 +230,8 @@ fn add_groups(all: &mut Appearance, look: &Appearance) {
                 &mut own.emissive_map,
             ];
             maps.into_iter().flatten().for_each(|map| map.image = images[map.image]);
+            let originals = own.original.iter_mut().flat_map(OriginalMaterial::images_mut);
+            originals.for_each(|image| *image = images[*image]);
             let known = all.materials.iter().position(|other| *other == own);
             known.unwrap_or_else(|| {
                 all.materials.push(own);

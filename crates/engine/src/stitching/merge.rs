@@ -4,17 +4,15 @@ use std::path::Path;
 use std::time::Instant;
 
 use pliant_editor::{JoinsFile, Placement};
-use pliant_mesh::{DrawnVertex, WeldOptions};
+use pliant_mesh::DrawnVertex;
 use pliant_stitch::{Joins, Pair, Part, PlacementOfB, Seam, StitchError, VertexSource};
 use serde_json::json;
 
 use super::look::{Channels, Dressed, Source};
 use super::prepared::Prepared;
 use super::shape_report::{Change, judged};
-use super::{Outputs, Replace, ShapeCounts, Stitched, counted, lost, refused};
-use crate::apply::check_not_empty;
+use super::{Remaking, ShapeCounts, Stitched, counted, lost, refused};
 use crate::files::{self, Staging};
-use crate::loading::load;
 use crate::report::ms_since;
 use crate::watch::Watch;
 use crate::{EngineError, memory};
@@ -22,20 +20,12 @@ use crate::{EngineError, memory};
 /// The input of [`merge`].
 #[derive(Clone, Copy, Debug)]
 pub struct Merge<'a> {
-    /// A, which stays where it is.
-    pub first: &'a Path,
+    /// A, which stays where it is, and the file to write.
+    pub remaking: Remaking<'a>,
     /// B, which is put onto it.
     pub second: &'a Path,
     /// The file of the joins.
     pub joins: &'a Path,
-    /// The file to write.
-    pub output: &'a Path,
-    /// The file for the report, if one is wanted.
-    pub report: Option<&'a Path>,
-    /// Whether OUT may be A.
-    pub replace: Replace,
-    /// The joining of each file's vertices.
-    pub weld: WeldOptions,
 }
 
 /// Joins two files at their borders and writes the result beside its place.
@@ -43,12 +33,10 @@ pub struct Merge<'a> {
 /// # Errors
 /// Any refusal of the files, of the joins or of the result.
 pub fn merge(job: &Merge<'_>, watch: &Watch, staging: &Staging) -> Result<Stitched, EngineError> {
-    let outputs = Outputs {
-        output: job.output,
-        report: job.report,
-        replace: job.replace,
-    };
-    outputs.check_paths()?;
+    let Remaking {
+        file, output, report, ..
+    } = job.remaking;
+    job.remaking.check_paths()?;
     watch.note_read("--joins", job.joins);
     let of_joins = |source| EngineError::Edit {
         edit: job.joins.to_owned(),
@@ -56,12 +44,8 @@ pub fn merge(job: &Merge<'_>, watch: &Watch, staging: &Staging) -> Result<Stitch
     };
     let joins = JoinsFile::parse(&files::read_text(job.joins)?).map_err(of_joins)?;
     let start = Instant::now();
-    let paths = [job.first, job.second];
-    let loaded = [load(paths[0], &job.weld, watch)?, load(paths[1], &job.weld, watch)?];
-    for side in 0..2 {
-        check_not_empty(paths[side], &loaded[side].model)?;
-    }
-    outputs.refuse_inputs(job.first, watch)?;
+    let paths = [file, job.second];
+    let loaded = job.remaking.load(paths, watch)?;
     let load_ms = ms_since(start);
 
     let progress = watch.begin("joining");
@@ -153,7 +137,7 @@ pub fn merge(job: &Merge<'_>, watch: &Watch, staging: &Staging) -> Result<Stitch
     let mut warnings = Vec::new();
     for side in 0..2 {
         warnings.extend(loaded[side].scene.notes().iter().cloned());
-        warnings.extend(lost(&loaded[side], job.output)?);
+        warnings.extend(lost(&loaded[side], output)?);
         let turned = prepared[side].turned_parts;
         if turned > 0 {
             let parts = counted(turned, "part of", "parts of");
@@ -162,10 +146,17 @@ pub fn merge(job: &Merge<'_>, watch: &Watch, staging: &Staging) -> Result<Stitch
                 "{parts} {name} faced inwards and was turned, so that both sides face outwards"
             ));
         }
-        let flipped = merged.bent[side].1;
+        let flipped = merged.bendings[side].flipped;
         if flipped > 0 {
             let triangles = counted(flipped, "triangle of", "triangles of");
             warnings.push(format!("bending turned over {triangles} {}", ["A", "B"][side]));
+        }
+        if !merged.bendings[side].has_converged {
+            warnings.push(format!(
+                "{} had not settled when the steps of {} ended: take another method or a smaller reach",
+                ["A", "B"][side],
+                joins.method.name()
+            ));
         }
     }
     let shape = &merged.shape;
@@ -177,8 +168,7 @@ pub fn merge(job: &Merge<'_>, watch: &Watch, staging: &Staging) -> Result<Stitch
             false => Change::OfPart(source.part),
         }
     };
-    let after = job
-        .report
+    let after = report
         .map(|_| judged(shape, dressed.triangles(), change, watch))
         .transpose()?;
     if let Some((_, crossings)) = after.filter(|(_, crossings)| *crossings > 0) {
@@ -193,15 +183,16 @@ pub fn merge(job: &Merge<'_>, watch: &Watch, staging: &Staging) -> Result<Stitch
             "gap_mean": seam.gap[0], "gap_max": seam.gap[1],
         })
     };
-    let (staged, warnings) = outputs.stage(
+    let (staged, warnings) = job.remaking.stage(
         (shape, &dressed),
         |warnings| {
             json!({
                 "method": joins.method.name(),
                 "joins": merged.seams.iter().map(seam).collect::<Vec<_>>(),
                 "motion_of_b": glam::DMat4::from(merged.motion).to_cols_array(),
-                "bent_vertices": { "a": merged.bent[0].0, "b": merged.bent[1].0 },
-                "flipped_faces": { "a": merged.bent[0].1, "b": merged.bent[1].1 },
+                "bent_vertices": { "a": merged.bendings[0].vertices, "b": merged.bendings[1].vertices },
+                "flipped_faces": { "a": merged.bendings[0].flipped, "b": merged.bendings[1].flipped },
+                "converged": merged.bendings.iter().all(|bending| bending.has_converged),
                 "a": ShapeCounts::of(&prepared[0].model),
                 "b": ShapeCounts::of(&prepared[1].model),
                 "after": after.map(|(counts, _)| counts),

@@ -10,19 +10,21 @@ mod shape_report;
 
 use std::path::Path;
 
+use pliant_mesh::WeldOptions;
 use pliant_stitch::NewShape;
 
 use crate::EngineError;
+use crate::apply::check_not_empty;
 use crate::files::{self, Destination, NewFile, Staged, Staging};
-use crate::loading::Loaded;
+use crate::loading::{Loaded, load};
 use crate::saving;
 use crate::watch::Watch;
 use look::Dressed;
 
-pub use cut::{Cut, cut};
+pub use cut::{Cut, CutAlong, cut};
 pub use fill::{Fill, fill};
 pub use merge::{Merge, merge};
-pub use pliant_stitch::Holes;
+pub use pliant_stitch::{Holes, Keep, Plane};
 pub use shape_report::ShapeCounts;
 
 /// Whether a new shape may take the place of the file that it was made from.
@@ -65,15 +67,22 @@ impl Stitched {
     }
 }
 
-/// The places of a new shape and of the report about it.
+/// The file that a new shape is made from, and the places of the shape and of the report about it.
 #[derive(Clone, Copy, Debug)]
-struct Outputs<'a> {
-    output: &'a Path,
-    report: Option<&'a Path>,
-    replace: Replace,
+pub struct Remaking<'a> {
+    /// The file to read; the first, if there are several.
+    pub file: &'a Path,
+    /// The file to write.
+    pub output: &'a Path,
+    /// The file for the report, if one is wanted.
+    pub report: Option<&'a Path>,
+    /// Whether the output may be the file that is read.
+    pub replace: Replace,
+    /// The joining of vertices on reading.
+    pub weld: WeldOptions,
 }
 
-impl Outputs<'_> {
+impl Remaking<'_> {
     /// Refuses places that are no files, before anything is read.
     fn check_paths(&self) -> Result<(), EngineError> {
         Destination::of(self.output)?;
@@ -81,8 +90,22 @@ impl Outputs<'_> {
         Ok(())
     }
 
-    /// Refuses places of files that were read. `file` is the one that may be replaced.
-    fn refuse_inputs(&self, file: &Path, watch: &Watch) -> Result<(), EngineError> {
+    /// Reads files that have triangles, and refuses places of files that were read.
+    fn load<const N: usize>(&self, paths: [&Path; N], watch: &Watch) -> Result<[Loaded; N], EngineError> {
+        let mut loaded = Vec::with_capacity(N);
+        for path in paths {
+            loaded.push(load(path, &self.weld, watch)?);
+        }
+        for (path, loaded) in paths.iter().zip(&loaded) {
+            check_not_empty(path, &loaded.model)?;
+        }
+        self.refuse_inputs(watch)?;
+        loaded.try_into().map_err(|_| EngineError::Interrupted)
+    }
+
+    /// Refuses places of files that were read.
+    fn refuse_inputs(&self, watch: &Watch) -> Result<(), EngineError> {
+        let file = self.file;
         let report = self.report.map(|report| ("--report", report));
         let outputs: Vec<(&str, &Path)> = [("--output", self.output)].into_iter().chain(report).collect();
         if self.replace == Replace::Never && files::is_same(file, self.output) {
@@ -138,16 +161,16 @@ fn refused(file: &Path, error: pliant_stitch::StitchError) -> EngineError {
     }
 }
 
-/// The sentences about the parts of a file that a new shape loses, or keeps though they belong to no surface.
+/// The sentences about the parts of a file that a new shape loses.
 fn lost(loaded: &Loaded, output: &Path) -> Result<Vec<String>, EngineError> {
     let format = pliant_io::Format::of_name(&output.to_string_lossy())?;
     let mut sentences = loaded.scene.lost_in_new_shape(format);
     let broken = loaded.model.findings.non_finite_triangles.count;
     if broken > 0 {
         let triangles = counted(broken, "triangle", "triangles");
+        let were = if broken == 1 { "was" } else { "were" };
         sentences.push(format!(
-            "{triangles} with coordinates that are not numbers stay in the new shape: the surface was worked on without \
-             them, so repair these coordinates first"
+            "{triangles} with coordinates that are not numbers {were} left out of the new shape"
         ));
     }
     Ok(sentences)

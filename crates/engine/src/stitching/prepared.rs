@@ -55,7 +55,7 @@ impl Prepared {
             false => {
                 let mut flags = vec![false; model.surface.positions.len()];
                 delete.iter().for_each(|vertex| flags[vertex.index()] = true);
-                NewShape::cut(&whole, &flags).map_err(refuse)?
+                NewShape::cut(&whole, &flags).map_err(&refuse)?
             }
         };
         let vertices: Vec<DrawnVertex> = shape
@@ -87,6 +87,7 @@ impl Prepared {
         };
         let map = transform.map_or(DAffine3::IDENTITY, |transform| transform.affine(middle(model, delete)));
         let is_mirrored = map.matrix3.determinant() < 0.0;
+        let before = drawn.positions.clone();
         if map != DAffine3::IDENTITY {
             drawn
                 .positions
@@ -106,6 +107,10 @@ impl Prepared {
         turned.for_each(|(corners, _)| corners.swap(1, 2));
         let only_equal = WeldOptions { distance: Some(0.0) };
         let welded = Model::weld(drawn.clone(), &only_equal, progress, cancel).map_err(|_| EngineError::Interrupted)?;
+        let flattened = flattened(&welded, &before, &drawn);
+        if FEW * flattened > drawn.triangles.len() {
+            return Err(refuse(StitchError::Transform { triangles: flattened }));
+        }
         let unwelded = vertices.iter().map(|old| source.drawn.positions[old.index()]);
         drawn.positions = match map == DAffine3::IDENTITY {
             true => unwelded.collect(),
@@ -177,6 +182,31 @@ impl Prepared {
             },
         }
     }
+}
+
+/// Rounding may flatten one needle in this many triangles.
+const FEW: usize = 100;
+
+/// A triangle is too far from the origin if its longest edge has fewer roundings of its coordinates than this.
+const FEWEST_ROUNDINGS: f64 = 1e4;
+
+/// The number of triangles that a transform left without an area, or took so far that rounding bends them.
+fn flattened(welded: &Model, before: &[DVec3], after: &Drawn) -> usize {
+    let is_sound = |positions: &[DVec3], corners: &[DrawnVertex; 3]| {
+        let [a, b, c] = corners.map(|corner| positions[corner.index()]);
+        let area = (b - a).cross(c - a).length();
+        let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
+        let rounding = f64::EPSILON * a.abs().max(b.abs()).max(c.abs()).max_element();
+        area > 0.0 && area.is_finite() && longest > FEWEST_ROUNDINGS * rounding
+    };
+    let is_placed = |corners: &[DrawnVertex; 3]| {
+        let mut of_corners = corners.iter().map(|&corner| welded.drawn.surface_vertex(corner));
+        of_corners.all(|vertex| vertex.is_some())
+    };
+    let is_flattened = |corners: &&[DrawnVertex; 3]| {
+        is_sound(before, corners) && !(is_sound(&after.positions, corners) && is_placed(corners))
+    };
+    after.triangles.iter().filter(is_flattened).count()
 }
 
 /// The mean of the welded vertices that are left.

@@ -1,10 +1,14 @@
 //! The appearance of a scene: attributes of the drawn vertices, materials and images.
 
 pub(crate) mod colour;
+pub(crate) mod original;
+mod uv_set;
 
 use std::ops::Range;
 
 use crate::Bytes;
+pub use original::OriginalMaterial;
+pub use uv_set::UvSet;
 
 /// The data that a renderer or another file format needs besides positions and triangles; made on request, never
 /// edited.
@@ -102,14 +106,17 @@ pub struct Material {
     pub emissive: [f32; 3],
     /// Multiplies it; sRGB.
     pub emissive_map: Option<Map>,
-    /// Whether the material is lit.
+    /// The material's lighting.
     pub lighting: Lighting,
-    /// Whether back faces are drawn.
+    /// True if back faces are drawn.
     pub double_sided: bool,
     /// The meaning of the base colour's alpha.
     pub alpha: AlphaMode,
     /// The continuation of texture coordinates beyond 0 to 1 along u and v.
     pub wrap: [Wrap; 2],
+    /// The material as its glTF has it, if a new glTF shall have all of it
+    /// ([`Scene::appearance_with_originals`](crate::Scene::appearance_with_originals)).
+    pub original: Option<OriginalMaterial>,
 }
 
 impl Material {
@@ -143,6 +150,7 @@ impl Default for Material {
             double_sided: false,
             alpha: AlphaMode::Opaque,
             wrap: [Wrap::Repeat; 2],
+            original: None,
         }
     }
 }
@@ -160,16 +168,7 @@ pub struct Map {
     pub transform: [[f32; 3]; 2],
 }
 
-/// The set of texture coordinates of an image.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum UvSet {
-    /// [`Appearance::uvs`], those of the base colour.
-    Base,
-    /// [`Appearance::second_uvs`].
-    Second,
-}
-
-/// Whether a material is lit.
+/// The lighting of a material.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub enum Lighting {
     /// Lit.

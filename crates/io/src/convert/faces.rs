@@ -79,7 +79,7 @@ pub(crate) fn coarse_in_f32(positions: &[DVec3]) -> Option<f64> {
     (rounding > 1.5e-7 * min.distance(max)).then_some(rounding)
 }
 
-/// Whether the mesh has materials that differ from the plain one.
+/// Returns true if the mesh has materials that differ from the plain one.
 pub(crate) fn has_materials(look: &Appearance) -> bool {
     look.materials
         .iter()
@@ -103,7 +103,7 @@ pub(crate) fn lost(kind: &str, lost: &[(&str, Held)]) -> Option<String> {
     ))
 }
 
-/// Whether something that the mesh may have is lost.
+/// The fate of a property that the mesh may have.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Held {
     /// The mesh has none, or the target holds it.

@@ -30,7 +30,7 @@ pub(crate) struct NewMesh<'a> {
     pub file_vertex: &'a [FileVertex],
     /// The number of vertices of the input file.
     pub file_vertex_count: usize,
-    /// Whether named parts stay separate in formats that need separate vertices for that.
+    /// The treatment of named parts in formats that need separate vertices for them.
     pub parting: Parting,
     /// The appearance, with the normals already transformed by the deformation.
     pub appearance: Appearance,
@@ -60,7 +60,7 @@ impl Polygons {
         self.offsets.len().saturating_sub(1)
     }
 
-    /// Whether there is no face.
+    /// Returns true if there is no face.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }

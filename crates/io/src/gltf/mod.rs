@@ -7,6 +7,7 @@ mod geometry;
 mod neighbours;
 mod remarks;
 mod save;
+pub(crate) mod unread;
 mod uv_sets;
 pub(crate) mod write;
 
@@ -71,13 +72,13 @@ pub(crate) fn join_glb(json: &[u8], bin: &[u8]) -> Option<Vec<u8>> {
 }
 
 /// The warning about a neighbour outside the file's folder that a save includes in its result.
-pub(crate) const FROM_OUTSIDE: &str =
-    "lies outside the file's own folder and was put into the result: share that only if you mean to share it too.";
+pub(crate) const FROM_OUTSIDE: &str = "is outside the file's own folder and was put into the result: share the result \
+                                       only if you mean to share it, too.";
 
 /// The warning about a neighbour that is named as an image and isn't one.
-pub(crate) const NO_IMAGE: &str = "lies outside the file's own folder and is no image, so it was left out.";
+pub(crate) const NO_IMAGE: &str = "is outside the file's own folder and is not an image, so it was left out.";
 
-/// Whether a neighbour's path stays in the file's own folder.
+/// Returns true if a neighbour's path stays in the file's own folder.
 pub(crate) fn stays_inside(path: &str) -> bool {
     uri::inside(path).is_some()
 }
@@ -187,5 +188,15 @@ impl Stored {
 
     pub fn appearance(&self) -> Appearance {
         appearance::appearance(&self.document, &self.meshes, &self.pieces)
+    }
+
+    /// The same with the materials as the file has them.
+    pub fn appearance_with_originals(&self) -> Appearance {
+        let mut appearance = self.appearance();
+        for (number, material) in appearance.materials.iter_mut().enumerate() {
+            let original = appearance::originals::original(&self.document, number);
+            material.original = original.map(|(original, _)| original);
+        }
+        appearance
     }
 }

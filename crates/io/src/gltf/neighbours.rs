@@ -52,7 +52,7 @@ impl Gathered {
         name
     }
 
-    /// Whether the neighbour `name` is written with other bytes than these.
+    /// Returns true if the neighbour `name` is written with other bytes than these.
     pub fn differs(&self, name: &str, bytes: &[u8]) -> bool {
         let known = self.place_of.get(name).map(|&place| &self.files[place]);
         known.is_some_and(|file| file.bytes != bytes)
@@ -84,8 +84,8 @@ pub(crate) fn paths(document: &Document) -> impl Iterator<Item = &str> {
     of_buffers.chain(of_images)
 }
 
-/// Whether a reader that follows `path` step by step arrives at the file `name`. A path through a folder and back
-/// (`b/../a.bin`) needs that folder, which may not exist beside OUT.
+/// Returns true if a reader that follows `path` step by step arrives at the file `name`. A path through a folder and
+/// back (`b/../a.bin`) needs that folder, which may not exist beside OUT.
 pub(crate) fn leads_to(path: &str, name: &str) -> bool {
     let steps = path.split('/').filter(|step| !matches!(*step, "" | "."));
     steps.eq(name.split('/'))
@@ -142,7 +142,7 @@ pub fn with_neighbours_renamed(file: &[u8], names: &[(&str, String)]) -> Option<
     container::join(without_padding(&text), bin, further, trailing)
 }
 
-/// Whether two glTF are saves of one document: equal, to the letter, in everything that no save changes.
+/// Returns true if two glTF are saves of one document: equal, to the letter, in everything that no save changes.
 ///
 /// A save changes numbers in buffers and their descriptions (accessors, views, buffers), clones meshes, adds morph
 /// targets, writes compressed ones out plainly and gives neighbours other names. It never changes the number of an
@@ -180,7 +180,7 @@ pub fn is_same_document(a: &[u8], b: &[u8]) -> bool {
         )
 }
 
-/// Whether both lists begin with these elements.
+/// Returns true if both lists begin with these elements.
 fn begin_alike<T: PartialEq>(a: &[T], b: &[T]) -> bool {
     a.iter().zip(b).all(|(a, b)| a == b)
 }

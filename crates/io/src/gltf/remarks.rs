@@ -14,7 +14,7 @@ pub(crate) fn add(document: &Document, meshes: &[Vec<Primitive>], notes: &mut No
     transforms(document, notes);
     let twice = document.json.told_twice().map(|member| {
         let member = quoted(&member);
-        format!("An object of its JSON has the member '{member}' more than once; the first is taken.")
+        format!("An object of its JSON has the member '{member}' more than once; the first one counts.")
     });
     notes.add("objects", twice);
 }
@@ -46,8 +46,8 @@ fn splats_and_directions(document: &Document, meshes: &[Vec<Primitive>], notes: 
         let has_splats = |primitive: &&Primitive| json.path(primitive.at, &["extensions", SPLATS]).is_some();
         let splats = primitives.iter().find(has_splats).map(|_| {
             format!(
-                "The points of {} are Gaussian splats ({SPLATS}): an edit moves their centres, and their rotations, \
-                 scales and harmonics stay as they are, so that a bent scan turns into needles.",
+                "The points of {} are Gaussian splats ({SPLATS}): an edit moves their centres but keeps their \
+                 rotations, scales and harmonics, so a bent scan turns into needles.",
                 called()
             )
         });
@@ -70,7 +70,7 @@ fn splats_and_directions(document: &Document, meshes: &[Vec<Primitive>], notes: 
         for name in directed {
             let name = quoted(&name);
             let note = format!(
-                "The attribute {name} of {} has a direction, which does not turn with an edit.",
+                "The attribute {name} of {} is a direction, which does not turn with an edit.",
                 called()
             );
             notes.add("attributes", Some(note));
@@ -105,8 +105,7 @@ fn unknown_extensions(document: &Document, notes: &mut Notes) {
         .filter_map(|at| json.string(at));
     for name in names.filter(|name| !KNOWN.contains(&&**name) && !name.starts_with("KHR_materials_")) {
         let name = quoted(&name);
-        let note =
-            format!("The file requires the extension {name}, which is not known here; what it changes is not shown.");
+        let note = format!("The file requires the unknown extension {name}, whose effect is not shown.");
         notes.add("extensions", Some(note));
     }
 }
@@ -125,7 +124,7 @@ fn transforms(document: &Document, notes: &mut Notes) {
             let is_broken = json.member(at, key).is_some_and(|list| !is_list(list, count));
             let note = || {
                 format!(
-                    "The {key} of {} is not {count} numbers and was left out.",
+                    "The {key} of {} does not have {count} numbers and was left out.",
                     document.called(node)
                 )
             };

@@ -202,8 +202,8 @@ impl From<Rgba8> for DynamicImage {
     }
 }
 
-/// Whether a JPEG's blocks come one after the other with all of their channels, so that a decoder keeps a row of them:
-/// neither progressive nor channel by channel.
+/// Returns true if a JPEG's blocks come one after the other with all of their channels, so that a decoder keeps a row
+/// of them: neither progressive nor channel by channel.
 fn comes_by_blocks(encoded: &[u8]) -> bool {
     let mut at = 2;
     let mut channels = None;

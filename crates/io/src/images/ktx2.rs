@@ -35,16 +35,16 @@ pub(crate) fn decode(encoded: &[u8], halvings: u32) -> Result<(Rgba8, u32), Imag
     // The reader continues beyond keys whose length is not a multiple of 4. One image needs none of them.
     let mut encoded = encoded.to_vec();
     encoded[KEYS_LENGTH_AT].fill(0);
-    let image = Transcoder::new(&encoded).map_err(|_| failed("it holds no whole Basis Universal image"))?;
+    let image = Transcoder::new(&encoded).map_err(|_| failed("it has no complete Basis Universal image"))?;
     if !matches!(image.source_format(), SourceFormat::Etc1s | SourceFormat::UastcLdr) {
-        return Err(failed("it holds neither ETC1S nor UASTC"));
+        return Err(failed("it has neither ETC1S nor UASTC data"));
     }
     let pixels = image
         .transcode(level, TargetFormat::Rgba32, DecodeFlags::NONE)
         .map_err(|error| failed(&format!("{error:?}")))?;
     let [width, height] = [width, height].map(|side| (side >> level).max(1));
     if pixels.len() != 4 * width as usize * height as usize {
-        return Err(failed("a level is not of the size that its header tells"));
+        return Err(failed("a level does not have the size in its header"));
     }
     Ok((Rgba8 { width, height, pixels }, halvings - level))
 }
@@ -58,7 +58,7 @@ fn checked_size(encoded: &[u8]) -> Result<([u32; 2], u32), &'static str> {
         return Err("its header is cut short");
     };
     if !(1..=LONGEST_SIDE_PX).contains(&width) || !(1..=LONGEST_SIDE_PX).contains(&height) {
-        return Err("it has no pixels, or more than are read");
+        return Err("it has no pixels, or too many");
     }
     if depth > 0 || layers > 1 || faces != 1 || !(1..=16).contains(&levels) {
         return Err("it is more than one image");
@@ -77,7 +77,7 @@ fn checked_size(encoded: &[u8]) -> Result<([u32; 2], u32), &'static str> {
         end.is_some_and(|end| end <= encoded.len() as u64)
     };
     if !parts.is_some_and(|parts| parts.iter().all(is_whole)) {
-        return Err("its parts are not what its header tells");
+        return Err("its parts do not match its header");
     }
     for level in 0..levels {
         let at = LEVELS_AT + level as usize * LEVEL_BYTES;
@@ -89,7 +89,7 @@ fn checked_size(encoded: &[u8]) -> Result<([u32; 2], u32), &'static str> {
             .checked_add(length)
             .is_some_and(|end| end <= encoded.len() as u64);
         if !is_there || unpacked > blocks(width) * blocks(height) * BLOCK_BYTES {
-            return Err("its levels are not what its header tells");
+            return Err("its levels do not match its header");
         }
     }
     Ok(([width, height], levels))

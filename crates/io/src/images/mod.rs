@@ -70,7 +70,7 @@ pub fn decode_images(
     Ok(out)
 }
 
-/// Whether the bytes are a complete image.
+/// Returns true if the bytes are a complete image.
 pub(crate) fn decodes(encoded: &[u8]) -> bool {
     let decoded = decode_images(&[encoded], IMAGE_BYTES, &Cancel::new());
     decoded.is_ok_and(|images| images.iter().all(Result::is_ok))
@@ -97,7 +97,7 @@ fn plans(encoded: &[&[u8]], budget: u64) -> Vec<Result<Plan, ImageError>> {
         if header.decoding_bytes >= budget {
             return Err(ImageError {
                 reason: format!(
-                    "its {} by {} pixels take {} MiB to decode, more than the {} MiB that all images together may",
+                    "its {} by {} pixels take {} MiB, more than the {} MiB for all images together",
                     header.width,
                     header.height,
                     header.decoding_bytes >> 20,

@@ -143,14 +143,15 @@ fn left_out(source: &Source<'_>, statements: &Statements) -> Vec<String> {
     let is_divided = smoothing.has_several || (smoothing.has_flat && !is_all_flat);
     if statements.normals.is_empty() && is_divided {
         notes.push(
-            "The file asks for hard edges between smoothing groups ('s') and has no normals; edges between groups are \
-             drawn, and converted, as if they were smooth."
+            "The file has smoothing groups ('s') but no normals, so edges between groups are drawn and converted as \
+             smooth."
                 .to_owned(),
         );
     }
     if let (count @ 1.., at) = statements.dangling {
         notes.push(format!(
-            "{} drawn without a texture coordinate or normal that the file names but doesn't hold (the first in line {}).",
+            "{} drawn without a texture coordinate or normal, because the file lacks the named one (the first in line \
+             {}).",
             plural(count, "face corner"),
             line(at)
         ));
@@ -268,7 +269,8 @@ impl Stored {
         let kept = uses.iter().filter(|uses| **uses == (true, true)).count();
         let warning = (kept > 0).then(|| {
             format!(
-                "{kept} normals ('vn' lines) kept their side, because parts that were not turned inside out share them."
+                "{kept} normals ('vn' lines) were not reversed, because parts that were not turned inside out share \
+                 them."
             )
         });
         let normals: Vec<bool> = uses.iter().map(|uses| *uses == (true, false)).collect();

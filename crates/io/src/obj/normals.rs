@@ -142,11 +142,11 @@ impl Normals {
 #[derive(Clone, Copy)]
 struct Line {
     sum: DVec3,
-    /// Whether a user needs another direction than the line's.
+    /// True if a user needs another direction than the line's.
     changes: bool,
-    /// Whether a user needs the line's direction.
+    /// True if a user needs the line's direction.
     has_resting: bool,
-    /// Whether all are near to their mean.
+    /// True if all are near to their mean.
     agree: bool,
 }
 
@@ -170,7 +170,7 @@ impl Line {
         }
     }
 
-    /// Whether one direction is enough for its users.
+    /// Returns true if one direction is enough for its users.
     fn is_whole(&self) -> bool {
         self.agree && !(self.changes && self.has_resting)
     }

@@ -69,11 +69,11 @@ pub(super) struct Statements {
 /// The shading that `s` lines request.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Smoothing {
-    /// Whether some faces are flat.
+    /// True if some faces are flat.
     pub(super) has_flat: bool,
     /// The first group.
     group: Option<String>,
-    /// Whether there are several groups, between which edges are hard.
+    /// True if there are several groups, between which edges are hard.
     pub(super) has_several: bool,
     /// Whether each face is flat, up to the last flat one.
     pub(super) flat_faces: Vec<bool>,
@@ -120,7 +120,7 @@ struct Reader<'a> {
     material: Option<usize>,
     material_numbers: HashMap<String, usize>,
     run_is_open: bool,
-    /// Whether `s off` applies to the faces that follow.
+    /// True if `s off` applies to the faces that follow.
     is_flat: bool,
     /// The colours of `#MRGB` lines, in the vertices' order.
     polypaint: Vec<[f32; 3]>,
@@ -223,7 +223,7 @@ impl<'a> Reader<'a> {
         };
         let found = &mut self.found;
         if found.positions.len() >= UNUSED as usize {
-            return Err(self.broken(at, "there are more vertices than 32 bits can number: split the file"));
+            return Err(self.broken(at, "it has more vertices than 32 bits can number: split the file"));
         }
         found.positions.push(DVec3::new(x, y, z));
         found.position_at.push(at);
@@ -402,7 +402,7 @@ impl<'a> Reader<'a> {
 
 fn no_corner(word: &[u8]) -> String {
     format!(
-        "'{}' is no corner of a face: correct it, as in 'f 1/2/3 4/5/6 7/8/9'",
+        "'{}' is not a corner of a face: correct it, as in 'f 1/2/3 4/5/6 7/8/9'",
         excerpt(word)
     )
 }

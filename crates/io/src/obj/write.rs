@@ -18,8 +18,8 @@ use crate::save::{OutputFile, Role, Saved, own_stem};
 use crate::text::{push_f32, push_f64};
 use crate::{Appearance, SaveError};
 
-/// Writes a mesh as OBJ: a `v` line (with its colour) per vertex, a `vt` and a `vn` line per drawn vertex (vertices that
-/// a texture seam or a hard edge split are merged again), and its faces by object and material.
+/// Writes a mesh as OBJ: a `v` line (with its colour) per vertex, a `vt` and a `vn` line per drawn vertex (vertices
+/// that a texture seam or a hard edge split are merged again), and its faces by object and material.
 pub(crate) fn write_new(mesh: &NewMesh<'_>, course: &Course<'_>) -> Result<Saved, SaveError> {
     let look = &mesh.appearance;
     let stem = &own_stem(mesh.name);
@@ -80,7 +80,7 @@ fn left_out(look: &Appearance) -> Option<String> {
     )
 }
 
-/// Whether a material is the reader's default.
+/// Returns true if a material is the reader's default.
 fn is_plain(material: &Material) -> bool {
     let plain = Material {
         double_sided: material.double_sided,

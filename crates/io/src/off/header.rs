@@ -35,7 +35,7 @@ pub(super) fn parse<'a>(source: &Source<'a>) -> Result<(Header, Cursor<'a>), Rea
             return Err(fail(
                 at,
                 &format!(
-                    "'{}' stands where 'OFF' should: export the file anew as OFF",
+                    "'{}' is in the place of 'OFF': export the file again as OFF",
                     excerpt(word)
                 ),
             ));
@@ -54,15 +54,15 @@ pub(super) fn parse<'a>(source: &Source<'a>) -> Result<(Header, Cursor<'a>), Rea
         let unsupported = |feature: &str| ReadError::Unsupported {
             name: source.name.to_owned(),
             feature: feature.to_owned(),
-            remedy: "export it anew as ascii OFF with three coordinates a vertex".to_owned(),
+            remedy: "export it again as ascii OFF with three coordinates a vertex".to_owned(),
         };
         match flags {
             b"" => {}
-            b"4" | b"n" | b"4n" => return Err(unsupported("coordinates of other than three dimensions")),
+            b"4" | b"n" | b"4n" => return Err(unsupported("coordinates that are not of three dimensions")),
             _ => {
                 return Err(fail(
                     at,
-                    &format!("'{}' is no kind of OFF: export the file anew as OFF", excerpt(word)),
+                    &format!("'{}' is not a kind of OFF: export the file again as OFF", excerpt(word)),
                 ));
             }
         }
@@ -76,7 +76,12 @@ pub(super) fn parse<'a>(source: &Source<'a>) -> Result<(Header, Cursor<'a>), Rea
         cursor.skip_space_and_comments();
         let at = cursor.at();
         let count = cursor.whole().and_then(|count| usize::try_from(count).ok());
-        count.ok_or_else(|| fail(at, &format!("the number of {what} is missing: correct the file's head")))
+        count.ok_or_else(|| {
+            fail(
+                at,
+                &format!("the number of {what} is missing: correct the file's header"),
+            )
+        })
     };
     header.vertices = count("vertices")?;
     header.faces = count("faces")?;
@@ -89,7 +94,7 @@ pub(super) fn parse<'a>(source: &Source<'a>) -> Result<(Header, Cursor<'a>), Rea
         .saturating_add(header.faces.saturating_mul(2));
     if least > cursor.left() + 1 || header.vertices >= u32::MAX as usize {
         let reason = format!(
-            "the head promises {} vertices and {} faces, but only {} bytes follow: the file is cut short",
+            "the header declares {} vertices and {} faces, but only {} bytes follow: the file is cut short",
             header.vertices,
             header.faces,
             cursor.left()

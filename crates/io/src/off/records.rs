@@ -25,7 +25,7 @@ pub(super) struct Records {
     pub(super) face_ends: Vec<u32>,
     /// The number of faces with fewer than three corners.
     pub(super) left_out: usize,
-    /// Whether a colour follows the corners of a face.
+    /// True if a colour follows the corners of a face.
     pub(super) has_face_colours: bool,
 }
 
@@ -113,7 +113,7 @@ fn read_face(
     let count = count.ok_or_else(|| no_number(source, cursor, "face", face))?;
     // A digit and a separator each.
     if count.saturating_mul(2) > cursor.left() as u64 {
-        let reason = format!("face {face} promises {count} corners, but the file ends before: it is cut short");
+        let reason = format!("face {face} has {count} corners, but the file ends before them: it is cut short");
         return Err(malformed_at(source, Format::Off, at, &reason));
     }
     let first = records.corners.len();
@@ -127,7 +127,7 @@ fn read_face(
             _ => {
                 let count = records.positions.len();
                 let reason = format!(
-                    "the face names the vertex {corner}, but there are {count}, counted from 0: correct the number"
+                    "the face names the vertex {corner}, but there are {count}, numbered from 0: correct the number"
                 );
                 return Err(malformed_at(source, Format::Off, at, &reason));
             }
@@ -151,7 +151,10 @@ fn no_number(source: &Source<'_>, cursor: &Cursor<'_>, what: &str, number: usize
     let reason = if word.is_empty() {
         format!("the file ends in {what} {number}: it is cut short")
     } else {
-        format!("'{}' in {what} {number} is no number: correct the line", excerpt(word))
+        format!(
+            "'{}' in {what} {number} is not a number: correct the line",
+            excerpt(word)
+        )
     };
     malformed_at(source, Format::Off, cursor.at(), &reason)
 }

@@ -75,7 +75,7 @@ pub(super) fn parse(source: &Source<'_>) -> Result<Header, ReadError> {
     let fail = |at, reason: &str| malformed_at(source, Format::Ply, at, reason);
     let mut cursor = Cursor::new(bytes, mark_len(bytes));
     if cursor.rest_of_line().trim_ascii() != b"ply" {
-        return Err(fail(0, "the file doesn't begin with 'ply': export it anew as PLY"));
+        return Err(fail(0, "the file doesn't begin with 'ply': export it again as PLY"));
     }
     let ends_in_return_alone = bytes.get(cursor.at()) == Some(&b'\r') && bytes.get(cursor.at() + 1) != Some(&b'\n');
     let mut encoding = None;
@@ -107,14 +107,14 @@ pub(super) fn parse(source: &Source<'_>) -> Result<Header, ReadError> {
                     other => {
                         return Err(fail(
                             at,
-                            &format!("'{}' is no format of PLY: export it anew", excerpt(other)),
+                            &format!("'{}' is not a format of PLY: export it again", excerpt(other)),
                         ));
                     }
                 });
             }
             [b"element", name, count, ..] => {
                 let count = std::str::from_utf8(count).ok().and_then(|count| count.parse().ok());
-                let count = count.ok_or_else(|| fail(at, "the element's count is no number: correct the header"))?;
+                let count = count.ok_or_else(|| fail(at, "the element's count is not a number: correct the header"))?;
                 elements.push(Element {
                     name: text(name),
                     count,
@@ -122,10 +122,17 @@ pub(super) fn parse(source: &Source<'_>) -> Result<Header, ReadError> {
                 });
             }
             [b"property", rest @ ..] => {
-                let property = property(rest)
-                    .ok_or_else(|| fail(at, &format!("'{}' is no property: correct the header", excerpt(line))))?;
+                let property = property(rest).ok_or_else(|| {
+                    fail(
+                        at,
+                        &format!("'{}' is not a property: correct the header", excerpt(line)),
+                    )
+                })?;
                 let Some(element) = elements.last_mut() else {
-                    return Err(fail(at, "a property stands before every element: correct the header"));
+                    return Err(fail(
+                        at,
+                        "a property comes before the first element: correct the header",
+                    ));
                 };
                 element.properties.push(property);
             }

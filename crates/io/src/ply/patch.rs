@@ -57,8 +57,7 @@ fn whole_numbers_warning(stored: &Stored, element: &Element) -> Option<String> {
         .iter()
         .flatten()
         .any(|&property| scalar_of(element, property).is_some_and(|scalar| scalar.integer_range().is_some()));
-    are_whole
-        .then(|| "The file holds its positions as whole numbers, so the moved ones were rounded to such.".to_owned())
+    are_whole.then(|| "The file stores positions as whole numbers, so the moved ones were rounded.".to_owned())
 }
 
 /// One vertex's new numbers.

@@ -127,7 +127,7 @@ impl Textures {
             } else {
                 let path = quoted(path);
                 warnings.push(format!(
-                    "{path} lies outside the file's own folder and was not copied: copy it by hand."
+                    "{path} is outside the file's own folder and was not copied: copy it yourself."
                 ));
             }
         }

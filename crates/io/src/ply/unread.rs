@@ -2,10 +2,7 @@
 
 use super::header::Element;
 use super::records::{Columns, TEXTURE_NUMBER, UV_LIST, corner_list};
-use crate::quote::quoted;
-
-/// The most names that a sentence lists for each element.
-const MOST_NAMES: usize = 8;
+use crate::quote::{listed, quoted};
 
 /// The parts of a file that aren't read, in words: properties by their element, then further elements.
 pub(super) fn parts(elements: &[Element], vertex_element: Option<usize>, columns: &Columns) -> Vec<String> {
@@ -41,14 +38,6 @@ pub(super) fn parts(elements: &[Element], vertex_element: Option<usize>, columns
     parts
 }
 
-fn listed(names: &[&str]) -> String {
-    let mut list: Vec<String> = names.iter().take(MOST_NAMES).map(|name| quoted(name)).collect();
-    if names.len() > MOST_NAMES {
-        list.push(format!("{} more", names.len() - MOST_NAMES));
-    }
-    list.join(", ")
-}
-
 /// Notes on parts that users expect an edit or a viewer to heed.
 pub(super) fn notes(elements: &[Element], vertex_element: Option<usize>) -> Vec<String> {
     let mut notes = Vec::new();
@@ -56,8 +45,8 @@ pub(super) fn notes(elements: &[Element], vertex_element: Option<usize>) -> Vec<
     if let Some(vertex) = vertex_element.map(|number| &elements[number]) {
         if has_all(vertex, &["rot_0", "scale_0", "opacity"]) {
             notes.push(
-                "The vertices are Gaussian splats: an edit moves their centres, and their rotations, scales and \
-                 harmonics stay as they are, so that a bent scan turns into needles."
+                "The vertices are Gaussian splats: an edit moves their centres but keeps their rotations, scales and \
+                 harmonics, so a bent scan turns into needles."
                     .to_owned(),
             );
         }

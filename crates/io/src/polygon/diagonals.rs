@@ -2,7 +2,7 @@
 //!
 //! The order of a face's corners says nothing of the shape, so a cut by it leans the same way on both sides of a figure
 //! that is its own mirror image, and a symmetric edit bends it lopsided. This module finds a plane across which most
-//! vertices have their image. Of equal diagonals it takes the one whose ends have the lesser value of a function that
+//! vertices have their image. It takes, of equal diagonals, the one whose ends have the lesser value of a function that
 //! depends only on a vertex's distance from that plane and its place along it. The images of a quad's corners have the
 //! same values, so that its image is cut by the image of its cut. A quad that is its own image has no such cut.
 //!
@@ -41,7 +41,7 @@ impl<'a> Diagonals<'a> {
         }
     }
 
-    /// Whether the quad a, b, c, d takes b–d, if either diagonal would do.
+    /// Returns true if the quad a, b, c, d takes b–d, if either diagonal would do.
     pub fn takes_bd(&self, [a, b, c, d]: [DVec3; 4]) -> bool {
         let (ac, bd) = (a.distance_squared(c), b.distance_squared(d));
         let frame = || self.frame.get_or_init(|| Frame::of(self.positions));

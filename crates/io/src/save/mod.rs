@@ -23,7 +23,7 @@ pub struct Save<'a> {
     /// For each drawn vertex, whether its connected part is turned inside out, with reversed faces and normals. Empty
     /// if none is. All drawn vertices of one triangle are turned, or none of them.
     pub turned: &'a [bool],
-    /// Whether the deltas of the file's morph targets turn with the surface.
+    /// The deltas of the file's morph targets: turning with the surface, or kept.
     pub deltas: MorphDeltas,
     /// The format of OUT.
     pub format: Format,
@@ -33,7 +33,7 @@ pub struct Save<'a> {
     pub placement: Placement,
 }
 
-/// Whether the deltas of a file's morph targets turn with the surface: all or none of a mesh's.
+/// The deltas of a file's morph targets: all of a mesh's turn with the surface, or none.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub enum MorphDeltas {
     /// If one of them would otherwise be wrong by more than 30 degrees.

@@ -32,7 +32,7 @@ pub(crate) struct Moved<'a> {
     pub drawn: &'a Drawn,
     /// New world positions, one per drawn vertex.
     pub positions: &'a [DVec3],
-    /// Whether each drawn vertex's part is turned inside out; empty if none is.
+    /// True if each drawn vertex's part is turned inside out; empty if none is.
     turned: &'a [bool],
     any: bool,
     of_file: OnceLock<Vec<Option<DVec3>>>,
@@ -62,7 +62,7 @@ impl<'a> Moved<'a> {
         let is_any_turned = turned.contains(&true);
         if is_any_turned && !is_same_for_file_vertices(drawn, turned) {
             return Err(SaveError::CannotHold {
-                what: "a mesh that several nodes show and that is turned inside out in some of them".to_owned(),
+                what: "a mesh that several nodes show and only some turn inside out".to_owned(),
                 format,
                 remedy: "turn all of them, or none".to_owned(),
             });
@@ -76,27 +76,27 @@ impl<'a> Moved<'a> {
         })
     }
 
-    /// Whether no vertex moved.
+    /// Returns true if no vertex moved.
     pub fn moves_nothing(&self) -> bool {
         !self.any
     }
 
-    /// Whether some part is turned inside out.
+    /// Returns true if some part is turned inside out.
     pub fn turns_any(&self) -> bool {
         !self.turned.is_empty()
     }
 
-    /// Whether the file does not change.
+    /// Returns true if the file does not change.
     pub fn is_nothing(&self) -> bool {
         self.moves_nothing() && !self.turns_any()
     }
 
-    /// Whether a drawn vertex's part is turned inside out.
+    /// Returns true if a drawn vertex's part is turned inside out.
     pub fn turns(&self, vertex: DrawnVertex) -> bool {
         self.turned.get(vertex.index()).is_some_and(|is_turned| *is_turned)
     }
 
-    /// Whether each *file* vertex's part is turned inside out.
+    /// For each *file* vertex, true if its part is turned inside out.
     pub fn turned_of_file(&self) -> Vec<bool> {
         let mut out = vec![false; self.drawn.file_vertex_count];
         for (file, &is_turned) in self.drawn.file_vertex.iter().zip(self.turned) {
@@ -123,7 +123,7 @@ impl<'a> Moved<'a> {
         Cow::Owned(triangles.collect())
     }
 
-    /// Whether a drawn vertex moved.
+    /// Returns true if a drawn vertex moved.
     pub fn moves(&self, vertex: DrawnVertex) -> bool {
         let v = vertex.index();
         !bit_equal(self.drawn.positions[v], self.positions[v])
@@ -153,7 +153,7 @@ impl<'a> Moved<'a> {
     }
 }
 
-/// Whether all drawn vertices of each file vertex are turned, or none.
+/// Returns true if all drawn vertices of each file vertex are turned, or none.
 fn is_same_for_file_vertices(drawn: &Drawn, turned: &[bool]) -> bool {
     let mut first: Vec<Option<bool>> = vec![None; drawn.file_vertex_count];
     let mut all = drawn.file_vertex.iter().zip(turned);

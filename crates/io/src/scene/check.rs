@@ -58,7 +58,7 @@ impl Scene {
                 {
                     Ok(())
                 } else {
-                    Err("its triangles join other vertices".to_owned())
+                    Err("its triangles have other vertices".to_owned())
                 }
             }
             // An STL's corners are its vertices: those of a turned facet change places.
@@ -124,12 +124,12 @@ fn same_windings(
         let wanted = as_wound(from, &is_turned).map(|corner| save.drawn.file_vertex[corner.index()]);
         !wanted.eq(found.iter().map(|corner| back.drawn.file_vertex[corner.index()]))
     });
-    wrong.map_or(Ok(()), |face| Err(format!("face {face} joins other vertices")))
+    wrong.map_or(Ok(()), |face| Err(format!("face {face} has other vertices")))
 }
 
 impl UnsavedShape<'_> {
-    /// Compares `back`, which was read from the bytes of this shape, with it: every corner of every face. `triangles` is
-    /// the save's own [`triangles`](crate::Saved::triangles).
+    /// Compares `back`, which was read from the bytes of this shape, with it: every corner of every face. `triangles`
+    /// is the save's own [`triangles`](crate::Saved::triangles).
     ///
     /// # Errors
     /// The first difference, in words.
@@ -184,7 +184,7 @@ impl<'a> Precision<'a> {
         }
     }
 
-    /// Whether drawn vertex `v`, read back at `found`, is `wanted` to the format's precision.
+    /// Returns true if drawn vertex `v`, read back at `found`, is `wanted` to the format's precision.
     fn holds(&self, v: usize, found: DVec3, wanted: DVec3) -> bool {
         let lanes = found.to_array().into_iter().zip(wanted.to_array());
         match self {
@@ -226,7 +226,7 @@ fn each(
         Some((v, wanted)) => {
             let [found, wanted] = [back.drawn.positions[v], wanted].map(|p| format!("({}, {}, {})", p.x, p.y, p.z));
             let vertex = back.drawn.file_vertex[v].0;
-            Err(format!("vertex {vertex} stands at {found} instead of {wanted}"))
+            Err(format!("vertex {vertex} is at {found} instead of {wanted}"))
         }
     }
 }

@@ -18,6 +18,7 @@ use pliant_mesh::{Cancel, Drawn, Object, Progress};
 
 use crate::convert::faces::{lost, lost_where};
 use crate::convert::{NewMesh, Parting, Polygons};
+use crate::gltf::unread::MaterialsKept;
 use crate::save::bits::bit_equal;
 use crate::save::colours::of_file as colours_of_file;
 use crate::save::course::Course;
@@ -207,6 +208,15 @@ impl Scene {
         }
     }
 
+    /// The same, with each material of a glTF as the file has it, so that [`UnsavedShape`](crate::UnsavedShape) writes
+    /// all of it to a new glTF.
+    pub fn appearance_with_originals(&self) -> Appearance {
+        match &self.stored {
+            Stored::Gltf(stored) => stored.appearance_with_originals(),
+            _ => self.appearance(),
+        }
+    }
+
     /// The file that `save` requests. If nothing moved and the format is the same, these are the bytes that were read.
     ///
     /// # Errors
@@ -363,7 +373,7 @@ impl Scene {
         let fault = |what: String| SaveError::CannotHold {
             what,
             format: save.format,
-            remedy: "this is a fault of the program, so report it with the file".to_owned(),
+            remedy: "this is a fault of the program: report it with the file".to_owned(),
         };
         let file = rest.files[0].bytes.clone();
         let written = read(
@@ -379,7 +389,7 @@ impl Scene {
             error => fault(error.to_string()),
         })?;
         if written.drawn.positions.len() != save.positions.len() {
-            return Err(fault("a shape whose vertices are not all written".to_owned()));
+            return Err(fault("a shape whose vertices are not all saved".to_owned()));
         }
         // The written positions were rounded to f32, so the displacements are applied to those.
         let ways = save.drawn.positions.iter().zip(save.positions);
@@ -409,7 +419,8 @@ impl Scene {
     }
 
     /// Sentences about the data of this file that a new file of the format can't have when vertices and triangles
-    /// differ from the file's: skins, animations, morph targets, data that only this file's format names.
+    /// differ from the file's: skins, animations, morph targets, data that only this file's format names. The file is
+    /// made with [`Self::appearance_with_originals`].
     pub fn lost_in_new_shape(&self, format: Format) -> Vec<String> {
         let summary = self.summary();
         let motion = [
@@ -422,7 +433,24 @@ impl Scene {
             let list = motion.join(" and ");
             format!("A new shape can't keep the file's {list}, which belong to its old vertices.")
         });
-        let unread = self.unread_lost(format);
+        let unread = match &self.stored {
+            Stored::Gltf(stored) => {
+                let kept = match format {
+                    Format::Glb | Format::Gltf => MaterialsKept::AsWritten,
+                    _ => MaterialsKept::AsDrawn,
+                };
+                let list = stored.unread(kept);
+                let own = self.format.extension();
+                let sentence = || {
+                    format!(
+                        "The new shape leaves out {}: keep the .{own} for them.",
+                        list.join(", ")
+                    )
+                };
+                (!list.is_empty()).then(sentence)
+            }
+            _ => self.unread_lost(format),
+        };
         let materials = match &self.stored {
             Stored::Obj(stored) => stored.materials_lost(&format.to_string()),
             _ => None,
@@ -441,7 +469,7 @@ impl Scene {
         let own = self.format.extension();
         (!unread.is_empty()).then(|| {
             format!(
-                "{format} output leaves out {}: keep the .{own} for it.",
+                "{format} output leaves out {}: keep the .{own} for them.",
                 unread.join(", ")
             )
         })

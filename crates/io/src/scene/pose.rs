@@ -24,7 +24,7 @@ pub fn positions_in_pose(rest: (&Scene, &Drawn), pose: (&Scene, &Drawn)) -> Opti
     own.file_vertex.iter().map(|vertex| places[vertex.index()]).collect()
 }
 
-/// Whether two files have the same faces over their own vertices.
+/// Returns true if two files have the same faces over their own vertices.
 pub(crate) fn has_same_faces((scene, drawn): (&Scene, &Drawn), (other, other_drawn): (&Scene, &Drawn)) -> bool {
     let (own, other) = (Faces::of(scene, drawn), Faces::of(other, other_drawn));
     let (mut own, mut other) = (own.iter(), other.iter());

@@ -32,7 +32,7 @@ impl Notes {
         for (kind, sentences, further) in self.kinds {
             out.extend(sentences);
             if further > 0 {
-                out.push(format!("The same is true of {further} further {kind}."));
+                out.push(format!("The same applies to {further} further {kind}."));
             }
         }
         out
@@ -51,6 +51,6 @@ mod tests {
         notes.add("nodes", Some("Node 1 is flat.".to_owned()));
         let sentences = notes.sentences();
         assert_eq!(sentences.len(), MOST_OF_A_KIND + 2);
-        assert_eq!(sentences[MOST_OF_A_KIND], "The same is true of 999988 further images.");
+        assert_eq!(sentences[MOST_OF_A_KIND], "The same applies to 999988 further images.");
     }
 }

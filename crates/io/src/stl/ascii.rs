@@ -64,9 +64,9 @@ pub(super) fn read(source: &Source<'_>) -> Result<Facets, ReadError> {
 
 fn unexpected(source: &Source<'_>, at: usize, word: &[u8], wanted: &str) -> ReadError {
     let reason = if word.is_empty() {
-        format!("the file ends where '{wanted}' should stand: it is cut short")
+        format!("the file ends before '{wanted}': it is cut short")
     } else {
-        format!("'{}' stands where '{wanted}' should: correct the line", excerpt(word))
+        format!("'{}' is in the place of '{wanted}': correct the line", excerpt(word))
     };
     malformed_at(source, Format::Stl, at, &reason)
 }

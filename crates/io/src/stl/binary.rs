@@ -20,8 +20,8 @@ fn stored_count(bytes: &[u8]) -> Option<u64> {
     Some(u64::from(u32::from_le_bytes(count)))
 }
 
-/// Whether a file is binary, for any first word: its length is exactly that of its facet count, or its count has a byte
-/// that no text has, and the file has all its facets.
+/// Returns true if a file is binary, for any first word: its length is exactly that of its facet count, or its count
+/// has a byte that no text has, and the file has all its facets.
 pub(super) fn is_certain(bytes: &[u8]) -> bool {
     stored_count(bytes).is_some_and(|count| {
         let (wanted, length) = (HEADER as u64 + count * FACET as u64, bytes.len() as u64);
@@ -33,13 +33,12 @@ pub(super) fn is_certain(bytes: &[u8]) -> bool {
 pub(super) fn read(source: &Source<'_>, notes: &mut Vec<String>) -> Result<Vec<DVec3>, ReadError> {
     let bytes: &[u8] = source.bytes;
     let Some(count) = stored_count(bytes) else {
-        let reason =
-            "it has neither the 84 bytes of a binary file's head nor the 'solid' of an ascii file: export it anew";
+        let reason = "it has neither the 84 bytes of a binary header nor the 'solid' of an ascii file: export it again";
         return Err(source.malformed(Format::Stl, reason));
     };
     let room = (bytes.len() - HEADER) / FACET;
     if count > room as u64 {
-        let reason = format!("it promises {count} facets but holds only {room}: the file is cut short or not STL");
+        let reason = format!("it declares {count} facets but has only {room}: the file is cut short or not STL");
         return Err(source.malformed(Format::Stl, reason));
     }
     if count > u64::from(u32::MAX / 3) {
@@ -51,7 +50,7 @@ pub(super) fn read(source: &Source<'_>, notes: &mut Vec<String>) -> Result<Vec<D
     let rest = bytes.len() - HEADER - count as usize * FACET;
     if rest > 0 {
         notes.push(format!(
-            "The file promises {count} facets and goes on for {rest} bytes behind them; they are kept but not shown."
+            "The file has {rest} bytes after its {count} facets; they are kept but not shown."
         ));
     }
     let mut corners = Vec::with_capacity(3 * count as usize);
@@ -66,7 +65,7 @@ pub(super) fn read(source: &Source<'_>, notes: &mut Vec<String>) -> Result<Vec<D
     Ok(corners)
 }
 
-/// Whether a facet has attribute bytes, which some programs use for a colour.
+/// Returns true if a facet has attribute bytes, which some programs use for a colour.
 pub(super) fn has_attributes(bytes: &[u8], facet_count: usize) -> bool {
     let facets = bytes
         .get(HEADER..)

@@ -44,7 +44,7 @@ pub(crate) fn write_new(mesh: &NewMesh<'_>, course: &Course<'_>) -> Result<Saved
     .into_iter()
     .collect();
     if mesh.polygons.is_some() {
-        warnings.push("STL holds triangles only, so polygons were cut: save as .obj to keep them.".to_owned());
+        warnings.push("STL holds only triangles, so polygons were cut: save as .obj to keep them.".to_owned());
     }
     if let Some(rounding) = coarse_in_f32(mesh.positions) {
         warnings.push(format!(

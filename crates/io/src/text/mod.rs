@@ -49,7 +49,7 @@ impl<'a> Cursor<'a> {
         self.bytes.get(self.at).copied()
     }
 
-    /// Whether the cursor is at the end.
+    /// Returns true if the cursor is at the end.
     #[inline]
     pub(crate) fn is_done(&self) -> bool {
         self.at >= self.bytes.len()
@@ -61,7 +61,7 @@ impl<'a> Cursor<'a> {
         self.at = (self.at + 1).min(self.bytes.len());
     }
 
-    /// Whether the line has no more content: the cursor is at its end, the file's end, or a comment's `#`.
+    /// Returns true if the line has no more content: the cursor is at its end, the file's end, or a comment's `#`.
     #[inline]
     pub(crate) fn is_at_line_end(&self) -> bool {
         matches!(self.peek(), None | Some(b'\n' | b'\r' | b'#'))

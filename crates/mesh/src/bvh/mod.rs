@@ -29,7 +29,7 @@ pub use self_intersections::{SelfIntersection, SelfIntersections};
 use blocks::{BLOCK, Blocks};
 use boxes::{BoxSpace, RUN, Span};
 
-/// Where a ray met the surface.
+/// The point at which a ray met the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
     /// The triangle, as an index into the triangles of the hierarchy.

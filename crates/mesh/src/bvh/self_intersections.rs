@@ -25,7 +25,7 @@ pub struct SelfIntersection {
 pub struct SelfIntersections {
     /// The pairs, in the order of the hierarchy.
     pub pairs: Vec<SelfIntersection>,
-    /// Whether these are all pairs.
+    /// True if these are all pairs.
     pub are_all: bool,
 }
 
@@ -226,7 +226,7 @@ fn overlap(a: &Span, b: &Span) -> bool {
     a.min.cmple(b.max).all() && b.min.cmple(a.max).all()
 }
 
-/// Whether a triangle at or next to the first of a pair passes through one at or next to the second at rest.
+/// Returns true if a triangle at or next to the first of a pair passes through one at or next to the second at rest.
 fn crossed_at_rest(pair: &SelfIntersection, surface: &Surface, topology: &Topology) -> bool {
     let [first, second] = pair.triangles;
     let at_rest = |triangle: [SurfaceVertex; 3]| triangle.map(|v| surface.positions[v.index()]);

@@ -48,7 +48,7 @@ impl Finding {
         }
     }
 
-    /// Whether nothing was found.
+    /// Returns true if nothing was found.
     pub fn is_empty(&self) -> bool {
         self.count == 0
     }

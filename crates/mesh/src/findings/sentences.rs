@@ -62,8 +62,8 @@ impl Wording {
         let of_edges = |predicates| Self::new(["edge", "edges"], AT_VERTEX, predicates);
         Some(match kind {
             FindingKind::NonFiniteVertices => of_vertices([
-                "has a position that is not a finite number and was set aside",
-                "have positions that are not finite numbers and were set aside",
+                "has a position that is not finite and is ignored",
+                "have positions that are not finite and are ignored",
             ]),
             FindingKind::NonFiniteTriangles => of_triangles([
                 "uses such a vertex and was left out",
@@ -89,8 +89,8 @@ impl Wording {
                 "join parts that share nothing else there",
             ]),
             FindingKind::MisorientedEdges => of_edges([
-                "lies between triangles that disagree about which side is outside",
-                "lie between triangles that disagree about which side is outside",
+                "lies between triangles that face opposite sides",
+                "lie between triangles that face opposite sides",
             ]),
             FindingKind::InsideOutComponents => Self::new(
                 ["closed part", "closed parts"],
@@ -104,10 +104,10 @@ impl Wording {
                 ["vertex on a border", "vertices on borders"],
                 AT_VERTEX,
                 [
-                    "is close to another border without being joined to it, and tears from it when bent: weld with a \
+                    "is close to another border but not welded to it, and tears from it when bent: weld with a \
                      distance",
-                    "are close to other borders without being joined to them, and tear from them when bent: weld with \
-                     a distance",
+                    "are close to other borders but not welded to them, and tear from them when bent: weld with a \
+                     distance",
                 ],
             ),
             FindingKind::LooseBits => Self::new(

@@ -94,7 +94,7 @@ fn edge_stretch(surface: &Surface, topology: &Topology, deformed: &[DVec3]) -> (
     (if count == 0 { 1.0 } else { sum / count as f64 }, max)
 }
 
-/// Whether each triangle turned over.
+/// For each triangle, true if it turned over.
 pub(super) fn flipped(surface: &Surface, topology: &Topology, deformed: &[DVec3]) -> Vec<bool> {
     let at_rest = opposing_faces(surface, topology, &surface.positions);
     let now = opposing_faces(surface, topology, deformed);
@@ -107,7 +107,7 @@ pub(super) fn flipped(surface: &Surface, topology: &Topology, deformed: &[DVec3]
 /// Below this share of its longest side squared, a triangle's area consists of rounding errors only.
 const LEAST_AREA: f64 = 1e-6;
 
-/// Whether a triangle has enough area to determine its normal.
+/// Returns true if a triangle has enough area to determine its normal.
 fn has_area([a, b, c]: [DVec3; 3]) -> bool {
     let longest = a
         .distance_squared(b)
@@ -116,7 +116,7 @@ fn has_area([a, b, c]: [DVec3; 3]) -> bool {
     (b - a).cross(c - a).length() > LEAST_AREA * longest
 }
 
-/// Whether each triangle's normal opposes the mean normal of the triangles around it.
+/// For each triangle, true if its normal opposes the mean normal of the triangles around it.
 fn opposing_faces(surface: &Surface, topology: &Topology, positions: &[DVec3]) -> Vec<bool> {
     let areas: Vec<DVec3> = surface
         .triangles

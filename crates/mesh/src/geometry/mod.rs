@@ -73,7 +73,7 @@ impl Bounds {
         }
     }
 
-    /// Whether the two have a point in common.
+    /// Returns true if the two have a point in common.
     pub fn meets(&self, other: &Self) -> bool {
         self.min.cmple(other.max).all() && self.max.cmpge(other.min).all()
     }
@@ -107,13 +107,22 @@ pub fn face_normal([a, b, c]: [DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a).normalize_or_zero()
 }
 
-/// Whether a triangle is a line or a point to within rounding: its height is below 1e-10 of its longest edge.
-pub fn is_without_area([a, b, c]: [DVec3; 3]) -> bool {
+/// Returns true if a triangle is a line or a point to within rounding: its height is below 1e-10 of its longest edge.
+pub fn is_without_area(corners: [DVec3; 3]) -> bool {
+    area_vector(corners).is_none()
+}
+
+/// The normal of a counter-clockwise triangle with twice the area as its length, and this length; `None` for a triangle
+/// without area.
+fn area_vector([a, b, c]: [DVec3; 3]) -> Option<(DVec3, f64)> {
     let longest_squared = a
         .distance_squared(b)
         .max(b.distance_squared(c))
         .max(c.distance_squared(a));
-    (b - a).cross(c - a).length() <= 1e-10 * longest_squared
+    let area_vector = (b - a).cross(c - a);
+    let double_area = area_vector.length();
+    let is_line = double_area <= 1e-10 * longest_squared;
+    (!is_line).then_some((area_vector, double_area))
 }
 
 /// Edge lengths; entry `i` is the edge opposite corner `i`.

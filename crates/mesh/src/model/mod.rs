@@ -75,8 +75,8 @@ impl Model {
         bounding_box(self.main_positions())
     }
 
-    /// Whether each connected part has fewer vertices than this share (0 to 1) of the largest part's. Bare points are
-    /// not parts.
+    /// For each connected part, true if it has fewer vertices than this share (0 to 1) of the largest part's. Bare
+    /// points are not parts.
     ///
     /// ```
     /// use pliant_mesh::{Cancel, LOOSE_BIT, Model, Progress, WeldOptions, shapes};
@@ -100,7 +100,8 @@ impl Model {
         components.iter().enumerate().map(is_small).collect()
     }
 
-    /// Whether each connected part is a speck: a loose bit that is further from all other parts than their size.
+    /// For each connected part, true if it is a speck: a loose bit that is further from all other parts than their
+    /// size.
     pub fn specks(&self) -> Vec<bool> {
         let components = self.topology.components();
         let of_triangles = of_triangles(components).len();

@@ -1,4 +1,4 @@
-//! Which vertices are each other's mirror images.
+//! The pairs of vertices that are each other's mirror images.
 //!
 //! The mesh of a scan is never symmetric vertex by vertex. A vertex' image is somewhere on the other side's surface,
 //! and the vertex copies the vertex nearest to its image: in this direction, no vertex between images is left out.

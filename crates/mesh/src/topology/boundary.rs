@@ -89,7 +89,7 @@ impl Rim {
         }
     }
 
-    /// Whether more edges start than end here, so that some walk must start here.
+    /// Returns true if more edges start than end here, so that some walk must start here.
     fn is_chain_start(&self, local: u32) -> bool {
         let [start, end] = [0, 1].map(|next| self.starts[local as usize + next] as usize);
         let own = &self.edges_at[start..end];

@@ -33,7 +33,7 @@ fn sorted(triangle: [SurfaceVertex; 3]) -> [SurfaceVertex; 3] {
     [low.min(c), low.max(high.min(c)), high.max(c)]
 }
 
-/// Whether triangles are in order of their lowest, then their middle, then their highest vertex.
+/// Returns true if triangles are in order of their lowest, then their middle, then their highest vertex.
 pub(crate) fn are_in_order(triangles: &[[SurfaceVertex; 3]]) -> bool {
     triangles.is_sorted_by_key(|triangle| sorted(*triangle))
 }
@@ -167,28 +167,29 @@ impl<'a> Blocks<'a> {
         }
     }
 
-    /// The triangles with a corner among some vertices, and a few others, ascending.
-    fn touching(&self, vertices: &Range<usize>) -> impl Iterator<Item = (u32, [SurfaceVertex; 3])> + Clone + '_ {
+    /// The blocks with corners among some vertices, and perhaps others, ascending: the number of each one's first
+    /// triangle, and its triangles.
+    fn touching(&self, vertices: &Range<usize>) -> impl Iterator<Item = (u32, &'a [[SurfaceVertex; 3]])> + '_ {
         let (start, end) = (vertices.start, vertices.end);
         let blocks = self.triangles.chunks(BLOCK).zip(&self.highest).zip(0..);
         // Blocks are in order of their first triangle's lowest vertex.
         blocks
             .take_while(move |((block, _), _)| sorted(block[0])[0].index() < end)
             .filter(move |((_, highest), _)| highest.index() >= start)
-            .flat_map(|((block, _), number)| (number * BLOCK as u32..).zip(block.iter().copied()))
+            .map(|((block, _), number)| (number * BLOCK as u32, block))
     }
 
     /// The triangles around each vertex of a range, ascending.
     pub(crate) fn rows(&self, vertices: Range<usize>) -> FaceRows {
-        let place = |v: &SurfaceVertex| {
-            v.index()
-                .checked_sub(vertices.start)
-                .filter(|&place| place < vertices.len())
-        };
+        let first = vertices.start;
+        // A vertex below the range wraps around to a place above it.
+        let place = |v: SurfaceVertex| v.index().wrapping_sub(first);
         let mut offsets = vec![0u32; vertices.len() + 2];
-        for (_, triangle) in self.touching(&vertices) {
-            for place in triangle.iter().filter_map(place) {
-                offsets[place + 2] += 1;
+        for (_, block) in self.touching(&vertices) {
+            for &v in block.as_flattened() {
+                if place(v) < vertices.len() {
+                    offsets[place(v) + 2] += 1;
+                }
             }
         }
         for row in 2..offsets.len() {
@@ -196,11 +197,15 @@ impl<'a> Blocks<'a> {
         }
         // Shifted by one, each start moves on to the next row's start while its row fills.
         let mut list = vec![0u32; offsets[vertices.len() + 1] as usize];
-        for (t, triangle) in self.touching(&vertices) {
-            for place in triangle.iter().filter_map(place) {
-                let next = &mut offsets[place + 1];
-                list[*next as usize] = t;
-                *next += 1;
+        for (number, block) in self.touching(&vertices) {
+            for (t, triangle) in (number..).zip(block) {
+                for &v in triangle {
+                    if place(v) < vertices.len() {
+                        let next = &mut offsets[place(v) + 1];
+                        list[*next as usize] = t;
+                        *next += 1;
+                    }
+                }
             }
         }
         offsets.pop();

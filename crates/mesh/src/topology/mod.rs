@@ -194,12 +194,12 @@ impl Topology {
         self.findings.misoriented_edges.len()
     }
 
-    /// Whether no edge has only one triangle.
+    /// Returns true if no edge has only one triangle.
     pub fn is_closed(&self) -> bool {
         self.findings.boundary.is_empty()
     }
 
-    /// Whether `v` is on an edge with one triangle.
+    /// Returns true if `v` is on an edge with one triangle.
     pub fn is_boundary_vertex(&self, v: SurfaceVertex) -> bool {
         let boundary = &self.findings.boundary;
         let has_rim_to = |[from, to]: [SurfaceVertex; 2]| {

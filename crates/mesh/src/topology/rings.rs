@@ -207,6 +207,9 @@ struct Walk {
 
 impl Walk {
     fn around(&mut self, v: SurfaceVertex, triangles: &[[SurfaceVertex; 3]], row: &[u32], rings: &mut Rings) {
+        if add_closed_fan(v, triangles, row, rings) {
+            return;
+        }
         self.spokes.clear();
         self.fan.clear();
         self.triangle_after.clear();
@@ -315,6 +318,52 @@ impl Walk {
         place
     }
 }
+
+/// Adds the ring of a vertex whose few triangles are one closed fan. Nearly all vertices have such a ring, and a walk
+/// from triangle to triangle finds it in a third of the instructions that sorting all spokes takes. Returns false, and
+/// adds nothing, for all others.
+fn add_closed_fan(v: SurfaceVertex, triangles: &[[SurfaceVertex; 3]], row: &[u32], rings: &mut Rings) -> bool {
+    let degree = row.len();
+    let mut far_ends = [[0; 2]; FEW];
+    let Some(far_ends) = far_ends.get_mut(..degree) else {
+        return false;
+    };
+    for (ends, &t) in far_ends.iter_mut().zip(row) {
+        *ends = others(triangles[t as usize], v).map(|neighbour| neighbour.0);
+    }
+    let Some(first) = far_ends.iter().map(|[next, _]| *next).min() else {
+        return false;
+    };
+    // Each neighbour with its place in the fan, packed to sort fast.
+    let mut fan = [0u64; FEW];
+    let mut neighbour = first;
+    for (place, packed) in fan[..degree].iter_mut().enumerate() {
+        let is_closed_early = place > 0 && neighbour == first;
+        let after = far_ends.iter().find(|[next, _]| *next == neighbour);
+        let Some([_, previous]) = after.filter(|_| !is_closed_early) else {
+            return false;
+        };
+        *packed = u64::from(neighbour) << u8::BITS | place as u64;
+        neighbour = *previous;
+    }
+    if neighbour != first {
+        return false;
+    }
+    // The walk came back after as many steps as there are triangles and not before, so it used each of them once.
+    fan[..degree].sort_unstable();
+    let start = rings.fans.len();
+    rings.fans.resize(start + degree, 0);
+    for (rank, packed) in (0..).zip(&fan[..degree]) {
+        rings.fans[start + usize::from(*packed as u8)] = rank;
+        rings.neighbours.push(SurfaceVertex((packed >> u8::BITS) as u32));
+    }
+    rings.degrees.push(degree as u32);
+    rings.fan_kinds.push(FanKind::Closed);
+    true
+}
+
+/// The most triangles around a vertex that are walked one by one.
+const FEW: usize = 16;
 
 /// A spoke's bit for its direction, above its triangle's place in the row (below 2³¹).
 const INWARD: u64 = 1 << 31;

@@ -179,7 +179,7 @@ fn squared_sizes(
     squared
 }
 
-/// Whether a triangle's corners are in three groups.
+/// Returns true if a triangle's corners are in three groups.
 fn is_proper([a, b, c]: [u32; 3]) -> bool {
     ![a, b, c].contains(&NONE) && a != b && b != c && c != a
 }

@@ -4,6 +4,9 @@
 //! a distance. Each position has a distance of its own, which may differ by orders of magnitude over a scene; cells of
 //! one size would be crowded where the scene is finer.
 
+use std::sync::atomic::AtomicBool;
+use std::sync::atomic::Ordering::Relaxed;
+
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -174,49 +177,55 @@ impl<'a, P: Fn(u32) -> DVec3 + Sync> Tree<'a, P> {
         }
     }
 
-    /// The places that have another within the reach of both, by their numbers.
+    /// The places that have another within the reach of both, by their numbers, ascending.
     fn with_neighbours(&self, reach: &(impl Fn(u32) -> f64 + Sync)) -> Vec<u32> {
+        let has_neighbour: Vec<AtomicBool> = self.places.iter().map(|_| AtomicBool::new(false)).collect();
         let groups = self.levels[0].len().div_ceil(RUN);
-        let found: Vec<Vec<u32>> = (0..groups)
+        (0..groups)
             .into_par_iter()
-            .fold_chunks(64, Vec::new, |mut found, group| {
-                self.with_neighbours_in(group, reach, &mut found);
-                found
-            })
-            .collect();
-        found.concat()
+            .with_min_len(64)
+            .for_each(|group| self.find_neighbours(group, reach, &has_neighbour));
+        let flags = (0..).zip(has_neighbour);
+        flags
+            .filter_map(|(number, has)| has.into_inner().then_some(number))
+            .collect()
     }
 
-    /// Adds the places with neighbours in a group of runs. The runs share one descent of the tree, which a scan without
-    /// neighbours would otherwise spend its time on.
-    fn with_neighbours_in(&self, group: usize, reach: &impl Fn(u32) -> f64, found: &mut Vec<u32>) {
+    /// Flags the places with neighbours of which one is in a group of runs and the other in no earlier run. The runs
+    /// share one descent of the tree, on which a scan without neighbours would otherwise spend its time.
+    fn find_neighbours(&self, group: usize, reach: &impl Fn(u32) -> f64, has_neighbour: &[AtomicBool]) {
         let level = 1.min(self.levels.len() - 1);
         let (own, furthest) = (&self.levels[level][group], self.reaches[level][group]);
         if furthest <= 0.0 {
             return;
         }
+        let first = group * RUN;
         let mut near = Vec::new();
         self.runs_within(
             &own.grown(furthest),
-            &|level, other| self.reaches_box(level, other, own),
+            &|level, other| (other + 1) * RUN.pow(level as u32) > first && self.reaches_box(level, other, own),
             |run| near.push(run),
         );
-        for number in group * RUN..((group + 1) * RUN).min(self.levels[0].len()) {
+        for number in first..(first + RUN).min(self.levels[0].len()) {
             let own = self.levels[0][number].grown(self.reaches[0][number]);
             let run = Run::of(self.run(number), self.position, reach);
-            let mut has_neighbour = run.has_neighbour_within();
-            for &other in near.iter().filter(|&&other| other != number) {
+            run.find_neighbours_within(self.flags(number, has_neighbour));
+            for &other in near.iter().filter(|&&other| other > number) {
                 let box_of_other = &self.levels[0][other];
                 if own.meets(box_of_other) && self.reaches_box(0, other, &self.levels[0][number]) {
-                    run.find_neighbours(self.run(other), box_of_other, self.position, reach, &mut has_neighbour);
+                    let has_neighbour = [number, other].map(|run| self.flags(run, has_neighbour));
+                    run.find_neighbours(self.run(other), box_of_other, self.position, reach, has_neighbour);
                 }
             }
-            let with_neighbours = ((number * RUN) as u32..).zip(has_neighbour).filter(|(_, has)| *has);
-            found.extend(with_neighbours.map(|(place, _)| place));
         }
     }
 
-    /// Whether a place in a box may be a neighbour of one in another.
+    /// A run's part of flags for all places.
+    fn flags<'f>(&self, run: usize, flags: &'f [AtomicBool]) -> &'f [AtomicBool] {
+        &flags[run * RUN..((run + 1) * RUN).min(self.places.len())]
+    }
+
+    /// Returns true if a place in a box may be a neighbour of one in another.
     fn reaches_box(&self, level: usize, number: usize, other: &Bounds) -> bool {
         self.levels[level][number]
             .grown(self.reaches[level][number])
@@ -295,40 +304,55 @@ impl Run {
         run
     }
 
-    /// For each place, whether it has a neighbour in the same run.
-    fn has_neighbour_within(&self) -> [bool; RUN] {
-        let mut has_neighbour = [false; RUN];
+    /// Flags the places that have a neighbour in the same run.
+    fn find_neighbours_within(&self, has_neighbour: &[AtomicBool]) {
         for k in 0..self.length {
             for l in k + 1..self.length {
-                let distance = self.positions[k].distance(self.positions[l]);
-                if distance <= self.reaches[k].min(self.reaches[l]) {
-                    has_neighbour[k] = true;
-                    has_neighbour[l] = true;
+                let reach = self.reaches[k].min(self.reaches[l]);
+                if are_within(self.positions[k], self.positions[l], reach) {
+                    set_both([&has_neighbour[k], &has_neighbour[l]]);
                 }
             }
         }
-        has_neighbour
     }
 
-    /// Notes which places have a neighbour among the `others` of another run, which are in a box.
+    /// Flags the places that have a neighbour among the `others` of another run, which are in a box, and these
+    /// neighbours.
     fn find_neighbours(
         &self,
         others: &[u32],
         box_of_others: &Bounds,
         position: &impl Fn(u32) -> DVec3,
         reach: &impl Fn(u32) -> f64,
-        has_neighbour: &mut [bool; RUN],
+        [has_neighbour, of_others]: [&[AtomicBool]; 2],
     ) {
-        for (k, has) in has_neighbour.iter_mut().enumerate().take(self.length) {
+        for k in 0..self.length {
             let (here, own_reach) = (self.positions[k], self.reaches[k]);
-            if !*has && box_of_others.distance(here) <= own_reach {
-                *has = others.iter().any(|&other| {
-                    let distance = position(other).distance(here);
-                    distance <= own_reach && distance <= reach(other)
-                });
+            if box_of_others.distance(here) > own_reach {
+                continue;
+            }
+            for (&other, of_other) in others.iter().zip(of_others) {
+                let both = [&has_neighbour[k], of_other];
+                if !both.iter().all(|has| has.load(Relaxed))
+                    && are_within(position(other), here, own_reach.min(reach(other)))
+                {
+                    set_both(both);
+                }
             }
         }
     }
+}
+
+/// Sets two flags. Threads only ever set them, so their order does not matter.
+fn set_both(flags: [&AtomicBool; 2]) {
+    flags.iter().for_each(|flag| flag.store(true, Relaxed));
+}
+
+/// Returns true if two positions are at most `distance` apart. Nearly all pairs are further apart, by far more than the
+/// square's rounding, so nearly none needs a square root.
+fn are_within(a: DVec3, b: DVec3, distance: f64) -> bool {
+    let squared = a.distance_squared(b);
+    squared <= distance * distance * (1.0 + 1e-12) && squared.sqrt() <= distance
 }
 
 /// Some of a tree's places, and the number of them in each box.

@@ -41,7 +41,7 @@ class HandleEntry(TypedDict, total=False):
     select: Selection
     """Its vertices; required."""
     soft: float
-    """The weight, 1e-6 to 1e6, of a handle that only pulls. Without it, the handle holds exactly."""
+    """The weight, 1e-6 to 1e6, of a handle that only pulls. Without it, the handle is hard: its vertices move exactly."""
     continuity: float
     """The continuity of the surface at the handle, 0 to 2, instead of the mesh's."""
 
@@ -53,7 +53,7 @@ Field = Union[npt.ArrayLike, Sequence[Mapping[str, Any]]]
 "rigid" is the same as infinity."""
 
 Loose = Union[Literal["follow", "bend", "rest"], Sequence[Mapping[str, Any]]]
-"""The behaviour of parts that nothing holds, or the edit format's list of selections and behaviours."""
+"""The behaviour of parts without a handle or a fixed vertex, or the edit format's list of selections and behaviours."""
 
 Transform = Union[npt.ArrayLike, tuple[npt.ArrayLike, npt.ArrayLike], Mapping[str, Any]]
 """A map of world positions from rest: a 3x4 matrix; a 4x4 matrix whose last row is 0, 0, 0, 1; a translation of the
@@ -123,7 +123,7 @@ def bind(
     :param stiffness: one number or one for each vertex, shape (n,), from 0.001 to 1000; "rigid", or infinity, moves as
         one body. By default 1.
     :param continuity: the continuity at held vertices, one number or one for each vertex, 0 to 2; by default 2.
-    :param loose: the behaviour of parts that nothing holds: "follow" (the default), "bend" or "rest".
+    :param loose: the behaviour of parts without a handle or a fixed vertex: "follow" (the default), "bend" or "rest".
     :param method: a name, or a dict of its `name` and options. By default {"name": "arap", "energy": "smooth"}, as in
         Pliant's window. A name alone has the edit format's defaults, for "arap" the energy "spokes-and-rims".
     :param weld: the distance within which vertices are joined; 0 joins only equal ones. Without it, the distance
@@ -342,7 +342,7 @@ class Bound:
     def warnings(self) -> list[str]:
         """The warnings about the binding and the last step, as sentences.
 
-        A component that nothing holds is named from the first step on: three positions of its vertices hold it.
+        A component without a fixed vertex is named from the first step on: three positions of its vertices hold it.
         """
     @property
     def findings(self) -> list[str]:

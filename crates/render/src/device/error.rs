@@ -1,6 +1,6 @@
 //! Errors. Each message is one sentence that names the cause and the remedy.
 
-/// Why there is no device to draw with.
+/// The reason why no device can draw.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum NoGpu {
     /// No adapter of any backend, not even a software one.
@@ -19,18 +19,18 @@ pub enum NoGpu {
     Unusable {
         /// The adapter's name.
         name: String,
-        /// What went wrong, in one sentence.
+        /// The fault, in one sentence.
         reason: String,
     },
 }
 
-/// Why drawing or uploading failed; the earlier picture is still there.
+/// The reason why drawing or uploading failed; the earlier picture is still there.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum RenderError {
     /// A slice whose length differs from the number of vertices.
     #[error("{what}: {found} entries for {expected} vertices; give one entry a vertex")]
     Length {
-        /// Which slice.
+        /// The slice's name.
         what: &'static str,
         /// The number of vertices.
         expected: usize,
@@ -48,7 +48,7 @@ pub enum RenderError {
         vertices: usize,
     },
     /// A group, material or texture index out of range.
-    #[error("{what} {number} does not exist, there are {count}")]
+    #[error("{what} {number} does not exist: there are {count}")]
     NoSuch {
         /// The kind of index.
         what: &'static str,
@@ -72,7 +72,7 @@ pub enum RenderError {
     /// A buffer that this device can't hold.
     #[error("{what} need {bytes} bytes, but this device's buffers end at {limit}; open a smaller mesh")]
     TooLarge {
-        /// What the buffer holds.
+        /// The buffer's contents.
         what: &'static str,
         /// The buffer's size in bytes.
         bytes: u64,
@@ -101,19 +101,19 @@ pub enum RenderError {
     /// The device is out of memory.
     #[error("the graphics device ran out of memory {doing}; close other programs or open a smaller mesh")]
     OutOfMemory {
-        /// What the renderer was doing.
+        /// The renderer's activity.
         doing: &'static str,
     },
     /// The device was lost or does not respond.
     #[error("the graphics device stopped answering while {doing}; reopen the view")]
     Lost {
-        /// What the renderer was doing.
+        /// The renderer's activity.
         doing: &'static str,
     },
     /// The device rejected a command, which is a bug in this crate.
     #[error("the graphics device refused a command {doing}: {reason}")]
     Refused {
-        /// What the renderer was doing.
+        /// The renderer's activity.
         doing: &'static str,
         /// The device's message.
         reason: String,

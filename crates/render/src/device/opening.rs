@@ -1,4 +1,4 @@
-//! Opening a device, and what kind of device it is.
+//! Opening a device, and the device's kind.
 
 /// The best available adapter, which may be a software one.
 pub(crate) async fn adapter(instance: &wgpu::Instance) -> Option<wgpu::Adapter> {
@@ -30,7 +30,7 @@ pub fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'sta
     }
 }
 
-/// Whether the device is a software renderer on the CPU.
+/// Returns true if the device is a software renderer on the CPU.
 pub(crate) fn is_software(device: &wgpu::Device) -> bool {
     device.adapter_info().device_type == wgpu::DeviceType::Cpu
 }

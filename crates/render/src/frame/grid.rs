@@ -16,7 +16,7 @@ pub struct Grid {
     pub reach: f32,
     /// Strength of the lines between the tenths, 0 to 1. Fade it out before `step` grows tenfold.
     pub fine_share: f32,
-    /// Where the world's axes cross, in steps from the middle along each direction.
+    /// The crossing of the world's axes, in steps from the middle along each direction.
     pub axes: [f32; 2],
     /// Line colour, sRGB with straight alpha.
     pub colour: [u8; 4],

@@ -1,24 +1,24 @@
-//! How surfaces look.
+//! The look of surfaces.
 
 use crate::Matcap;
 
-/// How surfaces look.
+/// The look of surfaces.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Style {
-    /// How surfaces are shaded.
+    /// The shading of surfaces.
     pub shading: Shading,
-    /// The share of the shading's colour that the region colours replace (see [`crate::Surface::update_regions`]): 0 none, 1
-    /// all.
+    /// The share of the shading's colour that the region colours replace (see [`crate::Surface::update_regions`]): 0
+    /// none, 1 all.
     pub region_share: f32,
     /// Smooth or flat shading.
     pub faces: Faces,
-    /// Whether the edges of triangles are drawn.
+    /// The drawing of triangles' edges.
     pub wireframe: Wireframe,
-    /// Whether boundary and non-manifold edges are marked.
+    /// The marking of boundary and non-manifold edges.
     pub borders: Borders,
-    /// Whether the lines on the surface are drawn.
+    /// The drawing of the lines on the surface.
     pub outlines: Outlines,
-    /// Whether the surfaces' shadows on the ground are drawn.
+    /// The drawing of the surfaces' shadows on the ground.
     pub shadows: Shadows,
     /// The level of detail.
     pub detail: Detail,
@@ -45,7 +45,7 @@ impl Default for Style {
     }
 }
 
-/// How a surface is shaded.
+/// The shading of a surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Shading {
     /// A clay matcap: only the shape.
@@ -76,7 +76,7 @@ pub enum Faces {
     Flat,
 }
 
-/// Whether the edges of triangles are drawn.
+/// The drawing of triangles' edges.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Wireframe {
     /// None.
@@ -86,7 +86,7 @@ pub enum Wireframe {
     On,
 }
 
-/// Whether boundary and non-manifold edges are marked.
+/// The marking of boundary and non-manifold edges.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Borders {
     /// None.
@@ -96,7 +96,7 @@ pub enum Borders {
     On,
 }
 
-/// Whether the lines on a surface ([`crate::Surface::update_lines`]) are drawn.
+/// The drawing of the lines on a surface ([`crate::Surface::update_lines`]).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Outlines {
     /// None.
@@ -106,7 +106,7 @@ pub enum Outlines {
     On,
 }
 
-/// Whether the shadows that surfaces have ([`crate::Renderer::update_shadow`]) are drawn on the ground.
+/// The drawing of surfaces' shadows on the ground ([`crate::Renderer::update_shadow`]).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Shadows {
     /// None.

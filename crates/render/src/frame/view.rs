@@ -69,7 +69,7 @@ impl View {
         world_from_view.inverse()
     }
 
-    /// Whether the view is a perspective one.
+    /// Returns true if the view is a perspective one.
     pub fn is_perspective(&self) -> bool {
         self.eye.w != 0.0
     }

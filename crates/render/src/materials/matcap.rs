@@ -62,7 +62,7 @@ struct MatcapParameters {
     ground: Vec3,
     /// A light from behind that only grazing surfaces catch.
     rim: Light,
-    /// How much the silhouette darkens before the rim light is added, so that overlapping forms separate.
+    /// The share by which the silhouette darkens before the rim light is added, so that overlapping forms separate.
     contour: f32,
     /// Exponent and strength of each light's highlight.
     specular: [(i32, f32); 2],

@@ -30,11 +30,11 @@ pub struct Material {
     pub emissive: [f32; 3],
     /// Multiplies the emitted light.
     pub emissive_map: Option<Map>,
-    /// Whether the material is lit.
+    /// The material's lighting.
     pub lighting: Lighting,
-    /// How alpha is used.
+    /// The use of alpha.
     pub alpha: AlphaMode,
-    /// Whether back faces are lit like front faces. Back faces are always drawn, because an editor must show the inside
+    /// True if back faces are lit like front faces. Back faces are always drawn, because an editor must show the inside
     /// of an open scan and picking must agree with the picture, but single-sided materials dim them.
     pub double_sided: bool,
 }
@@ -96,7 +96,7 @@ pub enum UvSet {
     Second,
 }
 
-/// Whether a material is lit.
+/// The lighting of a material.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Lighting {
     /// Lit.
@@ -106,7 +106,7 @@ pub enum Lighting {
     Unlit,
 }
 
-/// How a material's alpha is used.
+/// The use of a material's alpha.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum AlphaMode {
     /// Alpha is ignored.

@@ -25,7 +25,7 @@ pub(crate) enum Pipeline {
     Id,
 }
 
-/// How a material's alpha is used.
+/// The use of a material's alpha.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) enum Alpha {
     Opaque,
@@ -33,7 +33,7 @@ pub(crate) enum Alpha {
     Blend,
 }
 
-/// Whether texture coordinates and colours differ per vertex or are the same for all.
+/// The rate of texture coordinates and colours: one for each vertex, or the same for all.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) enum MaterialAttributes {
     PerVertex,

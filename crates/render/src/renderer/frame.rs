@@ -10,7 +10,7 @@ use crate::{Background, Faces, Grid, Overlay, Style, Surface, View};
 pub struct Frame<'a> {
     /// The point of view.
     pub view: &'a View,
-    /// How surfaces look.
+    /// The look of surfaces.
     pub style: &'a Style,
     /// The surfaces, in any order. Transparent materials are drawn last, in this order.
     pub surfaces: &'a [&'a Surface],

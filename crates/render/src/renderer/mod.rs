@@ -66,8 +66,8 @@ impl Renderer {
         self.gpu.device.adapter_info().name
     }
 
-    /// Whether the device is a software renderer on the CPU. Drawing is slow there, so use [`crate::Samples::One`]
-    /// during interaction.
+    /// Returns true if the device is a software renderer on the CPU. Drawing is slow there, so use
+    /// [`crate::Samples::One`] during interaction.
     pub fn is_software(&self) -> bool {
         is_software(&self.gpu.device)
     }

@@ -17,7 +17,7 @@ const CHUNK: usize = 16_384;
 /// Meshes of up to this many triangles are neither sorted nor split.
 const UNSORTED: usize = 4 * CHUNK;
 
-/// How a mesh's triangles are split into chunks. Valid only for the triangles and materials it was built from.
+/// The split of a mesh's triangles into chunks. Valid only for the triangles and materials it was built from.
 #[derive(Debug)]
 pub struct Chunks {
     /// The mesh's triangle at each position of the draw order; `None` if that is the mesh's order.
@@ -126,7 +126,7 @@ impl Chunks {
         }
     }
 
-    /// Whether the chunks were built from this many triangles.
+    /// Returns true if the chunks were built from this many triangles.
     pub(crate) fn fits(&self, triangle_count: usize) -> bool {
         self.all.last().map_or(0, |chunk| chunk.triangles.end) as usize == triangle_count
     }
@@ -153,8 +153,8 @@ impl Chunks {
 }
 
 impl ChunkBounds {
-    /// Whether the box may intersect the view frustum of `clip_from_world` (reversed depth). Conservative: never
-    /// wrongly false.
+    /// Returns true if the box may intersect the view frustum of `clip_from_world` (reversed depth). Conservative:
+    /// never wrongly false.
     pub(crate) fn intersects_frustum(&self, clip_from_world: &Mat4) -> bool {
         if !self.min.is_finite() || !self.max.is_finite() {
             // No vertex, or one at infinity.

@@ -20,7 +20,7 @@ pub struct SurfaceData<'a> {
     pub second_uvs: Option<&'a [[f32; 2]]>,
     /// The file's vertex colours (red, green, blue, alpha).
     pub colours: Option<&'a [[u8; 4]]>,
-    /// How the vertex colours are encoded.
+    /// The encoding of the vertex colours.
     pub colour_space: ColourSpace,
     /// Region colours, as for [`crate::Surface::update_regions`]; without them, none is shown.
     pub regions: Option<&'a [[u8; 4]]>,
@@ -37,7 +37,7 @@ pub struct SurfaceData<'a> {
     pub textures: &'a [TextureData<'a>],
 }
 
-/// How a file encodes its vertex colours.
+/// A file's encoding of its vertex colours.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum ColourSpace {
     /// sRGB (PLY and OBJ files).
@@ -159,7 +159,7 @@ mod tests {
                 ..good
             })
             .as_deref(),
-            Some("material 0 does not exist, there are 0")
+            Some("material 0 does not exist: there are 0")
         );
     }
 }

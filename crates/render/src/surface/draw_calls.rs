@@ -19,7 +19,7 @@ pub(crate) struct DrawCall {
     pub(crate) detail: Detail,
 }
 
-/// Which neighbouring chunks may share a draw call.
+/// The rule for neighbouring chunks that share a draw call.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Batching {
     /// All of them.
@@ -77,8 +77,8 @@ impl Surface {
         draw_calls
     }
 
-    /// Whether [`Detail::Reduced`] draws fewer triangles in `view`: the reduced level exists, no triangle is hidden,
-    /// and so much of the surface is visible that the larger triangles do not show.
+    /// Returns true if [`Detail::Reduced`] draws fewer triangles in `view`: the reduced level exists, no triangle is
+    /// hidden, and so much of the surface is visible that the larger triangles do not show.
     pub fn has_reduced(&self, view: &View) -> bool {
         let is_made = self.pages.iter().any(|page| page.reduced().is_some());
         is_made && self.shown.is_none() && self.drawn_triangles(view) >= REDUCED_FROM_TRIANGLES

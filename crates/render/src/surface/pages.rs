@@ -231,7 +231,7 @@ impl Page {
         }
     }
 
-    /// Whether the page has all of the mesh's vertices, in order.
+    /// Returns true if the page has all of the mesh's vertices, in order.
     pub(crate) fn is_whole(&self) -> bool {
         self.vertices.is_none()
     }

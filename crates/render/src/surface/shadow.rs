@@ -18,7 +18,7 @@ use crate::{Gpu, Grid, RenderError, Samples, Surface, Target, View};
 /// The side of the picture, in pixels.
 const SIDE_PX: u32 = 192;
 
-/// How far the square reaches beyond the surface, as a share of the surface's larger half side: room for the blur.
+/// The square's margin beyond the surface, as a share of the surface's larger half side: room for the blur.
 const MARGIN: f32 = 0.3;
 
 /// The height above which the surface casts no shadow, as a share of its size.

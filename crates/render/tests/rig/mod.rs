@@ -210,7 +210,7 @@ pub fn brightness(pixel: [u8; 4]) -> f32 {
     pixel[..3].iter().map(|&channel| f32::from(channel)).sum::<f32>() / 3.0
 }
 
-/// Whether two colours differ by at most `tolerance` in each channel.
+/// Returns true if two colours differ by at most `tolerance` in each channel.
 pub fn is_near(a: [u8; 4], b: [u8; 4], tolerance: u8) -> bool {
     a.iter().zip(b).all(|(&a, b)| a.abs_diff(b) <= tolerance)
 }

@@ -45,8 +45,8 @@ impl DressedPatch {
         let rim = DrawnRim::of(part, hole)?;
         let of_triangle = continued(part, hole, &rim);
         let count = rim.runs.len();
-        let positions = hole
-            .border
+        let positions = rim
+            .loops
             .vertices
             .iter()
             .map(|v| part.model.surface.positions[v.index()]);
@@ -109,7 +109,7 @@ fn blended(part: &Part<'_>, hole: &FilledHole, rim: &DrawnRim, points: &[DVec3],
     let count = rim.ends.len();
     let mut rows = vec![0.0; points.len() * width];
     for place in 0..count {
-        let [before, own] = [rim.ends[(place + count - 1) % count][1], rim.ends[place][0]];
+        let [before, own] = [rim.ends[rim.loops.before(place)][1], rim.ends[place][0]];
         for channel in 0..width {
             let value = |vertex| (part.attributes.value)(vertex, first + channel);
             rows[place * width + channel] = 0.5 * (value(before) + value(own));

@@ -7,6 +7,7 @@ use std::collections::VecDeque;
 
 use pliant_mesh::DrawnVertex;
 
+use crate::borders::Loops;
 use crate::fill::FilledHole;
 use crate::part::{Part, face_beyond};
 
@@ -19,29 +20,36 @@ pub(super) struct DrawnRim {
     pub triangles: Vec<u32>,
     /// For each edge, its run.
     pub runs: Vec<u32>,
+    /// The borders that it consists of.
+    pub loops: Loops,
 }
 
 impl DrawnRim {
     /// Finds the rim of a hole; `None` if a triangle beyond it is missing, which a sound border excludes.
     pub fn of(part: &Part<'_>, hole: &FilledHole) -> Option<Self> {
         let model = part.model;
-        let rim = &hole.border.vertices;
-        let (mut ends, mut triangles) = (Vec::with_capacity(rim.len()), Vec::with_capacity(rim.len()));
-        for (k, &from) in rim.iter().enumerate() {
-            let to = rim[(k + 1) % rim.len()];
+        let loops = Loops::of(&hole.borders);
+        let (mut ends, mut triangles) = (Vec::with_capacity(loops.count()), Vec::with_capacity(loops.count()));
+        for (k, &from) in loops.vertices.iter().enumerate() {
+            let to = loops.vertices[loops.next(k)];
             let face = face_beyond(model, from, to)?;
             let (own, drawn) = (model.surface.triangles[face], model.drawn_corners(face));
             let at = |vertex| (0..3).find(|&corner| own[corner] == vertex).map(|corner| drawn[corner]);
             ends.push([at(from)?, at(to)?]);
             triangles.push(model.drawn.triangle_of_surface()[face]);
         }
-        let runs = runs(part, &ends);
-        Some(Self { ends, triangles, runs })
+        let runs = runs(part, &ends, &loops);
+        Some(Self {
+            ends,
+            triangles,
+            runs,
+            loops,
+        })
     }
 
     /// The drawn vertex of a run at a place of the rim, if the run passes it.
     pub fn vertex(&self, place: usize, run: u32) -> Option<DrawnVertex> {
-        let before = (place + self.ends.len() - 1) % self.ends.len();
+        let before = self.loops.before(place);
         if self.runs[place] == run {
             Some(self.ends[place][0])
         } else if self.runs[before] == run {
@@ -52,22 +60,25 @@ impl DrawnRim {
     }
 }
 
-/// Numbers the runs: a run begins at the first edge that does not continue the one before.
-fn runs(part: &Part<'_>, ends: &[[DrawnVertex; 2]]) -> Vec<u32> {
-    let count = ends.len();
-    let begins = |k: usize| {
-        let before = (k + count - 1) % count;
-        !part.attributes.are_of_one_chart(ends[before][1], ends[k][0])
-    };
-    let Some(first) = (0..count).find(|&k| begins(k)) else {
-        return vec![0; count];
-    };
-    let mut runs = vec![0; count];
+/// Numbers the runs: a run begins at the first edge that does not continue the one before. Each border has runs of its
+/// own, unless there are no texture coordinates.
+fn runs(part: &Part<'_>, ends: &[[DrawnVertex; 2]], loops: &Loops) -> Vec<u32> {
+    let mut runs = vec![0; ends.len()];
+    if part.attributes.charted == 0 {
+        return runs;
+    }
+    let begins = |k: usize| !part.attributes.are_of_one_chart(ends[loops.before(k)][1], ends[k][0]);
     let mut run = 0;
-    for step in 1..count {
-        let k = (first + step) % count;
-        run += u32::from(begins(k));
-        runs[k] = run;
+    for border in loops.ranges() {
+        let (start, count) = (border.start, border.len());
+        let first = border.clone().find(|&k| begins(k));
+        let origin = first.map_or(0, |first| first - start);
+        for step in 0..count {
+            let k = start + (origin + step) % count;
+            run += u32::from(step > 0 && first.is_some() && begins(k));
+            runs[k] = run;
+        }
+        run += 1;
     }
     runs
 }
@@ -95,7 +106,7 @@ pub(super) fn continued(part: &Part<'_>, hole: &FilledHole, rim: &DrawnRim) -> V
     let mut of_triangle: Vec<Option<(u32, u32)>> = vec![None; hole.triangles.len()];
     let mut queue = VecDeque::new();
     for edge in 0..count {
-        if let Some(triangle) = left_of([edge, (edge + 1) % count])
+        if let Some(triangle) = left_of([edge, rim.loops.next(edge as usize) as u32])
             && of_triangle[triangle as usize].is_none()
         {
             of_triangle[triangle as usize] = Some((rim.runs[edge as usize], edge));

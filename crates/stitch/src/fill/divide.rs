@@ -28,7 +28,7 @@ pub(crate) fn best_chord(rim: &Rim<'_>, polygon: &[u32]) -> Option<[usize; 2]> {
             let along = ways[to] - ways[from];
             let shorter = along.min(ways[count] - along);
             let ratio = point(from).distance(point(to)) / shorter.max(f64::MIN_POSITIVE);
-            if best.is_none_or(|(least, _)| ratio < least) && !rim.is_joined(polygon[from], polygon[to]) {
+            if best.is_none_or(|(least, _)| ratio < least) && !rim.joined.contains(polygon[from], polygon[to]) {
                 best = Some((ratio, [from, to]));
             }
         }

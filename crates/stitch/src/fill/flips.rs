@@ -1,7 +1,5 @@
 //! Flips edges until the triangulation is Delaunay on the patch.
 
-use std::f64::consts::PI;
-
 use glam::DVec3;
 
 use super::patch::Patch;
@@ -9,7 +7,8 @@ use super::patch::Patch;
 /// The flips allowed for each edge: a patch in space may have no Delaunay triangulation.
 const MOST_FLIPS: usize = 8;
 
-/// An edge is flipped if its two opposite angles exceed half a turn by this, so that rounding does not flip it back.
+/// An edge is flipped if its two opposite angles exceed half a turn by about this, so that rounding does not flip it
+/// back.
 const SLACK: f64 = 1e-9;
 
 /// Flips edges inside the patch whose opposite angles add up to more than half a turn, unless that would double an edge
@@ -40,8 +39,7 @@ fn other_diagonal(patch: &Patch, edge: [u32; 2]) -> Option<[u32; 2]> {
     let (left, right) = (patch.left_of(a, b)?, patch.left_of(b, a)?);
     let (c, d) = (patch.opposite(left, edge), patch.opposite(right, edge));
     let [pa, pb, pc, pd] = [a, b, c, d].map(|point| patch.points[point as usize]);
-    let sum = angle(pc, pa, pb) + angle(pd, pa, pb);
-    if sum <= PI + SLACK || c == d || patch.is_edge(c, d) {
+    if !is_beyond_half_a_turn([pa, pb], pc, pd) || c == d || patch.is_edge(c, d) {
         return None;
     }
     // Both new triangles must face the average direction of the old ones.
@@ -53,8 +51,12 @@ fn other_diagonal(patch: &Patch, edge: [u32; 2]) -> Option<[u32; 2]> {
     is_upright.then_some([c, d])
 }
 
-/// The angle at `apex` between the directions to two points.
-fn angle(apex: DVec3, p: DVec3, q: DVec3) -> f64 {
-    let (u, v) = (p - apex, q - apex);
-    u.cross(v).length().atan2(u.dot(v))
+/// True if the angles at which two points see an edge add up to more than half a turn: then the sine of their sum is
+/// negative.
+fn is_beyond_half_a_turn([a, b]: [DVec3; 2], c: DVec3, d: DVec3) -> bool {
+    let (u, v, s, t) = (a - c, b - c, a - d, b - d);
+    let ([sine, cosine], [other_sine, other_cosine]) =
+        ([u.cross(v).length(), u.dot(v)], [s.cross(t).length(), s.dot(t)]);
+    let (one, other) = (sine.hypot(cosine), other_sine.hypot(other_cosine));
+    sine * other_cosine + cosine * other_sine < -SLACK * one * other
 }

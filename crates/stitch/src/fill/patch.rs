@@ -1,8 +1,11 @@
 //! The unfinished triangles of a hole: points, triangles and their neighbours.
 
 use std::collections::HashMap;
+use std::hash::{BuildHasherDefault, Hasher};
 
 use glam::DVec3;
+
+use super::rim::Joined;
 
 /// A triangulated polygon whose first points are the rim, in order.
 #[derive(Clone, Debug, Default)]
@@ -14,20 +17,19 @@ pub(crate) struct Patch {
     /// The triangles are counterclockwise, so that edges of the rim run from each point to the next.
     pub triangles: Vec<[u32; 3]>,
     /// The triangle on the left of each directed edge. The code only looks it up and never lists it.
-    beside: HashMap<[u32; 2], u32>,
-    /// The pairs of rim points that an edge outside the patch joins already, ascending.
-    joined: Vec<[u32; 2]>,
+    beside: HashMap<u64, u32, BuildHasherDefault<EdgeHasher>>,
+    /// The pairs of rim points that the patch must not join.
+    joined: Joined,
 }
 
 impl Patch {
-    /// Makes a patch of these points and triangles. `joined` (ascending, lower point first) are pairs of rim points
-    /// that the surface already joins, so that the patch must not.
-    pub fn new(points: Vec<DVec3>, rim: usize, triangles: Vec<[u32; 3]>, joined: Vec<[u32; 2]>) -> Self {
+    /// Makes a patch of these points and triangles. It must not join the rim points that are `joined`.
+    pub fn new(points: Vec<DVec3>, rim: usize, triangles: Vec<[u32; 3]>, joined: Joined) -> Self {
         let mut patch = Self {
             points,
             rim,
             triangles: Vec::with_capacity(triangles.len()),
-            beside: HashMap::with_capacity(3 * triangles.len()),
+            beside: HashMap::with_capacity_and_hasher(3 * triangles.len(), BuildHasherDefault::default()),
             joined,
         };
         triangles.into_iter().for_each(|triangle| {
@@ -43,14 +45,12 @@ impl Patch {
 
     /// True if an edge joins two points, here or outside.
     pub fn is_edge(&self, a: u32, b: u32) -> bool {
-        self.beside.contains_key(&[a, b])
-            || self.beside.contains_key(&[b, a])
-            || self.joined.binary_search(&[a.min(b), a.max(b)]).is_ok()
+        self.beside.contains_key(&key(a, b)) || self.beside.contains_key(&key(b, a)) || self.joined.contains(a, b)
     }
 
     /// The triangle on the left of an edge, if there is one.
     pub fn left_of(&self, from: u32, to: u32) -> Option<usize> {
-        self.beside.get(&[from, to]).map(|&triangle| triangle as usize)
+        self.beside.get(&key(from, to)).map(|&triangle| triangle as usize)
     }
 
     /// The corner of a triangle that is on neither end of an edge.
@@ -80,26 +80,10 @@ impl Patch {
             return;
         };
         let (c, d) = (self.opposite(left, edge), self.opposite(right, edge));
-        self.beside.remove(&[a, b]);
-        self.beside.remove(&[b, a]);
+        self.beside.remove(&key(a, b));
+        self.beside.remove(&key(b, a));
         self.put(left, [a, d, c]);
         self.put(right, [d, b, c]);
-    }
-
-    /// The neighbours of each point, ascending.
-    pub fn neighbours(&self) -> Vec<Vec<u32>> {
-        let mut neighbours = vec![Vec::new(); self.points.len()];
-        for &[a, b, c] in &self.triangles {
-            for [from, to] in [[a, b], [b, c], [c, a]] {
-                neighbours[from as usize].push(to);
-                neighbours[to as usize].push(from);
-            }
-        }
-        for own in &mut neighbours {
-            own.sort_unstable();
-            own.dedup();
-        }
-        neighbours
     }
 
     fn push(&mut self, triangle: [u32; 3]) {
@@ -110,8 +94,33 @@ impl Patch {
     fn put(&mut self, place: usize, triangle: [u32; 3]) {
         self.triangles[place] = triangle;
         let [a, b, c] = triangle;
-        for edge in [[a, b], [b, c], [c, a]] {
-            self.beside.insert(edge, place as u32);
+        for [from, to] in [[a, b], [b, c], [c, a]] {
+            self.beside.insert(key(from, to), place as u32);
         }
+    }
+}
+
+/// A directed edge as one number.
+fn key(from: u32, to: u32) -> u64 {
+    u64::from(from) << 32 | u64::from(to)
+}
+
+/// Hashes an edge by one multiplication: refining looks edges up a hundred times for each point.
+#[derive(Clone, Copy, Debug, Default)]
+struct EdgeHasher(u64);
+
+impl Hasher for EdgeHasher {
+    fn finish(&self) -> u64 {
+        self.0
+    }
+
+    fn write(&mut self, bytes: &[u8]) {
+        bytes.iter().for_each(|&byte| self.write_u64(u64::from(byte)));
+    }
+
+    fn write_u64(&mut self, number: u64) {
+        // Fibonacci hashing; the table takes its place from the low bits and a tag from the high ones.
+        let product = (self.0 ^ number).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        self.0 = product ^ product >> 32;
     }
 }

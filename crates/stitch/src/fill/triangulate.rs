@@ -105,7 +105,7 @@ fn lightest(rim: &Rim<'_>, polygon: &Polygon) -> Option<Vec<[u32; 3]>> {
             let j = i + span;
             let is_closing = i == 0 && j == count - 1;
             let mut best = Weight::IMPOSSIBLE;
-            if is_closing || !rim.is_joined(polygon.points[i], polygon.points[j]) {
+            if is_closing || !rim.joined.contains(polygon.points[i], polygon.points[j]) {
                 let (a, c) = (point(i), point(j));
                 for m in i + 1..j {
                     let rest = weights[at(i, m)].with(weights[at(m, j)]);

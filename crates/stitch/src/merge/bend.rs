@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use pliant_deform::{
-    BilaplacianOrder, BindError, Bound, Budget, Constraints, Loose, Method, Problem, Role, SolveError, Target, fair,
+    BilaplacianOrder, BindError, Bound, Budget, Loose, Method, Problem, Role, SolveError, Target, fair,
 };
 use pliant_mesh::{Cancel, Progress, Surface, SurfaceVertex, Topology, distances_along_surface};
 
@@ -59,17 +59,18 @@ pub(super) struct Bending<'a> {
 const MOST_STEPS: u32 = 500;
 
 impl Bending<'_> {
-    /// Computes the displacement of each vertex of the surface. Rims reach their targets exactly.
+    /// Computes the displacement of each vertex of the surface, and tells whether the method converged. Rims reach their
+    /// targets exactly.
     ///
     /// # Errors
     /// The refusals of the method.
-    pub fn bent(&self, rims: &Rims, progress: &Progress, cancel: &Cancel) -> Result<Vec<DVec3>, StitchError> {
+    pub fn bent(&self, rims: &Rims, progress: &Progress, cancel: &Cancel) -> Result<(Vec<DVec3>, bool), StitchError> {
         let mut out = vec![DVec3::ZERO; self.surface.positions.len()];
         let places = self.places(rims);
         let way =
             |(vertex, place): (&SurfaceVertex, &Placed)| place.at.distance(self.surface.positions[vertex.index()]);
         if places.iter().map(way).fold(0.0, f64::max) <= self.touch {
-            return Ok(out);
+            return Ok((out, true));
         }
         let sources: Vec<SurfaceVertex> = rims.keys().copied().collect();
         let far = distances_along_surface(self.surface, self.topology, &sources, self.reach);
@@ -79,17 +80,10 @@ impl Bending<'_> {
             None => Role::Fixed,
         };
         let roles: Vec<Role> = (0..far.len()).map(role).collect();
+        let stiffness = vec![1.0; roles.len()];
         let problem = Problem {
-            surface: self.surface,
-            topology: self.topology,
-            roles: &roles,
-            handle_count: rims.values().map(|own| usize::from(own.handle) + 1).max().unwrap_or(0),
-            stiffness: &vec![1.0; roles.len()],
-            constraints: Constraints::default(),
             loose: Loose::Rest,
-            method: self.method,
-            attachments: &[],
-            revision: 0,
+            ..Problem::new((self.surface, self.topology), &roles, &stiffness, self.method)
         };
         let bind = |source: BindError| match source {
             BindError::Cancelled(cancelled) => cancelled.into(),
@@ -104,7 +98,7 @@ impl Bending<'_> {
         let mut bound = problem
             .bind_within(ordering.as_ref(), self.budget, progress, cancel)
             .map_err(bind)?;
-        self.solve(&mut bound, &places, &mut out, cancel)?;
+        let has_converged = self.solve(&mut bound, &places, &mut out, cancel)?;
         // The bi-Laplacian spreads the displacements that the method leaves missing at the targets.
         let rest = |vertex: usize| self.surface.positions[vertex];
         let missing = |vertex: &SurfaceVertex, place: &Placed| place.at - rest(vertex.index()) - out[vertex.index()];
@@ -135,7 +129,7 @@ impl Bending<'_> {
                 .zip(&ways)
                 .for_each(|(out, way)| *out += DVec3::from_array(*way));
         }
-        Ok(out)
+        Ok((out, has_converged))
     }
 
     /// The targets of the rims' vertices and of those beside them, which turn with the rim.
@@ -168,13 +162,14 @@ impl Bending<'_> {
         own.chain(beside).collect()
     }
 
+    /// Steps until the method is done, and tells whether it converged.
     fn solve(
         &self,
         bound: &mut Bound,
         places: &BTreeMap<SurfaceVertex, Placed>,
         out: &mut [DVec3],
         cancel: &Cancel,
-    ) -> Result<(), StitchError> {
+    ) -> Result<bool, StitchError> {
         let refuse = |source: SolveError| StitchError::Solve {
             part: self.name,
             source,
@@ -203,11 +198,12 @@ impl Bending<'_> {
         }
         for _ in 0..MOST_STEPS {
             cancel.check()?;
-            if bound.step(out).map_err(refuse)?.finished {
-                break;
+            let step = bound.step(out).map_err(refuse)?;
+            if step.finished {
+                return Ok(step.converged);
             }
         }
-        Ok(())
+        Ok(false)
     }
 }
 

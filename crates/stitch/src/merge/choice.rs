@@ -26,8 +26,14 @@ pub(crate) struct Join {
 /// Without pairs, at most this many of each part's longest borders are considered.
 const MOST_BORDERS: usize = 16;
 
+/// The vertices on both sides of the nearest one that are tried as the beginning of a border.
+const AROUND: usize = 2;
+
 /// The number of points at which two borders are compared.
 const SAMPLES: usize = 96;
+
+/// The most candidates whose other borders are compared point by point: symmetric borders have one for each vertex.
+const MOST_COMPARED: usize = 64;
 
 /// Two borders are the two sides of one cut if a rigid motion fits their points within this share of their length.
 const CONGRUENT: f64 = 1e-5;
@@ -96,23 +102,32 @@ impl Join {
                 candidates.extend(Candidate::best(i, j, a, b, holds));
             }
         }
-        // For the two sides of a cut, the candidate that brings most other borders together comes first.
-        let (all_a, all_b) = (&a, &b);
-        let together = |candidate: &Candidate| match candidate.is_congruent {
-            true => (0..all_b.len())
-                .filter(|&j| candidate.partner(j, all_a, all_b).is_some())
-                .count(),
-            false => 0,
-        };
-        let mut ranked: Vec<(usize, Candidate)> = candidates
+        let key = |candidate: &Candidate| (!candidate.is_congruent, candidate.i, candidate.j);
+        let near = |candidate: &Candidate| candidate.is_congruent.then(|| candidate.count_near(&a, &b));
+        let mut ranked: Vec<(Option<usize>, Candidate)> = candidates
             .into_iter()
-            .map(|candidate| (together(&candidate), candidate))
+            .map(|candidate| (near(&candidate), candidate))
             .collect();
-        ranked.sort_by(|(count_a, a), (count_b, b)| {
-            let key = |candidate: &Candidate| (!candidate.is_congruent, candidate.i, candidate.j);
-            let of_kind = a.is_congruent.cmp(&b.is_congruent).reverse().then(count_b.cmp(count_a));
+        ranked.sort_by(|(near_a, a), (near_b, b)| {
+            let of_kind = near_b.cmp(near_a);
             of_kind.then(a.cost.total_cmp(&b.cost)).then(key(a).cmp(&key(b)))
         });
+        // Of the two sides of a cut, the candidate that brings most other borders together is the best. Borders whose
+        // middles come together are a bound for that, so only the first candidates are compared in full.
+        let together = |candidate: &Candidate| (0..b.len()).filter_map(|j| candidate.partner(j, &a, &b)).count();
+        let compared = ranked.len().min(MOST_COMPARED);
+        if ranked
+            .first()
+            .is_some_and(|(near, _)| near.is_some_and(|near| near > 0))
+        {
+            let counts: Vec<Option<usize>> = ranked[..compared]
+                .iter()
+                .map(|(near, candidate)| near.map(|_| together(candidate)))
+                .collect();
+            // Of equal ones the first.
+            let best = (0..compared).rev().max_by_key(|&k| counts[k]).unwrap_or(0);
+            ranked.swap(0, best);
+        }
         let Some((_, first)) = ranked.first() else {
             return Vec::new();
         };
@@ -203,7 +218,7 @@ impl Candidate {
         let of_a = samples(a, 0.0);
         let middle = of_a.iter().sum::<DVec3>() / SAMPLES as f64;
         let length = 0.5 * (a.length() + b.length());
-        let apart = a.middle().distance(b.middle()) + (a.length() - b.length()).abs();
+        let apart = a.middle.distance(b.middle) + (a.length() - b.length()).abs();
         let may_be_congruent = (a.length() - b.length()).abs() <= CONGRUENT * length;
         let mut congruent = Vec::new();
         let mut nearest: Option<(f64, f64)> = None;
@@ -246,24 +261,39 @@ impl Candidate {
         of_nearest.into_iter().collect()
     }
 
+    /// The place of a point of B under this candidate's motion.
+    fn moved(&self, point: DVec3) -> DVec3 {
+        let way = self.motion.as_ref().map(|motion| motion.displace(point));
+        point + way.unwrap_or(DVec3::ZERO)
+    }
+
+    /// The number of B's other borders whose middles come near to the middles of A's.
+    fn count_near(&self, a: &[Line], b: &[Line]) -> usize {
+        (0..b.len()).filter(|&j| self.near(j, a, b).next().is_some()).count()
+    }
+
+    /// The borders of A with middles near to which this candidate's motion takes the middle of B's border `j`.
+    fn near<'a>(&'a self, j: usize, a: &'a [Line], b: &'a [Line]) -> impl Iterator<Item = (usize, &'a Line)> + 'a {
+        let (middle, own) = (self.moved(b[j].middle), b[j].length());
+        a.iter().enumerate().filter(move |(i, line)| {
+            let length = 0.5 * (line.length() + own);
+            *i != self.i && j != self.j && line.middle.distance(middle) <= NEAR * length
+        })
+    }
+
     /// The border of A onto which this candidate's motion takes B's border `j`, and the shift.
     fn partner(&self, j: usize, a: &[Line], b: &[Line]) -> Option<(usize, f64)> {
-        let moved = |point: DVec3| {
-            point
-                + self
-                    .motion
-                    .as_ref()
-                    .map_or(DVec3::ZERO, |motion| motion.displace(point))
-        };
-        let middle = moved(b[j].middle());
         let mut best: Option<(f64, usize, f64)> = None;
-        for (i, line) in a.iter().enumerate() {
+        for (i, line) in self.near(j, a, b) {
             let length = 0.5 * (line.length() + b[j].length());
-            if i == self.i || j == self.j || line.middle().distance(middle) > NEAR * length {
-                continue;
-            }
             let of_a = samples(line, 0.0);
-            for k in 0..b[j].count() {
+            // Where the borders come together, the beginning of A's is near to the point of B's that belongs to it.
+            let far = |k: &usize| self.moved(b[j].points[*k]).distance_squared(line.points[0]);
+            let nearest = (0..b[j].count()).min_by(|x, y| far(x).total_cmp(&far(y)));
+            let around = nearest
+                .into_iter()
+                .flat_map(|k| (0..=2 * AROUND).map(move |step| k + step));
+            for k in around.map(|k| (k + b[j].count() * AROUND - AROUND) % b[j].count()) {
                 let of_b = samples(&b[j], b[j].ways[k]);
                 let off = rms(&of_b, &of_a, self.motion.as_ref()) / length;
                 if off <= NEAR && best.is_none_or(|(least, ..)| off < least) {

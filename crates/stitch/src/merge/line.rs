@@ -14,6 +14,8 @@ pub(crate) struct Line {
     pub points: Vec<DVec3>,
     /// The way along the line to each vertex, in world units; the last entry is the line's length.
     pub ways: Vec<f64>,
+    /// The mean of its vertices.
+    pub middle: DVec3,
 }
 
 impl Line {
@@ -24,7 +26,13 @@ impl Line {
             way += length;
             ways.push(way);
         }
-        Self { vertices, points, ways }
+        let middle = points.iter().sum::<DVec3>() / points.len().max(1) as f64;
+        Self {
+            vertices,
+            points,
+            ways,
+            middle,
+        }
     }
 
     /// The number of its vertices.
@@ -35,11 +43,6 @@ impl Line {
     /// Its length.
     pub fn length(&self) -> f64 {
         self.ways[self.count()]
-    }
-
-    /// The mean of its vertices.
-    pub fn middle(&self) -> DVec3 {
-        self.points.iter().sum::<DVec3>() / self.count() as f64
     }
 
     /// The length of the shorter edge at a vertex.

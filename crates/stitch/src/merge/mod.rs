@@ -64,8 +64,19 @@ pub struct Merged {
     pub motion: DAffine3,
     /// The joined borders.
     pub seams: Vec<Seam>,
-    /// For each part, the number of its surface's vertices that bent, and of triangles that turned over.
-    pub bent: [(usize, usize); 2],
+    /// The bending of each part.
+    pub bendings: [PartBending; 2],
+}
+
+/// The bending of a part in numbers.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub struct PartBending {
+    /// The number of its surface's vertices that moved.
+    pub vertices: usize,
+    /// The number of triangles that turned over.
+    pub flipped: usize,
+    /// True if the method converged, or had nothing to do.
+    pub has_converged: bool,
 }
 
 /// A joined border.
@@ -138,7 +149,7 @@ pub fn merge(
     let surfaces = [&parts[0].model.surface, &surface_b];
     let rims = rims(parts, surfaces, &joined);
     let mut positions: [Vec<DVec3>; 2] = Default::default();
-    let mut bent = [(0, 0); 2];
+    let mut bendings = [PartBending::default(); 2];
     for side in 0..2 {
         let bending = Bending {
             surface: surfaces[side],
@@ -151,15 +162,19 @@ pub fn merge(
         };
         let share = 0.1 + 0.4 * side as f32;
         let ways = bending.bent(&rims[side], &progress.part(share, share + 0.4), cancel);
-        let ways = ways.map_err(|error| MergeError::of(side, error))?;
+        let (ways, has_converged) = ways.map_err(|error| MergeError::of(side, error))?;
         let rest = &surfaces[side].positions;
         positions[side] = rest.iter().zip(&ways).map(|(rest, way)| *rest + *way).collect();
-        let moved = ways.iter().filter(|way| **way != DVec3::ZERO).count();
-        let flipped = match moved {
+        let vertices = ways.iter().filter(|way| **way != DVec3::ZERO).count();
+        let flipped = match vertices {
             0 => 0,
             _ => Distortion::of(surfaces[side], bending.topology, &positions[side]).flipped_faces,
         };
-        bent[side] = (moved, flipped);
+        bendings[side] = PartBending {
+            vertices,
+            flipped,
+            has_converged,
+        };
     }
     let [positions_a, positions_b] = positions;
     let moved = |point: &DVec3| *point + motion.as_ref().map_or(DVec3::ZERO, |motion| motion.displace(*point));
@@ -189,7 +204,7 @@ pub fn merge(
         shape,
         motion: motion.map_or(DAffine3::IDENTITY, |motion| affine(&motion)),
         seams,
-        bent,
+        bendings,
     })
 }
 

@@ -12,16 +12,21 @@ fn filled(model: &Model, holes: Holes) -> Filled {
 }
 
 /// The surface with its patches, as positions and triangles.
-fn with_patches(model: &Model, filled: &Filled) -> Drawn {
+pub fn with_patches(model: &Model, filled: &Filled) -> Drawn {
     let mut positions = model.surface.positions.clone();
     let mut triangles: Vec<[u32; 3]> = model.surface.triangles.iter().map(|t| t.map(|v| v.0)).collect();
     for hole in &filled.holes {
         let first = positions.len() as u32;
         positions.extend(&hole.points);
-        let rim = hole.border.vertices.len() as u32;
-        let number = |corner: u32| match corner.checked_sub(rim) {
-            None => hole.border.vertices[corner as usize].0,
-            Some(inside) => first + inside,
+        let rim: Vec<u32> = hole
+            .borders
+            .iter()
+            .flat_map(|border| &border.vertices)
+            .map(|v| v.0)
+            .collect();
+        let number = |corner: u32| match rim.get(corner as usize) {
+            Some(&vertex) => vertex,
+            None => first + corner - rim.len() as u32,
         };
         triangles.extend(hole.triangles.iter().map(|corners| corners.map(number)));
     }
@@ -39,7 +44,7 @@ fn crease(model: &Model, filled: &Filled) -> f64 {
     let rim: Vec<DVec3> = filled
         .holes
         .iter()
-        .flat_map(|hole| &hole.border.vertices)
+        .flat_map(|hole| &hole.borders[0].vertices)
         .map(|v| model.surface.positions[v.index()])
         .collect();
     let is_rim = |v: pliant_mesh::SurfaceVertex| rim.contains(&corner(v));
@@ -118,7 +123,7 @@ fn a_cylinder_and_a_saddle_come_back() {
         .holes
         .iter()
         .find(|hole| {
-            hole.border
+            hole.borders[0]
                 .vertices
                 .iter()
                 .all(|v| open.surface.positions[v.index()].x > 0.5)
@@ -161,7 +166,8 @@ fn a_noisy_sphere_with_many_holes_becomes_closed() {
         centres.iter().any(|c| p.normalize().distance(*c) < 0.08)
     }));
     let patches = filled(&holey, Holes::Every);
-    check_closed(&holey, &patches, patches.passed_over.len(), 0);
+    let open = patches.unfilled.iter().map(|unfilled| unfilled.count).sum();
+    check_closed(&holey, &patches, open, 0);
     assert!(patches.holes.iter().all(|hole| hole.is_faired));
 }
 
@@ -169,7 +175,7 @@ fn a_noisy_sphere_with_many_holes_becomes_closed() {
 fn rims_of_hundreds_of_edges_and_slits_are_filled() {
     let bowl = model(without(&shapes::uv_sphere(120, 400), |p| p.z > 0.3));
     let patch = filled(&bowl, Holes::Every);
-    assert!(patch.holes[0].border.vertices.len() > 390);
+    assert!(patch.holes[0].borders[0].vertices.len() > 390);
     check_closed(&bowl, &patch, 0, 0);
     let slit = model(without(&shapes::uv_sphere(90, 300), |p| p.z.abs() < 0.03 && p.x > -0.6));
     let patch = filled(&slit, Holes::Every);
@@ -180,6 +186,24 @@ fn rims_of_hundreds_of_edges_and_slits_are_filled() {
         .map(|p| (p.length() - 1.0).abs())
         .fold(0.0, f64::max);
     assert!(off < 0.01, "{off}");
+}
+
+/// The shape of a large patch is found with few points; it is the same as that of a small one.
+#[test]
+fn a_cap_comes_back_for_any_number_of_edges_of_its_rim() {
+    let patch_of = |count: usize| {
+        let open = model(without(&shapes::uv_sphere(count / 3, count), |p| p.z > 0.85));
+        let filled = filled(&open, Holes::Every);
+        check_closed(&open, &filled, 0, 0);
+        filled.holes.into_iter().next().unwrap()
+    };
+    let diameter = 2.0 * (1.0_f64 - 0.85 * 0.85).sqrt();
+    for (count, least) in [(60, 0), (240, 0), (700, 8_000)] {
+        let hole = patch_of(count);
+        let off = hole.points.iter().map(|p| (p.length() - 1.0).abs()).fold(0.0, f64::max);
+        assert!(off < 0.02 * diameter, "{count}: {off}");
+        assert!(hole.points.len() > least, "{count}: {}", hole.points.len());
+    }
 }
 
 /// Needle edges in a rim don't ask for a patch of millions of points.
@@ -209,7 +233,7 @@ fn a_rim_with_needle_edges_gets_a_patch_of_its_own_order() {
     let patches = filled(&tube, Holes::Every);
     assert_eq!(patches.holes.len(), 2);
     for hole in &patches.holes {
-        let rim = hole.border.vertices.len();
+        let rim = hole.borders[0].vertices.len();
         assert!(hole.triangles.len() < 2 * rim * rim, "{}", hole.triangles.len());
     }
 }

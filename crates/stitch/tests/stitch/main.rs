@@ -4,3 +4,6 @@
 mod fill;
 mod made;
 mod merge;
+mod open;
+mod plane;
+mod tube;

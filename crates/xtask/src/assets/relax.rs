@@ -98,7 +98,7 @@ fn cotangent(mesh: &Mesh, h: u32) -> f64 {
     a.dot(b) / a.cross(b).length().max(1e-30)
 }
 
-/// Whether the edge is not Delaunay and flipping it causes no fold.
+/// Returns true if the edge is not Delaunay and flipping it causes no fold.
 fn wants_flip(mesh: &Mesh, h: u32, o: u32) -> bool {
     if cotangent(mesh, h) + cotangent(mesh, o) >= -1e-6 {
         return false;
@@ -109,7 +109,7 @@ fn wants_flip(mesh: &Mesh, h: u32, o: u32) -> bool {
     (a - c).cross(d - c).dot(old) > 0.0 && (d - c).cross(b - c).dot(old) > 0.0
 }
 
-/// Whether the two vertices of the flipped edge already share an edge.
+/// Returns true if the two vertices of the flipped edge already share an edge.
 fn joined(mesh: &Mesh, opposite: &[u32], h: u32, o: u32) -> bool {
     let far = start(mesh, previous(o));
     let first = previous(h);

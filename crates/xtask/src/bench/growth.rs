@@ -21,7 +21,7 @@ const WAYS: [(&str, &str, &str); 2] = [
 const LIMITS: (f64, f64, f64) = (5e6, 60.0, 10e9);
 
 /// One row for each mesh and way, on all threads. Measurements of an interrupted run are taken from
-/// `target/bench/growth.json`; without that file everything is measured anew.
+/// `target/bench/growth.json`; without that file everything is measured again.
 pub fn rows(scale: Scale) -> Result<Vec<Row>, String> {
     let meshes = match scale {
         Scale::Usual => USUAL,

@@ -140,8 +140,8 @@ impl Application {
         }
     }
 
-    /// Whether saving under a path from the window's own dialog would replace a file other than the open one; the
-    /// system's dialogs ask that themselves.
+    /// Returns true if saving under a path from the window's own dialog would replace a file other than the open one;
+    /// the system's dialogs ask that themselves.
     fn would_be_lost(&self, purpose: Purpose, path: &Path) -> bool {
         let path = match purpose {
             Purpose::SaveProject => project_path(path.to_owned()),
@@ -194,7 +194,6 @@ impl Application {
                 });
                 theme::apply(context, self.settings.get());
             }
-            FileCommand::Compare => self.toggle_compare(context),
             FileCommand::Hints => self.settings.change(|settings| settings.hints_seen = false),
             FileCommand::SavePicture(kind) => self.choose(Purpose::SavePicture(kind)),
             FileCommand::Quit => self.unless_unsaved(Then::Close),
@@ -209,7 +208,7 @@ impl Application {
             Message::Cage(mesh.map_err(|error| error.to_string()))
         };
         self.workers
-            .spawn("cage", read, |sentence| Message::Cage(Err(sentence)));
+            .spawn("control mesh", read, |sentence| Message::Cage(Err(sentence)));
     }
 
     /// Takes the cage that was read.

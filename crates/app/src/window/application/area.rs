@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use eframe::egui::{self, Align2, FontId, Sense, vec2};
 use glam::DVec2;
-use pliant_editor::{Before, Command, Cursor, Event};
+use pliant_editor::{Before, Cursor, Event};
 
 use crate::files::names::file_name;
 use crate::legend;
@@ -34,18 +34,14 @@ impl Application {
     /// The 3D view: input first, then the picture, then the layers over it.
     pub(in crate::window) fn view(&mut self, ui: &mut egui::Ui) -> Result<(), pliant_render::RenderError> {
         let (whole, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
-        let (above, strip) = match self.editor.comparison() {
+        let (rect, compared) = match self.editor.comparison() {
             None => (whole, None),
-            Some(_) => {
-                let (above, strip) = whole.split_top_bottom_at_fraction(0.62);
-                (above, Some(strip))
-            }
-        };
-        let (rect, second) = match self.compare {
-            None => (above, None),
-            Some(_) => {
-                let (first, second) = above.split_left_right_at_fraction(0.5);
-                (first, Some(second))
+            Some(comparison) => {
+                let (rect, compared) = match comparison.large() {
+                    None => whole.split_top_bottom_at_fraction(0.62),
+                    Some(_) => whole.split_left_right_at_fraction(0.5),
+                };
+                (rect, Some(compared))
             }
         };
         if rect.width() < 1.0 || rect.height() < 1.0 {
@@ -74,11 +70,11 @@ impl Application {
             Cursor::Grabbing => egui::CursorIcon::Grabbing,
             Cursor::Move => egui::CursorIcon::Move,
         });
-        self.picture(ui, rect, second)?;
-        self.method_views(ui, strip)?;
+        self.picture(ui, rect)?;
+        self.method_views(ui, compared)?;
         self.marks(ui, rect);
         self.invitation(ui, rect);
-        self.words(ui, rect, above);
+        self.words(ui, rect);
         Ok(())
     }
 
@@ -127,9 +123,9 @@ impl Application {
         }
     }
 
-    /// Draws the views of all methods into `strip` while they are compared.
-    fn method_views(&mut self, ui: &mut egui::Ui, strip: Option<egui::Rect>) -> Result<(), pliant_render::RenderError> {
-        let (Some(strip), Some(comparison), Some(stage)) = (strip, self.editor.comparison(), self.workers.stage())
+    /// Draws the views of the methods into `place` while they are compared.
+    fn method_views(&mut self, ui: &mut egui::Ui, place: Option<egui::Rect>) -> Result<(), pliant_render::RenderError> {
+        let (Some(place), Some(comparison), Some(stage)) = (place, self.editor.comparison(), self.workers.stage())
         else {
             // Their data on the device is dropped with them.
             self.method_views = MethodViews::default();
@@ -142,24 +138,19 @@ impl Application {
         } else {
             Smoothness::Moving
         };
-        let shown = self.method_views.show(ui, strip, &self.editor, smooth)?;
+        let shown = self.method_views.show(ui, place, &self.editor, smooth)?;
         if shown.again {
             ui.ctx().request_repaint_after(REST);
         }
-        if let Some(method) = shown.taken {
-            self.command(Command::SetMethod(method));
+        if let Some(command) = shown.command {
+            self.command(command);
             ui.ctx().request_repaint();
         }
         Ok(())
     }
 
-    /// Draws the view, and beside it the `second` one if two methods are compared.
-    fn picture(
-        &mut self,
-        ui: &mut egui::Ui,
-        rect: egui::Rect,
-        second: Option<egui::Rect>,
-    ) -> Result<(), pliant_render::RenderError> {
+    /// Draws the view.
+    fn picture(&mut self, ui: &mut egui::Ui, rect: egui::Rect) -> Result<(), pliant_render::RenderError> {
         let smooth = self.smoothness();
         let view = self.editor.view();
         if self.viewport.paint(ui, rect, &view, &self.editor, smooth)? {
@@ -168,18 +159,7 @@ impl Application {
                     .max(Duration::from_millis(10)),
             );
         }
-        self.original(ui, rect, smooth)?;
-        if let (Some(second), Some(compare), Some(stage)) = (second, &mut self.compare, self.workers.stage()) {
-            compare.follow(&self.editor, &self.viewport, &stage);
-            let resting = smooth == Smoothness::Resting && compare.is_settled();
-            let smooth = if resting { smooth } else { Smoothness::Moving };
-            if compare.show(ui, second, smooth)? {
-                ui.ctx().request_repaint_after(REST);
-            }
-            let name = self.editor.document().method().declaration().title;
-            axis_ball::readout(ui.painter(), rect.center_top() + vec2(-60.0, 12.0), name);
-        }
-        Ok(())
+        self.original(ui, rect, smooth)
     }
 
     /// Lays the shape of the file over the picture, if it is shown along with the present one.
@@ -230,11 +210,7 @@ impl Application {
         }
         if !Arc::ptr_eq(shown.drawn, shown.displacements) {
             let at = rect.center_bottom() + vec2(-90.0, -34.0);
-            let shows = if shown.look.original {
-                "As it was opened"
-            } else {
-                "Smooth base"
-            };
+            let shows = if shown.look.original { "Original" } else { "Smooth base" };
             axis_ball::readout(ui.painter(), at, shows);
         }
         drop_target(ui, rect);
@@ -264,9 +240,9 @@ impl Application {
     }
 
     /// Shows messages and the first steps over the corners of the views, which together are `whole`.
-    fn words(&mut self, ui: &egui::Ui, rect: egui::Rect, whole: egui::Rect) {
+    fn words(&mut self, ui: &egui::Ui, rect: egui::Rect) {
         let problem = self.editor.view().problem;
-        let toast = self.toast.show(ui.ctx(), whole, problem, &mut self.notes.headline);
+        let toast = self.toast.show(ui.ctx(), rect, problem, &mut self.notes.headline);
         if self.shows_hints && !self.settings.get().hints_seen && hints::show(ui, rect, toast, &self.editor) {
             self.settings.change(|settings| settings.hints_seen = true);
         }
@@ -279,8 +255,8 @@ fn drop_target(ui: &egui::Ui, rect: egui::Rect) {
     let Some(path) = held else { return };
     let name = path.as_deref().map(file_name);
     let text = name.map_or_else(
-        || "Let go to open it".to_owned(),
-        |name| format!("Let go to open {name}"),
+        || "Release to open it".to_owned(),
+        |name| format!("Release to open {name}"),
     );
     ui.painter().rect_stroke(
         rect.shrink(6.0),

@@ -44,7 +44,7 @@ impl Application {
                         Err(sentence) => self.fail(sentence),
                     }
                 }
-                // This one goes to the second view.
+                // This one goes to a further view.
                 Message::Uploaded(..) => {}
                 Message::Redrawn(result) => self.take_drawing(result),
                 Message::LoadedMaterials(of, result) => self.set_materials(&of, result),

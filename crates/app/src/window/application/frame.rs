@@ -214,13 +214,13 @@ impl Application {
         let end = if descent.converged {
             "Settled"
         } else {
-            "Stopped at its limit of steps"
+            "Stopped at the step limit"
         };
         Some(format!("{end}, energy {:.3e}.", descent.energy))
     }
 }
 
-/// Whether an event may change the picture, so that one more frame is needed to lay it out.
+/// Returns true if an event may change the picture, so that one more frame is needed to lay it out.
 fn may_change_layout(event: &egui::Event) -> bool {
     use egui::Event::{MouseMoved, MouseWheel, PointerGone, PointerMoved, Touch, Zoom};
     !matches!(

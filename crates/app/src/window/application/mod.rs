@@ -39,22 +39,19 @@ use super::threads::message::Message;
 use super::threads::workers::Workers;
 use super::viewport::Viewport;
 use super::viewport::before::{OriginalView, Split};
-use super::viewport::compare::Compare;
 use super::viewport::method_views::MethodViews;
 use super::widgets::{icon, theme};
 use crate::window::session::{Session, Source};
 use crate::window::viewport::pose_queue::PoseQueue;
 use pliant_engine::EngineError;
 
-/// How long the view must rest before it is drawn with smooth borders on a software device.
+/// The time that the view must rest before a software device draws it with smooth borders.
 pub(super) const REST: Duration = Duration::from_millis(300);
 
 /// The window's state beside the editor's: files, threads, the GPU, questions and notes.
 pub struct Application {
     pub(super) editor: Editor,
     pub(super) viewport: Viewport,
-    /// The second view, while two methods are compared.
-    pub(super) compare: Option<Compare>,
     /// The shape of the file, while it is shown along with the present one, and the position of the line between both.
     pub(super) original: Option<OriginalView>,
     pub(super) split: Split,
@@ -68,9 +65,9 @@ pub struct Application {
     pub(super) settings: SettingsFile,
     pub(super) recovery: Option<Recovery>,
     pub(super) palette: Option<Palette>,
-    /// Whether this is a person's window, which shows the first steps.
+    /// True if this is a person's window, which shows the first steps.
     pub(super) shows_hints: bool,
-    /// Whether the panel beside the view is hidden.
+    /// True if the panel beside the view is hidden.
     pub(super) is_panel_hidden: bool,
     pub(super) log: Log,
     pub(super) keys: KeysWindow,
@@ -89,7 +86,7 @@ pub struct Application {
     /// The recovered session that is open now, until this one keeps or saves its work.
     pub(super) recovered_from: Option<PathBuf>,
     pub(super) longest_frame: Duration,
-    /// Whether the window is still to fill the screen, as it did last time.
+    /// True if the window is still to fill the screen, as it did last time.
     pub(super) is_to_fill_screen: bool,
     /// The places of the window's content, its bars and its panel in the last frame.
     pub(super) layout: [egui::Rect; 6],
@@ -151,7 +148,6 @@ impl Application {
         let mut application = Self {
             editor: Editor::new(Box::new(workers.clone())),
             viewport,
-            compare: None,
             original: None,
             split: Split::default(),
             method_views: MethodViews::default(),
@@ -201,12 +197,11 @@ impl Application {
         context.egui_ctx.add_plugin(EventQueue::default());
         let Some(state) = context.wgpu_render_state.clone() else {
             return Err(EngineError::System(
-                "the window has no graphics device any more".to_owned(),
+                "the window has lost its graphics device".to_owned(),
             ));
         };
         let system = |error: pliant_render::RenderError| EngineError::System(error.to_string());
         self.viewport = Viewport::new(state).map_err(system)?;
-        self.compare = None;
         self.original = None;
         self.method_views = MethodViews::default();
         self.workers.wake(context.egui_ctx.clone());
@@ -222,7 +217,7 @@ impl Application {
             self.viewport.show(drawing, surface, displacements, lowest);
         }
         self.notes.headline = Some(Note::Done(
-            "The graphics device was lost and has been opened again; the document is as it was.".to_owned(),
+            "The graphics device was lost and opened again; the document is unchanged.".to_owned(),
         ));
         Ok(())
     }
@@ -232,7 +227,7 @@ impl Application {
         self.input.numpad.extend(digits);
     }
 
-    /// Whether the graphics device is lost, so that the window must be opened again.
+    /// Returns true if the graphics device is lost, so that the window must be opened again.
     pub fn has_lost_its_device(&self) -> bool {
         self.viewport.is_lost()
     }
@@ -252,21 +247,21 @@ impl Application {
         self.session.open.as_ref()?.path.as_deref()
     }
 
-    /// Whether materials are requested and their images are still being decoded.
+    /// Returns true if materials are requested and their images are still being decoded.
     pub fn is_loading_textures(&self) -> bool {
         self.editor.view().look.shading == Shading::Material && self.viewport.awaits_images()
     }
 
-    /// Whether nothing is in progress: no job, no file being read or written, and the picture shows the present shape.
+    /// Returns true if nothing is in progress: no job, no file being read or written, and the picture shows the present
+    /// shape.
     pub fn is_settled(&self) -> bool {
         let view = self.editor.view();
         let shown = self
             .viewport
             .displacements()
             .is_some_and(|shown| Arc::ptr_eq(shown, view.drawn));
-        let compared = self.compare.as_ref().is_none_or(Compare::is_settled);
         let comparison = self.editor.comparison();
-        let compared = compared && comparison.is_none_or(|comparison| self.method_views.are_settled(comparison));
+        let compared = comparison.is_none_or(|comparison| self.method_views.are_settled(comparison));
         let original = self.original.as_ref().is_none_or(|original| original.is_settled(&view));
         let drawn = self.redrawing.is_none() && self.shows_what_is_turned();
         let is_idle = self.session.doing().is_none() && !self.is_saving() && !self.is_loading_textures();
@@ -281,20 +276,6 @@ impl Application {
     /// The place of the 3D view in the window, in points.
     pub fn view_rect(&self) -> egui::Rect {
         self.view_rect
-    }
-
-    /// The editor behind the second view, while two methods are compared.
-    pub fn compared(&self) -> Option<&Editor> {
-        self.compare.as_ref().map(Compare::editor)
-    }
-
-    /// Opens or closes the second view.
-    pub fn toggle_compare(&mut self, context: &egui::Context) {
-        self.compare = match self.compare.take() {
-            Some(_) => None,
-            None => Some(Compare::new(context, &self.viewport, &self.editor)),
-        };
-        self.last_change = Instant::now();
     }
 
     /// The number of times that the 3D view was drawn.
@@ -316,10 +297,9 @@ impl Application {
 
     /// The time that drawing has kept the window's thread busy so far.
     pub fn drawing_time(&self) -> Duration {
-        let second = self.compare.as_ref().map_or(Duration::ZERO, Compare::drawing_time);
         let original = self.original.as_ref();
         let original = original.map_or(Duration::ZERO, OriginalView::drawing_time);
-        self.viewport.drawing_time() + second + original + self.method_views.drawing_time()
+        self.viewport.drawing_time() + original + self.method_views.drawing_time()
     }
 
     /// Gives the editor a command, like a menu.

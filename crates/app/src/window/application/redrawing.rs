@@ -9,7 +9,7 @@ use crate::window::application::Application;
 use crate::window::threads::message::{Message, Redrawn};
 
 impl Application {
-    /// Whether the drawing turns the same parts inside out as the document.
+    /// Returns true if the drawing turns the same parts inside out as the document.
     pub(in crate::window) fn shows_what_is_turned(&self) -> bool {
         let open = self.session.open.as_ref();
         open.is_none_or(|open| open.drawing.inside_out == *self.editor.document().inside_out())
@@ -52,7 +52,7 @@ impl Application {
             Err(sentence) => {
                 // This is not requested again and again.
                 self.redrawing = wanted;
-                return self.fail(format!("the view does not show what is turned inside out: {sentence}"));
+                return self.fail(format!("the view can't show parts turned inside out: {sentence}"));
             }
         };
         let Redrawn {

@@ -103,7 +103,7 @@ impl Application {
         let names: Vec<String> = self.wishes.iter().map(|wish| file_name(wish.path())).collect();
         let verb = if names.len() > 1 { "are" } else { "is" };
         let end = match self.editor.is_acting() {
-            true => "what you are doing has ended and the shape has settled",
+            true => "the current action has ended and the shape has settled",
             false => "the shape has settled",
         };
         (!names.is_empty()).then(|| format!("{} {verb} saved once {end}", names.join(" and ")))
@@ -117,7 +117,7 @@ impl Application {
         self.session.ask_again();
     }
 
-    /// Whether a save is under way or waits.
+    /// Returns true if a save is under way or waits.
     pub(in crate::window) fn is_saving(&self) -> bool {
         self.session.is_saving() || !self.wishes.is_empty()
     }
@@ -276,8 +276,7 @@ impl Application {
             MeshSource::File(file) => (Some(file.clone()), None),
             MeshSource::Gone if open.saved.is_some() => (open.path.clone(), open.saved.clone()),
             MeshSource::Gone => {
-                let gone =
-                    "the mesh is nowhere as it was opened: save the project and open that, then join its vertices";
+                let gone = "no file holds the mesh as it was opened: save the project, open it, then weld its vertices";
                 return self.fail(gone.to_owned());
             }
         };

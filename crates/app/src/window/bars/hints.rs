@@ -16,19 +16,21 @@ pub fn show(ui: &egui::Ui, view_rect: egui::Rect, toast: Option<egui::Rect>, edi
         (
             1,
             "Paint a handle",
-            "Hold the left button over what you want to move, or press 7 and drag a limb. Turn the view with Alt or beside the model.",
+            "Hold the left button over the part to move, or press 7 and drag a limb. Turn the view with Alt, or drag \
+             beside the model.",
         )
     } else if !editor.document().is_displaced() && !editor.document().is_applied() {
         (
             2,
             "Drag it",
-            "Rest on an arrow or a ring and pull it, or press G, R or S; x, y, z and numbers work as you expect.",
+            "Point at an arrow or a ring and drag it, or press G, R or S. Then x, y or z chooses an axis, and digits \
+             set the amount.",
         )
     } else {
         (
             3,
             "Save",
-            "Ctrl+S saves the model, the original is kept beside it. F1 finds every command by its name.",
+            "Ctrl+S saves the model and keeps the original beside it. F1 finds every command by its name.",
         )
     };
     let mut put_away = false;
@@ -50,7 +52,7 @@ pub fn show(ui: &egui::Ui, view_rect: egui::Rect, toast: Option<egui::Rect>, edi
                         ui.label(RichText::new(title).strong().color(accent(ui)));
                     });
                     ui.label(words);
-                    if ui.small_button("Got it, hide these hints").clicked() {
+                    if ui.small_button("Hide hints").clicked() {
                         put_away = true;
                     }
                 });

@@ -29,7 +29,7 @@ pub struct FileWork {
     pub doing: Option<(&'static str, f32)>,
     /// The waiting saves and their reason, in a sentence.
     pub waiting: Option<String>,
-    /// Whether the file's images are being decoded.
+    /// True if the file's images are being decoded.
     pub is_loading_textures: bool,
 }
 
@@ -56,7 +56,7 @@ pub fn show(
         if let Some(waiting) = &file_work.waiting {
             ui.add(Spinner::new().size(14.0));
             ui.label(waiting);
-            if ui.small_button("Save as it is now").clicked() {
+            if ui.small_button("Save now").clicked() {
                 answer = Some(FileWorkAnswer::SaveAsItIs);
             }
             if ui.small_button("Don't save").clicked() {
@@ -84,7 +84,7 @@ pub fn show(
             if let Some(name) = software_device {
                 ui.label(RichText::new("software drawing").weak())
                     .on_hover_text(format!(
-                        "No graphics card was found; {name} draws on the processor, slowly."
+                        "No graphics card was found, so {name} draws slowly on the processor."
                     ));
             }
             if !view.jobs.is_empty() && ui.small_button("Stop").clicked() {

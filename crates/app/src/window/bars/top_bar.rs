@@ -183,9 +183,8 @@ fn region_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
 type Groups<'a> = [&'a [(FileCommand, Option<&'static str>)]];
 
 /// The look of the window itself.
-const WINDOW_MENU: [&[(FileCommand, Option<&str>)]; 4] = [
+const WINDOW_MENU: [&[(FileCommand, Option<&str>)]; 3] = [
     &[(FileCommand::Panel, None)],
-    &[(FileCommand::Compare, None)],
     &[
         (FileCommand::NextTheme, None),
         (FileCommand::Scale(1), Some("Larger")),

@@ -13,7 +13,7 @@ pub const ID: &str = "keys window";
 /// The open list.
 #[derive(Debug, Default)]
 pub struct KeysWindow {
-    /// Whether it is open.
+    /// True if it is open.
     pub open: bool,
     /// The command that waits for its key.
     waiting: Option<&'static str>,
@@ -22,7 +22,7 @@ pub struct KeysWindow {
 }
 
 impl KeysWindow {
-    /// Whether the next key is meant for it.
+    /// Returns true if the next key is meant for it.
     pub fn takes_keys(&self) -> bool {
         self.open && self.waiting.is_some()
     }
@@ -54,10 +54,7 @@ impl KeysWindow {
             .default_width(360.0)
             .show(context, |ui| {
                 let others = !settings.get().keys.is_empty();
-                if ui
-                    .add_enabled(others, egui::Button::new("The program's own keys"))
-                    .clicked()
-                {
+                if ui.add_enabled(others, egui::Button::new("Default keys")).clicked() {
                     settings.change(|settings| settings.keys.clear());
                     changed = true;
                 }
@@ -79,7 +76,7 @@ impl KeysWindow {
                                     (false, None) => "none".to_owned(),
                                 };
                                 let button = ui.button(RichText::new(shown).monospace());
-                                let label = format!("Key of {}", listed.name);
+                                let label = format!("Key for {}", listed.name);
                                 button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &label));
                                 if button.clicked() {
                                     self.waiting = Some(listed.name);

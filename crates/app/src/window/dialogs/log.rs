@@ -17,7 +17,7 @@ pub const ID: &str = "log window";
 #[derive(Debug, Default)]
 pub struct Log {
     lines: Vec<String>,
-    /// Whether its window is open.
+    /// True if its window is open.
     pub open: bool,
 }
 
@@ -59,7 +59,7 @@ impl Log {
                     .stick_to_bottom(true)
                     .show(ui, |ui| {
                         if self.lines.is_empty() {
-                            ui.label(RichText::new("Nothing was said yet.").weak());
+                            ui.label(RichText::new("There are no messages yet.").weak());
                         }
                         for line in &self.lines {
                             ui.add(

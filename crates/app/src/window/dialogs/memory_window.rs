@@ -17,7 +17,7 @@ const RANGE_GB: std::ops::RangeInclusive<f64> = 0.1..=4096.0;
 /// The choice.
 #[derive(Debug, Default)]
 pub struct MemoryWindow {
-    /// Whether it is open.
+    /// True if it is open.
     pub open: bool,
     /// The number while it is being dragged: it takes effect on release.
     dragged_gb: Option<f64>,
@@ -43,8 +43,8 @@ impl MemoryWindow {
 }
 
 fn choose(ui: &mut egui::Ui, most: &mut Option<MostMemory>, dragged_gb: &mut Option<f64>) {
-    ui.label("Binding may take, beside the mesh:");
-    if ui.radio(most.is_none(), "What the machine leaves").clicked() {
+    ui.label("Memory for binding, beside the mesh:");
+    if ui.radio(most.is_none(), "All free memory").clicked() {
         *most = None;
     }
     ui.horizontal(|ui| {
@@ -72,7 +72,7 @@ fn choose(ui: &mut egui::Ui, most: &mut Option<MostMemory>, dragged_gb: &mut Opt
             }
         });
     });
-    let note = "What does not fit is solved in a way that takes less memory and more time, or refused. Without a number \
-                of your own it is 16 GiB at most.";
+    let note = "A larger system is solved with less memory in more time, or refused. All free memory means 16 GiB at \
+                most.";
     ui.label(RichText::new(note).weak().small());
 }

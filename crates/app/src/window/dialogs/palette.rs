@@ -64,7 +64,7 @@ impl Palette {
             ui.memory_mut(|memory| memory.request_focus(id));
             let field = egui::TextEdit::singleline(&mut self.typed)
                 .id(id)
-                .hint_text("Type what you want to do")
+                .hint_text("Type a command")
                 .desired_width(f32::INFINITY);
             let field = ui.add(field);
             field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Command"));
@@ -87,7 +87,7 @@ impl Palette {
                 .auto_shrink(false)
                 .show(ui, |ui| {
                     if entries.is_empty() {
-                        ui.label(RichText::new("No command is called so.").weak());
+                        ui.label(RichText::new("No command has this name.").weak());
                     }
                     for (number, entry) in entries.iter().enumerate() {
                         let shortcut = RichText::new(&entry.shortcut);
@@ -165,7 +165,7 @@ fn entries(context: &egui::Context, editor: &Editor, typed: &str) -> Vec<Entry> 
             keywords: declaration.keywords,
             shortcut: String::new(),
             obstacle: match editor.document().method().name() == declaration.name {
-                true => Some("The surface bends by this method already.".to_owned()),
+                true => Some("This method is already in use.".to_owned()),
                 false => editor.unavailable_because(&command).map(Cow::into_owned),
             },
             found: Found::Editor(command),

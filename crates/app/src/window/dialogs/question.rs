@@ -20,15 +20,15 @@ pub enum Question {
     /// Whether the opened file may be replaced; with it the place of its original, kept or to be kept, once that is
     /// known.
     WriteOver(PathBuf, Option<Result<Kept, String>>),
-    /// What to do with a file that another program has changed before a save.
+    /// The choices for a file that another program has changed before a save.
     Changed(PathBuf, ChangedOffer),
     /// The path of a file, if the system has no dialog.
     File(Purpose, Box<FolderBrowser>),
-    /// Whether the existing file at the chosen path may be replaced.
+    /// The replacement of the existing file at the chosen path.
     Replace(Purpose, PathBuf),
-    /// Whether the unsaved work may be lost.
+    /// The loss of unsaved work.
     Discard(Then, String),
-    /// Whether to open the work of earlier sessions.
+    /// The recovery of earlier sessions' work.
     Recover(Vec<Left>),
 }
 
@@ -120,11 +120,11 @@ pub fn ask(context: &egui::Context, question: &mut Question) -> Option<Answer> {
 fn write_over(ui: &mut egui::Ui, path: &Path, kept: Option<&Result<Kept, String>>, answer: &mut Option<Answer>) {
     ui.heading(format!("Save over {}?", file_name(path)));
     ui.label(match kept {
-        None => "The file as it is now is kept beside it.".to_owned(),
-        Some(Ok(Kept::Already(kept))) => format!("The original is kept already, as {}.", file_name(kept)),
-        Some(Ok(Kept::Under(kept))) => format!("The file as it is now is kept beside it as {}.", file_name(kept)),
-        Some(Ok(Kept::Nothing)) => "The file is gone from the disk; it is written anew.".to_owned(),
-        Some(Err(sentence)) => format!("The file as it is now can't be kept: {sentence}"),
+        None => "The current file is kept beside it.".to_owned(),
+        Some(Ok(Kept::Already(kept))) => format!("The original is already kept as {}.", file_name(kept)),
+        Some(Ok(Kept::Under(kept))) => format!("The current file is kept beside it as {}.", file_name(kept)),
+        Some(Ok(Kept::Nothing)) => "The file was deleted from the disk; saving writes it again.".to_owned(),
+        Some(Err(sentence)) => format!("The current file can't be kept: {sentence}"),
     });
     ui.add_space(8.0);
     ui.horizontal(|ui| {
@@ -145,7 +145,7 @@ fn changed(ui: &mut egui::Ui, path: &Path, offer: ChangedOffer, answer: &mut Opt
     ui.heading(format!("{name} has changed"));
     ui.label("Another program or window has written this file since it was read or saved here.");
     if offer == ChangedOffer::Reload {
-        ui.label("Reloading opens it as it is now and puts your edit onto it; the steps so far can't be undone then.");
+        ui.label("Reloading opens the changed file with your edit. The steps so far can then no longer be undone.");
     }
     ui.add_space(8.0);
     ui.horizontal(|ui| {
@@ -192,7 +192,7 @@ fn file(ui: &mut egui::Ui, purpose: Purpose, browser: &mut FolderBrowser, answer
 
 fn recover(ui: &mut egui::Ui, left: &[Left], answer: &mut Option<Answer>) {
     ui.heading("Recover unsaved work?");
-    ui.label("Pliant ended before this was saved. Recover it and save it, or delete it for good.");
+    ui.label("Pliant ended before this was saved. Recover it, or delete it for good.");
     ui.add_space(8.0);
     egui::Grid::new("left").show(ui, |ui| {
         for (number, left) in left.iter().enumerate() {
@@ -245,8 +245,8 @@ fn ago(written: SystemTime) -> String {
 fn discard(ui: &mut egui::Ui, then: &Then, name: &str, answer: &mut Option<Answer>) {
     ui.heading("There is unsaved work");
     let end = match then {
-        Then::Open(_) => "Opening another file closes this one.",
-        Then::Close => "Closing the window ends it.",
+        Then::Open(_) => "Opening another file discards them.",
+        Then::Close => "Closing the window discards them.",
     };
     ui.label(format!("{} does not have your last changes. {end}", quoted(name)));
     ui.add_space(8.0);

@@ -1,6 +1,6 @@
 //! Whether the system has a dialog for files. A cancelled one and a missing one give the same answer.
 
-/// Whether a portal of the desktop answers on the session's bus, or zenity replaces it.
+/// Returns true if a portal of the desktop answers on the session's bus, or zenity replaces it.
 #[cfg(all(unix, not(target_os = "macos")))]
 pub fn is_there() -> bool {
     pollster::block_on(has_portal()).unwrap_or(false) || has_zenity()

@@ -17,7 +17,7 @@ pub struct Entry {
     pub name: String,
     /// Its path.
     pub path: PathBuf,
-    /// Whether it is a folder, or a link to one.
+    /// True if it is a folder, or a link to one.
     pub is_folder: bool,
     /// A file's size in bytes.
     pub bytes: u64,
@@ -41,7 +41,7 @@ pub enum Column {
 pub struct Order {
     /// The column.
     pub column: Column,
-    /// Whether it is reversed. Folders stay before files.
+    /// True if it is reversed. Folders stay before files.
     pub is_reversed: bool,
 }
 

@@ -209,7 +209,7 @@ pub fn read(path: &Path, watch: &Watch) -> Result<OpenedProject, EngineError> {
             Err(EngineError::ProjectMesh {
                 project: path.to_owned(),
                 mesh: SAMPLE_NAME.into(),
-                what: "another sample's",
+                what: "from another sample",
             })
         };
     };
@@ -226,7 +226,7 @@ pub fn read(path: &Path, watch: &Watch) -> Result<OpenedProject, EngineError> {
             Err(EngineError::Interrupted) => return Err(EngineError::Interrupted),
             // The path now has something else, which may not be a mesh.
             Err(_) => {
-                what = "another one now";
+                what = "a different mesh now";
                 continue;
             }
         };
@@ -239,7 +239,7 @@ pub fn read(path: &Path, watch: &Watch) -> Result<OpenedProject, EngineError> {
                 stamp,
             });
         }
-        what = "another one now";
+        what = "a different mesh now";
     }
     Err(EngineError::ProjectMesh {
         project: path.to_owned(),

@@ -56,7 +56,7 @@ impl RestMesh {
         self.copies.note(path, stamp);
     }
 
-    /// Whether the file at `path` still contains it, as far as `check` finds out.
+    /// Returns true if the file at `path` still contains it, as far as `check` finds out.
     pub fn is_in(&self, path: &Path, check: Check) -> bool {
         let is_read_file = is_same(path, &self.loaded.path);
         let mut neighbours = self.loaded.neighbours.iter().filter(|_| is_read_file);

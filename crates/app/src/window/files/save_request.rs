@@ -61,7 +61,7 @@ pub struct Model {
     pub mesh: RestMesh,
     /// The bent shape.
     pub shape: Shape,
-    /// Whether the replaced file is kept.
+    /// The fate of the replaced file.
     pub keep_original: KeepOriginal,
 }
 
@@ -74,7 +74,7 @@ pub struct Shape {
     pub inside_out: Arc<BTreeSet<u32>>,
 }
 
-/// Whether the file that a save replaces is kept.
+/// The fate of the file that a save replaces.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum KeepOriginal {
     /// As `NAME.original.EXT`, or with a number after it, unless one of these already has its content.

@@ -27,11 +27,11 @@ pub struct Settings {
     pub panel_width: f32,
     /// The window's size in points.
     pub window_size: Option<[f32; 2]>,
-    /// Whether the window fills the screen; its size is the one for the other case.
+    /// True if the window fills the screen; its size is the one for the other case.
     pub maximised: bool,
     /// Sections of the panel that are folded away, by their titles.
     pub folded: std::collections::BTreeSet<String>,
-    /// Whether the person has closed the hints on the canvas.
+    /// True if the person has closed the hints on the canvas.
     pub hints_seen: bool,
     /// The memory limit for binding; without one, the machine's free memory.
     pub memory: Option<MostMemory>,
@@ -59,7 +59,8 @@ impl SettingsFile {
             Some(Problem::Corrupted(reason)) => match put_aside(&path) {
                 Ok(aside) => {
                     let sentence = format!(
-                        "the settings in {} can't be read ({reason}), so the defaults hold: what was there is kept as {}",
+                        "the settings in {} can't be read ({reason}), so the defaults apply: the old file is kept as \
+                         {}",
                         shown(&path),
                         shown(&aside)
                     );
@@ -113,8 +114,8 @@ fn put_aside(path: &Path) -> Result<PathBuf, String> {
     let aside = free.unwrap_or_else(|| named(1));
     std::fs::rename(path, &aside).map_err(|error| {
         format!(
-            "the settings in {} can't be read, and the file can't be renamed ({error}): mend or delete it; the defaults \
-             hold for now",
+            "the settings in {} can't be read, and the file can't be renamed ({error}): repair or delete it; the \
+             defaults apply for now",
             shown(path)
         )
     })?;

@@ -25,7 +25,7 @@ use pliant_engine::saving::{self, SaveAs};
 pub fn write(request: SaveRequest, progress: &Progress, cancel: &Cancel) -> Result<Written, Unwritten> {
     let name = file_name(&request.path);
     let stopped = || {
-        let sentence = format!("Saving {name} was stopped: nothing was written. Save again when you like.");
+        let sentence = format!("Saving {name} was stopped, and nothing was written: save again to write it.");
         Unwritten::Refused(sentence)
     };
     match write_unless_changed(&request, progress, cancel) {
@@ -208,12 +208,12 @@ fn ready_model(
         let (place, sentence) = match kept {
             Kept::Nothing => continue,
             Kept::Already(place) => {
-                let sentence = format!("The original is kept already, as {}.", file_name(&place));
+                let sentence = format!("The original is already kept as {}.", file_name(&place));
                 (place, sentence)
             }
             Kept::Under(place) => {
-                let which = if is_former { "as it was opened" } else { "as it was" };
-                let sentence = format!("The file {which} is kept as {}.", file_name(&place));
+                let which = if is_former { "opened" } else { "previous" };
+                let sentence = format!("The {which} file is kept as {}.", file_name(&place));
                 (place, sentence)
             }
         };

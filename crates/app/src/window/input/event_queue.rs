@@ -32,20 +32,20 @@ pub struct EventQueue {
 }
 
 impl EventQueue {
-    /// Whether events of this moment wait for the next frame.
+    /// Returns true if events of this moment wait for the next frame.
     pub fn has_more(context: &Context) -> bool {
         context
             .with_plugin(|queue: &mut Self| !queue.waiting.is_empty())
             .unwrap_or(false)
     }
 
-    /// Whether a field had the keyboard when this frame's events were handed over: all its keys belong to the field,
-    /// even if one of them (Enter, Escape) made the field lose it.
+    /// Returns true if a field had the keyboard when this frame's events were handed over: all its keys belong to the
+    /// field, even if one of them (Enter, Escape) made the field lose it.
     pub fn is_typing(context: &Context) -> bool {
         context.with_plugin(|queue: &mut Self| queue.typing).unwrap_or(false)
     }
 
-    /// Whether Escape has ended the typing into a field in this frame or the last.
+    /// Returns true if Escape has ended the typing into a field in this frame or the last.
     pub fn has_escaped(context: &Context) -> bool {
         context
             .with_plugin(|queue: &mut Self| queue.escaped > 0)
@@ -104,8 +104,8 @@ impl EventQueue {
     }
 }
 
-/// Whether the event is a press of its own: a key's letter comes with the key, and a key that is held down goes to its
-/// first receiver.
+/// Returns true if the event is a press of its own: a key's letter comes with the key, and a key that is held down goes
+/// to its first receiver.
 fn is_press(event: &Event) -> bool {
     match event {
         Event::PointerButton { .. } => true,
@@ -114,7 +114,7 @@ fn is_press(event: &Event) -> bool {
     }
 }
 
-/// Whether another receiver may get the events after this press.
+/// Returns true if another receiver may get the events after this press.
 fn may_change_listener(event: &Event, typing: bool) -> bool {
     match event {
         Event::Key { key, modifiers, .. } => !typing || modifiers.command || modifiers.alt || leaves_field(*key),
@@ -122,7 +122,7 @@ fn may_change_listener(event: &Event, typing: bool) -> bool {
     }
 }
 
-/// Whether this press may take the keyboard from a field that has it.
+/// Returns true if this press may take the keyboard from a field that has it.
 fn leaves_field(key: Key) -> bool {
     let is_function = || {
         let name = key.name();

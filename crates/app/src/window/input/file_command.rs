@@ -50,8 +50,6 @@ pub enum FileCommand {
     NextTheme,
     /// Everything larger (above 0) or smaller, in tenths.
     Scale(i8),
-    /// Show or hide a second view bent by another method.
-    Compare,
     /// Show the first steps again.
     Hints,
     /// Save a picture of the view.
@@ -113,7 +111,6 @@ impl FileCommand {
             | Self::Keys
             | Self::Memory
             | Self::NextTheme
-            | Self::Compare
             | Self::Hints
             | Self::OpenPath(_)
             | Self::SavePicture(_) => None,
@@ -121,7 +118,7 @@ impl FileCommand {
     }
 
     /// All commands that need no path, in the order of the menu.
-    pub const LISTED: [Self; 19] = [
+    pub const LISTED: [Self; 18] = [
         Self::Open,
         Self::Save,
         Self::SaveAs,
@@ -141,7 +138,6 @@ impl FileCommand {
         Self::Keys,
         Self::Memory,
         Self::NextTheme,
-        Self::Compare,
         Self::Hints,
         Self::Quit,
     ];
@@ -155,7 +151,7 @@ impl FileCommand {
             Self::SaveMorph => "Save as morph target…",
             Self::SaveProject => "Save project",
             Self::SaveProjectAs => "Save project as…",
-            Self::Weld(_) => "Join vertices",
+            Self::Weld(_) => "Weld vertices",
             Self::LoadCage => "Load cage…",
             Self::AddExample => "Add example from file…",
             Self::AddMorphTarget(_) => "Add a morph target",
@@ -165,9 +161,8 @@ impl FileCommand {
             Self::Keys => "Keys…",
             Self::Memory => "Memory…",
             Self::NextTheme => "Light or dark",
-            Self::Scale(_) => "Size of everything",
-            Self::Compare => "Compare two methods",
-            Self::Hints => "Hints on the canvas",
+            Self::Scale(_) => "Interface size",
+            Self::Hints => "Canvas hints",
             Self::ExportEdit => "Export edit…",
             Self::SavePicture(_) => "Save picture…",
             Self::Quit => "Quit",
@@ -191,7 +186,6 @@ impl FileCommand {
             Self::Memory => "ram limit budget gigabytes settings preferences",
             Self::NextTheme => "theme dark mode",
             Self::Scale(_) => "ui zoom",
-            Self::Compare => "split view side by side",
             Self::Hints => "help first steps",
             Self::ExportEdit => "json command line",
             Self::SavePicture(_) => "screenshot render image png",

@@ -35,13 +35,13 @@ pub struct Attention {
     pub rect: Rect,
     /// The pointer's last known place in the window, in points.
     pub pointer: egui::Pos2,
-    /// Whether the pointer is over the view and nothing covers it.
+    /// True if the pointer is over the view and nothing covers it.
     pub pointer_over: bool,
-    /// Whether a transform follows the pointer wherever it goes, over panels and bars too.
+    /// True if a transform follows the pointer wherever it goes, over panels and bars too.
     pub follows_pointer: bool,
-    /// Whether keys are for the view: no field has the keyboard and no question is open.
+    /// True if keys are for the view: no field has the keyboard and no question is open.
     pub keys: bool,
-    /// Whether events of this moment wait for the next frame.
+    /// True if events of this moment wait for the next frame.
     pub more_to_come: bool,
 }
 

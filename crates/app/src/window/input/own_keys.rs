@@ -27,7 +27,7 @@ pub fn pressed(input: &egui::InputState) -> Option<Result<Shortcut, String>> {
         egui::Event::Key { key, pressed: true, .. } => {
             let name = key.symbol_or_name();
             Some(format!(
-                "{name} can be no command's key: press a letter, a digit or a sign."
+                "{name} can't be a command's key: press a letter, a digit or a sign."
             ))
         }
         _ => None,
@@ -39,7 +39,9 @@ pub fn pressed(input: &egui::InputState) -> Option<Result<Shortcut, String>> {
 pub fn refusal(key: Shortcut, command: &str) -> Option<String> {
     let holder = holder(key)?;
     let key = key.label();
-    Some(format!("{key} is the key of {holder}: press another for “{command}”."))
+    Some(format!(
+        "{key} is already the key of {holder}: press another key for “{command}”."
+    ))
 }
 
 /// Takes the window's keys out of those that a person has chosen for the editor's commands, with a sentence each.

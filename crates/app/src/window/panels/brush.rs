@@ -58,27 +58,27 @@ fn brush_rows(ui: &mut egui::Ui, mut radius_px: f64, metric: BrushMetric, comman
     });
     let slider = slider
         .labelled_by(label.id)
-        .on_hover_text("[ and ] make it smaller and larger.");
+        .on_hover_text("Sets the size of the brush; [ makes it smaller and ] larger.");
     if slider.changed() {
         commands.push(Command::SetBrushRadius(radius_px));
     }
     ui.end_row();
-    row_label(ui, "Measured");
+    row_label(ui, "Depth");
     const METRICS: [(BrushMetric, &str, &str); 3] = [
         (
             BrushMetric::Screen,
-            "as seen",
-            "Everything under the disc that faces you.",
+            "visible",
+            "Paints everything under the brush that faces you.",
         ),
         (
             BrushMetric::Surface,
             "along surface",
-            "Everything within the radius along the surface: into folds and around edges, seen or not.",
+            "Paints everything within the radius along the surface, into folds and around edges, visible or not.",
         ),
         (
             BrushMetric::Through,
             "through",
-            "Everything under the disc, through to the back of the model.",
+            "Paints everything under the brush, through to the back of the model.",
         ),
     ];
     if let Some(metric) = choices(ui, metric, &METRICS) {
@@ -89,13 +89,13 @@ fn brush_rows(ui: &mut egui::Ui, mut radius_px: f64, metric: BrushMetric, comman
 
 /// The depth of a lasso or a box in the model.
 fn depth_row(ui: &mut egui::Ui, depth: Depth, commands: &mut Outbox) {
-    row_label(ui, "Takes");
+    row_label(ui, "Depth");
     const DEPTHS: [(Depth, &str, &str); 2] = [
-        (Depth::Visible, "what is seen", "Only the surface that you see."),
+        (Depth::Visible, "visible", "Paints only the visible surface."),
         (
             Depth::Through,
-            "all through",
-            "Everything inside, through to the back of the model.",
+            "through",
+            "Paints everything inside, through to the back of the model.",
         ),
     ];
     if let Some(depth) = choices(ui, depth, &DEPTHS) {
@@ -108,7 +108,7 @@ fn depth_row(ui: &mut egui::Ui, depth: Depth, commands: &mut Outbox) {
 fn symmetry_row(ui: &mut egui::Ui, symmetry: Symmetry, commands: &mut Outbox) {
     row_label(ui, "Symmetry");
     const PLANES: [(Symmetry, &str, &str); 5] = [
-        (Symmetry::None, "off", "Paints and poses each side by itself."),
+        (Symmetry::None, "off", "Paints and poses one side at a time."),
         (
             Symmetry::Found,
             "found",
@@ -130,17 +130,17 @@ fn correction(ui: &mut egui::Ui, brush: &CorrectionBrush, commands: &mut Outbox)
         (
             Correction::Smooth,
             "Smooth",
-            "Smooths bumps and creases, and keeps the volume. Shift does so with every correction brush.",
+            "Smooths bumps and creases and keeps the volume. Shift smooths with every correction brush.",
         ),
         (
             Correction::Relax,
             "Relax",
-            "Evens out the triangles. The surface keeps its shape.",
+            "Evens out the triangles and keeps the surface's shape.",
         ),
         (
             Correction::Grab,
             "Grab",
-            "Drags the surface with the pointer, and keeps the volume.",
+            "Drags the surface with the pointer and keeps the volume.",
         ),
     ];
     if let Some(correction) = choices(ui, brush.correction, &CORRECTIONS) {
@@ -151,7 +151,7 @@ fn correction(ui: &mut egui::Ui, brush: &CorrectionBrush, commands: &mut Outbox)
             .num_columns(2)
             .spacing([8.0, 4.0])
             .show(ui, |ui| {
-                share_row(ui, "Strength", &mut changed.strength, "How far one dab goes.")
+                share_row(ui, "Strength", &mut changed.strength, "Sets how strongly one dab acts.")
             });
     }
     if changed != *brush {
@@ -173,17 +173,21 @@ fn share_row(ui: &mut egui::Ui, name: &str, value: &mut f64, hover: &str) {
 fn stiffness(ui: &mut egui::Ui, editor: &Editor, brush: &StiffnessBrush, pressure: Option<f64>, commands: &mut Outbox) {
     let mut changed = *brush;
     const ACTIONS: [(StiffnessAction, &str, &str); 4] = [
-        (StiffnessAction::Paint, "Paint", "Takes the surface towards the value."),
-        (StiffnessAction::Smooth, "Smooth", "Evens the stiffness out."),
+        (
+            StiffnessAction::Paint,
+            "Paint",
+            "Changes the stiffness towards the value.",
+        ),
+        (StiffnessAction::Smooth, "Smooth", "Smooths the painted stiffness."),
         (
             StiffnessAction::Rigid,
             "Rigid",
-            "Each painted part moves as one body, by every method.",
+            "Makes each painted part move as one body, with every method.",
         ),
         (
             StiffnessAction::Erase,
             "Erase",
-            "Resets the stiffness to 1. So does painting with Ctrl held.",
+            "Resets the stiffness to 1, like painting with Ctrl.",
         ),
     ];
     if let Some(action) = choices(ui, brush.action, &ACTIONS) {
@@ -223,18 +227,18 @@ fn stiffness_rows(ui: &mut egui::Ui, brush: &mut StiffnessBrush) {
             });
             field
                 .labelled_by(label.id)
-                .on_hover_text("0.001 gives way like cloth, 1 is as everywhere, 1000 keeps its shape.");
+                .on_hover_text("Sets the stiffness: 0.001 yields like cloth, 1 is the default, 1000 keeps its shape.");
             ui.end_row();
             for (name, value, hover) in [
                 (
                     "Strength",
                     &mut brush.strength,
-                    "How far one stroke goes towards the value.",
+                    "Sets the share of the way to the value that one stroke makes.",
                 ),
                 (
                     "Falloff",
                     &mut brush.falloff,
-                    "0 ends at a hard rim, 1 falls off from the middle.",
+                    "Sets the brush's rim: 0 ends sharply, 1 fades from the middle.",
                 ),
             ] {
                 share_row(ui, name, value, hover);

@@ -21,7 +21,7 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, morph_targets: &[String], comman
         if command_button(ui, editor, &Command::KeepExample) {
             commands.push(Command::KeepExample);
         }
-        let says = "Takes a shape of the same vertices and triangles as an example: another pose of the same mesh.";
+        let says = "Adds another pose of the same mesh, with the same vertices and triangles, as an example.";
         if ui.button("Add from file…").on_hover_text(says).clicked() {
             commands.push_file(FileCommand::AddExample);
         }
@@ -45,7 +45,8 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, morph_targets: &[String], comman
     let they_bend = editor.document().method().examples_bend();
     let are_weighed = they_bend && examples.weights.iter().flatten().any(|weight| *weight != 0.0);
     if are_weighed && editor.document().handles().iter().any(|handle| handle.soft.is_none()) {
-        let says = "Handles hold their vertices against the weights: delete them, or make them soft, to blend freely.";
+        let says = "Hard handles keep their vertices in place at any weight: delete them, or make them soft, to blend \
+                    freely.";
         ui.label(RichText::new(says).weak().small());
     }
     for (place, (shape, weight)) in examples.shapes.iter().zip(&examples.weights).enumerate() {
@@ -59,7 +60,7 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, morph_targets: &[String], comman
                 }
                 if they_bend {
                     let mut is_free = weight.is_none();
-                    let says = "The weight is found: as much of the example as suits the handles.";
+                    let says = "The solver finds the weight that suits the handles best.";
                     if ui.checkbox(&mut is_free, "found").on_hover_text(says).changed() {
                         let fixed = Some(found.unwrap_or(0.0).clamp(-LARGEST_WEIGHT, LARGEST_WEIGHT));
                         commands.push(Command::SetExampleWeight(place, if is_free { None } else { fixed }));
@@ -73,11 +74,15 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, morph_targets: &[String], comman
             });
             let label = label.inner;
             let (without, range, says) = match they_bend {
-                true => (0.0, -0.5..=1.5, "0 is rest, 1 is the example, beyond goes on"),
+                true => (
+                    0.0,
+                    -0.5..=1.5,
+                    "Sets the weight: 0 is the rest shape, 1 is the example, and larger weights exaggerate it",
+                ),
                 false => (
                     1.0,
                     0.0..=2.0,
-                    "How much of its wrinkles is added: 0 none, 1 as in the example",
+                    "Sets the share of its wrinkles to add: 0 is none, 1 is as in the example",
                 ),
             };
             let mut shown = weight.or(found.filter(|_| they_bend)).unwrap_or(without);
@@ -88,7 +93,7 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, morph_targets: &[String], comman
             let slider = slider
                 .labelled_by(label)
                 .on_hover_text(format!("{says}; double-click the number to type one."))
-                .on_disabled_hover_text("It is found: clear \"found\" to set it.");
+                .on_disabled_hover_text("The solver finds this weight: clear \"found\" to set it yourself.");
             commands.adjust(&slider, || {
                 let weight = if shown.is_finite() { shown } else { without };
                 Command::SetExampleWeight(place, Some(weight.clamp(-LARGEST_WEIGHT, LARGEST_WEIGHT)))

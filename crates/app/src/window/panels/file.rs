@@ -37,12 +37,16 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, notes: &Notes, commands: &mut Ou
     }
 }
 
-/// Whether inward-facing parts were turned, and the button that does it.
+/// Shows the state of inward-facing parts, and the button that turns them.
 fn turn(ui: &mut egui::Ui, editor: &Editor, model: &Model, commands: &mut Outbox) {
     ui.horizontal_wrapped(|ui| {
         let turned = editor.document().inside_out();
         if model.inside_out.iter().all(|part| turned.contains(part)) {
-            ui.label(RichText::new("Turned: it is saved facing outwards.").weak().small());
+            ui.label(
+                RichText::new("All inward-facing parts are turned: they are saved facing outwards.")
+                    .weak()
+                    .small(),
+            );
         }
         if command_button(ui, editor, &Command::TurnInsideOut) {
             commands.push(Command::TurnInsideOut);

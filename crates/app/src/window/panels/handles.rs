@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, Align, Color32, ComboBox, DragValue, Layout, RichText, Sense};
 use glam::DVec3;
-use pliant_deform::CONTINUITY_RANGE;
+use pliant_deform::{CONTINUITY_RANGE, ConstraintKind, METHODS};
 use pliant_editor::{
     Command, Editor, HANDLE_COLOURS, Handle, HandleId, HandleTransform, PivotPlace, Reach, SOFT_RANGE,
 };
@@ -17,7 +17,7 @@ use crate::window::widgets::row_label::row_label;
 pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     let view = editor.view();
     if view.handles.is_empty() {
-        ui.label(RichText::new("Paint on the surface what you want to move.").weak());
+        ui.label(RichText::new("Paint the part of the surface that you want to move.").weak());
     }
     for handle in view.handles {
         let is_selected = view.selected == Some(handle.id) || view.companions.contains(&handle.id);
@@ -61,11 +61,11 @@ fn row(ui: &mut egui::Ui, handle: &Handle, is_selected: bool, commands: &mut Out
         name(ui, handle, is_selected, commands);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             ui.spacing_mut().item_spacing.x = 2.0;
-            let hover = "Locked: it can't be moved, painted or deleted.";
+            let hover = "A locked handle can't be moved, painted or deleted.";
             if toggle(ui, Icon::Lock, handle.locked, &format!("Lock {}", handle.name), hover) {
                 commands.push(Command::ToggleHandleLocked(handle.id));
             }
-            let hover = "Shows or hides its colour and its gizmo.";
+            let hover = "Shows or hides the handle's colour and gizmo.";
             if toggle(ui, Icon::Eye, handle.visible, &format!("Show {}", handle.name), hover) {
                 commands.push(Command::ToggleHandleVisible(handle.id));
             }
@@ -126,7 +126,7 @@ fn name(ui: &mut egui::Ui, handle: &Handle, is_selected: bool, commands: &mut Ou
     }
     let label = ui
         .selectable_label(is_selected, &handle.name)
-        .on_hover_text("Click to select, Ctrl-click to select several, double-click to rename.");
+        .on_hover_text("Click selects the handle, Ctrl-click selects several, double-click renames it.");
     if label.double_clicked() {
         ui.data_mut(|data| data.insert_temp(editing, (handle.id, handle.name.clone())));
     } else if label.clicked() {
@@ -221,17 +221,17 @@ fn pivot(ui: &mut egui::Ui, handle: &Handle, commands: &mut Outbox) {
         PivotPlace::Picked => "picked",
     };
     let label = row_label(ui, "Pivot")
-        .on_hover_text("The point about which the handle turns. Moving it does not move the surface.");
+        .on_hover_text("The handle turns about this point. Moving the point does not move the surface.");
     ui.horizontal(|ui| {
         let list = ComboBox::from_id_salt("pivot")
             .selected_text(name(handle.pivot_place))
             .width(74.0)
             .show_ui(ui, |ui| {
                 for (place, hover) in [
-                    (PivotPlace::Centroid, "The middle of the handle."),
+                    (PivotPlace::Centroid, "Puts the pivot at the middle of the handle."),
                     (
                         PivotPlace::Border,
-                        "The middle of its border: an arm turns about its shoulder.",
+                        "Puts the pivot at the middle of the handle's border, like an arm's shoulder.",
                     ),
                 ] {
                     let chosen = handle.pivot_place == place;
@@ -243,7 +243,7 @@ fn pivot(ui: &mut egui::Ui, handle: &Handle, commands: &mut Outbox) {
         list.response.labelled_by(label.id);
         if ui
             .button("Pick")
-            .on_hover_text("Click the point on the surface.")
+            .on_hover_text("Puts the pivot where you click on the surface.")
             .clicked()
         {
             commands.push(Command::PickPivot);
@@ -259,7 +259,7 @@ fn reach(ui: &mut egui::Ui, handle: &Handle, commands: &mut Outbox) {
         Reach::Length(length) => (length, "", f64::MAX, Reach::Length),
     };
     let speed = (0.02 * value).max(1e-4);
-    let hover = "How far the surface follows this handle, measured along the surface.";
+    let hover = "Sets the distance along the surface within which it follows this handle.";
     let field = number_field(ui, &mut value, |ui, value| {
         let field = DragValue::new(value).range(0.0..=most).speed(speed);
         ui.add(field.max_decimals(3).suffix(suffix).update_while_editing(false))
@@ -282,15 +282,25 @@ fn joint(ui: &mut egui::Ui, editor: &Editor, handle: &Handle, commands: &mut Out
     ui.add_enabled_ui(has_choice, |ui| {
         ui.horizontal(|ui| {
             let hover = if has_choice {
-                "How smoothly the surface joins this handle: 0 folds like a hinge, 1 keeps its tangents, 2 its curvature."
+                "Sets the smoothness of the joint with this handle: 0 folds like a hinge, 1 keeps tangents, 2 keeps \
+                 curvature."
+                    .to_owned()
             } else {
-                "This method always joins a handle in the same way: the thin plate (`bilaplacian`), `laplacian` and `wrinkles` let you choose."
+                let others = METHODS.iter().filter(|method| method.heeds(ConstraintKind::Continuity));
+                let titles: Vec<&str> = others.map(|method| method.title).collect();
+                format!(
+                    "This method has one kind of joint. Methods with a choice: {}.",
+                    titles.join(", ")
+                )
             };
             let field = number_field(ui, &mut value, |ui, value| {
                 let field = DragValue::new(value).range(CONTINUITY_RANGE).speed(0.02);
                 ui.add(field.max_decimals(2).update_while_editing(false))
             });
-            let field = field.labelled_by(label.id).on_hover_text(hover).on_disabled_hover_text(hover);
+            let field = field
+                .labelled_by(label.id)
+                .on_hover_text(&hover)
+                .on_disabled_hover_text(&hover);
             commands.adjust(&field, || Command::SetContinuity(handle.id, Some(value)));
             ui.label(RichText::new(word).weak());
         });
@@ -301,13 +311,14 @@ fn joint(ui: &mut egui::Ui, editor: &Editor, handle: &Handle, commands: &mut Out
 /// Whether the handle fixes its vertices or only pulls at them, and how strongly.
 fn softness(ui: &mut egui::Ui, handle: &Handle, commands: &mut Outbox) {
     let mut is_soft = handle.soft.is_some();
-    let hover = "A soft handle pulls at its part of the surface instead of holding it.";
+    let hover = "A soft handle pulls its part of the surface like a spring instead of moving it exactly.";
     if ui.checkbox(&mut is_soft, "Soft").on_hover_text(hover).changed() {
         commands.push(Command::SetSoft(handle.id, is_soft.then_some(1.0)));
     }
     if let Some(mut weight) = handle.soft {
         let speed = 0.02 * weight;
-        let hover = "Its weight: at 1 the handle and the surface give way to each other; the larger, the firmer.";
+        let hover = "Sets the soft handle's weight: a larger one pulls harder, and at 1 handle and surface yield \
+                     equally.";
         let field = number_field(ui, &mut weight, |ui, weight| {
             let field = DragValue::new(weight).range(SOFT_RANGE).speed(speed);
             ui.add(field.update_while_editing(false))

@@ -30,5 +30,5 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
         megabytes(HISTORY_BYTES)
     );
     ui.label(RichText::new(used).weak().small())
-        .on_hover_text("The oldest steps are forgotten beyond that.");
+        .on_hover_text("Beyond that limit, the oldest steps are dropped.");
 }

@@ -25,7 +25,7 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
                 1 => "Go there".to_owned(),
                 _ => format!("Go to {}", place + 1),
             };
-            let hover = "Moves the view there. The surface passes through itself along the red lines.";
+            let hover = "Moves the view to this place. The surface passes through itself along the red lines.";
             if ui.small_button(label).on_hover_text(hover).clicked() {
                 commands.push(Command::FrameIntersection(place));
             }

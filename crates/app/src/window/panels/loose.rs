@@ -14,21 +14,22 @@ const CHOICES: [(Loose, &str, &str); 3] = [
     (
         Loose::Follow,
         "follow",
-        "They keep their shape and follow the surface beside them: eyes, buttons.",
+        "Loose parts keep their shape and follow the surface beside them, like eyes or buttons.",
     ),
     (
         Loose::Bend,
         "bend along",
-        "Each point follows the surface beside it: straps, seams, bandages.",
+        "Each point follows the surface beside it, like straps, seams or bandages.",
     ),
-    (Loose::Rest, "rest", "They stay where they are."),
+    (Loose::Rest, "rest", "Loose parts stay in place."),
 ];
 
 /// Shows the choice for all parts and the list of those that are loose.
 pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     let document = editor.document();
     ui.horizontal(|ui| {
-        row_label(ui, "Loose parts").on_hover_text("Parts of the surface that no handle and no paint holds.");
+        row_label(ui, "Loose parts")
+            .on_hover_text("Loose parts of the surface have neither a handle nor a fixed vertex.");
         if let Some(loose) = choices(ui, document.loose(), &CHOICES) {
             commands.push(Command::SetLoose(loose));
         }
@@ -80,21 +81,24 @@ fn row(ui: &mut egui::Ui, editor: &Editor, model: &Model, part: u32, commands: &
     let own = editor.document().loose_parts().get(&part).copied();
     let row = ui.horizontal(|ui| {
         let name = part_name(model, part, editor.view().camera.up);
-        let hover = format!("Moves the view to it: {} vertices.", thousands(component.vertex_count));
+        let hover = format!(
+            "Moves the view to this part of {} vertices.",
+            thousands(component.vertex_count)
+        );
         let label = ui.button(name).on_hover_text(hover);
         if label.clicked() {
             commands.push(Command::FramePart(part));
         }
         let name_of = |loose: Option<Loose>| {
             let named = CHOICES.iter().find(|(choice, ..)| Some(*choice) == loose);
-            named.map_or("as all do", |(_, name, _)| *name)
+            named.map_or("as set above", |(_, name, _)| *name)
         };
         let list = ComboBox::from_id_salt(("loose part", part))
             .selected_text(name_of(own))
             .width(90.0)
             .show_ui(ui, |ui| {
                 let choices = CHOICES.iter().map(|(loose, _, hover)| (Some(*loose), *hover));
-                for (loose, hover) in std::iter::once((None, "What is chosen for all.")).chain(choices) {
+                for (loose, hover) in std::iter::once((None, "Uses the choice for all loose parts.")).chain(choices) {
                     let choice = ui.selectable_label(own == loose, name_of(loose)).on_hover_text(hover);
                     if choice.clicked() && own != loose {
                         commands.push(Command::SetLoosePart(part, loose));

@@ -1,47 +1,23 @@
-//! The bending of a method's material as one slider, on a logarithmic scale: discrete shells from paper to rubber,
-//! ARAP's smooth energy from rigid to smooth.
+//! The slider of a method's declaration, on a logarithmic scale.
 
 use eframe::egui::{self, Slider, SliderClamping};
-use pliant_deform::{Arap, ArapEnergy, Method, OptionValue, Shells};
+use pliant_deform::OptionValue;
 use pliant_editor::{Command, Editor};
 
 use crate::window::widgets::outbox::Outbox;
 use crate::window::widgets::row_label::row_label;
 
-/// A slider of one of a method's options.
-struct Scale {
-    option: &'static str,
-    ends: [&'static str; 2],
-    range: [f64; 2],
-    help: &'static str,
-}
-
-fn scale(method: &Method) -> Option<Scale> {
-    if method.options::<Shells>().is_some() {
-        return Some(Scale {
-            option: "bending",
-            ends: ["Paper", "rubber"],
-            range: Shells::PAPER_TO_RUBBER,
-            help: "Paper keeps its lengths and creases; thick rubber bends evenly and stretches instead. It sets \
-                   `bending`.",
-        });
-    }
-    let arap = method.options::<Arap>()?;
-    (arap.energy == ArapEnergy::Smooth).then_some(Scale {
-        option: "smoothness",
-        ends: ["Rigid", "smooth"],
-        range: RIGID_TO_SMOOTH,
-        help: "Rigid keeps details and bends where it must; smooth spreads the bend evenly. It sets `smoothness`.",
-    })
-}
-
-/// From a hundredth of the default to a hundred times it: the logarithmic slider begins in its middle.
-const RIGID_TO_SMOOTH: [f64; 2] = [3e-5, 0.3];
-
-/// Shows the slider, if the method has one.
+/// Shows the slider, if the method has one and its option has an effect.
 pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     let method = editor.document().method();
-    let Some(scale) = scale(method) else { return };
+    let Some(scale) = method.declaration().slider else {
+        return;
+    };
+    let mut options = method.declaration().options.iter();
+    let option = options.find(|option| option.name == scale.option);
+    if option.is_none_or(|option| option.idle_because(|other| method.value(other)).is_some()) {
+        return;
+    }
     let Some(OptionValue::Number(mut value)) = method.value(scale.option) else {
         return;
     };

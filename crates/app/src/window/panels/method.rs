@@ -61,7 +61,7 @@ fn options(ui: &mut egui::Ui, method: &Method, commands: &mut Outbox) {
             });
             let back = ui.add_enabled(first_choice != *method, Button::new("Defaults"));
             if back
-                .on_hover_text("Sets all options of the method, advanced ones, too.")
+                .on_hover_text("Resets all options of the method, including the advanced ones.")
                 .clicked()
             {
                 commands.push(Command::SetMethod(first_choice.clone()));
@@ -79,7 +79,7 @@ fn control_points(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     };
     let title = title(declared.title);
     let sentence = match editor.view().control_points {
-        None => format!("{title}: not there yet"),
+        None => format!("{title}: not made yet"),
         Some(points) => {
             let whose = if points.is_own {
                 "your own"
@@ -93,8 +93,8 @@ fn control_points(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
         }
     };
     ui.label(sentence).on_hover_text(
-        "Click a point to take it, Shift adds one. With the Select tool Ctrl and a drag, or a box or lasso, takes many; \
-         the gizmo, G, R and S move them. The options below make a new one again when you give up your own.",
+        "Click a point to select it, Shift-click to add one; the Select tool also selects many with Ctrl and a drag, \
+         a box or a lasso. Move them with the gizmo, G, R or S.",
     );
     ui.horizontal_wrapped(|ui| {
         let make = ui.add_enabled(
@@ -103,7 +103,7 @@ fn control_points(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
         );
         let why = editor.unavailable_because(&Command::MakeControls);
         let make = make.on_hover_text(format!(
-            "Makes one around the region, in place of your own {}.",
+            "Replaces your own {} with a new one around the region.",
             declared.title
         ));
         if make
@@ -147,7 +147,7 @@ pub fn choose_method(ui: &mut egui::Ui, id: &str, present: &Method, width: f32) 
             for declaration in METHODS {
                 let is_present = present.name() == declaration.name;
                 let picture = Atom::paint(method_picture::SIZE, |ui: &egui::Ui, place| {
-                    method_picture::paint(ui, place.rect, declaration.name, place.fallback_text_color);
+                    method_picture::paint(ui, place.rect, declaration.picture, place.fallback_text_color);
                 });
                 let choice = ui
                     .add(Button::selectable(is_present, (picture, declaration.title)))

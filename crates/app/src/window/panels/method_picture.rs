@@ -1,11 +1,12 @@
 //! A small picture of each method, for the list of methods: a bar that is fixed at its left end and bent upwards by a
 //! handle at the other, with the elements that the method works on.
 //!
-//! Pictures are a few lines, drawn in the colours of the theme. A method without one shows only the bent bar.
+//! Pictures are a few lines, drawn in the colours of the theme.
 
 use std::f32::consts::{FRAC_PI_2, TAU};
 
 use eframe::egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, Ui, Vec2, vec2};
+use pliant_deform::Picture;
 
 /// Width and height in points.
 pub const SIZE: Vec2 = vec2(46.0, 31.0);
@@ -19,30 +20,30 @@ const HALF: f32 = 3.4;
 /// The handle, as gold as the first that is painted.
 const HANDLE: Color32 = Color32::from_rgb(232, 184, 48);
 
-/// Draws the picture of the method of this name into `rect`, which is of [`SIZE`].
-pub fn paint(ui: &Ui, rect: Rect, method: &str, colour: Color32) {
+/// Draws the picture into `rect`, which is of [`SIZE`].
+pub fn paint(ui: &Ui, rect: Rect, picture: Picture, colour: Color32) {
     let pen = Pen {
         painter: ui.painter(),
         origin: rect.min,
         strong: Stroke::new(1.4, colour),
         weak: Stroke::new(1.0, colour.gamma_multiply(0.55)),
     };
-    match method {
-        "bilaplacian" => pen.plate(),
-        "arap" => pen.blocks(5, 0.92),
-        "primo" => pen.prisms(),
-        "shells" => pen.triangles(),
-        "wrinkles" => pen.waves(),
-        "poisson" => pen.arrows(),
-        "laplacian" => pen.spikes(),
-        "frames" => pen.frames(),
-        "rbf" => pen.circles(),
-        "mls" => pen.moves(),
-        "embedded" => pen.graph(),
-        "lattice" => pen.lattice(),
-        "cage" => pen.cage(),
-        "space-primo" => pen.cells(),
-        _ => pen.bar(pen.strong),
+    match picture {
+        Picture::Bar => pen.bar(pen.strong),
+        Picture::Plate => pen.plate(),
+        Picture::Blocks => pen.blocks(5, 0.92),
+        Picture::Prisms => pen.prisms(),
+        Picture::Triangles => pen.triangles(),
+        Picture::Waves => pen.waves(),
+        Picture::Arrows => pen.arrows(),
+        Picture::Spikes => pen.spikes(),
+        Picture::Frames => pen.frames(),
+        Picture::Circles => pen.circles(),
+        Picture::Moves => pen.moves(),
+        Picture::Graph => pen.graph(),
+        Picture::Lattice => pen.lattice(),
+        Picture::Hull => pen.hull(),
+        Picture::Cells => pen.cells(),
     }
     pen.ends();
 }
@@ -230,7 +231,7 @@ impl Pen<'_> {
     }
 
     /// A coarse hull around the bar.
-    fn cage(&self) {
+    fn hull(&self) {
         self.bar(self.weak);
         let out = [0.0, 0.5, 1.0].map(|along| bent(along, -7.0));
         let back = [1.0, 0.4, 0.0].map(|along| bent(along, 6.0));

@@ -29,7 +29,7 @@ struct Rows {
     materials: Vec<Row>,
     /// The number of objects.
     count: usize,
-    /// Whether some connected part is smaller than another.
+    /// True if some connected part is smaller than another.
     has_parts: bool,
 }
 
@@ -119,11 +119,11 @@ fn small_parts(ui: &mut egui::Ui, model: &Model, access: &Access, commands: &mut
     ui.horizontal(|ui| {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             ui.spacing_mut().item_spacing.x = 2.0;
-            let hover = "Locked: they are held still, whatever is painted on them.";
+            let hover = "Locked small parts stay fixed, whatever is painted on them.";
             if toggle(ui, Icon::Lock, small.locked, "Lock small parts", hover) {
                 commands.push(Command::ToggleSmallLocked);
             }
-            let hover = "Hidden: it can't be picked or painted, but still follows.";
+            let hover = "Hidden small parts can't be picked or painted, but still follow the surface.";
             if toggle(ui, Icon::Eye, !small.hidden, "Show small parts", hover) {
                 commands.push(Command::ToggleSmallShown);
             }
@@ -142,7 +142,7 @@ fn small_parts(ui: &mut egui::Ui, model: &Model, access: &Access, commands: &mut
                     let count = model.small_parts(small.share).iter().filter(|small| **small).count();
                     let noun = if count == 1 { "part has" } else { "parts have" };
                     ui.label(format!(
-                        "{} {noun} less than this share of the largest part's vertices.",
+                        "{} {noun} fewer vertices than this share of the largest part's.",
                         thousands(count)
                     ));
                 });
@@ -172,7 +172,7 @@ fn row(ui: &mut egui::Ui, row: &Row, count: usize, access: &Access, commands: &m
     ui.horizontal(|ui| {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             ui.spacing_mut().item_spacing.x = 2.0;
-            let hover = "Locked: it is held still, whatever is painted on it.";
+            let hover = "A locked object stays fixed, whatever is painted on it.";
             if toggle(ui, Icon::Lock, is_locked, &format!("Lock {}", row.name), hover) {
                 let action = if is_locked {
                     ObjectAction::Unlock
@@ -181,7 +181,7 @@ fn row(ui: &mut egui::Ui, row: &Row, count: usize, access: &Access, commands: &m
                 };
                 commands.push(Command::Objects(action, row.objects.clone()));
             }
-            let hover = "Hidden: it can't be picked or painted, but still follows.";
+            let hover = "A hidden object can't be picked or painted, but still follows the surface.";
             if toggle(ui, Icon::Eye, !is_hidden, &format!("Show {}", row.name), hover) {
                 let action = if is_hidden {
                     ObjectAction::Show
@@ -192,7 +192,7 @@ fn row(ui: &mut egui::Ui, row: &Row, count: usize, access: &Access, commands: &m
             }
             if row.objects.len() < count {
                 let is_alone = !is_hidden && access.hidden.len() + row.objects.len() == count;
-                let hover = "Hides all others. Again: shows everything.";
+                let hover = "Hides all other objects, or shows everything again.";
                 if toggle(ui, Icon::Alone, is_alone, &format!("Show only {}", row.name), hover) {
                     commands.push(Command::Objects(ObjectAction::Solo, row.objects.clone()));
                 }

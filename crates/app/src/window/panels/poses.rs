@@ -42,14 +42,14 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
                     };
                     button(
                         "Remove",
-                        "Deletes this pose. The shape stays as it is.",
+                        "Deletes this pose. The shape stays.",
                         true,
                         Command::RemovePose(place),
                     );
-                    let says = "Replaces this pose by the present one.";
-                    button("Renew", says, !is_shown, Command::RenewPose(place));
-                    let says = "Puts everything where it stood in this pose. Locked handles and pins stay.";
-                    button("Take", says, !is_shown, Command::TakePose(place));
+                    let says = "Replaces this pose with the present one.";
+                    button("Update", says, !is_shown, Command::RenewPose(place));
+                    let says = "Moves everything back to this pose. Locked handles and pins stay.";
+                    button("Apply", says, !is_shown, Command::TakePose(place));
                 });
             });
         });

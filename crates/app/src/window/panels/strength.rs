@@ -19,8 +19,8 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
         let slider = ui.add_enabled(obstacle.is_none(), slider).labelled_by(label.id);
         let slider = slider
             .on_hover_text(
-                "How much of the edit is shown and saved: every handle goes this share of its way and of its turn. \
-                 What you move next goes on from what you see.",
+                "Shows and saves a share of the edit: every handle moves and turns by this share. The next move \
+                 starts from the visible shape.",
             )
             .on_disabled_hover_text(obstacle.as_deref().unwrap_or_default());
         commands.adjust(&slider, || Command::SetStrength(percent / 100.0));

@@ -21,14 +21,14 @@ const CHOICES: [(Joined, &str, &str); 3] = [
     (
         Joined::ByMesh,
         "by mesh",
-        "Vertices are joined where they are close for the triangles beside them, and where the file rounded them apart.",
+        "Welds vertices that are close compared with the triangles beside them, or that the file rounded apart.",
     ),
-    (Joined::Equal, "equal", "Only vertices in equal places are joined."),
+    (Joined::Equal, "equal", "Welds only vertices at equal positions."),
     (
         Joined::Within,
         "within",
-        "Vertices within a distance are joined: for borders that should meet and don't. \
-         Near small triangles half their size is the most.",
+        "Welds vertices within a distance, for borders that should meet but don't. Near small triangles the limit is \
+         half their size.",
     ),
 ];
 
@@ -48,7 +48,8 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, model: &Model, commands: &mut Ou
     let join = |distance| FileCommand::Weld(WeldOptions { distance });
     ui.horizontal_wrapped(|ui| {
         row_label(ui, "Weld").on_hover_text(
-            "Says which vertices count as one. Another choice reads the mesh again: your work stays, undo starts over.",
+            "Chooses the vertices that count as one. Another choice reads the mesh again: your work stays, but undo \
+             starts over.",
         );
         match choices(ui, joined, &CHOICES) {
             Some(Joined::ByMesh) => commands.push_file(join(None)),
@@ -74,7 +75,9 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, model: &Model, commands: &mut Ou
                 .update_while_editing(false);
             ui.add_enabled(!editor.is_acting(), field).labelled_by(label.id)
         });
-        let field = field.on_hover_text("In the file's unit, as `weld` in an edit and `--weld` on the command line.");
+        let field = field.on_hover_text(
+            "Sets the distance in the file's unit, like `weld` in an edit and `--weld` on the command line.",
+        );
         if field.dragged() {
             ui.data_mut(|data| data.insert_temp(id, value));
         } else {

@@ -60,7 +60,7 @@ pub struct OpenFile {
     pub project: Option<PathBuf>,
     /// The displacements with which the file at `path` was saved there, per surface vertex; `None` if it was not.
     pub saved: Option<Arc<Vec<DVec3>>>,
-    /// Whether a person agreed to replace `path`, or saved it here under a new name.
+    /// True if a person agreed to replace `path`, or saved it here under a new name.
     pub may_write_over: bool,
 }
 
@@ -70,12 +70,12 @@ impl OpenFile {
         file_name(self.path.as_deref().unwrap_or(&self.loaded.path))
     }
 
-    /// Whether a path leads to the file that was read or last saved.
+    /// Returns true if a path leads to the file that was read or last saved.
     pub fn is_at(&self, path: &Path) -> bool {
         self.path.as_deref().is_some_and(|own| is_same(own, path))
     }
 
-    /// Whether a path leads to the project.
+    /// Returns true if a path leads to the project.
     pub fn is_project_at(&self, path: &Path) -> bool {
         self.project.as_deref().is_some_and(|own| is_same(own, path))
     }
@@ -104,7 +104,7 @@ impl Session {
         }
     }
 
-    /// Whether a save is running.
+    /// Returns true if a save is running.
     pub fn is_saving(&self) -> bool {
         self.saving.is_busy() || !self.to_save.is_empty()
     }
@@ -205,7 +205,7 @@ impl Session {
         self.start_saving(workers);
     }
 
-    /// Whether a save's file belongs to the open one.
+    /// Returns true if a save's file belongs to the open one.
     pub fn is_of_open(&self, written: &Written) -> bool {
         written.opened == self.opened
     }

@@ -51,7 +51,7 @@ pub struct Reload {
     pub snapshot: Snapshot,
     /// The displacements with which the mesh in `file` was saved there, per surface vertex, if it was.
     pub saved: Option<Arc<Vec<DVec3>>>,
-    /// Whether the work counts as unsaved.
+    /// True if the work counts as unsaved.
     pub unsaved: bool,
     /// The project that is open.
     pub project: Option<PathBuf>,
@@ -169,7 +169,7 @@ pub(super) fn open(source: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<Mode
             }
         }
     };
-    let progress = watch.begin("getting the picture ready");
+    let progress = watch.begin("preparing the picture");
     notes.extend_from_slice(loaded.scene.notes());
     let drawing = Drawing::new(&loaded.model, loaded.scene.appearance(), Arc::default());
     progress.set(0.7);

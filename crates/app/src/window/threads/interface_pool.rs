@@ -16,7 +16,7 @@ pub fn install() {
     }
 }
 
-/// Whether the calling thread has threads of its own.
+/// Returns true if the calling thread has threads of its own.
 pub fn is_installed() -> bool {
     rayon::current_thread_index().is_some()
 }

@@ -23,7 +23,7 @@ pub enum Message {
     Job(JobDone, Option<Posed>),
     /// A shape was prepared for the renderer.
     Posed(Revision, Result<Posed, String>),
-    /// A file was uploaded again, for a second view.
+    /// A file was uploaded again, for a further view.
     Uploaded(Arc<Drawing>, Result<Surface, String>),
     /// The open file was prepared for drawing with other parts turned inside out, or the reason why not.
     Redrawn(Result<Box<Redrawn>, String>),

@@ -12,7 +12,7 @@ use std::time::Instant;
 use eframe::egui;
 use glam::{DVec3, Mat3};
 use pliant_deform::Budget;
-use pliant_editor::{Executor, Job, JobDone, JobOutcome};
+use pliant_editor::{Executor, Job, JobDone, JobResult, SolveResult, Unfinished};
 
 use super::message::{Message, Painted, Posed};
 use crate::drawing::{self, Drawing, Field, Scale};
@@ -112,7 +112,7 @@ impl Workers {
         };
         if let Err(error) = std::thread::Builder::new().name(name.to_owned()).spawn(body) {
             self.send(failed_to_start(format!(
-                "the system gives no thread for it ({error}): close other programs"
+                "the system can't start a thread for it ({error}): close other programs"
             )));
         }
     }
@@ -146,7 +146,7 @@ impl Executor for Workers {
             move || {
                 let done = job.run();
                 let posed = match (&done.outcome, stage) {
-                    (JobOutcome::Solved(solved), Some(stage)) => {
+                    (Ok(JobResult::Solve(SolveResult::Shape(solved))), Some(stage)) => {
                         Some(stage.pose(Arc::clone(&solved.from_file), solved.jacobians.as_deref()))
                     }
                     _ => None,
@@ -158,7 +158,7 @@ impl Executor for Workers {
                     JobDone {
                         kind,
                         stamp,
-                        outcome: JobOutcome::Failed(sentence),
+                        outcome: Err(Unfinished::Failed(sentence)),
                     },
                     None,
                 )
@@ -179,5 +179,5 @@ fn panic_sentence(panic: &(dyn std::any::Any + Send)) -> String {
         .copied()
         .or_else(|| panic.downcast_ref::<String>().map(String::as_str));
     let words = words.unwrap_or("no reason given");
-    format!("an inner fault stopped it ({words}): the document is as it was; please report this")
+    format!("an internal error stopped it ({words}): the document is unchanged; please report this")
 }

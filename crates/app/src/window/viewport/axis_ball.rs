@@ -25,7 +25,7 @@ struct Knob {
     depth: f64,
 }
 
-/// Whether a point of the window is on the ball of a view at `view`.
+/// Returns true if a point of the window is on the ball of a view at `view`.
 pub fn contains(view: Rect, position: Option<Pos2>) -> bool {
     position.is_some_and(|position| position.distance(middle(view)) <= RADIUS + KNOB)
 }

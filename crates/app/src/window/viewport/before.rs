@@ -41,7 +41,7 @@ impl Split {
         Rect::from_x_y_ranges(x - GRIP..=x + GRIP, view.y_range())
     }
 
-    /// Whether the pointer is on the line, if that is shown.
+    /// Returns true if the pointer is on the line, if that is shown.
     pub fn takes(self, view: Rect, position: Option<Pos2>, before: Before) -> bool {
         before == Before::Split && position.is_some_and(|position| self.grip(view).contains(position))
     }
@@ -64,7 +64,7 @@ impl Split {
         ui.painter().circle_filled(knob, 5.0, colour);
         let top = view.top() + 12.0;
         let words = ui.painter().with_clip_rect(view);
-        readout(&words, egui::pos2(x - 150.0, top), "As it was opened");
+        readout(&words, egui::pos2(x - 150.0, top), "Original");
         readout(&words, egui::pos2(x + 12.0, top), "Now");
     }
 }
@@ -78,7 +78,7 @@ impl OriginalView {
         Self(SideView::beside(context, first))
     }
 
-    /// Whether it shows the open file's shape.
+    /// Returns true if it shows the open file's shape.
     pub fn is_settled(&self, view: &SceneView<'_>) -> bool {
         self.0.shows(view.original)
     }

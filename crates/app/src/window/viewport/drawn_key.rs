@@ -26,8 +26,8 @@ pub struct DrawnKey {
 }
 
 impl DrawnKey {
-    /// Whether this picture is as good as the requested one: of the same state, with as many samples, and as large, or
-    /// as large as the view, `full_px`.
+    /// Returns true if this picture is as good as the requested one: of the same state, with as many samples, and as
+    /// large, or as large as the view, `full_px`.
     pub fn serves(&self, wanted: &Self, full_px: [u32; 2]) -> bool {
         let same = Self {
             size_px: wanted.size_px,

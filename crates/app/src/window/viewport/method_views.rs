@@ -1,13 +1,12 @@
-//! Small live views of each method's result for the present edit, from the main view's camera, with names and figures
-//! beneath. A click takes a method.
+//! Live views of each method's result for the present edit, all small or one large, from the main view's camera, with
+//! names and figures beneath. A click takes a method.
 
 use std::time::Duration;
 
 use eframe::egui::text::{LayoutJob, TextWrapping};
-use eframe::egui::{self, Color32, FontId, Pos2, Rect, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
+use eframe::egui::{self, Color32, FontId, Pos2, Rect, Sense, Stroke, StrokeKind, Ui, UiBuilder, pos2, vec2};
 use glam::{BVec3, DVec2, DVec3};
-use pliant_deform::Method;
-use pliant_editor::{Alternative, Camera, Comparison, Editor, Look, SceneView, Shading};
+use pliant_editor::{Alternative, Camera, Command, Comparison, Editor, Look, SceneView, Shading};
 use pliant_mesh::Bounds;
 use pliant_render::RenderError;
 
@@ -15,6 +14,7 @@ use super::side_view::SideView;
 use super::{Smoothness, Viewport};
 use crate::sheet;
 use crate::window::threads::workers::Stage;
+use crate::window::widgets::icon::{Icon, toggle};
 use crate::window::widgets::theme;
 use pliant_engine::report::finite_or;
 
@@ -31,14 +31,14 @@ pub struct MethodViews {
 
 /// The result of showing the views.
 pub struct Shown {
-    /// Whether a second drawing is worth it when nothing has changed for a while.
+    /// True if a second drawing is worth it when nothing has changed for a while.
     pub again: bool,
-    /// The method that was clicked.
-    pub taken: Option<Method>,
+    /// The command that was clicked.
+    pub command: Option<Command>,
 }
 
 impl MethodViews {
-    /// Whether every view shows its method's result for the present edit.
+    /// Returns true if every view shows its method's result for the present edit.
     pub fn are_settled(&self, comparison: &Comparison) -> bool {
         let alternatives = comparison.alternatives();
         let mut pairs = self.views.iter().zip(alternatives);
@@ -81,7 +81,7 @@ impl MethodViews {
     pub fn show(&mut self, ui: &mut Ui, rect: Rect, editor: &Editor, smooth: Smoothness) -> Result<Shown, RenderError> {
         let mut shown = Shown {
             again: false,
-            taken: None,
+            command: None,
         };
         let Some(comparison) = editor.comparison() else {
             return Ok(shown);
@@ -89,14 +89,20 @@ impl MethodViews {
         ui.painter().rect_filled(rect, 0.0, ui.visuals().panel_fill);
         let line = Stroke::new(1.0, ui.visuals().widgets.noninteractive.bg_stroke.color);
         ui.painter().hline(rect.x_range(), rect.top(), line);
-        let columns = sheet::columns(self.views.len() as u32, rect.size().into(), CAPTION) as usize;
-        let rows = self.views.len().div_ceil(columns);
+        let shown_count = if comparison.large().is_some() {
+            1
+        } else {
+            self.views.len()
+        };
+        let columns = sheet::columns(shown_count as u32, rect.size().into(), CAPTION) as usize;
+        let rows = shown_count.div_ceil(columns);
         let size = vec2(rect.width() / columns as f32, rect.height() / rows as f32);
         let main = editor.view();
         let share = share_in_sight(&main, comparison);
-        let pairs = self.views.iter_mut().zip(comparison.alternatives());
-        for (number, (view, alternative)) in pairs.enumerate() {
-            let corner = rect.min + vec2((number % columns) as f32 * size.x, (number / columns) as f32 * size.y);
+        let pairs = self.views.iter_mut().zip(comparison.alternatives()).enumerate();
+        let is_shown = |number: usize| comparison.large().is_none_or(|large| large == number);
+        for (place, (number, (view, alternative))) in pairs.filter(|(number, _)| is_shown(*number)).enumerate() {
+            let corner = rect.min + vec2((place % columns) as f32 * size.x, (place / columns) as f32 * size.y);
             let cell = Rect::from_min_size(corner, size).shrink(GAP);
             let picture = Rect::from_min_max(cell.min, cell.max - vec2(0.0, CAPTION));
             if picture.width() < 1.0 || picture.height() < 1.0 {
@@ -108,7 +114,11 @@ impl MethodViews {
             let is_own = *editor.document().method() == alternative.method;
             caption(ui, cell, picture, alternative, view.problem.as_deref(), is_own);
             if button(ui, cell, number, alternative, is_own) && !is_own {
-                shown.taken = Some(alternative.method.clone());
+                shown.command = Some(Command::SetMethod(alternative.method.clone()));
+            }
+            let is_large = comparison.large() == Some(number);
+            if enlarge_button(ui, cell, alternative, is_large) {
+                shown.command = Some(Command::EnlargeMethod((!is_large).then_some(number)));
             }
         }
         Ok(shown)
@@ -234,7 +244,7 @@ fn caption(ui: &Ui, cell: Rect, picture: Rect, alternative: &Alternative, proble
         );
         write(at + vec2(0.0, 32.0), &sheet::stretch(stretch), 11.0, colour);
     } else {
-        write(at + vec2(0.0, 17.0), "being bound …", 11.0, weak);
+        write(at + vec2(0.0, 17.0), "binding …", 11.0, weak);
     }
 }
 
@@ -243,7 +253,7 @@ fn button(ui: &Ui, cell: Rect, number: usize, alternative: &Alternative, is_own:
     let declaration = alternative.method.declaration();
     let response = ui.interact(cell, ui.scope_id().with(("method view", number)), Sense::click());
     response.widget_info(|| {
-        let label = format!("Take {}", declaration.title);
+        let label = format!("Use {}", declaration.title);
         egui::WidgetInfo::selected(egui::Role::Button, true, is_own, label)
     });
     let stroke = match (is_own, response.hovered() || response.has_focus()) {
@@ -254,6 +264,24 @@ fn button(ui: &Ui, cell: Rect, number: usize, alternative: &Alternative, is_own:
     ui.painter().rect_stroke(cell, 4.0, stroke, StrokeKind::Inside);
     let says = format!("{}. {}", declaration.title, declaration.when_to_use);
     response.on_hover_text(says).clicked()
+}
+
+/// The toggle in the cell's corner that shows the method large; whether it was clicked.
+fn enlarge_button(ui: &mut Ui, cell: Rect, alternative: &Alternative, is_large: bool) -> bool {
+    let title = alternative.method.declaration().title;
+    let (name, hover) = if is_large {
+        ("Show all methods".to_owned(), "Shows the results of all methods again.")
+    } else {
+        (
+            format!("Enlarge {title}"),
+            "Shows this method's result large, beside the view.",
+        )
+    };
+    let place = Rect::from_min_size(pos2(cell.right() - 24.0, cell.top() + 6.0), vec2(18.0, 18.0));
+    let toggled = ui.scope_builder(UiBuilder::new().max_rect(place), |ui| {
+        toggle(ui, Icon::Large, is_large, &name, hover)
+    });
+    toggled.inner
 }
 
 #[cfg(test)]

@@ -8,7 +8,6 @@ pub(in crate::window) mod axis_ball;
 pub(in crate::window) mod backdrop;
 pub(in crate::window) mod before;
 pub(in crate::window) mod coarseness;
-pub(in crate::window) mod compare;
 pub(in crate::window) mod context_menu;
 pub(in crate::window) mod drawn_key;
 pub(in crate::window) mod gpu;
@@ -115,7 +114,7 @@ impl Viewport {
             .is_some_and(|shown| Arc::ptr_eq(&shown.drawing, drawing))
     }
 
-    /// Whether the device is lost: a driver was updated or crashed, or a card was removed.
+    /// Returns true if the device is lost: a driver was updated or crashed, or a card was removed.
     pub fn is_lost(&self) -> bool {
         self.lost.load(Ordering::Relaxed)
     }
@@ -194,7 +193,7 @@ impl Viewport {
         }
     }
 
-    /// Whether the file's images are still to come.
+    /// Returns true if the file's images are still to come.
     pub fn awaits_images(&self) -> bool {
         self.surface.as_ref().is_some_and(|shown| shown.awaits_images)
     }
@@ -329,7 +328,7 @@ impl Viewport {
         Ok(is_coarse || is_stale || (is_jagged && triangles <= SOFT_SMOOTH_TRIANGLES))
     }
 
-    /// Whether the surface can be drawn with fewer triangles: not with materials and not with its edges.
+    /// Returns true if the surface can be drawn with fewer triangles: not with materials and not with its edges.
     fn may_be_reduced(&self, view: &SceneView<'_>) -> bool {
         let Some(shown) = &self.surface else { return false };
         let eye = drawing::view(view.camera, view.viewport_px, shown.drawing.centre());
@@ -475,7 +474,7 @@ impl Drop for Viewport {
     }
 }
 
-/// Whether the view changes or rests.
+/// The state of the view: changing or at rest.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Smoothness {
     /// Something moves: speed first.

@@ -23,7 +23,7 @@ pub struct Shown {
     /// The editor's rims that it has.
     pub rims: Option<u64>,
     pub scale: Option<Arc<Scale>>,
-    /// Whether its images are still to come.
+    /// True if its images are still to come.
     pub awaits_images: bool,
     /// Its materials with their images, once there are any.
     pub materials: Option<Materials>,

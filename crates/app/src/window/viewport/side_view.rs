@@ -38,14 +38,14 @@ impl SideView {
         }
     }
 
-    /// Whether it shows this shape.
+    /// Returns true if it shows this shape.
     pub fn shows(&self, shape: &Arc<Vec<DVec3>>) -> bool {
         self.viewport
             .displacements()
             .is_some_and(|shown| Arc::ptr_eq(shown, shape))
     }
 
-    /// Whether the open file is being uploaded for it.
+    /// Returns true if the open file is being uploaded for it.
     pub fn is_uploading(&self) -> bool {
         self.uploading.is_some()
     }

@@ -40,6 +40,8 @@ pub enum Icon {
     Lock,
     /// A ring, with a dot in it while on.
     Alone,
+    /// Arrows apart, or towards each other while on.
+    Large,
 }
 
 impl Icon {
@@ -51,6 +53,8 @@ impl Icon {
             (Self::Lock, false) => Glyph::LockOpen,
             (Self::Alone, true) => Glyph::CircleDot,
             (Self::Alone, false) => Glyph::Circle,
+            (Self::Large, true) => Glyph::Minimize2,
+            (Self::Large, false) => Glyph::Maximize2,
         }
     }
 }

@@ -54,7 +54,7 @@ pub(crate) struct Capacitance {
     beside_rim: Vec<bool>,
     kept: RwLock<Directions>,
     most_kept: usize,
-    /// Whether new directions are kept.
+    /// True if new directions are kept.
     is_learning: bool,
 }
 
@@ -67,7 +67,7 @@ struct SolveMemory<const K: usize> {
 }
 
 impl Capacitance {
-    /// Whether this operator's inverse is of the form above.
+    /// Returns true if this operator's inverse is of the form above.
     pub fn applies_to(operator: &BilaplacianOperator) -> bool {
         operator.power == 2 && operator.stretching == 0.0 && operator.bending > 0.0 && operator.natural.is_none()
     }
@@ -121,7 +121,7 @@ impl Capacitance {
         self.is_learning = false;
     }
 
-    /// Whether solves must follow each other in a fixed order, because each one learns from earlier ones.
+    /// Returns true if solves must follow each other in a fixed order, because each one learns from earlier ones.
     pub fn is_learning(&self) -> bool {
         self.is_learning
     }
@@ -130,8 +130,8 @@ impl Capacitance {
     pub fn sentence(&self) -> String {
         let kept = self.kept.read().unwrap_or_else(PoisonError::into_inner);
         format!(
-            "the factor of {} free vertices does not fit the memory that is left, so they were solved for with the \
-             Laplacian's factor ({} MiB) and {} conjugate directions for {} vertices at the rim",
+            "the factor of {} free vertices does not fit the free memory, so they were solved with the Laplacian's \
+             factor ({} MiB) and {} conjugate directions for {} vertices at the rim",
             self.middle.len(),
             (8 * self.factored.factor.stored()) >> 20,
             kept.len(),

@@ -1,5 +1,5 @@
-//! Deformation transfer: each triangle of the surface takes on the deformation gradient of its triangle of the base, and
-//! a Poisson system joins the triangles [BSPG06; SP04, equation 4].
+//! Deformation transfer: each triangle of the surface takes on the deformation gradient of its triangle of the base,
+//! and a Poisson system joins the triangles [BSPG06; SP04, equation 4].
 //!
 //! With M = (e₁ e₂ n) of a triangle of the base, two edges and the unit normal, the gradient is F = M' M⁻¹: it
 //! stretches as the base does within the triangle and keeps lengths along the normal. A rest edge e of the surface's
@@ -248,7 +248,7 @@ fn triangles(base: &Base, system: &BilaplacianSystem, gradients: &Gradients) -> 
         .collect()
 }
 
-/// Whether a triangle of the base has a gradient.
+/// Returns true if a triangle of the base has a gradient.
 fn is_sound(base: &Base, corners: [u32; 3]) -> bool {
     let [a, b, c] = corners.map(|corner| base.patch.rest[corner as usize]);
     let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));

@@ -105,7 +105,7 @@ impl Intrinsic {
         self.mollified_faces
     }
 
-    /// Whether no edge remains to be flipped.
+    /// Returns true if no edge remains to be flipped.
     pub fn is_delaunay(&self) -> bool {
         self.is_delaunay
     }

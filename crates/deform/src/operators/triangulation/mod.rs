@@ -140,7 +140,7 @@ impl<'a> Triangulation<'a> {
     pub fn warning(&self) -> Option<String> {
         match self {
             Self::Intrinsic(triangulation, _) if !triangulation.is_delaunay() => Some(format!(
-                "the intrinsic triangulation could not be made Delaunay throughout, so some weights stay negative: where \
+                "the intrinsic triangulation could not be made Delaunay everywhere, so some weights stay negative: if \
                  the surface folds, take {}, which needs no triangles",
                 Remedy::OfSpace
             )),

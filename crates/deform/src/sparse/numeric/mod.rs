@@ -48,7 +48,7 @@ struct Job<'a> {
     cancel: &'a Cancel,
     done: Vec<OnceLock<Arc<Vec<Line>>>>,
     contributions: Vec<Mutex<Option<Arc<Vec<Line>>>>>,
-    /// Whether each part's contribution is kept for the next factorisation; none if empty.
+    /// True if each part's contribution is kept for the next factorisation; none if empty.
     kept: &'a [bool],
     rooms: Mutex<Vec<Room>>,
 }

@@ -84,7 +84,7 @@ pub(crate) fn equal_parts(new: Named, old: Named) -> Vec<Option<usize>> {
     equal
 }
 
-/// Whether two parts have the same columns of the matrix, in the same supernodes over the same rows.
+/// Returns true if two parts have the same columns of the matrix, in the same supernodes over the same rows.
 fn equals(new: Named, new_part: usize, old: Named, old_part: usize) -> bool {
     let (new_part, old_part) = (&new.assembly_tree.parts[new_part], &old.assembly_tree.parts[old_part]);
     let new_shapes = new_part.supernodes.clone().map(|s| new.symbolic.shape(s));

@@ -42,7 +42,7 @@ impl<'a, G: Graph> Labelled<'a, G> {
         self.graph.neighbours(SurfaceVertex(vertex))
     }
 
-    /// Whether a walk of at most `edges` edges leads to a vertex with this label.
+    /// Returns true if a walk of at most `edges` edges leads to a vertex with this label.
     pub fn reaches(&self, vertex: u32, edges: u32, label: u32) -> bool {
         let ring = self.ring(vertex);
         ring.iter().any(|n| self.label(n.0) == label)

@@ -103,7 +103,7 @@ fn forward<S: Simd, const V: usize, const K: usize>(
             }
             rows.push(row);
         }
-        // The solved rows are final; this corrects what later columns subtracted from them.
+        // The solved rows are final; this corrects the later columns' subtractions from them.
         for (c, row) in rows[LANES * strip..].iter().enumerate() {
             for k in 0..K {
                 x[k].0[c] = row[k];

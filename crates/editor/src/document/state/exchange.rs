@@ -13,7 +13,7 @@ use crate::document::content::{Paint, Tips};
 use crate::document::handle::Handle;
 use crate::document::kept_shape::KeptShape;
 use crate::document::sparse::Sparse;
-use crate::document::version::{Aspect, Versions};
+use crate::document::version::Aspect;
 
 impl Document {
     /// Restores the earlier state, versions included.
@@ -31,35 +31,6 @@ impl Document {
         by.marks.count_on_from(&self.marks);
         by.marks.mark(&Aspect::ALL);
         *self = by;
-    }
-
-    /// Takes over another document's content, except the method. `known` are its versions at the last time. The shape
-    /// stays that of this document's method, as long as the rest shape stays, and must be solved anew.
-    pub(crate) fn follow(&mut self, leader: &Self, known: Option<&Versions>, method: &Method) {
-        let is_new = |aspect| known.is_none_or(|known| leader.versions().differ(known, aspect));
-        let is_own = |aspect| matches!(aspect, Aspect::Method | Aspect::Shape | Aspect::Drawn);
-        let theirs = Aspect::ALL
-            .into_iter()
-            .filter(|&aspect| !is_own(aspect) && is_new(aspect));
-        let mut changed: Vec<Aspect> = theirs.collect();
-        if self.content.method != *method {
-            changed.push(Aspect::Method);
-        }
-        let own = std::mem::replace(&mut self.content, leader.content.clone());
-        self.content.method = method.clone();
-        if is_new(Aspect::Rest) {
-            self.content.sum_shapes();
-            changed.extend([Aspect::Shape, Aspect::Drawn]);
-        } else {
-            (self.content.from_rest, self.content.from_file) = (own.from_rest, own.from_file);
-        }
-        self.marks.mark(&changed);
-        self.repainted = Repainted::All;
-        // The comparison is about this method's solution for the handles, not about the other's visible shape.
-        self.content.kept = None;
-        self.content.corrections = None;
-        self.content.settled = true;
-        self.unsettle();
     }
 
     pub(in crate::document) fn swap_kept(&mut self, kept: &mut Option<Arc<KeptShape>>) {

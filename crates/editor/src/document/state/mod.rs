@@ -162,15 +162,16 @@ impl Document {
         self.examples().map_or(&[], |examples| &examples.weights)
     }
 
-    /// Whether an example that bends the surface has a weight other than 0, or a control point was moved by hand.
+    /// Returns true if an example that bends the surface has a weight other than 0, or a control point was moved by
+    /// hand.
     pub(crate) fn is_moved_without_handles(&self) -> bool {
         let mut weights = self.example_weights().iter().flatten();
         let are_weighed = self.content.method.examples_bend() && weights.any(|weight| *weight != 0.0);
         are_weighed || self.moved_controls().is_some()
     }
 
-    /// Whether the method can move the surface without handles: by control points, which it makes if none were brought,
-    /// or by examples.
+    /// Returns true if the method can move the surface without handles: by control points, which it makes if none were
+    /// brought, or by examples.
     pub(crate) fn bends_without_handles(&self) -> bool {
         let mut declared = self.content.method.declaration().attachments.iter();
         let bends_by_examples = self.content.method.examples_bend() && self.examples().is_some();
@@ -184,7 +185,7 @@ impl Document {
         (**moved != self.content.method.control_rest(attachment)).then_some(moved)
     }
 
-    /// Whether tips are free.
+    /// The state of the tips: free or fixed.
     pub fn tips(&self) -> Tips {
         self.content.tips
     }
@@ -249,22 +250,22 @@ impl Document {
         self.content.kept.as_deref()
     }
 
-    /// Whether a shape was applied, so that the rest shape differs from the file's.
+    /// Returns true if a shape was applied, so that the rest shape differs from the file's.
     pub fn is_applied(&self) -> bool {
         self.content.applied
     }
 
-    /// Whether the shape is final for the handles' transforms.
+    /// Returns true if the shape is final for the handles' transforms.
     pub fn is_settled(&self) -> bool {
         self.content.settled
     }
 
-    /// Whether the present shape differs from the rest shape.
+    /// Returns true if the present shape differs from the rest shape.
     pub fn is_displaced(&self) -> bool {
         !self.content.settled || self.content.kept.is_some() || self.is_moved()
     }
 
-    /// Whether a handle or a control point is away from its rest position.
+    /// Returns true if a handle or a control point is away from its rest position.
     pub(crate) fn is_moved(&self) -> bool {
         self.content.handles.iter().any(Handle::is_displaced) || self.is_moved_without_handles()
     }

@@ -11,7 +11,7 @@ impl Document {
         &self.content.poses
     }
 
-    /// Whether handles, control points and weights show this pose.
+    /// Returns true if handles, control points and weights show this pose.
     pub fn is_in_pose(&self, pose: &Pose) -> bool {
         let mut handles = self.content.handles.iter();
         handles.all(|handle| {

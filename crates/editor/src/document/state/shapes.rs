@@ -69,7 +69,7 @@ impl Document {
         )
     }
 
-    /// Whether the kept shape is the visible one, with everything in the same places.
+    /// Returns true if the kept shape is the visible one, with everything in the same places.
     fn shows_kept_shape(&self) -> bool {
         let (controls, weights, content) = (self.moved_controls(), self.example_weights(), &self.content);
         let is_seen = |kept: &Arc<KeptShape>| {
@@ -84,8 +84,8 @@ impl Document {
         content.kept.as_ref().is_some_and(is_seen)
     }
 
-    /// Whether handles and method alone may not lead back to the visible shape: the end of a descent can depend on its
-    /// path.
+    /// Returns true if handles and method alone may not lead back to the visible shape: the end of a descent can depend
+    /// on its path.
     pub(crate) fn depends_on_way(&self) -> bool {
         self.content.settled && self.is_moved() && self.content.method.solve() != Solve::Direct
     }
@@ -99,7 +99,7 @@ impl Document {
         }
     }
 
-    /// Whether opening a project makes the kept shape anew ([`Self::keep_way`]).
+    /// Returns true if opening a project makes the kept shape again ([`Self::keep_way`]).
     pub(crate) fn keeps_way_alone(&self) -> bool {
         self.depends_on_way() && self.shows_kept_shape()
     }

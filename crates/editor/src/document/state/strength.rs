@@ -15,7 +15,7 @@ impl Document {
         self.content.strength.as_ref().map_or(1.0, |strength| strength.share)
     }
 
-    /// Shows a share (0 to 1) of the whole edit, which must be solved anew.
+    /// Shows a share (0 to 1) of the whole edit, which must be solved again.
     pub(crate) fn set_strength(&mut self, share: f64) {
         if share != self.strength() {
             self.unsettle();
@@ -59,7 +59,7 @@ impl Document {
         document
     }
 
-    /// Whether the path of each handle from rest follows from its transform alone.
+    /// Returns true if the path of each handle from rest follows from its transform alone.
     pub(crate) fn goes_the_short_way(&self) -> bool {
         let mut handles = self.content.handles.iter();
         handles.all(|handle| Stance::of(handle).goes_the_short_way())

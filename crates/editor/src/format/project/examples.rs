@@ -64,7 +64,7 @@ pub(super) fn read_examples(value: &Value, model: &Model) -> Result<Attachment, 
     Ok(Attachment::Shapes(examples))
 }
 
-/// Whether an example of the list has a set weight.
+/// Returns true if an example of the list has a set weight.
 pub(super) fn are_weighed(value: &Value) -> bool {
     let weight = |example: &Value| example.get("weight").and_then(Value::as_f64);
     let list = value.as_array();

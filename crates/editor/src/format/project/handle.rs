@@ -115,7 +115,7 @@ impl StoredHandle {
         }
     }
 
-    /// Whether it is at its rest position.
+    /// Returns true if it is at its rest position.
     pub(super) fn is_at_rest(&self) -> bool {
         is_default(&self.transform)
     }
@@ -127,7 +127,7 @@ impl StoredHandle {
         if !(size.is_finite() && size >= 0.0) || refused_weight || self.twin.is_some_and(|twin| twin.plane().is_none())
         {
             return Err(EditError::Project(format!(
-                "the handle `{}` has a reach, a weight, a continuity or a twin that can't be: save it again",
+                "the handle `{}` has an invalid reach, weight, continuity or twin: save it again",
                 shortened(&self.name)
             )));
         }

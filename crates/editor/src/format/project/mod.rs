@@ -58,7 +58,7 @@ pub struct Project {
     /// The behaviour of single parts instead of that, by their component's number.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     loose_parts: BTreeMap<u32, StoredLoose>,
-    /// Whether tips are fixed; without it, they are free.
+    /// The state of the tips; without it, they are free.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     tips: Option<StoredTips>,
     /// Painted free.
@@ -98,7 +98,7 @@ pub struct Project {
     /// The shape when the constraints last changed, from which the next drag begins.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     kept: Option<StoredKept>,
-    /// Whether that is the final solution for the handles' transforms; if not, it is computed on opening.
+    /// True if that is the final solution for the handles' transforms; if not, it is computed on opening.
     settled: bool,
     /// The distance within which the mesh's vertices are joined; without it, it follows from the mesh.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -246,7 +246,7 @@ impl Project {
             rest: document.applied.then(|| displacements(&document.rest)).flatten(),
             applied: document.applied,
             shape: displacements(&document.from_rest),
-            // Data that opening makes anew from the shape are not stored twice.
+            // Data that opening makes again from the shape are not stored twice.
             kept: document
                 .kept
                 .as_ref()
@@ -302,7 +302,7 @@ impl Project {
         self.settled = false;
     }
 
-    /// Whether the shape is the file's.
+    /// Returns true if the shape is the file's.
     pub(crate) fn changes_nothing(&self) -> bool {
         let moves = |attachment: &Value| attachment.get("moved").is_some() || are_weighed(attachment);
         let own = |name: &str| {
@@ -329,7 +329,7 @@ impl Project {
         let found = geometry_hash(model);
         if found != self.mesh.geometry {
             return Err(EditError::OtherMesh {
-                name: "the one at hand".to_owned(),
+                name: "the given one".to_owned(),
                 found: hash_shown(&found),
                 expected: hash_shown(&self.mesh.geometry),
             });
@@ -420,7 +420,8 @@ impl Project {
             let id = HandleId(stored.id);
             if document.handles.iter().any(|handle| handle.id == id) || stored.id >= self.next_handle {
                 return Err(EditError::Project(format!(
-                    "the handle `{}` has the number {}, which is another's or none: number them below `next_handle`",
+                    "the handle `{}` has the number {}, which is taken or too large: give each handle its own number \
+                     below `next_handle`",
                     shortened(&stored.name),
                     stored.id
                 )));

@@ -63,7 +63,7 @@ pub(super) fn access(
 ) -> Result<Access, EditError> {
     let refused = |what: &str, number: u32, count: usize| {
         EditError::Project(format!(
-            "`{what}` names number {number}, and the mesh has {count}: save it again"
+            "`{what}` names number {number}, but the mesh has {count}: save it again"
         ))
     };
     let count = model.all_objects().len();

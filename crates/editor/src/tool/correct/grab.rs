@@ -69,7 +69,7 @@ impl GrabShape {
 
 impl Stroke for GrabShape {
     fn doing(&self, _: &Workspace) -> String {
-        "Taking the surface along".to_owned()
+        "Grabbing the shape".to_owned()
     }
 
     fn cursor(&self) -> Cursor {

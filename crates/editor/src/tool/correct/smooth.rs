@@ -39,7 +39,7 @@ impl SmoothShape {
 impl Stroke for SmoothShape {
     fn doing(&self, _: &Workspace) -> String {
         match self.0.correction {
-            Correction::Relax => "Evening the triangles out".to_owned(),
+            Correction::Relax => "Relaxing the shape".to_owned(),
             Correction::Smooth | Correction::Grab => "Smoothing the shape".to_owned(),
         }
     }

@@ -149,7 +149,7 @@ impl Gesture for PoseDrag {
 
     fn status(&self, _: &Workspace, view: &View) -> Option<String> {
         Some(match &self.phase {
-            Phase::Looking => "Looking for the joint: Esc to leave it".to_owned(),
+            Phase::Looking => "Finding the joint: Esc to cancel".to_owned(),
             Phase::Posing(posing) => {
                 let doing = match posing.motion.pose {
                     Pose::Turn => "Turning",
@@ -157,9 +157,7 @@ impl Gesture for PoseDrag {
                     Pose::Scale => "Scaling",
                 };
                 let way = posing.motion.way(view, self.last.position_px).label();
-                format!(
-                    "{doing} the limb by {way}: Ctrl twists it, Shift scales it, let go to keep it, Esc to leave it"
-                )
+                format!("{doing} the limb by {way}: Ctrl twists it, Shift scales it, release to keep it, Esc to cancel")
             }
         })
     }

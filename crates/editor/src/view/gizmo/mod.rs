@@ -93,7 +93,7 @@ pub struct GizmoShape {
     pub part: GizmoPart,
     /// Its colour, sRGB with alpha; brighter under the pointer.
     pub colour: [u8; 4],
-    /// Whether the pointer is over it or drags it.
+    /// True if the pointer is over it or drags it.
     pub highlighted: bool,
     /// Line segments.
     pub lines: Vec<[DVec3; 2]>,

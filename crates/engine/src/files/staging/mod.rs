@@ -394,7 +394,7 @@ impl Staged {
                 format!("{count} other names")
             };
             format!(
-                "{} has {names} in other folders (hard links), which keep the old content: link them anew.",
+                "{} has {names} in other folders (hard links), which keep the old content: link them again.",
                 shown(&file.to.given)
             )
         };

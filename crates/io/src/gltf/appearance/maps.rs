@@ -83,7 +83,7 @@ pub(crate) fn dress(document: &Document, material: usize, out: &mut Material) {
 }
 
 /// Extensions that name an image of a kind that plain glTF does not have.
-const IMAGE_EXTENSIONS: [&str; 2] = ["EXT_texture_webp", "KHR_texture_basisu"];
+pub(super) const IMAGE_EXTENSIONS: [&str; 2] = ["EXT_texture_webp", "KHR_texture_basisu"];
 
 /// The image of a texture and its wrapping.
 pub(crate) fn image_of(document: &Document, texture: usize) -> Option<(usize, [Wrap; 2])> {
@@ -117,10 +117,12 @@ fn wrap(mode: Checked<WrappingMode>) -> Wrap {
 
 /// A texture that a material names.
 #[derive(Clone, Copy, PartialEq, Debug)]
-struct Reference {
-    texture: usize,
-    set: u32,
-    transform: UvTransform,
+pub(super) struct Reference {
+    /// The texture's number in the file, which may have no such texture.
+    pub texture: usize,
+    /// The file's set of texture coordinates.
+    pub set: u32,
+    pub transform: UvTransform,
 }
 
 /// All textures that a material names.
@@ -141,7 +143,8 @@ impl References {
 }
 
 impl Reference {
-    fn read(document: &Document, info: At) -> Option<Self> {
+    /// Reads the reference at this place.
+    pub fn read(document: &Document, info: At) -> Option<Self> {
         let json = &document.json;
         let number = |path: &[&str]| json.path(info, path).and_then(|at| json.number(at));
         let transform = json.path(info, &["extensions", "KHR_texture_transform"]);
@@ -167,23 +170,37 @@ impl Reference {
 /// The place of an image's look-up by the drawn vertices' coordinates; `None` for a missing image or a third set.
 fn map(document: &Document, sets: &MaterialMaps, reference: Reference) -> Option<Map> {
     let (image, wrap) = image_of(document, reference.texture)?;
-    let own = reference.transform.matrix();
-    let base = sets.base_transform.matrix();
-    let (set, matrix) = if reference.set == sets.base_set && base.determinant().abs() >= 1e-12 {
-        // Equal transforms cancel to the last bit.
-        let is_same = reference.transform == sets.base_transform;
-        let relative = if is_same { Mat3::IDENTITY } else { own * base.inverse() };
-        (UvSet::Base, relative)
-    } else if sets.second_set == Some(reference.set) {
-        (UvSet::Second, own)
-    } else {
-        return None;
-    };
-    let rows = matrix.transpose();
+    let (set, matrix) = look_up(sets, reference)?;
     Some(Map {
         image,
         wrap,
         set,
-        transform: [rows.x_axis.to_array(), rows.y_axis.to_array()],
+        transform: rows(matrix),
     })
+}
+
+/// The set of a reference's texture coordinates among the drawn vertices', and the matrix that takes (u, v, 1) to the
+/// place in the image; `None` for a third set.
+pub(super) fn look_up(sets: &MaterialMaps, reference: Reference) -> Option<(UvSet, Mat3)> {
+    let own = reference.transform.matrix();
+    let base = sets.base_transform.matrix();
+    if reference.set == sets.base_set && base.determinant().abs() >= 1e-12 {
+        // Equal transforms cancel to the last bit.
+        let is_same = reference.transform == sets.base_transform;
+        let is_plain = sets.base_transform == UvTransform::IDENTITY;
+        let relative = match (is_same, is_plain) {
+            (true, _) => Mat3::IDENTITY,
+            (false, true) => own,
+            (false, false) => own * base.inverse(),
+        };
+        Some((UvSet::Base, relative))
+    } else {
+        (sets.second_set == Some(reference.set)).then_some((UvSet::Second, own))
+    }
+}
+
+/// The rows of a matrix that multiply (u, v, 1).
+pub(super) fn rows(matrix: Mat3) -> [[f32; 3]; 2] {
+    let rows = matrix.transpose();
+    [rows.x_axis.to_array(), rows.y_axis.to_array()]
 }

@@ -1,6 +1,7 @@
 //! The appearance of a glTF: attributes of its drawn vertices, materials and images.
 
 pub(crate) mod maps;
+pub(crate) mod originals;
 
 use std::collections::HashMap;
 use std::ops::Range;

@@ -62,7 +62,7 @@ impl Layout {
             let some = sparse.indices.count;
             return Err(format!("has {some} sparse elements, more than its {count} elements"));
         }
-        // Zeros take no bytes in the file, so their number is limited by what the file could have stored.
+        // Zeros take no bytes in the file, so their number is limited by the file's size.
         if dense.is_none() && count > document.loaded_bytes {
             return Err(format!(
                 "has {count} elements without bytes, more than the file has bytes"
@@ -195,7 +195,7 @@ fn strided(
         .ok_or_else(|| format!("names buffer view {view}, which does not exist"))?;
     let buffer = found.buffer.value();
     if buffer >= document.buffers.len() {
-        return Err(format!("lies in buffer {buffer}, which does not exist"));
+        return Err(format!("is in buffer {buffer}, which does not exist"));
     }
     let stride = match found.byte_stride {
         Some(stride) if packing == Packing::ByView && stride.0 != 0 => stride.0,

@@ -84,7 +84,7 @@ impl Document {
         self.buffers.push(Buffer::Decoded(bytes.into()));
     }
 
-    /// Whether an accessor's bytes were decoded from a compressed primitive.
+    /// Returns true if an accessor's bytes were decoded from a compressed primitive.
     pub fn is_filled(&self, accessor: usize) -> bool {
         let view = self.accessors.get(accessor).and_then(|accessor| accessor.buffer_view);
         view.is_some_and(|view| view.value() >= self.views_at.len())

@@ -21,7 +21,7 @@ pub(crate) struct Container {
     pub trailing: Range<usize>,
 }
 
-/// Whether the bytes begin like a GLB.
+/// Returns true if the bytes begin like a GLB.
 pub(crate) fn is_glb(bytes: &[u8]) -> bool {
     bytes.starts_with(MAGIC)
 }
@@ -36,11 +36,13 @@ pub(crate) fn split(bytes: &[u8]) -> Result<Container, String> {
         return Err("its header is cut short".to_owned());
     };
     if version != 2 {
-        return Err(format!("it is glTF version {version}, and only version 2 is read"));
+        return Err(format!(
+            "it is glTF version {version}, but only version 2 is supported: export it again"
+        ));
     }
     let end = length as usize;
     if end > bytes.len() {
-        return Err(format!("its header tells {end} bytes, but it has {}", bytes.len()));
+        return Err(format!("its header declares {end} bytes, but it has {}", bytes.len()));
     }
     let chunk = |at: usize| -> Result<Option<(u32, Range<usize>)>, String> {
         let (Some(length), Some(kind)) = (word(at), word(at + 4)) else {
@@ -52,7 +54,7 @@ pub(crate) fn split(bytes: &[u8]) -> Result<Container, String> {
         }
         if content.end > end {
             return Err(format!(
-                "the chunk at byte {at} tells {length} bytes, more than the file has left"
+                "the chunk at byte {at} declares {length} bytes, more than the rest of the file"
             ));
         }
         Ok(Some((kind, content)))

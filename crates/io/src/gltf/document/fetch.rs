@@ -27,7 +27,7 @@ impl Document {
                         Err(reason) => return Err(Fault::Neighbour { uri, reason }),
                     },
                     Address::Elsewhere => {
-                        let reason = "it is an address that is not a file's".to_owned();
+                        let reason = "it is not the address of a file".to_owned();
                         return Err(Fault::Neighbour { uri, reason });
                     }
                 },
@@ -53,7 +53,7 @@ impl Document {
                         }
                         Err(reason) => {
                             let path = quoted(&path);
-                            let note = format!("Image {path} is not shown: it could not be read ({reason}).");
+                            let note = format!("Image {path} is not shown, because it could not be read ({reason}).");
                             self.notes.add("images", Some(note));
                             None
                         }
@@ -61,7 +61,7 @@ impl Document {
                     ImageFile::Neighbour { path, bytes }
                 }
                 (None, _) => {
-                    let note = format!("Image {number} is not shown: it has neither bytes nor a file's name.");
+                    let note = format!("Image {number} is not shown, because it has neither bytes nor a file name.");
                     self.notes.add("images", Some(note));
                     ImageFile::Absent
                 }

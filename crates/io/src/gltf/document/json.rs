@@ -258,7 +258,7 @@ impl Edits {
         }
     }
 
-    /// Whether there is nothing to do.
+    /// Returns true if there is nothing to do.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }

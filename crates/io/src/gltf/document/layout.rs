@@ -50,7 +50,7 @@ impl Strided {
         self.element(self.count.saturating_sub(1)).end
     }
 
-    /// Whether an element of one shares a byte with an element of the other.
+    /// Returns true if an element of one shares a byte with an element of the other.
     pub fn overlaps(&self, other: &Self) -> bool {
         let apart = self.buffer != other.buffer
             || self.count == 0

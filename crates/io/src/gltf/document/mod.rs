@@ -204,7 +204,7 @@ fn objects(json: &Json, section: &str) -> Result<Vec<At>, String> {
 /// The plain material that replaces one that can't be read; the file keeps its own.
 fn dropped(number: usize, error: &str, notes: &mut Notes) -> Material {
     let error = quoted(error);
-    let note = format!("Material {number} is broken ({error}), so what has it is drawn plain.");
+    let note = format!("Material {number} is broken ({error}), so its parts are drawn plain.");
     notes.add("materials", Some(note));
     Material::default()
 }

@@ -128,9 +128,7 @@ fn decoded_mesh(document: &Document, extension: At, budget: usize) -> Result<Mes
     let view = document.index(extension, "bufferView", document.views.len(), || {
         "its Draco data".to_owned()
     })?;
-    let source = view
-        .and_then(|view| document.view(view))
-        .ok_or("Draco data that is not there")?;
+    let source = view.and_then(|view| document.view(view)).ok_or("missing Draco data")?;
     let budget = budget as u64;
     let limits = DecodeLimits::default()
         .with_max_decoded_bytes(budget)
@@ -154,12 +152,12 @@ fn bytes_of_accessors(
     left: &mut usize,
 ) -> Result<Vec<FilledBytes>, String> {
     if primitive.mode != Some(Mode::Triangles) {
-        return Err("Draco data of a primitive that is no list of triangles".to_owned());
+        return Err("Draco data of a primitive that is not a list of triangles".to_owned());
     }
     let mut out: Vec<FilledBytes> = Vec::new();
     let mut keep = |accessor: usize, bytes: Vec<u8>| -> Result<(), String> {
         let room = left.checked_sub(bytes.len());
-        *left = room.ok_or("Draco data that becomes more than a file of its size can hold")?;
+        *left = room.ok_or("Draco data that decodes to more than a file of its size can hold")?;
         out.push((accessor, bytes));
         Ok(())
     };
@@ -181,7 +179,7 @@ fn index_bytes(document: &Document, accessor: usize, mesh: &Mesh) -> Result<Vec<
     let told = &document.accessors[accessor];
     if told.count.0 != 3 * mesh.num_faces() as u64 {
         return Err(format!(
-            "Draco data with {} triangles where accessor {accessor} has {} corners",
+            "Draco data with {} triangles, but accessor {accessor} has {} corners",
             mesh.num_faces(),
             told.count.0
         ));
@@ -203,14 +201,14 @@ fn attribute_bytes(document: &Document, accessor: usize, number: u32, mesh: &Mes
     let told = &document.accessors[accessor];
     let attribute = mesh
         .attribute_by_unique_id(number)
-        .ok_or_else(|| format!("Draco data without the attribute {number} that it is said to have"))?;
+        .ok_or_else(|| format!("Draco data without its declared attribute {number}"))?;
     let points = mesh.num_points();
     let (Checked::Valid(component), Some(lanes)) = (told.component_type, lanes_of(told)) else {
         return Err(format!("accessor {accessor}, which has an unknown type"));
     };
     if told.count.0 != points as u64 || usize::from(attribute.num_components()) != lanes {
         return Err(format!(
-            "Draco data with {points} points of {} numbers where accessor {accessor} has {} of {lanes}",
+            "Draco data with {points} points of {} numbers, but accessor {accessor} has {} of {lanes}",
             attribute.num_components(),
             told.count.0
         ));
@@ -225,9 +223,7 @@ fn attribute_bytes(document: &Document, accessor: usize, number: u32, mesh: &Mes
         _ => None,
     };
     if stored != Some(component.0) {
-        return Err(format!(
-            "Draco data of another type than accessor {accessor}, which stands for it"
-        ));
+        return Err(format!("Draco data of another type than its accessor {accessor}"));
     }
     let size = lanes * component.0.size();
     let stride = usize::try_from(attribute.byte_stride()).unwrap_or(0);

@@ -66,7 +66,7 @@ pub(crate) fn decode(document: &mut Document, cancel: &Cancel) -> Result<(), Can
         .map(|compressed| {
             let compressed = compressed?;
             if cancel.is_cancelled() {
-                return Err("was not wanted any more".to_owned());
+                return Err("is no longer needed".to_owned());
             }
             let stride = (compressed.mode == Mode::Attributes).then_some(compressed.stride);
             Ok::<_, String>((compressed.decoded()?, stride))
@@ -93,7 +93,7 @@ impl<'a> Compressed<'a> {
             (number.fract() == 0.0 && (0.0..9e15).contains(&number)).then_some(number as usize)
         };
         let word = |key: &str| json.member(extension, key).and_then(|at| json.string(at));
-        let needed = |key: &str| whole(key).ok_or_else(|| format!("does not say its {key}"));
+        let needed = |key: &str| whole(key).ok_or_else(|| format!("has no {key}"));
         let (buffer, offset, length) = (
             needed("buffer")?,
             whole("byteOffset").unwrap_or(0),
@@ -103,7 +103,7 @@ impl<'a> Compressed<'a> {
         let source = offset
             .checked_add(length)
             .and_then(|end| document.buffer(buffer).get(offset..end))
-            .ok_or_else(|| format!("lies beyond the bytes of buffer {buffer}"))?;
+            .ok_or_else(|| format!("is beyond the bytes of buffer {buffer}"))?;
         let mode = word("mode").unwrap_or_default();
         let filter = word("filter").unwrap_or_else(|| "NONE".to_owned());
         let unknown = |what: &str, name: &str| format!("has the unknown {what} '{}'", quoted(name));

@@ -231,8 +231,8 @@ impl Gathering<'_> {
                 let note = (flattened > 0).then(|| {
                     let vertices = if flattened == 1 { "vertex" } else { "vertices" };
                     format!(
-                        "The skin of {called} flattens {flattened} {vertices}, so a move can't be brought back to the \
-                         file: what is saved leaves them as they are."
+                        "The skin of {called} flattens {flattened} {vertices}, so their moves can't be saved: they \
+                         stay as they are."
                     )
                 });
                 self.notes.add("skins", note);
@@ -433,10 +433,7 @@ fn corners(document: &Document, primitive: &Primitive, vertex_count: usize) -> R
         .with_min_len(CHUNK)
         .position_first(|&index| index as usize >= vertex_count)
     {
-        Some(at) => Err(format!(
-            "has index {} where it has {vertex_count} vertices",
-            indices[at]
-        )),
+        Some(at) => Err(format!("has index {}, but only {vertex_count} vertices", indices[at])),
         None => Ok(Corners::Listed(indices)),
     }
 }

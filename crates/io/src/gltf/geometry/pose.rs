@@ -81,8 +81,8 @@ impl Pose {
         }
     }
 
-    /// Whether the triangles appear with the opposite winding to the stored one: for a skin, whether more of its
-    /// vertices are mirrored than not.
+    /// Returns true if the triangles appear with the opposite winding to the stored one; for a skin, if more of
+    /// its vertices are mirrored than not.
     pub fn is_mirrored(&self) -> bool {
         match self {
             Self::Node(world_from_node) => world_from_node.matrix3.determinant() < 0.0,
@@ -118,7 +118,7 @@ impl Pose {
 /// A determinant below this share of the product of the axes' lengths is a transform that flattens to a plane or less.
 const FLAT: f64 = 1e-12;
 
-/// Whether a transform has an inverse.
+/// Returns true if a transform has an inverse.
 pub(crate) fn is_invertible(transform: &DAffine3) -> bool {
     let DMat3 { x_axis, y_axis, z_axis } = transform.matrix3;
     let volume = x_axis.length() * y_axis.length() * z_axis.length();

@@ -22,7 +22,7 @@ pub(crate) enum Mode {
 }
 
 impl Mode {
-    /// Whether it makes triangles, not lines or points.
+    /// Returns true if it makes triangles, not lines or points.
     pub fn makes_triangles(self) -> bool {
         matches!(self, Self::Triangles | Self::Strip | Self::Fan)
     }
@@ -154,8 +154,8 @@ impl Primitive {
         })
     }
 
-    /// Whether its vertices are in the same places as the other's, for any weights of morph targets and any pose of the
-    /// skin.
+    /// Returns true if its vertices are in the same places as the other's, for any weights of morph targets and any
+    /// pose of the skin.
     pub fn moves_as(&self, other: &Self) -> bool {
         let is_bound_alike = self.influences == other.influences;
         self.position == other.position && self.targets == other.targets && is_bound_alike

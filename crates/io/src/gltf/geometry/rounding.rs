@@ -17,7 +17,7 @@ const MOST_BITS: u32 = 30;
 /// The number of coordinates for one task.
 const CHUNK: usize = 1 << 14;
 
-/// Whether positions were decoded from Draco's data.
+/// The coding of positions in the file.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Coding {
     Plain,

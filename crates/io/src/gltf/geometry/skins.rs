@@ -21,7 +21,7 @@ pub(crate) type Skin = Arc<Vec<DAffine3>>;
 /// The skin of a node's mesh; `None` if the node names none. `world` has the world transform of each node.
 ///
 /// # Errors
-/// Why the skin can't be read, as the end of a sentence.
+/// The reason why the skin can't be read, as the end of a sentence.
 pub(crate) fn of_node(document: &Document, node: At, world: &[DAffine3]) -> Result<Option<Skin>, String> {
     let json = &document.json;
     let list = json.member(json.root(), "skins");
@@ -85,7 +85,10 @@ pub(crate) fn transforms(
             pairs.find_map(|(joint, weight)| (*weight != 0.0 && *joint as usize >= skin.len()).then_some(*joint))
         });
         if let Some(joint) = wrong {
-            return Err(format!("a vertex names joint {joint}, but there are {}", skin.len()));
+            return Err(format!(
+                "a vertex names joint {joint}, but there are only {}",
+                skin.len()
+            ));
         }
         sums.par_iter_mut()
             .zip(joints.par_iter().zip(&weights))

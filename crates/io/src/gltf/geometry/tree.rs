@@ -116,7 +116,8 @@ fn note_unseen(document: &Document, seen: &[bool], notes: &mut Notes) {
         };
         let called = document.called(first);
         let note = format!(
-            "{nodes} not drawn, because the default scene does not show them ({called} is the first); an edit leaves them as they are."
+            "{nodes} not drawn, because the default scene does not show them ({called} is the first); an edit does \
+             not change them."
         );
         notes.add("scenes", Some(note));
     }
@@ -136,7 +137,7 @@ fn note_unseen(document: &Document, seen: &[bool], notes: &mut Notes) {
         };
         let called = document.called(first);
         let note = format!(
-            "{nodes} hidden by KHR_node_visibility ({called} is the first) and what is below is drawn all the same."
+            "{nodes} hidden by KHR_node_visibility ({called} is the first), but drawn here with the nodes below."
         );
         notes.add("hidden nodes", Some(note));
     }

@@ -266,7 +266,7 @@ fn morph_warnings(
         let note = match is_turned(mesh) {
             true => format!("The morph targets of mesh {mesh}{called} turned with the edit."),
             false => {
-                format!("The morph targets of mesh {mesh}{called} keep their deltas: they did not turn with the edit.")
+                format!("The morph targets of mesh {mesh}{called} did not turn with the edit.")
             }
         };
         notes.add("meshes", Some(note));

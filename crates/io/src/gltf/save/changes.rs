@@ -248,7 +248,7 @@ fn xyz([x, y, z, _]: [f32; 4]) -> DVec3 {
 pub(crate) struct Rest(BTreeMap<usize, (Vec<[f32; 4]>, f32)>);
 
 impl Rest {
-    /// Whether two changes of one accessor are the same except for the rounding of different nodes' transforms.
+    /// Returns true if two changes of one accessor are the same except for the rounding of different nodes' transforms.
     pub fn comes_to_the_same(&mut self, document: &Document, accessor: usize, a: &Change, b: &Change) -> bool {
         if a == b {
             return true;

@@ -35,7 +35,7 @@ pub(crate) struct MeshCopy {
 pub(crate) type MeshUse = (usize, usize);
 
 impl MeshCopy {
-    /// Whether it is drawn: the file's own mesh may be left to nodes that are not.
+    /// Returns true if it is drawn: the file's own mesh may be left to nodes that are not.
     pub fn is_drawn(&self) -> bool {
         !self.uses.is_empty()
     }

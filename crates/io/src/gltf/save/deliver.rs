@@ -142,7 +142,7 @@ pub(crate) fn reparsed(text: &[u8]) -> Result<Json, SaveError> {
     Json::parse(text.to_vec()).map_err(|what| SaveError::CannotHold {
         what,
         format: Format::Gltf,
-        remedy: "this is a fault of the program, so report it with the file".to_owned(),
+        remedy: "this is a fault of the program: report it with the file".to_owned(),
     })
 }
 
@@ -220,7 +220,7 @@ fn bring_images(
         let name = inside(path)?;
         let Some(bytes) = bytes else {
             let path = quoted(path);
-            warnings.push(format!("The image {path} was missing and could not be brought along."));
+            warnings.push(format!("The image {path} is missing and could not be copied."));
             continue;
         };
         let name = gathered.add(name, Role::Image, bytes);
@@ -231,7 +231,7 @@ fn bring_images(
     Ok(())
 }
 
-/// Whether a buffer has OUT's name, apart from a number after the stem and the extension.
+/// Returns true if a buffer has OUT's name, apart from a number after the stem and the extension.
 fn is_own_name(name: &str, out: &str) -> bool {
     let behind = name.strip_prefix(&own_stem(out));
     let number = behind

@@ -185,7 +185,7 @@ impl Spans {
         Self(joined)
     }
 
-    /// Whether an element may share a byte with one of them.
+    /// Returns true if an element may share a byte with one of them.
     fn meet(&self, place: &Strided) -> bool {
         let Self(spans) = self;
         let first = spans.partition_point(|(buffer, range)| (*buffer, range.end) <= (place.buffer, place.start));

@@ -98,7 +98,7 @@ impl TargetMaker<'_, '_> {
         if primitives.iter().any(|primitive| primitive.targets.len() != known) {
             let mesh = copy.mesh;
             return Err(self.refuse(format!(
-                "those of mesh {mesh}, whose primitives have different numbers of them"
+                "those of mesh {mesh}, whose primitives have different numbers of morph targets"
             )));
         }
         for (primitive, instance) in primitives.iter().zip(copy.followed_instances(primitives)) {
@@ -115,7 +115,8 @@ impl TargetMaker<'_, '_> {
         append_weight(document, edits, mesh, known, weight, Missing::Write);
         if !append_name(document, edits, mesh, known, self.target.name) {
             self.patch.out.warnings.push(format!(
-                "The names of mesh {}'s morph targets are not as many as the targets, so '{}' is not named there.",
+                "The number of names of mesh {}'s morph targets differs from that of the targets, so '{}' has no name \
+                 there.",
                 copy.mesh,
                 quoted(self.target.name)
             ));
@@ -194,7 +195,7 @@ impl TargetMaker<'_, '_> {
         let mut channels: Vec<Channel> = of_nodes.flatten().copied().collect();
         channels.sort_by_key(|channel| (channel.animation, channel.number));
         for Channel { animation, sampler, .. } in channels {
-            let broken = || format!("animation {animation}, whose weights are not as many as the targets,");
+            let broken = || format!("animation {animation}, whose number of weights differs from that of the targets,");
             let samplers = &self.animated.samplers[animation];
             let found = sampler.and_then(|named| {
                 let number = self.patch.document.json.number(named)? as usize;

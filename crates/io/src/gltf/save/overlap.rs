@@ -81,7 +81,7 @@ impl Places {
         (group, &self.groups[group].accessors)
     }
 
-    /// Whether an accessor shares a byte with one at another place.
+    /// Returns true if an accessor shares a byte with one at another place.
     pub fn is_overlapped(&self, accessor: usize) -> bool {
         let number = self.group_of[accessor];
         let group = &self.groups[number];

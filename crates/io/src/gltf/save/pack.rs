@@ -115,7 +115,7 @@ fn pack_images(
             ImageFile::Data(bytes) | ImageFile::Neighbour { bytes: Some(bytes), .. } => bytes,
             ImageFile::Neighbour { path, bytes: None } => {
                 let path = quoted(path);
-                warnings.push(format!("The image {path} was missing and could not be packed."));
+                warnings.push(format!("The image {path} is missing and could not be packed."));
                 continue;
             }
             ImageFile::View(_) | ImageFile::Absent => continue,
@@ -194,12 +194,9 @@ fn refuse_unused(document: &Document, save: &Save<'_>) -> Result<(), SaveError> 
             && !used.contains(&number)
         {
             return Err(SaveError::CannotHold {
-                what: format!(
-                    "{}, a buffer outside the file's own folder that nothing in it reads,",
-                    quoted(path)
-                ),
+                what: format!("{}, an unused buffer outside the file's own folder,", quoted(path)),
                 format: save.format,
-                remedy: "take it out of the file's buffers".to_owned(),
+                remedy: "remove it from the file's buffers".to_owned(),
             });
         }
     }

@@ -32,7 +32,7 @@ impl<'a> Patched<'a> {
         }
     }
 
-    /// Whether this is the document as it was read.
+    /// Returns true if this is the document as it was read.
     pub fn is_unchanged(&self) -> bool {
         let is_borrowed = |cow: &Cow<'_, [u8]>| matches!(cow, Cow::Borrowed(_));
         is_borrowed(&self.text) && self.buffers.iter().all(is_borrowed)
@@ -222,7 +222,7 @@ impl<'a> Patch<'a> {
 /// The bytes that a save may make for each byte that the drawn set may take.
 const MOST_SAVED: usize = 4;
 
-const TOO_MANY_COPIES: &str = "an edit that needs more copies of the same bytes than a file of its size justifies";
+const TOO_MANY_COPIES: &str = "an edit that needs too many copies of the same bytes for a file of its size";
 
 /// The refusal of `what`, which does not fit the file's accessors.
 pub(crate) fn cannot_hold(what: String, format: Format) -> SaveError {

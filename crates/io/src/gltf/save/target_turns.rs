@@ -93,7 +93,7 @@ fn rotation(gradient: DMat3) -> Option<DMat3> {
     rotation.is_finite().then_some(rotation)
 }
 
-/// Whether a delta of the primitive's targets turns too far to stay.
+/// Returns true if a delta of the primitive's targets turns too far to stay.
 fn are_off(document: &Document, primitive: &Primitive, turns: &[DMat3]) -> bool {
     let least = 1.0 + 2.0 * MOST_OFF.to_radians().cos();
     let is_far = |turn: &DMat3| turn.x_axis.x + turn.y_axis.y + turn.z_axis.z < least;

@@ -19,7 +19,7 @@ impl Patch<'_> {
         let at = document.nodes_at[node];
         let cannot = |what: &str| SaveError::CannotHold {
             what: format!(
-                "{what} of {} that the edit makes differ ({EXTENSION}),",
+                "{what} of {} that differ after the edit ({EXTENSION}),",
                 document.called(node)
             ),
             format,
@@ -90,7 +90,7 @@ impl Patch<'_> {
     }
 }
 
-/// Whether an animation changes the weights of a node's morph targets.
+/// Returns true if an animation changes the weights of a node's morph targets.
 fn is_weighed_by_animation(document: &Document, node: usize) -> bool {
     let json = &document.json;
     let animations = json.member(json.root(), "animations");

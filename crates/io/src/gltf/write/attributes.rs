@@ -83,7 +83,7 @@ pub(super) fn attributes(
     Ok(attributes)
 }
 
-/// Whether all of these vertices, which are in order, belong to flat triangles, or none does.
+/// Returns true if all of these vertices, which are in order, belong to flat triangles, or none does.
 fn is_flat(mesh: &NewMesh<'_>, vertices: &[u32]) -> bool {
     let flat = &mesh.appearance.flat;
     let is_in = |v: u32| {

@@ -13,6 +13,9 @@ use crate::images::decode::mime_type;
 use crate::images::decodes;
 use crate::quote::quoted;
 
+/// The media types of images that every reader of glTF knows.
+pub(super) const PLAIN: [&str; 2] = ["image/png", "image/jpeg"];
+
 /// Materials, textures, samplers and images that are used.
 #[derive(Default)]
 pub(super) struct Looks {
@@ -27,12 +30,15 @@ pub(super) struct Looks {
     /// The written texture of each image and wrapping.
     texture_of: HashMap<(usize, [Wrap; 2]), usize>,
     /// The extensions that the materials use.
-    pub(super) extensions: BTreeSet<&'static str>,
+    pub(super) extensions: BTreeSet<String>,
+    /// Those of them that a reader must know.
+    pub(super) required: BTreeSet<String>,
     /// The image that was made of bytes at each place.
     image_at: HashMap<(usize, Range<usize>), usize>,
 }
 
 impl Looks {
+    /// The texture of a written image.
     pub(super) fn texture(&mut self, image: usize, wrap: [Wrap; 2]) -> usize {
         let mode = |wrap| match wrap {
             Wrap::ClampToEdge => 33071,
@@ -47,7 +53,17 @@ impl Looks {
         })
     }
 
-    pub(super) fn image(&mut self, out: &mut Built, mesh: &NewMesh<'_>, image: usize) -> Option<usize> {
+    /// The texture of a glTF, with the numbers of the written images and sampler put in.
+    pub(super) fn texture_as_written(&mut self, mut texture: Value, sampler: Option<&Value>) -> usize {
+        if let Some(sampler) = sampler {
+            texture["sampler"] = index_of(&mut self.samplers, sampler.clone()).into();
+        }
+        index_of(&mut self.textures, texture)
+    }
+
+    /// The written image; `None` if it can't be written. `types` are the media types that its place in the file may
+    /// have.
+    pub(super) fn image(&mut self, out: &mut Built, mesh: &NewMesh<'_>, image: usize, types: &[&str]) -> Option<usize> {
         if let Some(&known) = self.image_of.get(&image) {
             return known;
         }
@@ -63,7 +79,7 @@ impl Looks {
             self.image_of.insert(image, None);
             return None;
         }
-        let mime = mime_type(&found.encoded).filter(|mime| matches!(*mime, "image/png" | "image/jpeg"));
+        let mime = mime_type(&found.encoded).filter(|mime| types.contains(mime));
         let written = match mime {
             Some(mime) => {
                 let view = out.bytes(found.encoded.iter().copied());
@@ -80,7 +96,7 @@ impl Looks {
             }
             None if found.encoded.is_empty() => {
                 out.warnings
-                    .push(format!("The image {name} was missing and could not be embedded."));
+                    .push(format!("The image {name} is missing and could not be embedded."));
                 None
             }
             None => {
@@ -108,6 +124,9 @@ impl Looks {
         }
         if !self.extensions.is_empty() {
             root["extensionsUsed"] = json!(self.extensions);
+        }
+        if !self.required.is_empty() {
+            root["extensionsRequired"] = json!(self.required);
         }
     }
 }

@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use super::buffer::Built;
-use super::looks::Looks;
+use super::looks::{Looks, PLAIN};
 use crate::appearance::{Lighting, Map, Material, UvSet};
 use crate::convert::NewMesh;
 
@@ -64,28 +64,39 @@ fn reference(
     map: Map,
     used: &mut Vec<&'static str>,
 ) -> Option<Value> {
-    let set = match map.set {
-        UvSet::Base => mesh.appearance.uvs.as_ref().map(|_| 0)?,
-        UvSet::Second => second_set(mesh)?,
-    };
-    let image = looks.image(out, mesh, map.image)?;
+    let set = set_number(mesh, map.set)?;
+    let image = looks.image(out, mesh, map.image, &PLAIN)?;
     let mut reference = json!({ "index": looks.texture(image, map.wrap) });
     if set > 0 {
         reference["texCoord"] = set.into();
     }
-    match transform(map.transform) {
-        Some(None) => {}
+    let is_moved = place(out, &mut reference, map.transform)?;
+    used.extend(is_moved.then_some("KHR_texture_transform"));
+    Some(reference)
+}
+
+/// Gives a reference the transform of these rows, and tells whether it needs one; `None` if glTF can't hold it.
+pub(super) fn place(out: &mut Built, reference: &mut Value, rows: [[f32; 3]; 2]) -> Option<bool> {
+    match transform(rows) {
+        Some(None) => Some(false),
         Some(Some(transform)) => {
-            used.push("KHR_texture_transform");
             reference["extensions"] = json!({ "KHR_texture_transform": transform });
+            Some(true)
         }
         None => {
             out.warnings
-                .push("An image whose place on the surface is skewed can't be placed in glTF: it was left out.".into());
-            return None;
+                .push("An image with skewed texture coordinates was left out, because glTF can't hold them.".into());
+            None
         }
     }
-    Some(reference)
+}
+
+/// The number of a set of texture coordinates in the new file; `None` if the mesh does not have it.
+pub(super) fn set_number(mesh: &NewMesh<'_>, set: UvSet) -> Option<usize> {
+    match set {
+        UvSet::Base => mesh.appearance.uvs.as_ref().map(|_| 0),
+        UvSet::Second => second_set(mesh),
+    }
 }
 
 /// The number of the second set of texture coordinates, if the mesh has one.

@@ -1,9 +1,9 @@
 //! The materials of a new glTF.
 
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::buffer::Built;
-use super::looks::Looks;
+use super::looks::{Looks, PLAIN};
 use super::maps;
 use crate::appearance::{AlphaMode, Material};
 use crate::convert::NewMesh;
@@ -19,6 +19,17 @@ impl Looks {
         if let Some(&known) = self.material_of.get(&number) {
             return known;
         }
+        let value = match &material.original {
+            Some(original) => self.original(out, mesh, original),
+            None => self.drawn_members(out, mesh, material),
+        };
+        self.materials.push(value);
+        self.material_of.insert(number, self.materials.len() - 1);
+        self.materials.len() - 1
+    }
+
+    /// The JSON of the members that are drawn.
+    fn drawn_members(&mut self, out: &mut Built, mesh: &NewMesh<'_>, material: &Material) -> Value {
         let unit = |number: f32| {
             f64::from(if number.is_finite() {
                 number.clamp(0.0, 1.0)
@@ -33,7 +44,7 @@ impl Looks {
         });
         // A texture without texture coordinates is an error in glTF.
         let image = material.base_colour_image.filter(|_| mesh.appearance.uvs.is_some());
-        if let Some(image) = image.and_then(|image| self.image(out, mesh, image)) {
+        if let Some(image) = image.and_then(|image| self.image(out, mesh, image, &PLAIN)) {
             surface["baseColorTexture"] = json!({ "index": self.texture(image, material.wrap) });
         }
         let mut value = json!({ "pbrMetallicRoughness": surface });
@@ -52,9 +63,7 @@ impl Looks {
             }
         }
         let extensions = maps::dress(self, out, mesh, material, &mut value);
-        self.extensions.extend(extensions);
-        self.materials.push(value);
-        self.material_of.insert(number, self.materials.len() - 1);
-        self.materials.len() - 1
+        self.extensions.extend(extensions.into_iter().map(str::to_owned));
+        value
     }
 }

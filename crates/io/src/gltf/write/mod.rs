@@ -9,6 +9,7 @@ mod buffer;
 mod looks;
 mod maps;
 mod materials;
+mod originals;
 mod parts;
 
 use glam::{DVec3, Vec3};
@@ -64,7 +65,7 @@ fn build(mesh: &NewMesh<'_>, format: Format, course: &Course<'_>) -> Result<Buil
         return Err(SaveError::CannotHold {
             what: "a shape without triangles".to_owned(),
             format,
-            remedy: "save it as the kind it was".to_owned(),
+            remedy: "save it in its own format".to_owned(),
         });
     }
     out.triangles = order(&parts, mesh.triangles.len());
@@ -112,7 +113,7 @@ fn build(mesh: &NewMesh<'_>, format: Format, course: &Course<'_>) -> Result<Buil
     });
     looks.add_to(&mut root);
     if mesh.polygons.is_some() {
-        let warning = format!("{format} holds triangles only, so polygons were cut: save as .obj to keep them.");
+        let warning = format!("{format} holds only triangles, so polygons were cut: save as .obj to keep them.");
         out.warnings.push(warning);
     }
     out.root = root;

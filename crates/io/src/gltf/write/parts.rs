@@ -103,7 +103,7 @@ pub(super) fn parts<'a>(
     }
     if left_out > 0 {
         warnings.push(format!(
-            "glTF output leaves out {left_out} triangles with a vertex that is not a finite number."
+            "glTF output leaves out {left_out} triangles with a vertex that is not finite."
         ));
     }
     parts.retain(|part| !part.triangles.is_empty());

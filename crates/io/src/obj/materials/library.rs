@@ -53,12 +53,12 @@ pub(super) fn parse(text: &[u8], unread: &mut BTreeSet<String>) -> Vec<tobj::Mat
         .unwrap_or_default()
 }
 
-/// Whether a keyword names an image that isn't drawn.
+/// Returns true if a keyword names an image that isn't drawn.
 pub(super) fn is_other_map(keyword: &str) -> bool {
     keyword.starts_with("map_") || matches!(keyword, "bump" | "disp" | "decal" | "refl" | "norm")
 }
 
-/// Whether a statement says that a surface shines or glows, in a number above zero.
+/// Returns true if a statement says that a surface shines or glows, in a number above zero.
 fn shines<'a>(keyword: &str, mut numbers: impl Iterator<Item = &'a str>) -> bool {
     matches!(keyword, "Ks" | "Ke" | "Pr" | "Pm" | "Ps" | "Pc")
         && numbers.any(|word| word.parse::<f32>().is_ok_and(|number| number > 0.0))

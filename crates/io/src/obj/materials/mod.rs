@@ -87,7 +87,7 @@ pub(super) fn look_up(source: &Source<'_>, libraries: &[&[u8]], names: &[String]
         let found = known.get_key_value(name).or_else(in_another_case);
         if let Some((own, _)) = found.filter(|(own, _)| *own != name) {
             let (own, name) = (excerpt(own.as_bytes()), excerpt(name.as_bytes()));
-            let note = format!("The material '{name}' is called '{own}' in the library and was taken for that one.");
+            let note = format!("The library has no material '{name}', so its material '{own}' is used.");
             out.notes.add("materials", Some(note));
         }
         if found.is_none() && !known.is_empty() {
@@ -113,7 +113,7 @@ pub(super) fn look_up(source: &Source<'_>, libraries: &[&[u8]], names: &[String]
         out.notes.add("materials", Some(note));
     }
     if names.is_empty() && !known.is_empty() {
-        let note = "Its material library is not shown: no 'usemtl' says which faces have its materials.";
+        let note = "Its material library is not shown, because no 'usemtl' gives its materials to faces.";
         out.notes.add("material libraries", Some(note.to_owned()));
     }
     out
@@ -246,7 +246,7 @@ mod tests {
         assert_eq!(
             unread_of(rich).as_deref(),
             Some(
-                "GLB output goes without what the material library says by Ks, Pm, map_Bump, norm: keep the .obj for it."
+                "GLB output leaves out the material library's statements Ks, Pm, map_Bump, norm: keep the .obj for them."
             )
         );
     }

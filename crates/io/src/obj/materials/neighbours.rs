@@ -26,12 +26,12 @@ pub(in crate::obj) fn neighbours(materials: &Materials) -> (Vec<OutputFile>, Vec
         } else {
             let path = excerpt(path.as_bytes());
             warnings.push(format!(
-                "{path} lies outside the file's own folder and was not copied: copy it by hand."
+                "{path} is outside the file's own folder and was not copied: copy it yourself."
             ));
         }
     }
     if materials.unread.iter().any(|keyword| is_other_map(keyword)) {
-        let warning = "Maps other than the base colour's stay in the old folder: copy them by hand.";
+        let warning = "Maps other than the base colour's stay in the old folder: copy them yourself.";
         warnings.push(warning.to_owned());
     }
     (files, warnings)
@@ -42,13 +42,13 @@ pub(in crate::obj) fn unread_lost(materials: &Materials, kind: &str) -> Option<S
     let names: Vec<&str> = materials.unread.iter().map(String::as_str).collect();
     (!names.is_empty()).then(|| {
         format!(
-            "{kind} output goes without what the material library says by {}: keep the .obj for it.",
+            "{kind} output leaves out the material library's statements {}: keep the .obj for them.",
             names.join(", ")
         )
     })
 }
 
-/// Whether a path stays within its starting folder, on every system.
+/// Returns true if a path stays within its starting folder, on every system.
 fn is_inside(path: &str) -> bool {
     !path.is_empty()
         && !path.contains([':', '\\', '\0'])

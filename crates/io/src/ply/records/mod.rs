@@ -44,7 +44,7 @@ pub(super) fn read(source: &Source<'_>, header: &Header) -> Result<Records, Read
     let count = records.positions.len();
     if let Some(&missing) = records.corners.iter().find(|&&corner| corner as usize >= count) {
         let reason =
-            format!("a face names the vertex {missing}, but there are {count}, counted from 0: correct the face");
+            format!("a face names the vertex {missing}, but there are {count}, numbered from 0: correct the face");
         return Err(source.malformed(Format::Ply, reason));
     }
     Ok(records)
@@ -60,7 +60,7 @@ fn check_count(source: &Source<'_>, header: &Header, element: &Element, walk: &W
         return Ok(());
     }
     let reason = format!(
-        "the header promises {} records of '{}', but only {} bytes are left for them: the file is cut short",
+        "the header declares {} records of '{}', but only {} bytes are left for them: the file is cut short",
         element.count,
         quoted(&element.name),
         walk.left()

@@ -14,7 +14,7 @@ pub(super) fn cut_short(source: &Source<'_>, element: &Element, record: u64, at:
         )
     } else {
         format!(
-            "record {record} of '{}' is damaged (byte {at}): export the file anew",
+            "record {record} of '{}' is damaged (byte {at}): export the file again",
             quoted(&element.name)
         )
     };

@@ -24,7 +24,7 @@ pub(super) fn read_vertices(
     }
     if let Some(missing) = (0..3).find(|&axis| columns[axis].is_none()) {
         let reason = format!(
-            "its vertices have no '{}': export the file anew",
+            "its vertices have no '{}': export the file again",
             COLUMN_NAMES[missing][0]
         );
         return Err(source.malformed(Format::Ply, reason));

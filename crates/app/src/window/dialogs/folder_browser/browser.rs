@@ -51,7 +51,7 @@ pub struct FolderBrowser {
     is_new: bool,
     back: Vec<PathBuf>,
     forward: Vec<PathBuf>,
-    /// Whether the folder was reached letter by letter: the way back leads to the start of the typing.
+    /// True if the folder was reached letter by letter: the way back leads to the start of the typing.
     is_typed: bool,
     /// The typed path: the folder, and a part of a name that filters.
     path: String,
@@ -174,7 +174,7 @@ impl FolderBrowser {
         std::mem::take(&mut self.is_wanted).then(|| self.folder.clone())
     }
 
-    /// Whether this is the first time that it is shown.
+    /// Returns true if this is the first time that it is shown.
     pub fn take_is_new(&mut self) -> bool {
         std::mem::take(&mut self.is_new)
     }
@@ -205,7 +205,7 @@ impl FolderBrowser {
         self.show(folder);
     }
 
-    /// Whether there is a folder above.
+    /// Returns true if there is a folder above.
     pub fn has_above(&self) -> bool {
         self.folder.parent().is_some()
     }
@@ -219,7 +219,7 @@ impl FolderBrowser {
         }
     }
 
-    /// Whether there is a way back, and a way forward.
+    /// True for each way that exists: back, forward.
     pub fn has_ways(&self) -> [bool; 2] {
         [!self.back.is_empty(), !self.forward.is_empty()]
     }
@@ -315,7 +315,7 @@ impl FolderBrowser {
         self.choose(place);
     }
 
-    /// Whether Enter would do anything.
+    /// Returns true if Enter would do anything.
     pub fn can_enter(&self) -> bool {
         let is_named = self.asked == Asked::ToSave && !self.name.trim().is_empty();
         is_named || self.chosen().is_some() || !split(&self.path).1.is_empty()
@@ -358,7 +358,7 @@ impl FolderBrowser {
         } else if !rest.is_empty() {
             let missing = shown(&self.folder.join(rest));
             self.problem = Some(format!(
-                "There is no {missing}: choose one of the list, or another folder."
+                "{missing} does not exist: choose a file from the list, or another folder."
             ));
         }
     }

@@ -229,7 +229,7 @@ fn list(ui: &mut egui::Ui, browser: &mut FolderBrowser, height: f32) {
     let slow_since = ui.scope_id().with("slow since");
     let folder = browser.folder();
     let sentence = match browser.contents() {
-        Contents::Read(_) if browser.shown().is_empty() => Some("There is nothing of this kind here.".to_owned()),
+        Contents::Read(_) if browser.shown().is_empty() => Some("This folder has no such files.".to_owned()),
         Contents::Read(_) => None,
         Contents::Refused(sentence) => Some(sentence.clone()),
         Contents::Awaited => {
@@ -237,7 +237,7 @@ fn list(ui: &mut egui::Ui, browser: &mut FolderBrowser, height: f32) {
             let since = ui.data_mut(|data| *data.get_temp_mut_or(slow_since.with(folder), now));
             ui.ctx().request_repaint_after_secs(SLOW as f32);
             let is_slow = now - since > SLOW;
-            is_slow.then(|| format!("{} is slow to answer: wait, or choose another folder.", shown(folder)))
+            is_slow.then(|| format!("{} responds slowly: wait, or choose another folder.", shown(folder)))
         }
     };
     if *browser.contents() != Contents::Awaited {

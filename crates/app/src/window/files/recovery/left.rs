@@ -81,7 +81,7 @@ pub fn remove(project: &Path) {
     }
 }
 
-/// Whether nobody holds the lock.
+/// Returns true if nobody holds the lock.
 fn is_gone(lock: &Path) -> bool {
     match File::open(lock) {
         Ok(file) => file.try_lock().is_ok(),

@@ -33,7 +33,7 @@ pub struct Recovery {
     writing: Option<SnapshotKey>,
     last: Instant,
     every: Duration,
-    /// Whether the last write failed, which is reported once.
+    /// True if the last write failed, which is reported once.
     failed: bool,
 }
 
@@ -78,7 +78,7 @@ impl Recovery {
                 });
             }
         }
-        Err(refuse(std::io::Error::other("a thousand sessions are there")))
+        Err(refuse(std::io::Error::other("a thousand sessions exist already")))
     }
 
     /// Takes the present state and returns the work to be written now, if any, for [`Work::write`] on another thread.
@@ -113,7 +113,7 @@ impl Recovery {
         Some(work)
     }
 
-    /// Whether this state was written.
+    /// Returns true if this state was written.
     pub fn has(&self, key: SnapshotKey) -> bool {
         self.kept == Some(key) && !self.failed
     }
@@ -136,7 +136,7 @@ impl Recovery {
             }
             Err(sentence) => {
                 let is_new = !std::mem::replace(&mut self.failed, true);
-                is_new.then(|| format!("Unsaved work can't be kept for a recovery: {sentence}"))
+                is_new.then(|| format!("Unsaved work can't be kept for recovery: {sentence}"))
             }
         }
     }

@@ -1,7 +1,8 @@
-//! Reasons why a system could not be factored or solved.
+//! Reasons why a system could not be factored or solved, and their translation for the caller of a binding.
+
+use pliant_mesh::{SurfaceVertex, Topology};
 
 use crate::BindError;
-use crate::bilaplacian::operator::BilaplacianOperator;
 use crate::budget::Limit;
 use crate::sparse::factor_error::FactorError;
 
@@ -16,23 +17,29 @@ pub(crate) enum SystemError {
 }
 
 impl SystemError {
-    /// A factorisation's refusal, whose columns are the local vertices `columns`.
-    pub(super) fn of(error: FactorError, operator: &BilaplacianOperator, columns: &[u32]) -> Self {
+    /// A factorisation's refusal. `vertex_of` is the surface vertex of a column.
+    pub fn of(error: FactorError, vertex_of: impl FnOnce(usize) -> u32) -> Self {
         match error {
             FactorError::Memory => Self::OutOfMemory,
             FactorError::Budget(limit) => Self::Budget(limit),
             FactorError::Cancelled => Self::Cancelled,
-            FactorError::Pivot(column) => {
-                let local = columns.get(column).map_or(0, |&local| local as usize);
-                Self::NotPositiveDefinite {
-                    vertex: operator.laplacian.vertices()[local],
-                }
-            }
+            FactorError::Pivot(column) => Self::NotPositiveDefinite {
+                vertex: vertex_of(column),
+            },
+        }
+    }
+
+    /// The same for a matrix that is positive definite by construction, whose pivots fail for its size alone.
+    pub fn of_definite(error: FactorError) -> Self {
+        match error {
+            FactorError::Pivot(_) => Self::OutOfMemory,
+            other => Self::of(other, |_| 0),
         }
     }
 
     /// The error in the caller's terms.
-    pub fn into_bind_error(self, component_of: impl Fn(u32) -> u32, free_count: usize) -> BindError {
+    pub fn into_bind_error(self, topology: &Topology, free_count: usize) -> BindError {
+        let component_of = |vertex: u32| topology.component(SurfaceVertex(vertex));
         match self {
             Self::NotPositiveDefinite { vertex } => BindError::NotPositiveDefinite {
                 component: component_of(vertex),
@@ -49,7 +56,7 @@ impl SystemError {
         }
     }
 
-    /// Whether memory was too small.
+    /// Returns true if memory was too small.
     pub fn is_for_memory(self) -> bool {
         matches!(self, Self::Budget(Limit::Bytes(_)) | Self::OutOfMemory)
     }

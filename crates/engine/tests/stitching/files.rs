@@ -1,79 +1,15 @@
-//! Files in, new shapes out.
-#![allow(clippy::unwrap_used, reason = "a test that can't go on fails")]
+//! Files in, new shapes out: formats, refusals and warnings.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use pliant_engine::files::Staging;
-use pliant_engine::stitching::{Cut, Fill, Holes, Merge, Replace, cut, fill, merge};
+use pliant_engine::load;
+use pliant_engine::stitching::{CutAlong, Holes, Keep, Plane, Replace};
 use pliant_engine::watch::Watch;
-use pliant_engine::{EngineError, load};
 use pliant_io::Format;
-use pliant_mesh::{Model, WeldOptions, shapes};
+use pliant_mesh::WeldOptions;
 
-/// A sphere as an OBJ with texture coordinates, normals and two materials, without the faces whose middle is above
-/// `height`.
-fn textured_sphere(path: &Path, height: f64) {
-    let sphere = shapes::uv_sphere(24, 36);
-    let mut text = String::from("mtllib two.mtl\no ball\n");
-    for p in &sphere.positions {
-        text += &format!(
-            "v {} {} {}\nvt {} {}\nvn {} {} {}\n",
-            p.x,
-            p.y,
-            p.z,
-            0.5 + 0.4 * p.x,
-            0.5 + 0.4 * p.y,
-            p.x,
-            p.y,
-            p.z
-        );
-    }
-    for half in [false, true] {
-        text += if half { "usemtl one\n" } else { "usemtl other\n" };
-        for corners in &sphere.triangles {
-            let middle = corners.iter().map(|v| sphere.positions[v.index()]).sum::<glam::DVec3>() / 3.0;
-            if middle.z <= height && (middle.x > 0.0) == half {
-                let [a, b, c] = corners.map(|v| v.0 + 1);
-                text += &format!("f {a}/{a}/{a} {b}/{b}/{b} {c}/{c}/{c}\n");
-            }
-        }
-    }
-    fs::write(path, text).unwrap();
-    let library = "newmtl one\nKd 1 0 0\nnewmtl other\nKd 0 0 1\n";
-    fs::write(path.with_file_name("two.mtl"), library).unwrap();
-}
-
-fn filled(file: &Path, output: &Path, holes: Holes, replace: Replace) -> Result<Vec<String>, EngineError> {
-    let report = output.with_extension("json");
-    let job = Fill {
-        file,
-        holes,
-        output,
-        report: Some(&report),
-        replace,
-        weld: WeldOptions::default(),
-    };
-    let stitched = fill(&job, &Watch::default(), &Staging::default())?;
-    let warnings = stitched.warnings.clone();
-    stitched.commit(None)?;
-    Ok(warnings)
-}
-
-fn model(path: &Path) -> std::sync::Arc<Model> {
-    load(path, &WeldOptions::default(), &Watch::default()).unwrap().model
-}
-
-fn is_closed(model: &Model) -> bool {
-    let topology = &model.topology;
-    topology.is_closed() && topology.non_manifold_edges() + topology.misoriented_edges() == 0
-}
-
-fn paths<const N: usize>(names: [&str; N]) -> (tempfile::TempDir, [PathBuf; N]) {
-    let folder = tempfile::tempdir().unwrap();
-    let paths = names.map(|name| folder.path().join(name));
-    (folder, paths)
-}
+use crate::made::{cut_along, cut_out, filled, is_closed, merged, model, paths, textured_sphere};
 
 #[test]
 fn a_filled_file_of_every_format_is_closed_and_looks_as_before() {
@@ -158,16 +94,7 @@ fn a_cut_file_and_the_rest_of_it_merge() {
         paths(["ball.obj", "cut.json", "upper.ply", "joins.json", "whole.glb"]);
     textured_sphere(&file, 2.0);
     fs::write(&selector, r#"{"slab": {"axis": "z", "from": 0, "to": 0.4}}"#).unwrap();
-    let job = Cut {
-        file: &file,
-        delete: &selector,
-        output: &upper,
-        report: None,
-        replace: Replace::Never,
-        weld: WeldOptions::default(),
-    };
-    let (watch, staging) = (Watch::default(), Staging::default());
-    cut(&job, &watch, &staging).unwrap().commit(None).unwrap();
+    cut_out(&file, &selector, &upper).unwrap();
     let left = model(&upper);
     assert_eq!(left.topology.boundary_loops().len(), 1);
     assert!(left.surface.positions.iter().all(|p| p.z > -0.2001));
@@ -175,24 +102,13 @@ fn a_cut_file_and_the_rest_of_it_merge() {
     let request = r#"{"version": 1, "a": {"delete": {"slab": {"axis": "z", "from": 0.55, "to": 1}}},
         "b": {"transform": {"translation": [0, 0, 0.5], "scale": [1.1, 0.9, 1]}}}"#;
     fs::write(&joins, request).unwrap();
-    let job = Merge {
-        first: &file,
-        second: &upper,
-        joins: &joins,
-        output: &whole,
-        report: None,
-        replace: Replace::Never,
-        weld: WeldOptions::default(),
-    };
-    let (watch, staging) = (Watch::default(), Staging::default());
-    merge(&job, &watch, &staging).unwrap().commit(None).unwrap();
+    merged([&file, &upper], &joins, &whole).unwrap();
     let joined = model(&whole);
     assert!(is_closed(&joined));
     assert_eq!(joined.topology.components().len(), 1);
 
     fs::write(&joins, r#"{"version": 1, "pairs": [[0, 5]]}"#).unwrap();
-    let (watch, staging) = (Watch::default(), Staging::default());
-    let said = merge(&job, &watch, &staging).unwrap_err().to_string();
+    let said = merged([&file, &upper], &joins, &whole).unwrap_err().to_string();
     assert!(said.contains("ball.obj") && said.contains("no border"), "{said}");
 }
 
@@ -238,31 +154,135 @@ fn normals_of_a_placed_part_turn_with_it() {
     let placed =
         r#"{"version": 1, "b": {"placement": "kept", "transform": {"rotation": [1, 0, 0, 0], "pivot": [0, 0, 0]}}}"#;
     fs::write(&joins, placed).unwrap();
-    let job = Merge {
-        first: &half,
-        second: &half,
-        joins: &joins,
-        output: &output,
-        report: None,
-        replace: Replace::Never,
-        weld: WeldOptions::default(),
-    };
-    let merged = merge(&job, &Watch::default(), &Staging::default()).unwrap();
-    merged.commit(None).unwrap();
+    merged([&half, &half], &joins, &output).unwrap();
     assert!(is_closed(&model(&output)));
     assert_eq!(normals_against_faces(&output), 0);
 }
 
-/// Triangles that belong to no surface are named.
+/// Triangles that belong to no surface go, and are counted.
 #[test]
-fn triangles_with_broken_coordinates_are_named() {
-    let (_folder, [file, output]) = paths(["ball.obj", "filled.obj"]);
+fn triangles_with_broken_coordinates_go_with_a_warning() {
+    let (_folder, [file, output, selector, cut]) = paths(["ball.obj", "filled.obj", "cut.json", "cut.obj"]);
     textured_sphere(&file, 2.0);
     let text = fs::read_to_string(&file).unwrap();
     let start = text.match_indices("v ").nth(200).unwrap().0;
     let end = start + text[start..].find('\n').unwrap();
     fs::write(&file, format!("{}v nan 0 0{}", &text[..start], &text[end..])).unwrap();
-    let warnings = filled(&file, &output, Holes::Every, Replace::Never).unwrap();
-    let named = warnings.iter().any(|warning| warning.contains("not numbers"));
-    assert!(named, "{warnings:?}");
+    fs::write(&selector, r#"{"slab": {"axis": "z", "from": 0.9, "to": 1}}"#).unwrap();
+    let broken = model(&file).findings.non_finite_triangles.count;
+    assert!(broken > 0);
+    for (output, warnings) in [
+        (&output, filled(&file, &output, Holes::Every, Replace::Never).unwrap()),
+        (&cut, cut_out(&file, &selector, &cut).unwrap()),
+    ] {
+        let sentence =
+            format!("{broken} triangles with coordinates that are not numbers were left out of the new shape");
+        assert!(warnings.contains(&sentence), "{warnings:?}");
+        assert_eq!(model(output).findings.non_finite_triangles.count, 0);
+    }
+    assert!(is_closed(&model(&output)));
+}
+
+/// A transform that flattens a part, or takes it beyond the numbers of a surface, is the culprit.
+#[test]
+fn a_transform_that_leaves_no_surface_is_refused_in_words() {
+    let (_folder, [half, joins, output]) = paths(["half.obj", "joins.json", "whole.obj"]);
+    textured_sphere(&half, 0.0);
+    for transform in [
+        r#"{"translation": [1e300, 0, 0]}"#,
+        r#"{"translation": [0, 1e30, 0]}"#,
+        r#"{"scale": [1e90, 1e90, 1e90]}"#,
+    ] {
+        fs::write(
+            &joins,
+            format!(r#"{{"version": 1, "b": {{"transform": {transform}}}}}"#),
+        )
+        .unwrap();
+        let said = merged([&half, &half], &joins, &output).unwrap_err().to_string();
+        assert!(said.contains("the transform of B"), "{transform}: {said}");
+        assert!(!output.exists());
+    }
+}
+
+/// An iterative method that ends before it settles is named.
+#[test]
+fn a_part_that_did_not_settle_is_named() {
+    let (_folder, [half, joins, output]) = paths(["half.obj", "joins.json", "whole.obj"]);
+    textured_sphere(&half, 0.0);
+    for (steps, is_named) in [(1, true), (400, false)] {
+        let request = format!(
+            r#"{{"version": 1, "method": {{"name": "arap", "max_iterations": {steps}}},
+            "b": {{"transform": {{"scale": [1.2, 0.8, 1], "rotation": [1, 0, 0, 0]}}}}}}"#
+        );
+        fs::write(&joins, request).unwrap();
+        let warnings = merged([&half, &half], &joins, &output).unwrap();
+        let named = warnings.iter().any(|warning| warning.contains("had not settled"));
+        assert_eq!(named, is_named, "{warnings:?}");
+    }
+}
+
+/// Texture coordinates, normals and materials go on to the plane, in every format that has them.
+#[test]
+fn a_file_that_is_cut_along_a_plane_looks_as_before() {
+    let (_folder, [file]) = paths(["ball.obj"]);
+    textured_sphere(&file, 2.0);
+    let plane = Plane::of(glam::DVec3::new(0.1, 0.2, 1.0), 0.33).unwrap();
+    for format in Format::ALL {
+        let output = file.with_file_name(format!("half.{}", format.extension()));
+        cut_along(&file, CutAlong::Plane(plane, Keep::Negative), &output).unwrap();
+        let after = load(&output, &WeldOptions::default(), &Watch::default()).unwrap();
+        assert_eq!(after.model.topology.boundary_loops().len(), 1, "{format}");
+        let positions = after.model.rest_positions();
+        assert!(positions.iter().all(|&p| plane.distance(p) < 1e-6), "{format}");
+        let look = after.scene.appearance();
+        if matches!(format, Format::Glb | Format::Gltf | Format::Obj) {
+            assert_eq!(look.groups.len(), 2, "{format}");
+            let (uvs, normals) = (look.uvs.unwrap(), look.normals.unwrap());
+            for (v, position) in positions.iter().enumerate() {
+                let wanted = [0.5 + 0.4 * position.x, 0.5 - 0.4 * position.y];
+                let off = [0, 1].map(|k| (f64::from(uvs[v][k]) - wanted[k]).abs());
+                assert!(
+                    off[0].max(off[1]) < 1e-6,
+                    "{format}: {position} {:?} {wanted:?}",
+                    uvs[v]
+                );
+                let normal = glam::Vec3::from(normals[v]).as_dvec3();
+                assert!(normal.dot(position.normalize()) > 0.99, "{format}: {position} {normal}");
+            }
+        }
+    }
+}
+
+/// A sphere with two holes becomes a ring, and the texture coordinates of each border go on over its half of the tube.
+#[test]
+fn two_borders_of_a_file_are_joined_by_a_tube() {
+    let (_folder, [file, selector, open, output]) = paths(["ball.obj", "cut.json", "open.obj", "ring.glb"]);
+    textured_sphere(&file, 2.0);
+    let ends =
+        r#"{"union": [{"slab": {"axis": "z", "from": 0, "to": 0.1}}, {"slab": {"axis": "z", "from": 0.9, "to": 1}}]}"#;
+    fs::write(&selector, ends).unwrap();
+    cut_out(&file, &selector, &open).unwrap();
+    let before = model(&open);
+    let loops = before.topology.boundary_loops();
+    let ends = [0, 1].map(|k| before.first_file_vertex(loops[k][0]).0);
+    filled(&open, &output, Holes::Between(ends), Replace::Never).unwrap();
+    assert!(is_closed(&model(&output)));
+    let report = fs::read_to_string(output.with_extension("json")).unwrap();
+    let report: serde_json::Value = serde_json::from_str(&report).unwrap();
+    assert_eq!(
+        (&report["after"]["genus"], &report["after"]["components"]),
+        (&1.into(), &1.into())
+    );
+    let looks = load(&output, &WeldOptions::default(), &Watch::default())
+        .unwrap()
+        .scene
+        .appearance();
+    assert!(
+        looks
+            .uvs
+            .unwrap()
+            .iter()
+            .flatten()
+            .all(|number| (0.0..=1.0).contains(number))
+    );
 }

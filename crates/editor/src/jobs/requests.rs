@@ -1,0 +1,113 @@
+//! The jobs that a person or a tool asks for, one by one: mirror images, symmetry, outlines, joints, comparisons, looks
+//! into the binding and intersections. The scheduler starts them with the others.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+use pliant_mesh::Joint;
+
+use super::comparison::Comparison;
+use super::inspected::Asked;
+use super::inspection::inspect_work;
+use super::scheduler::Jobs;
+use super::slot::{Slot, Work};
+use super::table::Slots;
+use super::work::intersect_work;
+use crate::document::Document;
+use crate::revision::Revision;
+
+impl Jobs {
+    /// Requests a job that a person has asked for, in place of an earlier one.
+    pub(crate) fn ask<T>(&mut self, slot: fn(&mut Slots) -> &mut Slot<T>, work: Work<T>) {
+        self.stop_asking(slot);
+        slot(&mut self.computed.slots).request(work);
+    }
+
+    /// The job that a person has asked for is no longer wanted.
+    pub(crate) fn stop_asking<T>(&mut self, slot: fn(&mut Slots) -> &mut Slot<T>) {
+        let revision = self.next_revision();
+        slot(&mut self.computed.slots).renew(revision);
+    }
+
+    /// Whether the joint under a triangle of the present shape has not been requested yet.
+    pub(crate) fn asks_for_joint(&self, triangle: u32) -> bool {
+        self.joint_asked != Some((self.shape_revision(), triangle))
+    }
+
+    /// Requests the joint under a triangle of the present shape. The running search continues, so that a steadily
+    /// moving pointer still shows joints; the newest request waits.
+    pub(crate) fn look_for_joint(&mut self, triangle: u32, work: Work<Option<Arc<Joint>>>) {
+        let shape = self.shape_revision();
+        if self.joint_asked.is_some_and(|(asked, _)| asked != shape) {
+            self.forget_joint();
+        }
+        self.joint_asked = Some((shape, triangle));
+        let revision = self.next_revision();
+        self.computed.slots.joint.follow(revision);
+        self.computed.slots.joint.request(work);
+    }
+
+    /// A joint is no longer wanted.
+    pub(crate) fn forget_joint(&mut self) {
+        if self.joint_asked.take().is_some() {
+            self.stop_asking(|slots| &mut slots.joint);
+            self.computed.slots.joint.take();
+        }
+    }
+
+    /// Begins a comparison of the methods on the edit.
+    pub(crate) fn begin_comparing(&mut self, document: &Document) {
+        self.comparison = Some(Comparison::new(document));
+        // A new request also needs the ordering that was stopped before.
+        self.computed.slots.order.try_again();
+    }
+
+    /// Ends the comparison; the methods' bindings are dropped.
+    pub(crate) fn end_comparing(&mut self) {
+        self.comparison = None;
+        self.stop_asking(|slots| &mut slots.compare);
+    }
+
+    /// Requests the shown parts of the present binding, unless they are known or under way. If only the targets differ,
+    /// the running job continues, so that the base visibly bends during a drag; the newest request waits.
+    pub(crate) fn inspect(&mut self, asked: Asked, document: &Document) {
+        let has_binding = self.binds_something(document) && !self.computed.slots.bind.has_given_up();
+        let asked = if has_binding { asked } else { Asked::default() };
+        let targets = match asked.base {
+            true => self.computed.slots.solve.wanted(),
+            false => Revision(0),
+        };
+        let bound_revision = self.computed.slots.bind.made();
+        let wanted = (bound_revision, asked, targets);
+        if self.inspection == wanted || !(self.is_bound() || asked == Asked::default()) {
+            return;
+        }
+        let (bound, before, _) = std::mem::replace(&mut self.inspection, wanted);
+        let revision = self.next_revision();
+        let work = inspect_work(&self.computed, document, asked).filter(|_| asked != Asked::default());
+        let slot = &mut self.computed.slots.inspect;
+        if (bound, before) == (bound_revision, asked) {
+            slot.follow(revision);
+        } else {
+            slot.renew(revision);
+        }
+        match work {
+            Some(work) => slot.request(work),
+            None => drop(slot.take()),
+        }
+    }
+
+    /// Requests the places where the present shape, `displacements` away from the file's, passes through itself, once
+    /// its hierarchy exists.
+    pub(crate) fn intersect(&mut self, displacements: &Arc<Vec<DVec3>>) {
+        let Some(model) = self.computed.model.clone() else {
+            return;
+        };
+        if self.is_picking_current() && !self.computed.slots.intersect.is_current() {
+            self.want(
+                |slots| &mut slots.intersect,
+                |computed| intersect_work(computed, &model, displacements),
+            );
+        }
+    }
+}

@@ -1,0 +1,6 @@
+//! The laws of new shapes from files.
+#![allow(clippy::unwrap_used, reason = "a test that can't go on fails")]
+
+mod files;
+mod made;
+mod materials;
