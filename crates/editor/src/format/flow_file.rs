@@ -3,7 +3,7 @@
 use glam::DVec3;
 use pliant_mesh::Model;
 use serde::Deserialize;
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::edit_error::EditError;
 use super::edit_file::EDIT_VERSION;
@@ -153,11 +153,19 @@ impl FlowFile {
     /// # Errors
     /// Members that the format does not have, and values out of range, by name and place.
     pub fn parse(text: &str) -> Result<Self, EditError> {
-        Self::read(text).map_err(|error| error.at("the flow"))
+        let read = parse(text).and_then(|value| Self::read(&value));
+        read.map_err(|error| error.at("the flow"))
     }
 
-    fn read(text: &str) -> Result<Self, EditError> {
-        let value = parse(text)?;
+    /// Like [`FlowFile::parse`], for text that was read already.
+    ///
+    /// # Errors
+    /// Those of [`FlowFile::parse`].
+    pub fn from_value(value: &Value) -> Result<Self, EditError> {
+        Self::read(value).map_err(|error| error.at("the flow"))
+    }
+
+    fn read(value: &Value) -> Result<Self, EditError> {
         if let Some(found) = value.get("version")
             && found.as_u64() != Some(EDIT_VERSION)
         {
@@ -165,7 +173,7 @@ impl FlowFile {
                 found: shortened(&found.to_string()),
             });
         }
-        let stored: StoredFlow = read(&value)?;
+        let stored: StoredFlow = read(value)?;
         for (number, DyeEntry { select, color }) in stored.dye.iter().enumerate() {
             let place = |error: EditError, member: &str| error.under(member).under(&format!("dye[{number}]"));
             select.check().map_err(|error| place(error, "select"))?;
