@@ -70,7 +70,7 @@ fn bytes_behind_the_facets_are_kept_whatever_the_header_begins_with() {
         let opened = open(&bytes, Format::Stl);
         assert_eq!(opened.drawn.triangles.len(), 3);
         assert!(
-            opened.scene.notes()[0].contains("15 bytes behind"),
+            opened.scene.notes()[0].contains("15 bytes after"),
             "{:?}",
             opened.scene.notes()
         );
@@ -93,7 +93,7 @@ fn a_wrong_count_is_refused_when_too_large_and_noted_when_too_small() {
     bytes[80] = 2;
     let opened = open(&bytes, Format::Stl);
     assert_eq!(opened.drawn.triangles.len(), 2);
-    assert!(opened.scene.notes()[0].contains("50 bytes behind"));
+    assert!(opened.scene.notes()[0].contains("50 bytes after"));
     let after = save(&opened, &moved(&opened, |_| true, |p| p + 1.0));
     assert_eq!(after[184..], bytes[184..]);
     bytes[80..84].fill(0xff);
