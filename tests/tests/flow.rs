@@ -33,7 +33,7 @@ fn colours(path: &Path) -> Vec<[u16; 4]> {
 #[test]
 fn a_cap_turns_with_its_sphere_in_every_format_and_nothing_else_changes() {
     let folder = Folder::new();
-    folder.write_mesh("ball.off", &shapes::icosphere(3));
+    folder.write_mesh("ball.off", &shapes::icosphere(4));
     for name in ["out.off", "out.glb", "out.ply", "out.obj"] {
         let (out, report) = (folder.at(name), folder.at("report.json"));
         let report_at = report.to_str().unwrap();

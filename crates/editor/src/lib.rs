@@ -48,6 +48,7 @@ mod command;
 mod document;
 mod editor;
 mod event;
+mod flow_start;
 mod format;
 mod input;
 mod jobs;
@@ -72,11 +73,11 @@ pub use document::{
 };
 pub use editor::Editor;
 pub use event::Event;
+pub use flow_start::FlowStart;
 pub use format::{
     Accuracy, AttachmentEntry, Axis, Beginning, DyeEntry, EDIT_VERSION, EditError, EditFile, ExampleEntry,
-    ExampleSource, ExportError, FieldEntry, FlowFile, FlowMotion, FlowStart, HandleEntry, HandleSetup, JoinsFile,
-    MeshReference, Placement, Project, Rest, SOFT_RANGE, STIFFNESS_RANGE, Selector, Setup, StoredKept, VelocityEntry,
-    geometry_hash,
+    ExampleSource, ExportError, FieldEntry, FlowFile, FlowMotion, HandleEntry, HandleSetup, JoinsFile, MeshReference,
+    Placement, Project, Rest, SOFT_RANGE, STIFFNESS_RANGE, Selector, Setup, StoredKept, VelocityEntry, geometry_hash,
 };
 pub use input::{Button, Key, Modifiers, Pointer};
 pub use jobs::{

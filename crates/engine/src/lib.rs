@@ -68,7 +68,7 @@ pub use apply::{Apply, Prepared, Solved, apply, bind, check_bends, check_not_emp
 pub use difference::{Compared, differences};
 pub use edit::read_edit;
 pub use error::EngineError;
-pub use flow::{FlowJob, FlowReport, FromTo, flow, read_flow};
+pub use flow::{FlowJob, FlowReport, Flowing, FromTo, flow, read_flow};
 pub use loading::{Loaded, is_project, load, load_bytes, open};
 pub use transfer::{Transfer, transfer, transferred};
 

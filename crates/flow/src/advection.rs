@@ -68,12 +68,13 @@ pub(crate) fn advect(
     cancel: &Cancel,
 ) -> Result<(), Cancelled> {
     room.resize(fluid.vertex_count(), !dye.is_empty());
-    let half_pushed = |triangle: usize| {
+    let own_and_half_pushed = |triangle: usize| {
+        let chart = &fluid.domain.charts[triangle];
+        let own = velocity[triangle] * chart.area();
         let values = fluid.corners(triangle).map(|corner| pressure[corner]);
-        velocity[triangle] - 0.5 * steps * fluid.domain.charts[triangle].gradient(values)
+        [own, own - 0.5 * steps * chart.gradient_area(values)]
     };
-    fluid.to_vertices(|triangle| velocity[triangle], &mut room.own);
-    fluid.to_vertices(half_pushed, &mut room.carried);
+    fluid.to_vertices(own_and_half_pushed, [&mut room.own, &mut room.carried]);
     backward(fluid, dye, seconds, room, cancel)?;
     match advection {
         Advection::FirstOrder => {

@@ -55,6 +55,13 @@ impl Chart {
         [-of_1 - of_2, of_1, of_2]
     }
 
+    /// The gradient of the linear function with these values at the corners, times the area.
+    #[inline]
+    pub fn gradient_area(&self, values: [f64; 3]) -> DVec2 {
+        // A ∇φ is half the edge opposite, turned to the left.
+        (self.edge(1) * (values[1] - values[0]) + self.edge(2) * (values[2] - values[0])).perp() * 0.5
+    }
+
     /// The gradient of the linear function with these values at the corners.
     #[inline]
     pub fn gradient(&self, values: [f64; 3]) -> DVec2 {

@@ -28,6 +28,15 @@ pub(crate) struct Fans {
     twists: Vec<[f64; 3]>,
 }
 
+/// An edge of a corner, counterclockwise.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum End {
+    /// To the triangle's next corner.
+    First,
+    /// To the one before.
+    Last,
+}
+
 /// Where a direction at a vertex leads.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Way {
@@ -102,6 +111,17 @@ impl Fans {
     pub fn rotation_along(&self, corner: u32, after: f64, before: f64) -> DVec2 {
         let both = after + before;
         let share = if both > 0.0 { before / both - 0.5 } else { 0.0 };
+        let twist = self.twists[corner as usize / 3][corner as usize % 3];
+        turned(small_rotation(share * twist), self.rotation(corner))
+    }
+
+    /// The same for vectors along the first or the last edge of a corner.
+    #[inline]
+    pub fn rotation_at(&self, corner: u32, end: End) -> DVec2 {
+        let share = match end {
+            End::First => -0.5,
+            End::Last => 0.5,
+        };
         let twist = self.twists[corner as usize / 3][corner as usize % 3];
         turned(small_rotation(share * twist), self.rotation(corner))
     }

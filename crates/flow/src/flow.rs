@@ -29,6 +29,8 @@ pub struct Flow<'a> {
     dye: Vec<Dye>,
     /// The integral of the dye over each component, as poured.
     poured: Vec<Dye>,
+    /// Whether velocities were added since the last projection.
+    has_added: bool,
     /// The length of the last step; 0 before the first.
     last_step: f64,
     room: Room,
@@ -67,6 +69,7 @@ impl<'a> Flow<'a> {
             velocity: vec![DVec2::ZERO; fluid.triangle_count()],
             dye: Vec::new(),
             poured: vec![Dye::default(); fluid.component_count()],
+            has_added: false,
             last_step: 0.0,
             room: Room::default(),
             fluid,
@@ -85,11 +88,9 @@ impl<'a> Flow<'a> {
                 *velocity += DVec2::from(fluid.axes(triangle).map(|axis| axis.dot(pushed)));
             }
         };
-        self.velocity
-            .par_iter_mut()
-            .with_min_len(CHUNK)
-            .enumerate()
-            .for_each(add);
+        let velocities = self.velocity.par_iter_mut().with_min_len(CHUNK);
+        velocities.enumerate().for_each(add);
+        self.has_added = true;
     }
 
     /// Pours dye over the dye that is there. `amounts` has a coverage from 0 to 1 for each vertex of the surface; the
@@ -112,7 +113,9 @@ impl<'a> Flow<'a> {
     /// # Errors
     /// If the pressure can't be found.
     pub fn project(&mut self) -> Result<(), FlowError> {
-        self.pressure.project_added(&self.fluid, &mut self.velocity)
+        self.pressure.project_added(&self.fluid, &mut self.velocity)?;
+        self.has_added = false;
+        Ok(())
     }
 
     /// Goes on by `seconds`. Without forces no component gains kinetic energy. A step that fails leaves the flow in the
@@ -121,6 +124,10 @@ impl<'a> Flow<'a> {
     /// # Errors
     /// If the pressure can't be found, if a velocity is no longer a number, or if `cancel` is raised.
     pub fn step(&mut self, seconds: f64, settings: &FlowSettings, cancel: &Cancel) -> Result<(), FlowError> {
+        // What flows along must not diverge.
+        if self.has_added {
+            self.project()?;
+        }
         let Self {
             fluid,
             velocity,
@@ -128,8 +135,6 @@ impl<'a> Flow<'a> {
             room,
             ..
         } = self;
-        // Velocities that were added may diverge, and what flows along must not.
-        self.pressure.project_added(fluid, velocity)?;
         let mut allowed = fluid.speeds(velocity);
         check_finite(&allowed)?;
         let steps = if self.last_step > 0.0 {

@@ -8,7 +8,7 @@ use pliant_mesh::{SurfaceVertex, face_normal};
 use rayon::prelude::*;
 
 use crate::chart::Chart;
-use crate::fans::Fans;
+use crate::fans::{End, Fans};
 use crate::hinges::Hinges;
 use crate::plane::{turned, turned_back};
 use crate::sheets::Sheets;
@@ -106,20 +106,24 @@ impl<'a> Fluid<'a> {
         squares.into_iter().map(|[square]| square.sqrt()).collect()
     }
 
-    /// Fills `out` with the mean around each vertex of the triangles' vectors, in its tangent plane: triangles count by
-    /// area.
-    pub fn to_vertices(&self, velocity: impl Fn(usize) -> DVec2 + Sync, out: &mut [DVec2]) {
-        let Domain { charts, fans, .. } = &self.domain;
-        let mean = |(vertex, out): (usize, &mut DVec2)| {
-            let mut sum = DVec2::ZERO;
+    /// Fills `out` with the means around each vertex of two fields, in its tangent plane. `of` gives a triangle's vectors
+    /// times its area.
+    pub fn to_vertices(&self, of: impl Fn(usize) -> [DVec2; 2] + Sync, [first, second]: [&mut [DVec2]; 2]) {
+        let fans = &self.domain.fans;
+        let mean = |(vertex, (first, second)): (usize, (&mut DVec2, &mut DVec2))| {
+            let mut sums = [DVec2::ZERO; 2];
             for &corner in fans.corners(vertex) {
-                let triangle = corner as usize / 3;
-                sum += turned(fans.rotation(corner), velocity(triangle)) * charts[triangle].area();
+                let rotation = fans.rotation(corner);
+                for (sum, vector) in sums.iter_mut().zip(of(corner as usize / 3)) {
+                    *sum += turned(rotation, vector);
+                }
             }
             let mass = 3.0 * self.masses[vertex];
-            *out = if mass > 0.0 { sum / mass } else { DVec2::ZERO };
+            let inverse = if mass > 0.0 { mass.recip() } else { 0.0 };
+            [*first, *second] = sums.map(|sum| sum * inverse);
         };
-        out.par_iter_mut().with_min_len(CHUNK).enumerate().for_each(mean);
+        let pairs = first.par_iter_mut().zip(second).with_min_len(CHUNK).enumerate();
+        pairs.for_each(mean);
     }
 
     /// Adds a change of the vertices' velocities to the triangles'.
@@ -137,14 +141,11 @@ impl<'a> Fluid<'a> {
             let mut sum = DVec2::ZERO;
             for k in 0..3 {
                 let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-                let along = |corner: usize, after: f64| {
-                    let rotation = self
-                        .domain
-                        .fans
-                        .rotation_along((3 * triangle + corner) as u32, after, 1.0 - after);
+                let along = |corner: usize, end: End| {
+                    let rotation = self.domain.fans.rotation_at((3 * triangle + corner) as u32, end);
                     turned_back(rotation, changes[corners[corner]])
                 };
-                let circulation = 0.5 * chart.edge(k).dot(along(i, 1.0) + along(j, 0.0));
+                let circulation = 0.5 * chart.edge(k).dot(along(i, End::First) + along(j, End::Last));
                 sum += (gradients[j] - gradients[i]) * circulation;
             }
             *velocity += sum / 3.0;

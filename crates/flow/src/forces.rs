@@ -21,8 +21,10 @@ pub(crate) fn pull(fluid: &Fluid<'_>, dye: &[Dye], gravity: DVec3, seconds: f64,
             .sum::<f64>()
             / 3.0;
         if coverage > 0.0 {
-            let axes = fluid.axes(triangle);
-            *velocity += DVec2::from(axes.map(|axis| axis.dot(gravity))) * (coverage * seconds);
+            // The part along the surface is the gradient of the height that gravity sees.
+            let [a, b, c] = fluid.sheets.surface.corners(triangle);
+            let falls = [0.0, gravity.dot(b - a), gravity.dot(c - a)];
+            *velocity += fluid.domain.charts[triangle].gradient(falls) * (coverage * seconds);
         }
     };
     velocity.par_iter_mut().with_min_len(CHUNK).enumerate().for_each(add);

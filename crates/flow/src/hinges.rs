@@ -86,7 +86,11 @@ pub(crate) fn next(corner: u32) -> u32 {
 /// The corner before it in the same triangle.
 #[inline]
 pub(crate) fn last(corner: u32) -> u32 {
-    if corner % 3 == 0 { corner + 2 } else { corner - 1 }
+    if corner.is_multiple_of(3) {
+        corner + 2
+    } else {
+        corner - 1
+    }
 }
 
 fn beside(surface: &Surface, topology: &Topology, t: u32, k: usize) -> u32 {

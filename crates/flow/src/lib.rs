@@ -17,11 +17,11 @@
 //! use pliant_flow::{Flow, FlowSettings};
 //! use pliant_mesh::{Cancel, Progress, shapes};
 //!
-//! let model = shapes::model(shapes::icosphere(3));
+//! let model = shapes::model(shapes::icosphere(4));
 //! let (progress, cancel) = (Progress::new(), Cancel::new());
 //! let mut flow = Flow::bind(&model.surface, &model.topology, Budget::default(), &progress, &cancel)?;
 //! let positions = &model.surface.positions;
-//! let cap: Vec<f64> = positions.iter().map(|p| f64::from(u8::from(p.x > 0.8))).collect();
+//! let cap: Vec<f64> = positions.iter().map(|p| f64::from(u8::from(p.x > 0.7))).collect();
 //! flow.pour(&cap, [1.0, 0.0, 0.0]);
 //! flow.add_velocity(&vec![1.0; positions.len()], |p| DVec3::Z.cross(p));
 //!

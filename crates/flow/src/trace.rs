@@ -197,6 +197,7 @@ fn exit(weights: [f64; 3], rates: [f64; 3], entered: Option<usize>) -> Option<(u
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test that can't go on fails")]
 mod tests {
     use std::f64::consts::{PI, TAU};
 

@@ -1,5 +1,9 @@
 //! The laws of flow, on classes of surfaces.
-#![allow(clippy::unwrap_used, reason = "a test that can't go on fails")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test may panic, and tells its figures"
+)]
 
 use glam::{DAffine3, DQuat, DVec3};
 use pliant_deform::Budget;

@@ -217,6 +217,15 @@ pub fn reals(any: &Bound<'_, PyAny>, place: &str) -> PyResult<(Vec<usize>, Vec<f
     Ok((shape(&array)?, flat.as_array().to_vec()))
 }
 
+/// Rows of four numbers as a new array of the shape (n, 4).
+///
+/// # Errors
+/// Python's own.
+pub fn of_colours(py: Python<'_>, colours: Vec<[f64; 4]>) -> PyResult<Bound<'_, PyArray2<f64>>> {
+    let count = colours.len();
+    PyArray1::from_vec(py, cast_vec::<[f64; 4], f64>(colours)).reshape([count, 4])
+}
+
 /// Points as an array of the shape `[n, 3]`, without a copy.
 ///
 /// # Errors

@@ -14,6 +14,7 @@ mod bound;
 mod compare;
 mod compared;
 mod edit;
+mod flow;
 mod interruptible;
 mod mesh;
 mod methods;
@@ -38,6 +39,8 @@ mod native {
     use super::compare::compare;
     #[pymodule_export]
     use super::compared::{diff, distortion};
+    #[pymodule_export]
+    use super::flow::flow;
     #[pymodule_export]
     use super::mesh::{Mesh, load, save};
     #[pymodule_export]

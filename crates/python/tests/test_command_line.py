@@ -143,3 +143,36 @@ def test_compare_has_the_command_line_s_figures(program, tmp_path):
         assert np.isclose(own["detail_error_ratio"], expected[name]["detail_error_ratio"])
         for figure, value in own["distortion"].items():
             assert np.isclose(value, expected[name]["distortion"][figure])
+
+
+def test_flow_gives_the_command_line_s_colours(program, tmp_path):
+    vertices, faces = bar()
+    lines = [f"OFF\n{len(vertices)} {len(faces)} 0"]
+    lines += [" ".join(map(repr, map(float, row))) for row in vertices]
+    lines += [f"3 {a} {b} {c}" for a, b, c in np.asarray(faces).tolist()]
+    (tmp_path / "bar.off").write_text("\n".join(lines) + "\n")
+    members = {
+        "dye": [{"select": {"slab": {"axis": "longest", "from": 0.6, "to": 1}}, "color": [0, 0, 1]}],
+        "velocity": [{"select": "all", "spin": {"axis": [0, 0, 1], "rate": 2}}],
+        "gravity": [0.0, 0.0, -1.0],
+        "step": 0.05,
+        "seconds": 0.5,
+    }
+    (tmp_path / "flow.json").write_text(json.dumps({"version": 1, **members}))
+    run(program, "flow", tmp_path / "bar.off", "--flow", tmp_path / "flow.json", "--output", tmp_path / "out.glb")
+    dyes = pliant.flow(pliant.load(tmp_path / "bar.off"), **members)
+    assert dyes.shape == (len(vertices), 4) and dyes.min() >= 0 and dyes.max() <= 1
+    red, coverage = dyes[:, 0], dyes[:, 3]
+    assert np.all(red == 0) and 0 < coverage.mean() < 1
+    assert np.array_equal(pliant.flow((vertices, faces), **members), dyes)
+    # Blue over white: red in the file is the clear share.
+    glb = (tmp_path / "out.glb").read_bytes()
+    length = int.from_bytes(glb[12:16], "little")
+    root = json.loads(glb[20 : 20 + length])
+    accessor = root["accessors"][root["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"]]
+    view = root["bufferViews"][accessor["bufferView"]]
+    start = 28 + length + view.get("byteOffset", 0) + accessor.get("byteOffset", 0)
+    stored = np.frombuffer(glb, np.uint16, 4 * accessor["count"], start).reshape(-1, 4)
+    assert np.array_equal(np.sort(stored[:, 0]), np.sort(np.round(65535 * (1 - coverage)).astype(int)))
+    with pytest.raises(ValueError, match="dye"):
+        pliant.flow((vertices, faces), dye=[{"select": "none", "color": [1, 1, 1]}])

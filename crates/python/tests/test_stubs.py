@@ -30,6 +30,7 @@ stretch = pliant.distortion(mesh, bent)["edge_stretch_mean"] + 1.0
 sentences = [one["sentence"] for one in pliant.diff("a.glb", pliant.load("b.glb"))]
 outcomes = pliant.compare(mesh, {"tip": np.eye(4)}, methods=["arap", {"name": "rbf"}], handles={"tip": [0]})
 ratio = outcomes["arap"].get("detail_error_ratio")
+coverage = pliant.flow(mesh, dye=[{"select": "all", "color": [1, 0, 0]}], gravity=[0, -9.81, 0], seconds=0.1)[:, 3]
 """
 
 STUBS = ast.parse((Path(pliant.__file__).parent / "__init__.pyi").read_text())

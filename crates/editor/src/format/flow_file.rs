@@ -1,9 +1,8 @@
 //! The flow format: the dye, the velocities and the forces with which `pliant flow` begins.
 
 use glam::DVec3;
-use pliant_mesh::Model;
 use serde::Deserialize;
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::edit_error::EditError;
 use super::edit_file::EDIT_VERSION;
@@ -11,7 +10,6 @@ use super::json::parse;
 use super::reader::read;
 use super::selector::Selector;
 use super::transform::vector;
-use crate::Selection;
 use crate::warning::shortened;
 
 /// The most steps of a flow.
@@ -85,15 +83,6 @@ pub enum Accuracy {
     SecondOrder,
 }
 
-/// A flow file's selections on a model.
-#[derive(Clone, Debug)]
-pub struct FlowStart {
-    /// The vertices and the colour of each dye.
-    pub dye: Vec<(Selection, DVec3)>,
-    /// The vertices and the motion of each velocity; each spin has its centre.
-    pub velocity: Vec<(Selection, FlowMotion)>,
-}
-
 /// The members in the file.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -153,11 +142,19 @@ impl FlowFile {
     /// # Errors
     /// Members that the format does not have, and values out of range, by name and place.
     pub fn parse(text: &str) -> Result<Self, EditError> {
-        Self::read(text).map_err(|error| error.at("the flow"))
+        let read = parse(text).and_then(|value| Self::read(&value));
+        read.map_err(|error| error.at("the flow"))
     }
 
-    fn read(text: &str) -> Result<Self, EditError> {
-        let value = parse(text)?;
+    /// Like [`FlowFile::parse`], for text that was read already.
+    ///
+    /// # Errors
+    /// Those of [`FlowFile::parse`].
+    pub fn from_value(value: &Value) -> Result<Self, EditError> {
+        Self::read(value).map_err(|error| error.at("the flow"))
+    }
+
+    fn read(value: &Value) -> Result<Self, EditError> {
         if let Some(found) = value.get("version")
             && found.as_u64() != Some(EDIT_VERSION)
         {
@@ -165,7 +162,7 @@ impl FlowFile {
                 found: shortened(&found.to_string()),
             });
         }
-        let stored: StoredFlow = read(&value)?;
+        let stored: StoredFlow = read(value)?;
         for (number, DyeEntry { select, color }) in stored.dye.iter().enumerate() {
             let place = |error: EditError, member: &str| error.under(member).under(&format!("dye[{number}]"));
             select.check().map_err(|error| place(error, "select"))?;
@@ -208,37 +205,6 @@ impl FlowFile {
     pub fn steps(&self) -> usize {
         (self.seconds / self.step).round() as usize
     }
-
-    /// Selects the vertices on a model.
-    ///
-    /// # Errors
-    /// A selector that names vertices or a component that the model does not have, or that selects nothing.
-    pub fn resolve(&self, model: &Model) -> Result<FlowStart, EditError> {
-        let select = |selector: &Selector, place: String| {
-            let selection = selector.evaluate_at(model, &format!("{place}.select"))?;
-            match selection.is_empty() {
-                false => Ok(selection),
-                true => {
-                    let nothing =
-                        EditError::custom("selects no vertex: leave the entry out, or select some".to_owned());
-                    Err(nothing.under("select").under(&place))
-                }
-            }
-        };
-        let dye = self.dye.iter().enumerate().map(|(number, entry)| {
-            let selection = select(&entry.select, format!("dye[{number}]"))?;
-            Ok((selection, entry.color))
-        });
-        let velocity = self.velocity.iter().enumerate().map(|(number, entry)| {
-            let selection = select(&entry.select, format!("velocity[{number}]"))?;
-            let motion = entry.motion.with_centre(|| mean(&selection, model));
-            Ok((selection, motion))
-        });
-        Ok(FlowStart {
-            dye: dye.collect::<Result<_, EditError>>()?,
-            velocity: velocity.collect::<Result<_, EditError>>()?,
-        })
-    }
 }
 
 impl VelocityEntry {
@@ -263,7 +229,8 @@ impl VelocityEntry {
 }
 
 impl FlowMotion {
-    fn with_centre(&self, mean: impl FnOnce() -> DVec3) -> Self {
+    /// The motion with a centre, which is `mean` unless the file names one.
+    pub(crate) fn with_centre(&self, mean: impl FnOnce() -> DVec3) -> Self {
         match *self {
             Self::Spin {
                 axis,
@@ -285,14 +252,6 @@ impl FlowMotion {
             Self::Push(velocity) => velocity,
         }
     }
-}
-
-/// The mean of the selected vertices, of which there is at least one.
-fn mean(selection: &Selection, model: &Model) -> DVec3 {
-    let positions = || selection.iter().map(|vertex| model.surface.positions[vertex.index()]);
-    let origin = positions().next().unwrap_or_default();
-    // Relative to one of them, so that no digits are lost far from the origin.
-    origin + positions().map(|position| position - origin).sum::<DVec3>() / selection.len().max(1) as f64
 }
 
 #[cfg(test)]

@@ -34,7 +34,7 @@ pub use examples::{ExampleEntry, ExampleSource};
 pub use exchange::ExportError;
 pub(crate) use exchange::{export, without_pivot};
 pub use field::FieldEntry;
-pub use flow_file::{Accuracy, DyeEntry, FlowFile, FlowMotion, FlowStart, VelocityEntry};
+pub use flow_file::{Accuracy, DyeEntry, FlowFile, FlowMotion, VelocityEntry};
 pub use joins::{JoinsFile, Placement};
 pub use project::{MeshReference, Project, StoredKept, geometry_hash};
 pub use selector::{Axis, Selector};

@@ -1,6 +1,7 @@
 //! Lets dye flow along a file's surface: a file in, the same file with other vertex colours out.
 
 mod colours;
+mod flowing;
 mod frames;
 mod report;
 
@@ -8,10 +9,9 @@ use std::path::Path;
 use std::time::Instant;
 
 use pliant_deform::Budget;
-use pliant_editor::{Accuracy, FlowFile, FlowStart, Selection};
-use pliant_flow::{Advection, Flow, FlowError, FlowSettings};
+use pliant_editor::FlowFile;
 use pliant_io::{Format, SaveError};
-use pliant_mesh::{Model, Progress, SurfaceVertex, WeldOptions};
+use pliant_mesh::{Progress, WeldOptions};
 
 use crate::EngineError;
 use crate::apply::check_not_empty;
@@ -23,6 +23,7 @@ use crate::watch::Watch;
 use colours::Colours;
 use frames::Frames;
 
+pub use flowing::Flowing;
 pub use report::{FlowReport, FromTo};
 
 /// The input of [`flow`].
@@ -73,19 +74,13 @@ pub fn flow(job: &FlowJob<'_>, watch: &Watch, staging: &Staging) -> Result<FlowR
     let load_ms = ms_since(start);
     check_not_empty(job.file, &loaded.model)?;
     refuse_inputs(job, &frames, watch)?;
-    let resolved = job.flow.resolve(&loaded.model).map_err(|source| EngineError::Edit {
+    let start = job.flow.resolve(&loaded.model).map_err(|source| EngineError::Edit {
         edit: job.flow_path.to_owned(),
         source,
     })?;
-    let progress = watch.begin("binding");
-    let start = Instant::now();
-    let model = &*loaded.model;
-    let refused = |error| refused(job.file, model, error);
-    let bound = Flow::bind(&model.surface, &model.topology, job.budget, &progress, &watch.cancel);
-    let mut flow = bound.map_err(refused)?;
-    begin(&mut flow, &resolved, model);
-    flow.project().map_err(refused)?;
-    let bind_ms = ms_since(start);
+    let begun = Instant::now();
+    let mut flow = Flowing::begin((job.file, &loaded.model), (job.flow, &start), job.budget, watch)?;
+    let bind_ms = ms_since(begun);
     let mut run = Run {
         job,
         loaded: &loaded,
@@ -97,12 +92,12 @@ pub fn flow(job: &FlowJob<'_>, watch: &Watch, staging: &Staging) -> Result<FlowR
         warnings: loaded.scene.notes().to_vec(),
         save_ms: 0.0,
     };
-    let mut report = FlowReport::at_start(&loaded, job.flow, &flow);
+    let mut report = FlowReport::at_start(&loaded, job.flow, flow.flow());
     (report.load_ms, report.bind_ms) = (load_ms, bind_ms);
     report.steps = run.all_steps(&mut flow, &frames)?;
-    report.at_end(&flow);
+    report.at_end(flow.flow());
     report.save_ms = run.save_ms;
-    report.warnings = cut_sentence(&flow).into_iter().chain(run.warnings).collect();
+    report.warnings = flow.warning().into_iter().chain(run.warnings).collect();
     let mut staged = run.staged;
     if let Some(to) = report_to {
         let text = report.to_json();
@@ -138,25 +133,15 @@ struct Run<'a> {
 
 impl Run<'_> {
     /// Takes all steps and writes the frames. Returns the steps' times.
-    fn all_steps(&mut self, flow: &mut Flow<'_>, frames: &Frames) -> Result<FrameTimes, EngineError> {
+    fn all_steps(&mut self, flow: &mut Flowing<'_>, frames: &Frames) -> Result<FrameTimes, EngineError> {
         let job = self.job;
-        let settings = FlowSettings {
-            gravity: job.flow.gravity,
-            viscosity: job.flow.viscosity,
-            confinement: job.flow.confinement,
-            advection: match job.flow.accuracy {
-                Accuracy::FirstOrder => Advection::FirstOrder,
-                Accuracy::SecondOrder => Advection::SecondOrder,
-            },
-        };
         let count = job.flow.steps();
         let mut times = Vec::with_capacity(count);
         let mut progress = self.watch.begin("flowing");
         for step in 0..=count {
             if step > 0 {
                 let start = Instant::now();
-                let stepped = flow.step(job.flow.step, &settings, &self.watch.cancel);
-                stepped.map_err(|error| refused(job.file, &self.loaded.model, error))?;
+                flow.step(&self.watch.cancel)?;
                 times.push(ms_since(start));
             }
             if self.watch.cancel.is_cancelled() {
@@ -167,7 +152,7 @@ impl Run<'_> {
                 if step == count {
                     progress = self.watch.begin("saving");
                 }
-                self.write(&flow.dyes(), &place)?;
+                self.write(&flow.flow().dyes(), &place)?;
             }
         }
         Ok(FrameTimes::of(&mut times, &mut []))
@@ -202,21 +187,6 @@ fn joined(first: Option<Staged>, second: Staged) -> Staged {
     }
 }
 
-/// Pours the dye and sets the velocities.
-fn begin(flow: &mut Flow<'_>, start: &FlowStart, model: &Model) {
-    let shares = |selection: &Selection| {
-        let mut shares = vec![0.0; model.surface.positions.len()];
-        selection.iter().for_each(|vertex| shares[vertex.index()] = 1.0);
-        shares
-    };
-    for (selection, colour) in &start.dye {
-        flow.pour(&shares(selection), colour.to_array());
-    }
-    for (selection, motion) in &start.velocity {
-        flow.add_velocity(&shares(selection), |position| motion.at(position));
-    }
-}
-
 /// Refuses a format without colours before anything is computed.
 fn refuse_format(output: &Path) -> Result<(), EngineError> {
     match Format::of_name(&output.to_string_lossy())? {
@@ -243,27 +213,4 @@ fn refuse_inputs(job: &FlowJob<'_>, frames: &Frames, watch: &Watch) -> Result<()
         Some(report) => watch.refuse_outputs(&[("--report", report)], None),
         None => Ok(()),
     }
-}
-
-/// The refusal of a flow, which names vertices by the file's numbers.
-fn refused(file: &Path, model: &Model, error: FlowError) -> EngineError {
-    match error {
-        FlowError::Cancelled(_) => EngineError::Interrupted,
-        other => EngineError::Flow {
-            file: file.to_owned(),
-            source: other.renumbered(|vertex| model.first_file_vertex(SurfaceVertex(vertex)).0),
-        },
-    }
-}
-
-/// A sentence about places where the surface was cut.
-fn cut_sentence(flow: &Flow<'_>) -> Option<String> {
-    let places = match flow.cut_vertices() {
-        0 => return None,
-        1 => "at 1 vertex".to_owned(),
-        count => format!("at {count} vertices"),
-    };
-    Some(format!(
-        "the fluid of different sheets stays apart {places} where triangles do not meet as on one surface"
-    ))
 }

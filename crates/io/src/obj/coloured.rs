@@ -14,7 +14,7 @@ pub(super) fn coloured(stored: &Stored, colours: &[Option<[u8; 4]>]) -> Vec<u8> 
             let is_there = !cursor.is_at_line_end() && cursor.real().is_some();
             is_there.then(|| cursor.at())
         };
-        let Some(start) = (0..3).filter_map(|_| number(&mut cursor)).last() else {
+        let [_, _, Some(start)] = [0, 1, 2].map(|_| number(&mut cursor)) else {
             continue;
         };
         // A weight, or the old colour; an alpha after that stays.

@@ -216,6 +216,35 @@ def transfer(
     :raises ValueError: one sentence that names the culprit and the remedy.
     """
 
+def flow(
+    mesh: Shape,
+    *,
+    dye: Sequence[Mapping[str, Any]] | None = None,
+    velocity: Sequence[Mapping[str, Any]] | None = None,
+    gravity: npt.ArrayLike | None = None,
+    viscosity: float | None = None,
+    confinement: float | None = None,
+    advection: Literal["first-order", "second-order"] | None = None,
+    step: float | None = None,
+    seconds: float | None = None,
+) -> npt.NDArray[np.float64]:
+    """Lets dye flow along a surface, like `pliant flow`; the arguments are the members of its flow format.
+
+    :param mesh: a result of `load`, or a pair (vertices, faces).
+    :param dye: dicts with `select`, a selector of the edit format, and `color`, linear red, green and blue from 0 to 1.
+    :param velocity: dicts with `select` and either `spin`, a dict with `axis`, `rate` (radians a second) and `center`,
+        or `push`, a velocity. By default the fluid rests.
+    :param gravity: the acceleration of dyed fluid, in world units per second squared. By default there is none.
+    :param viscosity: kinematic viscosity, in squared world units per second, 0 by default.
+    :param confinement: the strength of vorticity confinement per second, 0 by default.
+    :param advection: `"second-order"` by default.
+    :param step: the length of a step in seconds, 1/60 by default.
+    :param seconds: the whole time, 2 by default.
+    :return: the dye at each vertex, shape (n, 4): linear red, green and blue multiplied by the coverage, and the
+        coverage. The colour there is the dye plus 1 - coverage times the mesh's own. Warnings come as `UserWarning`.
+    :raises ValueError: one sentence that names the culprit and the remedy.
+    """
+
 class Outcome(TypedDict, total=False):
     """One method's result: its shape and figures, or only `refused`."""
 
