@@ -284,7 +284,7 @@ fn parent(ui: &mut egui::Ui, editor: &Editor, handle: &Handle, commands: &mut Ou
     let label = row_label(ui, "Parent");
     let present = handle.parent.and_then(|parent| document.handle(parent));
     let mut chosen = handle.parent;
-    let shown = egui::ComboBox::from_id_salt("parent")
+    let shown = ComboBox::from_id_salt("parent")
         .selected_text(present.map_or("none", |parent| &parent.name))
         .show_ui(ui, |ui| {
             ui.selectable_value(&mut chosen, None, "none");
