@@ -153,7 +153,7 @@ fn a_glb_without_a_chunk_for_buffers_is_read_and_edited() {
 fn what_is_read_all_the_same_is_told() {
     type Change = fn(&mut Maker);
     let changes: [(&str, Change); 8] = [
-        ("the extension ACME_wind", |maker| {
+        ("the unknown extension ACME_wind", |maker| {
             maker.root["extensionsRequired"] = json!(["ACME_wind"])
         }),
         ("The rotation of node 0 (arm)", |maker| {
