@@ -183,7 +183,7 @@ fn a_pose_is_kept_and_taken_again() {
     session.key(Key::G, Modifiers::ALT);
     session.settle();
     assert!(!document(&session).is_displaced());
-    click(&mut session, "Take pose 1");
+    click(&mut session, "Apply pose 1");
     assert_eq!(document(&session).handles()[0].affine(), kept);
     assert!(document(&session).is_displaced());
     session
