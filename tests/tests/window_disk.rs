@@ -111,7 +111,7 @@ fn the_original_is_kept_beside_a_stranger_of_its_name_and_the_question_says_so()
     let mut session = open(&file).unwrap();
     edit(&mut session);
     save(&mut session);
-    await_words(&mut session, "kept already, as scan.original-2.off");
+    await_words(&mut session, "already kept as scan.original-2.off");
     click(&mut session, "Save");
     session.settle();
     assert!(!folder.at("scan.original-3.off").exists());
