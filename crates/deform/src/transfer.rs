@@ -65,7 +65,7 @@ pub struct DeformationTransfer<'a> {
     surface: &'a Surface,
     topology: &'a Topology,
     equation: PoissonEquation,
-    /// Of the target; `None` if no part has more than one vertex.
+    /// The gradients on the target; `None` if no part has more than one vertex.
     gradients: Option<Gradients>,
 }
 

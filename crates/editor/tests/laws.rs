@@ -181,7 +181,7 @@ fn act_on_objects(rig: &mut Rig, random: &mut Random) {
 /// An action from the list of handles. All except the reset of a region move nothing.
 fn act_on_handles(rig: &mut Rig, random: &mut Random) {
     let Some(id) = rig.editor.view().selected else { return };
-    let command = match random.below(12) {
+    let command = match random.below(14) {
         0 => Command::SetHandleColour(id, [random.below(256) as u8, 20, 200, 255]),
         1 => Command::ToggleHandleVisible(id),
         2 => Command::ToggleHandleLocked(id),
@@ -203,6 +203,12 @@ fn act_on_handles(rig: &mut Rig, random: &mut Random) {
         8 => Command::ToggleSelected(rig.editor.document().handles()[0].id),
         9 => Command::SetOrientation([GizmoOrientation::Local, GizmoOrientation::View][random.below(2) as usize]),
         10 => Command::SetPivot(id, DVec3::new(random.unit(), random.unit(), 0.3)),
+        11 | 12 => {
+            // Children move with their parents, and circles are refused.
+            let handles = rig.editor.document().handles();
+            let parent = handles[random.below(handles.len() as u64) as usize].id;
+            Command::SetParent(id, (random.below(4) > 0).then_some(parent))
+        }
         _ => {
             rig.command(Command::ResetRegion);
             return;

@@ -485,14 +485,17 @@ fn parents_are_kept_by_files_and_circles_of_them_are_refused() {
     rig.command(Command::SetParent(shank, None));
     assert_eq!(rig.editor.document().handles()[0].parent, None);
     rig.undo();
+
+    // A thigh that is deleted away from rest becomes a pin: its child neither moves with it nor is lost.
     rig.command(Command::SelectHandle(thigh));
     rig.command(Command::DeleteHandle);
     rig.drain();
-    assert!(
-        rig.editor
-            .document()
-            .handles()
-            .iter()
-            .all(|handle| handle.id != thigh || handle.is_pin)
-    );
+    let handles = rig.editor.document().handles();
+    assert!(handles.iter().any(|handle| handle.id == thigh && handle.is_pin));
+    let shank_before = handles[0].transform;
+    let shank_px = seen(&rig, 4.6..5.2);
+    drag(&mut rig, shank_px, DVec2::new(0.0, 20.0), Modifiers::NONE);
+    let handles = rig.editor.document().handles();
+    assert_eq!(handles.len(), 2);
+    assert_ne!(handles[0].transform, shank_before);
 }

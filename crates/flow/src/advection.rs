@@ -25,7 +25,7 @@ pub(crate) type Dye = [f64; 4];
 
 /// Fields at the vertices, kept from step to step.
 #[derive(Debug, Default)]
-pub(crate) struct Room {
+pub(crate) struct Scratch {
     /// The velocity, in the tangent planes.
     pub own: Vec<DVec2>,
     /// The velocity that is carried.
@@ -40,7 +40,7 @@ pub(crate) struct Room {
     pub dye: Vec<Dye>,
 }
 
-impl Room {
+impl Scratch {
     fn resize(&mut self, count: usize, has_dye: bool) {
         self.own.resize(count, DVec2::ZERO);
         self.carried.resize(count, DVec2::ZERO);
@@ -53,7 +53,7 @@ impl Room {
     }
 }
 
-/// Carries `velocity`, and `dye` unless it is empty, for `seconds`. `room.dye` is free afterwards.
+/// Carries `velocity`, and `dye` unless it is empty, for `seconds`. `scratch.dye` is free afterwards.
 ///
 /// Fluid on its way is also pushed by the pressure. Half of that comes before the way and half after it, or a turning
 /// sphere would slow by a share of the step. `pressure` is that of the last step, whose gradient the velocity has lost,
@@ -64,39 +64,45 @@ pub(crate) fn advect(
     velocity: &mut [DVec2],
     dye: &mut Vec<Dye>,
     (seconds, advection): (f64, Advection),
-    room: &mut Room,
+    scratch: &mut Scratch,
     cancel: &Cancel,
 ) -> Result<(), Cancelled> {
-    room.resize(fluid.vertex_count(), !dye.is_empty());
+    scratch.resize(fluid.vertex_count(), !dye.is_empty());
     let own_and_half_pushed = |triangle: usize| {
         let chart = &fluid.domain.charts[triangle];
         let own = velocity[triangle] * chart.area();
         let values = fluid.corners(triangle).map(|corner| pressure[corner]);
         [own, own - 0.5 * steps * chart.gradient_area(values)]
     };
-    fluid.to_vertices(own_and_half_pushed, [&mut room.own, &mut room.carried]);
-    backward(fluid, dye, seconds, room, cancel)?;
+    fluid.to_vertices(own_and_half_pushed, [&mut scratch.own, &mut scratch.carried]);
+    backward(fluid, dye, seconds, scratch, cancel)?;
     match advection {
         Advection::FirstOrder => {
-            let pairs = room.change.par_iter_mut().zip(&room.first).zip(&room.carried);
+            let pairs = scratch.change.par_iter_mut().zip(&scratch.first).zip(&scratch.carried);
             pairs
                 .with_min_len(CHUNK)
                 .for_each(|((change, first), carried)| *change = first - carried);
-            std::mem::swap(dye, &mut room.first_dye);
+            std::mem::swap(dye, &mut scratch.first_dye);
         }
         Advection::SecondOrder => {
-            correct(fluid, dye, room, cancel)?;
-            std::mem::swap(dye, &mut room.dye);
+            correct(fluid, dye, scratch, cancel)?;
+            std::mem::swap(dye, &mut scratch.dye);
         }
     }
-    fluid.add_to_triangles(&room.change, velocity);
+    fluid.add_to_triangles(&scratch.change, velocity);
     Ok(())
 }
 
 /// The first-order step, and for each vertex the way forward and the triangle behind.
-fn backward(fluid: &Fluid<'_>, dye: &[Dye], seconds: f64, room: &mut Room, cancel: &Cancel) -> Result<(), Cancelled> {
+fn backward(
+    fluid: &Fluid<'_>,
+    dye: &[Dye],
+    seconds: f64,
+    scratch: &mut Scratch,
+    cancel: &Cancel,
+) -> Result<(), Cancelled> {
     let domain = &fluid.domain;
-    let (own, carried) = (&room.own, &room.carried);
+    let (own, carried) = (&scratch.own, &scratch.carried);
     let at = |place: &Place, field: &[DVec2]| domain.vector_at(place, fluid.corners(place.triangle as usize), field);
     let of = |vertex: usize| {
         let here = own[vertex];
@@ -106,9 +112,12 @@ fn backward(fluid: &Fluid<'_>, dye: &[Dye], seconds: f64, room: &mut Room, cance
         // The velocity half a step forward, by extrapolation.
         Some((back, (2.0 * here - middle) * seconds))
     };
-    let dyes = chunks_of(&mut room.first_dye, fluid.vertex_count());
-    let velocities = room.first.par_chunks_mut(CHUNK).zip(room.change.par_chunks_mut(CHUNK));
-    let chunks = velocities.zip(room.source.par_chunks_mut(CHUNK)).zip(dyes);
+    let dyes = chunks_of(&mut scratch.first_dye, fluid.vertex_count());
+    let velocities = scratch
+        .first
+        .par_chunks_mut(CHUNK)
+        .zip(scratch.change.par_chunks_mut(CHUNK));
+    let chunks = velocities.zip(scratch.source.par_chunks_mut(CHUNK)).zip(dyes);
     chunks
         .enumerate()
         .try_for_each(|(chunk, (((first, forward), source), first_dye))| {
@@ -128,8 +137,8 @@ fn backward(fluid: &Fluid<'_>, dye: &[Dye], seconds: f64, room: &mut Room, cance
 }
 
 /// Takes half the error of going forth and back off the first-order step.
-fn correct(fluid: &Fluid<'_>, dye: &[Dye], room: &mut Room, cancel: &Cancel) -> Result<(), Cancelled> {
-    let Room {
+fn correct(fluid: &Fluid<'_>, dye: &[Dye], scratch: &mut Scratch, cancel: &Cancel) -> Result<(), Cancelled> {
+    let Scratch {
         carried,
         first,
         change,
@@ -137,7 +146,7 @@ fn correct(fluid: &Fluid<'_>, dye: &[Dye], room: &mut Room, cancel: &Cancel) -> 
         first_dye,
         dye: new_dye,
         ..
-    } = room;
+    } = scratch;
     let (carried, first, source, first_dye) = (&*carried, &*first, &*source, &*first_dye);
     let dyes = chunks_of(new_dye, fluid.vertex_count());
     let chunks = change.par_chunks_mut(CHUNK).zip(dyes);

@@ -5,7 +5,7 @@ use pliant_deform::{Budget, Ordering, PoissonEquation};
 use pliant_mesh::{Cancel, Progress, Surface, Topology};
 use rayon::prelude::*;
 
-use crate::advection::{Dye, Room, advect};
+use crate::advection::{Dye, Scratch, advect};
 use crate::conservation::{conserve, integrals};
 use crate::error::FlowError;
 use crate::fluid::Fluid;
@@ -23,9 +23,9 @@ pub struct Flow<'a> {
     pressure: Pressure,
     /// Made when there is viscosity for the first time.
     friction: Option<Friction>,
-    /// Of each triangle, in its plane.
+    /// The velocity of each triangle, in its plane.
     velocity: Vec<DVec2>,
-    /// Of each vertex; empty until some is poured.
+    /// The dye of each vertex; empty until some is poured.
     dye: Vec<Dye>,
     /// The integral of the dye over each component, as poured.
     poured: Vec<Dye>,
@@ -33,7 +33,7 @@ pub struct Flow<'a> {
     has_added: bool,
     /// The length of the last step; 0 before the first.
     last_step: f64,
-    room: Room,
+    scratch: Scratch,
 }
 
 impl<'a> Flow<'a> {
@@ -71,7 +71,7 @@ impl<'a> Flow<'a> {
             poured: vec![Dye::default(); fluid.component_count()],
             has_added: false,
             last_step: 0.0,
-            room: Room::default(),
+            scratch: Scratch::default(),
             fluid,
         })
     }
@@ -132,7 +132,7 @@ impl<'a> Flow<'a> {
             fluid,
             velocity,
             dye,
-            room,
+            scratch,
             ..
         } = self;
         let mut allowed = fluid.speeds(velocity);
@@ -149,11 +149,11 @@ impl<'a> Flow<'a> {
             velocity,
             dye,
             (seconds, settings.advection),
-            room,
+            scratch,
             cancel,
         )?;
         if !dye.is_empty() {
-            conserve(fluid, &self.poured, dye, &mut room.dye);
+            conserve(fluid, &self.poured, dye, &mut scratch.dye);
         }
         cancel.check()?;
         if settings.has_force() {

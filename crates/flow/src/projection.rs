@@ -60,7 +60,7 @@ impl Pressure {
 
     /// Takes the gradient part off a velocity.
     pub fn project(&mut self, fluid: &Fluid<'_>, velocity: &mut [DVec2]) -> Result<(), FlowError> {
-        // Of the velocity as it comes: if all of it is a gradient, only rounding is left.
+        // The tolerance refers to the velocity as given: if all of it is a gradient, only rounding is left.
         let fastest = fluid.speeds(velocity).into_iter().fold(0.0, f64::max);
         let enough = ENOUGH * fastest / fluid.mean_edge;
         self.total.fill(0.0);

@@ -24,7 +24,7 @@ pub(super) enum Frames {
 }
 
 impl Frames {
-    /// For an output, in whose name `#`s may stand for a number.
+    /// The frames of an output; `#`s in its name are places for a number.
     pub fn of(output: &Path, steps: usize) -> Self {
         let stem = output.file_stem().and_then(|stem| stem.to_str()).unwrap_or_default();
         let before = stem.trim_end_matches('#');

@@ -112,8 +112,8 @@ impl Join {
             let of_kind = near_b.cmp(near_a);
             of_kind.then(a.cost.total_cmp(&b.cost)).then(key(a).cmp(&key(b)))
         });
-        // Of the two sides of a cut, the candidate that brings most other borders together is the best. Borders whose
-        // middles come together are a bound for that, so only the first candidates are compared in full.
+        // The best candidate for the two sides of a cut is the one that brings most other borders together. Borders
+        // whose middles come together are a bound for that, so only the first candidates are compared in full.
         let together = |candidate: &Candidate| (0..b.len()).filter_map(|j| candidate.partner(j, &a, &b)).count();
         let compared = ranked.len().min(MOST_COMPARED);
         if ranked
@@ -124,7 +124,7 @@ impl Join {
                 .iter()
                 .map(|(near, candidate)| near.map(|_| together(candidate)))
                 .collect();
-            // Of equal ones the first.
+            // The first of equal ones.
             let best = (0..compared).rev().max_by_key(|&k| counts[k]).unwrap_or(0);
             ranked.swap(0, best);
         }
