@@ -14,7 +14,7 @@ pub(super) const SET_TOOL: Entry<ToolMode> = Entry {
         item(
             ToolMode::PaintHandle,
             "Paint handle",
-            "Paints a handle, the part that you move. The region around it follows.",
+            "Paints a handle, the part that you move. A drag on the painted handle moves it, and the region around it follows.",
             "brush control",
             &[character('1')],
         ),
