@@ -104,7 +104,7 @@ fn text_gets_colours_in_its_vertices_lines_alone() {
         assert!(changed_lines(&bytes, &second).len() <= wanted.len(), "{file}");
     }
     let opened = open(TEXTS[0].1.as_bytes(), Format::Obj);
-    let bytes = coloured(&opened, &vec![[0, u16::MAX, 0, u16::MAX]; 4], Format::Obj);
+    let bytes = coloured(&opened, &[[0, u16::MAX, 0, u16::MAX]; 4], Format::Obj);
     let expected = "# a\nv 0 0 0 0 1 0 # zero\nv 1 0 0 0 1 0\r\nv 0 1 0 0 1 0\nv 0 0 1 0 1 0\nf 1 2 3\nf 1 3 4\n";
     assert_eq!(String::from_utf8(bytes).unwrap(), expected);
 }
