@@ -36,7 +36,7 @@ fn a_limb_that_is_as_thick_as_it_is_long_bends_where_it_meets_the_body() {
     for z in [2.1, 1.8, 1.5, 1.2] {
         for side in [0, 5, 31] {
             let (triangle, middle) = triangle_at(&model, z, side);
-            let joint = joint_of(&shape, triangle, middle, &Cancel::new()).unwrap();
+            let joint = joint_of(&shape, triangle, middle, 0, &Cancel::new()).unwrap();
             let joint = joint.unwrap_or_else(|| panic!("no joint from {z}, side {side}"));
             assert!(
                 (0.7..1.4).contains(&joint.centre.z),

@@ -14,6 +14,7 @@ use super::field::{FieldEntry, FieldKind};
 use super::json::parse;
 use super::loose::{OneOrList, StoredLoose};
 use super::method::{method_to_value, read_method};
+use super::pose::PoseEntry;
 use super::project::StoredKept;
 use super::reader::read;
 use super::selector::Selector;
@@ -75,8 +76,12 @@ pub struct HandleEntry {
     /// Its name, for a person. Without names they are "handle 1", "handle 2", ..
     #[serde(default)]
     pub name: String,
-    /// Its vertices.
-    pub select: Selector,
+    /// Its vertices, unless it has a `pose`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub select: Option<Selector>,
+    /// The limb that it is, by the pose tool's own guess, in place of `select`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pose: Option<PoseEntry>,
     /// Their motion.
     #[serde(default)]
     pub transform: HandleTransform,
@@ -387,7 +392,16 @@ impl HandleEntry {
             range: SOFT_RANGE,
             may_be_rigid: false,
         };
-        self.select.check().map_err(|error| error.under("select"))?;
+        match (&self.select, &self.pose) {
+            (Some(select), None) => select.check().map_err(|error| error.under("select"))?,
+            (None, Some(_)) => {}
+            (None, None) => return Err(serde::de::Error::missing_field("select")),
+            (Some(_), Some(_)) => {
+                let sentence = "has both `select` and `pose`: keep one, its vertices or a point on its limb".to_owned();
+                let place = String::new();
+                return Err(EditError::Other { place, sentence });
+            }
+        }
         if let Some(value) = self.soft {
             weight.check(value).map_err(|error| error.under("soft"))?;
         }

@@ -49,7 +49,7 @@ pub(crate) fn export(document: &Document, model: &Arc<Model>) -> Result<EditFile
     let strength = if in_full.is_some() { document.strength() } else { 1.0 };
     let document = in_full.as_ref().unwrap_or(document);
     let region = Region::measure(
-        &region_input(model, document, &FileContacts::default()),
+        &region_input(&**model, document, &FileContacts::default()),
         &pliant_mesh::Cancel::new(),
     )
     .unwrap_or_else(|_| Region::still(document.paint.len()));
@@ -74,7 +74,8 @@ pub(crate) fn export(document: &Document, model: &Arc<Model>) -> Result<EditFile
         if let Some(handle) = document.handle(id) {
             handles.push(HandleEntry {
                 name: handle.name.clone(),
-                select: ranges(Role::Handle(index as u16)),
+                select: Some(ranges(Role::Handle(index as u16))),
+                pose: None,
                 transform: with_pivot(handle),
                 soft: handle.soft,
                 continuity: handle.continuity,

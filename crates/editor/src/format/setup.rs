@@ -11,6 +11,8 @@ use super::attachment::on_model;
 use super::edit_error::EditError;
 use super::edit_file::EditFile;
 use super::exchange::with_pivot;
+use super::pose::{Limbs, selected};
+use super::selector::Selector;
 use crate::HandleTransform;
 use crate::bending::{Kept, Targets};
 use crate::document::{Document, HandleId, attachment_part};
@@ -188,19 +190,28 @@ impl EditFile {
         if self.handles.len() > usize::from(u16::MAX) {
             return Err(EditError::TooManyHandles(self.handles.len()));
         }
+        let limbs = Limbs::of(&self.handles, model)?;
         let mut roles = vec![Role::Fixed; model.surface.positions.len()];
-        for vertex in self.region.evaluate_at(model, "region")?.iter() {
-            roles[vertex.index()] = Role::Free;
+        if limbs.is_empty() || self.region != Selector::All {
+            for vertex in self.region.evaluate_at(model, "region")?.iter() {
+                roles[vertex.index()] = Role::Free;
+            }
+        } else {
+            limbs.free(&self.handles, model, &mut roles)?;
         }
         for vertex in self.fixed.evaluate_at(model, "fixed")?.iter() {
             roles[vertex.index()] = Role::Fixed;
         }
         let mut handles = Vec::with_capacity(self.handles.len());
         for (index, entry) in self.handles.iter().enumerate() {
-            let selection = entry.select.evaluate_at(model, &format!("handles[{index}].select"))?;
+            let limb = limbs.at(index);
+            let selection = match limb {
+                Some(limb) => limb.own.clone(),
+                None => selected(entry, index, model)?,
+            };
             let (mut sum, mut count) = (DVec3::ZERO, 0.0);
             let mut shared: Vec<(SurfaceVertex, u16)> = Vec::new();
-            for vertex in selection.iter() {
+            for vertex in selection {
                 if let Role::Handle(other) = roles[vertex.index()] {
                     shared.push((vertex, other));
                 }
@@ -222,7 +233,8 @@ impl EditFile {
                     index,
                 });
             }
-            let pivot = entry.transform.pivot_or(sum / count);
+            let middle = limb.map_or(sum / count, |limb| limb.joint.centre);
+            let pivot = entry.transform.pivot_or(middle);
             handles.push(HandleSetup {
                 name: entry.name.clone(),
                 transform: entry.transform.part(self.strength, pivot),

@@ -5,10 +5,14 @@
 //! across the limb, while rings around a point on its side are askew. The narrowest ring around the tip gives a plane
 //! across the limb, and the joint is the narrowest ring at an even distance from that plane.
 //!
+//! A person can ask for another joint than this guess. The candidates are the rings around the tip that are narrower
+//! than their surroundings, and evenly spaced ones where there is none for a while ([`candidates`]).
+//!
 //! If a limb is as thick as it is long, no ring around a point on its side closes before it reaches the body. Then the
 //! search for its tip begins at the other end of the surface: the tip is the farthest point beyond the seeds from
 //! there.
 
+mod candidates;
 mod level_set;
 mod rings;
 mod shape;
@@ -29,6 +33,9 @@ const FIRST_SHARE: f64 = 0.35;
 
 /// The distance, in radii, between a ring and the plane from which a straighter ring is searched.
 const SECTION_RADII: f64 = 2.0;
+
+/// The joint of another candidate is the narrowest ring within this many radii of the candidate.
+const NUDGE_RADII: f64 = 0.5;
 
 /// The number of distances across the joint's falloff at which there are rings, the joint's own in the middle.
 pub const JOINT_RINGS: usize = 7;
@@ -51,17 +58,36 @@ pub struct Joint {
     /// Lines around the limb, in any order, at even distances from `-falloff` (on the limb) to `falloff` along the
     /// surface.
     pub rings: [Vec<[DVec3; 2]>; JOINT_RINGS],
+    /// The number of candidates by which it is farther from the limb's tip than the guess; negative if it is nearer.
+    pub up: i32,
+}
+
+impl Joint {
+    /// The distance along the surface within which a handle of the far side moves the surface: its falloff to either
+    /// side.
+    pub fn width(&self) -> f64 {
+        2.0 * self.falloff
+    }
 }
 
 /// The joint between a point in a triangle and the body, which has two fifths of the component's area or more; `None`
 /// if no ring around the point's side is clearly shorter than that of a disc, as on a ball or a sheet.
+///
+/// `up` chooses the joint that is so many candidates farther from the limb's tip than the guess, or nearer to it if
+/// negative. If there are fewer, the last one is taken, and [`Joint::up`] has its number.
 ///
 /// # Errors
 /// [`Cancelled`] soon after `cancel` is raised.
 ///
 /// # Panics
 /// If there is no such triangle.
-pub fn joint_of(shape: &Shape<'_>, triangle: u32, point: DVec3, cancel: &Cancel) -> Result<Option<Joint>, Cancelled> {
+pub fn joint_of(
+    shape: &Shape<'_>,
+    triangle: u32,
+    point: DVec3,
+    up: i32,
+    cancel: &Cancel,
+) -> Result<Option<Joint>, Cancelled> {
     let corners = shape.triangles[triangle as usize];
     let seeds = corners.map(|v| (v, shape.positions[v.index()].distance(point)));
     let mut search = DistanceSearch::default();
@@ -79,9 +105,18 @@ pub fn joint_of(shape: &Shape<'_>, triangle: u32, point: DVec3, cancel: &Cancel)
     let Some(from_tip) = Cut::narrowest(&mut search, shape, &tip, near, &corners, source, cancel)? else {
         return Ok(None);
     };
-    let straight = from_tip.straightened(&mut search, shape, &corners);
+    let other = match up {
+        0 => None,
+        _ => Cut::other(&mut search, shape, &tip, &from_tip, &corners, up, cancel)?,
+    };
+    let (cut, up, within) = match other {
+        Some((cut, up)) => (cut, up, NUDGE_RADII),
+        None => (from_tip, 0, SECTION_RADII),
+    };
+    let straight = cut.straightened(&mut search, shape, &corners, within);
     cancel.check()?;
-    Ok(straight.unwrap_or(from_tip).joint(&mut search, shape))
+    let joint = straight.unwrap_or(cut).joint(&mut search, shape);
+    Ok(joint.map(|joint| Joint { up, ..joint }))
 }
 
 /// The farthest point beyond the seeds, seen from the place that is farthest from them: with a seed on a limb, that
@@ -130,6 +165,8 @@ fn extent(shape: &Shape<'_>, of: SurfaceVertex) -> f64 {
 
 /// A ring, and the vertices that it cuts off.
 struct Cut {
+    /// The ring's distance from the seeds.
+    distance: f64,
     centre: DVec3,
     radius: f64,
     limb: Vec<SurfaceVertex>,
@@ -155,7 +192,7 @@ impl Cut {
             cancel.check()?;
             let rings = Rings::of(shape, &field, Body::Large);
             cancel.check()?;
-            match rings.narrowest(corners, source) {
+            match rings.narrowest(corners, 0, source) {
                 Some(Narrowest { level, end }) if end == End::Widens || limit.is_infinite() => {
                     return Ok(Some(Self::of(shape, &field, &rings, level)));
                 }
@@ -165,11 +202,31 @@ impl Cut {
         Ok(None)
     }
 
+    /// The candidate `up` places farther from the tip than the guess, and the number of places that there are; `None`
+    /// if there is no other.
+    fn other(
+        search: &mut DistanceSearch,
+        shape: &Shape<'_>,
+        tip: &[(SurfaceVertex, f64)],
+        guess: &Self,
+        corners: &[SurfaceVertex; 3],
+        up: i32,
+        cancel: &Cancel,
+    ) -> Result<Option<(Self, i32)>, Cancelled> {
+        let field = Field::measure(search, shape, tip, f64::INFINITY);
+        cancel.check()?;
+        let rings = Rings::of(shape, &field, Body::Large);
+        cancel.check()?;
+        let chosen = candidates::chosen(&rings, corners, field.level_at(guess.distance), up);
+        Ok(chosen.map(|(level, up)| (Self::of(shape, &field, &rings, level), up)))
+    }
+
     fn of(shape: &Shape<'_>, field: &Field, rings: &Rings, level: usize) -> Self {
         let (ring, beside) = rings.ring(shape, field, level);
         let length: f64 = ring.iter().map(|[a, b]| a.distance(*b)).sum();
         let weighted: DVec3 = ring.iter().map(|[a, b]| (*a + *b) * (0.5 * a.distance(*b))).sum();
         Self {
+            distance: field.at_level(level),
             centre: weighted / length,
             radius: length / TAU,
             limb: rings.limb(level),
@@ -178,13 +235,15 @@ impl Cut {
         }
     }
 
-    /// The narrowest ring at even distances from a plane across the limb, a few radii away: those rings are straight if
-    /// the limb is. `None` if there is none with the triangle of these corners on the limb.
+    /// The narrowest ring, within so many radii of this one, at even distances from a plane across the limb a few radii
+    /// away: those rings are straight if the limb is. `None` if there is none with the triangle of these corners on the
+    /// limb.
     fn straightened(
         &self,
         search: &mut DistanceSearch,
         shape: &Shape<'_>,
         corners: &[SurfaceVertex; 3],
+        within: f64,
     ) -> Option<Self> {
         let arm = |v: SurfaceVertex| shape.positions[v.index()] - self.centre;
         let near = self.limb.iter().map(|&v| arm(v));
@@ -206,9 +265,10 @@ impl Cut {
         if seeds.is_empty() {
             return None;
         }
-        let field = Field::measure(search, shape, &seeds, height + SECTION_RADII * self.radius);
+        let field = Field::measure(search, shape, &seeds, height + within * self.radius);
         let rings = Rings::of(shape, &field, Body::With(self.far_from_limb(shape, &is_limb)?));
-        let level = rings.narrowest(corners, Source::Section)?.level;
+        let nearest = field.level_at(height - within * self.radius);
+        let level = rings.narrowest(corners, nearest, Source::Section)?.level;
         Some(Self::of(shape, &field, &rings, level))
     }
 
@@ -263,6 +323,7 @@ impl Cut {
             limb: self.limb,
             far_side,
             rings,
+            up: 0,
         })
     }
 }

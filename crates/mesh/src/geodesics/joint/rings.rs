@@ -59,8 +59,14 @@ impl Field {
     }
 
     /// The distance of a level, between multiples of the spacing so that no vertex of a regular mesh is exactly on it.
-    fn at_level(&self, level: usize) -> f64 {
+    pub(super) fn at_level(&self, level: usize) -> f64 {
         (level as f64 + 0.5) * self.spacing
+    }
+
+    /// The level nearest to a distance.
+    pub(super) fn level_at(&self, distance: f64) -> usize {
+        // The cast turns NaN and negative numbers into 0.
+        (distance / self.spacing - 0.5).round() as usize
     }
 
     /// The number of levels that a vertex is beyond.
@@ -165,20 +171,40 @@ impl Rings {
         }
     }
 
-    /// The first ring with the point's triangle on the limb that is narrower than the rings before and after it; if
-    /// none widens again, the narrowest of all.
-    pub(super) fn narrowest(&self, triangle: &[SurfaceVertex; 3], source: Source) -> Option<Narrowest> {
-        let first = triangle.iter().map(|v| self.in_body[v.index()]).max()? as usize;
+    /// The lowest level with the triangle of these corners on the limb.
+    pub(super) fn first(&self, triangle: &[SurfaceVertex; 3]) -> usize {
+        let levels = triangle.iter().map(|v| self.in_body[v.index()]);
+        levels.fold(0, u32::max) as usize
+    }
+
+    /// The length of each level's ring; 0 where there is none.
+    pub(super) fn lengths(&self) -> &[f64] {
+        &self.lengths
+    }
+
+    /// The distance of each level from the seeds.
+    pub(super) fn radii(&self) -> &[f64] {
+        &self.radii
+    }
+
+    /// Returns true if a ring is that of a disc or of the corner of a sheet rather than around a limb.
+    pub(super) fn is_round(&self, level: usize, source: Source) -> bool {
+        let length = self.lengths[level];
+        let grows = match source {
+            Source::Point => GROWS,
+            Source::Tip => GROWS_FROM_TIP,
+            Source::Section => return false,
+        };
+        length > ROUND_SHARE * TAU * self.radii[level] || length > grows * self.lengths[level / 2]
+    }
+
+    /// The first ring from the level `lowest` on, with the point's triangle on the limb, that is narrower than the rings
+    /// before and after it; if none widens again, the narrowest of all.
+    pub(super) fn narrowest(&self, triangle: &[SurfaceVertex; 3], lowest: usize, source: Source) -> Option<Narrowest> {
         let mut narrowest: Option<usize> = None;
-        for level in first..self.lengths.len() {
+        for level in self.first(triangle).max(lowest)..self.lengths.len() {
             let length = self.lengths[level];
-            let grows = match source {
-                Source::Point => GROWS,
-                Source::Tip => GROWS_FROM_TIP,
-                Source::Section => f64::INFINITY,
-            };
-            let is_round = source != Source::Section
-                && (length > ROUND_SHARE * TAU * self.radii[level] || length > grows * self.lengths[level / 2]);
+            let is_round = self.is_round(level, source);
             match narrowest {
                 Some(level) if length > WIDENS * self.lengths[level] => {
                     return Some(Narrowest {
