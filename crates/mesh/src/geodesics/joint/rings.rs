@@ -59,7 +59,7 @@ impl Field {
     }
 
     /// The distance of a level, between multiples of the spacing so that no vertex of a regular mesh is exactly on it.
-    pub(super) fn at_level(&self, level: usize) -> f64 {
+    fn at_level(&self, level: usize) -> f64 {
         (level as f64 + 0.5) * self.spacing
     }
 
@@ -119,6 +119,8 @@ pub(super) struct Rings {
     /// The ring's length for each level, smoothed over three.
     lengths: Vec<f64>,
     radii: Vec<f64>,
+    /// The share of the component's area that each level cuts off.
+    limb_shares: Vec<f64>,
     vertices: Vec<SurfaceVertex>,
 }
 
@@ -138,8 +140,12 @@ impl Rings {
         let mut raw = vec![0.0; LEVELS as usize];
         // The search's limit cuts off rings from here on.
         let mut complete = LEVELS;
-        for &triangle in shape.triangles {
+        let mut limb_areas = vec![0.0; LEVELS as usize + 1];
+        let is_own = |triangle: &&[SurfaceVertex; 3]| shape.topology.component(triangle[0]) == field.component;
+        for &triangle in shape.triangles.iter().filter(is_own) {
             let beyond = triangle.map(|v| in_body[v.index()]);
+            let area = face_area(shape.corners(triangle)) / 3.0;
+            beyond.iter().for_each(|&level| limb_areas[level as usize] += area);
             let below = triangle.map(|v| levels[v.index()]);
             let (from, to) = (
                 below.into_iter().fold(LEVELS, u32::min),
@@ -156,6 +162,11 @@ impl Rings {
             }
         }
         raw.truncate(complete as usize);
+        let whole: f64 = limb_areas.iter().sum();
+        let limb_shares = limb_areas.iter().scan(0.0, |limb, area| {
+            *limb += area / whole;
+            Some(*limb)
+        });
         let lengths = (0..raw.len()).map(|level| {
             let (before, after) = (level.saturating_sub(1), (level + 1).min(raw.len() - 1));
             match raw[before].min(raw[level]).min(raw[after]) > 0.0 {
@@ -165,6 +176,7 @@ impl Rings {
         });
         Self {
             lengths: lengths.collect(),
+            limb_shares: limb_shares.collect(),
             radii: (0..raw.len()).map(|level| field.at_level(level)).collect(),
             in_body,
             vertices,
@@ -185,6 +197,11 @@ impl Rings {
     /// The distance of each level from the seeds.
     pub(super) fn radii(&self) -> &[f64] {
         &self.radii
+    }
+
+    /// The share of the component's area that is not in the body of a level.
+    pub(super) fn limb_share(&self, level: usize) -> f64 {
+        self.limb_shares.get(level).copied().unwrap_or(1.0)
     }
 
     /// Returns true if a ring is that of a disc or of the corner of a sheet rather than around a limb.
