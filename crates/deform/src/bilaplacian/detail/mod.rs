@@ -210,7 +210,12 @@ impl BoundMethod for Multiresolution {
     }
 
     fn step_cost(&self) -> usize {
-        4 * self.solved_count()
+        let each = match &self.reconstruction {
+            Reconstruction::Plain | Reconstruction::Gradients(_) => 4,
+            Reconstruction::Normals(_) => 8,
+            Reconstruction::Volumes(_) => 200,
+        };
+        each * self.solved_count()
     }
 
     fn warnings(&self) -> Vec<String> {
