@@ -1,0 +1,15 @@
+//! Curves through control points: a spline, its arc length and frames, and the motion from one curve to another.
+//!
+//! From below: `spline` is the centripetal Catmull–Rom spline \[YSK11\] with its table of arc lengths, `curve` adds
+//! rotation-minimising frames \[WJZL08\] and finds the place that is nearest to a point, `motion` moves each point as the
+//! frame at its place moves, and `between` finds the curves half way, along which a large turn is a turn.
+
+mod between;
+mod curve;
+mod monotone;
+mod motion;
+mod spline;
+
+pub use between::CurvePath;
+pub use curve::{Curve, CurveRefused, LARGEST_TWIST_DEG, SCALE_RANGE};
+pub use motion::{CurveMotion, Placed};
