@@ -45,6 +45,7 @@
 
 mod bending;
 mod command;
+mod curves;
 mod document;
 mod editor;
 mod event;
@@ -66,10 +67,11 @@ mod workspace;
 
 pub use bending::{Bent, Carried, Kept, Start, Targets, Until, settle};
 pub use command::{Command, KeyMap, Listed, Shortcut, WITHOUT_EXAMPLES};
+pub use curves::Curves;
 pub use document::{
-    Access, Carries, Content, Document, HANDLE_COLOURS, HISTORY_BYTES, Handle, HandleId, HandleTransform, History,
-    KeptShape, ObjectAction, Paint, PivotPlace, Pose, Reach, SaveMark, SavedAs, SmallParts, Tips, Twin, object_name,
-    sum_of_shapes,
+    Access, Carries, Content, Document, HANDLE_COLOURS, HISTORY_BYTES, Handle, HandleCurve, HandleId, HandleTransform,
+    History, KeptShape, ObjectAction, Paint, PivotPlace, Pose, Reach, SaveMark, SavedAs, SmallParts, Tips, Twin,
+    object_name, sum_of_shapes,
 };
 pub use editor::Editor;
 pub use event::Event;

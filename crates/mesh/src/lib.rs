@@ -53,7 +53,9 @@ mod weld;
 
 pub use bvh::{Bvh, Hit, SelfIntersection, SelfIntersections};
 pub use contacts::{Contact, component_areas, contacts};
-pub use curves::{Curve, CurveMotion, CurvePath, CurveRefused, LARGEST_TWIST_DEG, Placed, SCALE_RANGE};
+pub use curves::{
+    Curve, CurveMotion, CurvePath, CurveRefused, LARGEST_TWIST_DEG, SCALE_RANGE, pulled_chain, triangles_under,
+};
 pub use drawn::{Drawn, DrawnSet, Object, Rounding};
 pub use findings::{Finding, FindingKind, Findings, Named};
 pub use geodesics::{DistanceSearch, JOINT_RINGS, Joint, Shape, distances_along_surface, joint_of};

@@ -4,7 +4,7 @@
 use std::f64::consts::{PI, TAU};
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
-use pliant_mesh::{Curve, CurveMotion, CurvePath, CurveRefused};
+use pliant_mesh::{Curve, CurveMotion, CurvePath, CurveRefused, pulled_chain};
 
 /// Open and closed curves, in a plane and out of it, evenly and unevenly spaced.
 fn curves() -> Vec<Curve> {
@@ -34,7 +34,11 @@ fn curves() -> Vec<Curve> {
 /// Points around a curve.
 fn around(curve: &Curve) -> Vec<DVec3> {
     let radius = 0.1 * curve.length();
-    let each = curve.stations().step_by(7).enumerate();
+    let each = curve
+        .station_places()
+        .step_by(7)
+        .map(|place| curve.position(place))
+        .enumerate();
     each.map(|(i, on)| on + radius * DVec3::new((i as f64).sin(), (2.0 * i as f64).cos(), (0.7 * i as f64).sin()))
         .collect()
 }
@@ -168,7 +172,7 @@ fn a_curve_that_moves_rigidly_moves_everything_rigidly() {
                         "{:e}",
                         found.distance(wanted)
                     );
-                    assert!(moves.placed(point).map.abs_diff_eq(map, 1e-11));
+                    assert!(moves.map(point).abs_diff_eq(map, 1e-11));
                 }
             }
         }
@@ -309,4 +313,42 @@ fn points_that_make_no_curve_are_refused() {
         CurveRefused::Twist { .. }
     ));
     assert!(matches!(move_by(line(), &twist, &[0.0; 4]), CurveRefused::Scale { .. }));
+}
+
+#[test]
+fn a_pulled_chain_keeps_its_lengths_and_arrives_where_it_can() {
+    let chains: [Vec<DVec3>; 3] = [
+        (0..6).map(|i| DVec3::X * f64::from(i)).collect(),
+        (0..9)
+            .map(|i| DVec3::new(f64::from(i), f64::from(i * i % 4), 0.3 * f64::from(i % 2)))
+            .collect(),
+        vec![DVec3::ZERO, DVec3::Y * 2.0, DVec3::new(0.5, 3.0, 0.0)],
+    ];
+    for chain in chains {
+        let lengths = |points: &[DVec3]| {
+            points
+                .windows(2)
+                .map(|pair| pair[0].distance(pair[1]))
+                .collect::<Vec<f64>>()
+        };
+        let whole: f64 = lengths(&chain).iter().sum();
+        let rays = [DVec3::X, DVec3::Y, DVec3::NEG_X, DVec3::new(0.48, -0.6, 0.64)];
+        for (ray, share) in rays
+            .into_iter()
+            .flat_map(|ray| [0.5, 0.8, 0.95, 0.999, 1.0, 1.7].map(|share| (ray, share)))
+        {
+            let target = chain[0] + ray * (share * whole);
+            let pulled = pulled_chain(&chain, target);
+            assert_eq!(pulled[0], chain[0]);
+            for (new, old) in lengths(&pulled).iter().zip(lengths(&chain)) {
+                assert!((new - old).abs() < 1e-9 * whole);
+            }
+            let missed = pulled[pulled.len() - 1].distance(target);
+            assert!(
+                (missed - whole * (share - 1.0).max(0.0)).abs() < 1e-6 * whole,
+                "{share}: {missed:e}"
+            );
+        }
+        assert_eq!(pulled_chain(&chain, chain[chain.len() - 1]), chain);
+    }
 }

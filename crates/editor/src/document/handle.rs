@@ -4,6 +4,7 @@ use glam::{DAffine3, DVec3};
 use pliant_mesh::MirrorPlane;
 
 use super::handle_colour::handle_colour;
+use super::handle_curve::HandleCurve;
 use super::handle_transform::HandleTransform;
 use super::turn::followed;
 
@@ -45,6 +46,8 @@ pub struct Handle {
     pub twin: Option<Twin>,
     /// The handle with which it rides along.
     pub parent: Option<HandleId>,
+    /// The curve that its vertices follow before its transform moves them.
+    pub curve: Option<HandleCurve>,
 }
 
 /// The place of a handle's pivot.
@@ -102,6 +105,7 @@ impl Handle {
             continuity: None,
             twin: None,
             parent: None,
+            curve: None,
         }
     }
 
@@ -148,7 +152,7 @@ impl Handle {
 
     /// Returns true if it is away from its rest position.
     pub fn is_displaced(&self) -> bool {
-        !self.transform.is_identity()
+        !self.transform.is_identity() || self.curve.as_ref().is_some_and(|curve| !curve.is_rest())
     }
 
     /// The present position of its pivot, in world space.

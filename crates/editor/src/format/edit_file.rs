@@ -18,6 +18,7 @@ use super::project::StoredKept;
 use super::reader::read;
 use super::selector::Selector;
 use crate::HandleTransform;
+use crate::document::HandleCurve;
 use crate::warning::shortened;
 
 /// The version of the edit format for reading and writing.
@@ -75,11 +76,15 @@ pub struct HandleEntry {
     /// Its name, for a person. Without names they are "handle 1", "handle 2", ..
     #[serde(default)]
     pub name: String,
-    /// Its vertices.
-    pub select: Selector,
+    /// Its vertices. Only a handle with a curve may do without: it then has the vertices of the triangles under it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub select: Option<Selector>,
     /// Their motion.
     #[serde(default)]
     pub transform: HandleTransform,
+    /// The curve that they follow before `transform` moves them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub curve: Option<HandleCurve>,
     /// Its weight, in [`SOFT_RANGE`], if it only pulls at its vertices.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub soft: Option<f64>,
@@ -343,7 +348,7 @@ impl EditFile {
                 attachment.moved().is_none_or(|moved| **moved == rest)
             }
         });
-        are_at_rest.into_iter().all(|is| is) && self.handles.iter().all(|handle| handle.transform.is_identity())
+        are_at_rest.into_iter().all(|is| is) && self.handles.iter().all(HandleEntry::is_at_rest)
     }
 
     /// The files that attachments name: each attachment's name, and the file's, relative to the edit's folder.
@@ -381,13 +386,27 @@ impl EditFile {
 }
 
 impl HandleEntry {
+    /// Returns true if it moves nothing.
+    fn is_at_rest(&self) -> bool {
+        self.transform.is_identity() && self.curve.as_ref().is_none_or(HandleCurve::is_rest)
+    }
+
     fn check(&self) -> Result<(), EditError> {
         let weight = FieldKind {
             name: "a weight",
             range: SOFT_RANGE,
             may_be_rigid: false,
         };
-        self.select.check().map_err(|error| error.under("select"))?;
+        match (&self.select, &self.curve) {
+            (Some(select), _) => select.check().map_err(|error| error.under("select"))?,
+            (None, Some(_)) => {}
+            (None, None) => {
+                return Err(EditError::Missing {
+                    member: "select",
+                    place: String::new(),
+                });
+            }
+        }
         if let Some(value) = self.soft {
             weight.check(value).map_err(|error| error.under("soft"))?;
         }

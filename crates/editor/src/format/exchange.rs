@@ -74,8 +74,9 @@ pub(crate) fn export(document: &Document, model: &Arc<Model>) -> Result<EditFile
         if let Some(handle) = document.handle(id) {
             handles.push(HandleEntry {
                 name: handle.name.clone(),
-                select: ranges(Role::Handle(index as u16)),
+                select: Some(ranges(Role::Handle(index as u16))),
                 transform: with_pivot(handle),
+                curve: handle.curve.clone(),
                 soft: handle.soft,
                 continuity: handle.continuity,
                 parent: parent_place(handle.parent),
@@ -168,6 +169,7 @@ pub(crate) fn import(edit: &EditFile, model: &Model) -> Result<Document, EditErr
             soft: setup.soft[index],
             continuity: edit.handles[index].continuity,
             parent: edit.handles[index].parent.map(|place| HandleId(place as u16)),
+            curve: edit.handles[index].curve.clone(),
             ..Handle::new(id, handle.name.clone())
         });
         document.next_handle = id.0.saturating_add(1);

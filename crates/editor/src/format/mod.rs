@@ -7,6 +7,7 @@
 
 mod attachment;
 mod beginning;
+mod curve;
 mod edit_error;
 mod edit_file;
 mod examples;

@@ -5,17 +5,18 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
 use pliant_deform::{Attachment, CONTINUITY_RANGE, Constraints, Examples, Loose, Method, Problem, Role, Warning};
-use pliant_mesh::{Model, Surface, SurfaceVertex};
+use pliant_mesh::{Bvh, Model, Surface, SurfaceVertex, triangles_under};
 
 use super::attachment::on_model;
 use super::edit_error::EditError;
 use super::edit_file::EditFile;
 use super::exchange::with_pivot;
-use crate::HandleTransform;
 use crate::bending::{Kept, Targets};
-use crate::document::{Document, HandleId, attachment_part};
+use crate::curves::Curves;
+use crate::document::{Document, HandleCurve, HandleId, attachment_part};
 use crate::region::Region;
 use crate::warning::{shortened, worded};
+use crate::{HandleTransform, Selection};
 
 /// The input of [`pliant_deform::Problem`] from an edit, and the handles' transforms.
 #[derive(Clone, PartialEq, Debug)]
@@ -24,6 +25,10 @@ pub struct Setup {
     pub roles: Vec<Role>,
     /// The handles; [`Role::Handle`] is the index.
     pub handles: Vec<HandleSetup>,
+    /// The curves that handles follow.
+    pub curves: Curves,
+    /// The shown share of the curves' way.
+    pub curve_share: f64,
     /// The stiffness of each surface vertex, 1 by default.
     pub stiffness: Vec<f64>,
     /// Each handle's weight, if it is soft.
@@ -90,6 +95,7 @@ impl Setup {
                 soft: &self.soft,
                 continuity: &self.continuity,
                 parts: &self.loose_parts,
+                sections: self.curves.sections(),
             },
             loose: self.loose,
             method: &self.method,
@@ -99,10 +105,19 @@ impl Setup {
     }
 
     /// The setup of a document, with the regions that follow from it.
-    pub(crate) fn of_document(document: &Document, region: &Region) -> Self {
+    /// `file_rest` are the surface's vertices in the file.
+    pub(crate) fn of_document(document: &Document, region: &Region, file_rest: &[DVec3]) -> Self {
         let handles = || region.handles.iter().filter_map(|&id| document.handle(id));
         let stiffness = document.stiffness();
+        let rest = region.rest_surface.as_ref().map(|surface| Rest {
+            displacements: Arc::clone(&document.rest),
+            surface: Arc::clone(surface),
+        });
+        let curves = handles().map(|handle| handle.curve.as_ref());
+        let world_rest = rest.as_ref().map_or(file_rest, |rest| &rest.surface.positions);
         Self {
+            curves: Curves::of(curves, &region.roles, world_rest),
+            curve_share: document.strength(),
             roles: region.roles.to_vec(),
             handles: handles()
                 .map(|handle| HandleSetup {
@@ -130,10 +145,7 @@ impl Setup {
             kept: document
                 .to_go_on_from()
                 .and_then(|kept| Kept::of(&kept, region.handles.iter().copied())),
-            rest: region.rest_surface.as_ref().map(|surface| Rest {
-                displacements: Arc::clone(&document.rest),
-                surface: Arc::clone(surface),
-            }),
+            rest,
         }
     }
 
@@ -164,7 +176,8 @@ impl Setup {
     /// points, and the weights of those examples that bend the surface, times `t`.
     pub fn targets_at(&self, t: f64) -> Targets {
         let part = |attachment| attachment_part(&self.method, attachment, t);
-        Targets::new(self.targets(t), self.attachment().map(part).as_ref())
+        let targets = Targets::new(self.targets(t), self.attachment().map(part).as_ref());
+        targets.along(&self.curves, self.curve_share * t)
     }
 
     /// The handles' maps at the share `t` of the motion, 0 at rest and 1 at their targets.
@@ -174,6 +187,20 @@ impl Setup {
             .map(|handle| handle.transform.at(t, handle.pivot))
             .collect()
     }
+}
+
+/// The vertices of the triangles under a curve that is laid onto the surface.
+fn under_curve(curve: Option<&HandleCurve>, model: &Model) -> Selection {
+    let mut selection = Selection::none(model.surface.positions.len());
+    let Some(curve) = curve else { return selection };
+    let surface = &model.surface;
+    let bvh = Bvh::build(&surface.positions, &surface.triangles);
+    for triangle in triangles_under(curve.rest(), &bvh, &surface.triangles) {
+        for corner in surface.triangles[triangle as usize] {
+            selection.insert(corner);
+        }
+    }
+    selection
 }
 
 impl EditFile {
@@ -197,7 +224,10 @@ impl EditFile {
         }
         let mut handles = Vec::with_capacity(self.handles.len());
         for (index, entry) in self.handles.iter().enumerate() {
-            let selection = entry.select.evaluate_at(model, &format!("handles[{index}].select"))?;
+            let selection = match &entry.select {
+                Some(select) => select.evaluate_at(model, &format!("handles[{index}].select"))?,
+                None => under_curve(entry.curve.as_ref(), model),
+            };
             let (mut sum, mut count) = (DVec3::ZERO, 0.0);
             let mut shared: Vec<(SurfaceVertex, u16)> = Vec::new();
             for vertex in selection.iter() {
@@ -229,11 +259,15 @@ impl EditFile {
                 pivot,
             });
         }
+        let curves = self.handles.iter().map(|entry| entry.curve.as_ref());
+        let curves = Curves::of(curves, &roles, &model.surface.positions);
         let stiffness = self.stiffness_on(model)?;
         let continuity = self.continuity_on(model, &roles)?;
         Ok(Setup {
             roles,
             handles,
+            curves,
+            curve_share: self.strength,
             stiffness,
             soft: self.handles.iter().map(|handle| handle.soft).collect(),
             continuity,

@@ -8,6 +8,7 @@ use pliant_deform::{Attachment, Bound};
 use pliant_mesh::Bounds;
 
 use crate::bending::Carried;
+use crate::curves::Curves;
 use crate::document::{Document, HandleId, KeptShape, Versions};
 
 /// The result of a comparison's job.
@@ -39,6 +40,8 @@ pub struct Figures {
 #[derive(Clone, Debug)]
 pub(super) struct Binding {
     pub(super) bound: Arc<Mutex<Bound>>,
+    /// The curves that its handles follow.
+    pub(super) curves: Curves,
     /// The edit for which it was last used.
     pub(super) of: Edit,
     pub(super) bind_ms: f64,

@@ -168,9 +168,9 @@ impl Curve {
         frame * DMat3::from_rotation_z(-self.holonomy_rad * place / self.length())
     }
 
-    /// Points on the curve in equal steps of its table, the last control point included.
-    pub fn stations(&self) -> impl Iterator<Item = DVec3> + '_ {
-        self.stations.iter().map(|station| station.position)
+    /// Places along the curve, ascending from its start to its end, that are closer where control points are.
+    pub fn station_places(&self) -> impl Iterator<Item = f64> + '_ {
+        (0..=self.spline.interval_count()).map(|interval| self.spline.length_at(interval))
     }
 
     /// The place that is nearest to a point: the first one if several are equally near.

@@ -34,15 +34,6 @@ pub struct CurveMotion {
     is_rest: bool,
 }
 
-/// The motion of the surroundings of a point.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Placed {
-    /// The place on the curve at rest that is nearest to the point, in world units from the start.
-    pub place: f64,
-    /// The map of world positions with which the point moves; the point's own image is exact under it.
-    pub map: DAffine3,
-}
-
 impl CurveMotion {
     /// The motion of `rest` to the control points `moved`, one for each, with the `twist_deg` in degrees about the
     /// tangent and the scale (above 0) of each.
@@ -107,15 +98,9 @@ impl CurveMotion {
         DQuat::from_mat3(&self.linear(place, self.alignment_rad)).normalize()
     }
 
-    /// The motion of the surroundings of a point.
-    pub fn placed(&self, point: DVec3) -> Placed {
-        let place = self.rest.nearest(point);
-        let map = if self.is_rest {
-            DAffine3::IDENTITY
-        } else {
-            self.map_at(place)
-        };
-        Placed { place, map }
+    /// The map of world positions with which a point and its surroundings move.
+    pub fn map(&self, point: DVec3) -> DAffine3 {
+        self.map_at(self.rest.nearest(point))
     }
 
     /// The displacement of a point.
@@ -129,8 +114,11 @@ impl CurveMotion {
         (to - from) + (self.stretched(place) * arm - arm)
     }
 
-    /// The map of the surroundings of a place.
-    fn map_at(&self, place: f64) -> DAffine3 {
+    /// The map of world positions around a place on the curve at rest.
+    pub fn map_at(&self, place: f64) -> DAffine3 {
+        if self.is_rest {
+            return DAffine3::IDENTITY;
+        }
         let (from, to) = self.ends(place);
         let matrix3 = self.stretched(place);
         DAffine3 {

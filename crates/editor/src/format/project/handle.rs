@@ -5,7 +5,7 @@ use pliant_deform::CONTINUITY_RANGE;
 use pliant_mesh::MirrorPlane;
 use serde::{Deserialize, Serialize};
 
-use crate::document::{Handle, HandleId, PivotPlace, Twin, followed, means};
+use crate::document::{Handle, HandleCurve, HandleId, PivotPlace, Twin, followed, means};
 use crate::format::stored_field::Ranges;
 use crate::warning::shortened;
 use crate::{EditError, HandleTransform, Reach, SOFT_RANGE};
@@ -41,6 +41,9 @@ pub(super) struct StoredHandle {
     /// The number of the handle with which it rides along.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) parent: Option<u16>,
+    /// The curve that its vertices follow.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    curve: Option<HandleCurve>,
 }
 
 #[derive(Clone, Copy, PartialEq, Debug, Default, Serialize, Deserialize)]
@@ -116,12 +119,13 @@ impl StoredHandle {
                 at: twin.plane.distance(),
             }),
             parent: handle.parent.map(|parent| parent.0),
+            curve: handle.curve.clone(),
         }
     }
 
     /// Returns true if it is at its rest position.
     pub(super) fn is_at_rest(&self) -> bool {
-        is_default(&self.transform)
+        is_default(&self.transform) && self.curve.as_ref().is_none_or(HandleCurve::is_rest)
     }
 
     pub(super) fn handle(&self) -> Result<Handle, EditError> {
@@ -168,6 +172,7 @@ impl StoredHandle {
                 })
             }),
             parent: self.parent.map(HandleId),
+            curve: self.curve.clone(),
             ..Handle::new(id, self.name.clone())
         })
     }
