@@ -6,8 +6,8 @@ use glam::{DAffine3, DVec3};
 use pliant_deform::{Attachment, Bound, Solve, SolveError, Step};
 use pliant_mesh::Cancel;
 
-use crate::curves::Curves;
 use crate::document::{HandleId, KeptShape};
+use crate::lines::Lines;
 
 /// A frame takes steps for this many vertices before it shows its shape: about as many as fit into its time. There is
 /// no clock here.
@@ -25,10 +25,10 @@ const MOST_FIRST_ROUNDS: usize = 8;
 pub struct Targets {
     /// The map of each handle.
     handles: Vec<DAffine3>,
-    /// The curves that handles follow first.
-    curves: Curves,
-    /// The share of the curves' way.
-    curve_share: f64,
+    /// The lines that handles follow first.
+    lines: Lines,
+    /// The share of the lines' way.
+    line_share: f64,
     /// The positions of the brought control points, moved by hand.
     controls: Option<Arc<Vec<DVec3>>>,
     /// The weights of the examples, `None` for one to be found.
@@ -40,8 +40,8 @@ impl Targets {
     pub fn new(handles: Vec<DAffine3>, attachment: Option<&Attachment>) -> Self {
         Self {
             handles,
-            curves: Curves::default(),
-            curve_share: 1.0,
+            lines: Lines::default(),
+            line_share: 1.0,
             controls: attachment.and_then(Attachment::moved).cloned(),
             weights: match attachment {
                 Some(Attachment::Shapes(examples)) => examples.weights.clone(),
@@ -50,12 +50,12 @@ impl Targets {
         }
     }
 
-    /// The same with handles that follow curves by a share of their way before their maps move them.
+    /// The same with handles that follow lines by a share of their way before their maps move them.
     #[must_use]
-    pub fn along(self, curves: &Curves, share: f64) -> Self {
+    pub fn along(self, lines: &Lines, share: f64) -> Self {
         Self {
-            curves: curves.clone(),
-            curve_share: share,
+            lines: lines.clone(),
+            line_share: share,
             ..self
         }
     }
@@ -65,9 +65,9 @@ impl Targets {
     /// # Errors
     /// Those of [`Bound::set_places`], [`Bound::set_weights`] and [`Bound::set_controls`].
     pub fn set(&self, bound: &mut Bound) -> Result<(), SolveError> {
-        match self.curves.is_empty() {
+        match self.lines.is_empty() {
             true => bound.set_targets(&self.handles)?,
-            false => bound.set_places(&self.curves.targets(&self.handles, self.curve_share))?,
+            false => bound.set_places(&self.lines.targets(&self.handles, self.line_share))?,
         }
         // Examples of another method do not apply to this one.
         if bound.weights().len() == self.weights.len() {
@@ -136,8 +136,8 @@ impl Kept {
         let is_same = |kept: &&Arc<Vec<DVec3>>| present.controls.as_ref().is_some_and(|own| own.len() == kept.len());
         let first = Targets {
             handles: self.targets,
-            curves: present.curves.clone(),
-            curve_share: present.curve_share,
+            lines: present.lines.clone(),
+            line_share: present.line_share,
             controls: own.as_ref().filter(is_same).or(present.controls.as_ref()).cloned(),
             weights: self.shape.weights.clone(),
         };
@@ -280,13 +280,13 @@ fn steps(
     // An iterative method that rests follows a curve with full turns only in steps.
     let is_led = bound.is_at_rest() && bound.solve() != Solve::Direct;
     let count = if is_led {
-        targets.curves.steps(targets.curve_share)
+        targets.lines.steps(targets.line_share)
     } else {
         1
     };
     for step in 1..count {
-        let share = targets.curve_share * step as f64 / count as f64;
-        targets.clone().along(&targets.curves, share).set(bound)?;
+        let share = targets.line_share * step as f64 / count as f64;
+        targets.clone().along(&targets.lines, share).set(bound)?;
         settle(bound, displacements, Until::Frame.steps(bound), cancel)?;
     }
     targets.set(bound)?;

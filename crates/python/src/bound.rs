@@ -278,7 +278,7 @@ impl BoundMesh {
             Goal::Rows(_) => DAffine3::IDENTITY,
         };
         let maps: Vec<DAffine3> = goals.iter().map(map).collect();
-        let along = self.setup.curves.targets(&maps, self.setup.curve_share);
+        let along = self.setup.lines.targets(&maps, self.setup.line_share);
         for ((number, goal), along) in goals.into_iter().enumerate().zip(along) {
             targets.of_solver.push(match goal {
                 Goal::Map(_) => along,

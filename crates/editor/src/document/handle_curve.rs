@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 use pliant_mesh::{Curve, CurveMotion, CurvePath, CurveRefused};
 
 /// A curve through control points at rest and where they go: each vertex of its handle moves with the frame at its
@@ -79,6 +79,31 @@ impl HandleCurve {
     /// Returns true if no control point moves, turns or grows.
     pub fn is_rest(&self) -> bool {
         self.0.motion.is_rest()
+    }
+
+    /// The same curve at rest.
+    #[must_use]
+    pub(crate) fn at_rest(&self) -> Self {
+        self.resting(self.rest().points().to_vec())
+    }
+
+    /// The curve at rest where it has arrived and the map `then` has moved it.
+    #[must_use]
+    pub(crate) fn applied(&self, then: &DAffine3) -> Self {
+        self.resting(self.moved().iter().map(|point| then.transform_point3(*point)).collect())
+    }
+
+    /// A curve through these points, which move nowhere; this one if they make none.
+    fn resting(&self, points: Vec<DVec3>) -> Self {
+        let count = points.len();
+        let resting = Self::new(
+            points.clone(),
+            self.rest().is_closed(),
+            points,
+            vec![0.0; count],
+            vec![1.0; count],
+        );
+        resting.unwrap_or_else(|_| self.clone())
     }
 
     /// The largest turn or twist of a part of the curve, in radians.

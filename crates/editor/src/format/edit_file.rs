@@ -18,7 +18,7 @@ use super::project::StoredKept;
 use super::reader::read;
 use super::selector::Selector;
 use crate::HandleTransform;
-use crate::document::HandleCurve;
+use crate::document::{HandleCurve, HandleLine, HandleSketch};
 use crate::warning::shortened;
 
 /// The version of the edit format for reading and writing.
@@ -76,7 +76,8 @@ pub struct HandleEntry {
     /// Its name, for a person. Without names they are "handle 1", "handle 2", ..
     #[serde(default)]
     pub name: String,
-    /// Its vertices. Only a handle with a curve may do without: it then has the vertices of the triangles under it.
+    /// Its vertices. Only a handle with a line may do without: a curve then has the vertices of the triangles under it. A
+    /// sketch has those of the selected vertices, or of all, that are on the outline.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub select: Option<Selector>,
     /// Their motion.
@@ -85,6 +86,9 @@ pub struct HandleEntry {
     /// The curve that they follow before `transform` moves them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub curve: Option<HandleCurve>,
+    /// Or the line to which their outline is drawn.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sketch: Option<HandleSketch>,
     /// Its weight, in [`SOFT_RANGE`], if it only pulls at its vertices.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub soft: Option<f64>,
@@ -388,16 +392,31 @@ impl EditFile {
 impl HandleEntry {
     /// Returns true if it moves nothing.
     fn is_at_rest(&self) -> bool {
-        self.transform.is_identity() && self.curve.as_ref().is_none_or(HandleCurve::is_rest)
+        self.transform.is_identity() && self.line().is_none_or(|line| line.is_rest())
+    }
+
+    /// The line that it follows.
+    pub(crate) fn line(&self) -> Option<HandleLine> {
+        HandleLine::of(self.curve.as_ref(), self.sketch.as_ref())
+    }
+
+    /// Its weight, if it is soft: its own, or that of its sketch.
+    pub(crate) fn softness(&self) -> Option<f64> {
+        self.soft.or_else(|| self.sketch.as_ref()?.soft())
     }
 
     fn check(&self) -> Result<(), EditError> {
+        if self.curve.is_some() && self.sketch.is_some() {
+            let sentence = "has both `curve` and `sketch`: keep one of them".to_owned();
+            let place = String::new();
+            return Err(EditError::Other { place, sentence });
+        }
         let weight = FieldKind {
             name: "a weight",
             range: SOFT_RANGE,
             may_be_rigid: false,
         };
-        match (&self.select, &self.curve) {
+        match (&self.select, self.line()) {
             (Some(select), _) => select.check().map_err(|error| error.under("select"))?,
             (None, Some(_)) => {}
             (None, None) => {

@@ -10,7 +10,7 @@ use super::attachment::AttachmentEntry;
 use super::examples::entries_of;
 use super::project::StoredKept;
 use super::selector::ranges_of;
-use crate::document::{Content, Document, Handle, HandleId, Paint, PivotPlace, Reach, followed};
+use crate::document::{Content, Document, Handle, HandleId, HandleLine, Paint, PivotPlace, Reach, followed};
 use crate::region::{FileContacts, Region, region_input};
 use crate::{EditError, EditFile, FieldEntry, HandleEntry, HandleTransform, Selector};
 
@@ -76,7 +76,8 @@ pub(crate) fn export(document: &Document, model: &Arc<Model>) -> Result<EditFile
                 name: handle.name.clone(),
                 select: Some(ranges(Role::Handle(index as u16))),
                 transform: with_pivot(handle),
-                curve: handle.curve.clone(),
+                curve: handle.line.as_ref().and_then(HandleLine::curve).cloned(),
+                sketch: handle.line.as_ref().and_then(HandleLine::sketch).cloned(),
                 soft: handle.soft,
                 continuity: handle.continuity,
                 parent: parent_place(handle.parent),
@@ -169,7 +170,7 @@ pub(crate) fn import(edit: &EditFile, model: &Model) -> Result<Document, EditErr
             soft: setup.soft[index],
             continuity: edit.handles[index].continuity,
             parent: edit.handles[index].parent.map(|place| HandleId(place as u16)),
-            curve: edit.handles[index].curve.clone(),
+            line: edit.handles[index].line(),
             ..Handle::new(id, handle.name.clone())
         });
         document.next_handle = id.0.saturating_add(1);

@@ -24,6 +24,7 @@ mod reader;
 mod refusal;
 mod selector;
 mod setup;
+mod sketch;
 pub(crate) mod stored_field;
 mod transform;
 

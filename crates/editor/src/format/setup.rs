@@ -9,14 +9,14 @@ use pliant_mesh::{Bvh, Model, Surface, SurfaceVertex, triangles_under};
 
 use super::attachment::on_model;
 use super::edit_error::EditError;
-use super::edit_file::EditFile;
+use super::edit_file::{EditFile, HandleEntry};
 use super::exchange::with_pivot;
 use crate::bending::{Kept, Targets};
-use crate::curves::Curves;
-use crate::document::{Document, HandleCurve, HandleId, attachment_part};
+use crate::document::{Document, HandleId, HandleLine, attachment_part};
+use crate::lines::Lines;
 use crate::region::Region;
 use crate::warning::{shortened, worded};
-use crate::{HandleTransform, Selection};
+use crate::{HandleTransform, Selection, outline};
 
 /// The input of [`pliant_deform::Problem`] from an edit, and the handles' transforms.
 #[derive(Clone, PartialEq, Debug)]
@@ -25,10 +25,10 @@ pub struct Setup {
     pub roles: Vec<Role>,
     /// The handles; [`Role::Handle`] is the index.
     pub handles: Vec<HandleSetup>,
-    /// The curves that handles follow.
-    pub curves: Curves,
-    /// The shown share of the curves' way.
-    pub curve_share: f64,
+    /// The lines that handles follow.
+    pub lines: Lines,
+    /// The shown share of the lines' way.
+    pub line_share: f64,
     /// The stiffness of each surface vertex, 1 by default.
     pub stiffness: Vec<f64>,
     /// Each handle's weight, if it is soft.
@@ -95,7 +95,7 @@ impl Setup {
                 soft: &self.soft,
                 continuity: &self.continuity,
                 parts: &self.loose_parts,
-                sections: self.curves.sections(),
+                sections: self.lines.sections(),
             },
             loose: self.loose,
             method: &self.method,
@@ -105,19 +105,19 @@ impl Setup {
     }
 
     /// The setup of a document, with the regions that follow from it.
-    /// `file_rest` are the surface's vertices in the file.
-    pub(crate) fn of_document(document: &Document, region: &Region, file_rest: &[DVec3]) -> Self {
+    /// `of_file` is the surface in the file.
+    pub(crate) fn of_document(document: &Document, region: &Region, of_file: &Surface) -> Self {
         let handles = || region.handles.iter().filter_map(|&id| document.handle(id));
         let stiffness = document.stiffness();
         let rest = region.rest_surface.as_ref().map(|surface| Rest {
             displacements: Arc::clone(&document.rest),
             surface: Arc::clone(surface),
         });
-        let curves = handles().map(|handle| handle.curve.as_ref());
-        let world_rest = rest.as_ref().map_or(file_rest, |rest| &rest.surface.positions);
+        let lines = handles().map(|handle| handle.line.as_ref());
+        let surface = rest.as_ref().map_or(of_file, |rest| &rest.surface);
         Self {
-            curves: Curves::of(curves, &region.roles, world_rest),
-            curve_share: document.strength(),
+            lines: Lines::of(lines, &region.roles, surface),
+            line_share: document.strength(),
             roles: region.roles.to_vec(),
             handles: handles()
                 .map(|handle| HandleSetup {
@@ -177,7 +177,7 @@ impl Setup {
     pub fn targets_at(&self, t: f64) -> Targets {
         let part = |attachment| attachment_part(&self.method, attachment, t);
         let targets = Targets::new(self.targets(t), self.attachment().map(part).as_ref());
-        targets.along(&self.curves, self.curve_share * t)
+        targets.along(&self.lines, self.line_share * t)
     }
 
     /// The handles' maps at the share `t` of the motion, 0 at rest and 1 at their targets.
@@ -189,18 +189,36 @@ impl Setup {
     }
 }
 
-/// The vertices of the triangles under a curve that is laid onto the surface.
-fn under_curve(curve: Option<&HandleCurve>, model: &Model) -> Selection {
-    let mut selection = Selection::none(model.surface.positions.len());
-    let Some(curve) = curve else { return selection };
-    let surface = &model.surface;
-    let bvh = Bvh::build(&surface.positions, &surface.triangles);
-    for triangle in triangles_under(curve.rest(), &bvh, &surface.triangles) {
-        for corner in surface.triangles[triangle as usize] {
-            selection.insert(corner);
+impl HandleEntry {
+    /// Its vertices.
+    fn members(&self, index: usize, model: &Model) -> Result<Selection, EditError> {
+        let select = self.select.as_ref();
+        let selected = select.map(|select| select.evaluate_at(model, &format!("handles[{index}].select")));
+        let selected = selected.transpose()?;
+        let surface = &model.surface;
+        let mut members = Selection::none(surface.positions.len());
+        match (self.line(), selected) {
+            (Some(HandleLine::Sketch(sketch)), selected) => {
+                let is_selected = |vertex| selected.as_ref().is_none_or(|own| own.contains(vertex));
+                let matched = outline::matched(&sketch, surface, is_selected).ok_or_else(|| EditError::Other {
+                    place: format!("handles[{index}].sketch"),
+                    sentence:
+                        "is beside no outline: draw it along one that is seen from there, or select more vertices"
+                            .to_owned(),
+                })?;
+                matched.into_iter().for_each(|(vertex, _)| members.insert(vertex));
+            }
+            (_, Some(selected)) => return Ok(selected),
+            (Some(HandleLine::Curve(curve)), None) => {
+                let bvh = Bvh::build(&surface.positions, &surface.triangles);
+                let under = triangles_under(curve.rest(), &bvh, &surface.triangles).into_iter();
+                let corners = under.flat_map(|triangle| surface.triangles[triangle as usize]);
+                corners.for_each(|vertex| members.insert(vertex));
+            }
+            (None, None) => {}
         }
+        Ok(members)
     }
-    selection
 }
 
 impl EditFile {
@@ -224,10 +242,7 @@ impl EditFile {
         }
         let mut handles = Vec::with_capacity(self.handles.len());
         for (index, entry) in self.handles.iter().enumerate() {
-            let selection = match &entry.select {
-                Some(select) => select.evaluate_at(model, &format!("handles[{index}].select"))?,
-                None => under_curve(entry.curve.as_ref(), model),
-            };
+            let selection = entry.members(index, model)?;
             let (mut sum, mut count) = (DVec3::ZERO, 0.0);
             let mut shared: Vec<(SurfaceVertex, u16)> = Vec::new();
             for vertex in selection.iter() {
@@ -259,17 +274,17 @@ impl EditFile {
                 pivot,
             });
         }
-        let curves = self.handles.iter().map(|entry| entry.curve.as_ref());
-        let curves = Curves::of(curves, &roles, &model.surface.positions);
+        let lines: Vec<Option<HandleLine>> = self.handles.iter().map(HandleEntry::line).collect();
+        let lines = Lines::of(lines.iter().map(Option::as_ref), &roles, &model.surface);
         let stiffness = self.stiffness_on(model)?;
         let continuity = self.continuity_on(model, &roles)?;
         Ok(Setup {
             roles,
             handles,
-            curves,
-            curve_share: self.strength,
+            lines,
+            line_share: self.strength,
             stiffness,
-            soft: self.handles.iter().map(|handle| handle.soft).collect(),
+            soft: self.handles.iter().map(HandleEntry::softness).collect(),
             continuity,
             loose: self.loose,
             loose_parts: self.loose_parts_on(model)?,

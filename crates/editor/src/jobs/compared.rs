@@ -8,8 +8,8 @@ use pliant_deform::{Attachment, Bound};
 use pliant_mesh::Bounds;
 
 use crate::bending::Carried;
-use crate::curves::Curves;
 use crate::document::{Document, HandleId, KeptShape, Versions};
+use crate::lines::Lines;
 
 /// The result of a comparison's job.
 #[derive(Debug)]
@@ -40,8 +40,8 @@ pub struct Figures {
 #[derive(Clone, Debug)]
 pub(super) struct Binding {
     pub(super) bound: Arc<Mutex<Bound>>,
-    /// The curves that its handles follow.
-    pub(super) curves: Curves,
+    /// The lines that its handles follow.
+    pub(super) lines: Lines,
     /// The edit for which it was last used.
     pub(super) of: Edit,
     pub(super) bind_ms: f64,

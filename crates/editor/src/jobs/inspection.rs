@@ -21,7 +21,7 @@ pub(super) fn inspect_work(computed: &Computed, document: &Document, asked: Aske
     let targets = is_base_wanted
         .then(|| targets(document, &document.method, &handles))
         .flatten();
-    let targets = targets.map(|targets| targets.along(&binding.curves, document.strength()));
+    let targets = targets.map(|targets| targets.along(&binding.lines, document.strength()));
     let rest = document.applied.then(|| Arc::clone(&document.rest));
     Some(Box::new(move |_, cancel| {
         cancel.check()?;

@@ -6,8 +6,8 @@ use pliant_deform::{Bound, ReusableFactor};
 
 use super::bound_controls::BoundControls;
 use super::inspected::Inspectable;
-use crate::curves::Curves;
 use crate::document::HandleId;
+use crate::lines::Lines;
 use crate::warning::HandleWarning;
 
 /// The factorisation for the present regions.
@@ -19,17 +19,17 @@ pub struct PresentBinding {
     pub(super) inspectable: Inspectable,
     /// The parts that the next binding can reuse.
     pub(super) reusable_factor: Option<ReusableFactor>,
-    /// The curves that its handles follow.
-    pub(super) curves: Curves,
+    /// The lines that its handles follow.
+    pub(super) lines: Lines,
     /// Warnings about it.
     pub(super) warnings: Vec<HandleWarning>,
 }
 
 impl PresentBinding {
     /// A binding of these handles.
-    pub(super) fn of(bound: Bound, handles: &[HandleId], curves: Curves) -> Self {
+    pub(super) fn of(bound: Bound, handles: &[HandleId], lines: Lines) -> Self {
         Self {
-            curves,
+            lines,
             controls: BoundControls::of(&bound),
             inspectable: Inspectable::of(&bound),
             reusable_factor: bound.reusable_factor(),

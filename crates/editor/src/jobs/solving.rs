@@ -10,17 +10,17 @@ use super::computed::Computed;
 use super::slot::{Unfinished, Work};
 use super::solved::{ControlPlaces, Descent, SolveResult, Solved};
 use crate::bending::{Carried, Kept, Start, Targets, Until};
-use crate::curves::Curves;
 use crate::document::{Document, HandleId, sum_of_shapes};
+use crate::lines::Lines;
 use crate::warning::HandleWarning;
 
 /// Takes steps towards the handles' targets; `None` while nothing is bound.
 pub(super) fn solve_work(computed: &Computed, document: &Document) -> Option<Work<SolveResult>> {
     let (binding, model) = (computed.slots.bind.last()?, computed.model.clone()?);
-    let (bound, curves) = (Arc::clone(&binding.bound), binding.curves.clone());
+    let (bound, lines) = (Arc::clone(&binding.bound), binding.lines.clone());
     let (handles, carried) = (&computed.region.handles, computed.carried.as_ref());
     let wanted = Wanted::of(document, &document.method, handles, &document.from_rest, carried)?;
-    let wanted = wanted.along(&curves, document);
+    let wanted = wanted.along(&lines, document);
     let newer_targets = computed.newer_targets.clone();
     Some(Box::new(move |_, cancel| {
         cancel.check()?;
@@ -45,7 +45,7 @@ pub(super) fn controls_work(computed: &Computed, document: &Document) -> Option<
     let binding = computed.slots.bind.last()?;
     let bound = Arc::clone(&binding.bound);
     let targets = targets(document, &document.method, &computed.region.handles)?;
-    let targets = targets.along(&binding.curves, document.strength());
+    let targets = targets.along(&binding.lines, document.strength());
     Some(Box::new(move |_, cancel| {
         cancel.check()?;
         let mut bound = bound.lock().unwrap_or_else(PoisonError::into_inner);
@@ -83,10 +83,10 @@ impl Wanted {
         })
     }
 
-    /// The same with handles that follow these curves.
-    pub(super) fn along(self, curves: &Curves, document: &Document) -> Self {
+    /// The same with handles that follow these lines.
+    pub(super) fn along(self, lines: &Lines, document: &Document) -> Self {
         Self {
-            targets: self.targets.along(curves, document.strength()),
+            targets: self.targets.along(lines, document.strength()),
             ..self
         }
     }

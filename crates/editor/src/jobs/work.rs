@@ -74,7 +74,7 @@ pub(super) fn bind_work(
     let (model, document, region) = (Arc::clone(model), document.clone(), computed.region.clone());
     let reusable_factor = computed.slots.bind.last().and_then(|last| last.reusable_factor.clone());
     Some(Box::new(move |progress, cancel| {
-        let setup = Setup::of_document(&document, &region, &model.surface.positions);
+        let setup = Setup::of_document(&document, &region, &model.surface);
         let problem = Problem {
             revision,
             ..setup.problem(&model)
@@ -84,7 +84,7 @@ pub(super) fn bind_work(
             Ok(bound) => Ok(Box::new(PresentBinding::of(
                 bound,
                 &region.handles,
-                setup.curves.clone(),
+                setup.lines.clone(),
             ))),
             Err(BindError::Cancelled(cancelled)) => Err(cancelled.into()),
             Err(error) => Err(Unfinished::Failed(

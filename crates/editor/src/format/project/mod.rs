@@ -454,7 +454,7 @@ impl Project {
         let document = self.document(model)?;
         let input = region_input(&Arc::new(model.clone()), &document, &FileContacts::default());
         let region = Region::measure(&input, &Cancel::new()).unwrap_or_else(|_| Region::still(document.paint.len()));
-        Ok(Setup::of_document(&document, &region, &model.surface.positions))
+        Ok(Setup::of_document(&document, &region, &model.surface))
     }
 }
 
