@@ -7,6 +7,7 @@
 
 mod attachment;
 mod beginning;
+mod curve;
 mod edit_error;
 mod edit_file;
 mod examples;
@@ -24,6 +25,7 @@ mod reader;
 mod refusal;
 mod selector;
 mod setup;
+mod sketch;
 pub(crate) mod stored_field;
 mod transform;
 

@@ -12,7 +12,6 @@ use pliant_mesh::{Cancel, DistanceSearch, Joint, Model, Shape, SurfaceVertex, jo
 use serde::{Deserialize, Serialize};
 
 use super::edit_error::EditError;
-use super::edit_file::HandleEntry;
 use super::transform::vector;
 use crate::document::{HandleId, Paint, Reach, Tips};
 use crate::region::{FileContacts, Region, RegionInput};
@@ -49,23 +48,24 @@ pub(super) struct Limbs {
 }
 
 impl Limbs {
-    /// Finds the limbs of the handles with a `pose`.
+    /// Finds the limbs of handles, by their places in the list, which ascend.
     ///
     /// # Errors
     /// A point without a joint, a candidate that does not exist, and limbs that are the same, by their places.
-    pub(super) fn of(handles: &[HandleEntry], model: &Model) -> Result<Self, EditError> {
+    pub(super) fn of<'a>(
+        poses: impl Iterator<Item = (usize, &'a PoseEntry)>,
+        model: &Model,
+    ) -> Result<Self, EditError> {
         let shape = Shape {
             triangles: &model.surface.triangles,
             topology: &model.topology,
             positions: &model.surface.positions,
         };
         let mut limbs = Vec::new();
-        for (index, entry) in handles.iter().enumerate() {
-            if let Some(pose) = &entry.pose {
-                let joint = joint(&shape, pose).map_err(|error| error.under(&format!("handles[{index}].pose")))?;
-                let own = joint.far_side.clone();
-                limbs.push((index, Limb { joint, own }));
-            }
+        for (index, pose) in poses {
+            let joint = joint(&shape, pose).map_err(|error| error.under(&format!("handles[{index}].pose")))?;
+            let own = joint.far_side.clone();
+            limbs.push((index, Limb { joint, own }));
         }
         let mut limbs = Self { limbs };
         limbs.divide(&shape)?;
@@ -108,27 +108,20 @@ impl Limbs {
         Ok(())
     }
 
-    /// Frees the region that the window gives to these handles.
-    ///
-    /// # Errors
-    /// Those of the handles' selectors.
-    pub(super) fn free(&self, handles: &[HandleEntry], model: &Model, roles: &mut [Role]) -> Result<(), EditError> {
+    /// Frees the region that the window gives to handles with these vertices.
+    pub(super) fn free(&self, members: &[Vec<SurfaceVertex>], model: &Model, roles: &mut [Role]) {
         let mut paint = vec![Paint::Bare; roles.len()];
-        let mut reaches = Vec::with_capacity(handles.len());
-        for (index, entry) in handles.iter().enumerate() {
+        let mut handles = Vec::with_capacity(members.len());
+        for (index, own) in members.iter().enumerate() {
             let id = HandleId(index as u16);
-            let limb = self.at(index);
-            let own = limb.map_or_else(|| selected(entry, index, model), |limb| Ok(limb.own.clone()));
-            own?.iter().for_each(|vertex| paint[vertex.index()] = Paint::Handle(id));
-            reaches.push((
-                id,
-                limb.map_or_else(Reach::default, |limb| Reach::Length(limb.joint.width())),
-            ));
+            own.iter().for_each(|vertex| paint[vertex.index()] = Paint::Handle(id));
+            let reach = self.at(index).map(|limb| Reach::Length(limb.joint.width()));
+            handles.push((id, reach.unwrap_or_default()));
         }
         let input = RegionInput {
             model,
             paint: Arc::new(paint),
-            handles: reaches,
+            handles,
             rest: None,
             tips: Tips::default(),
             loose: Loose::Follow,
@@ -145,16 +138,6 @@ impl Limbs {
                 *role = Role::Fixed;
             }
         }
-        Ok(())
-    }
-}
-
-/// The vertices that a handle's selector gives.
-pub(super) fn selected(entry: &HandleEntry, index: usize, model: &Model) -> Result<Vec<SurfaceVertex>, EditError> {
-    let place = format!("handles[{index}].select");
-    match &entry.select {
-        Some(select) => Ok(select.evaluate_at(model, &place)?.iter().collect()),
-        None => Ok(Vec::new()),
     }
 }
 

@@ -454,7 +454,7 @@ impl Project {
         let document = self.document(model)?;
         let input = region_input(model, &document, &FileContacts::default());
         let region = Region::measure(&input, &Cancel::new()).unwrap_or_else(|_| Region::still(document.paint.len()));
-        Ok(Setup::of_document(&document, &region))
+        Ok(Setup::of_document(&document, &region, &model.surface))
     }
 }
 
