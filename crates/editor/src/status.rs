@@ -67,7 +67,9 @@ fn hint(workspace: &Workspace, settings: &ToolSettings) -> String {
             ToolMode::PaintHandle => "Paint the part that you want to move",
             ToolMode::PaintFree => "Paint the part that may bend, then a handle (1)",
             ToolMode::PaintFixed => "Paint the part that stays fixed, then a handle (1)",
-            ToolMode::Pose => "Drag a limb to turn it about its joint; Ctrl twists it, Shift scales it",
+            ToolMode::Pose => {
+                "Drag a limb to turn it about its joint; Ctrl twists it, Shift scales it, Ctrl and the wheel choose its joint"
+            }
             ToolMode::Correct => "Brush over the shape to correct it",
             ToolMode::Erase | ToolMode::Select | ToolMode::PaintStiffness => {
                 "Press 1 and paint the part that you want to move"

@@ -602,6 +602,56 @@ fn candidates_lead_from_the_elbow_to_the_shoulder_and_a_limb_of_a_limb_takes_its
 }
 
 #[test]
+fn ctrl_and_the_wheel_choose_another_joint_until_the_pointer_leaves_the_limb() {
+    let mut rig = Rig::open(body_with_an_elbow());
+    rig.command(Command::SetTool(ToolMode::Pose));
+    let hand_px = seen(&rig, 4.3..4.6);
+    let before = rig.fingerprint();
+    let wheel = |rig: &mut Rig, lines: f64, modifiers: Modifiers| {
+        let pointer = pointer(hand_px, modifiers);
+        rig.send(Event::Wheel { pointer, lines });
+        rig.drain();
+    };
+    // The joint about which a drag from here turns.
+    let pivot = |rig: &mut Rig| {
+        drag(rig, hand_px, DVec2::new(0.0, -60.0), Modifiers::NONE);
+        let pivot = rig.editor.document().handles()[0].pivot;
+        rig.undo();
+        rig.drain();
+        rig.move_to(hand_px);
+        rig.drain();
+        pivot
+    };
+    rig.move_to(hand_px);
+    rig.drain();
+    assert!(pivot(&mut rig).distance(DVec3::X * 3.4) < 0.15);
+    wheel(&mut rig, 0.5, Modifiers::CTRL);
+    assert!(pivot(&mut rig).distance(DVec3::X * 3.4) < 0.15, "half a notch");
+    // The second half; two more notches find no further joint.
+    for lines in [0.5, 2.0] {
+        wheel(&mut rig, lines, Modifiers::CTRL);
+    }
+    drag(&mut rig, hand_px, DVec2::new(0.0, -60.0), Modifiers::NONE);
+    let shoulder = rig.editor.document().handles()[0].pivot;
+    assert!(shoulder.distance(DVec3::X * 1.6) < 0.15, "{shoulder}");
+    rig.undo();
+    rig.drain();
+    rig.move_to(hand_px);
+    rig.drain();
+    for lines in [1.0, -1.0] {
+        wheel(&mut rig, lines, Modifiers::CTRL);
+    }
+    assert!(pivot(&mut rig).distance(DVec3::X * 3.4) < 0.15, "there and back");
+    wheel(&mut rig, 1.0, Modifiers::CTRL);
+    rig.move_to(DVec2::ONE);
+    rig.drain();
+    rig.move_to(hand_px);
+    rig.drain();
+    assert!(pivot(&mut rig).distance(DVec3::X * 3.4) < 0.15, "the guess again");
+    assert_eq!(rig.fingerprint(), before, "choosing changes nothing");
+}
+
+#[test]
 fn a_limb_that_is_not_there_is_refused_in_words() {
     let model = rig::weld(body_with_an_elbow());
     let ball = rig::weld(shapes::icosphere(4));

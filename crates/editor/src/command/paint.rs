@@ -56,7 +56,8 @@ pub(super) const SET_TOOL: Entry<ToolMode> = Entry {
         item(
             ToolMode::Pose,
             "Pose",
-            "Turns the limb that you drag about its joint. Ctrl twists it, Shift scales it.",
+            "Turns the limb that you drag about its joint. Ctrl twists it, Shift scales it. Ctrl and the wheel choose \
+             another joint.",
             "bend limb arm leg joint rotate brush",
             &[character('7')],
         ),

@@ -33,6 +33,8 @@ pub struct Editor {
     /// The state of the pointer.
     gesture: Option<Box<dyn Gesture>>,
     pointer: Option<Pointer>,
+    /// The notches of the wheel, below one, that have not chosen another joint yet.
+    joint_lines: f64,
     key_map: KeyMap,
     /// The held key that shows the original.
     showing_original: Option<Key>,
@@ -51,6 +53,7 @@ impl Editor {
             overlay: Overlay::default(),
             gesture: None,
             pointer: None,
+            joint_lines: 0.0,
             key_map: KeyMap::default(),
             showing_original: None,
             waiting: VecDeque::new(),
@@ -292,11 +295,19 @@ impl Editor {
         }
     }
 
-    /// The wheel zooms; with Ctrl it sizes the brush, with Shift it softens the one for stiffness.
+    /// The wheel zooms; with Ctrl it sizes the brush or chooses the joint of the limb, with Shift it softens the brush
+    /// for stiffness.
     fn wheel(&mut self, pointer: Pointer, lines: f64) {
         let (modifiers, settings) = (pointer.modifiers, &mut self.settings);
         if modifiers.ctrl && settings.mode.has_brush() {
             settings.set_brush_radius(settings.brush.radius_px * WHEEL_STEP.powf(lines));
+        } else if modifiers.ctrl && settings.mode == ToolMode::Pose {
+            self.joint_lines += lines;
+            let places = self.joint_lines.trunc();
+            self.joint_lines -= places;
+            if places != 0.0 && self.gesture.is_none() {
+                self.workspace.jobs.want_joint(Some(places as i32));
+            }
         } else if modifiers.shift && settings.mode == ToolMode::PaintStiffness {
             let mut brush = settings.stiffness_brush;
             brush.falloff = (brush.falloff + WHEEL_FALLOFF * lines).clamp(0.0, 1.0);

@@ -29,19 +29,27 @@ impl Jobs {
         slot(&mut self.computed.slots).renew(revision);
     }
 
-    /// Whether the joint under a triangle of the present shape has not been requested yet.
-    pub(crate) fn asks_for_joint(&self, triangle: u32) -> bool {
-        self.joint_asked != Some((self.shape_revision(), triangle))
+    /// The candidate of the joint that is wanted, if the joint under a triangle of the present shape has not been
+    /// requested yet.
+    pub(crate) fn asks_for_joint(&self, triangle: u32) -> Option<i32> {
+        let wanted = (self.shape_revision(), triangle, self.joint_up);
+        (self.joint_asked != Some(wanted)).then_some(self.joint_up)
+    }
+
+    /// Wants the candidate that is so many places farther from the limb's tip than the shown joint, or the guess again.
+    pub(crate) fn want_joint(&mut self, places: Option<i32>) {
+        let shown = self.computed.joint().map_or(self.joint_up, |joint| joint.up);
+        self.joint_up = places.map_or(0, |places| (shown + places).max(0));
     }
 
     /// Requests the joint under a triangle of the present shape. The running search continues, so that a steadily
     /// moving pointer still shows joints; the newest request waits.
     pub(crate) fn look_for_joint(&mut self, triangle: u32, work: Work<Option<Arc<Joint>>>) {
         let shape = self.shape_revision();
-        if self.joint_asked.is_some_and(|(asked, _)| asked != shape) {
+        if self.joint_asked.is_some_and(|(asked, ..)| asked != shape) {
             self.forget_joint();
         }
-        self.joint_asked = Some((shape, triangle));
+        self.joint_asked = Some((shape, triangle, self.joint_up));
         let revision = self.next_revision();
         self.computed.slots.joint.follow(revision);
         self.computed.slots.joint.request(work);
@@ -49,6 +57,7 @@ impl Jobs {
 
     /// A joint is no longer wanted.
     pub(crate) fn forget_joint(&mut self) {
+        self.joint_up = 0;
         if self.joint_asked.take().is_some() {
             self.stop_asking(|slots| &mut slots.joint);
             self.computed.slots.joint.take();

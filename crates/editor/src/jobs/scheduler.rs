@@ -44,8 +44,10 @@ pub(crate) struct Jobs {
     pub(crate) comparison: Option<Comparison>,
     /// A different number for every measured region.
     pub(crate) roles_revision: Revision,
-    /// The shape and the triangle of the last request for a joint.
-    pub(super) joint_asked: Option<(Revision, u32)>,
+    /// The shape, the triangle and the candidate of the last request for a joint.
+    pub(super) joint_asked: Option<(Revision, u32, i32)>,
+    /// The candidate that is wanted, from the guess towards the body.
+    pub(super) joint_up: i32,
     /// The inspection job: its binding, and its targets if it depends on them, from its request on.
     pub(super) inspection: (Revision, Asked, Revision),
 }
@@ -81,6 +83,7 @@ impl Jobs {
             comparison: None,
             roles_revision: Revision(0),
             joint_asked: None,
+            joint_up: 0,
             inspection: (Revision(0), Asked::default(), Revision(0)),
         }
     }
@@ -95,6 +98,7 @@ impl Jobs {
     pub(crate) fn open(&mut self, model: Arc<Model>) {
         self.comparison = None;
         self.joint_asked = None;
+        self.joint_up = 0;
         let mut slots = std::mem::take(&mut self.computed.slots);
         slots.reset(self.next_revision());
         self.computed = Computed {

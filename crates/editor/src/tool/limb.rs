@@ -73,9 +73,13 @@ pub(crate) fn hover(workspace: &mut Workspace, view: &View, pointer_px: Option<g
     let Some(pick) = pick else {
         return workspace.jobs.forget_joint();
     };
-    if !workspace.jobs.asks_for_joint(pick.triangle) {
-        return;
+    let shown = workspace.computed().joint();
+    if shown.is_some_and(|joint| joint.limb.binary_search(&pick.vertex).is_err()) {
+        workspace.jobs.want_joint(None);
     }
+    let Some(up) = workspace.jobs.asks_for_joint(pick.triangle) else {
+        return;
+    };
     let Some(model) = workspace.model().cloned() else {
         return;
     };
@@ -90,7 +94,7 @@ pub(crate) fn hover(workspace: &mut Workspace, view: &View, pointer_px: Option<g
                 topology: &model.topology,
                 positions: &positions,
             };
-            Ok(joint_of(&shape, pick.triangle, pick.point, 0, cancel)?.map(Arc::new))
+            Ok(joint_of(&shape, pick.triangle, pick.point, up, cancel)?.map(Arc::new))
         }),
     );
 }
