@@ -9,7 +9,7 @@ use std::time::Instant;
 
 use glam::DVec3;
 use pliant_deform::{BindError, Bound, Budget, ExampleShape, Method, Ordering, SolveError, Step};
-use pliant_editor::{Beginning, Intersections, Setup, Start, Until, sum_of_shapes};
+use pliant_editor::{Beginning, Intersections, Setup, Start, Until, refuse_keys, sum_of_shapes};
 use pliant_io::{MorphDeltas, MorphTarget};
 use pliant_mesh::{Bvh, Cancel, Damage, Model, Progress, SurfaceVertex, WeldOptions, vertex_normals};
 
@@ -130,10 +130,14 @@ pub fn apply(apply: &Apply<'_>, watch: &Watch, staging: &Staging) -> Result<Repo
     let report_at = apply.report.map(|report| ("--report", report));
     let outputs: Vec<(&str, &Path)> = [("--output", apply.output)].into_iter().chain(report_at).collect();
     watch.refuse_outputs(&outputs, Some(apply.file))?;
-    let setup = edit.resolve(model).map_err(|source| EngineError::Edit {
+    let in_edit = |source| EngineError::Edit {
         edit: apply.edit_path.to_owned(),
         source,
-    })?;
+    };
+    if let Beginning::Edit(edit) = &edit {
+        refuse_keys(&edit.keys, "use `pliant animate`, or remove them").map_err(in_edit)?;
+    }
+    let setup = edit.resolve(model).map_err(in_edit)?;
     check_bends(apply.file, model, &setup.method)?;
 
     let solution = if edit.changes_nothing() {

@@ -46,6 +46,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod animate;
 mod apply;
 pub mod control_mesh;
 mod difference;
@@ -55,6 +56,7 @@ pub mod examples;
 mod file_error;
 pub mod files;
 mod flow;
+mod frames;
 mod loading;
 pub mod memory;
 mod path_text;
@@ -64,6 +66,7 @@ pub mod stitching;
 mod transfer;
 pub mod watch;
 
+pub use animate::{Animate, animate};
 pub use apply::{Apply, Prepared, Solved, apply, bind, check_bends, check_not_empty, order, prepare, solved};
 pub use difference::{Compared, differences};
 pub use edit::read_edit;

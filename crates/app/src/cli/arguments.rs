@@ -56,6 +56,8 @@ pub(crate) enum Command {
     Bridge(BridgeArguments),
     /// Delete vertices with the triangles that use them, or cut along a plane
     Cut(CutArguments),
+    /// Bend the file over time, by the keys of an edit, and save a file for each frame or a point cache
+    Animate(AnimateArguments),
     /// Let dye flow along the surface and save it as vertex colours
     Flow(FlowArguments),
     /// Write man pages, shell completions and the manual's pages of commands
@@ -294,6 +296,34 @@ pub(crate) struct CutArguments {
     /// The output file and report.
     #[command(flatten)]
     pub output: NewShapeArguments,
+    /// The welding of vertices.
+    #[command(flatten)]
+    pub weld: WeldArguments,
+    /// The threads and vectors.
+    #[command(flatten)]
+    pub compute: ComputeArguments,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct AnimateArguments {
+    /// The file to bend: glb, gltf, obj, ply, stl or off
+    pub file: PathBuf,
+    /// The edit, with `keys`: handles' transforms at times
+    #[arg(long, value_name = "EDIT.json")]
+    pub edit: PathBuf,
+    /// The files to write: NAME-####.obj and the like, with the frame's number from 0000 on, or a point cache: pc2 or mdd
+    #[arg(long, value_name = "OUT")]
+    pub output: PathBuf,
+    /// The frames a second
+    #[arg(long, value_name = "F", default_value = "24", value_parser = frame_rate)]
+    pub fps: f64,
+    /// Another method than the edit's, with its options, e.g. arap:energy=smooth
+    #[arg(long, value_name = "NAME[:OPTION=VALUE..]")]
+    pub method: Option<String>,
+    /// The most memory for the binding beside the mesh, such as 8GB or 500MB; without it 16GiB, and never more than the
+    /// machine has left
+    #[arg(long, value_name = "SIZE", value_parser = pliant_engine::memory::bytes)]
+    pub memory: Option<u64>,
     /// The welding of vertices.
     #[command(flatten)]
     pub weld: WeldArguments,
@@ -567,6 +597,13 @@ fn unit_number(text: &str) -> Result<f64, String> {
         .ok()
         .filter(|number| (0.0..=1.0).contains(number))
         .ok_or_else(|| "a weight is a number from 0 to 1".to_owned())
+}
+
+fn frame_rate(text: &str) -> Result<f64, String> {
+    text.parse()
+        .ok()
+        .filter(|number| (0.001..=1000.0).contains(number))
+        .ok_or_else(|| "a frame rate is a number from 0.001 to 1000".to_owned())
 }
 
 /// Reads the arguments, the program's name first. The error may be the help that was requested.

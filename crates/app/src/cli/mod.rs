@@ -1,5 +1,6 @@
 //! The command line (`pliant --help`): arguments in, files and an exit status out.
 
+mod animate;
 mod apply;
 mod arguments;
 mod compare;
@@ -62,6 +63,7 @@ pub fn run(arguments: Vec<OsString>, console: &mut Console<'_>) -> u8 {
             Some(Command::Bridge(arguments)) => stitch::bridge(&arguments, console),
             Some(Command::Cut(arguments)) => stitch::cut(&arguments, console),
             Some(Command::Merge(arguments)) => stitch::merge(&arguments, console),
+            Some(Command::Animate(arguments)) => animate::run(&arguments, console),
             Some(Command::Flow(arguments)) => flow::run(&arguments, console),
             Some(Command::Generate(arguments)) => generate::run(&arguments, console),
             None => window::run(Source::of(arguments.file, arguments.edit)),

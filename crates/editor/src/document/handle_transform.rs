@@ -138,6 +138,56 @@ impl HandleTransform {
     }
 }
 
+/// A transform in parts that can be interpolated: p' = pivot + translation + rotation·stretch·(p − pivot).
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(crate) struct SplitTransform {
+    /// In world space.
+    pub(crate) pivot: DVec3,
+    /// In world units.
+    pub(crate) translation: DVec3,
+    /// A unit quaternion.
+    pub(crate) rotation: DQuat,
+    /// The scale, or the symmetric factor of a matrix.
+    pub(crate) stretch: DMat3,
+}
+
+impl SplitTransform {
+    /// The parts of a transform; a matrix is split by its polar decomposition about `default_pivot`.
+    pub(crate) fn of(transform: &HandleTransform, default_pivot: DVec3) -> Self {
+        match *transform {
+            HandleTransform::Trs {
+                translation,
+                rotation,
+                scale,
+                ..
+            } => Self {
+                pivot: transform.pivot_or(default_pivot),
+                translation,
+                rotation,
+                stretch: DMat3::from_diagonal(scale),
+            },
+            HandleTransform::Matrix(matrix) => {
+                let (rotation, stretch) = polar_decomposition(matrix.matrix3);
+                Self {
+                    pivot: default_pivot,
+                    translation: matrix.transform_point3(default_pivot) - default_pivot,
+                    rotation,
+                    stretch,
+                }
+            }
+        }
+    }
+
+    /// The map of world positions.
+    pub(crate) fn affine(&self) -> DAffine3 {
+        let linear = match self.rotation.xyz() == DVec3::ZERO {
+            true => self.stretch,
+            false => DMat3::from_quat(self.rotation) * self.stretch,
+        };
+        about(self.pivot, linear, self.translation)
+    }
+}
+
 impl Default for HandleTransform {
     fn default() -> Self {
         Self::IDENTITY

@@ -35,6 +35,7 @@ pub use handle_curve::HandleCurve;
 pub use handle_line::HandleLine;
 pub use handle_sketch::HandleSketch;
 pub use handle_transform::HandleTransform;
+pub(crate) use handle_transform::SplitTransform;
 pub use history::{HISTORY_BYTES, History};
 pub use kept_shape::{Carries, KeptShape};
 pub(crate) use matching::Matching;

@@ -12,6 +12,7 @@ use super::edit_error::EditError;
 use super::examples::ExampleEntry;
 use super::field::{FieldEntry, FieldKind};
 use super::json::parse;
+use super::keys::{KeyEntry, check_keys};
 use super::loose::{OneOrList, StoredLoose};
 use super::method::{method_to_value, read_method};
 use super::pose::PoseEntry;
@@ -65,6 +66,9 @@ pub struct EditFile {
     /// The share of the edit that is made, in 0 to 1: handles, control points and weights that bend the surface move by
     /// this share ([`HandleTransform::part`]).
     pub strength: f64,
+    /// Transforms of handles at times, for animations ([`EditFile::timeline`]); the window and a single bent file have
+    /// no use for them.
+    pub keys: Vec<KeyEntry>,
     /// The distance within which the mesh's vertices are joined before it is bent, in world units, at least 0; with
     /// `None` it follows from the mesh ([`pliant_mesh::WeldOptions`]).
     pub weld: Option<f64>,
@@ -129,6 +133,8 @@ struct StoredEdit {
     kept: Option<StoredKept>,
     #[serde(default = "all_of_it", skip_serializing_if = "is_all")]
     strength: f64,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    keys: Vec<KeyEntry>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     weld: Option<f64>,
 }
@@ -182,6 +188,7 @@ impl Default for EditFile {
             inside_out: nothing(),
             kept: None,
             strength: 1.0,
+            keys: Vec::new(),
             weld: None,
         }
     }
@@ -257,6 +264,7 @@ impl EditFile {
         strength_kind()
             .check(stored.strength)
             .map_err(|error| error.under("strength"))?;
+        check_keys(&stored.keys)?;
         if let Some(weld) = stored.weld {
             WELD.check(weld).map_err(|error| error.under("weld"))?;
         }
@@ -291,6 +299,7 @@ impl EditFile {
             inside_out: stored.inside_out,
             kept: stored.kept,
             strength: stored.strength,
+            keys: stored.keys,
             weld: stored.weld,
         })
     }
@@ -323,6 +332,7 @@ impl EditFile {
             inside_out: self.inside_out.clone(),
             kept: self.kept.clone(),
             strength: self.strength,
+            keys: self.keys.clone(),
             weld: self.weld,
         };
         json!(stored)

@@ -122,6 +122,7 @@ pub(crate) fn export(document: &Document, model: &Arc<Model>) -> Result<EditFile
             stored.by(&document.method)
         }),
         strength,
+        keys: Vec::new(),
         weld: model.weld.distance,
     };
     let setup = edit.resolve(model)?;

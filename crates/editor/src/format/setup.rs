@@ -182,6 +182,11 @@ impl Setup {
         targets.along(&self.lines, self.line_share * t)
     }
 
+    /// The targets at the end of the motion, with other maps of the handles.
+    pub(crate) fn targets_of(&self, handles: Vec<DAffine3>) -> Targets {
+        Targets::new(handles, self.attachment()).along(&self.lines, self.line_share)
+    }
+
     /// The handles' maps at the share `t` of the motion, 0 at rest and 1 at their targets.
     pub fn targets(&self, t: f64) -> Vec<DAffine3> {
         self.handles

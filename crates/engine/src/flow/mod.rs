@@ -2,7 +2,7 @@
 
 mod colours;
 mod flowing;
-mod frames;
+
 mod report;
 
 use std::path::Path;
@@ -16,12 +16,12 @@ use pliant_mesh::{Progress, WeldOptions};
 use crate::EngineError;
 use crate::apply::check_not_empty;
 use crate::files::{self, Destination, NewFile, Staged, Staging};
+use crate::frames::Frames;
 use crate::loading::{Loaded, load};
 use crate::report::{FrameTimes, ms_since};
 use crate::saving::{self, SaveAs};
 use crate::watch::Watch;
 use colours::Colours;
-use frames::Frames;
 
 pub use flowing::Flowing;
 pub use report::{FlowReport, FromTo};

@@ -1,4 +1,4 @@
-//! The files of a flow: the last state, or one for each step.
+//! The files of a run: the last state, or one for each step.
 
 use std::path::{Path, PathBuf};
 
@@ -7,7 +7,7 @@ const BEFORE: char = '-';
 
 /// The files that are written.
 #[derive(Clone, PartialEq, Eq, Debug)]
-pub(super) enum Frames {
+pub(crate) enum Frames {
     /// One file after this many steps.
     Last(PathBuf, usize),
     /// A file at the start and after each step.

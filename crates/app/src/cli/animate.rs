@@ -1,0 +1,41 @@
+//! `pliant animate`: an edit with keys over time.
+
+use pliant_engine::{Animate, EngineError, animate, files, memory, read_edit};
+
+use super::arguments::AnimateArguments;
+use super::method_argument::method_argument;
+use crate::cli::console::{Console, warn};
+use crate::cli::threads::on_threads;
+
+pub(super) fn run(arguments: &AnimateArguments, console: &mut Console<'_>) -> Result<(), EngineError> {
+    let AnimateArguments {
+        file,
+        edit: edit_path,
+        output,
+        fps,
+        method,
+        memory: most_memory,
+        weld,
+        compute,
+    } = arguments;
+    files::refuse_shared(("--output", output), [("--edit", &**edit_path)])?;
+    let method = method.as_deref();
+    let method = method.map(|name| method_argument("--method", name)).transpose()?;
+    let mut edit = read_edit(edit_path, &console.watch)?;
+    if let Some(method) = method {
+        edit.set_method(method);
+    }
+    let job = Animate {
+        file,
+        edit: &edit,
+        edit_path,
+        output,
+        fps: *fps,
+        weld: weld.weld,
+        budget: memory::budget_within(*most_memory),
+    };
+    let (watch, staging) = (&console.watch, &console.staging);
+    let warnings = on_threads(*compute, || animate(&job, watch, staging))??;
+    warn(console.err, &warnings);
+    Ok(())
+}

@@ -1,0 +1,204 @@
+//! `pliant animate`: an edit with keys over time.
+#![allow(clippy::unwrap_used, reason = "tests fail by panicking")]
+
+use std::fs;
+use std::path::Path;
+
+use glam::DVec3;
+use pliant_mesh::{Drawn, shapes};
+use pliant_tests::{Ended, Folder, diagonal, largest_distance, open, run};
+use serde_json::{Value, json};
+
+fn bar() -> Drawn {
+    shapes::turned(40, 16, |share| {
+        let cap = (share * (1.0 - share) * 40.0).min(1.0).max(0.0).sqrt();
+        glam::DVec2::new(if share % 1.0 == 0.0 { 0.0 } else { 0.3 * cap }, 4.0 * share)
+    })
+}
+
+/// An edit that holds one end of the bar and moves the other.
+fn edit(method: &str, transform: &Value, keys: &Value) -> Value {
+    let mut edit = json!({
+        "version": 1,
+        "method": { "name": method },
+        "fixed": { "slab": { "axis": "z", "from": 0.0, "to": 0.15 } },
+        "handles": [
+            { "name": "top", "select": { "slab": { "axis": "z", "from": 0.85, "to": 1.0 } }, "transform": transform },
+        ],
+    });
+    if !keys.is_null() {
+        edit["keys"] = keys.clone();
+    }
+    edit
+}
+
+fn lifted() -> Value {
+    json!({ "translation": [0.5, 0.0, 0.2], "rotation": [0.0, 0.3, 0.0, 0.95], "scale": [1.2, 1.0, 1.0] })
+}
+
+fn bent() -> Value {
+    json!({ "translation": [-0.4, 0.3, 0.0], "rotation": [0.2, 0.0, 0.1, 0.97] })
+}
+
+fn keys() -> Value {
+    json!([
+        { "time": 0.0, "handles": { "top": {} } },
+        { "time": 0.25, "handles": { "top": lifted() } },
+        { "time": 0.5, "ease": "hold", "handles": { "top": bent() } },
+    ])
+}
+
+fn animate(folder: &Folder, edit: &Value, out: &str, more: &[&str]) -> Ended {
+    let (file, edit_at) = (folder.at("bar.off"), folder.write("edit.json", edit.to_string()));
+    let words = ["animate".into(), file.into_os_string(), "--edit".into(), edit_at.into()];
+    let rest = ["--output".into(), folder.at(out).into_os_string()];
+    run(words.into_iter().chain(rest).chain(more.iter().map(Into::into)))
+}
+
+fn shape(path: &Path) -> Vec<DVec3> {
+    open(path).model.rest_positions()
+}
+
+#[test]
+fn a_frame_at_a_keys_time_is_the_shape_of_that_keys_transforms() {
+    for (method, tolerance) in [("bilaplacian", 1e-9), ("poisson", 1e-9), ("arap", 1e-4)] {
+        let folder = Folder::new();
+        let file = folder.write_mesh("bar.off", &bar());
+        animate(
+            &folder,
+            &edit(method, &json!({}), &keys()),
+            "f-####.off",
+            &["--fps", "8"],
+        )
+        .done();
+        let frames: Vec<String> = folder
+            .names()
+            .into_iter()
+            .filter(|name| name.starts_with("f-"))
+            .collect();
+        assert_eq!(
+            frames,
+            ["f-0000.off", "f-0001.off", "f-0002.off", "f-0003.off", "f-0004.off"]
+        );
+        let size = diagonal(&bar().positions);
+        assert_eq!(
+            fs::read(folder.at("f-0000.off")).unwrap(),
+            fs::read(&file).unwrap(),
+            "{method}: at rest the file stays as it is"
+        );
+        for (frame, transform) in [("f-0002.off", lifted()), ("f-0004.off", bent())] {
+            let out = folder.at("pose.off");
+            folder
+                .apply(&file, &edit(method, &transform, &Value::Null), &out, &[])
+                .done();
+            let away = largest_distance(&shape(&folder.at(frame)), &shape(&out));
+            assert!(away <= tolerance * size, "{method}, {frame}: {away}");
+        }
+        let between = largest_distance(&shape(&folder.at("f-0001.off")), &shape(&file));
+        assert!(between > 0.05, "{method}: {between}");
+    }
+}
+
+#[test]
+fn caches_have_the_numbered_files_positions_and_bytes_do_not_depend_on_threads() {
+    let folder = Folder::new();
+    folder.write_mesh("bar.off", &bar());
+    let edit = edit("arap", &json!({}), &keys());
+    animate(&folder, &edit, "f-####.off", &["--fps", "8"]).done();
+    for threads in ["1", "2", "3"] {
+        let out = format!("{threads}.pc2");
+        animate(&folder, &edit, &out, &["--fps", "8", "--threads", threads]).done();
+    }
+    animate(&folder, &edit, "a.mdd", &["--fps", "8"]).done();
+    let bytes = |name: &str| fs::read(folder.at(name)).unwrap();
+    let pc2 = bytes("1.pc2");
+    assert!(pc2 == bytes("2.pc2") && pc2 == bytes("3.pc2"));
+    let vertices = shape(&folder.at("f-0000.off")).len();
+    let (pc2, mdd) = (&pc2[32..], &bytes("a.mdd")[8 + 4 * 5..]);
+    assert_eq!([pc2.len(), mdd.len()], [5 * 12 * vertices; 2]);
+    let little = |at: usize| f32::from_le_bytes(std::array::from_fn(|byte| pc2[4 * at + byte]));
+    let big = |at: usize| f32::from_be_bytes(std::array::from_fn(|byte| mdd[4 * at + byte]));
+    for frame in 0..5 {
+        for (vertex, position) in shape(&folder.at(&format!("f-000{frame}.off"))).iter().enumerate() {
+            for (axis, number) in position.to_array().into_iter().enumerate() {
+                let at = 3 * (frame * vertices + vertex) + axis;
+                assert!(
+                    (f64::from(little(at)) - number).abs() < 1e-6,
+                    "frame {frame}, vertex {vertex}"
+                );
+                assert_eq!(little(at), big(at));
+            }
+        }
+    }
+}
+
+#[test]
+fn handles_without_keys_keep_their_own_transform_and_keys_come_in_any_order() {
+    let folder = Folder::new();
+    let file = folder.write_mesh("bar.off", &bar());
+    let mut two = edit("bilaplacian", &json!({}), &Value::Null);
+    let middle = json!({ "slab": { "axis": "z", "from": 0.45, "to": 0.55 } });
+    let still = json!({ "name": "middle", "select": middle, "transform": { "translation": [0.3, 0, 0] } });
+    two["handles"].as_array_mut().unwrap().push(still);
+    let out = folder.at("pose.off");
+    let mut posed = two.clone();
+    posed["handles"][0]["transform"] = lifted();
+    folder.apply(&file, &posed, &out, &[]).done();
+    two["keys"] = json!([
+        { "time": 0.5, "handles": { "top": lifted() } },
+        { "time": 0.25, "ease": "linear", "handles": {} },
+        { "time": 0.125, "ease": "linear", "handles": { "top": {} } },
+    ]);
+    animate(&folder, &two, "f-#.off", &["--fps", "4"]).done();
+    let last = largest_distance(&shape(&folder.at("f-2.off")), &shape(&out));
+    assert!(last < 1e-9, "{last}");
+    // Before its first key the top rests, and the middle is where it is.
+    let mut first = two.clone();
+    first.as_object_mut().unwrap().remove("keys");
+    folder.apply(&file, &first, &out, &[]).done();
+    let away = largest_distance(&shape(&folder.at("f-0.off")), &shape(&out));
+    assert!(away < 1e-9, "{away}");
+}
+
+#[test]
+fn keys_that_can_not_be_followed_are_refused_in_words_and_nothing_is_written() {
+    let folder = Folder::new();
+    let file = folder.write_mesh("bar.off", &bar());
+    let with = |keys: Value| edit("bilaplacian", &json!({}), &keys);
+    let key = |time: f64, name: &str| json!({ "time": time, "handles": { name: lifted() } });
+    for (edit, out, words) in [
+        (
+            edit("bilaplacian", &json!({}), &Value::Null),
+            "f-####.off",
+            ["keys", "add it"],
+        ),
+        (
+            with(json!([key(0.0, "topp")])),
+            "f-####.off",
+            ["keys[0].handles", "did you mean `top`?"],
+        ),
+        (
+            with(json!([key(-1.0, "top")])),
+            "f-####.off",
+            ["keys[0].time is -1", "at least 0"],
+        ),
+        (
+            with(json!([key(1.0, "top"), key(1.0, "top")])),
+            "f-####.off",
+            ["keys[1].time is 1", "no other key"],
+        ),
+        (with(json!([key(1e9, "top")])), "f-####.off", ["--fps 24", "lower it"]),
+        (with(keys()), "f.off", ["--output", "-####"]),
+        (with(keys()), "f-####.xyz", ["--output", "xyz"]),
+    ] {
+        let ended = animate(&folder, &edit, out, &[]);
+        assert!(ended.status == 1 || ended.status == 2, "{out}: {}", ended.status);
+        let status = ended.status;
+        ended.refused(status, &words);
+        assert_eq!(folder.names(), ["bar.off", "edit.json"], "{words:?}");
+    }
+    // One shape is not an animation.
+    folder
+        .apply(&file, &with(keys()), &folder.at("one.off"), &[])
+        .refused(1, &["has `keys`", "pliant animate"]);
+}
