@@ -5,7 +5,9 @@
 use std::f64::consts::PI;
 use std::fs;
 
-use glam::{DMat4, DVec2, DVec3};
+use glam::camera::rh::proj::opengl::perspective;
+use glam::camera::rh::view::look_at_mat4;
+use glam::{DMat4, DVec2, DVec3, Vec3};
 use pliant_mesh::{Drawn, shapes};
 use pliant_tests::{Folder, open};
 use serde_json::{Value, json};
@@ -18,8 +20,8 @@ fn views() -> [DMat4; 2] {
     let parallel = DMat4::from_cols_array(&[
         0.4, 0.0, 0.0, 0.0, 0.0, 0.4, 0.0, 0.0, 0.0, 0.0, -0.1, 0.0, 0.0, 0.0, 0.0, 1.0,
     ]);
-    let camera = glam::camera::rh::view::look_at_mat4(DVec3::new(1.0, 2.5, 5.0), DVec3::ZERO, DVec3::Y);
-    let perspective = glam::camera::rh::proj::opengl::perspective(0.6, 1.0, 1.0, 20.0) * camera;
+    let camera = look_at_mat4(Vec3::new(1.0, 2.5, 5.0), Vec3::ZERO, Vec3::Y);
+    let perspective = (perspective(0.6, 1.0, 1.0, 20.0) * camera).as_dmat4();
     [parallel, perspective]
 }
 
