@@ -60,6 +60,25 @@ impl Targets {
         }
     }
 
+    /// Takes an iterative method that rests towards lines that turn far, in steps: it would not see full turns. Every
+    /// other binding stays as it is. `displacements` has one entry per surface vertex.
+    ///
+    /// # Errors
+    /// Those of [`Targets::set`] and [`Bound::step`].
+    pub fn lead(&self, bound: &mut Bound, displacements: &mut [DVec3], cancel: &Cancel) -> Result<(), SolveError> {
+        let is_led = bound.is_at_rest() && bound.solve() != Solve::Direct;
+        let count = if is_led { self.lines.steps(self.line_share) } else { 1 };
+        for step in 1..count {
+            let share = self.line_share * step as f64 / count as f64;
+            self.clone().along(&self.lines, share).set(bound)?;
+            settle(bound, displacements, Until::Frame.steps(bound), cancel)?;
+            if cancel.is_cancelled() {
+                break;
+            }
+        }
+        Ok(())
+    }
+
     /// Gives them to a binding.
     ///
     /// # Errors
@@ -277,18 +296,7 @@ fn steps(
     until: Until,
     cancel: &Cancel,
 ) -> Result<Step, SolveError> {
-    // An iterative method that rests follows a curve with full turns only in steps.
-    let is_led = bound.is_at_rest() && bound.solve() != Solve::Direct;
-    let count = if is_led {
-        targets.lines.steps(targets.line_share)
-    } else {
-        1
-    };
-    for step in 1..count {
-        let share = targets.line_share * step as f64 / count as f64;
-        targets.clone().along(&targets.lines, share).set(bound)?;
-        settle(bound, displacements, Until::Frame.steps(bound), cancel)?;
-    }
+    targets.lead(bound, displacements, cancel)?;
     targets.set(bound)?;
     let most = until.steps(bound);
     settle(bound, displacements, most, cancel)

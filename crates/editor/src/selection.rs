@@ -19,11 +19,6 @@ impl Selection {
         }
     }
 
-    /// Adds a vertex.
-    pub(crate) fn insert(&mut self, vertex: SurfaceVertex) {
-        self.selected[vertex.index()] = true;
-    }
-
     /// Returns true if the set has this vertex.
     pub fn contains(&self, vertex: SurfaceVertex) -> bool {
         self.selected[vertex.index()]

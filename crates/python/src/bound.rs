@@ -46,6 +46,8 @@ struct HandleRows {
 /// The handles' targets for the solver, and the positions of the handles that have them.
 struct Targets {
     of_solver: Vec<Target>,
+    /// The maps of handles of which some follow lines, which turn far.
+    along: Option<pliant_editor::Targets>,
     positions: Vec<(usize, Vec<DVec3>)>,
 }
 
@@ -269,16 +271,21 @@ impl BoundMesh {
         let count = |handle: usize| self.rows(handle).as_ref().ok().map(|rows| rows.numbers.len());
         let mut targets = Targets {
             of_solver: Vec::new(),
+            along: None,
             positions: Vec::new(),
         };
         let goals = goals(any, &self.setup, count)?;
-        // A handle that follows a curve is moved by its curve first.
+        // A handle that follows a line is moved by its line first.
         let map = |goal: &Goal| match goal {
             Goal::Map(map) => *map,
             Goal::Rows(_) => DAffine3::IDENTITY,
         };
         let maps: Vec<DAffine3> = goals.iter().map(map).collect();
-        let along = self.setup.lines.targets(&maps, self.setup.line_share);
+        let (lines, share) = (&self.setup.lines, self.setup.line_share);
+        let along = lines.targets(&maps, share);
+        if !lines.is_empty() {
+            targets.along = Some(pliant_editor::Targets::new(maps, None).along(lines, share));
+        }
         for ((number, goal), along) in goals.into_iter().enumerate().zip(along) {
             targets.of_solver.push(match goal {
                 Goal::Map(_) => along,
@@ -324,9 +331,12 @@ impl BoundMesh {
             has_targets,
         } = &mut *solving;
         let stepped = pool.install(|| {
+            solver.set_cancel(cancel);
+            if let Some(along) = &targets.along {
+                along.lead(solver, displacements, cancel)?;
+            }
             solver.set_places(&targets.of_solver)?;
             *has_targets = true;
-            solver.set_cancel(cancel);
             *last = settle(solver, displacements, most, cancel)?;
             let mut positions = Vec::new();
             self.model.drawn_positions(displacements, &mut positions);

@@ -145,6 +145,16 @@ fn handle_entries(
     Ok(Value::Array(entries))
 }
 
+/// Whether a dict has a handle's members, and is not a selector.
+fn is_entry(members: &Bound<'_, PyDict>) -> PyResult<bool> {
+    for name in ["select", "curve", "sketch"] {
+        if members.contains(name)? {
+            return Ok(true);
+        }
+    }
+    Ok(false)
+}
+
 /// A handle's members, and its vertices if an array names them.
 type HandleEntry = (Map<String, Value>, Option<Vec<i64>>);
 
@@ -153,7 +163,7 @@ fn handle_entry(handle: &Bound<'_, PyAny>, place: &str, vertex_count: usize) -> 
     let mut entry = Map::new();
     let mut order = None;
     match handle.cast::<PyDict>() {
-        Ok(members) if members.contains("select")? || members.contains("curve")? => {
+        Ok(members) if is_entry(members)? => {
             for (name, member) in members {
                 let name: String = name
                     .extract()

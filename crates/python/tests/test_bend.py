@@ -439,3 +439,16 @@ def test_vertices_within_the_weld_distance_are_one():
     assert gap(weld=0.015) < 0.03
     with pytest.raises(ValueError, match="weld is not a distance"):
         gap(weld=-1)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_handle_follows_its_curve_and_then_its_transform(method):
+    vertices, faces = bar()
+    curve = {"points": [[0, 0, 0], [0, 0.5, 0], [0, 1, 0]], "twist": [0, 90, 180]}
+    bound = pliant.bind(vertices, faces, handles={"spine": {"select": "all", "curve": curve}}, method=method)
+    turn = np.pi * vertices[:, 1]
+    goal = vertices.copy()
+    goal[:, 0] = np.cos(turn) * vertices[:, 0] + np.sin(turn) * vertices[:, 2]
+    goal[:, 2] = np.cos(turn) * vertices[:, 2] - np.sin(turn) * vertices[:, 0]
+    assert np.abs(bound.step({}) - goal).max() <= bound.handle_residual + 1e-9
+    assert np.abs(bound.step({"spine": [0, 0, 2]}) - goal - [0, 0, 2]).max() <= bound.handle_residual + 1e-9

@@ -2,15 +2,17 @@
 
 mod binding;
 mod sections;
+mod target;
 mod targets;
 
 use std::sync::Arc;
 
-use glam::{DAffine3, DVec3, Mat3};
+use glam::{DVec3, Mat3};
 use pliant_mesh::Cancel;
 use rayon::prelude::*;
 
 use self::sections::Sections;
+pub use self::target::Target;
 use crate::attachment::{check_weights, finite};
 use crate::handles::finite::Finite;
 use crate::handles::offsets::Offsets;
@@ -66,19 +68,6 @@ pub struct Bound {
     binding_warnings: usize,
     /// The number of warnings before those about the last step.
     target_warnings: usize,
-}
-
-/// A handle's target, from rest.
-#[derive(Clone, PartialEq, Debug)]
-pub enum Target {
-    /// An affine map of world positions.
-    Map(DAffine3),
-    /// A world position for each of the handle's vertices, in the order of [`Bound::handle_vertices`].
-    Places(Vec<DVec3>),
-    /// An affine map of world positions for each of the handle's vertices, in the same order: a vertex goes to its
-    /// image, and its surroundings turn as the map does. A method that takes turns needs
-    /// [`crate::Constraints::sections`] to see more than one of them.
-    Maps(Vec<DAffine3>),
 }
 
 /// The computation of a step: the method's shortest one, or back-substitution.

@@ -6,7 +6,7 @@
 
 use glam::{DAffine3, DMat3, DVec3};
 
-use super::Target;
+use super::target::Target;
 use crate::handles::{Handle, Motion};
 use crate::numerical::rigid_fit::best_rotation;
 use crate::{Constraints, Problem, Role};

@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DMat3, DVec3};
 
+use super::Bound;
 use super::sections::{Sections, mean_motion};
-use super::{Bound, Target};
+use super::target::Target;
 use crate::handles::Motion;
 use crate::handles::offsets::Offsets;
 use crate::{SolveError, Warning};

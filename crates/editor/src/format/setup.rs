@@ -18,7 +18,7 @@ use crate::document::{Document, HandleId, HandleLine, attachment_part};
 use crate::lines::Lines;
 use crate::region::Region;
 use crate::warning::{shortened, worded};
-use crate::{HandleTransform, Selection, outline};
+use crate::{HandleTransform, outline};
 
 /// The input of [`pliant_deform::Problem`] from an edit, and the handles' transforms.
 #[derive(Clone, PartialEq, Debug)]
@@ -197,13 +197,12 @@ impl Setup {
 }
 
 impl HandleEntry {
-    /// Its vertices.
-    fn members(&self, index: usize, model: &Model) -> Result<Selection, EditError> {
+    /// Its vertices, each once.
+    fn members(&self, index: usize, model: &Model) -> Result<Vec<SurfaceVertex>, EditError> {
         let select = self.select.as_ref();
         let selected = select.map(|select| select.evaluate_at(model, &format!("handles[{index}].select")));
         let selected = selected.transpose()?;
         let surface = &model.surface;
-        let mut members = Selection::none(surface.positions.len());
         match (self.line(), selected) {
             (Some(HandleLine::Sketch(sketch)), selected) => {
                 let is_selected = |vertex| selected.as_ref().is_none_or(|own| own.contains(vertex));
@@ -213,18 +212,18 @@ impl HandleEntry {
                         "is beside no outline: draw it along one that is seen from there, or select more vertices"
                             .to_owned(),
                 })?;
-                matched.into_iter().for_each(|(vertex, _)| members.insert(vertex));
+                Ok(matched.into_iter().map(|(vertex, _)| vertex).collect())
             }
-            (_, Some(selected)) => return Ok(selected),
+            (_, Some(selected)) => Ok(selected.iter().collect()),
             (Some(HandleLine::Curve(curve)), None) => {
                 let bvh = Bvh::build(&surface.positions, &surface.triangles);
                 let under = triangles_under(curve.rest(), &bvh, &surface.triangles).into_iter();
                 let corners = under.flat_map(|triangle| surface.triangles[triangle as usize]);
-                corners.for_each(|vertex| members.insert(vertex));
+                let members: BTreeSet<SurfaceVertex> = corners.collect();
+                Ok(members.into_iter().collect())
             }
-            (None, None) => {}
+            (None, None) => Ok(Vec::new()),
         }
-        Ok(members)
     }
 }
 
@@ -249,7 +248,7 @@ impl EditFile {
         for (index, entry) in self.handles.iter().enumerate() {
             members.push(match limbs.at(index) {
                 Some(limb) => limb.own.clone(),
-                None => entry.members(index, model)?.iter().collect(),
+                None => entry.members(index, model)?,
             });
         }
         let mut roles = vec![Role::Fixed; model.surface.positions.len()];

@@ -39,11 +39,17 @@ class HandleEntry(TypedDict, total=False):
     """A handle with further members."""
 
     select: Selection
-    """Its vertices; required."""
+    """Its vertices; required without a `curve` or a `sketch`."""
     soft: float
     """The weight, 1e-6 to 1e6, of a handle that only pulls. Without it, the handle is hard: its vertices move exactly."""
     continuity: float
     """The continuity of the surface at the handle, 0 to 2, instead of the mesh's."""
+    curve: Mapping[str, Any]
+    """A curve that its vertices follow before its transform moves them, as in the edit format: `points`, and `closed`,
+    `moved`, `twist` or `scale`. Without `select`, the vertices of the triangles under it follow it."""
+    sketch: Mapping[str, Any]
+    """A line to which its outline goes before its transform moves it, as in the edit format: `view_projection`, `line`
+    and `weight`."""
 
 Handles = Union[Mapping[str, Union[Selection, HandleEntry]], Sequence[Union[Selection, HandleEntry]]]
 """Handles by name, or in a row; those in a row are called "handle 1", "handle 2", ..."""
@@ -117,7 +123,8 @@ def bind(
     :param vertices: positions, shape (n, 3). Rows that are not finite stay unchanged, with a warning.
     :param faces: triangles, whole numbers, shape (m, 3); none for bare points, with a method that bends space.
     :param handles: the moved vertices, by name or in a row; handles win over `fixed` and `region`. Each is numbers of
-        vertices, a mask of the shape (n,), a selector, or a dict with `select` and `soft` or `continuity`.
+        vertices, a mask of the shape (n,), a selector, or a dict with `select` and `soft`,
+        `continuity`, `curve` or `sketch`.
     :param fixed: the vertices that are held still: numbers of vertices, a mask or a selector; by default none.
     :param region: the vertices that may move, given likewise; the rest is held still. By default all.
     :param stiffness: one number or one for each vertex, shape (n,), from 0.001 to 1000; "rigid", or infinity, moves as
@@ -348,7 +355,8 @@ class Bound:
             or (3, 1), a pair of a 3x3 matrix and a translation, or the edit format's dict), or a position for each of
             its vertices, shape (k, 3): its i-th vertex goes to row i, in the order of the array that named the
             vertices; for a mask or a selector they ascend. The targets are an array or a list in the order of
-            `handles`, or a dict by names; a handle that is not named is at rest. The only handle's target needs no
+            `handles`, or a dict by names; a handle that is not named is at rest, and one with a curve or a sketch follows
+            it first. The only handle's target needs no
             list. "arap", "bilaplacian", "shells", "poisson", "frames" and "wrinkles" take positions.
         :param iterations: the largest number of steps of an iterative method. By default it goes on until it has
             converged or reached the limit in its options. Fewer steps follow a moving hand; calls with the same
