@@ -155,7 +155,7 @@ mod tests {
         let value = json!({
             "name": "bilaplacian", "order": 3, "stretching": 2.5, "bending": 0.5, "discretisation": "uniform",
             "triangulation": "tufted", "anisotropy": 0.25, "detail": "displacement-volumes", "base_order": 3,
-            "volume_iterations": 20
+            "base_length": 0.25, "volume_iterations": 20
         });
         let method = parsed(&value).unwrap();
         let options = method.options::<Bilaplacian>().unwrap();

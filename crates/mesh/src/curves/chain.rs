@@ -8,6 +8,9 @@ const MOST_PASSES: usize = 20_000;
 /// The distance from the target at which the end has arrived, as a share of the chain's length.
 const ARRIVED: f64 = 1e-10;
 
+/// A chain whose target is within this share of its length from its full reach is straight.
+const STRETCHED: f64 = 1e-9;
+
 /// The chain, with its last point at `target`, or as near to it as the chain can come: its first point stays, and so do
 /// the distances of neighbours, which must not be 0. The others move little.
 pub fn pulled_chain(points: &[DVec3], target: DVec3) -> Vec<DVec3> {
@@ -19,7 +22,7 @@ pub fn pulled_chain(points: &[DVec3], target: DVec3) -> Vec<DVec3> {
     if chain[last] == target {
         return chain;
     }
-    if target.distance(root) >= whole {
+    if target.distance(root) >= whole * (1.0 - STRETCHED) {
         // Stretched towards a target that it just or never reaches, where the passes converge slowly.
         let way = (target - root).normalize_or(DVec3::X);
         for (point, length) in lengths.iter().enumerate() {
@@ -27,8 +30,8 @@ pub fn pulled_chain(points: &[DVec3], target: DVec3) -> Vec<DVec3> {
         }
         return chain;
     }
-    bend_straight(&mut chain, target, whole);
     for _ in 0..MOST_PASSES {
+        bend_straight(&mut chain, target, whole);
         chain[last] = target;
         for point in (0..last).rev() {
             chain[point] = at_distance(chain[point + 1], chain[point], lengths[point]);
