@@ -79,7 +79,8 @@ pub use flow_start::FlowStart;
 pub use format::{
     Accuracy, AttachmentEntry, Axis, Beginning, DyeEntry, EDIT_VERSION, EditError, EditFile, ExampleEntry,
     ExampleSource, ExportError, FieldEntry, FlowFile, FlowMotion, HandleEntry, HandleSetup, JoinsFile, MeshReference,
-    Placement, Project, Rest, SOFT_RANGE, STIFFNESS_RANGE, Selector, Setup, StoredKept, VelocityEntry, geometry_hash,
+    Placement, PoseEntry, Project, Rest, SOFT_RANGE, STIFFNESS_RANGE, Selector, Setup, StoredKept, VelocityEntry,
+    geometry_hash,
 };
 pub use input::{Button, Key, Modifiers, Pointer};
 pub use jobs::{

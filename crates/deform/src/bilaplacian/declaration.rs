@@ -13,9 +13,17 @@ use crate::handles::turns::Followed;
 use crate::method::{BindInput, BoundMethod, DeformMethod, MethodDeclaration, Stepped};
 use crate::needs::{ConstraintKind, Needs, Solve};
 use crate::operators::triangulation::Triangulation;
-use crate::option::OptionRefused;
+use crate::option::{OptionRefused, OptionSlider};
 use crate::region::boundary_problem::BoundaryProblem;
 use crate::{Bilaplacian, BindError, Detail, HandleBases, Picture, ReusableFactor, SolveError};
+
+const FINE_TO_SMOOTH: OptionSlider = OptionSlider {
+    option: "base_length",
+    ends: ["Fine", "smooth"],
+    range: Bilaplacian::FINE_TO_SMOOTH,
+    help: "The smooth surface below the details: the smoother it is, the larger the details that turn with it, but limbs \
+           shrink to lines. The slider sets `base_length`.",
+};
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "bilaplacian",
@@ -23,7 +31,7 @@ pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     when_to_use: "Bends like a thin plate, in one step: for small turns and smooth bulges.",
     keywords: "bilaplacian bi-laplacian biharmonic linear shell laplacian",
     picture: Picture::Plate,
-    slider: None,
+    slider: Some(&FINE_TO_SMOOTH),
     options: Bilaplacian::OPTIONS,
     attachments: &[],
     heeds: &[

@@ -137,6 +137,15 @@ impl LoadedSystem {
         settled(self.system.solve_frame(load, field))
     }
 
+    /// A d − b with the springs' forces on the solved vertices, for a field and a load.
+    pub fn residual(&self, load: &[[f64; 3]], field: &[[f64; 3]]) -> Vec<[f64; 3]> {
+        let mut residual = self.system.scaled_residual(field);
+        for ((row, load), scale) in residual.iter_mut().zip(load).zip(self.system.scale()) {
+            *row = std::array::from_fn(|k| -row[k] / scale - load[k]);
+        }
+        residual
+    }
+
     /// Writes a field to the displacements of all surface vertices, zeros elsewhere.
     pub fn write(&self, field: &[[f64; 3]], displacements: &mut [DVec3]) {
         clear(displacements);

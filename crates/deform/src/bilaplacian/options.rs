@@ -65,8 +65,8 @@ options! {
         /// The way of putting details back on the bent base.
         detail: Detail = Choice {
             default: Detail::None,
-            help: "motion of details: none (\"none\", they shear), turned with the smooth surface below them \
-                   (\"normal-displacements\"), with their volume over it kept (\"displacement-volumes\"), or deformed \
+            help: "motion of details: none (\"none\", they shear), along the normals of the smooth surface below \
+                   them (\"normal-displacements\"), with their volume over it kept (\"displacement-volumes\"), or deformed \
                    like it (\"deformation-transfer\")",
         },
         /// The order k of the smooth base L^k x = 0. Only `detail` uses it.
@@ -75,11 +75,22 @@ options! {
             help: "for details: smoothness of the surface below them, from a membrane to the least change of \
                    curvature",
         }; advanced; only_with("detail", &["normal-displacements", "displacement-volumes", "deformation-transfer"]),
-        /// The number of corrections of displacement volumes in a frame.
+        /// ℓ, the length of the base's fairing, in sizes of the bending part: details that are shorter than about six
+        /// times this are bent as details, and limbs whose radius is longer stay whole in the base.
+        base_length: f64 = Number {
+            default: 0.05,
+            range: [0.001, 10.0],
+            unit: "sizes of the bending part",
+            help: "for details that are displaced: smoothing of the surface below them, as a length, in sizes of the \
+                   bending part (a rod's length, a ball's diagonal); above the radius of a limb, the limb shrinks to a \
+                   line below them",
+        }; only_with("detail", &["normal-displacements", "displacement-volumes"]),
+        /// The most corrections of displacement volumes in a frame; they end earlier if the volumes are met or a
+        /// correction helps little.
         volume_iterations: u32 = Whole {
             default: 8,
             range: [1, 1000],
-            help: "for \"displacement-volumes\": number of corrections of the volumes",
+            help: "for \"displacement-volumes\": the most corrections of the volumes",
         }; advanced; only_with("detail", &["displacement-volumes"]),
     }
 }
@@ -101,10 +112,10 @@ named_choices! {
     pub enum Detail {
         /// The surface itself is bent; its details shear.
         None = "none",
-        /// Each vertex's displacement from its point of the base turns with the base there [BS08, equation 9].
+        /// Each vertex is displaced along the base's normal from the nearest point of the base [BS08, equation 9].
         NormalDisplacements = "normal-displacements",
-        /// Like normal displacements, then the heights are corrected until the prisms between the base's triangles and
-        /// the surface's have their volumes of rest \[BK03\].
+        /// Like normal displacements, then corrected until the prisms between the base's triangles and the surface's
+        /// have their volumes of rest \[BK03\].
         DisplacementVolumes = "displacement-volumes",
         /// Each triangle takes on the deformation gradient of the base's triangle, and a Poisson system joins them
         /// [BSPG06, SP04].
@@ -113,6 +124,9 @@ named_choices! {
 }
 
 impl Bilaplacian {
+    /// The values of `base_length` that a slider offers.
+    pub const FINE_TO_SMOOTH: [f64; 2] = [0.005, 0.5];
+
     /// The power of the ordering: that of the highest power among its systems.
     pub fn ordering_power(&self) -> u32 {
         match self.detail {

@@ -290,6 +290,8 @@ impl Bound {
         self.warnings.truncate(self.target_warnings);
         self.warnings
             .extend(self.residual.warning(step.handle_residual).map(Warning::from));
+        let shown = self.rigid.as_ref().map_or(&self.method, |rigid| &rigid.bound.method);
+        self.warnings.extend(shown.faults().into_iter().map(Warning::from));
         if !step.energy.is_finite() {
             displacements.fill(DVec3::ZERO);
             return Err(SolveError::EnergyNotFinite);

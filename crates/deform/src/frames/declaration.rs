@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::{Frames, FramesSolver};
+use crate::descent::rule::State;
 use crate::handles::finite::Finite;
 use crate::handles::offsets::Offsets;
 use crate::handles::turns::Followed;
@@ -69,10 +70,10 @@ impl DeformMethod for Frames {
 
 impl BoundMethod for FramesSolver {
     fn step(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> Result<Stepped, SolveError> {
-        let converged = self.advance(motions, displacements)?;
+        let state = self.advance(motions, displacements)?;
         Ok(Stepped {
-            converged,
-            stalled: false,
+            converged: state == State::Converged,
+            stalled: state == State::Stalled,
             energy: self.shape.energy,
             finite: Finite::Unknown,
         })

@@ -12,9 +12,10 @@
 //! E = ½ Σ_f ⅓ Σ_c Σ_(ij in f) w_ij |d_j − d_i − (T_c − I) e_ij|²,
 //!
 //! which gives a Poisson system with the mean of the three T. One factor serves both systems. Iterations lower the same
-//! E: they fit the rotations of free vertices to the positions, and positions to the rotations [SA07, CPSS10].
+//! E, with the rotations of free vertices fitted to the positions [SA07, CPSS10], until it is least (`descent`).
 
 mod declaration;
+mod descent;
 mod fitting;
 mod options;
 
@@ -23,8 +24,10 @@ use glam::{DMat3, DVec3};
 pub(crate) use self::declaration::DECLARATION;
 pub use self::options::Frames;
 
+use self::descent::Descent;
 use self::fitting::{Frame, HandleFrame, blend, fit_to};
 use crate::bilaplacian::loaded::LoadedSystem;
+use crate::descent::rule::State;
 use crate::handles::polar::{Polar, polars_of};
 use crate::handles::{Handle, Motion};
 use crate::method::BindInput;
@@ -49,6 +52,8 @@ pub(crate) struct FramesSolver {
     /// True if the offsets changed since the last step.
     has_other_offsets: bool,
     shape: Shape,
+    descent: Descent,
+    state: State,
     room: Room,
 }
 
@@ -98,49 +103,60 @@ impl FramesSolver {
                 field: system.field(),
                 energy: 0.0,
             },
+            descent: Descent::default(),
+            state: State::Converged,
             room: Room::default(),
             gradients,
             system,
         })
     }
 
-    /// Computes the linear shape for new motions, or one more iteration for unchanged ones; returns true if it
-    /// converged.
-    fn advance(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> Result<bool, SolveError> {
-        /// Iteration ends after a step that lowers the energy by less than this share of it.
-        const TOLERANCE: f64 = 1e-9;
+    /// Computes the linear shape for new motions, or takes one step of the descent for unchanged ones; returns the
+    /// state.
+    fn advance(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> Result<State, SolveError> {
         let is_same = !std::mem::take(&mut self.has_other_offsets) && self.motions == motions;
-        let before = if self.options.iterations > 0 && is_same {
-            fit_to(
-                &self.gradients,
-                self.system.columns(),
-                &self.shape.field,
-                &mut self.room.covariances,
-                &mut self.shape.frames,
-            );
-            Some(self.shape.energy)
+        let solved = if self.options.iterations > 0 && is_same {
+            match self.state {
+                State::Descending => self.descend(),
+                State::Converged | State::Stalled => Ok(self.state),
+            }
         } else {
             self.motions.copy_from_slice(motions);
+            self.descent.restart();
             blend(
                 &handle_frames(&self.handles, motions),
                 &self.weights,
                 &mut self.shape.frames,
             );
-            None
+            let state = match self.options.iterations {
+                0 => State::Converged,
+                _ => State::Descending,
+            };
+            self.solve(motions).map(|()| state)
         };
-        let solved = self.solve(motions);
         self.system.write(&self.shape.field, displacements);
         if solved.is_err() || !self.shape.energy.is_finite() {
             // The next targets start from rest.
             self.rest();
         }
-        solved?;
-        let settled = |before: f64| before - self.shape.energy <= TOLERANCE * before;
-        Ok(self.options.iterations == 0 || before.is_some_and(settled))
+        self.state = solved?;
+        Ok(self.state)
     }
 
     /// Solves for the positions that fit the frames.
     fn solve(&mut self, motions: &[Motion]) -> Result<(), SolveError> {
+        self.find_load();
+        let Self {
+            system, shape, room, ..
+        } = self;
+        system.prescribe(motions, &mut shape.field);
+        system.solve(&room.load, &mut shape.field)?;
+        self.shape.energy = self.energy(&self.shape.frames, &self.shape.field);
+        Ok(())
+    }
+
+    /// Finds the load b of the present frames.
+    fn find_load(&mut self) {
         let Self {
             system,
             gradients,
@@ -158,10 +174,6 @@ impl FramesSolver {
             &mut room.changes,
         );
         gradients.divergence(&room.changes, stiffness_of(system), &mut room.load);
-        system.prescribe(motions, &mut shape.field);
-        system.solve(&room.load, &mut shape.field)?;
-        self.shape.energy = self.energy(&self.shape.frames, &self.shape.field);
-        Ok(())
     }
 
     /// E and the springs' energy, in units of the rest shape's ½ Σ w |e|².
@@ -203,6 +215,8 @@ impl FramesSolver {
         self.shape.frames.fill(Frame::default());
         self.shape.field.fill([0.0; 3]);
         self.shape.energy = 0.0;
+        self.descent.restart();
+        self.state = State::Converged;
     }
 
     /// The handles' maps; a turn by more than half a turn becomes the shorter one in the opposite direction.

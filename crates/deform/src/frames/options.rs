@@ -5,14 +5,13 @@ use crate::option::{Whole, options};
 options! {
     /// Options of rotation-invariant coordinates.
     pub struct Frames {
-        /// The number of iterations after the linear solution; each fits the frames to the positions and the positions
-        /// to the frames. The energy never rises, and its fixed point is a minimum of the as-rigid-as-possible energy
-        /// of frames that handles prescribe.
+        /// The most steps after the linear solution; they descend to a minimum of the as-rigid-as-possible energy of
+        /// frames that handles prescribe, and end when it is reached.
         iterations: u32 = Whole {
             default: 0,
             range: [0, 10_000],
-            help: "number of steps that fit frames and positions in turn after the linear shape: with a few dozen the \
-                   surface also turns for moves",
+            help: "the most steps after the linear shape, by which the surface also turns for moves; a few hundred \
+                   lead to the end, and too few leave waves",
         },
     }
 }

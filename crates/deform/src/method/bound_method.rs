@@ -123,6 +123,11 @@ pub(crate) trait BoundMethod: Debug + Send + Sync {
         self.system().map(FactoredSystem::warnings).unwrap_or_default()
     }
 
+    /// Sentences about the last step's shape.
+    fn faults(&self) -> Vec<String> {
+        Vec::new()
+    }
+
     /// Sentences about motions that the method can't follow.
     fn blind_to(&self, _motions: &[Motion]) -> Vec<Warning> {
         Vec::new()

@@ -15,6 +15,18 @@ fn method(detail: &'static str) -> Method {
     method.with([("detail", OptionValue::Name(detail))]).unwrap()
 }
 
+/// The method with the smoothest base.
+fn smoothest(detail: &'static str) -> Method {
+    with_length(detail, 10.0)
+}
+
+/// The method with a base that is faired for this length, in sizes of the bending part.
+fn with_length(detail: &'static str, length: f64) -> Method {
+    method(detail)
+        .with([("base_length", OptionValue::Number(length))])
+        .unwrap()
+}
+
 /// The places of the bumps on the plate, and their radius.
 const CENTRES: [f64; 3] = [0.3, 0.5, 0.7];
 const RADIUS: f64 = 0.09;
@@ -41,7 +53,7 @@ fn plate(cells: usize, height: f64, detail: &'static str) -> Scene {
     let mut scene = Scene::new(Drawn::once(raised, triangles))
         .with(Role::Fixed, |p| p.x < 0.08)
         .with(Role::Handle(0), |p| p.x > 0.92);
-    scene.method = method(detail);
+    scene.method = smoothest(detail);
     scene
 }
 
@@ -209,7 +221,8 @@ fn every_base_order_bends_bumps_with_the_plate() {
             // The plate's rim is flat: so is its base.
             let base = base_of(&bound);
             let mut heights = scene.positions().iter().zip(&base).map(|(p, d)| p.z + d.z);
-            assert!(heights.all(|height| height.abs() < 1e-7), "{order}");
+            let remains = if detail == "deformation-transfer" { 1e-7 } else { 1e-3 };
+            assert!(heights.all(|height| height.abs() < remains), "{detail} {order}");
             let target = arc(1.0);
             let shape = step(&mut bound, &[target]);
             let solved = back_substitute(&mut bound, &[target]);
@@ -230,7 +243,7 @@ fn bumps_keep_their_volume_on_a_bent_plate_but_with_normal_displacements() {
             CENTRES.map(|x| bent.volume(x) / rest.volume(x) - 1.0)
         };
         let turned = change("normal-displacements");
-        assert!(turned.iter().all(|change| change.abs() > 0.09), "{angle} {turned:?}");
+        assert!(turned.iter().all(|change| change.abs() > 0.06), "{angle} {turned:?}");
         for detail in ["displacement-volumes", "deformation-transfer"] {
             let kept = change(detail);
             assert!(
@@ -355,4 +368,193 @@ fn the_sides_of_a_thin_sheet_stay_apart() {
             assert!(most < 2.0, "{detail} {thickness}: {most}");
         }
     }
+}
+
+/// The volume of the body between two triangles whose points move straight from one to the other: the mean of the six
+/// tetrahedra sums that its three sides allow, by cones from the origin.
+fn prism(base: [DVec3; 3], top: [DVec3; 3]) -> f64 {
+    let cone = |a: DVec3, b: DVec3, c: DVec3| a.dot(b.cross(c)) / 6.0;
+    let mut sum = cone(top[0], top[1], top[2]) - cone(base[0], base[1], base[2]);
+    for k in 0..3 {
+        let (a, b, p, q) = (base[k], base[(k + 1) % 3], top[k], top[(k + 1) % 3]);
+        sum += 0.5 * (cone(a, b, q) + cone(a, q, p) + cone(a, b, p) + cone(b, q, p));
+    }
+    sum
+}
+
+/// The sum of the prisms' changes of volume between rest and a target, as a share of the volumes' sum.
+fn volume_error(scene: &Scene, target: DAffine3) -> f64 {
+    let mut bound = scene.bind();
+    let volumes = |bound: &Bound, displacements: &[DVec3]| -> Vec<f64> {
+        let mut to_base = displacements.to_vec();
+        assert!(bound.base(&mut to_base));
+        let at = |by: &[DVec3], v: SurfaceVertex| scene.positions()[v.index()] + by[v.index()];
+        let triangles = scene.model.surface.triangles.iter();
+        triangles
+            .map(|corners| prism(corners.map(|v| at(&to_base, v)), corners.map(|v| at(displacements, v))))
+            .collect()
+    };
+    let rest = volumes(&bound, &vec![DVec3::ZERO; bound.vertex_count()]);
+    let bent = step(&mut bound, &[target]);
+    let now = volumes(&bound, &bent);
+    let changed: f64 = rest.iter().zip(&now).map(|(rest, now)| (now - rest).abs()).sum();
+    changed / rest.iter().map(|volume| volume.abs()).sum::<f64>()
+}
+
+#[test]
+fn displacement_volumes_keep_each_prisms_volume_to_two_percent_on_average() {
+    let check = |name: &str, target: DAffine3, scene: &dyn Fn(&'static str) -> Scene| {
+        let normals = volume_error(&scene("normal-displacements"), target);
+        let volumes = volume_error(&scene("displacement-volumes"), target);
+        assert!(volumes < 0.02 && volumes < 0.3 * normals, "{name}: {normals} {volumes}");
+    };
+    check("a convex plate", arc(FRAC_PI_2), &|detail| plate(CELLS, 0.1, detail));
+    check("a concave plate", arc(-FRAC_PI_2), &|detail| plate(CELLS, 0.1, detail));
+    check("a tube", bent_limb(), &|detail| limb(detail, 0.05));
+    check("a tube over a thin base", bent_limb(), &|detail| limb(detail, 0.07));
+}
+
+/// A tube of radius 1 and length 20, its base faired for this length in sizes.
+fn limb(detail: &'static str, length: f64) -> Scene {
+    let mut scene = Scene::new(shapes::tube(24, 80, 20.0))
+        .with(Role::Fixed, |p| p.z < 1.0)
+        .with(Role::Handle(0), |p| p.z > 19.0);
+    scene.method = with_length(detail, length);
+    scene
+}
+
+fn bent_limb() -> DAffine3 {
+    DAffine3::from_translation(DVec3::new(3.0, 0.0, -1.0)) * DAffine3::from_rotation_y(0.6)
+}
+
+#[test]
+fn a_limbs_base_keeps_the_share_of_its_radius_that_fairing_for_a_length_leaves() {
+    for length in [0.02, 0.04, 0.05, 0.08] {
+        let scene = limb("normal-displacements", length);
+        let base = base_of(&scene.bind());
+        let middle = (0..base.len()).filter(|&v| (scene.positions()[v].z - 10.0).abs() < 1.0);
+        // x and y have the wave number 1 around the tube.
+        let expected = 1.0 / (1.0 + (length * scene.size()).powi(4));
+        for v in middle {
+            let p = scene.positions()[v] + base[v];
+            let radius = p.x.hypot(p.y);
+            assert!((radius - expected).abs() < 0.02, "{length}: {radius} {expected}");
+        }
+    }
+}
+
+/// A point's foot on a surface with interpolated normals, found by trying every triangle.
+struct Found {
+    corners: [usize; 3],
+    weights: DVec3,
+    height: f64,
+}
+
+/// The unit normals of vertices, by the area vectors around them.
+fn normals(points: &[DVec3], triangles: &[[usize; 3]]) -> Vec<DVec3> {
+    let mut sums = vec![DVec3::ZERO; points.len()];
+    for corners in triangles {
+        let [a, b, c] = corners.map(|v| points[v]);
+        corners.iter().for_each(|&v| sums[v] += (b - a).cross(c - a));
+    }
+    sums.into_iter().map(DVec3::normalize_or_zero).collect()
+}
+
+fn mixed(weights: DVec3, [a, b, c]: [DVec3; 3]) -> DVec3 {
+    a * weights.x + b * weights.y + c * weights.z
+}
+
+/// The nearest foot of a point, by fixed-point steps in every triangle: the point is projected on the triangle's plane
+/// along the normal of the last projection.
+fn found(point: DVec3, points: &[DVec3], normals: &[DVec3], triangles: &[[usize; 3]]) -> Option<Found> {
+    let in_triangle = |corners: &[usize; 3]| {
+        let places = corners.map(|v| points[v]);
+        let [a, b, c] = places;
+        let area = (b - a).cross(c - a);
+        let (mut weights, mut height) = (DVec3::splat(1.0 / 3.0), 0.0);
+        for _ in 0..300 {
+            let normal = mixed(weights, corners.map(|v| normals[v])).normalize();
+            // Along the normal onto the triangle's plane.
+            height = (point - a).dot(area) / normal.dot(area);
+            let foot = point - normal * height;
+            let of = |p: DVec3, q: DVec3| (p - foot).cross(q - foot).dot(area) / area.length_squared();
+            weights = DVec3::new(of(b, c), of(c, a), of(a, b));
+            if weights.abs().max_element() > 3.0 {
+                return None;
+            }
+        }
+        (weights.min_element() > -1e-6).then_some(Found {
+            corners: *corners,
+            weights,
+            height,
+        })
+    };
+    let all = triangles.iter().filter_map(in_triangle);
+    all.min_by(|a, b| a.height.abs().total_cmp(&b.height.abs()))
+}
+
+#[test]
+fn normal_displacements_keep_the_height_over_the_nearest_point_along_its_normal() {
+    let mut scene = plate(16, 0.1, "normal-displacements");
+    scene.method = with_length("normal-displacements", 0.05);
+    let mut bound = scene.bind();
+    let at = |by: &[DVec3]| -> Vec<DVec3> { scene.positions().iter().zip(by).map(|(p, d)| *p + *d).collect() };
+    let rest = at(&base_of(&bound));
+    let bent = step(&mut bound, &[arc(1.0)]);
+    let mut to_base = bent.clone();
+    assert!(bound.base(&mut to_base));
+    let (surface, base) = (at(&bent), at(&to_base));
+    // The method's base ends with the triangles around free vertices.
+    let is_near = |corners: &&[SurfaceVertex; 3]| corners.iter().any(|v| scene.roles[v.index()] == Role::Free);
+    let triangles = scene.model.surface.triangles.iter().filter(is_near);
+    let triangles: Vec<[usize; 3]> = triangles.map(|corners| corners.map(SurfaceVertex::index)).collect();
+    let (rest_normals, base_normals) = (normals(&rest, &triangles), normals(&base, &triangles));
+    let mut displaced = 0;
+    for (v, point) in scene.positions().iter().enumerate() {
+        let is_border = scene.model.topology.is_boundary_vertex(SurfaceVertex(v as u32));
+        if scene.roles[v] != Role::Free || is_border {
+            continue;
+        }
+        let Found {
+            corners,
+            weights,
+            height,
+        } = found(*point, &rest, &rest_normals, &triangles).unwrap();
+        let normal = mixed(weights, corners.map(|v| base_normals[v])).normalize();
+        let expected = mixed(weights, corners.map(|v| base[v])) + normal * height;
+        assert!(surface[v].distance(expected) < 1e-6, "{v}: {} {expected}", surface[v]);
+        displaced += usize::from(height.abs() > 0.005);
+    }
+    assert!(displaced > 20, "{displaced}");
+}
+
+#[test]
+fn a_collapsed_base_and_folded_details_are_told_with_the_place_and_the_remedy() {
+    for detail in ["normal-displacements", "displacement-volumes"] {
+        let scene = limb(detail, 1.0);
+        let bound = scene.bind();
+        let told = bound.warnings().iter().find(|warning| warning.contains("99%"));
+        let told = told.map(ToString::to_string).unwrap_or_default();
+        assert!(
+            told.contains("deformation-transfer") && told.contains("at "),
+            "{detail}: {told}"
+        );
+        assert!(
+            !limb(detail, 0.02)
+                .bind()
+                .warnings()
+                .iter()
+                .any(|warning| warning.contains("99%"))
+        );
+    }
+    // Bumps as high as a sharp bend's radius.
+    let folds = |height: f64| {
+        let mut bound = plate(CELLS, height, "normal-displacements").bind();
+        step(&mut bound, &[arc(3.0)]);
+        let told = bound.warnings().iter().find(|warning| warning.contains("fold over"));
+        told.map(ToString::to_string)
+    };
+    let told = folds(0.35).unwrap_or_default();
+    assert!(told.contains("deformation-transfer") && told.contains("at "), "{told}");
+    assert_eq!(folds(0.02), None);
 }

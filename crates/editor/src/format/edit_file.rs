@@ -14,6 +14,7 @@ use super::field::{FieldEntry, FieldKind};
 use super::json::parse;
 use super::loose::{OneOrList, StoredLoose};
 use super::method::{method_to_value, read_method};
+use super::pose::PoseEntry;
 use super::project::StoredKept;
 use super::reader::read;
 use super::selector::Selector;
@@ -76,10 +77,13 @@ pub struct HandleEntry {
     /// Its name, for a person. Without names they are "handle 1", "handle 2", ..
     #[serde(default)]
     pub name: String,
-    /// Its vertices. Only a handle with a line may do without: a curve then has the vertices of the triangles under it. A
-    /// sketch has those of the selected vertices, or of all, that are on the outline.
+    /// Its vertices, unless it has a `pose`. A handle with a line may do without: a curve then has the vertices of the
+    /// triangles under it. A sketch has those of the selected vertices, or of all, that are on the outline.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub select: Option<Selector>,
+    /// The limb that it is, by the pose tool's own guess, in place of `select`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pose: Option<PoseEntry>,
     /// Their motion.
     #[serde(default)]
     pub transform: HandleTransform,
@@ -416,15 +420,25 @@ impl HandleEntry {
             range: SOFT_RANGE,
             may_be_rigid: false,
         };
-        match (&self.select, self.line()) {
-            (Some(select), _) => select.check().map_err(|error| error.under("select"))?,
-            (None, Some(_)) => {}
-            (None, None) => {
+        let refuse = |sentence: &str| {
+            let (place, sentence) = (String::new(), sentence.to_owned());
+            Err(EditError::Other { place, sentence })
+        };
+        match (&self.select, &self.pose, self.line()) {
+            (Some(_), Some(_), _) => {
+                return refuse("has both `select` and `pose`: keep one, its vertices or a point on its limb");
+            }
+            (_, Some(_), Some(_)) => {
+                return refuse("has a `pose` and a line: keep one, a point on its limb or the line that it follows");
+            }
+            (Some(select), ..) => select.check().map_err(|error| error.under("select"))?,
+            (None, None, None) => {
                 return Err(EditError::Missing {
                     member: "select",
                     place: String::new(),
                 });
             }
+            (None, ..) => {}
         }
         if let Some(value) = self.soft {
             weight.check(value).map_err(|error| error.under("soft"))?;

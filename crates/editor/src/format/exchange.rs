@@ -49,7 +49,7 @@ pub(crate) fn export(document: &Document, model: &Arc<Model>) -> Result<EditFile
     let strength = if in_full.is_some() { document.strength() } else { 1.0 };
     let document = in_full.as_ref().unwrap_or(document);
     let region = Region::measure(
-        &region_input(model, document, &FileContacts::default()),
+        &region_input(&**model, document, &FileContacts::default()),
         &pliant_mesh::Cancel::new(),
     )
     .unwrap_or_else(|_| Region::still(document.paint.len()));
@@ -75,6 +75,7 @@ pub(crate) fn export(document: &Document, model: &Arc<Model>) -> Result<EditFile
             handles.push(HandleEntry {
                 name: handle.name.clone(),
                 select: Some(ranges(Role::Handle(index as u16))),
+                pose: None,
                 transform: with_pivot(handle),
                 curve: handle.line.as_ref().and_then(HandleLine::curve).cloned(),
                 sketch: handle.line.as_ref().and_then(HandleLine::sketch).cloned(),

@@ -11,6 +11,8 @@ use super::attachment::on_model;
 use super::edit_error::EditError;
 use super::edit_file::{EditFile, HandleEntry};
 use super::exchange::with_pivot;
+use super::pose::Limbs;
+use super::selector::Selector;
 use crate::bending::{Kept, Targets};
 use crate::document::{Document, HandleId, HandleLine, attachment_part};
 use crate::lines::Lines;
@@ -232,19 +234,34 @@ impl EditFile {
         if self.handles.len() > usize::from(u16::MAX) {
             return Err(EditError::TooManyHandles(self.handles.len()));
         }
+        let poses = self.handles.iter().enumerate();
+        let limbs = Limbs::of(
+            poses.filter_map(|(index, entry)| Some((index, entry.pose.as_ref()?))),
+            model,
+        )?;
+        let mut members = Vec::with_capacity(self.handles.len());
+        for (index, entry) in self.handles.iter().enumerate() {
+            members.push(match limbs.at(index) {
+                Some(limb) => limb.own.clone(),
+                None => entry.members(index, model)?,
+            });
+        }
         let mut roles = vec![Role::Fixed; model.surface.positions.len()];
-        for vertex in self.region.evaluate_at(model, "region")?.iter() {
-            roles[vertex.index()] = Role::Free;
+        if limbs.is_empty() || self.region != Selector::All {
+            for vertex in self.region.evaluate_at(model, "region")?.iter() {
+                roles[vertex.index()] = Role::Free;
+            }
+        } else {
+            limbs.free(&members, model, &mut roles);
         }
         for vertex in self.fixed.evaluate_at(model, "fixed")?.iter() {
             roles[vertex.index()] = Role::Fixed;
         }
         let mut handles = Vec::with_capacity(self.handles.len());
         for (index, entry) in self.handles.iter().enumerate() {
-            let members = entry.members(index, model)?;
             let (mut sum, mut count) = (DVec3::ZERO, 0.0);
             let mut shared: Vec<(SurfaceVertex, u16)> = Vec::new();
-            for vertex in members {
+            for &vertex in &members[index] {
                 if let Role::Handle(other) = roles[vertex.index()] {
                     shared.push((vertex, other));
                 }
@@ -266,7 +283,8 @@ impl EditFile {
                     index,
                 });
             }
-            let pivot = entry.transform.pivot_or(sum / count);
+            let middle = limbs.at(index).map_or(sum / count, |limb| limb.joint.centre);
+            let pivot = entry.transform.pivot_or(middle);
             handles.push(HandleSetup {
                 name: entry.name.clone(),
                 transform: entry.transform.part(self.strength, pivot),

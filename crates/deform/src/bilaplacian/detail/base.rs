@@ -1,5 +1,10 @@
 //! The smooth base: L^k x = 0 on the bending part, the surface itself elsewhere [BS08, section 2.4].
 //!
+//! Or the surface after a finite time of fairing, by one implicit step [DMSB99]: with a length ℓ and rest positions p,
+//! (M ℓ⁻²ᵏ + (−L)(−M⁻¹ L)ᵏ⁻¹) x = M ℓ⁻²ᵏ p. A wave of the surface with wave number q keeps the share 1 / (1 + (ℓ q)²ᵏ),
+//! so details shorter than about 2π ℓ vanish and a limb of radius r keeps r / (1 + (ℓ / r)²ᵏ). Without end, every limb
+//! shrinks to a line.
+//!
 //! L is measured on the surface, as for bending. Handles, fixed vertices and borders keep their positions. At a border
 //! L x is the flux across it, which does not vanish on a plane, so the border's cells are left out of the energy: a
 //! flat sheet is then its own base, with free borders or without.
@@ -31,6 +36,8 @@ pub(crate) struct Base {
     pub offsets: Vec<DVec3>,
     /// Whether fairing moved the row.
     pub is_faired: Vec<bool>,
+    /// The centre of the surface's bounding box.
+    pub centre: DVec3,
     carried: Carried,
 }
 
@@ -42,11 +49,12 @@ pub(crate) struct Faired {
 }
 
 impl Faired {
-    /// Fairs the solved part of the surface, without soft handles and borders.
+    /// Fairs the solved part of the surface, without soft handles and borders, for a time of this length in world
+    /// units, or without end.
     ///
     /// # Errors
     /// The errors of the bi-Laplacian of that order.
-    pub fn of(options: &Bilaplacian, input: &BindInput<'_>) -> Result<Self, BindError> {
+    pub fn of(options: &Bilaplacian, length: Option<f64>, input: &BindInput<'_>) -> Result<Self, BindError> {
         let &BindInput {
             problem,
             partition,
@@ -93,6 +101,7 @@ impl Faired {
         let diagonal = bounds.map_or(0.0, |bounds| bounds.diagonal());
         let mut operator = BilaplacianOperator::new(laplacian, &fairing, diagonal);
         operator.hub_degree = hub_degree(triangulation.vertex_count());
+        let tied = length.map(|length| tie(&mut operator, &faired, length));
         let elimination = input.ordering()?.elimination(&faired);
         let refuse = |error| refused(error, input);
         let budget = partition.budget;
@@ -104,6 +113,7 @@ impl Faired {
             [point.x, point.y, point.z, 1.0]
         };
         let mut field: Vec<[f64; 4]> = vertices.iter().map(row).collect();
+        field.extend(tied.into_iter().flatten().map(|vertex| row(&vertex)));
         let error = system.check(&mut field, cancel).map_err(refuse)?;
         if error.is_nan() || error > TOLERANCE {
             let vertex = faired[0];
@@ -126,6 +136,18 @@ impl Faired {
     }
 }
 
+/// Ties the faired vertices to their rest positions by springs of M ℓ⁻²ᵏ; returns the vertices, in the order of the
+/// springs.
+fn tie<'a>(operator: &mut BilaplacianOperator, faired: &'a [u32], length: f64) -> impl Iterator<Item = u32> + use<'a> {
+    let laplacian = &operator.laplacian;
+    let locals = laplacian.locals(faired);
+    let firmness = operator.bending / length.powi(2 * operator.power as i32);
+    let strength = |&local: &u32| firmness / laplacian.inverse_areas()[local as usize];
+    let strengths: Vec<f64> = locals.iter().map(strength).collect();
+    operator.hang(&locals, &strengths);
+    faired.iter().copied()
+}
+
 impl Base {
     /// The faired part of the surface as `solver` bends it.
     pub fn of(faired: &Faired, solver: &BilaplacianSolver<f64>, input: &BindInput<'_>) -> Self {
@@ -143,6 +165,7 @@ impl Base {
                 .map(|vertex| faired.vertices.binary_search(vertex).is_ok())
                 .collect(),
             carried: Carried::of(&patch, centre, solver, input),
+            centre,
             patch,
         }
     }

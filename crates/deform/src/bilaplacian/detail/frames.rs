@@ -1,28 +1,15 @@
-//! Normal displacements: each vertex keeps its displacement from the base in the base's local frame [BS08, equation 9].
+//! Frames of rings: that of a patch's gradient around a vertex, fitted by least squares in the tangent plane.
 //!
-//! The displacement begins at the vertex's own point of the base, so it is only nearly along the normal, and the whole
-//! frame turns it. The frame is that of the base's gradient over a ring, fitted by least squares in the tangent plane:
-//! the normal is perpendicular to the images x and y of the two tangents, and within the plane it turns as they do on
-//! average. No edge is singled out.
+//! The normal is perpendicular to the images x and y of the two tangents, and within the plane the frame turns as they
+//! do on average. No edge is singled out.
 
 use glam::{DMat3, DVec3};
 use pliant_mesh::{SurfaceVertex, Topology};
 use rayon::prelude::*;
 
-use super::base::Base;
 use super::donors::{NONE, nearest};
 use crate::numerical::rows::CHUNK;
 use crate::region::patch::Patch;
-
-/// The rows' displacements from the base, in its frames.
-#[derive(Debug)]
-pub(crate) struct Frames {
-    rings: RingFrames,
-    /// The displacement in its source's frame.
-    coordinates: Vec<DVec3>,
-    /// The displacement as the frame at rest gives it.
-    at_rest: Vec<DVec3>,
-}
 
 /// The parts of a frame at each row of a patch.
 #[derive(Debug)]
@@ -43,43 +30,6 @@ pub(crate) const SLIMMEST: f64 = 1e-6;
 
 /// The least length of a ring's mean normal: with less the base is folded there.
 const UNFOLDED: f64 = 0.1;
-
-impl Frames {
-    /// The frames of the base's rings.
-    pub fn of(base: &Base, triangles: &[[SurfaceVertex; 3]], topology: &Topology) -> Self {
-        let rings = RingFrames::of(&base.patch, triangles, topology);
-        let rest = |row: usize| {
-            let frame = rings.frame(&base.patch, row, &base.patch.rest);
-            let frame = frame.unwrap_or(DMat3::IDENTITY);
-            let coordinates = frame.transpose() * base.offsets[row];
-            (coordinates, frame * coordinates)
-        };
-        let rows = (0..base.patch.rows.len()).into_par_iter().with_min_len(CHUNK);
-        let (coordinates, at_rest): (Vec<DVec3>, Vec<DVec3>) = rows.map(rest).unzip();
-        Self {
-            rings,
-            coordinates,
-            at_rest,
-        }
-    }
-
-    /// The displacements of the rest base, as [`Frames::turned`] gives them.
-    pub fn at_rest(&self) -> &[DVec3] {
-        &self.at_rest
-    }
-
-    /// A row's displacement on the bent base.
-    #[inline]
-    pub fn turned(&self, base: &Base, row: usize, posed: &[DVec3], turns: &[DMat3]) -> DVec3 {
-        match self.rings.frame(&base.patch, row, posed) {
-            Some(frame) => frame * self.coordinates[row],
-            None => {
-                let at_rest = self.at_rest[row];
-                at_rest + base.turn(row, turns) * at_rest
-            }
-        }
-    }
-}
 
 impl RingFrames {
     /// The frames of a patch's rings at rest.

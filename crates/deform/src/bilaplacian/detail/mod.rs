@@ -1,19 +1,27 @@
 //! Multiresolution bending [BS08, section 2.4]: the surface is a smooth base and details on it, the bi-Laplacian bends
 //! the base, and the details are put back on the bent base.
 //!
-//! Parts: `base` fairs and poses the base, `carry` keeps rigid motions rigid, `frames` turns displacements, `volumes`
-//! corrects their heights, `transfer` transfers gradients, `sheets` keeps the sides of thin sheets apart.
+//! Parts: `base` fairs and poses the base, `carry` keeps rigid motions rigid, `normals` displaces along the base's
+//! normals from the points that `foot` finds, `volumes` keeps the volumes of the prisms (`prism`) over it, `transfer`
+//! transfers gradients, `sheets` keeps the sides of thin sheets apart, and `folds` finds what came out badly.
 //!
-//! The base is a mesh of the surface's connectivity. A region that is long or has protrusions makes parts of it shrink
-//! exponentially, so its bases are kept in f64, and if too little is left for a direction the nearest sound place lends
-//! its own (`donors`).
+//! The base is a mesh of the surface's connectivity. For deformation transfer it is faired without end. A region that is
+//! long or has protrusions makes parts of it shrink exponentially then, so its bases are kept in f64, and if too little
+//! is left for a direction the nearest sound place lends its own (`donors`). Normals of a base that shrinks to a line
+//! have no meaning, so for the other two it is faired for a time.
 
 mod base;
 mod carry;
 mod donors;
+mod faces;
+mod folds;
+mod foot;
 pub(crate) mod frames;
+mod normals;
+mod prism;
 mod sheets;
 mod transfer;
+mod triangle_frame;
 mod volumes;
 
 use std::sync::Arc;
@@ -21,7 +29,8 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use self::base::{Base, Faired};
-use self::frames::Frames;
+use self::folds::Folds;
+use self::normals::NormalDisplacements;
 use self::sheets::Sheets;
 use self::transfer::{Transfer, left_by};
 use self::volumes::Volumes;
@@ -39,6 +48,10 @@ pub(crate) struct Multiresolution {
     base: Base,
     reconstruction: Reconstruction,
     sheets: Option<Sheets>,
+    /// Of displacements and volumes.
+    folds: Option<Folds>,
+    /// The sentence on the details that the last step folded.
+    folded: Option<String>,
     /// The base's points after the last step, one for each local vertex.
     posed: Vec<DVec3>,
 }
@@ -48,7 +61,7 @@ pub(crate) struct Multiresolution {
 enum Reconstruction {
     /// No details: there are no vertices with details.
     Plain,
-    Normals(Frames),
+    Normals(Box<NormalDisplacements>),
     Volumes(Box<Volumes>),
     Gradients(Box<Transfer>),
 }
@@ -60,7 +73,11 @@ impl Multiresolution {
     /// The bi-Laplacian's errors.
     pub fn bind(options: &Bilaplacian, input: &BindInput<'_>) -> Result<Self, BindError> {
         let &BindInput { problem, progress, .. } = input;
-        let faired = Faired::of(options, input)?;
+        let length = match options.detail {
+            Detail::NormalDisplacements | Detail::DisplacementVolumes => Some(options.base_length * problem.size()),
+            Detail::None | Detail::DeformationTransfer => None,
+        };
+        let faired = Faired::of(options, length.filter(|length| *length > 0.0), input)?;
         progress.set(0.4);
         let (sheets, bending) = rayon::join(|| Sheets::of(input), || BilaplacianSolver::bind(options, input));
         let bending = bending?;
@@ -75,17 +92,24 @@ impl Multiresolution {
                 })
             }
             Detail::DisplacementVolumes => {
-                let volumes = Volumes::of(&base, sheets.as_ref(), options.volume_iterations, problem);
+                let volumes = Volumes::of(&base, options.volume_iterations, problem);
                 Reconstruction::Volumes(Box::new(volumes))
             }
             Detail::None | Detail::NormalDisplacements => {
-                Reconstruction::Normals(Frames::of(&base, &problem.surface.triangles, problem.topology))
+                Reconstruction::Normals(Box::new(NormalDisplacements::of(&base, problem)))
             }
         };
         input.cancel.check()?;
+        let folds = match &reconstruction {
+            Reconstruction::Normals(normals) => Some(Folds::of(&base, &normals.faces)),
+            Reconstruction::Volumes(volumes) => Some(Folds::of(&base, volumes.faces())),
+            Reconstruction::Plain | Reconstruction::Gradients(_) => None,
+        };
         progress.set(1.0);
         Ok(Self {
             bending,
+            folds,
+            folded: None,
             posed: base.patch.rest.clone(),
             sheets,
             base,
@@ -101,34 +125,38 @@ impl Multiresolution {
         let base = &self.base;
         let mut reconstructed = Ok(());
         match &mut self.reconstruction {
-            Reconstruction::Plain => write(base, &posed, displacements, |_| DVec3::ZERO),
-            Reconstruction::Normals(frames) => write(base, &posed, displacements, |row| {
-                frames.turned(base, row, &posed, &turns) - frames.at_rest()[row]
-            }),
+            Reconstruction::Plain => bend(base, &posed, displacements),
+            Reconstruction::Normals(normals) => {
+                normals.bend(&posed);
+                base.patch.write(displacements, |row, _| {
+                    normals.point(base, row, &posed, &turns) - normals.at_rest[row]
+                });
+            }
             Reconstruction::Volumes(volumes) => {
                 volumes.frame(base, &posed, &turns);
-                write(base, &posed, displacements, |row| volumes.change(row));
+                base.patch.write(displacements, |row, _| volumes.change(base, row));
             }
             Reconstruction::Gradients(transfer) => {
-                write(base, &posed, displacements, |_| DVec3::ZERO);
+                bend(base, &posed, displacements);
                 reconstructed = transfer.frame(base, &posed, &turns, displacements);
             }
         }
-        self.posed = posed;
-        reconstructed?;
-        if let Some(sheets) = &mut self.sheets {
+        if reconstructed.is_ok()
+            && let Some(sheets) = &mut self.sheets
+        {
             sheets.restore(displacements);
         }
-        Ok(())
+        let folds = self.folds.as_ref();
+        self.folded = folds.and_then(|folds| folds.on_the_surface(base, &posed, displacements));
+        self.posed = posed;
+        reconstructed
     }
 }
 
-/// Replaces the solved vertices' displacements by those of the bent base and the `change` of a row's detail.
-fn write(base: &Base, posed: &[DVec3], displacements: &mut [DVec3], change: impl Fn(usize) -> DVec3 + Sync) {
+/// Replaces the solved vertices' displacements by those of the bent base.
+fn bend(base: &Base, posed: &[DVec3], displacements: &mut [DVec3]) {
     let patch = &base.patch;
-    patch.write(displacements, |row, local| {
-        (posed[local] - patch.rest[local]) + change(row)
-    });
+    patch.write(displacements, |_, local| posed[local] - patch.rest[local]);
 }
 
 impl BoundMethod for Multiresolution {
@@ -182,10 +210,21 @@ impl BoundMethod for Multiresolution {
     }
 
     fn step_cost(&self) -> usize {
-        4 * self.solved_count()
+        let each = match &self.reconstruction {
+            Reconstruction::Plain | Reconstruction::Gradients(_) => 4,
+            Reconstruction::Normals(_) => 8,
+            Reconstruction::Volumes(_) => 200,
+        };
+        each * self.solved_count()
     }
 
     fn warnings(&self) -> Vec<String> {
-        self.bending.warnings()
+        let mut sentences = self.bending.warnings();
+        sentences.extend(self.folds.as_ref().and_then(Folds::on_the_base));
+        sentences
+    }
+
+    fn faults(&self) -> Vec<String> {
+        self.folded.iter().cloned().collect()
     }
 }

@@ -13,7 +13,6 @@ use glam::{DMat3, DVec3};
 use pliant_mesh::{Bounds, Bvh, SurfaceVertex};
 use rayon::prelude::*;
 
-use super::base::Base;
 use super::frames::RingFrames;
 use crate::method::BindInput;
 use crate::numerical::rows::CHUNK;
@@ -70,8 +69,6 @@ struct Thickness {
     share: f64,
     /// The allowed difference of the offset.
     slack: f64,
-    /// The offset's length in units of [`THICKEST`], squared.
-    body: f64,
     /// The ring's frame at rest, transposed; `None` if it has none.
     unturned: Option<DMat3>,
 }
@@ -130,7 +127,6 @@ impl Sheets {
             Some(Thickness {
                 share: 1.0 / (1.0 + free),
                 slack: SLACK * length / (1.0 - thick),
-                body: thick * thick,
                 unturned: rings.frame(&patch, row, &patch.rest).map(|frame| frame.transpose()),
             })
         };
@@ -141,17 +137,6 @@ impl Sheets {
             opposites,
             room: Room::default(),
         })
-    }
-
-    /// For each row of the base: 1 in a body, and less the thinner a sheet is.
-    pub fn bodies(&self, base: &Base) -> Vec<f64> {
-        let mut bodies = vec![1.0; base.patch.rows.len()];
-        for (&local, thickness) in self.patch.rows.iter().zip(&self.thicknesses) {
-            let vertex = self.patch.vertices[local as usize];
-            let is_before = |&local: &u32| base.patch.vertices[local as usize] < vertex;
-            bodies[base.patch.rows.partition_point(is_before)] = thickness.body;
-        }
-        bodies
     }
 
     /// Brings the sides of the sheets back together.

@@ -11,6 +11,7 @@ use rayon::prelude::*;
 use super::base::Base;
 use super::donors::{NONE, nearest};
 use super::frames::{NARROWEST, SLIMMEST};
+use super::triangle_frame::triangle_frame;
 use crate::bilaplacian::factored::BilaplacianSystem;
 use crate::bilaplacian::loaded::{refused, settled, write_field};
 use crate::bilaplacian::operator::BilaplacianOperator;
@@ -224,7 +225,8 @@ fn triangles(base: &Base, system: &BilaplacianSystem, gradients: &Gradients) -> 
         let edges = gradients.faces()[place].edges;
         match corners.get(sources[place] as usize) {
             Some(&corners) => {
-                let frame = frame(corners, &base.patch.rest).unwrap_or(DMat3::IDENTITY);
+                let places = corners.map(|corner| base.patch.rest[corner as usize]);
+                let frame = triangle_frame(places).unwrap_or(DMat3::IDENTITY);
                 let inverse = frame.inverse();
                 Triangle {
                     corners,
@@ -254,14 +256,6 @@ fn is_sound(base: &Base, corners: [u32; 3]) -> bool {
     let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
     let height = (b - a).cross(c - a).length() / longest;
     height > (NARROWEST * base.patch.size).max(SLIMMEST * longest)
-}
-
-/// M: two edges and the unit normal; `None` if the triangle has no area.
-#[inline]
-fn frame(corners: [u32; 3], points: &[DVec3]) -> Option<DMat3> {
-    let [a, b, c] = corners.map(|corner| points[corner as usize]);
-    let (first, second) = (b - a, c - a);
-    Some(DMat3::from_cols(first, second, first.cross(second).try_normalize()?))
 }
 
 impl Triangle {

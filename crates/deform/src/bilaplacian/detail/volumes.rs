@@ -1,284 +1,304 @@
-//! Displacement volumes: the prism between a triangle of the base and that of the surface keeps its volume [BK03].
+//! Displacement volumes: the prism between each triangle of the base and that of the surface keeps its volume [BK03].
 //!
-//! Iteration begins with normal displacements. Then the vertex scales its displacement o by the volume that the prisms
-//! around it lack, as if all of the ring scaled by as much: with A the sum of the ring's area vectors, by 1 + Σ lack /
-//! (o · A). So details keep their direction, and no normal of the base is needed, which does not exist where the base
-//! shrinks to a line. As neighbours scale by about as much, two corrections leave some percent of the lack, and further
-//! ones only sharpen differences from vertex to vertex; iteration ends there. Over a thin sheet, whose base is hardly
-//! more than a line, prisms give no information, and little or nothing is corrected.
+//! The frame begins with normal displacements. Their prisms' volumes V are off by some percent to a quarter, since the
+//! base's triangles and their neighbours' normals have moved against each other. Gauss–Newton corrections x then
+//! minimise
 //!
-//! Over a triangle of corners b the displacements o vary linearly, and the triangle with corners b + s o has the area
-//! vector A(s). So with m the mean of o the volume is m · ∫ A ds.
+//! Σ_f (V_f + ∇V_f · x − V⁰_f)² / A_f + λ Σ_f A_f Σ_edges |x_i − x_j|²,
+//!
+//! with A_f the surface's area at rest: the first term is the squared error of the mean height, integrated over the
+//! surface, the second keeps neighbours together where the volumes leave the vertices free, as in sliding along a
+//! smooth surface. There are twice as many prisms as vertices, but each vertex has three coordinates, so the volumes can
+//! be met. Conjugate gradients find a correction; nothing is factored, because the gradients change in each frame.
 
 use glam::{DMat3, DVec3};
-use pliant_mesh::SurfaceVertex;
 use rayon::prelude::*;
 
 use super::base::Base;
-use super::donors::NONE;
-use super::frames::Frames;
-use super::sheets::Sheets;
+use super::faces::Faces;
+use super::normals::NormalDisplacements;
+use super::prism::{gradient, volume};
 use crate::numerical::rows::CHUNK;
+use crate::numerical::sums::{Field, add, dot};
 use crate::region::boundary_problem::BoundaryProblem;
 
-/// The prisms over the base, and the frames that the iteration begins with.
+/// The prisms over the base's triangles, and the displacements that a frame begins with.
 #[derive(Debug)]
 pub(crate) struct Volumes {
-    frames: Frames,
-    iterations: u32,
-    prisms: Vec<Prism>,
-    /// The prisms at rest, from the displacements at rest.
+    normals: NormalDisplacements,
+    /// The most corrections of a frame.
+    corrections: u32,
+    /// The prisms' volumes at rest.
     volumes: Vec<f64>,
-    /// The start of each row's entries of `around`; one more at the end.
-    starts: Vec<u32>,
-    /// The places of the prisms around the rows.
-    around: Vec<u32>,
-    /// For each row the least o · A, squared, that counts in full: a ring with less is folded or hardly displaced.
-    least_squares: Vec<f64>,
-    /// The weight of each row's correction, from [`Sheets::bodies`].
-    bodies: Vec<f64>,
+    /// The rest area of the surface's triangle, and its inverse.
+    areas: Vec<[f64; 2]>,
+    /// A frame's sum of |V − V⁰| that is small enough.
+    enough: f64,
+    /// Whether the corrections move the local vertex.
+    is_free: Vec<bool>,
     room: Room,
 }
 
-/// A prism's corners as local vertices of the base, and their rows; one row after the last if fairing left the vertex.
-#[derive(Clone, Copy, Debug)]
-struct Prism {
-    locals: [u32; 3],
-    rows: [u32; 3],
-}
-
 /// Buffers kept from frame to frame, so that no frame allocates them.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 struct Room {
-    /// The displacements as the base turns them.
-    turned: Vec<DVec3>,
-    /// The scaled displacements; one more than there are rows, the last one zero.
-    offsets: Vec<DVec3>,
-    lacks: Vec<Lack>,
-    /// The excess of the scales over 1.
-    growths: Vec<f64>,
-    /// The same before they are smoothed; one more than there are rows, the last one zero.
-    rough: Vec<f64>,
+    /// The surface's points at each local vertex, and the same before the last correction.
+    tops: Vec<DVec3>,
+    before: Vec<DVec3>,
+    /// The rows' points by normal displacements.
+    points: Vec<DVec3>,
+    lacks: Vec<f64>,
+    gradients: Vec<[DVec3; 3]>,
+    /// ∇V · x / A of each prism.
+    changes: Vec<f64>,
+    inverse_blocks: Vec<DMat3>,
+    correction: Field,
+    residual: Field,
+    conditioned: Field,
+    direction: Field,
+    image: Field,
 }
 
-/// The volume that a prism lacks, and the area vector of its triangle of the surface.
-#[derive(Clone, Copy, Debug, Default)]
-struct Lack {
-    volume: f64,
-    area: DVec3,
-}
+/// λ: with 0.01 the volumes are no nearer after three corrections and some triangles are stretched more.
+const EVENNESS: f64 = 0.1;
 
-/// The largest growth or shrinkage of a displacement, as a share of it: if the base's radius of bending is less than
-/// the height of its details, no scales give the volumes of rest.
-const MOST: f64 = 0.4;
+/// The most conjugate gradient steps of a correction: 40 leave the same error after the next one.
+const STEPS: usize = 15;
 
-/// The share of each scale that comes from its neighbours in a correction: neighbours with different scales crumple the
-/// surface.
-const SMOOTHING: f64 = 0.5;
+/// Conjugate gradients end when the residual has fallen to this share of its length.
+const RESIDUAL: f64 = 1e-3;
 
-/// If o · A counts, it is at least this share of the largest value that a ring's area and longest displacement at rest
-/// allow.
-const FOLDED: f64 = 0.1;
+/// Corrections end when the sum of |V − V⁰| is below this share of the sum of |V⁰| ..
+const TOLERANCE: f64 = 1e-3;
 
-/// Corrections end with one whose root mean square is below this.
-const SMALL: f64 = 0.05;
+/// .. or below rounding: this share of the surface's area times the size of the bending part ..
+const ROUNDING: f64 = 1e-12;
+
+/// .. or with a correction that leaves more than this share of the sum.
+const LEFT: f64 = 0.8;
 
 impl Volumes {
     /// The prisms of the base's faces.
-    pub fn of(base: &Base, sheets: Option<&Sheets>, iterations: u32, problem: &BoundaryProblem<'_>) -> Self {
-        let (triangles, topology) = (&problem.surface.triangles, problem.topology);
-        let count = base.patch.rows.len();
-        let mut row_of = vec![count as u32; base.patch.vertices.len()];
-        for (row, &local) in base
-            .patch
-            .rows
-            .iter()
-            .enumerate()
-            .filter(|(row, _)| base.is_faired[*row])
-        {
-            row_of[local as usize] = row as u32;
+    pub fn of(base: &Base, corrections: u32, problem: &BoundaryProblem<'_>) -> Self {
+        let normals = NormalDisplacements::of(base, problem);
+        let patch = &base.patch;
+        let mut is_free = vec![false; patch.vertices.len()];
+        let mut surface = patch.rest.clone();
+        for (row, &local) in patch.rows.iter().enumerate() {
+            is_free[local as usize] = base.is_faired[row];
+            surface[local as usize] += base.offsets[row];
         }
-        let mut local_of = vec![NONE; base.patch.vertices.last().map_or(0, |&last| last as usize + 1)];
-        for (local, &vertex) in (0..).zip(&base.patch.vertices) {
-            local_of[vertex as usize] = local;
-        }
-        let mut prisms: Vec<Prism> = Vec::new();
-        let mut is_taken = vec![false; triangles.len()];
-        for (row, &local) in base.patch.rows.iter().enumerate() {
-            if !base.is_faired[row] {
-                continue;
-            }
-            let vertex = SurfaceVertex(base.patch.vertices[local as usize]);
-            for face in topology.faces(vertex, triangles) {
-                if !std::mem::replace(&mut is_taken[face as usize], true) {
-                    let locals = triangles[face as usize].map(|corner| local_of[corner.index()]);
-                    let rows = locals.map(|local| row_of[local as usize]);
-                    prisms.push(Prism { locals, rows });
-                }
-            }
-        }
-        let own_rows = |prism: &Prism| prism.rows.into_iter().filter(move |&row| (row as usize) < count);
-        let mut starts = vec![0; count + 1];
-        for row in prisms.iter().flat_map(own_rows) {
-            starts[row as usize + 1] += 1;
-        }
-        for row in 0..count {
-            starts[row + 1] += starts[row];
-        }
-        let mut next = starts.clone();
-        let mut around = vec![0; starts[count] as usize];
-        for (place, prism) in (0..).zip(&prisms) {
-            for row in own_rows(prism) {
-                around[next[row as usize] as usize] = place;
-                next[row as usize] += 1;
-            }
-        }
-        let frames = Frames::of(base, triangles, topology);
-        let mut offsets = frames.at_rest().to_vec();
-        offsets.push(DVec3::ZERO);
-        let measured: Vec<Lack> = prisms
-            .par_iter()
-            .with_min_len(CHUNK)
-            .map(|prism| measure(prism, &base.patch.rest, &offsets))
-            .collect();
-        let least_square = |row: usize| {
-            let around = || around[starts[row] as usize..starts[row + 1] as usize].iter();
-            let rows = around().flat_map(|&place| prisms[place as usize].rows);
-            let longest = rows.map(|row| offsets[row as usize].length()).fold(0.0, f64::max);
-            let area: f64 = around().map(|&place| measured[place as usize].area.length()).sum();
-            (FOLDED * area * longest).powi(2)
+        let mut tops = Vec::new();
+        put(base, &patch.rest, &normals.at_rest, &mut tops);
+        let corners = normals.faces.corners.par_iter().with_min_len(CHUNK);
+        let volumes: Vec<f64> = corners.map(|corners| volume_of(*corners, &patch.rest, &tops)).collect();
+        let area = |corners: &[u32; 3]| {
+            let [a, b, c] = corners.map(|corner| surface[corner as usize]);
+            (b - a).cross(c - a).length() * 0.5
         };
+        let areas: Vec<f64> = normals.faces.corners.iter().map(area).collect();
+        let whole: f64 = areas.iter().sum();
+        // A sliver's error of height counts no more than that of a triangle of this area.
+        let least = 1e-3 * whole / areas.len().max(1) as f64;
+        let total: f64 = volumes.iter().map(|volume| volume.abs()).sum();
         Self {
-            least_squares: (0..count)
-                .into_par_iter()
-                .with_min_len(CHUNK)
-                .map(least_square)
+            enough: TOLERANCE * total + ROUNDING * patch.size * whole,
+            areas: areas
+                .iter()
+                .map(|area| [area.max(least), area.max(least).recip()])
                 .collect(),
-            volumes: measured.iter().map(|measured| measured.volume).collect(),
-            bodies: sheets.map_or_else(|| vec![1.0; count], |sheets| sheets.bodies(base)),
-            frames,
-            iterations,
-            prisms,
-            starts,
-            around,
-            room: Room::default(),
+            room: Room {
+                tops,
+                ..Room::default()
+            },
+            normals,
+            corrections,
+            volumes,
+            is_free,
         }
     }
 
-    /// The last frame's addition to a row's displacement from the base.
+    /// The base's triangles.
+    pub fn faces(&self) -> &Faces {
+        &self.normals.faces
+    }
+
+    /// The motion of a row's point from rest in the last frame.
     #[inline]
-    pub fn change(&self, row: usize) -> DVec3 {
-        self.room.offsets[row] - self.frames.at_rest()[row]
+    pub fn change(&self, base: &Base, row: usize) -> DVec3 {
+        self.room.tops[base.patch.rows[row] as usize] - self.normals.at_rest[row]
     }
 
     /// Displaces the bent base.
     pub fn frame(&mut self, base: &Base, posed: &[DVec3], turns: &[DMat3]) {
+        self.normals.bend(posed);
         let mut room = std::mem::take(&mut self.room);
-        let Room {
-            turned,
-            offsets,
-            lacks,
-            growths,
-            rough,
-        } = &mut room;
-        let count = base.patch.rows.len();
-        (0..count)
-            .into_par_iter()
-            .with_min_len(CHUNK)
-            .map(|row| self.frames.turned(base, row, posed, turns))
-            .collect_into_vec(turned);
-        offsets.clone_from(turned);
-        offsets.push(DVec3::ZERO);
-        growths.clear();
-        growths.resize(count, 0.0);
-        rough.resize(count + 1, 0.0);
-        for _ in 0..self.iterations {
-            self.prisms
-                .par_iter()
-                .zip(&self.volumes)
-                .with_min_len(CHUNK)
-                .map(|(prism, &volume)| {
-                    let now = measure(prism, posed, offsets);
-                    Lack {
-                        volume: volume - now.volume,
-                        ..now
-                    }
-                })
-                .collect_into_vec(lacks);
-            self.grow(turned, lacks, growths, &mut rough[..count]);
-            if self.smooth(rough, turned, &mut offsets[..count], growths) {
+        let rows = (0..base.patch.rows.len()).into_par_iter().with_min_len(CHUNK);
+        rows.map(|row| self.normals.point(base, row, posed, turns))
+            .collect_into_vec(&mut room.points);
+        put(base, posed, &room.points, &mut room.tops);
+        let mut error = self.measure(posed, &mut room);
+        for _ in 0..self.corrections {
+            if error <= self.enough {
+                break;
+            }
+            self.correct(posed, &mut room);
+            room.before.clone_from(&room.tops);
+            for (top, [x, y, z]) in room.tops.iter_mut().zip(&room.correction) {
+                *top += DVec3::new(*x, *y, *z);
+            }
+            let next = self.measure(posed, &mut room);
+            if next.is_nan() || next >= error {
+                room.tops.clone_from(&room.before);
+                break;
+            }
+            let is_last = next > LEFT * error;
+            error = next;
+            if is_last {
                 break;
             }
         }
         self.room = room;
     }
 
-    /// Finds the growth of every row that gives its ring the volume of rest.
-    fn grow(&self, turned: &[DVec3], lacks: &[Lack], growths: &[f64], rough: &mut [f64]) {
-        let rows = rough.par_iter_mut().zip(turned).enumerate();
-        rows.with_min_len(CHUNK).for_each(|(row, (rough, turned))| {
-            let (mut volume, mut area) = (0.0, DVec3::ZERO);
-            for &prism in self.around(row) {
-                let lack = &lacks[prism as usize];
-                volume += lack.volume;
-                area += lack.area;
-            }
-            let gain = turned.dot(area);
-            let square = gain * gain + self.least_squares[row];
-            let growth = if square > 0.0 { volume * gain / square } else { 0.0 };
-            *rough = self.bodies[row] * (growths[row] + growth).clamp(-MOST, MOST);
-        });
-    }
-
-    /// Scales every row by its smoothed growth; returns whether that was the last correction.
-    fn smooth(&self, rough: &[f64], turned: &[DVec3], offsets: &mut [DVec3], growths: &mut [f64]) -> bool {
-        let chunk = |(chunk, (offsets, growths)): (usize, (&mut [DVec3], &mut [f64]))| {
-            let mut moved = 0.0;
-            for (place, (offset, growth)) in offsets.iter_mut().zip(growths).enumerate() {
-                let row = chunk * CHUNK + place;
-                let around = self.around(row);
-                // Every prism has the row itself and two beside it; rows that fairing left do not grow.
-                let mut ring = 0.0;
-                for &prism in around {
-                    let [a, b, c] = self.prisms[prism as usize].rows.map(|row| rough[row as usize]);
-                    ring += a + b + c;
-                }
-                let count = around.len().max(1) as f64;
-                let beside = (ring - count * rough[row]) / (2.0 * count);
-                let next = rough[row] + SMOOTHING * (beside - rough[row]);
-                *offset = turned[row] + turned[row] * next;
-                moved += (next - *growth).powi(2);
-                *growth = next;
-            }
-            moved
-        };
-        let sums: Vec<f64> = offsets
-            .par_chunks_mut(CHUNK)
-            .zip(growths.par_chunks_mut(CHUNK))
-            .enumerate()
-            .map(chunk)
+    /// Fills in what each prism lacks; returns the sum of the lacks' sizes.
+    fn measure(&self, posed: &[DVec3], room: &mut Room) -> f64 {
+        let Room { tops, lacks, .. } = room;
+        let corners = self.faces().corners.par_iter().zip(&self.volumes).with_min_len(CHUNK);
+        corners
+            .map(|(corners, volume)| volume - volume_of(*corners, posed, tops))
+            .collect_into_vec(lacks);
+        let partial: Vec<f64> = lacks
+            .par_chunks(CHUNK)
+            .map(|lacks| lacks.iter().map(|lack| lack.abs()).sum())
             .collect();
-        sums.iter().sum::<f64>() <= SMALL * SMALL * turned.len() as f64
+        partial.iter().sum()
     }
 
-    /// The places of the prisms around a row.
-    #[inline]
-    fn around(&self, row: usize) -> &[u32] {
-        &self.around[self.starts[row] as usize..self.starts[row + 1] as usize]
+    /// Finds the correction of all local vertices by conjugate gradients with the vertices' own blocks as
+    /// preconditioner.
+    fn correct(&self, posed: &[DVec3], room: &mut Room) {
+        let faces = self.faces();
+        let corners = faces.corners.par_iter().with_min_len(CHUNK);
+        corners
+            .map(|corners| {
+                let of = |points: &[DVec3]| corners.map(|corner| points[corner as usize]);
+                gradient(of(posed), of(&room.tops))
+            })
+            .collect_into_vec(&mut room.gradients);
+        let blocks = (0..posed.len()).into_par_iter().with_min_len(CHUNK);
+        blocks
+            .map(|local| self.inverse_block(local, &room.gradients))
+            .collect_into_vec(&mut room.inverse_blocks);
+        let weighted = room.lacks.par_iter().zip(&self.areas).with_min_len(CHUNK);
+        weighted
+            .map(|(lack, [_, inverse])| lack * inverse)
+            .collect_into_vec(&mut room.changes);
+        self.gather(&room.gradients, &room.changes, None, &mut room.residual);
+        room.correction.clear();
+        room.correction.resize(posed.len(), [0.0; 3]);
+        condition(&room.inverse_blocks, &room.residual, &mut room.conditioned);
+        room.direction.clone_from(&room.conditioned);
+        let mut square = dot(&room.residual, &room.conditioned);
+        let least = RESIDUAL * RESIDUAL * square;
+        for _ in 0..STEPS {
+            if square <= least {
+                break;
+            }
+            let changes = faces.corners.par_iter().zip(&room.gradients).zip(&self.areas);
+            changes
+                .with_min_len(CHUNK)
+                .map(|((corners, gradients), [_, inverse])| {
+                    let along = |k: usize| gradients[k].dot(DVec3::from_array(room.direction[corners[k] as usize]));
+                    (along(0) + along(1) + along(2)) * inverse
+                })
+                .collect_into_vec(&mut room.changes);
+            self.gather(&room.gradients, &room.changes, Some(&room.direction), &mut room.image);
+            let step = square / dot(&room.direction, &room.image);
+            if !step.is_finite() {
+                break;
+            }
+            add(&mut room.correction, step, &room.direction);
+            add(&mut room.residual, -step, &room.image);
+            condition(&room.inverse_blocks, &room.residual, &mut room.conditioned);
+            let next = dot(&room.residual, &room.conditioned);
+            let share = next / square;
+            square = next;
+            let rows = room.direction.par_iter_mut().zip(&room.conditioned).with_min_len(CHUNK);
+            rows.for_each(|(direction, conditioned)| {
+                *direction = std::array::from_fn(|k| conditioned[k] + share * direction[k]);
+            });
+        }
+    }
+
+    /// Fills in Σ_f ∇V_f c_f at each free vertex, c being `changes`, and with a field x also λ Σ_f A_f Σ_j (x_i − x_j).
+    fn gather(&self, gradients: &[[DVec3; 3]], changes: &[f64], x: Option<&Field>, out: &mut Field) {
+        let faces = self.faces();
+        let at = |local: usize| {
+            if !self.is_free[local] {
+                return [0.0; 3];
+            }
+            let mut sum = DVec3::ZERO;
+            for &face in faces.around(local) {
+                let face = face as usize;
+                let corners = faces.corners[face];
+                for (corner, gradient) in corners.iter().zip(&gradients[face]) {
+                    if *corner as usize == local {
+                        sum += *gradient * changes[face];
+                    }
+                }
+                if let Some(x) = x {
+                    let [a, b, c] = corners.map(|corner| DVec3::from_array(x[corner as usize]));
+                    let apart = DVec3::from_array(x[local]) * 3.0 - (a + b + c);
+                    sum += apart * (EVENNESS * self.areas[face][0]);
+                }
+            }
+            sum.to_array()
+        };
+        let locals = (0..self.is_free.len()).into_par_iter().with_min_len(CHUNK);
+        locals.map(at).collect_into_vec(out);
+    }
+
+    /// The inverse of a vertex' own block of the system.
+    fn inverse_block(&self, local: usize, gradients: &[[DVec3; 3]]) -> DMat3 {
+        if !self.is_free[local] {
+            return DMat3::ZERO;
+        }
+        let faces = self.faces();
+        let mut block = DMat3::ZERO;
+        for &face in faces.around(local) {
+            let face = face as usize;
+            let [area, inverse] = self.areas[face];
+            block += DMat3::from_diagonal(DVec3::splat(2.0 * EVENNESS * area));
+            for (corner, gradient) in faces.corners[face].iter().zip(&gradients[face]) {
+                if *corner as usize == local {
+                    let scaled = *gradient * inverse;
+                    block += DMat3::from_cols(*gradient * scaled.x, *gradient * scaled.y, *gradient * scaled.z);
+                }
+            }
+        }
+        block.inverse()
     }
 }
 
-/// A prism's volume and the area vector of its triangle of the surface.
-#[inline]
-fn measure(prism: &Prism, posed: &[DVec3], offsets: &[DVec3]) -> Lack {
-    let [a, b, c] = prism.locals.map(|local| posed[local as usize]);
-    let [p, q, r] = prism.rows.map(|row| offsets[row as usize]);
-    let (u, v) = (b - a, c - a);
-    let (u_top, v_top) = (u + (q - p), v + (r - p));
-    let (bottom, top) = (u.cross(v), u_top.cross(v_top));
-    let mean = (bottom + top) / 6.0 + (u.cross(v_top) + u_top.cross(v)) / 12.0;
-    Lack {
-        volume: (p + q + r).dot(mean) / 3.0,
-        area: top * 0.5,
+/// Fills in the surface's points at each local vertex: the rows' own `points`, the base's elsewhere.
+fn put(base: &Base, posed: &[DVec3], points: &[DVec3], tops: &mut Vec<DVec3>) {
+    tops.clear();
+    tops.extend_from_slice(posed);
+    for (&local, point) in base.patch.rows.iter().zip(points) {
+        tops[local as usize] = *point;
     }
+}
+
+fn volume_of(corners: [u32; 3], posed: &[DVec3], tops: &[DVec3]) -> f64 {
+    let of = |points: &[DVec3]| corners.map(|corner| points[corner as usize]);
+    volume(of(posed), of(tops))
+}
+
+/// Multiplies each row by its block.
+fn condition(blocks: &[DMat3], rows: &Field, out: &mut Field) {
+    let pairs = blocks.par_iter().zip(rows).with_min_len(CHUNK);
+    pairs
+        .map(|(block, row)| (*block * DVec3::from_array(*row)).to_array())
+        .collect_into_vec(out);
 }

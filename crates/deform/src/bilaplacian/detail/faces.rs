@@ -1,0 +1,86 @@
+//! The base's triangles, and the normals of its vertices.
+
+use glam::DVec3;
+use pliant_mesh::SurfaceVertex;
+use rayon::prelude::*;
+
+use super::donors::NONE;
+use crate::numerical::rows::CHUNK;
+use crate::region::boundary_problem::BoundaryProblem;
+use crate::region::patch::Patch;
+
+/// The triangles of a patch that have a row among their corners.
+#[derive(Debug)]
+pub(crate) struct Faces {
+    /// The corners of each triangle, as local vertices of the patch.
+    pub corners: Vec<[u32; 3]>,
+    /// The start of each local vertex' entries of `around`; one more at the end.
+    starts: Vec<u32>,
+    around: Vec<u32>,
+}
+
+impl Faces {
+    /// The triangles around the patch's rows.
+    pub fn of(patch: &Patch, problem: &BoundaryProblem<'_>) -> Self {
+        let (triangles, topology) = (&problem.surface.triangles, problem.topology);
+        let mut local_of = vec![NONE; patch.vertices.last().map_or(0, |&last| last as usize + 1)];
+        for (local, &vertex) in (0..).zip(&patch.vertices) {
+            local_of[vertex as usize] = local;
+        }
+        let mut corners = Vec::new();
+        let mut is_taken = vec![false; triangles.len()];
+        for &local in &patch.rows {
+            let vertex = SurfaceVertex(patch.vertices[local as usize]);
+            for face in topology.faces(vertex, triangles) {
+                if !std::mem::replace(&mut is_taken[face as usize], true) {
+                    corners.push(triangles[face as usize].map(|corner| local_of[corner.index()]));
+                }
+            }
+        }
+        let count = patch.vertices.len();
+        let mut starts = vec![0; count + 1];
+        for &corner in corners.as_flattened() {
+            starts[corner as usize + 1] += 1;
+        }
+        for local in 0..count {
+            starts[local + 1] += starts[local];
+        }
+        let mut next = starts.clone();
+        let mut around = vec![0; corners.len() * 3];
+        for (face, corners) in (0..).zip(&corners) {
+            for &corner in corners {
+                around[next[corner as usize] as usize] = face;
+                next[corner as usize] += 1;
+            }
+        }
+        Self {
+            corners,
+            starts,
+            around,
+        }
+    }
+
+    /// The triangles around a local vertex.
+    #[inline]
+    pub fn around(&self, local: usize) -> &[u32] {
+        &self.around[self.starts[local] as usize..self.starts[local + 1] as usize]
+    }
+
+    /// Fills in the unit normal of each local vertex: the direction of its triangles' area vectors in sum, zero if it
+    /// has none.
+    pub fn normals(&self, points: &[DVec3], normals: &mut Vec<DVec3>) {
+        let normal = |local: usize| {
+            let area = |&face: &u32| {
+                let [a, b, c] = self.corners[face as usize].map(|corner| points[corner as usize]);
+                (b - a).cross(c - a)
+            };
+            let sum: DVec3 = self.around(local).iter().map(area).sum();
+            sum.try_normalize().unwrap_or(DVec3::ZERO)
+        };
+        (0..self.starts.len() - 1)
+            .into_par_iter()
+            .with_min_len(CHUNK)
+            .map(normal)
+            .collect_into_vec(normals);
+    }
+}
