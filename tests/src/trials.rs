@@ -191,6 +191,7 @@ impl Trial {
                 soft: &self.soft,
                 continuity: &self.continuity,
                 parts: &[],
+                sections: &[],
             },
             loose: self.loose,
             method: &self.method,

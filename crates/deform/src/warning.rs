@@ -35,6 +35,19 @@ impl Warning {
         }
     }
 
+    /// The warning with another number for the handle that it is about.
+    pub(crate) fn renumbered(self, number: impl Fn(usize) -> usize) -> Self {
+        let Some((handle, place)) = self.handle.clone() else {
+            return self;
+        };
+        let designation = format!("handle {}", number(handle));
+        Self {
+            sentence: self.naming(&designation),
+            handle: Some((number(handle), place.start..place.start + designation.len())),
+            unheld: self.unheld,
+        }
+    }
+
     /// A sentence on components that nothing holds; `unheld` gives each component's handles, and the number of its
     /// vertices in each.
     pub(crate) fn of_unheld(sentence: String, unheld: Vec<Vec<(usize, usize)>>) -> Self {

@@ -3,10 +3,11 @@
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
-use pliant_deform::{Attachment, Bound, SolveError, Step};
+use pliant_deform::{Attachment, Bound, Solve, SolveError, Step};
 use pliant_mesh::Cancel;
 
 use crate::document::{HandleId, KeptShape};
+use crate::lines::Lines;
 
 /// A frame takes steps for this many vertices before it shows its shape: about as many as fit into its time. There is
 /// no clock here.
@@ -24,6 +25,10 @@ const MOST_FIRST_ROUNDS: usize = 8;
 pub struct Targets {
     /// The map of each handle.
     handles: Vec<DAffine3>,
+    /// The lines that handles follow first.
+    lines: Lines,
+    /// The share of the lines' way.
+    line_share: f64,
     /// The positions of the brought control points, moved by hand.
     controls: Option<Arc<Vec<DVec3>>>,
     /// The weights of the examples, `None` for one to be found.
@@ -35,6 +40,8 @@ impl Targets {
     pub fn new(handles: Vec<DAffine3>, attachment: Option<&Attachment>) -> Self {
         Self {
             handles,
+            lines: Lines::default(),
+            line_share: 1.0,
             controls: attachment.and_then(Attachment::moved).cloned(),
             weights: match attachment {
                 Some(Attachment::Shapes(examples)) => examples.weights.clone(),
@@ -43,12 +50,25 @@ impl Targets {
         }
     }
 
+    /// The same with handles that follow lines by a share of their way before their maps move them.
+    #[must_use]
+    pub fn along(self, lines: &Lines, share: f64) -> Self {
+        Self {
+            lines: lines.clone(),
+            line_share: share,
+            ..self
+        }
+    }
+
     /// Gives them to a binding.
     ///
     /// # Errors
-    /// Those of [`Bound::set_targets`], [`Bound::set_weights`] and [`Bound::set_controls`].
+    /// Those of [`Bound::set_places`], [`Bound::set_weights`] and [`Bound::set_controls`].
     pub fn set(&self, bound: &mut Bound) -> Result<(), SolveError> {
-        bound.set_targets(&self.handles)?;
+        match self.lines.is_empty() {
+            true => bound.set_targets(&self.handles)?,
+            false => bound.set_places(&self.lines.targets(&self.handles, self.line_share))?,
+        }
         // Examples of another method do not apply to this one.
         if bound.weights().len() == self.weights.len() {
             bound.set_weights(&self.weights)?;
@@ -116,6 +136,8 @@ impl Kept {
         let is_same = |kept: &&Arc<Vec<DVec3>>| present.controls.as_ref().is_some_and(|own| own.len() == kept.len());
         let first = Targets {
             handles: self.targets,
+            lines: present.lines.clone(),
+            line_share: present.line_share,
             controls: own.as_ref().filter(is_same).or(present.controls.as_ref()).cloned(),
             weights: self.shape.weights.clone(),
         };
@@ -255,6 +277,18 @@ fn steps(
     until: Until,
     cancel: &Cancel,
 ) -> Result<Step, SolveError> {
+    // An iterative method that rests follows a curve with full turns only in steps.
+    let is_led = bound.is_at_rest() && bound.solve() != Solve::Direct;
+    let count = if is_led {
+        targets.lines.steps(targets.line_share)
+    } else {
+        1
+    };
+    for step in 1..count {
+        let share = targets.line_share * step as f64 / count as f64;
+        targets.clone().along(&targets.lines, share).set(bound)?;
+        settle(bound, displacements, Until::Frame.steps(bound), cancel)?;
+    }
     targets.set(bound)?;
     let most = until.steps(bound);
     settle(bound, displacements, most, cancel)

@@ -52,6 +52,8 @@ mod flow_start;
 mod format;
 mod input;
 mod jobs;
+mod lines;
+mod outline;
 mod pickable;
 mod region;
 mod revision;
@@ -67,9 +69,9 @@ mod workspace;
 pub use bending::{Bent, Carried, Kept, Start, Targets, Until, settle};
 pub use command::{Command, KeyMap, Listed, Shortcut, WITHOUT_EXAMPLES};
 pub use document::{
-    Access, Carries, Content, Document, HANDLE_COLOURS, HISTORY_BYTES, Handle, HandleId, HandleTransform, History,
-    KeptShape, ObjectAction, Paint, PivotPlace, Pose, Reach, SaveMark, SavedAs, SmallParts, Tips, Twin, object_name,
-    sum_of_shapes,
+    Access, Carries, Content, Document, HANDLE_COLOURS, HISTORY_BYTES, Handle, HandleCurve, HandleId, HandleLine,
+    HandleSketch, HandleTransform, History, KeptShape, ObjectAction, Paint, PivotPlace, Pose, Reach, SaveMark, SavedAs,
+    SmallParts, Tips, Twin, object_name, sum_of_shapes,
 };
 pub use editor::Editor;
 pub use event::Event;
@@ -77,7 +79,8 @@ pub use flow_start::FlowStart;
 pub use format::{
     Accuracy, AttachmentEntry, Axis, Beginning, DyeEntry, EDIT_VERSION, EditError, EditFile, ExampleEntry,
     ExampleSource, ExportError, FieldEntry, FlowFile, FlowMotion, HandleEntry, HandleSetup, JoinsFile, MeshReference,
-    Placement, Project, Rest, SOFT_RANGE, STIFFNESS_RANGE, Selector, Setup, StoredKept, VelocityEntry, geometry_hash,
+    Placement, PoseEntry, Project, Rest, SOFT_RANGE, STIFFNESS_RANGE, Selector, Setup, StoredKept, VelocityEntry,
+    geometry_hash,
 };
 pub use input::{Button, Key, Modifiers, Pointer};
 pub use jobs::{
@@ -85,6 +88,7 @@ pub use jobs::{
     Inspectable, Inspected, IntersectionPlace, Intersections, Job, JobDone, JobKind, JobOutcome, JobQueue, JobResult,
     PresentBinding, Running, SolveResult, Solved, Symmetry, Unfinished,
 };
+pub use lines::Lines;
 pub use region::{Counts, Region, Rim};
 pub use revision::Revision;
 pub use scene_view::{ControlPoints, SceneView};

@@ -19,6 +19,11 @@ impl Selection {
         }
     }
 
+    /// Adds a vertex.
+    pub(crate) fn insert(&mut self, vertex: SurfaceVertex) {
+        self.selected[vertex.index()] = true;
+    }
+
     /// Returns true if the set has this vertex.
     pub fn contains(&self, vertex: SurfaceVertex) -> bool {
         self.selected[vertex.index()]

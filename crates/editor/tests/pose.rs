@@ -4,11 +4,14 @@
 mod rig;
 
 use glam::{DAffine3, DMat3, DVec2, DVec3};
+use pliant_deform::Role;
 use pliant_editor::{
-    Button, Command, EditFile, Event, JobKind, Key, Modifiers, Paint, PivotPlace, Pointer, Reach, Symmetry, ToolMode,
+    Axis, Button, Command, EditFile, Event, JobKind, Key, Modifiers, Paint, PivotPlace, Pointer, Reach, Selector,
+    Symmetry, ToolMode,
 };
-use pliant_mesh::{Drawn, shapes};
+use pliant_mesh::{Drawn, Model, shapes};
 use rig::{Rig, VIEWPORT_PX};
+use serde_json::{Value, json};
 
 /// The narrowest places of both arms of [`body_with_arms`].
 const JOINT: f64 = 1.45;
@@ -498,4 +501,131 @@ fn parents_are_kept_by_files_and_circles_of_them_are_refused() {
     let handles = rig.editor.document().handles();
     assert_eq!(handles.len(), 2);
     assert_ne!(handles[0].transform, shank_before);
+}
+
+/// An edit with these handles.
+fn edit_of(handles: &Value) -> EditFile {
+    EditFile::from_value(&json!({"version": 1, "method": {"name": "bilaplacian"}, "handles": handles})).unwrap()
+}
+
+#[test]
+fn an_edit_finds_the_limb_that_a_drag_makes_a_handle() {
+    let mut rig = open();
+    let (right_px, left_px) = (seen(&rig, 4.0..4.6), seen(&rig, -4.6..-4.0));
+    drag(&mut rig, right_px, DVec2::new(-40.0, -120.0), Modifiers::NONE);
+    drag(&mut rig, left_px, DVec2::new(40.0, -120.0), Modifiers::NONE);
+    let dragged = rig.editor.edit_file().unwrap().resolve(&rig.model).unwrap();
+    let transform = |number: usize| json!(dragged.handles[number].transform);
+    // Far from the surface: its nearest point counts.
+    let edit = edit_of(&json!([
+        {"pose": {"at": [4.3, 0.0, 9.0]}, "transform": transform(0)},
+        {"pose": {"at": [-4.3, 0.0, 9.0]}, "transform": transform(1)},
+    ]));
+    let found = edit.resolve(&rig.model).unwrap();
+    assert!(
+        found.roles == dragged.roles,
+        "the handles, what is free and what is fixed"
+    );
+    for (found, dragged) in found.handles.iter().zip(&dragged.handles) {
+        assert!(
+            found.pivot.distance(dragged.pivot) < 1e-12,
+            "{} {}",
+            found.pivot,
+            dragged.pivot
+        );
+    }
+    assert_eq!(EditFile::parse(&edit.to_json()).unwrap(), edit);
+    // Another region replaces the one around the joints.
+    let wide = EditFile {
+        region: Selector::Slab {
+            axis: Axis::X,
+            from: 0.0,
+            to: 1.0,
+        },
+        ..edit
+    };
+    assert_eq!(
+        wide.resolve(&rig.model)
+            .unwrap()
+            .roles
+            .iter()
+            .filter(|role| **role == Role::Fixed)
+            .count(),
+        0
+    );
+}
+
+/// A ball of radius 1.3 about the origin with an arm along x that is narrowest at 1.6 and at 3.4 and ends at 5.
+fn body_with_an_elbow() -> Drawn {
+    let profile = |share: f64| {
+        let x: f64 = 1.85 + 3.15 * (1.0 - 2.0 * share);
+        let ball = (1.3 * 1.3 - x * x).max(0.0).sqrt();
+        let waist = |at: f64| (-((x - at) / 0.35).powi(2)).exp();
+        let arm = 0.42 - 0.16 * (waist(1.6) + waist(3.4));
+        let cap = (1.0 - ((x - 4.6) / 0.4).max(0.0).powi(2)).max(0.0).sqrt();
+        let arm = if x < 0.0 { 0.0 } else { arm * cap };
+        DVec2::new(if share % 1.0 == 0.0 { 0.0 } else { ball.max(arm) }, x)
+    };
+    let along_x = DAffine3::from_mat3(DMat3::from_cols(DVec3::Y, DVec3::Z, DVec3::X));
+    shapes::moved(&shapes::turned(120, 32, profile), along_x)
+}
+
+#[test]
+fn candidates_lead_from_the_elbow_to_the_shoulder_and_a_limb_of_a_limb_takes_its_part() {
+    let model = rig::weld(body_with_an_elbow());
+    let hand = [4.4, 0.0, 0.4];
+    let centre = |up: i32| {
+        let edit = edit_of(&json!([{"pose": {"at": hand, "up": up}}]));
+        edit.resolve(&model).unwrap().handles[0].pivot
+    };
+    assert!(centre(0).distance(DVec3::X * 3.4) < 0.15, "{}", centre(0));
+    assert!(centre(1).distance(DVec3::X * 1.6) < 0.15, "{}", centre(1));
+    let both = [json!({"pose": {"at": hand, "up": 1}}), json!({"pose": {"at": hand}})];
+    let roles = |handles: [Value; 2]| edit_of(&json!(handles)).resolve(&model).unwrap().roles;
+    let (shoulder_first, elbow_first) = (roles(both.clone()), roles([both[1].clone(), both[0].clone()]));
+    for ((one, other), p) in shoulder_first.iter().zip(&elbow_first).zip(&model.surface.positions) {
+        let swapped = match one {
+            Role::Handle(number) => Role::Handle(1 - number),
+            role => *role,
+        };
+        assert_eq!(swapped, *other, "the order in the list is the same at {p}");
+        let wanted = match p.x {
+            x if x > 3.9 => Some(Role::Handle(1)),
+            x if x > 3.25 && x < 3.5 => Some(Role::Free),
+            x if x > 2.3 && x < 2.6 => Some(Role::Handle(0)),
+            x if x > 1.5 && x < 1.7 => Some(Role::Free),
+            x if x < 0.8 => Some(Role::Fixed),
+            _ => None,
+        };
+        assert!(wanted.is_none_or(|wanted| wanted == *one), "{one:?} at {p}");
+    }
+}
+
+#[test]
+fn a_limb_that_is_not_there_is_refused_in_words() {
+    let model = rig::weld(body_with_an_elbow());
+    let ball = rig::weld(shapes::icosphere(4));
+    let refusal = |model: &Model, handles: Value| edit_of(&handles).resolve(model).unwrap_err().to_string();
+    let at = [4.4, 0.0, 0.4];
+    let cases = [
+        (
+            refusal(&ball, json!([{"pose": {"at": [0, 0, 1]}}])),
+            "handles[0].pose has no joint: give a point on a limb",
+        ),
+        (
+            refusal(&model, json!([{"pose": {"at": at, "up": 7}}])),
+            "handles[0].pose.up is 7, which is out of range: give a number from 0 to 1",
+        ),
+        (
+            refusal(&model, json!([{"pose": {"at": at}}, {"pose": {"at": [4.3, 0, 0.4]}}])),
+            "handles[0].pose gives a limb that is all part of another handle's: choose another `up`",
+        ),
+    ];
+    for (found, wanted) in cases {
+        assert!(found.contains(wanted), "{found}");
+    }
+    let stored =
+        json!({"version": 1, "method": {"name": "bilaplacian"}, "handles": [{"pose": {"at": at}, "select": "all"}]});
+    let refused = EditFile::from_value(&stored).unwrap_err().to_string();
+    assert!(refused.contains("handles[0] has both `select` and `pose`"), "{refused}");
 }

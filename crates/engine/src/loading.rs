@@ -117,7 +117,7 @@ fn open_bytes(
     let opened = pliant_io::read(bytes, format, &name, neighbours, &progress, &watch.cancel);
     watch.note_read("a file that is read", path);
     for place in neighbours.places() {
-        watch.note_read("a file that is read", &place);
+        watch.note_read("a file that the model names", &place);
     }
     opened.map_err(EngineError::Read)
 }

@@ -15,7 +15,7 @@ pub struct Watch {
     /// Raised when the result is no longer wanted.
     pub cancel: Cancel,
     stage: Arc<Mutex<Option<(&'static str, Progress)>>>,
-    /// Every file that was read, with its description.
+    /// Every file that was read, or that one of these names, with its description.
     read: Arc<Mutex<BTreeMap<PathBuf, &'static str>>>,
 }
 
@@ -41,14 +41,14 @@ impl Watch {
         stage.as_ref().map(|(doing, progress)| (*doing, progress.get()))
     }
 
-    /// Notes that a file is read, and its description for a person; the last one counts.
+    /// Notes a file that is read or named, and its description for a person; the last one counts.
     pub(crate) fn note_read(&self, what: &'static str, path: &Path) {
         let mut read = self.read.lock().unwrap_or_else(PoisonError::into_inner);
         read.insert(path.to_owned(), what);
     }
 
-    /// Refuses outputs, each with its argument's name, if one is the same as another, or as any file that was read:
-    /// meshes, the files that these and an edit name, and edits. `edited` is the file that the first output may
+    /// Refuses outputs, each with its argument's name, if one is the same as another, or as any file that was
+    /// read or named: meshes, the files that these and an edit name, and edits. `edited` is the file that the first output may
     /// replace.
     ///
     /// # Errors

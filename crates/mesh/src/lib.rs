@@ -1,5 +1,5 @@
-//! A triangle surface in memory: topology, geometry, welding, findings, distances along the surface, symmetry and
-//! a bounding-volume hierarchy, and the one pair of [`Progress`] and [`Cancel`] that every long job takes.
+//! A triangle surface in memory: topology, geometry, welding, findings, distances along the surface, symmetry,
+//! curves and a bounding-volume hierarchy, and the one pair of [`Progress`] and [`Cancel`] that every long job takes.
 //!
 //! Three vertex sets exist and must not be mixed; each has its own id type: [`FileVertex`] (saved), [`DrawnVertex`] (a
 //! file vertex seen through one node; rendered and picked) and [`SurfaceVertex`] (welded in world space; solved for).
@@ -35,6 +35,7 @@
 
 mod bvh;
 mod contacts;
+mod curves;
 mod drawn;
 mod findings;
 mod geodesics;
@@ -52,6 +53,9 @@ mod weld;
 
 pub use bvh::{Bvh, Hit, SelfIntersection, SelfIntersections};
 pub use contacts::{Contact, component_areas, contacts};
+pub use curves::{
+    Curve, CurveMotion, CurvePath, CurveRefused, LARGEST_TWIST_DEG, SCALE_RANGE, pulled_chain, triangles_under,
+};
 pub use drawn::{Drawn, DrawnSet, Object, Rounding};
 pub use findings::{Finding, FindingKind, Findings, Named};
 pub use geodesics::{DistanceSearch, JOINT_RINGS, Joint, Shape, distances_along_surface, joint_of};

@@ -36,7 +36,7 @@ fn a_limb_that_is_as_thick_as_it_is_long_bends_where_it_meets_the_body() {
     for z in [2.1, 1.8, 1.5, 1.2] {
         for side in [0, 5, 31] {
             let (triangle, middle) = triangle_at(&model, z, side);
-            let joint = joint_of(&shape, triangle, middle, &Cancel::new()).unwrap();
+            let joint = joint_of(&shape, triangle, middle, 0, &Cancel::new()).unwrap();
             let joint = joint.unwrap_or_else(|| panic!("no joint from {z}, side {side}"));
             assert!(
                 (0.7..1.4).contains(&joint.centre.z),
@@ -51,4 +51,39 @@ fn a_limb_that_is_as_thick_as_it_is_long_bends_where_it_meets_the_body() {
             assert!(joint.axis.z > 0.95, "from {z}, side {side}: {}", joint.axis);
         }
     }
+}
+
+#[test]
+fn other_parts_do_not_hide_a_limb() {
+    let profile = |share: f64| {
+        let z = 3.0 * (PI * share).cos();
+        let ball = (1.0 - (z.abs() - 2.0).powi(2)).max(0.0).sqrt();
+        let radius = if z.abs() > 2.0 {
+            ball
+        } else {
+            ball.max(0.3 + 0.12 * z * z)
+        };
+        DVec2::new(if share % 1.0 == 0.0 { 0.0 } else { radius }, z)
+    };
+    let body = shapes::turned(60, 40, profile);
+    let mut eye = shapes::icosphere(2);
+    eye.positions
+        .iter_mut()
+        .for_each(|p| *p = *p * 0.2 + glam::DVec3::new(0.0, 0.8, 2.5));
+    let joint = |model: &Model| {
+        let (triangle, middle) = triangle_at(model, 2.4, 3);
+        let shape = Shape {
+            triangles: &model.surface.triangles,
+            topology: &model.topology,
+            positions: &model.surface.positions,
+        };
+        joint_of(&shape, triangle, middle, 0, &Cancel::new()).unwrap()
+    };
+    let (alone, with_eye) = (
+        shapes::model(body.clone()),
+        shapes::model(shapes::together(&[body, eye])),
+    );
+    let (alone, with_eye) = (joint(&alone).unwrap(), joint(&with_eye).unwrap());
+    assert!(alone.centre.distance(with_eye.centre) < 1e-9, "{}", with_eye.centre);
+    assert_eq!(alone.limb.len(), with_eye.limb.len());
 }

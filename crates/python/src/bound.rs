@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 use pliant_deform::{Bound as Solver, Solve, SolveError, Step, Target};
 use pliant_editor::{Setup, settle};
 use pliant_engine::watch::Watch;
@@ -271,9 +271,17 @@ impl BoundMesh {
             of_solver: Vec::new(),
             positions: Vec::new(),
         };
-        for (number, goal) in goals(any, &self.setup, count)?.into_iter().enumerate() {
+        let goals = goals(any, &self.setup, count)?;
+        // A handle that follows a curve is moved by its curve first.
+        let map = |goal: &Goal| match goal {
+            Goal::Map(map) => *map,
+            Goal::Rows(_) => DAffine3::IDENTITY,
+        };
+        let maps: Vec<DAffine3> = goals.iter().map(map).collect();
+        let along = self.setup.lines.targets(&maps, self.setup.line_share);
+        for ((number, goal), along) in goals.into_iter().enumerate().zip(along) {
             targets.of_solver.push(match goal {
-                Goal::Map(map) => Target::Map(map),
+                Goal::Map(_) => along,
                 Goal::Rows(positions) => {
                     let rows = self.rows(number).as_ref();
                     let places = rows.map_err(Clone::clone);

@@ -153,7 +153,7 @@ fn handle_entry(handle: &Bound<'_, PyAny>, place: &str, vertex_count: usize) -> 
     let mut entry = Map::new();
     let mut order = None;
     match handle.cast::<PyDict>() {
-        Ok(members) if members.contains("select")? => {
+        Ok(members) if members.contains("select")? || members.contains("curve")? => {
             for (name, member) in members {
                 let name: String = name
                     .extract()

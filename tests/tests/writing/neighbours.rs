@@ -57,6 +57,29 @@ fn no_output_may_be_a_file_that_is_read_or_written_otherwise() {
     apply(&gltf, &edit, &gltf, &[]).done();
 }
 
+/// Law: no output replaces an image that a material library names, even if nothing draws the image.
+#[test]
+fn no_output_may_be_an_image_that_is_named_but_not_drawn() {
+    let folder = Folder::new();
+    let model = "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl used\nf 1 2 3\n";
+    let model = folder.write("m.obj", model);
+    let library = "map_Kd early.png\nnewmtl used\nKd 1 1 1\nmap_Bump -bm 2 my bumps.png\nnorm far/away/bare.png\n\
+                   newmtl unused\nmap_Kd -clamp on maps/unused.png\n";
+    folder.write("m.mtl", library);
+    fs::create_dir(folder.at("maps")).unwrap();
+    let images = ["early.png", "my bumps.png", "bare.png", "maps/unused.png"];
+    for image in images {
+        folder.write(image, "an artist's image");
+    }
+    let before = contents(folder.path());
+    for image in images {
+        let out = folder.at(image);
+        let words = ["render".as_ref(), model.as_os_str(), "--output".as_ref(), out.as_ref()];
+        run(words).refused(2, &["--output", "that the model names"]);
+        assert_eq!(contents(folder.path()), before, "{image}");
+    }
+}
+
 /// Law: two documents saved into one folder both keep their shape, for any names of their buffers, and a repeated save
 /// writes the same files.
 #[test]

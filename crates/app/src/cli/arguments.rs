@@ -95,7 +95,7 @@ pub(crate) struct DiffArguments {
 pub(crate) struct ApplyArguments {
     /// The file to bend: glb, gltf, obj, ply, stl or off
     pub file: PathBuf,
-    /// The edit
+    /// The edit: regions, handles with transforms, curves or sketches, and a method; or a .pliant project
     #[arg(long, value_name = "EDIT.json")]
     pub edit: PathBuf,
     /// The file to write; its extension tells its format

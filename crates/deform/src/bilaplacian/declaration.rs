@@ -113,6 +113,10 @@ impl DeformMethod for Bilaplacian {
         true
     }
 
+    fn takes_turns(&self) -> bool {
+        false
+    }
+
     fn bind(&self, input: &BindInput<'_>) -> Result<Box<dyn BoundMethod>, BindError> {
         Ok(match self.detail {
             Detail::None => Box::new(BilaplacianSolver::<f32>::bind(self, input)?),

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::DVec3;
 use pliant_mesh::{Cancel, Progress};
 
+use super::sections::Split;
 use super::{Bound, RigidParts};
 use crate::budget::bytes_of;
 use crate::handles::residual::HandleResidual;
@@ -92,8 +93,27 @@ impl Bound {
         progress: &Progress,
         cancel: &Cancel,
     ) -> Result<Self, BindError> {
-        let bound = Self::bind_within(problem, ordering, refactorisation, budget, progress, cancel);
-        bound.map_err(|refused| refused.with_culprit(problem.topology, budget))
+        let split = Split::of(problem);
+        let of_sections = split.as_ref().map(|split| split.problem(problem));
+        let bound = Self::bind_within(
+            of_sections.as_ref().unwrap_or(problem),
+            ordering,
+            refactorisation,
+            budget,
+            progress,
+            cancel,
+        );
+        let mut bound = bound.map_err(|refused| refused.with_culprit(problem.topology, budget))?;
+        if let Some(Split { sections, .. }) = split {
+            let positions = &problem.surface.positions;
+            let rest = |handle: &Handle| handle.vertices.iter().map(|&own| positions[own as usize]).collect();
+            bound.world_rest = bound.handles.iter().map(rest).collect();
+            bound.sections = Some(sections);
+        }
+        let of_sections = std::mem::take(&mut bound.of_binding);
+        bound.of_binding = bound.about_handles(of_sections);
+        bound.warnings.clone_from(&bound.of_binding);
+        Ok(bound)
     }
 
     fn bind_within(
@@ -207,7 +227,12 @@ impl Bound {
             free_count: partition.free_count,
             motions: vec![Motion::default(); handles.len()],
             offsets: Arc::default(),
+            own_ways: Vec::new(),
+            sections: None,
             world_rest,
+            takes_places,
+            is_exact: implementation.handle_fit() == HandleFit::Exact,
+            soft: partition.soft,
             handles,
             iteration: 0,
             solve: problem.method.solve(),

@@ -1,6 +1,7 @@
 //! A problem bound to a method: new transforms in, displacements out.
 
 mod binding;
+mod sections;
 mod targets;
 
 use std::sync::Arc;
@@ -9,6 +10,7 @@ use glam::{DAffine3, DVec3, Mat3};
 use pliant_mesh::Cancel;
 use rayon::prelude::*;
 
+use self::sections::Sections;
 use crate::attachment::{check_weights, finite};
 use crate::handles::finite::Finite;
 use crate::handles::offsets::Offsets;
@@ -28,11 +30,20 @@ pub struct Bound {
     vertex_count: usize,
     free_count: usize,
     handles: Vec<Handle>,
-    /// The handles' rest positions, if the method takes places.
+    /// The handles' rest positions, if the method takes places or a handle has sections.
     world_rest: Vec<Vec<DVec3>>,
+    takes_places: bool,
+    /// True if the method holds hard handles exactly.
+    is_exact: bool,
+    /// Each handle's weight, if it is soft.
+    soft: Vec<Option<f64>>,
     motions: Vec<Motion>,
     /// The offsets of handles' vertices from the motions.
     offsets: Arc<Offsets>,
+    /// The displacements of vertices with maps of their own, if the method moves handles as a whole.
+    own_ways: Vec<(u32, DVec3)>,
+    /// The sections that are bound as handles, if a handle has several.
+    sections: Option<Sections>,
     iteration: u32,
     solve: Solve,
     name: &'static str,
@@ -64,6 +75,10 @@ pub enum Target {
     Map(DAffine3),
     /// A world position for each of the handle's vertices, in the order of [`Bound::handle_vertices`].
     Places(Vec<DVec3>),
+    /// An affine map of world positions for each of the handle's vertices, in the same order: a vertex goes to its
+    /// image, and its surroundings turn as the map does. A method that takes turns needs
+    /// [`crate::Constraints::sections`] to see more than one of them.
+    Maps(Vec<DAffine3>),
 }
 
 /// The computation of a step: the method's shortest one, or back-substitution.
@@ -193,10 +208,14 @@ impl Bound {
 
     /// Returns true if nothing is moved by a handle, by hand or by an example. An example whose weight is to be found
     /// moves nothing by itself.
-    fn is_at_rest(&self) -> bool {
+    pub fn is_at_rest(&self) -> bool {
         let are_moved = self.method.controls().is_some_and(|controls| controls.are_moved());
         let are_weighed = self.weights.iter().flatten().any(|weight| *weight != 0.0);
-        !are_moved && !are_weighed && self.offsets.is_empty() && self.motions.iter().all(Motion::is_rest)
+        !are_moved
+            && !are_weighed
+            && self.offsets.is_empty()
+            && self.own_ways.is_empty()
+            && self.motions.iter().all(Motion::is_rest)
     }
 
     /// One step towards the targets: fills `displacements`, one per surface vertex, in world units.
@@ -264,11 +283,13 @@ impl Bound {
                 Solve::Direct => true,
                 Solve::Iterative { max_iterations } => self.iteration >= max_iterations,
             };
+        put(&self.own_ways, displacements);
         self.followers.carry(displacements);
         if let Some(rigid) = &mut self.rigid {
             gate(displacements)?;
             let last = rigid.step(motions, displacements);
             let last = last.inspect_err(|_| displacements.fill(DVec3::ZERO))?;
+            put(&self.own_ways, displacements);
             step.energy = last.energy;
             step.converged &= last.converged;
             step.finished &= last.finished;
@@ -310,7 +331,19 @@ impl Bound {
     /// on there. `None` if the method has no such weights, or no such handle.
     pub fn handle_weights(&self, handle: usize) -> Option<Vec<f64>> {
         let mut weights = vec![0.0; self.vertex_count];
-        (handle < self.handles.len() && self.method.weights_of(handle, &mut weights)).then_some(weights)
+        let Some(sections) = &self.sections else {
+            return (handle < self.handles.len() && self.method.weights_of(handle, &mut weights)).then_some(weights);
+        };
+        let mut own = vec![0.0; self.vertex_count];
+        let numbers = sections.handle_of.iter().enumerate();
+        for (section, _) in numbers.filter(|(_, of)| **of == handle) {
+            own.fill(0.0);
+            if !self.method.weights_of(section, &mut own) {
+                return None;
+            }
+            weights.iter_mut().zip(&own).for_each(|(sum, own)| *sum += own);
+        }
+        (handle < sections.handle_count()).then_some(weights)
     }
 
     /// Replaces the displacements of the last step by those that take the surface's vertices to the smooth base that
@@ -420,6 +453,13 @@ impl RigidParts {
             part.place(motion, displacements);
         }
         Ok(step)
+    }
+}
+
+/// Puts these displacements in.
+fn put(ways: &[(u32, DVec3)], displacements: &mut [DVec3]) {
+    for (vertex, way) in ways {
+        displacements[*vertex as usize] = *way;
     }
 }
 

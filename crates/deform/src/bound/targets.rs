@@ -2,12 +2,13 @@
 
 use std::sync::Arc;
 
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DMat3, DVec3};
 
+use super::sections::{Sections, mean_motion};
 use super::{Bound, Target};
-use crate::SolveError;
+use crate::handles::Motion;
 use crate::handles::offsets::Offsets;
-use crate::handles::{Handle, Motion};
+use crate::{SolveError, Warning};
 
 impl Bound {
     /// Sets the handles' targets: for each handle, one affine map of world positions, from rest.
@@ -15,65 +16,120 @@ impl Bound {
     /// # Errors
     /// A wrong count, or a transform that is not finite; the previous targets stay.
     pub fn set_targets(&mut self, world_targets: &[DAffine3]) -> Result<(), SolveError> {
-        if world_targets.len() != self.handles.len() {
-            return Err(SolveError::TargetCount {
-                found: world_targets.len(),
-                expected: self.handles.len(),
-            });
-        }
+        let found = world_targets.len();
+        self.check_count(found)?;
         if let Some(handle) = world_targets.iter().position(|target| !target.is_finite()) {
             return Err(SolveError::TargetNotFinite { handle });
         }
-        let motions: Vec<Motion> = self
-            .handles
-            .iter()
-            .zip(world_targets)
-            .map(|(handle, target)| handle.motion(target))
-            .collect();
+        let map_of = |section: usize| match &self.sections {
+            Some(sections) => &world_targets[sections.handle_of[section]],
+            None => &world_targets[section],
+        };
+        let handles = self.handles.iter().enumerate();
+        let motions: Vec<Motion> = handles.map(|(number, handle)| handle.motion(map_of(number))).collect();
+        self.own_ways.clear();
         self.aim(motions, Offsets::default(), &[]);
         Ok(())
     }
 
-    /// Like [`Bound::set_targets`], but a handle's target may be places for all its vertices instead of a map: every
-    /// vertex of a hard handle then goes exactly to its place, and every vertex of a soft handle is pulled there.
+    /// Like [`Bound::set_targets`], but a handle's target may be places or maps for all its vertices instead of one map:
+    /// every vertex of a hard handle then goes exactly to its place, and every vertex of a soft handle is pulled there.
     ///
     /// # Errors
     /// Those of [`Bound::set_targets`], and [`SolveError::NoPlaces`] for a method that takes no places; the previous
-    /// targets stay.
+    /// targets stay. Every method takes maps of a handle with [`crate::Constraints::sections`].
     pub fn set_places(&mut self, targets: &[Target]) -> Result<(), SolveError> {
-        let expected = self.handles.len();
-        if targets.len() != expected {
-            let found = targets.len();
-            return Err(SolveError::TargetCount { found, expected });
-        }
-        let mut offsets = Offsets::default();
-        let mut placed = vec![false; expected];
-        let mut motions = Vec::with_capacity(expected);
+        self.check_count(targets.len())?;
         for (number, target) in targets.iter().enumerate() {
+            self.check_target(number, target)?;
+        }
+        let of_sections = self.sections.as_ref().map(|sections| sections.targets(targets));
+        let mut aims = Aims::default();
+        for (number, target) in of_sections.as_deref().unwrap_or(targets).iter().enumerate() {
             let handle = &self.handles[number];
-            motions.push(match target {
-                Target::Map(map) if !map.is_finite() => return Err(SolveError::TargetNotFinite { handle: number }),
+            let motion = match target {
                 Target::Map(map) => handle.motion(map),
                 Target::Places(places) => {
-                    let world_rest = self.world_rest.get(number);
-                    let world_rest = world_rest.ok_or(SolveError::NoPlaces { method: self.name })?;
-                    let displacements = displacements_to(places, number, handle, world_rest)?;
-                    placed[number] = true;
-                    offsets.take(handle, world_rest, &displacements)
+                    let rest = &self.world_rest[number];
+                    let displacements: Vec<DVec3> =
+                        places.iter().zip(rest).map(|(place, rest)| *place - *rest).collect();
+                    aims.offsets.take(handle, rest, &displacements)
                 }
-            });
+                Target::Maps(maps) => {
+                    let ways = ways(maps, &self.world_rest[number]);
+                    let motion = mean_motion(handle, maps);
+                    if self.takes_places {
+                        aims.offsets.add(handle, &self.world_rest[number], &ways, &motion);
+                    } else if self.is_exact && self.soft[number].is_none() {
+                        aims.own_ways.extend(handle.vertices.iter().copied().zip(ways));
+                    }
+                    motion
+                }
+            };
+            aims.placed.push(!matches!(target, Target::Map(_)));
+            aims.motions.push(motion);
         }
-        self.aim(motions, offsets.sorted(), &placed);
+        let is_rest = aims.own_ways.iter().all(|(_, way)| *way == DVec3::ZERO);
+        self.own_ways = if is_rest { Vec::new() } else { aims.own_ways };
+        self.aim(aims.motions, aims.offsets.sorted(), &aims.placed);
         Ok(())
     }
 
     /// The surface vertices of a handle, ascending; empty for a number that no handle has.
     pub fn handle_vertices(&self, handle: usize) -> &[u32] {
-        self.handles.get(handle).map_or(&[], |handle| &handle.vertices)
+        match &self.sections {
+            Some(sections) => sections.vertices(handle),
+            None => self.handles.get(handle).map_or(&[], |handle| &handle.vertices),
+        }
     }
 
-    /// Sets motions and offsets, and updates the warnings for these targets. `placed` tells for each handle whether its
-    /// vertices have places.
+    fn check_count(&self, found: usize) -> Result<(), SolveError> {
+        let handles = self.sections.as_ref().map(Sections::handle_count);
+        let expected = handles.unwrap_or(self.handles.len());
+        if found == expected {
+            Ok(())
+        } else {
+            Err(SolveError::TargetCount { found, expected })
+        }
+    }
+
+    /// Refuses a target that is not finite, has a wrong number of entries, or is of a kind that the method does not take.
+    fn check_target(&self, handle: usize, target: &Target) -> Result<(), SolveError> {
+        let vertices = self.handle_vertices(handle);
+        let (found, is_taken, wrong) = match target {
+            Target::Map(map) if map.is_finite() => return Ok(()),
+            Target::Map(_) => return Err(SolveError::TargetNotFinite { handle }),
+            Target::Places(places) => {
+                let wrong = places.iter().position(|place| !place.is_finite());
+                (places.len(), self.takes_places, wrong)
+            }
+            Target::Maps(maps) => {
+                let wrong = maps.iter().position(|map| !map.is_finite());
+                (maps.len(), self.takes_places || self.sections.is_some(), wrong)
+            }
+        };
+        let expected = vertices.len();
+        if !is_taken {
+            return Err(SolveError::NoPlaces { method: self.name });
+        }
+        if found != expected {
+            return Err(SolveError::PlaceCount {
+                handle,
+                found,
+                expected,
+            });
+        }
+        match wrong {
+            Some(at) => Err(SolveError::PlaceNotFinite {
+                handle,
+                vertex: vertices[at],
+            }),
+            None => Ok(()),
+        }
+    }
+
+    /// Sets motions and offsets, and updates the warnings for these targets. `placed` tells for each bound handle whether
+    /// its vertices have places.
     fn aim(&mut self, motions: Vec<Motion>, offsets: Offsets, placed: &[bool]) {
         if offsets != *self.offsets {
             self.put_offsets(Arc::new(offsets));
@@ -84,40 +140,40 @@ impl Bound {
         self.warnings
             .extend(of_binding.filter(|warning| !warning.is_void(placed)).cloned());
         self.binding_warnings = self.warnings.len();
-        self.warnings.extend(self.method.blind_to(&self.motions));
-        let limit = self.turn_limit.as_ref();
-        self.warnings
-            .extend(limit.and_then(|limit| limit.warning(&self.handles, &self.motions)));
+        let blind = self.method.blind_to(&self.motions);
+        let limit = self.turn_limit.as_ref().and_then(|limit| match &self.sections {
+            None => limit.warning(&self.handles, &self.motions),
+            // A section follows its neighbours, so its turn against the far end is no sign of a narrow limb.
+            Some(sections) => limit.warning_of(&self.handles, &self.motions, &sections.are_whole()),
+        });
+        let of_targets = self.about_handles(blind.into_iter().chain(limit).collect());
+        self.warnings.extend(of_targets);
         self.target_warnings = self.warnings.len();
+    }
+
+    /// The warnings with the numbers of handles instead of those of sections.
+    pub(super) fn about_handles(&self, warnings: Vec<Warning>) -> Vec<Warning> {
+        match &self.sections {
+            None => warnings,
+            Some(sections) => {
+                let number = |section: usize| sections.handle_of[section];
+                warnings.into_iter().map(|warning| warning.renumbered(number)).collect()
+            }
+        }
     }
 }
 
-/// The displacements that take a handle's vertices to these places.
-///
-/// # Errors
-/// A wrong count, or a place that is not finite.
-fn displacements_to(
-    places: &[DVec3],
-    number: usize,
-    handle: &Handle,
-    world_rest: &[DVec3],
-) -> Result<Vec<DVec3>, SolveError> {
-    if places.len() != world_rest.len() {
-        return Err(SolveError::PlaceCount {
-            handle: number,
-            found: places.len(),
-            expected: world_rest.len(),
-        });
-    }
-    if let Some(at) = places.iter().position(|place| !place.is_finite()) {
-        return Err(SolveError::PlaceNotFinite {
-            handle: number,
-            vertex: handle.vertices[at],
-        });
-    }
-    Ok(places
-        .iter()
-        .zip(world_rest)
-        .map(|(place, rest)| *place - *rest)
-        .collect())
+/// The motions of all handles, with the places of single vertices.
+#[derive(Default)]
+struct Aims {
+    motions: Vec<Motion>,
+    offsets: Offsets,
+    own_ways: Vec<(u32, DVec3)>,
+    placed: Vec<bool>,
+}
+
+/// The displacement of each point by its map.
+fn ways(maps: &[DAffine3], world_rest: &[DVec3]) -> Vec<DVec3> {
+    let way = |(map, rest): (&DAffine3, &DVec3)| (map.matrix3 - DMat3::IDENTITY) * *rest + map.translation;
+    maps.iter().zip(world_rest).map(way).collect()
 }

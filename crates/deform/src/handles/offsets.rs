@@ -42,10 +42,15 @@ impl Offsets {
             return Motion::default();
         };
         let motion = handle.rigid_motion(&fit);
+        self.add(handle, world_rest, displacements, &motion);
+        motion
+    }
+
+    /// Adds the offsets of a handle's vertices from its motion to their displacements.
+    pub fn add(&mut self, handle: &Handle, world_rest: &[DVec3], displacements: &[DVec3], motion: &Motion) {
         let each = handle.vertices.iter().zip(world_rest).zip(displacements);
         let left = each.map(|((&vertex, &rest), &wanted)| (vertex, wanted - motion.displace(handle.coordinates(rest))));
         self.of_vertices.extend(left);
-        motion
     }
 
     /// Sorts the offsets, after all handles were taken.

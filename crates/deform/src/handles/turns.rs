@@ -56,22 +56,27 @@ const ROOM_DEGREES: f64 = 5.0;
 impl TurnLimit {
     /// A sentence about two turns that differ by more than the method's limit.
     pub fn warning(&self, handles: &[Handle], motions: &[Motion]) -> Option<Warning> {
+        self.warning_of(handles, motions, &vec![true; handles.len()])
+    }
+
+    /// The same about the handles that are `counted`.
+    pub fn warning_of(&self, handles: &[Handle], motions: &[Motion], counted: &[bool]) -> Option<Warning> {
         let Followed { most_degrees, beyond } = self.followed;
         let turn = |(handle, motion): (&Handle, &Motion)| Polar::of(&handle.linear(motion)).turn_rad;
-        let turns: Vec<DQuat> = handles
-            .iter()
-            .zip(motions)
-            .map(|own| DQuat::from_scaled_axis(turn(own)))
+        let own = handles.iter().zip(motions).enumerate();
+        let turns: Vec<(usize, DQuat)> = own
+            .filter(|(number, _)| counted[*number])
+            .map(|(number, own)| (number, DQuat::from_scaled_axis(turn(own))))
             .collect();
-        let fixed = self.is_held.then_some(DQuat::IDENTITY);
+        let fixed = self.is_held.then_some((usize::MAX, DQuat::IDENTITY));
         let mut worst = (0.0, 0);
-        for (number, turn) in turns.iter().enumerate() {
-            for other in turns[..number].iter().chain(&fixed) {
+        for (place, (number, turn)) in turns.iter().enumerate() {
+            for (_, other) in turns[..place].iter().chain(&fixed) {
                 // The angle's cosine would lose small angles.
                 let between = (*turn * other.conjugate()).to_scaled_axis().length();
                 let degrees = between.min(std::f64::consts::TAU - between).to_degrees();
                 if degrees > worst.0 {
-                    worst = (degrees, number);
+                    worst = (degrees, *number);
                 }
             }
         }

@@ -147,6 +147,12 @@ pub(crate) trait DeformMethod: Options {
         false
     }
 
+    /// Returns true if the shape depends on the handles' turns, and not only on the positions of their vertices. A
+    /// method that takes no turns takes places.
+    fn takes_turns(&self) -> bool {
+        true
+    }
+
     /// Bytes of a solved vertex in the method's tables, without matrices and factors, whose entries are counted one by
     /// one: as allocated, measured by `tests/memory.rs`.
     fn row_bytes(&self) -> usize {

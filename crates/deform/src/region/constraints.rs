@@ -26,6 +26,9 @@ pub struct Constraints<'a> {
     /// The behaviour of single components that nothing holds, by their number in the topology, instead of
     /// [`crate::Problem::loose`]. The last entry for a component counts.
     pub parts: &'a [(u32, Loose)],
+    /// For each surface vertex of a handle: the section of its handle. Vertices of one section turn alike, and a handle
+    /// of several sections has several turns, which [`crate::Target::Maps`] gives. Empty if every handle is one section.
+    pub sections: &'a [u16],
 }
 
 /// The range of a continuity.
@@ -42,6 +45,7 @@ impl Constraints<'_> {
         for (table, found, expected) in [
             ("the table of handles' weights", self.soft.len(), handle_count),
             ("the continuity table", self.continuity.len(), vertex_count),
+            ("the table of sections", self.sections.len(), vertex_count),
         ] {
             if found != 0 && found != expected {
                 return Err(BindError::Length { table, found, expected });

@@ -78,6 +78,10 @@ impl DeformMethod for Wrinkles {
         true
     }
 
+    fn takes_turns(&self) -> bool {
+        false
+    }
+
     fn bind(&self, input: &BindInput<'_>) -> Result<Box<dyn BoundMethod>, BindError> {
         match input.attachment {
             Some(Attachment::Shapes(examples)) if !examples.shapes.is_empty() => {

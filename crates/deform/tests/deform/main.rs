@@ -36,6 +36,7 @@ mod rebind;
 mod rig;
 mod rigid_parts;
 mod robust;
+mod sections;
 mod shared;
 mod shells;
 mod soft;

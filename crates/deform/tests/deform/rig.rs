@@ -14,6 +14,7 @@ pub struct Scene {
     pub continuity: Vec<f64>,
     pub loose: Loose,
     pub parts: Vec<(u32, Loose)>,
+    pub sections: Vec<u16>,
     pub method: Method,
     pub attachments: Vec<(&'static str, Attachment)>,
 }
@@ -32,6 +33,7 @@ impl Scene {
             continuity: Vec::new(),
             loose: Loose::Follow,
             parts: Vec::new(),
+            sections: Vec::new(),
             method: Method::default(),
             attachments: Vec::new(),
         }
@@ -95,6 +97,7 @@ impl Scene {
                 soft: &self.soft,
                 continuity: &self.continuity,
                 parts: &self.parts,
+                sections: &self.sections,
             },
             loose: self.loose,
             method,

@@ -133,7 +133,7 @@ pub(super) const RESET_HANDLE: Entry<()> = Entry {
     scope: Scope::Document,
     unavailable: |state, ()| match state.selected() {
         Err(reason) => Some(reason),
-        Ok(handle) if !handle.is_displaced() => {
+        Ok(handle) if handle.transform.is_identity() => {
             Some(format!("{} is already at its rest position.", handle.name).into())
         }
         Ok(_) => None,

@@ -4,6 +4,7 @@ use glam::{DAffine3, DVec3};
 use pliant_mesh::MirrorPlane;
 
 use super::handle_colour::handle_colour;
+use super::handle_line::HandleLine;
 use super::handle_transform::HandleTransform;
 use super::turn::followed;
 
@@ -45,6 +46,8 @@ pub struct Handle {
     pub twin: Option<Twin>,
     /// The handle with which it rides along.
     pub parent: Option<HandleId>,
+    /// The line that its vertices follow before its transform moves them.
+    pub line: Option<HandleLine>,
 }
 
 /// The place of a handle's pivot.
@@ -102,6 +105,7 @@ impl Handle {
             continuity: None,
             twin: None,
             parent: None,
+            line: None,
         }
     }
 
@@ -119,6 +123,20 @@ impl Handle {
             HandleTransform::Matrix(_) => DVec3::ZERO,
         };
         self.transform = transform;
+    }
+
+    /// Brings it back to its rest position, its line too.
+    pub(crate) fn come_to_rest(&mut self) {
+        self.put(HandleTransform::IDENTITY);
+        self.line = self.line.as_ref().and_then(HandleLine::at_rest);
+    }
+
+    /// Makes its present position its rest position.
+    pub(crate) fn apply(&mut self) {
+        let affine = self.affine();
+        self.line = self.line.as_ref().and_then(|line| line.applied(&affine));
+        self.pivot = self.centre();
+        self.put(HandleTransform::IDENTITY);
     }
 
     /// Makes it a pin. It moves nothing around it, and has no twin.
@@ -148,7 +166,7 @@ impl Handle {
 
     /// Returns true if it is away from its rest position.
     pub fn is_displaced(&self) -> bool {
-        !self.transform.is_identity()
+        !self.transform.is_identity() || self.line.as_ref().is_some_and(|line| !line.is_rest())
     }
 
     /// The present position of its pivot, in world space.

@@ -14,10 +14,12 @@ use super::field::{FieldEntry, FieldKind};
 use super::json::parse;
 use super::loose::{OneOrList, StoredLoose};
 use super::method::{method_to_value, read_method};
+use super::pose::PoseEntry;
 use super::project::StoredKept;
 use super::reader::read;
 use super::selector::Selector;
 use crate::HandleTransform;
+use crate::document::{HandleCurve, HandleLine, HandleSketch};
 use crate::warning::shortened;
 
 /// The version of the edit format for reading and writing.
@@ -75,11 +77,22 @@ pub struct HandleEntry {
     /// Its name, for a person. Without names they are "handle 1", "handle 2", ..
     #[serde(default)]
     pub name: String,
-    /// Its vertices.
-    pub select: Selector,
+    /// Its vertices, unless it has a `pose`. A handle with a line may do without: a curve then has the vertices of the
+    /// triangles under it. A sketch has those of the selected vertices, or of all, that are on the outline.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub select: Option<Selector>,
+    /// The limb that it is, by the pose tool's own guess, in place of `select`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pose: Option<PoseEntry>,
     /// Their motion.
     #[serde(default)]
     pub transform: HandleTransform,
+    /// The curve that they follow before `transform` moves them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub curve: Option<HandleCurve>,
+    /// Or the line to which their outline is drawn.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sketch: Option<HandleSketch>,
     /// Its weight, in [`SOFT_RANGE`], if it only pulls at its vertices.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub soft: Option<f64>,
@@ -343,7 +356,7 @@ impl EditFile {
                 attachment.moved().is_none_or(|moved| **moved == rest)
             }
         });
-        are_at_rest.into_iter().all(|is| is) && self.handles.iter().all(|handle| handle.transform.is_identity())
+        are_at_rest.into_iter().all(|is| is) && self.handles.iter().all(HandleEntry::is_at_rest)
     }
 
     /// The files that attachments name: each attachment's name, and the file's, relative to the edit's folder.
@@ -381,13 +394,52 @@ impl EditFile {
 }
 
 impl HandleEntry {
+    /// Returns true if it moves nothing.
+    fn is_at_rest(&self) -> bool {
+        self.transform.is_identity() && self.line().is_none_or(|line| line.is_rest())
+    }
+
+    /// The line that it follows.
+    pub(crate) fn line(&self) -> Option<HandleLine> {
+        HandleLine::of(self.curve.as_ref(), self.sketch.as_ref())
+    }
+
+    /// Its weight, if it is soft: its own, or that of its sketch.
+    pub(crate) fn softness(&self) -> Option<f64> {
+        self.soft.or_else(|| self.sketch.as_ref()?.soft())
+    }
+
     fn check(&self) -> Result<(), EditError> {
+        if self.curve.is_some() && self.sketch.is_some() {
+            let sentence = "has both `curve` and `sketch`: keep one of them".to_owned();
+            let place = String::new();
+            return Err(EditError::Other { place, sentence });
+        }
         let weight = FieldKind {
             name: "a weight",
             range: SOFT_RANGE,
             may_be_rigid: false,
         };
-        self.select.check().map_err(|error| error.under("select"))?;
+        let refuse = |sentence: &str| {
+            let (place, sentence) = (String::new(), sentence.to_owned());
+            Err(EditError::Other { place, sentence })
+        };
+        match (&self.select, &self.pose, self.line()) {
+            (Some(_), Some(_), _) => {
+                return refuse("has both `select` and `pose`: keep one, its vertices or a point on its limb");
+            }
+            (_, Some(_), Some(_)) => {
+                return refuse("has a `pose` and a line: keep one, a point on its limb or the line that it follows");
+            }
+            (Some(select), ..) => select.check().map_err(|error| error.under("select"))?,
+            (None, None, None) => {
+                return Err(EditError::Missing {
+                    member: "select",
+                    place: String::new(),
+                });
+            }
+            (None, ..) => {}
+        }
         if let Some(value) = self.soft {
             weight.check(value).map_err(|error| error.under("soft"))?;
         }

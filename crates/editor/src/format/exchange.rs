@@ -10,7 +10,7 @@ use super::attachment::AttachmentEntry;
 use super::examples::entries_of;
 use super::project::StoredKept;
 use super::selector::ranges_of;
-use crate::document::{Content, Document, Handle, HandleId, Paint, PivotPlace, Reach, followed};
+use crate::document::{Content, Document, Handle, HandleId, HandleLine, Paint, PivotPlace, Reach, followed};
 use crate::region::{FileContacts, Region, region_input};
 use crate::{EditError, EditFile, FieldEntry, HandleEntry, HandleTransform, Selector};
 
@@ -49,7 +49,7 @@ pub(crate) fn export(document: &Document, model: &Arc<Model>) -> Result<EditFile
     let strength = if in_full.is_some() { document.strength() } else { 1.0 };
     let document = in_full.as_ref().unwrap_or(document);
     let region = Region::measure(
-        &region_input(model, document, &FileContacts::default()),
+        &region_input(&**model, document, &FileContacts::default()),
         &pliant_mesh::Cancel::new(),
     )
     .unwrap_or_else(|_| Region::still(document.paint.len()));
@@ -74,8 +74,11 @@ pub(crate) fn export(document: &Document, model: &Arc<Model>) -> Result<EditFile
         if let Some(handle) = document.handle(id) {
             handles.push(HandleEntry {
                 name: handle.name.clone(),
-                select: ranges(Role::Handle(index as u16)),
+                select: Some(ranges(Role::Handle(index as u16))),
+                pose: None,
                 transform: with_pivot(handle),
+                curve: handle.line.as_ref().and_then(HandleLine::curve).cloned(),
+                sketch: handle.line.as_ref().and_then(HandleLine::sketch).cloned(),
                 soft: handle.soft,
                 continuity: handle.continuity,
                 parent: parent_place(handle.parent),
@@ -168,6 +171,7 @@ pub(crate) fn import(edit: &EditFile, model: &Model) -> Result<Document, EditErr
             soft: setup.soft[index],
             continuity: edit.handles[index].continuity,
             parent: edit.handles[index].parent.map(|place| HandleId(place as u16)),
+            line: edit.handles[index].line(),
             ..Handle::new(id, handle.name.clone())
         });
         document.next_handle = id.0.saturating_add(1);

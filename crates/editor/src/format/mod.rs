@@ -7,6 +7,7 @@
 
 mod attachment;
 mod beginning;
+mod curve;
 mod edit_error;
 mod edit_file;
 mod examples;
@@ -18,11 +19,13 @@ mod json;
 pub(crate) mod kept;
 mod loose;
 mod method;
+mod pose;
 mod project;
 mod reader;
 mod refusal;
 mod selector;
 mod setup;
+mod sketch;
 pub(crate) mod stored_field;
 mod transform;
 
@@ -36,6 +39,7 @@ pub(crate) use exchange::{export, without_pivot};
 pub use field::FieldEntry;
 pub use flow_file::{Accuracy, DyeEntry, FlowFile, FlowMotion, VelocityEntry};
 pub use joins::{JoinsFile, Placement};
+pub use pose::PoseEntry;
 pub use project::{MeshReference, Project, StoredKept, geometry_hash};
 pub use selector::{Axis, Selector};
 pub use setup::{HandleSetup, Rest, Setup};

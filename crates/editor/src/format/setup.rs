@@ -5,17 +5,20 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
 use pliant_deform::{Attachment, CONTINUITY_RANGE, Constraints, Examples, Loose, Method, Problem, Role, Warning};
-use pliant_mesh::{Model, Surface, SurfaceVertex};
+use pliant_mesh::{Bvh, Model, Surface, SurfaceVertex, triangles_under};
 
 use super::attachment::on_model;
 use super::edit_error::EditError;
-use super::edit_file::EditFile;
+use super::edit_file::{EditFile, HandleEntry};
 use super::exchange::with_pivot;
-use crate::HandleTransform;
+use super::pose::Limbs;
+use super::selector::Selector;
 use crate::bending::{Kept, Targets};
-use crate::document::{Document, HandleId, attachment_part};
+use crate::document::{Document, HandleId, HandleLine, attachment_part};
+use crate::lines::Lines;
 use crate::region::Region;
 use crate::warning::{shortened, worded};
+use crate::{HandleTransform, Selection, outline};
 
 /// The input of [`pliant_deform::Problem`] from an edit, and the handles' transforms.
 #[derive(Clone, PartialEq, Debug)]
@@ -24,6 +27,10 @@ pub struct Setup {
     pub roles: Vec<Role>,
     /// The handles; [`Role::Handle`] is the index.
     pub handles: Vec<HandleSetup>,
+    /// The lines that handles follow.
+    pub lines: Lines,
+    /// The shown share of the lines' way.
+    pub line_share: f64,
     /// The stiffness of each surface vertex, 1 by default.
     pub stiffness: Vec<f64>,
     /// Each handle's weight, if it is soft.
@@ -90,6 +97,7 @@ impl Setup {
                 soft: &self.soft,
                 continuity: &self.continuity,
                 parts: &self.loose_parts,
+                sections: self.lines.sections(),
             },
             loose: self.loose,
             method: &self.method,
@@ -99,10 +107,19 @@ impl Setup {
     }
 
     /// The setup of a document, with the regions that follow from it.
-    pub(crate) fn of_document(document: &Document, region: &Region) -> Self {
+    /// `of_file` is the surface in the file.
+    pub(crate) fn of_document(document: &Document, region: &Region, of_file: &Surface) -> Self {
         let handles = || region.handles.iter().filter_map(|&id| document.handle(id));
         let stiffness = document.stiffness();
+        let rest = region.rest_surface.as_ref().map(|surface| Rest {
+            displacements: Arc::clone(&document.rest),
+            surface: Arc::clone(surface),
+        });
+        let lines = handles().map(|handle| handle.line.as_ref());
+        let surface = rest.as_ref().map_or(of_file, |rest| &rest.surface);
         Self {
+            lines: Lines::of(lines, &region.roles, surface),
+            line_share: document.strength(),
             roles: region.roles.to_vec(),
             handles: handles()
                 .map(|handle| HandleSetup {
@@ -130,10 +147,7 @@ impl Setup {
             kept: document
                 .to_go_on_from()
                 .and_then(|kept| Kept::of(&kept, region.handles.iter().copied())),
-            rest: region.rest_surface.as_ref().map(|surface| Rest {
-                displacements: Arc::clone(&document.rest),
-                surface: Arc::clone(surface),
-            }),
+            rest,
         }
     }
 
@@ -164,7 +178,8 @@ impl Setup {
     /// points, and the weights of those examples that bend the surface, times `t`.
     pub fn targets_at(&self, t: f64) -> Targets {
         let part = |attachment| attachment_part(&self.method, attachment, t);
-        Targets::new(self.targets(t), self.attachment().map(part).as_ref())
+        let targets = Targets::new(self.targets(t), self.attachment().map(part).as_ref());
+        targets.along(&self.lines, self.line_share * t)
     }
 
     /// The handles' maps at the share `t` of the motion, 0 at rest and 1 at their targets.
@@ -173,6 +188,38 @@ impl Setup {
             .iter()
             .map(|handle| handle.transform.at(t, handle.pivot))
             .collect()
+    }
+}
+
+impl HandleEntry {
+    /// Its vertices.
+    fn members(&self, index: usize, model: &Model) -> Result<Selection, EditError> {
+        let select = self.select.as_ref();
+        let selected = select.map(|select| select.evaluate_at(model, &format!("handles[{index}].select")));
+        let selected = selected.transpose()?;
+        let surface = &model.surface;
+        let mut members = Selection::none(surface.positions.len());
+        match (self.line(), selected) {
+            (Some(HandleLine::Sketch(sketch)), selected) => {
+                let is_selected = |vertex| selected.as_ref().is_none_or(|own| own.contains(vertex));
+                let matched = outline::matched(&sketch, surface, is_selected).ok_or_else(|| EditError::Other {
+                    place: format!("handles[{index}].sketch"),
+                    sentence:
+                        "is beside no outline: draw it along one that is seen from there, or select more vertices"
+                            .to_owned(),
+                })?;
+                matched.into_iter().for_each(|(vertex, _)| members.insert(vertex));
+            }
+            (_, Some(selected)) => return Ok(selected),
+            (Some(HandleLine::Curve(curve)), None) => {
+                let bvh = Bvh::build(&surface.positions, &surface.triangles);
+                let under = triangles_under(curve.rest(), &bvh, &surface.triangles).into_iter();
+                let corners = under.flat_map(|triangle| surface.triangles[triangle as usize]);
+                corners.for_each(|vertex| members.insert(vertex));
+            }
+            (None, None) => {}
+        }
+        Ok(members)
     }
 }
 
@@ -188,19 +235,34 @@ impl EditFile {
         if self.handles.len() > usize::from(u16::MAX) {
             return Err(EditError::TooManyHandles(self.handles.len()));
         }
+        let poses = self.handles.iter().enumerate();
+        let limbs = Limbs::of(
+            poses.filter_map(|(index, entry)| Some((index, entry.pose.as_ref()?))),
+            model,
+        )?;
+        let mut members = Vec::with_capacity(self.handles.len());
+        for (index, entry) in self.handles.iter().enumerate() {
+            members.push(match limbs.at(index) {
+                Some(limb) => limb.own.clone(),
+                None => entry.members(index, model)?.iter().collect(),
+            });
+        }
         let mut roles = vec![Role::Fixed; model.surface.positions.len()];
-        for vertex in self.region.evaluate_at(model, "region")?.iter() {
-            roles[vertex.index()] = Role::Free;
+        if limbs.is_empty() || self.region != Selector::All {
+            for vertex in self.region.evaluate_at(model, "region")?.iter() {
+                roles[vertex.index()] = Role::Free;
+            }
+        } else {
+            limbs.free(&members, model, &mut roles);
         }
         for vertex in self.fixed.evaluate_at(model, "fixed")?.iter() {
             roles[vertex.index()] = Role::Fixed;
         }
         let mut handles = Vec::with_capacity(self.handles.len());
         for (index, entry) in self.handles.iter().enumerate() {
-            let selection = entry.select.evaluate_at(model, &format!("handles[{index}].select"))?;
             let (mut sum, mut count) = (DVec3::ZERO, 0.0);
             let mut shared: Vec<(SurfaceVertex, u16)> = Vec::new();
-            for vertex in selection.iter() {
+            for &vertex in &members[index] {
                 if let Role::Handle(other) = roles[vertex.index()] {
                     shared.push((vertex, other));
                 }
@@ -222,20 +284,25 @@ impl EditFile {
                     index,
                 });
             }
-            let pivot = entry.transform.pivot_or(sum / count);
+            let middle = limbs.at(index).map_or(sum / count, |limb| limb.joint.centre);
+            let pivot = entry.transform.pivot_or(middle);
             handles.push(HandleSetup {
                 name: entry.name.clone(),
                 transform: entry.transform.part(self.strength, pivot),
                 pivot,
             });
         }
+        let lines: Vec<Option<HandleLine>> = self.handles.iter().map(HandleEntry::line).collect();
+        let lines = Lines::of(lines.iter().map(Option::as_ref), &roles, &model.surface);
         let stiffness = self.stiffness_on(model)?;
         let continuity = self.continuity_on(model, &roles)?;
         Ok(Setup {
             roles,
             handles,
+            lines,
+            line_share: self.strength,
             stiffness,
-            soft: self.handles.iter().map(|handle| handle.soft).collect(),
+            soft: self.handles.iter().map(HandleEntry::softness).collect(),
             continuity,
             loose: self.loose,
             loose_parts: self.loose_parts_on(model)?,

@@ -104,13 +104,14 @@ impl Alternative {
                 None => {
                     let setup = Setup {
                         method,
-                        ..Setup::of_document(&document, &region)
+                        ..Setup::of_document(&document, &region, &model.surface)
                     };
                     let problem = setup.problem(&model);
                     let bound = problem.bind_within(ordering.as_deref(), allowance.budget(), progress, cancel);
                     match bound {
                         Ok(bound) => Binding {
                             bound: Arc::new(Mutex::new(bound)),
+                            lines: setup.lines.clone(),
                             of,
                             bind_ms: clock_ms() - start_ms,
                             from_rest,
@@ -124,7 +125,7 @@ impl Alternative {
             };
             let start_ms = clock_ms();
             let mut bound = binding.bound.lock().unwrap_or_else(PoisonError::into_inner);
-            let solved = wanted.solve(&mut bound, cancel);
+            let solved = wanted.along(&binding.lines, &document).solve(&mut bound, cancel);
             drop(bound);
             let frame_ms = binding.frame_ms + clock_ms() - start_ms;
             Ok(Box::new(match solved {

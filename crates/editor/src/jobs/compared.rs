@@ -9,6 +9,7 @@ use pliant_mesh::Bounds;
 
 use crate::bending::Carried;
 use crate::document::{Document, HandleId, KeptShape, Versions};
+use crate::lines::Lines;
 
 /// The result of a comparison's job.
 #[derive(Debug)]
@@ -39,6 +40,8 @@ pub struct Figures {
 #[derive(Clone, Debug)]
 pub(super) struct Binding {
     pub(super) bound: Arc<Mutex<Bound>>,
+    /// The lines that its handles follow.
+    pub(super) lines: Lines,
     /// The edit for which it was last used.
     pub(super) of: Edit,
     pub(super) bind_ms: f64,

@@ -2,21 +2,26 @@
 
 use std::sync::{Arc, PoisonError};
 
-use glam::{DAffine3, DVec3};
+use glam::DVec3;
 use pliant_deform::Bound;
 
 use super::computed::Computed;
 use super::inspected::{Asked, Inspected};
 use super::slot::Work;
-use super::solving::maps;
+use super::solving::targets;
+use crate::bending::Targets;
 use crate::document::{Document, HandleId, sum_of_shapes};
 
 /// Queries the present binding; `None` while there is none.
 pub(super) fn inspect_work(computed: &Computed, document: &Document, asked: Asked) -> Option<Work<Inspected>> {
-    let bound = Arc::clone(&computed.slots.bind.last()?.bound);
+    let binding = computed.slots.bind.last()?;
+    let bound = Arc::clone(&binding.bound);
     let handles = computed.region.handles.clone();
     let is_base_wanted = asked.base && computed.inspectable().base;
-    let targets = is_base_wanted.then(|| maps(document, &handles)).flatten();
+    let targets = is_base_wanted
+        .then(|| targets(document, &document.method, &handles))
+        .flatten();
+    let targets = targets.map(|targets| targets.along(&binding.lines, document.strength()));
     let rest = document.applied.then(|| Arc::clone(&document.rest));
     Some(Box::new(move |_, cancel| {
         cancel.check()?;
@@ -36,9 +41,9 @@ pub(super) fn inspect_work(computed: &Computed, document: &Document, asked: Aske
 ///
 /// The last solve may have been for other targets than the document's, for example after undo, so this solves again:
 /// only linear methods have a base, and their result does not depend on the start.
-fn bent_base(bound: &mut Bound, targets: &[DAffine3]) -> Option<Vec<DVec3>> {
+fn bent_base(bound: &mut Bound, targets: &Targets) -> Option<Vec<DVec3>> {
     let mut base = vec![DVec3::ZERO; bound.vertex_count()];
-    bound.set_targets(targets).ok()?;
+    targets.set(bound).ok()?;
     bound.step(&mut base).ok()?;
     bound.base(&mut base).then_some(base)
 }

@@ -7,6 +7,7 @@ use pliant_deform::{Bound, ReusableFactor};
 use super::bound_controls::BoundControls;
 use super::inspected::Inspectable;
 use crate::document::HandleId;
+use crate::lines::Lines;
 use crate::warning::HandleWarning;
 
 /// The factorisation for the present regions.
@@ -18,14 +19,17 @@ pub struct PresentBinding {
     pub(super) inspectable: Inspectable,
     /// The parts that the next binding can reuse.
     pub(super) reusable_factor: Option<ReusableFactor>,
+    /// The lines that its handles follow.
+    pub(super) lines: Lines,
     /// Warnings about it.
     pub(super) warnings: Vec<HandleWarning>,
 }
 
 impl PresentBinding {
     /// A binding of these handles.
-    pub(super) fn of(bound: Bound, handles: &[HandleId]) -> Self {
+    pub(super) fn of(bound: Bound, handles: &[HandleId], lines: Lines) -> Self {
         Self {
+            lines,
             controls: BoundControls::of(&bound),
             inspectable: Inspectable::of(&bound),
             reusable_factor: bound.reusable_factor(),

@@ -254,7 +254,7 @@ impl Jobs {
             if !self.is_region_current() {
                 self.want(
                     |slots| &mut slots.region,
-                    |computed| region_work(region_input(&model, document, &computed.contacts)),
+                    |computed| region_work(region_input(Arc::clone(&model), document, &computed.contacts)),
                 );
             } else if missing.is_none() && !self.is_bound() && self.binds_something(document) {
                 let (revision, allowance) = (self.computed.slots.bind.wanted().0, self.allowance);

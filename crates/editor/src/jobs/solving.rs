@@ -11,13 +11,16 @@ use super::slot::{Unfinished, Work};
 use super::solved::{ControlPlaces, Descent, SolveResult, Solved};
 use crate::bending::{Carried, Kept, Start, Targets, Until};
 use crate::document::{Document, HandleId, sum_of_shapes};
+use crate::lines::Lines;
 use crate::warning::HandleWarning;
 
 /// Takes steps towards the handles' targets; `None` while nothing is bound.
 pub(super) fn solve_work(computed: &Computed, document: &Document) -> Option<Work<SolveResult>> {
-    let (bound, model) = (Arc::clone(&computed.slots.bind.last()?.bound), computed.model.clone()?);
+    let (binding, model) = (computed.slots.bind.last()?, computed.model.clone()?);
+    let (bound, lines) = (Arc::clone(&binding.bound), binding.lines.clone());
     let (handles, carried) = (&computed.region.handles, computed.carried.as_ref());
     let wanted = Wanted::of(document, &document.method, handles, &document.from_rest, carried)?;
+    let wanted = wanted.along(&lines, document);
     let newer_targets = computed.newer_targets.clone();
     Some(Box::new(move |_, cancel| {
         cancel.check()?;
@@ -39,8 +42,10 @@ pub(super) fn solve_work(computed: &Computed, document: &Document) -> Option<Wor
 /// Computes the control points' positions for the document's targets, whose shape is known; `None` while nothing is
 /// bound.
 pub(super) fn controls_work(computed: &Computed, document: &Document) -> Option<Work<SolveResult>> {
-    let bound = Arc::clone(&computed.slots.bind.last()?.bound);
+    let binding = computed.slots.bind.last()?;
+    let bound = Arc::clone(&binding.bound);
     let targets = targets(document, &document.method, &computed.region.handles)?;
+    let targets = targets.along(&binding.lines, document.strength());
     Some(Box::new(move |_, cancel| {
         cancel.check()?;
         let mut bound = bound.lock().unwrap_or_else(PoisonError::into_inner);
@@ -76,6 +81,14 @@ impl Wanted {
             start: start(document, handles, from_rest, carried)?,
             rest: document.applied.then(|| Arc::clone(&document.rest)),
         })
+    }
+
+    /// The same with handles that follow these lines.
+    pub(super) fn along(self, lines: &Lines, document: &Document) -> Self {
+        Self {
+            targets: self.targets.along(lines, document.strength()),
+            ..self
+        }
     }
 
     /// Takes steps until the shape is worth showing.
@@ -122,7 +135,7 @@ fn start(
 }
 
 /// The document's targets for handles in the region's order and for a method; `None` if a handle no longer exists.
-fn targets(document: &Document, method: &Method, handles: &[HandleId]) -> Option<Targets> {
+pub(super) fn targets(document: &Document, method: &Method, handles: &[HandleId]) -> Option<Targets> {
     let declared = method.declaration();
     let mut attachments = document.attachments.iter();
     let own = attachments.find(|(name, _)| declared.attachment(name).is_some());
@@ -133,7 +146,7 @@ fn targets(document: &Document, method: &Method, handles: &[HandleId]) -> Option
 }
 
 /// The maps of the handles in the region's order; `None` if one of them no longer exists.
-pub(super) fn maps(document: &Document, handles: &[HandleId]) -> Option<Vec<DAffine3>> {
+fn maps(document: &Document, handles: &[HandleId]) -> Option<Vec<DAffine3>> {
     let map = |id: &HandleId| document.handle(*id).map(|handle| handle.affine());
     handles.iter().map(map).collect()
 }

@@ -74,14 +74,18 @@ pub(super) fn bind_work(
     let (model, document, region) = (Arc::clone(model), document.clone(), computed.region.clone());
     let reusable_factor = computed.slots.bind.last().and_then(|last| last.reusable_factor.clone());
     Some(Box::new(move |progress, cancel| {
-        let setup = Setup::of_document(&document, &region);
+        let setup = Setup::of_document(&document, &region, &model.surface);
         let problem = Problem {
             revision,
             ..setup.problem(&model)
         };
         let (ordering, reusable_factor) = (ordering.as_deref(), reusable_factor.as_ref());
         match problem.rebind_within(ordering, reusable_factor, allowance.budget(), progress, cancel) {
-            Ok(bound) => Ok(Box::new(PresentBinding::of(bound, &region.handles))),
+            Ok(bound) => Ok(Box::new(PresentBinding::of(
+                bound,
+                &region.handles,
+                setup.lines.clone(),
+            ))),
             Err(BindError::Cancelled(cancelled)) => Err(cancelled.into()),
             Err(error) => Err(Unfinished::Failed(
                 error

@@ -14,6 +14,7 @@ mod rim;
 mod tips;
 
 use std::collections::BTreeMap;
+use std::ops::Deref;
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -29,10 +30,10 @@ use self::tips::free_tips;
 use crate::document::{Access, Document, HandleId, Paint, Reach, Tips};
 use crate::region::rim::rims;
 
-/// The input of the region; shared with the job that measures it.
+/// The input of the region. The job that measures it shares the model.
 #[derive(Clone, Debug)]
-pub(crate) struct RegionInput {
-    pub(crate) model: Arc<Model>,
+pub(crate) struct RegionInput<M = Arc<Model>> {
+    pub(crate) model: M,
     pub(crate) paint: Arc<Vec<Paint>>,
     pub(crate) handles: Vec<(HandleId, Reach)>,
     /// The rest shape's displacements from the file's; `None` if it is the file's.
@@ -105,7 +106,10 @@ impl Region {
     }
 
     /// Measures the region.
-    pub(crate) fn measure(input: &RegionInput, cancel: &Cancel) -> Result<Self, Cancelled> {
+    pub(crate) fn measure<M: Deref<Target = Model>>(
+        input: &RegionInput<M>,
+        cancel: &Cancel,
+    ) -> Result<Self, Cancelled> {
         let topology = &input.model.topology;
         let rest_surface = input
             .rest
@@ -183,9 +187,9 @@ impl Region {
 
 /// Sets free the unpainted components that follow. Returns these, and those with a person's setting, without bare
 /// points.
-fn free_loose(
+fn free_loose<M: Deref<Target = Model>>(
     roles: &mut [Role],
-    input: &RegionInput,
+    input: &RegionInput<M>,
     painted: &[bool],
     within: &[bool],
     cancel: &Cancel,
@@ -213,7 +217,10 @@ fn free_loose(
 }
 
 /// The vertices of each handle that are not locked, and the components with paint or a lock.
-fn painted(input: &RegionInput, is_locked: impl Fn(usize) -> bool) -> (Vec<Vec<SurfaceVertex>>, Vec<bool>) {
+fn painted<M: Deref<Target = Model>>(
+    input: &RegionInput<M>,
+    is_locked: impl Fn(usize) -> bool,
+) -> (Vec<Vec<SurfaceVertex>>, Vec<bool>) {
     let topology = &input.model.topology;
     let mut members: Vec<Vec<SurfaceVertex>> = vec![Vec::new(); input.handles.len()];
     let mut held = vec![false; topology.components().len()];
@@ -248,9 +255,9 @@ pub(crate) fn displaced(surface: &Surface, displacements: &[DVec3]) -> Surface {
 }
 
 /// The whole input of the region.
-pub(crate) fn region_input(model: &Arc<Model>, document: &Document, contacts: &FileContacts) -> RegionInput {
+pub(crate) fn region_input<M>(model: M, document: &Document, contacts: &FileContacts) -> RegionInput<M> {
     RegionInput {
-        model: Arc::clone(model),
+        model,
         paint: Arc::clone(&document.paint),
         handles: document
             .handles

@@ -40,11 +40,6 @@ pub(crate) struct NewLimb {
 }
 
 impl NewLimb {
-    /// The distance along the surface within which its handle moves the surface: all of the joint's falloff.
-    pub(crate) fn reach(&self) -> f64 {
-        2.0 * self.joint.falloff
-    }
-
     /// The vertices of its parent that become free to bend at the joint; `None` if the parent would keep no vertex.
     pub(crate) fn freed(&self, workspace: &Workspace) -> Option<Vec<SurfaceVertex>> {
         let (Some(parent), Some(model)) = (self.parent, workspace.model()) else {
@@ -55,7 +50,13 @@ impl NewLimb {
         let position = |vertex: SurfaceVertex| workspace.position(vertex);
         let is_parents = |vertex: &SurfaceVertex| document.paint()[vertex.index()] == Paint::Handle(parent);
         let mut search = DistanceSearch::default();
-        let near = search.within(&surface.triangles, &model.topology, position, &seeds, self.reach());
+        let near = search.within(
+            &surface.triangles,
+            &model.topology,
+            position,
+            &seeds,
+            self.joint.width(),
+        );
         let near = near.iter().map(|(vertex, _)| *vertex).filter(is_parents);
         let freed = open(workspace, near.filter(|vertex| self.own.binary_search(vertex).is_err()));
         let lost = freed.len() + self.own.iter().filter(|vertex| is_parents(vertex)).count();
@@ -89,7 +90,7 @@ pub(crate) fn hover(workspace: &mut Workspace, view: &View, pointer_px: Option<g
                 topology: &model.topology,
                 positions: &positions,
             };
-            Ok(joint_of(&shape, pick.triangle, pick.point, cancel)?.map(Arc::new))
+            Ok(joint_of(&shape, pick.triangle, pick.point, 0, cancel)?.map(Arc::new))
         }),
     );
 }

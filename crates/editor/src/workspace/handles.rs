@@ -344,7 +344,7 @@ pub(crate) fn reset_region(workspace: &mut Workspace) {
     workspace.step("Reset region", |workspace| {
         let before = workspace.document.clone();
         let document = &mut workspace.document;
-        document.change_handle(id, |handle| handle.put(HandleTransform::IDENTITY));
+        document.change_handle(id, Handle::come_to_rest);
         document.forget_shape_at(&taken);
         let members = members(document, id);
         let position = |vertex: &SurfaceVertex| model.surface.positions[vertex.index()] + document.rest[vertex.index()];

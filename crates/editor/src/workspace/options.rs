@@ -7,7 +7,7 @@ use pliant_deform::{Attachment, Loose, Method};
 
 use super::painting::members;
 use super::state::Workspace;
-use crate::document::{Document, HandleTransform, Tips};
+use crate::document::{Document, Tips};
 use crate::format::STRENGTH_RANGE;
 use crate::region::centroid;
 
@@ -34,7 +34,7 @@ pub(crate) fn reset_shape(workspace: &mut Workspace) {
         let pivots: Vec<_> = document.handles().iter().map(|handle| pivot(handle.id)).collect();
         document.change_handles(|handles| {
             for (handle, pivot) in handles.iter_mut().zip(pivots) {
-                handle.put(HandleTransform::IDENTITY);
+                handle.come_to_rest();
                 if was_applied {
                     handle.pivot = pivot;
                 }

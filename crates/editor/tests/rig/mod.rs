@@ -344,6 +344,7 @@ impl Rig {
                 soft: &soft,
                 continuity: &document.joints().unwrap_or_default(),
                 parts: &parts,
+                sections: &[],
             },
             loose: document.loose(),
             method,

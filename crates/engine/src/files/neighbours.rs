@@ -4,7 +4,7 @@
 //! spellings, and together no more than a budget allows.
 
 use std::cell::RefCell;
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, ErrorKind, Read as _};
 use std::path::{Path, PathBuf};
@@ -36,6 +36,8 @@ struct Known {
     by_path: HashMap<String, Bytes>,
     /// The bytes by the place on disk, to which several paths may lead.
     by_place: HashMap<PathBuf, (Bytes, fs::Metadata)>,
+    /// The places on disk that the file names without a need for their bytes.
+    unread: BTreeSet<PathBuf>,
     bytes: u64,
 }
 
@@ -58,9 +60,10 @@ impl Neighbours {
         Self { budget, ..self }
     }
 
-    /// The places on disk of the neighbours read so far.
+    /// The places on disk of the neighbours that the file named so far, read or not.
     pub fn places(&self) -> Vec<PathBuf> {
-        self.known.borrow().by_place.keys().cloned().collect()
+        let known = self.known.borrow();
+        known.by_place.keys().chain(&known.unread).cloned().collect()
     }
 
     /// The places on disk of the neighbours read so far, sorted, each with its stamp.
@@ -138,6 +141,18 @@ impl Resolver for Neighbours {
         let bytes = self.read_once(&path).map_err(|error| reason(&error))?;
         self.known.borrow_mut().by_path.insert(path, bytes.clone());
         Ok(bytes)
+    }
+
+    fn note_unread(&self, uri: &str) -> bool {
+        let Ok(path) = relative(uri) else {
+            return false;
+        };
+        let folders = self.folder_behind.iter().chain([&self.folder]);
+        let places = folders.filter_map(|folder| fs::canonicalize(neighbour_path(folder, &path)).ok());
+        let places: Vec<PathBuf> = places.filter(|place| place.is_file()).collect();
+        let exists = !places.is_empty();
+        self.known.borrow_mut().unread.extend(places);
+        exists
     }
 }
 

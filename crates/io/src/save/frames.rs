@@ -134,8 +134,8 @@ fn turning(mean: DMat3) -> Option<DMat3> {
 }
 
 /// Groups the moved twins and numbers the groups by their first vertex, so that neighbours' sums are near each other in
-/// memory; numbered in the order of the hashes, every sum would miss the cache. Sorting by a hash can run in parallel,
-/// filling a hash table can't.
+/// memory; numbered in the order of the hashes, every sum would miss the cache. Only vertices at a rim have twins, so
+/// the others are neither hashed nor sorted. Sorting by a hash can run in parallel, filling a hash table can't.
 fn group(
     drawn: &Drawn,
     positions: &[DVec3],
@@ -150,16 +150,23 @@ fn group(
         let [d, e, f] = normals.get(v).copied().unwrap_or(DVec3::ZERO).to_array().map(bits);
         [a, b, c, d, e, f]
     };
-    let mut moved: Vec<(u64, u32)> = (0..positions.len())
+    let is_at_rim = twins::rim(drawn);
+    let mut group_of: Vec<u32> = (0..positions.len())
         .into_par_iter()
-        .filter(|&v| !bit_equal(drawn.positions[v], positions[v]))
-        .map(|v| (hash(key(v)), v as u32))
+        .map(|v| match bit_equal(drawn.positions[v], positions[v]) {
+            true => NO_GROUP,
+            false => v as u32,
+        })
         .collect();
     course.reach(1, 4)?;
+    let mut moved: Vec<(u64, u32)> = (0..positions.len())
+        .into_par_iter()
+        .filter(|&v| is_at_rim[v] && group_of[v] != NO_GROUP)
+        .map(|v| (hash(key(v)), v as u32))
+        .collect();
     moved.par_sort_unstable();
     course.reach(2, 4)?;
-    // The first step finds the lowest twin of each vertex, which is the vertex itself if it has none.
-    let mut group_of = vec![NO_GROUP; positions.len()];
+    // Finds the lowest twin of each vertex, which is the vertex itself if it has none.
     for run in moved.chunk_by(|a, b| a.0 == b.0) {
         for (k, &(_, v)) in run.iter().enumerate() {
             let twin = run[..k]
@@ -173,7 +180,7 @@ fn group(
         .map(|(_, v)| v)
         .filter(|&v| group_of[v as usize] == v)
         .collect();
-    twins::for_each(drawn, normals, &moved, |v, twin| {
+    twins::for_each(drawn, normals, &is_at_rim, &moved, |v, twin| {
         let [own, other] = [v, twin].map(|v| root(&mut group_of, v));
         group_of[own.max(other) as usize] = own.min(other);
     });

@@ -21,12 +21,20 @@ const MOST_COMPARED: usize = 64;
 /// A direction that is no mesh's axis.
 const DIRECTION: DVec3 = DVec3::new(0.533_817_26, 0.617_309_04, 0.577_854_49);
 
-/// Calls `join` with each vertex of `among` (by number) and an earlier twin of it.
-pub(super) fn for_each(drawn: &Drawn, normals: &[DVec3], among: &[u32], mut join: impl FnMut(u32, u32)) {
-    let is_at_rim = rim(drawn);
-    let reach = reaches(drawn, &is_at_rim);
+/// Calls `join` with each vertex of `among` (by number, all of them at a [rim]) and an earlier twin of it.
+pub(super) fn for_each(
+    drawn: &Drawn,
+    normals: &[DVec3],
+    is_at_rim: &[bool],
+    among: &[u32],
+    mut join: impl FnMut(u32, u32),
+) {
+    if among.is_empty() {
+        return;
+    }
+    let reach = reaches(drawn, is_at_rim);
     let mut line: Vec<(f64, u32)> = (among.iter().copied())
-        .filter(|&v| is_at_rim[v as usize] && reach[v as usize] > 0.0)
+        .filter(|&v| reach[v as usize] > 0.0)
         .map(|v| (drawn.positions[v as usize].dot(DIRECTION), v))
         .collect();
     line.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
@@ -48,20 +56,21 @@ pub(super) fn for_each(drawn: &Drawn, normals: &[DVec3], among: &[u32], mut join
     }
 }
 
-/// Whether each vertex is at the rim of the triangles around it, as the numbers of corners connect them. Around an
-/// interior vertex, each neighbour follows one triangle's corner and precedes another's, so that the sums are equal; a
-/// rim with equal sums is as unlikely as two equal hashes.
-fn rim(drawn: &Drawn) -> Vec<bool> {
+/// Whether each vertex is at the rim of the triangles around it, as the numbers of corners connect them, or in no
+/// triangle. Around an interior vertex, each neighbour follows one triangle's corner and precedes another's, so that the
+/// sums are equal; a rim with equal sums is as unlikely as two equal hashes.
+pub(super) fn rim(drawn: &Drawn) -> Vec<bool> {
     let mut sums = vec![0_u64; drawn.positions.len()];
     let hash = |v: usize| (v as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29) ^ (v as u64);
     for corners in &drawn.triangles {
         let [a, b, c] = corners.map(|corner| corner.index());
         let [of_a, of_b, of_c] = [a, b, c].map(hash);
         for (v, next, last) in [(a, of_b, of_c), (b, of_c, of_a), (c, of_a, of_b)] {
-            sums[v] = sums[v].wrapping_add(next).wrapping_sub(last);
+            // The lowest bit says that the vertex is in a triangle.
+            sums[v] = sums[v].wrapping_add(next.wrapping_sub(last) << 1) | 1;
         }
     }
-    sums.into_iter().map(|sum| sum != 0).collect()
+    sums.into_iter().map(|sum| sum != 1).collect()
 }
 
 /// The largest distance of each vertex's twins; 0 for vertices that are not wanted or that no edge with a length

@@ -14,6 +14,13 @@ pub trait Resolver {
     /// file's own folder. A file may refer to the same neighbour many times and in several spellings, and keeps every
     /// result, so share them. The error gives the reason, in words.
     fn read(&self, uri: &str) -> Result<Bytes, String>;
+
+    /// Learns that the file names a neighbour at `uri` (as for [`read`](Self::read)) whose bytes are not needed, so
+    /// that no output replaces it. Returns true if there is such a file.
+    fn note_unread(&self, uri: &str) -> bool {
+        let _ = uri;
+        false
+    }
 }
 
 /// The input of a format's reader.

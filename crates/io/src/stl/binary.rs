@@ -29,8 +29,16 @@ pub(super) fn is_certain(bytes: &[u8]) -> bool {
     })
 }
 
-/// The corners in order. Bytes after the facets are noted and kept.
-pub(super) fn read(source: &Source<'_>, notes: &mut Vec<String>) -> Result<Vec<DVec3>, ReadError> {
+/// The facets of a file.
+pub(super) struct Facets {
+    /// The corners in order.
+    pub(super) corners: Vec<DVec3>,
+    /// True if a facet has attribute bytes, which some programs use for a colour.
+    pub(super) have_attributes: bool,
+}
+
+/// The facets. Bytes after them are noted and kept.
+pub(super) fn read(source: &Source<'_>, notes: &mut Vec<String>) -> Result<Facets, ReadError> {
     let bytes: &[u8] = source.bytes;
     let Some(count) = stored_count(bytes) else {
         let reason = "it has neither the 84 bytes of a binary header nor the 'solid' of an ascii file: export it again";
@@ -54,6 +62,7 @@ pub(super) fn read(source: &Source<'_>, notes: &mut Vec<String>) -> Result<Vec<D
         ));
     }
     let mut corners = Vec::with_capacity(3 * count as usize);
+    let mut have_attributes = false;
     for (number, facet) in bytes[HEADER..].chunks_exact(FACET).take(count as usize).enumerate() {
         if number.is_multiple_of(1 << 13) {
             source.cancel.check()?;
@@ -61,18 +70,12 @@ pub(super) fn read(source: &Source<'_>, notes: &mut Vec<String>) -> Result<Vec<D
         for corner in facet[12..48].chunks_exact(12) {
             corners.push(vector(corner).as_dvec3());
         }
+        have_attributes |= facet[48..] != [0, 0];
     }
-    Ok(corners)
-}
-
-/// Returns true if a facet has attribute bytes, which some programs use for a colour.
-pub(super) fn has_attributes(bytes: &[u8], facet_count: usize) -> bool {
-    let facets = bytes
-        .get(HEADER..)
-        .unwrap_or_default()
-        .chunks_exact(FACET)
-        .take(facet_count);
-    facets.into_iter().any(|facet| facet[48..] != [0, 0])
+    Ok(Facets {
+        corners,
+        have_attributes,
+    })
 }
 
 fn vector(bytes: &[u8]) -> Vec3 {

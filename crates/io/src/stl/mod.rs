@@ -56,16 +56,17 @@ pub(crate) fn read(source: &Source<'_>) -> Result<(Stored, Drawn), ReadError> {
         }
         (found.corners, Layout::Ascii(found.places))
     } else {
-        (binary::read(source, &mut notes)?, Layout::Binary)
+        let facets = binary::read(source, &mut notes)?;
+        if facets.have_attributes {
+            notes.push(
+                "The facets have attribute bytes, which some programs use for colours; they are kept but not shown."
+                    .to_owned(),
+            );
+            unread.push("the facets' attribute bytes, which some programs use for colours".to_owned());
+        }
+        (facets.corners, Layout::Binary)
     };
     let count = positions.len() as u32;
-    if matches!(layout, Layout::Binary) && binary::has_attributes(bytes, count as usize / 3) {
-        notes.push(
-            "The facets have attribute bytes, which some programs use for colours; they are kept but not shown."
-                .to_owned(),
-        );
-        unread.push("the facets' attribute bytes, which some programs use for colours".to_owned());
-    }
     let corners = |facet| [0, 1, 2].map(|k| DrawnVertex(3 * facet + k));
     let drawn = Drawn::once(positions, (0..count / 3).map(corners).collect());
     Ok((

@@ -122,6 +122,25 @@ impl Bvh {
         best.map(|(distance, v)| (v, distance))
     }
 
+    /// The triangle nearest to `point` (the lowest if there are several), and its distance; `None` for an empty
+    /// hierarchy.
+    pub fn nearest_triangle(&self, point: DVec3) -> Option<(u32, f64)> {
+        let in_boxes = self.space.of_point(point);
+        let mut best: Option<(f64, u32)> = None;
+        self.walk(
+            |span| span.distance(in_boxes),
+            |place| {
+                let corners = self.leaves.corners[place].map(|v| self.positions.get(v.index()));
+                let candidate = (distance_to_triangle(point, corners), self.leaves.triangles[place]);
+                if best.is_none_or(|best| candidate < best) {
+                    best = Some(candidate);
+                }
+                best.map_or(f64::INFINITY, |(distance, _)| distance * self.space.scale)
+            },
+        );
+        best.map(|(distance, triangle)| (triangle, distance))
+    }
+
     /// Visits the triangles' places in every leaf whose box has a `bound` (infinite means never) up to the limit,
     /// nearer boxes first; `visit` returns the new limit.
     fn walk(&self, bound: impl Fn(&Span) -> f64, mut visit: impl FnMut(usize) -> f64) {

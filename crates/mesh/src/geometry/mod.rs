@@ -23,7 +23,7 @@ pub use damage::{Damage, Damaged, point_in_words};
 pub use distortion::Distortion;
 pub use gradient::face_gradient;
 pub use normals::vertex_normals;
-pub(crate) use triangle_distance::distance_to_triangle;
+pub(crate) use triangle_distance::{distance_to_triangle, nearest_on_triangle};
 pub(crate) use triangle_intersection::triangle_intersection;
 pub use vector3::Vector3;
 

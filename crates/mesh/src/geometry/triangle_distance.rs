@@ -2,21 +2,31 @@
 
 use glam::DVec3;
 
-/// The distance of a point from a triangle.
-pub(crate) fn distance_to_triangle(point: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
+/// The point of a triangle that is nearest to `point`.
+pub(crate) fn nearest_on_triangle(point: DVec3, [a, b, c]: [DVec3; 3]) -> DVec3 {
     let normal = (b - a).cross(c - a);
     let is_over = |from: DVec3, to: DVec3| normal.cross(to - from).dot(point - from) >= 0.0;
     if normal != DVec3::ZERO && is_over(a, b) && is_over(b, c) && is_over(c, a) {
-        return (normal.normalize().dot(point - a)).abs();
+        let normal = normal.normalize();
+        return point - normal * normal.dot(point - a);
     }
-    [[a, b], [b, c], [c, a]]
-        .map(|[from, to]| {
-            let along = to - from;
-            let share = (along.dot(point - from) / along.length_squared()).clamp(0.0, 1.0);
-            point.distance(from + along * if share.is_finite() { share } else { 0.0 })
-        })
-        .into_iter()
-        .fold(f64::INFINITY, f64::min)
+    let on_edges = [[a, b], [b, c], [c, a]].map(|[from, to]| {
+        let along = to - from;
+        let share = (along.dot(point - from) / along.length_squared()).clamp(0.0, 1.0);
+        from + along * if share.is_finite() { share } else { 0.0 }
+    });
+    let [first, others @ ..] = on_edges;
+    others.into_iter().fold(first, |nearest, other| {
+        match other.distance_squared(point) < nearest.distance_squared(point) {
+            true => other,
+            false => nearest,
+        }
+    })
+}
+
+/// The distance of a point from a triangle.
+pub(crate) fn distance_to_triangle(point: DVec3, corners: [DVec3; 3]) -> f64 {
+    point.distance(nearest_on_triangle(point, corners))
 }
 
 #[cfg(test)]

@@ -6,7 +6,6 @@ use glam::DVec3;
 use pliant_deform::{Attachment, Examples, Solve};
 
 use super::Document;
-use crate::document::handle_transform::HandleTransform;
 use crate::document::kept_shape::KeptShape;
 use crate::document::version::Aspect;
 
@@ -38,8 +37,7 @@ impl Document {
         }
         self.change_handles(|handles| {
             for handle in handles {
-                handle.pivot = handle.centre();
-                handle.put(HandleTransform::IDENTITY);
+                handle.apply();
             }
         });
     }

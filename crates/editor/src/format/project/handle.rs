@@ -5,7 +5,7 @@ use pliant_deform::CONTINUITY_RANGE;
 use pliant_mesh::MirrorPlane;
 use serde::{Deserialize, Serialize};
 
-use crate::document::{Handle, HandleId, PivotPlace, Twin, followed, means};
+use crate::document::{Handle, HandleCurve, HandleId, HandleLine, HandleSketch, PivotPlace, Twin, followed, means};
 use crate::format::stored_field::Ranges;
 use crate::warning::shortened;
 use crate::{EditError, HandleTransform, Reach, SOFT_RANGE};
@@ -41,6 +41,12 @@ pub(super) struct StoredHandle {
     /// The number of the handle with which it rides along.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) parent: Option<u16>,
+    /// The curve that its vertices follow.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    curve: Option<HandleCurve>,
+    /// Or the line to which their outline is drawn.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    sketch: Option<HandleSketch>,
 }
 
 #[derive(Clone, Copy, PartialEq, Debug, Default, Serialize, Deserialize)]
@@ -116,12 +122,18 @@ impl StoredHandle {
                 at: twin.plane.distance(),
             }),
             parent: handle.parent.map(|parent| parent.0),
+            curve: handle.line.as_ref().and_then(HandleLine::curve).cloned(),
+            sketch: handle.line.as_ref().and_then(HandleLine::sketch).cloned(),
         }
+    }
+
+    fn line(&self) -> Option<HandleLine> {
+        HandleLine::of(self.curve.as_ref(), self.sketch.as_ref())
     }
 
     /// Returns true if it is at its rest position.
     pub(super) fn is_at_rest(&self) -> bool {
-        is_default(&self.transform)
+        is_default(&self.transform) && self.line().is_none_or(|line| line.is_rest())
     }
 
     pub(super) fn handle(&self) -> Result<Handle, EditError> {
@@ -168,6 +180,7 @@ impl StoredHandle {
                 })
             }),
             parent: self.parent.map(HandleId),
+            line: self.line(),
             ..Handle::new(id, self.name.clone())
         })
     }

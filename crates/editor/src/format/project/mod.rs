@@ -452,9 +452,9 @@ impl Project {
     /// The solver's input: the document's regions, from its own rest shape.
     pub(crate) fn resolve(&self, model: &Model) -> Result<Setup, EditError> {
         let document = self.document(model)?;
-        let input = region_input(&Arc::new(model.clone()), &document, &FileContacts::default());
+        let input = region_input(model, &document, &FileContacts::default());
         let region = Region::measure(&input, &Cancel::new()).unwrap_or_else(|_| Region::still(document.paint.len()));
-        Ok(Setup::of_document(&document, &region))
+        Ok(Setup::of_document(&document, &region, &model.surface))
     }
 }
 

@@ -257,7 +257,7 @@ fn make_handle(workspace: &mut Workspace, limb: &NewLimb, freed: &[SurfaceVertex
     document.keep_shape();
     let id = document.add_handle();
     document.change_handle(id, |handle| {
-        handle.reach = Reach::Length(limb.reach());
+        handle.reach = Reach::Length(limb.joint.width());
         handle.parent = limb.parent;
     });
     paint_limb(document, id, &limb.own, freed);

@@ -53,6 +53,16 @@ pub(super) fn parse(text: &[u8], unread: &mut BTreeSet<String>) -> Vec<tobj::Mat
         .unwrap_or_default()
 }
 
+/// The names after all keywords for images, whether or not a material has them, with their options.
+pub(super) fn image_names(text: &[u8]) -> BTreeSet<String> {
+    let text = String::from_utf8_lossy(&text[mark_len(text)..]);
+    let statements = text
+        .split(['\n', '\r'])
+        .filter_map(|line| line.trim().split_once(char::is_whitespace));
+    let names = statements.filter(|(keyword, _)| *keyword == "map_Kd" || is_other_map(keyword));
+    names.map(|(_, name)| name.trim().to_owned()).collect()
+}
+
 /// Returns true if a keyword names an image that isn't drawn.
 pub(super) fn is_other_map(keyword: &str) -> bool {
     keyword.starts_with("map_") || matches!(keyword, "bump" | "disp" | "decal" | "refl" | "norm")

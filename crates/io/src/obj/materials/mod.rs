@@ -17,7 +17,7 @@ use crate::quote::quoted;
 use crate::source::Source;
 use crate::source::notes::Notes;
 use crate::text::excerpt;
-use library::{parse, set_base_colour};
+use library::{image_names, parse, set_base_colour};
 use names::texture_file;
 pub(super) use names::{as_uri, behind_options, folder_of, join};
 pub(super) use neighbours::{neighbours, unread_lost};
@@ -57,8 +57,12 @@ pub(super) fn look_up(source: &Source<'_>, libraries: &[&[u8]], names: &[String]
                         "libraries of other folders",
                         outside_note("The material library", &path),
                     );
+                    let folder = folder_of(&path).to_owned();
+                    for name in image_names(&text) {
+                        note_image(source, &join(&folder, &texture_file(&name).0));
+                    }
                     for material in parse(&text, &mut out.unread) {
-                        let folder = folder_of(&path).to_owned();
+                        let folder = folder.clone();
                         known.entry(material.name.clone()).or_insert((material, folder));
                     }
                     out.libraries.push((path, text));
@@ -200,6 +204,12 @@ fn read_image(
             None
         }
     }
+}
+
+/// Tells the resolver of an image at its path, or at its bare name as in [`read_image`].
+fn note_image(source: &Source<'_>, uri: &str) {
+    let bare = uri.rsplit('/').next().unwrap_or(uri);
+    let _ = source.resolver.note_unread(uri) || source.resolver.note_unread(bare);
 }
 
 /// A sentence about a neighbour outside the file's folder.

@@ -5,10 +5,14 @@
 //! across the limb, while rings around a point on its side are askew. The narrowest ring around the tip gives a plane
 //! across the limb, and the joint is the narrowest ring at an even distance from that plane.
 //!
-//! If a limb is as thick as it is long, no ring around a point on its side closes before it reaches the body. Then the
-//! search for its tip begins at the other end of the surface: the tip is the farthest point beyond the seeds from
-//! there.
+//! A person can ask for another joint than this guess. The candidates are the rings around the tip that are narrower
+//! than their surroundings, and evenly spaced ones where there is none for a while ([`candidates`]).
+//!
+//! If a limb is as thick as it is long, no ring around a point on its side closes before it reaches the body. Rings
+//! around a point on a head's side close, but around the face. In both cases the tip is the point farthest from the other
+//! end of the surface whose way from there goes through the point ([`far_tip`]).
 
+mod candidates;
 mod level_set;
 mod rings;
 mod shape;
@@ -23,12 +27,23 @@ pub use self::shape::Shape;
 use super::DistanceSearch;
 use crate::{Cancel, Cancelled, SurfaceVertex};
 
+/// If a point is so near to the tip of its rings that it is itself the tip, and the far tip is within so many radii, the
+/// point is on the side of a head, not at the tip of a limb.
+const HEAD_RADII: f64 = 3.0;
+
+/// The tip of a limb is as far as possible from the other end of the surface, less so many times the detour through the
+/// seeds.
+const DETOUR: f64 = 1.0;
+
 /// The first search covers this share of the component's extent; only if that is not enough does another search cover
 /// all of it.
 const FIRST_SHARE: f64 = 0.35;
 
 /// The distance, in radii, between a ring and the plane from which a straighter ring is searched.
 const SECTION_RADII: f64 = 2.0;
+
+/// A straight joint is the narrowest ring within this many radii of the askew one, if there is one.
+const NUDGE_RADII: f64 = 0.5;
 
 /// The number of distances across the joint's falloff at which there are rings, the joint's own in the middle.
 pub const JOINT_RINGS: usize = 7;
@@ -51,70 +66,98 @@ pub struct Joint {
     /// Lines around the limb, in any order, at even distances from `-falloff` (on the limb) to `falloff` along the
     /// surface.
     pub rings: [Vec<[DVec3; 2]>; JOINT_RINGS],
+    /// The number of candidates by which it is farther from the limb's tip than the guess; negative if it is nearer.
+    pub up: i32,
+}
+
+impl Joint {
+    /// The distance along the surface within which a handle of the far side moves the surface: its falloff to either
+    /// side.
+    pub fn width(&self) -> f64 {
+        2.0 * self.falloff
+    }
 }
 
 /// The joint between a point in a triangle and the body, which has two fifths of the component's area or more; `None`
 /// if no ring around the point's side is clearly shorter than that of a disc, as on a ball or a sheet.
+///
+/// `up` chooses the joint that is so many candidates farther from the limb's tip than the guess, or nearer to it if
+/// negative. If there are fewer, the last one is taken, and [`Joint::up`] has its number.
 ///
 /// # Errors
 /// [`Cancelled`] soon after `cancel` is raised.
 ///
 /// # Panics
 /// If there is no such triangle.
-pub fn joint_of(shape: &Shape<'_>, triangle: u32, point: DVec3, cancel: &Cancel) -> Result<Option<Joint>, Cancelled> {
+pub fn joint_of(
+    shape: &Shape<'_>,
+    triangle: u32,
+    point: DVec3,
+    up: i32,
+    cancel: &Cancel,
+) -> Result<Option<Joint>, Cancelled> {
     let corners = shape.triangles[triangle as usize];
     let seeds = corners.map(|v| (v, shape.positions[v.index()].distance(point)));
     let mut search = DistanceSearch::default();
     let near = FIRST_SHARE * extent(shape, corners[0]);
-    let (tip, near, source) = match Cut::narrowest(&mut search, shape, &seeds, near, &corners, Source::Point, cancel)? {
-        Some(askew) => {
-            let tip = askew.tip(shape);
-            let length = shape.positions[tip.index()].distance(askew.centre);
-            (tip, 1.6 * length + 4.0 * askew.radius, Source::Point)
-        }
-        None => (beyond(&mut search, shape, &seeds), f64::INFINITY, Source::Tip),
+    let askew = Cut::narrowest(&mut search, shape, &seeds, near, &corners, cancel)?;
+    let far = |search: &mut DistanceSearch| Origin {
+        tip: far_tip(search, shape, &seeds),
+        near: f64::INFINITY,
+        source: Source::Point,
     };
-    cancel.check()?;
-    let tip = [(tip, 0.0)];
-    let Some(from_tip) = Cut::narrowest(&mut search, shape, &tip, near, &corners, source, cancel)? else {
+    let mut found = None;
+    if let Some(askew) = &askew {
+        let tip = askew.tip(shape);
+        let away = |v: SurfaceVertex| shape.positions[v.index()].distance(point);
+        if away(tip) < askew.radius {
+            let far = far(&mut search);
+            if (askew.radius..HEAD_RADII * askew.radius).contains(&away(far.tip)) {
+                found = Cut::candidate(&mut search, shape, far, &corners, up, cancel)?;
+            }
+        }
+        if found.is_none() {
+            let near = Origin {
+                tip,
+                near: 1.6 * shape.positions[tip.index()].distance(askew.centre) + 4.0 * askew.radius,
+                source: Source::Tip,
+            };
+            found = Cut::candidate(&mut search, shape, near, &corners, up, cancel)?;
+        }
+    }
+    if found.is_none() {
+        let far = far(&mut search);
+        found = Cut::candidate(&mut search, shape, far, &corners, up, cancel)?;
+    }
+    let Some((cut, up)) = found else {
         return Ok(None);
     };
-    let straight = from_tip.straightened(&mut search, shape, &corners);
+    let straight = cut.straightened(&mut search, shape, &corners);
     cancel.check()?;
-    Ok(straight.unwrap_or(from_tip).joint(&mut search, shape))
+    let joint = straight.unwrap_or(cut).joint(&mut search, shape);
+    Ok(joint.map(|joint| Joint { up, ..joint }))
 }
 
-/// The farthest point beyond the seeds, seen from the place that is farthest from them: with a seed on a limb, that
-/// limb's tip.
-fn beyond(search: &mut DistanceSearch, shape: &Shape<'_>, seeds: &[(SurfaceVertex, f64); 3]) -> SurfaceVertex {
+/// The tip of the seeds' limb: a point far from the other end of the surface to which the way from there goes through the
+/// seeds, or nearly so.
+fn far_tip(search: &mut DistanceSearch, shape: &Shape<'_>, seeds: &[(SurfaceVertex, f64); 3]) -> SurfaceVertex {
     let position = |v: SurfaceVertex| shape.positions[v.index()];
-    let reached = search.within(shape.triangles, shape.topology, position, seeds, f64::INFINITY);
-    let Some(&(other_end, _)) = reached.last() else {
-        return seeds[0].0;
+    let mut distances = |from: &[(SurfaceVertex, f64)]| {
+        let mut distance = vec![f64::NEG_INFINITY; shape.positions.len()];
+        let reached = search.within(shape.triangles, shape.topology, position, from, f64::INFINITY);
+        reached.iter().for_each(|&(v, at)| distance[v.index()] = at);
+        (distance, reached.last().map_or(from[0].0, |&(v, _)| v))
     };
-    let mut distance = vec![f64::NEG_INFINITY; shape.positions.len()];
-    let from_there = [(other_end, 0.0)];
-    for &(v, at) in search.within(shape.triangles, shape.topology, position, &from_there, f64::INFINITY) {
-        distance[v.index()] = at;
-    }
-    let least = seeds
-        .map(|(v, _)| distance[v.index()])
-        .into_iter()
-        .fold(f64::INFINITY, f64::min);
-    let mut waiting: Vec<SurfaceVertex> = seeds.map(|(v, _)| v).to_vec();
-    let (mut tip, mut most) = (waiting[0], f64::NEG_INFINITY);
-    while let Some(v) = waiting.pop() {
-        // Each is visited once.
-        let at = std::mem::replace(&mut distance[v.index()], f64::NEG_INFINITY);
-        if at < least {
-            continue;
-        }
-        if at > most {
-            (tip, most) = (v, at);
-        }
-        waiting.extend(shape.topology.neighbours(v));
-    }
-    tip
+    let (from_seeds, other_end) = distances(seeds);
+    let (from_end, _) = distances(&[(other_end, 0.0)]);
+    let of_seeds = from_end[seeds[0].0.index()];
+    let merit = |v: SurfaceVertex| {
+        let detour = from_seeds[v.index()] + of_seeds - from_end[v.index()];
+        from_end[v.index()] - DETOUR * detour
+    };
+    let component = shape.topology.vertices_of(shape.topology.component(other_end));
+    let tip = component.max_by(|&a, &b| merit(a).total_cmp(&merit(b)));
+    tip.unwrap_or(seeds[0].0)
 }
 
 /// The diagonal of the box around a vertex's component.
@@ -126,6 +169,17 @@ fn extent(shape: &Shape<'_>, of: SurfaceVertex) -> f64 {
         (least, most) = (least.min(position), most.max(position));
     }
     least.distance(most)
+}
+
+/// The place from which the rings of a limb are measured.
+#[derive(Clone, Copy)]
+struct Origin {
+    /// The limb's tip.
+    tip: SurfaceVertex,
+    /// The distance that the search first covers.
+    near: f64,
+    /// The rings that count.
+    source: Source,
 }
 
 /// A ring, and the vertices that it cuts off.
@@ -147,7 +201,6 @@ impl Cut {
         seeds: &[(SurfaceVertex, f64)],
         near: f64,
         corners: &[SurfaceVertex; 3],
-        source: Source,
         cancel: &Cancel,
     ) -> Result<Option<Self>, Cancelled> {
         for limit in [near, f64::INFINITY] {
@@ -155,11 +208,38 @@ impl Cut {
             cancel.check()?;
             let rings = Rings::of(shape, &field, Body::Large);
             cancel.check()?;
-            match rings.narrowest(corners, source) {
+            match rings.narrowest(corners, 0, Source::Point) {
                 Some(Narrowest { level, end }) if end == End::Widens || limit.is_infinite() => {
                     return Ok(Some(Self::of(shape, &field, &rings, level)));
                 }
                 _ => {}
+            }
+        }
+        Ok(None)
+    }
+
+    /// The candidate `up` places farther from the tip than the guess, and the number of places that there are.
+    fn candidate(
+        search: &mut DistanceSearch,
+        shape: &Shape<'_>,
+        origin: Origin,
+        corners: &[SurfaceVertex; 3],
+        up: i32,
+        cancel: &Cancel,
+    ) -> Result<Option<(Self, i32)>, Cancelled> {
+        for limit in [origin.near, f64::INFINITY] {
+            let field = Field::measure(search, shape, &[(origin.tip, 0.0)], limit);
+            cancel.check()?;
+            let rings = Rings::of(shape, &field, Body::Large);
+            cancel.check()?;
+            let candidates = candidates::candidates(&rings, corners, origin.source);
+            let place = up.clamp(0, candidates.len().saturating_sub(1) as i32);
+            let found = candidates.get(place as usize);
+            if let Some(&level) = found.filter(|_| limit.is_infinite() || place == up) {
+                return Ok(Some((Self::of(shape, &field, &rings, level), place)));
+            }
+            if limit.is_infinite() {
+                break;
             }
         }
         Ok(None)
@@ -178,8 +258,9 @@ impl Cut {
         }
     }
 
-    /// The narrowest ring at even distances from a plane across the limb, a few radii away: those rings are straight if
-    /// the limb is. `None` if there is none with the triangle of these corners on the limb.
+    /// The narrowest ring, within so many radii of this one, at even distances from a plane across the limb a few radii
+    /// away: those rings are straight if the limb is. `None` if there is none with the triangle of these corners on the
+    /// limb.
     fn straightened(
         &self,
         search: &mut DistanceSearch,
@@ -206,9 +287,10 @@ impl Cut {
         if seeds.is_empty() {
             return None;
         }
-        let field = Field::measure(search, shape, &seeds, height + SECTION_RADII * self.radius);
+        let field = Field::measure(search, shape, &seeds, height + NUDGE_RADII * self.radius);
         let rings = Rings::of(shape, &field, Body::With(self.far_from_limb(shape, &is_limb)?));
-        let level = rings.narrowest(corners, Source::Section)?.level;
+        let nearest = field.level_at(height - NUDGE_RADII * self.radius);
+        let level = rings.narrowest(corners, nearest, Source::Section)?.level;
         Some(Self::of(shape, &field, &rings, level))
     }
 
@@ -263,6 +345,7 @@ impl Cut {
             limb: self.limb,
             far_side,
             rings,
+            up: 0,
         })
     }
 }

@@ -63,6 +63,12 @@ impl Field {
         (level as f64 + 0.5) * self.spacing
     }
 
+    /// The level nearest to a distance.
+    pub(super) fn level_at(&self, distance: f64) -> usize {
+        // The cast turns NaN and negative numbers into 0.
+        (distance / self.spacing - 0.5).round() as usize
+    }
+
     /// The number of levels that a vertex is beyond.
     fn levels_below(&self, v: SurfaceVertex) -> u32 {
         let levels = (self.distance[v.index()] / self.spacing + 0.5).floor();
@@ -113,6 +119,8 @@ pub(super) struct Rings {
     /// The ring's length for each level, smoothed over three.
     lengths: Vec<f64>,
     radii: Vec<f64>,
+    /// The share of the component's area that each level cuts off.
+    limb_shares: Vec<f64>,
     vertices: Vec<SurfaceVertex>,
 }
 
@@ -132,8 +140,12 @@ impl Rings {
         let mut raw = vec![0.0; LEVELS as usize];
         // The search's limit cuts off rings from here on.
         let mut complete = LEVELS;
-        for &triangle in shape.triangles {
+        let mut limb_areas = vec![0.0; LEVELS as usize + 1];
+        let is_own = |triangle: &&[SurfaceVertex; 3]| shape.topology.component(triangle[0]) == field.component;
+        for &triangle in shape.triangles.iter().filter(is_own) {
             let beyond = triangle.map(|v| in_body[v.index()]);
+            let area = face_area(shape.corners(triangle)) / 3.0;
+            beyond.iter().for_each(|&level| limb_areas[level as usize] += area);
             let below = triangle.map(|v| levels[v.index()]);
             let (from, to) = (
                 below.into_iter().fold(LEVELS, u32::min),
@@ -150,6 +162,11 @@ impl Rings {
             }
         }
         raw.truncate(complete as usize);
+        let whole: f64 = limb_areas.iter().sum();
+        let limb_shares = limb_areas.iter().scan(0.0, |limb, area| {
+            *limb += area / whole;
+            Some(*limb)
+        });
         let lengths = (0..raw.len()).map(|level| {
             let (before, after) = (level.saturating_sub(1), (level + 1).min(raw.len() - 1));
             match raw[before].min(raw[level]).min(raw[after]) > 0.0 {
@@ -159,26 +176,52 @@ impl Rings {
         });
         Self {
             lengths: lengths.collect(),
+            limb_shares: limb_shares.collect(),
             radii: (0..raw.len()).map(|level| field.at_level(level)).collect(),
             in_body,
             vertices,
         }
     }
 
-    /// The first ring with the point's triangle on the limb that is narrower than the rings before and after it; if
-    /// none widens again, the narrowest of all.
-    pub(super) fn narrowest(&self, triangle: &[SurfaceVertex; 3], source: Source) -> Option<Narrowest> {
-        let first = triangle.iter().map(|v| self.in_body[v.index()]).max()? as usize;
+    /// The lowest level with the triangle of these corners on the limb.
+    pub(super) fn first(&self, triangle: &[SurfaceVertex; 3]) -> usize {
+        let levels = triangle.iter().map(|v| self.in_body[v.index()]);
+        levels.fold(0, u32::max) as usize
+    }
+
+    /// The length of each level's ring; 0 where there is none.
+    pub(super) fn lengths(&self) -> &[f64] {
+        &self.lengths
+    }
+
+    /// The distance of each level from the seeds.
+    pub(super) fn radii(&self) -> &[f64] {
+        &self.radii
+    }
+
+    /// The share of the component's area that is not in the body of a level.
+    pub(super) fn limb_share(&self, level: usize) -> f64 {
+        self.limb_shares.get(level).copied().unwrap_or(1.0)
+    }
+
+    /// Returns true if a ring is that of a disc or of the corner of a sheet rather than around a limb.
+    pub(super) fn is_round(&self, level: usize, source: Source) -> bool {
+        let length = self.lengths[level];
+        let grows = match source {
+            Source::Point => GROWS,
+            Source::Tip => GROWS_FROM_TIP,
+            Source::Section => return false,
+        };
+        length > ROUND_SHARE * TAU * self.radii[level] || length > grows * self.lengths[level / 2]
+    }
+
+    /// The first ring from the level `lowest` on, with the point's triangle on the limb, that is narrower than the rings
+    /// before and after it; if none widens again, the narrowest of all.
+    pub(super) fn narrowest(&self, triangle: &[SurfaceVertex; 3], lowest: usize, source: Source) -> Option<Narrowest> {
         let mut narrowest: Option<usize> = None;
-        for level in first..self.lengths.len() {
+        for level in self.first(triangle).max(lowest)..self.lengths.len() {
             let length = self.lengths[level];
-            let grows = match source {
-                Source::Point => GROWS,
-                Source::Tip => GROWS_FROM_TIP,
-                Source::Section => f64::INFINITY,
-            };
-            let is_round = source != Source::Section
-                && (length > ROUND_SHARE * TAU * self.radii[level] || length > grows * self.lengths[level / 2]);
+            let is_round = self.is_round(level, source);
             match narrowest {
                 Some(level) if length > WIDENS * self.lengths[level] => {
                     return Some(Narrowest {

@@ -13,7 +13,7 @@ fn joint_at(model: &Model, triangle: u32) -> Option<Joint> {
     };
     let corners = model.surface.triangles[triangle as usize].map(|v| model.surface.positions[v.index()]);
     let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
-    joint_of(&shape, triangle, middle, &Cancel::new()).unwrap()
+    joint_of(&shape, triangle, middle, 0, &Cancel::new()).unwrap()
 }
 
 /// A triangle at about this height, on any side.
@@ -151,5 +151,5 @@ fn a_raised_cancel_stops_the_search() {
     };
     let cancel = Cancel::new();
     cancel.cancel();
-    assert!(joint_of(&shape, 0, DVec3::Z, &cancel).is_err());
+    assert!(joint_of(&shape, 0, DVec3::Z, 0, &cancel).is_err());
 }

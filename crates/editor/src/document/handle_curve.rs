@@ -1,0 +1,132 @@
+//! A curve that a handle follows.
+
+use std::sync::Arc;
+
+use glam::{DAffine3, DVec3};
+use pliant_mesh::{Curve, CurveMotion, CurvePath, CurveRefused};
+
+/// A curve through control points at rest and where they go: each vertex of its handle moves with the frame at its
+/// nearest place on the curve at rest ([`CurveMotion`]). Copies share it.
+#[derive(Clone, PartialEq, Debug)]
+pub struct HandleCurve(Arc<Parts>);
+
+#[derive(PartialEq, Debug)]
+struct Parts {
+    motion: CurveMotion,
+    path: CurvePath,
+    twist_deg: Vec<f64>,
+    scale: Vec<f64>,
+}
+
+impl HandleCurve {
+    /// The curve through `points`, in world units, whose control points go to `moved` with a twist about the tangent in
+    /// degrees and a scale each.
+    ///
+    /// # Errors
+    /// The name of the list in the formats, and its fault.
+    pub fn new(
+        points: Vec<DVec3>,
+        is_closed: bool,
+        moved: Vec<DVec3>,
+        twist_deg: Vec<f64>,
+        scale: Vec<f64>,
+    ) -> Result<Self, (&'static str, CurveRefused)> {
+        let expected = points.len();
+        let rest = Curve::new(points, is_closed).map_err(|refused| ("points", refused))?;
+        let counts = [
+            ("moved", moved.len()),
+            ("twist", twist_deg.len()),
+            ("scale", scale.len()),
+        ];
+        if let Some((list, found)) = counts.into_iter().find(|(_, found)| *found != expected) {
+            return Err((list, CurveRefused::Count { found, expected }));
+        }
+        let motion = CurveMotion::new(rest, moved, &twist_deg, &scale);
+        let motion = motion.map_err(|refused| match refused {
+            CurveRefused::Twist { .. } => ("twist", refused),
+            CurveRefused::Scale { .. } => ("scale", refused),
+            _ => ("moved", refused),
+        })?;
+        let path = CurvePath::of(&motion);
+        Ok(Self(Arc::new(Parts {
+            motion,
+            path,
+            twist_deg,
+            scale,
+        })))
+    }
+
+    /// The curve at rest.
+    pub fn rest(&self) -> &Curve {
+        self.0.motion.rest()
+    }
+
+    /// The positions to which the control points go.
+    pub fn moved(&self) -> &[DVec3] {
+        self.0.motion.moved().points()
+    }
+
+    /// The twist at each control point, in degrees.
+    pub fn twist_deg(&self) -> &[f64] {
+        &self.0.twist_deg
+    }
+
+    /// The scale at each control point.
+    pub fn scale(&self) -> &[f64] {
+        &self.0.scale
+    }
+
+    /// Returns true if no control point moves, turns or grows.
+    pub fn is_rest(&self) -> bool {
+        self.0.motion.is_rest()
+    }
+
+    /// The same curve at rest.
+    #[must_use]
+    pub(crate) fn at_rest(&self) -> Self {
+        self.resting(self.rest().points().to_vec())
+    }
+
+    /// The curve at rest where it has arrived and the map `then` has moved it.
+    #[must_use]
+    pub(crate) fn applied(&self, then: &DAffine3) -> Self {
+        self.resting(self.moved().iter().map(|point| then.transform_point3(*point)).collect())
+    }
+
+    /// A curve through these points, which move nowhere; this one if they make none.
+    fn resting(&self, points: Vec<DVec3>) -> Self {
+        let count = points.len();
+        let resting = Self::new(
+            points.clone(),
+            self.rest().is_closed(),
+            points,
+            vec![0.0; count],
+            vec![1.0; count],
+        );
+        resting.unwrap_or_else(|_| self.clone())
+    }
+
+    /// The largest turn or twist of a part of the curve, in radians.
+    pub fn largest_turn_rad(&self) -> f64 {
+        self.0.path.largest_turn_rad()
+    }
+
+    /// The motion at the share `t` of the way, 0 at rest and 1 at the targets: chords turn, twists grow linearly and so do
+    /// scales.
+    pub fn motion_at(&self, t: f64) -> CurveMotion {
+        let Parts {
+            motion,
+            path,
+            twist_deg,
+            scale,
+        } = &*self.0;
+        if t == 1.0 {
+            return motion.clone();
+        }
+        let twist: Vec<f64> = twist_deg.iter().map(|twist| twist * t).collect();
+        let scale: Vec<f64> = scale.iter().map(|scale| 1.0 + (scale - 1.0) * t).collect();
+        let part = CurveMotion::new(motion.rest().clone(), path.points_at(t), &twist, &scale);
+        // Only a closed curve can come together on its way, where two of its points meet by chance.
+        part.unwrap_or_else(|_| motion.clone())
+    }
+}

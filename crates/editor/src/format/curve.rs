@@ -1,0 +1,60 @@
+//! A handle's curve in both formats: `points`, `closed`, `moved`, `twist` and `scale`.
+
+use glam::DVec3;
+use serde::de::{Deserializer, Error};
+use serde::ser::Serializer;
+use serde::{Deserialize, Serialize};
+
+use super::transform::Numbers;
+use crate::document::HandleCurve;
+
+/// The members in the file; each list but `points` may be left out.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct StoredCurve {
+    points: Vec<Numbers<3>>,
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    closed: bool,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    moved: Option<Vec<Numbers<3>>>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    twist: Option<Vec<f64>>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    scale: Option<Vec<f64>>,
+}
+
+impl Serialize for HandleCurve {
+    /// Lists of default values are left out.
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let numbers = |points: &[DVec3]| points.iter().map(|point| Numbers(point.to_array())).collect();
+        let unless =
+            |values: &[f64], default: f64| values.iter().any(|value| *value != default).then(|| values.to_vec());
+        let points = self.rest().points();
+        let stored = StoredCurve {
+            points: numbers(points),
+            closed: self.rest().is_closed(),
+            moved: (self.moved() != points).then(|| numbers(self.moved())),
+            twist: unless(self.twist_deg(), 0.0),
+            scale: unless(self.scale(), 1.0),
+        };
+        stored.serialize(serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for HandleCurve {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let stored = StoredCurve::deserialize(deserializer)?;
+        let vectors =
+            |numbers: Vec<Numbers<3>>| -> Vec<DVec3> { numbers.into_iter().map(|own| own.0.into()).collect() };
+        let points = vectors(stored.points);
+        let count = points.len();
+        let curve = Self::new(
+            points.clone(),
+            stored.closed,
+            stored.moved.map_or(points, vectors),
+            stored.twist.unwrap_or_else(|| vec![0.0; count]),
+            stored.scale.unwrap_or_else(|| vec![1.0; count]),
+        );
+        curve.map_err(|(list, refused)| D::Error::custom(format!("can't be followed: its `{list}` {refused}")))
+    }
+}

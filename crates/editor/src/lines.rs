@@ -1,0 +1,158 @@
+//! The lines that handles follow, on a surface: the place of each vertex, and the vertices' maps at a share of the way.
+
+use std::sync::Arc;
+
+use glam::{DAffine3, DVec3};
+use pliant_deform::{Role, Target};
+use pliant_mesh::{Surface, SurfaceVertex};
+
+use crate::document::{HandleCurve, HandleLine, HandleSketch};
+use crate::outline;
+
+/// The sections of a handle along its line ([`pliant_deform::Constraints::sections`]): at a bend by 300 degrees each of
+/// them turns by less than 10 degrees against the next.
+const SECTIONS: f64 = 32.0;
+
+/// In one step a curve turns by at most this angle, in radians, so that methods follow full turns.
+const STEP_RAD: f64 = std::f64::consts::FRAC_PI_4;
+
+/// The lines of a setup's handles, with the places of their vertices. Copies share them.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub struct Lines {
+    each: Arc<Vec<Laid>>,
+    /// The section of each surface vertex; empty without lines.
+    sections: Arc<Vec<u16>>,
+}
+
+/// A line and the vertices that follow it.
+#[derive(Clone, PartialEq, Debug)]
+struct Laid {
+    /// The handle's number.
+    handle: usize,
+    vertices: Followers,
+}
+
+/// An entry for each of a handle's vertices, which ascend.
+#[derive(Clone, PartialEq, Debug)]
+enum Followers {
+    /// The place on the curve at rest that is nearest to the vertex.
+    Curve(HandleCurve, Vec<f64>),
+    /// The vertex' way to the sketched line.
+    Sketch(Vec<DVec3>),
+}
+
+impl Lines {
+    /// The lines of handles on a surface at rest whose vertices have these roles.
+    pub(crate) fn of<'a>(
+        lines: impl Iterator<Item = Option<&'a HandleLine>>,
+        roles: &[Role],
+        surface: &Surface,
+    ) -> Self {
+        let mut own = Self::default();
+        for (handle, line) in lines.enumerate() {
+            let Some(line) = line else { continue };
+            let sections = Arc::make_mut(&mut own.sections);
+            sections.resize(roles.len(), 0);
+            let is_own = |vertex: &usize| roles[*vertex] == Role::Handle(handle as u16);
+            let vertices: Vec<usize> = (0..roles.len()).filter(is_own).collect();
+            let vertices = match line {
+                HandleLine::Curve(curve) => along_curve(curve, &vertices, surface, sections),
+                HandleLine::Sketch(sketch) => to_sketch(sketch, &vertices, surface, sections),
+            };
+            Arc::make_mut(&mut own.each).push(Laid { handle, vertices });
+        }
+        own
+    }
+
+    /// Returns true if no handle follows a line.
+    pub fn is_empty(&self) -> bool {
+        self.each.is_empty()
+    }
+
+    /// The section of each surface vertex; empty without lines.
+    pub(crate) fn sections(&self) -> &[u16] {
+        &self.sections
+    }
+
+    /// The number of steps to a share of the lines' way from rest.
+    pub(crate) fn steps(&self, share: f64) -> usize {
+        let turns = self.each.iter().map(|laid| match &laid.vertices {
+            Followers::Curve(curve, _) => curve.largest_turn_rad(),
+            Followers::Sketch(_) => 0.0,
+        });
+        (share * turns.fold(0.0, f64::max) / STEP_RAD).ceil() as usize
+    }
+
+    /// The handles' targets at a share of the lines' way: first the line moves its vertices, then the handle's map.
+    pub fn targets(&self, maps: &[DAffine3], share: f64) -> Vec<Target> {
+        let mut targets: Vec<Target> = maps.iter().copied().map(Target::Map).collect();
+        for laid in self.each.iter() {
+            let (Some(target), Some(then)) = (targets.get_mut(laid.handle), maps.get(laid.handle)) else {
+                continue;
+            };
+            if let Some(first) = laid.vertices.maps(share) {
+                let both = |first: DAffine3| {
+                    if *then == DAffine3::IDENTITY {
+                        first
+                    } else {
+                        *then * first
+                    }
+                };
+                *target = Target::Maps(first.into_iter().map(both).collect());
+            }
+        }
+        targets
+    }
+}
+
+impl Followers {
+    /// The map of each vertex at a share of the way; `None` if nothing moves.
+    fn maps(&self, share: f64) -> Option<Vec<DAffine3>> {
+        match self {
+            Self::Curve(curve, places) => {
+                let motion = curve.motion_at(share);
+                let maps = || places.iter().map(|place| motion.map_at(*place)).collect();
+                (!motion.is_rest()).then(maps)
+            }
+            Self::Sketch(ways) => {
+                let maps = || {
+                    ways.iter()
+                        .map(|way| DAffine3::from_translation(*way * share))
+                        .collect()
+                };
+                (share != 0.0).then(maps)
+            }
+        }
+    }
+}
+
+fn along_curve(curve: &HandleCurve, vertices: &[usize], surface: &Surface, sections: &mut [u16]) -> Followers {
+    let rest = curve.rest();
+    let mut places = Vec::with_capacity(vertices.len());
+    for vertex in vertices {
+        let place = rest.nearest(surface.positions[*vertex]);
+        sections[*vertex] = section(place / rest.length());
+        places.push(place);
+    }
+    Followers::Curve(curve.clone(), places)
+}
+
+/// Vertices that are not on the outline stay.
+fn to_sketch(sketch: &HandleSketch, vertices: &[usize], surface: &Surface, sections: &mut [u16]) -> Followers {
+    let is_own = |vertex: SurfaceVertex| vertices.binary_search(&vertex.index()).is_ok();
+    let matched = outline::matched(sketch, surface, is_own).unwrap_or_default();
+    let mut ways = vec![DVec3::ZERO; vertices.len()];
+    let count = matched.len() as f64;
+    for (number, (vertex, way)) in matched.into_iter().enumerate() {
+        sections[vertex.index()] = section(number as f64 / count);
+        if let Ok(place) = vertices.binary_search(&vertex.index()) {
+            ways[place] = way;
+        }
+    }
+    Followers::Sketch(ways)
+}
+
+/// The section after a share of the line.
+fn section(share: f64) -> u16 {
+    (SECTIONS * share).min(SECTIONS - 1.0) as u16
+}

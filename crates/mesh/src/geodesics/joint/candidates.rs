@@ -1,0 +1,168 @@
+//! The rings of a limb that may be its joint, from the tip towards the body.
+//!
+//! Beside a joint the limb is wider: a wrist is narrower than the hand and the forearm, a shoulder than the chest. So
+//! with a ring's length L as a function of the distance d from the tip, a joint is a place where log L is convex:
+//! L(d − w) L(d + w) / L(d)² is above 1, and at its largest, for w about the limb's radius. It is below 1 everywhere on
+//! balls and flat sheets. Knees and elbows of smooth limbs do not show in the rings; candidates in the middle of long
+//! gaps stand in for them.
+
+use std::f64::consts::TAU;
+
+use super::rings::{Rings, Source};
+use crate::SurfaceVertex;
+
+/// The least convexity of a joint.
+const CONVEX: f64 = 1.1;
+
+/// A narrow ring is exceeded so many times by rings before and after it.
+const NARROWS: f64 = 1.15;
+
+/// The length of limb, in radii, that makes one candidate in the middle of a gap.
+const GAP_RADII: f64 = 4.8;
+
+/// A limb that is this many times wider than its narrowest ring is no longer the same limb.
+const WIDENED: f64 = 2.2;
+
+/// A limb is at least this many radii long.
+const LONG_RADII: f64 = 1.7;
+
+/// A limb has at most this share of the area.
+const LARGEST_SHARE: f64 = 0.35;
+
+/// The same where the rings show no joint: half of a surface, and a little more.
+const LARGEST_HALF: f64 = 0.53;
+
+/// The point's distance from the joint is at least this many radii.
+const CLEAR_RADII: f64 = 0.25;
+
+/// The candidates beyond a point, as levels, ascending. The first of them is the guess: the first joint that the rings
+/// show, or the narrowest ring if the limb widens before that.
+pub(super) fn candidates(rings: &Rings, corners: &[SurfaceVertex; 3], source: Source) -> Vec<usize> {
+    let mut all = shown(rings, corners);
+    let narrowest = rings.narrowest(corners, 0, source).map(|narrowest| narrowest.level);
+    if let Some(narrowest) = narrowest.filter(|&level| rings.limb_share(level) <= LARGEST_HALF) {
+        let has_widened = |level: usize| {
+            let between = &rings.lengths()[narrowest..level.max(narrowest)];
+            between
+                .iter()
+                .any(|length| *length > WIDENED * rings.lengths()[narrowest])
+        };
+        if all.first().is_none_or(|&first| has_widened(first)) {
+            all.insert(0, narrowest);
+        }
+    }
+    all
+}
+
+/// The joints that the rings show beyond a point, and the middles of gaps between them.
+fn shown(rings: &Rings, corners: &[SurfaceVertex; 3]) -> Vec<usize> {
+    let first = rings.first(corners);
+    let radius = |level: usize| rings.lengths().get(level).map_or(0.0, |length| length / TAU);
+    let apart = |one: usize, other: usize| rings.radii()[other] - rings.radii()[one];
+    let is_clear = |&level: &usize| {
+        level >= first
+            && apart(first, level) >= CLEAR_RADII * radius(level)
+            && rings.radii()[level] >= LONG_RADII * radius(level)
+            && rings.limb_share(level) <= LARGEST_SHARE
+    };
+    let (joints, before): (Vec<usize>, Vec<usize>) = joints(rings).into_iter().partition(is_clear);
+    // The first gap begins at the last joint before the point.
+    let mut all = Vec::new();
+    let mut from = before.into_iter().rfind(|level| Some(level) < joints.first());
+    for &to in &joints {
+        all.extend(between(rings, from, to).filter(is_clear));
+        all.push(to);
+        from = Some(to);
+    }
+    all
+}
+
+/// The levels that divide a long gap between two joints; none before the first joint of a limb.
+fn between(rings: &Rings, from: Option<usize>, to: usize) -> impl Iterator<Item = usize> {
+    let from = from.unwrap_or(to);
+    let lengths = &rings.lengths()[from..=to];
+    let mean_radius = lengths.iter().sum::<f64>() / TAU / lengths.len() as f64;
+    let gap = (rings.radii()[to] - rings.radii()[from]) / mean_radius;
+    let parts = (gap / GAP_RADII).round().max(1.0) as usize;
+    (1..parts).map(move |number| from + (to - from) * number / parts)
+}
+
+/// The distance around which rings are compared with a level's, in levels; `None` beyond the ends.
+fn window(rings: &Rings, level: usize) -> Option<usize> {
+    let length = rings.lengths()[level];
+    let spacing = rings.radii().get(1)? - rings.radii()[0];
+    let window = ((length / TAU / spacing).round() as usize).max(1);
+    (length > 0.0 && window <= level && level + window < rings.lengths().len()).then_some(window)
+}
+
+/// L(d − w) L(d + w) / L(d)²; 0 where there is no ring.
+fn convexity(rings: &Rings, level: usize) -> f64 {
+    let length = |level: usize| rings.lengths()[level];
+    match window(rings, level) {
+        Some(window) => length(level - window) * length(level + window) / length(level).powi(2),
+        None => 0.0,
+    }
+}
+
+/// The levels that are more convex than all around them and not narrower than before, ascending.
+fn widening(rings: &Rings) -> Vec<usize> {
+    let length = |level: usize| rings.lengths()[level];
+    let values: Vec<f64> = (0..rings.lengths().len())
+        .map(|level| convexity(rings, level))
+        .collect();
+    let is_peak = |&level: &usize| {
+        let Some(window) = window(rings, level).filter(|_| values[level] >= CONVEX) else {
+            return false;
+        };
+        let around = &values[level - window..=level + window];
+        let mut before = around[..window].iter();
+        let mut after = around[window + 1..].iter();
+        length(level - window) <= NARROWS * length(level)
+            && before.all(|value| *value < values[level])
+            && after.all(|value| *value <= values[level])
+    };
+    (0..values.len()).filter(is_peak).collect()
+}
+
+/// The levels whose rings are narrower than those before and after them, ascending.
+fn narrow(rings: &Rings) -> Vec<usize> {
+    let length = |level: usize| rings.lengths()[level];
+    let mut found = Vec::new();
+    let (mut least, mut most, mut narrows) = (0, 0, false);
+    for level in (0..rings.lengths().len()).filter(|&level| length(level) > 0.0) {
+        if narrows {
+            if length(level) < length(least) {
+                least = level;
+            }
+            if length(level) > NARROWS * length(least) {
+                found.push(least);
+                (most, narrows) = (level, false);
+            }
+        } else {
+            if length(level) > length(most) {
+                most = level;
+            }
+            if length(level) * NARROWS < length(most) {
+                (least, narrows) = (level, true);
+            }
+        }
+    }
+    found
+}
+
+/// The joints that the rings show, ascending: narrow ones, and those where the limb begins to widen, except beside a
+/// narrow one.
+fn joints(rings: &Rings) -> Vec<usize> {
+    let mut joints = narrow(rings);
+    let near = |one: usize, other: usize| {
+        let radius = rings.lengths()[one] / TAU;
+        (rings.radii()[one] - rings.radii()[other]).abs() < radius
+    };
+    let others: Vec<usize> = widening(rings)
+        .into_iter()
+        .filter(|&level| joints.iter().all(|&narrow| !near(narrow, level)))
+        .collect();
+    joints.extend(others);
+    joints.sort_unstable();
+    joints
+}
