@@ -1,6 +1,7 @@
 //! The steps that fit a cage of Green coordinates to its handles: Gauss–Newton with Levenberg's damping, from the
 //! better of the linear shape and the last one. Conjugate gradients solve for a step. The cage's own resistance damps
-//! it, so that a step is as smooth as the shape.
+//! it, so that a step is as smooth as the shape. The resistance hardly sees a step that moves a whole part, so the
+//! damping alone would not keep such a step from turning a face over: a step is also shortened.
 
 use glam::DVec3;
 
@@ -19,6 +20,9 @@ const LEFT: f64 = 0.01;
 /// The most increases of a step's damping, and their factor.
 const TRIALS: usize = 9;
 const MORE: f64 = 5.0;
+
+/// The lengths of a step that are tried before more damping.
+const LENGTHS: [f64; 4] = [1.0, 0.3, 0.1, 0.03];
 
 /// A step must lower the energy by this share of the linear model's prediction; above the second share the next step is
 /// damped less.
@@ -77,19 +81,23 @@ impl Descent {
         for _ in 0..TRIALS {
             let direction = direction(fit, &derivatives, self.damping, &downhill);
             let promised = dot(&downhill, &direction);
-            let mut shifts = self.current.shifts.clone();
-            add(&mut shifts, 1.0, &direction);
-            let tried = fit.tried(&self.asked, shifts);
-            let gained = before - tried.energy;
-            if gained > SUFFICIENT * promised && gained > 0.0 {
-                if gained > GOOD * promised {
-                    self.damping /= MORE;
+            for length in LENGTHS {
+                let mut shifts = self.current.shifts.clone();
+                add(&mut shifts, length, &direction);
+                let tried = fit.tried(&self.asked, shifts);
+                let gained = before - tried.energy;
+                if gained > SUFFICIENT * length * promised && gained > 0.0 {
+                    if length < 1.0 {
+                        self.damping *= MORE;
+                    } else if gained > GOOD * promised {
+                        self.damping /= MORE;
+                    }
+                    if gained < TOLERANCE * before && length == 1.0 {
+                        self.state = Progressed::Converged;
+                    }
+                    self.current = tried;
+                    return;
                 }
-                if gained < TOLERANCE * before {
-                    self.state = Progressed::Converged;
-                }
-                self.current = tried;
-                return;
             }
             if promised < TOLERANCE * before {
                 self.state = Progressed::Converged;
