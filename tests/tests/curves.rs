@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 use std::fs;
 
 use glam::{DAffine3, DQuat, DVec3};
-use pliant_deform::METHODS;
+use pliant_deform::{HandleFit, METHODS, Method};
 use pliant_mesh::{Curve, Drawn, shapes};
 use pliant_tests::{Folder, bend, largest_distance, open};
 use serde_json::{Value, json};
@@ -68,7 +68,11 @@ fn every_method_puts_the_sections_of_a_bar_onto_the_arc_of_its_middle_line() {
             let wanted: Vec<DVec3> = wanted.collect();
             let found = bent(&drawn, &edit(declaration.name, &json!("all"), &curve), &[]);
             let apart = largest_distance(&found, &wanted);
-            assert!(apart < 1e-3 * LENGTH, "{} {degrees}: {apart:e}", declaration.name);
+            let limit = match Method::from_name(declaration.name).unwrap().handle_fit() {
+                HandleFit::Exact => 1e-3,
+                HandleFit::LeastSquares => 3e-3,
+            };
+            assert!(apart < limit * LENGTH, "{} {degrees}: {apart:e}", declaration.name);
         }
     }
 }
@@ -136,7 +140,7 @@ fn a_twist_by_a_full_turn_winds_the_bar_once() {
     let rings: Vec<usize> = (0..drawn.positions.len())
         .filter(|v| drawn.positions[*v].x % 3.0 == 0.0)
         .collect();
-    for method in ["arap", "primo", "shells", "poisson", "frames"] {
+    for method in ["arap", "primo", "shells", "frames"] {
         let found = bent(&drawn, &edit(method, &json!({ "vertices": rings }), &curve), &[]);
         for (p, q) in drawn.positions.iter().zip(&found) {
             let turn = DQuat::from_rotation_x(TAU * p.x / LENGTH);
