@@ -352,3 +352,26 @@ fn a_pulled_chain_keeps_its_lengths_and_arrives_where_it_can() {
         assert_eq!(pulled_chain(&chain, chain[chain.len() - 1]), chain);
     }
 }
+#[test]
+fn a_place_at_a_control_point_has_the_frame_of_the_places_beside_it() {
+    let points: Vec<DVec3> = (0..25).map(|i| DVec3::new(f64::from(i), 1.0, 1.0)).collect();
+    let rest = Curve::new(points.clone(), false).unwrap();
+    for degrees in [27.0_f64, 81.0, 135.0, 189.0, 243.0, 300.0] {
+        let radius = 24.0 / degrees.to_radians();
+        let on_arc = |p: &DVec3| {
+            let (sine, cosine) = (p.x / radius).sin_cos();
+            DVec3::new(radius * sine, 1.0 + radius * (1.0 - cosine), 1.0)
+        };
+        let (twist, scale) = plain(&rest);
+        let bent = CurveMotion::new(rest.clone(), points.iter().map(on_arc).collect(), &twist, &scale).unwrap();
+        let path = CurvePath::of(&bent);
+        for share in [0.1, 0.3, 0.5, 0.7, 0.9, 1.0] {
+            let part = CurveMotion::new(rest.clone(), path.points_at(share), &twist, &scale).unwrap();
+            for place in 0..=24 {
+                let turn = part.turn_at(f64::from(place));
+                let wanted = DQuat::from_rotation_z(share * f64::from(place) / radius);
+                assert!(turn.dot(wanted).abs() > 0.999, "{degrees} {share} {place}: {turn}");
+            }
+        }
+    }
+}

@@ -265,14 +265,24 @@ impl Curve {
     }
 }
 
+/// The square of a way, as a share of the square of the distance from the origin, below which its direction is noise.
+const SAME_PLACE: f64 = 1e-20;
+
 impl Station {
     /// The station at a parameter after this one, its frame transported by two reflections (equations 3 and 4).
     fn transported(&self, spline: &Spline, u: f64) -> Self {
         let position = spline.position(u);
         let tangent = tangent_at(spline, u);
         let way = position - self.position;
-        let (normal, carried) = (reflected(self.normal, way), reflected(self.tangent, way));
-        let normal = across(reflected(normal, tangent - carried), tangent);
+        let is_rounding = way.length_squared() <= SAME_PLACE * position.length_squared();
+        let normal = if is_rounding {
+            // The direction of such a way is noise, and a reflection across noise turns the frame about its tangent.
+            self.normal
+        } else {
+            let (normal, carried) = (reflected(self.normal, way), reflected(self.tangent, way));
+            reflected(normal, tangent - carried)
+        };
+        let normal = across(normal, tangent);
         Self {
             position,
             tangent,
