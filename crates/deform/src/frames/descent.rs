@@ -6,12 +6,12 @@
 
 use rayon::prelude::*;
 
+use super::FramesSolver;
 use super::fitting::fit_to;
-use super::{FramesSolver, Shape};
+use super::state::{Descent, Shape};
 use crate::SolveError;
 use crate::descent::energy::{Energy, lower};
 use crate::descent::rule::{Rule, State};
-use crate::numerical::lbfgs::Memory;
 use crate::numerical::rows::CHUNK;
 use crate::numerical::sums::{Field, dot};
 use crate::poisson::stiffness_of;
@@ -24,26 +24,6 @@ const NOTHING: f64 = 1e-24;
 
 /// A decrease by less than this share of the energy may be rounding.
 const ROUNDED: f64 = 1e-11;
-
-/// The state of the descent. Fields have a row for each solved vertex.
-#[derive(Debug, Default)]
-pub(super) struct Descent {
-    memory: Memory,
-    gradient: Field,
-    direction: Field,
-    trial: Option<Shape>,
-    failed: Option<SolveError>,
-    /// True once the shape has the frames that fit it best.
-    is_begun: bool,
-}
-
-impl Descent {
-    /// The next step begins at a new linear shape.
-    pub fn restart(&mut self) {
-        self.memory.clear();
-        self.is_begun = false;
-    }
-}
 
 impl FramesSolver {
     /// Takes one step that lowers the energy, or finds that there is none.

@@ -18,14 +18,15 @@ mod declaration;
 mod descent;
 mod fitting;
 mod options;
+mod state;
 
 use glam::{DMat3, DVec3};
 
 pub(crate) use self::declaration::DECLARATION;
 pub use self::options::Frames;
 
-use self::descent::Descent;
 use self::fitting::{Frame, HandleFrame, blend, fit_to};
+use self::state::{Descent, Shape};
 use crate::bilaplacian::loaded::LoadedSystem;
 use crate::descent::rule::State;
 use crate::handles::polar::{Polar, polars_of};
@@ -55,14 +56,6 @@ pub(crate) struct FramesSolver {
     descent: Descent,
     state: State,
     room: Room,
-}
-
-/// The frames and displacements of the local vertices.
-#[derive(Clone, Debug)]
-struct Shape {
-    frames: Vec<Frame>,
-    field: Vec<[f64; 3]>,
-    energy: f64,
 }
 
 /// Memory that is kept from frame to frame, so that no frame allocates it.
