@@ -1,4 +1,4 @@
-//! The state of the solver: the present shape, and the descent to the best one.
+//! The present shape, and the descent from it.
 
 use super::fitting::Frame;
 use crate::SolveError;
@@ -8,21 +8,21 @@ use crate::numerical::sums::Field;
 /// The frames and displacements of the local vertices.
 #[derive(Clone, Debug)]
 pub(super) struct Shape {
-    pub(super) frames: Vec<Frame>,
-    pub(super) field: Vec<[f64; 3]>,
-    pub(super) energy: f64,
+    pub frames: Vec<Frame>,
+    pub field: Vec<[f64; 3]>,
+    pub energy: f64,
 }
 
 /// The state of the descent. Fields have a row for each solved vertex.
 #[derive(Debug, Default)]
 pub(super) struct Descent {
-    pub(super) memory: Memory,
-    pub(super) gradient: Field,
-    pub(super) direction: Field,
-    pub(super) trial: Option<Shape>,
-    pub(super) failed: Option<SolveError>,
+    pub memory: Memory,
+    pub gradient: Field,
+    pub direction: Field,
+    pub trial: Option<Shape>,
+    pub failed: Option<SolveError>,
     /// True once the shape has the frames that fit it best.
-    pub(super) is_begun: bool,
+    pub is_begun: bool,
 }
 
 impl Descent {
