@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 
 fn bar() -> Drawn {
     shapes::turned(40, 16, |share| {
-        let cap = (share * (1.0 - share) * 40.0).min(1.0).max(0.0).sqrt();
+        let cap = (share * (1.0 - share) * 40.0).clamp(0.0, 1.0).sqrt();
         glam::DVec2::new(if share % 1.0 == 0.0 { 0.0 } else { 0.3 * cap }, 4.0 * share)
     })
 }
