@@ -48,7 +48,7 @@ pub(crate) struct Multiresolution {
     base: Base,
     reconstruction: Reconstruction,
     sheets: Option<Sheets>,
-    /// Of displacements and volumes.
+    /// The search for folded details; the kinds that displace have one.
     folds: Option<Folds>,
     /// The sentence on the details that the last step folded.
     folded: Option<String>,

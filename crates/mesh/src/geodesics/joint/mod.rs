@@ -66,7 +66,7 @@ pub struct Joint {
     /// Lines around the limb, in any order, at even distances from `-falloff` (on the limb) to `falloff` along the
     /// surface.
     pub rings: [Vec<[DVec3; 2]>; JOINT_RINGS],
-    /// The number of candidates by which it is farther from the limb's tip than the guess; negative if it is nearer.
+    /// The number of candidates by which it is farther from the limb's tip than the guess.
     pub up: i32,
 }
 
@@ -81,8 +81,9 @@ impl Joint {
 /// The joint between a point in a triangle and the body, which has two fifths of the component's area or more; `None`
 /// if no ring around the point's side is clearly shorter than that of a disc, as on a ball or a sheet.
 ///
-/// `up` chooses the joint that is so many candidates farther from the limb's tip than the guess, or nearer to it if
-/// negative. If there are fewer, the last one is taken, and [`Joint::up`] has its number.
+/// `up` chooses the joint that is so many candidates farther from the limb's tip than the guess, which is the first one
+/// beyond the point. If there are fewer, the last one is taken, and [`Joint::up`] has its number; it is 0 if `up` is
+/// negative.
 ///
 /// # Errors
 /// [`Cancelled`] soon after `cancel` is raised.
@@ -101,32 +102,29 @@ pub fn joint_of(
     let mut search = DistanceSearch::default();
     let near = FIRST_SHARE * extent(shape, corners[0]);
     let askew = Cut::narrowest(&mut search, shape, &seeds, near, &corners, cancel)?;
-    let far = |search: &mut DistanceSearch| Origin {
-        tip: far_tip(search, shape, &seeds),
-        near: f64::INFINITY,
-        source: Source::Point,
-    };
-    let mut found = None;
-    if let Some(askew) = &askew {
+    let from_rings = askew.as_ref().map(|askew| {
         let tip = askew.tip(shape);
-        let away = |v: SurfaceVertex| shape.positions[v.index()].distance(point);
-        if away(tip) < askew.radius {
-            let far = far(&mut search);
-            if (askew.radius..HEAD_RADII * askew.radius).contains(&away(far.tip)) {
-                found = Cut::candidate(&mut search, shape, far, &corners, up, cancel)?;
-            }
+        Origin {
+            tip,
+            near: 1.6 * shape.positions[tip.index()].distance(askew.centre) + 4.0 * askew.radius,
+            source: Source::Tip,
         }
-        if found.is_none() {
-            let near = Origin {
-                tip,
-                near: 1.6 * shape.positions[tip.index()].distance(askew.centre) + 4.0 * askew.radius,
-                source: Source::Tip,
-            };
-            found = Cut::candidate(&mut search, shape, near, &corners, up, cancel)?;
-        }
+    });
+    let away = |origin: &Origin| shape.positions[origin.tip.index()].distance(point);
+    let is_tip_itself = |askew: &Cut| from_rings.as_ref().is_some_and(|origin| away(origin) < askew.radius);
+    // The far tip costs two searches of the whole surface, so it is found only where it may be needed, and once.
+    let mut origins = Vec::new();
+    if let Some(askew) = askew.as_ref().filter(|askew| is_tip_itself(askew)) {
+        let far = Origin::far(&mut search, shape, &seeds, cancel)?;
+        let is_on_head = (askew.radius..HEAD_RADII * askew.radius).contains(&away(&far));
+        origins.extend(from_rings);
+        origins.insert(if is_on_head { 0 } else { origins.len() }, far);
+    } else {
+        origins.extend(from_rings);
     }
-    if found.is_none() {
-        let far = far(&mut search);
+    let mut found = Cut::first_candidate(&mut search, shape, &origins, &corners, up, cancel)?;
+    if found.is_none() && origins.len() < 2 {
+        let far = Origin::far(&mut search, shape, &seeds, cancel)?;
         found = Cut::candidate(&mut search, shape, far, &corners, up, cancel)?;
     }
     let Some((cut, up)) = found else {
@@ -140,7 +138,15 @@ pub fn joint_of(
 
 /// The tip of the seeds' limb: a point far from the other end of the surface to which the way from there goes through the
 /// seeds, or nearly so.
-fn far_tip(search: &mut DistanceSearch, shape: &Shape<'_>, seeds: &[(SurfaceVertex, f64); 3]) -> SurfaceVertex {
+///
+/// # Errors
+/// [`Cancelled`].
+fn far_tip(
+    search: &mut DistanceSearch,
+    shape: &Shape<'_>,
+    seeds: &[(SurfaceVertex, f64); 3],
+    cancel: &Cancel,
+) -> Result<SurfaceVertex, Cancelled> {
     let position = |v: SurfaceVertex| shape.positions[v.index()];
     let mut distances = |from: &[(SurfaceVertex, f64)]| {
         let mut distance = vec![f64::NEG_INFINITY; shape.positions.len()];
@@ -149,6 +155,7 @@ fn far_tip(search: &mut DistanceSearch, shape: &Shape<'_>, seeds: &[(SurfaceVert
         (distance, reached.last().map_or(from[0].0, |&(v, _)| v))
     };
     let (from_seeds, other_end) = distances(seeds);
+    cancel.check()?;
     let (from_end, _) = distances(&[(other_end, 0.0)]);
     let of_seeds = from_end[seeds[0].0.index()];
     let merit = |v: SurfaceVertex| {
@@ -157,7 +164,8 @@ fn far_tip(search: &mut DistanceSearch, shape: &Shape<'_>, seeds: &[(SurfaceVert
     };
     let component = shape.topology.vertices_of(shape.topology.component(other_end));
     let tip = component.max_by(|&a, &b| merit(a).total_cmp(&merit(b)));
-    tip.unwrap_or(seeds[0].0)
+    cancel.check()?;
+    Ok(tip.unwrap_or(seeds[0].0))
 }
 
 /// The diagonal of the box around a vertex's component.
@@ -180,6 +188,22 @@ struct Origin {
     near: f64,
     /// The rings that count.
     source: Source,
+}
+
+impl Origin {
+    /// The far tip, from which nothing is known about the rings.
+    fn far(
+        search: &mut DistanceSearch,
+        shape: &Shape<'_>,
+        seeds: &[(SurfaceVertex, f64); 3],
+        cancel: &Cancel,
+    ) -> Result<Self, Cancelled> {
+        Ok(Self {
+            tip: far_tip(search, shape, seeds, cancel)?,
+            near: f64::INFINITY,
+            source: Source::Point,
+        })
+    }
 }
 
 /// A ring, and the vertices that it cuts off.
@@ -213,6 +237,23 @@ impl Cut {
                     return Ok(Some(Self::of(shape, &field, &rings, level)));
                 }
                 _ => {}
+            }
+        }
+        Ok(None)
+    }
+
+    /// The candidate from the first of some origins that has one.
+    fn first_candidate(
+        search: &mut DistanceSearch,
+        shape: &Shape<'_>,
+        origins: &[Origin],
+        corners: &[SurfaceVertex; 3],
+        up: i32,
+        cancel: &Cancel,
+    ) -> Result<Option<(Self, i32)>, Cancelled> {
+        for &origin in origins {
+            if let Some(found) = Self::candidate(search, shape, origin, corners, up, cancel)? {
+                return Ok(Some(found));
             }
         }
         Ok(None)
