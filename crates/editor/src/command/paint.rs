@@ -127,6 +127,13 @@ pub(super) const SET_BRUSH_METRIC: Entry<BrushMetric> = Entry {
             &[],
         ),
         item(
+            BrushMetric::Round,
+            "Brush round limbs",
+            "Sets the brush to close round limbs that are thinner than it, and to fill folds.",
+            "closed back fill",
+            &[],
+        ),
+        item(
             BrushMetric::Surface,
             "Brush along surface",
             "Sets the brush to paint everything within its radius along the surface, into folds and around edges, \
@@ -144,7 +151,7 @@ pub(super) const SET_BRUSH_METRIC: Entry<BrushMetric> = Entry {
     ],
     scope: Scope::View,
     unavailable: always,
-    action: Action::Do(|context, metric| context.settings.brush.metric = metric),
+    action: Action::Do(|context, metric| context.settings.set_brush_metric(metric)),
 };
 
 /// The depth of a lasso or a box.
@@ -236,7 +243,7 @@ pub(super) const GROW_BRUSH: Entry<()> = Entry {
     action: Action::Do(|context, ()| {
         context
             .settings
-            .set_brush_radius(context.settings.brush.radius_px * BRUSH_STEP)
+            .set_brush_radius(context.settings.brush().radius_px * BRUSH_STEP)
     }),
 };
 
@@ -254,7 +261,7 @@ pub(super) const SHRINK_BRUSH: Entry<()> = Entry {
     action: Action::Do(|context, ()| {
         context
             .settings
-            .set_brush_radius(context.settings.brush.radius_px / BRUSH_STEP)
+            .set_brush_radius(context.settings.brush().radius_px / BRUSH_STEP)
     }),
 };
 

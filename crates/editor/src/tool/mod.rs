@@ -49,7 +49,7 @@ pub use correction_brush::{Correction, CorrectionBrush};
 pub(crate) use gesture::{Gesture, Next};
 pub use mode::{Depth, StrokeShape, ToolMode};
 pub(crate) use overlay::{Lit, Overlay};
-pub(crate) use pose::hover;
+pub(crate) use pose::{hover, tint};
 pub(crate) use settings::ToolSettings;
 pub(crate) use size::SizeBrush;
 pub use stiffness_brush::{StiffnessAction, StiffnessBrush};

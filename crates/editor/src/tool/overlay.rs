@@ -118,7 +118,7 @@ impl Overlay {
             let has_ring = !matches!(settings.mode, ToolMode::Select | ToolMode::Pose)
                 && settings.stroke_shape == StrokeShape::Brush;
             if has_ring && !settings.wants_pivot && !takes_handle {
-                line = ring(&picking, pointer.position_px, &pick, &settings.brush);
+                line = ring(&picking, pointer.position_px, &pick, &settings.brush());
             }
         }
         self.hovered = highlighted.filter(|_| lit == Lit::Pointed);

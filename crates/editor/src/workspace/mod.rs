@@ -24,7 +24,7 @@ mod symmetry;
 
 pub(crate) use colour_revisions::ColouredBy;
 pub use colours::stiffness_colour;
-pub(crate) use colours::{light_part, region_colour, rims};
+pub(crate) use colours::{light_part, region_colour, rims, tint_limb};
 pub(crate) use controls::{
     bring as bring_attachment, make as make_controls, middle, put_attachment, reset as reset_controls,
 };
