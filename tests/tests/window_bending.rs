@@ -48,6 +48,13 @@ fn slider(session: &Session) -> Rect {
     slider.expect("the panel has the slider").rect()
 }
 
+/// Moves the focus to the first field of the handle's translation.
+fn focus_move(session: &Session) {
+    let mut fields = session.harness.get_all_by_label("Move");
+    let field = fields.find(|node| node.accesskit_node().role() == Role::SpinButton);
+    field.unwrap().focus();
+}
+
 #[test]
 fn numbers_are_typed_as_sums_with_commas_and_units_and_refused_in_words() {
     let Some(mut session) = Session::with_handle() else {
@@ -63,7 +70,8 @@ fn numbers_are_typed_as_sums_with_commas_and_units_and_refused_in_words() {
         ("0,5", 0.5),
         ("5 apples", 0.5),
     ] {
-        session.click_into("Move");
+        focus_move(&session);
+        session.harness.run_steps(2);
         session.key(Key::A, Modifiers::COMMAND);
         session.harness.event(egui::Event::Text(text.to_owned()));
         session.key(Key::Enter, Modifiers::NONE);

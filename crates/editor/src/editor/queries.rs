@@ -19,7 +19,7 @@ use crate::snapshot::Snapshot;
 use crate::status::status;
 use crate::tool::{Gesture, ToolMode};
 use crate::view::{Cursor, Look, Pick};
-use crate::workspace::{SnapshotKey, Workspace, region_colour, rims};
+use crate::workspace::{ControlSource, SnapshotKey, Workspace, region_colour, rims};
 use crate::{EditFile, MeshReference, geometry_hash};
 
 impl Editor {
@@ -59,6 +59,7 @@ impl Editor {
             cursor: self.cursor(),
             outline_px: gesture.map_or(Vec::new(), Gesture::outline_px),
             stroke_shape: settings.stroke_shape,
+            chain: settings.chain,
             depth: settings.depth,
             symmetry: workspace.symmetry(),
             brush_metric: settings.brush().metric,
@@ -84,6 +85,10 @@ impl Editor {
 
     fn control_points(&self) -> Option<ControlPoints> {
         let declared = self.document().method().declaration().attachments.first()?;
+        let shown = self.workspace.shown_controls()?;
+        if matches!(shown.source, ControlSource::Curve(..)) {
+            return None;
+        }
         let count = self.overlay.control_points.len();
         (count > 0).then(|| ControlPoints {
             title: declared.title,

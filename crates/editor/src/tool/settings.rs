@@ -24,6 +24,8 @@ pub(crate) struct ToolSettings {
     pub(crate) pressure: Option<f64>,
     pub(crate) gizmo_mode: GizmoMode,
     pub(crate) orientation: GizmoOrientation,
+    /// True if the points of a curve follow a dragged one at their distances.
+    pub(crate) chain: bool,
     /// True if the next click moves the selected handle's pivot.
     pub(crate) wants_pivot: bool,
 }
@@ -42,6 +44,7 @@ impl Default for ToolSettings {
             pressure: None,
             gizmo_mode: GizmoMode::default(),
             orientation: GizmoOrientation::default(),
+            chain: false,
             wants_pivot: false,
         }
     }
@@ -59,6 +62,12 @@ impl ToolSettings {
                 self.other_metric
             },
         }
+    }
+
+    /// Returns true if a stroke draws a curve that a new handle follows.
+    pub(crate) fn draws_curves(&self) -> bool {
+        let is_curve = self.stroke_shape.is_line() && self.stroke_shape != StrokeShape::Sketch;
+        self.mode == ToolMode::PaintHandle && is_curve
     }
 
     /// Chooses the measure of the chosen tool's brush; the tools that paint handles share one, and so do the others.

@@ -71,7 +71,7 @@ const GRAB_PX: f64 = 8.0;
 /// The shapes: edges, the points' rims, points and selected ones.
 pub(crate) fn control_shapes(
     points: &[ShownPoint],
-    edges: &[[u32; 2]],
+    lines: Vec<[DVec3; 2]>,
     camera: &Camera,
     viewport_px: DVec2,
 ) -> Vec<ControlShape> {
@@ -83,9 +83,8 @@ pub(crate) fn control_shapes(
         });
         ControlShape::filled(colour, squares.collect())
     };
-    let lines = edges.iter().map(|edge| edge.map(|end| points[end as usize].position));
     vec![
-        ControlShape::lines(EDGE, lines.collect()),
+        ControlShape::lines(EDGE, lines),
         squares(RIM, RIM_PX, &|_| true),
         squares(POINT, 0.0, &|point| !point.is_selected),
         squares(SELECTED, 0.0, &|point| point.is_selected),

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use eframe::egui::{self, Align2, FontId, Sense, vec2};
 use glam::DVec2;
-use pliant_editor::{Before, Cursor, Event};
+use pliant_editor::{Before, Cursor, Event, ToolMode};
 
 use crate::files::names::file_name;
 use crate::legend;
@@ -17,7 +17,7 @@ use crate::window::input::file_command::FileCommand;
 use crate::window::panels::notes::Note;
 use crate::window::viewport::before::OriginalView;
 use crate::window::viewport::method_views::MethodViews;
-use crate::window::viewport::{Smoothness, axis_ball, context_menu};
+use crate::window::viewport::{Smoothness, axis_ball, context_menu, stiffness_legend};
 use crate::window::widgets::number_field;
 use crate::window::widgets::outbox::Outbox;
 use crate::window::widgets::theme;
@@ -203,6 +203,8 @@ impl Application {
         }
         if let Some(scale) = self.viewport.scale() {
             legend::paint(ui.painter(), rect.left_top() + vec2(14.0, 14.0), scale);
+        } else if shown.tool == ToolMode::PaintStiffness && shown.model.is_some() {
+            stiffness_legend::paint(ui, rect.left_top() + vec2(14.0, 14.0));
         }
         if let Some(readout) = &shown.readout
             && let Some(at_px) = shown.camera.project(readout.at, shown.viewport_px)

@@ -1,10 +1,10 @@
 //! The bar of the tool's settings under the bar of the view: the stroke's shape, the brush, and the stiffness that it
 //! paints.
 
-use eframe::egui::{self, Color32, ComboBox, RichText};
+use eframe::egui::{self, ComboBox, RichText};
 use pliant_editor::{
     BrushMetric, Command, Correction, CorrectionBrush, Depth, Editor, STIFFNESS_RANGE, StiffnessAction, StiffnessBrush,
-    StrokeShape, Symmetry, ToolMode, stiffness_colour,
+    StrokeShape, Symmetry, ToolMode,
 };
 
 use crate::window::widgets::command_button::{choices_in_bar, command_button, command_choice};
@@ -13,42 +13,84 @@ use crate::window::widgets::number_field::{dragged, number_field, slid};
 use crate::window::widgets::outbox::Outbox;
 
 /// The length of a slider, in points: the settings of most tools fit in one row of a small window.
-const SLIDER: f32 = 84.0;
+const SLIDER: f32 = 64.0;
 
 /// Shows the settings of the current tool.
 pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
+    // The view must not jump from tool to tool: the bar stays as high as it has been at this width.
+    let id = egui::Id::unique(("height of the tool's settings", ui.available_width() as i32));
+    let height: f32 = ui.data(|data| data.get_temp(id)).unwrap_or_default();
+    let shown = ui.horizontal_wrapped(|ui| settings(ui, editor, commands)).response.rect;
+    ui.data_mut(|data| data.insert_temp(id, height.max(shown.height())));
+    ui.add_space((height - shown.height()).max(0.0));
+}
+
+fn settings(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     let view = editor.view();
     ui.spacing_mut().slider_width = SLIDER;
-    ui.horizontal_wrapped(|ui| {
-        if view.tool != ToolMode::Pose {
+    match view.tool {
+        ToolMode::Pose => {}
+        ToolMode::PaintStiffness | ToolMode::Correct => {
+            brush(ui, view.brush_radius_px, view.brush_metric, commands);
+        }
+        _ => {
             stroke_shape(ui, editor, commands);
-            ui.separator();
+            match view.stroke_shape {
+                StrokeShape::Brush => brush(ui, view.brush_radius_px, view.brush_metric, commands),
+                StrokeShape::Lasso | StrokeShape::Box => depth(ui, view.depth, commands),
+                StrokeShape::Component | StrokeShape::Sketch => {}
+                StrokeShape::Curve | StrokeShape::Spine => return curve(ui, editor, commands),
+            }
         }
-        match view.stroke_shape {
-            _ if view.tool == ToolMode::Pose => {}
-            StrokeShape::Brush => brush(ui, view.brush_radius_px, view.brush_metric, commands),
-            StrokeShape::Lasso | StrokeShape::Box => depth(ui, view.depth, commands),
-            StrokeShape::Component => {}
-        }
-        symmetry(ui, view.symmetry, commands);
-    });
-    ui.horizontal_wrapped(|ui| match view.tool {
+    }
+    symmetry(ui, view.symmetry, commands);
+    match view.tool {
         ToolMode::Correct => correction(ui, &view.correction_brush, commands),
         ToolMode::PaintStiffness => stiffness(ui, editor, &view.stiffness_brush, view.pressure, commands),
         _ => {}
-    });
+    }
 }
 
+/// The points of curves.
+fn curve(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
+    if command_choice(ui, editor, &Command::ToggleChain, editor.view().chain) {
+        commands.push(Command::ToggleChain);
+    }
+    for command in [Command::DivideCurve, Command::RemoveCurvePoints] {
+        if command_button(ui, editor, &command) {
+            commands.push(command);
+        }
+    }
+}
+
+/// Below this width, in points, the shapes are a list.
+const ROOMY: f32 = 620.0;
+
 fn stroke_shape(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
-    ui.spacing_mut().item_spacing.x = 2.0;
-    for shape in [
+    const SHAPES: [StrokeShape; 7] = [
         StrokeShape::Brush,
         StrokeShape::Lasso,
         StrokeShape::Box,
         StrokeShape::Component,
-    ] {
+        StrokeShape::Curve,
+        StrokeShape::Spine,
+        StrokeShape::Sketch,
+    ];
+    let present = editor.view().stroke_shape;
+    if ui.available_width() < ROOMY {
+        let listed = SHAPES.iter().filter_map(|shape| {
+            let listed = Command::SetStrokeShape(*shape).listed()?;
+            Some((*shape, listed.name, listed.tooltip))
+        });
+        if let Some(shape) = list(ui, "Shape", present, &listed.collect::<Vec<_>>()) {
+            commands.push(Command::SetStrokeShape(shape));
+        }
+        return;
+    }
+    ui.spacing_mut().item_spacing.x = 2.0;
+    for shape in SHAPES {
         let command = Command::SetStrokeShape(shape);
-        if command_choice(ui, editor, &command, editor.view().stroke_shape == shape) {
+        if command_choice(ui, editor, &command, present == shape) {
             commands.push(command);
         }
     }
@@ -214,23 +256,34 @@ fn stiffness(ui: &mut egui::Ui, editor: &Editor, brush: &StiffnessBrush, pressur
     }
     // Rigid or not: no number expresses it.
     if changed.action != StiffnessAction::Rigid {
-        stiffness_numbers(ui, &mut changed);
+        stiffness_value(ui, &mut changed);
     }
+    ui.menu_button("More", |ui| {
+        if changed.action != StiffnessAction::Rigid {
+            egui::Grid::new("stiffness").num_columns(2).show(ui, |ui| {
+                let says = "Sets the share of the way to the value that one stroke makes. A pen's pressure scales it.";
+                share(ui, "Strength", &mut changed.strength, says);
+                ui.end_row();
+                let says = "Sets the brush's rim: 0 ends sharply, 1 fades from the middle.";
+                share(ui, "Falloff", &mut changed.falloff, says);
+                ui.end_row();
+            });
+        }
+        if command_button(ui, editor, &Command::ClearStiffness) {
+            commands.push(Command::ClearStiffness);
+        }
+        if pressure.is_some() {
+            let pen = RichText::new("A pen's pressure scales the strength.");
+            ui.label(pen.weak().small());
+        }
+    });
     if changed != *brush {
         commands.push(Command::SetStiffnessBrush(changed));
     }
-    legend(ui);
-    if command_button(ui, editor, &Command::ClearStiffness) {
-        commands.push(Command::ClearStiffness);
-    }
-    if pressure.is_some() {
-        let pen = RichText::new("A pen's pressure scales the strength.");
-        ui.label(pen.weak().small());
-    }
 }
 
-/// The painted stiffness, the strength of one stroke, and its falloff.
-fn stiffness_numbers(ui: &mut egui::Ui, brush: &mut StiffnessBrush) {
+/// The painted stiffness.
+fn stiffness_value(ui: &mut egui::Ui, brush: &mut StiffnessBrush) {
     let label = name_before(ui, "Value");
     let speed = 0.02 * brush.value;
     let field = number_field(ui, &mut brush.value, |ui, value| {
@@ -240,41 +293,4 @@ fn stiffness_numbers(ui: &mut egui::Ui, brush: &mut StiffnessBrush) {
     field
         .labelled_by(label.id)
         .on_hover_text("Sets the stiffness: 0.001 yields like cloth, 1 is the default, 1000 keeps its shape.");
-    let says = "Sets the share of the way to the value that one stroke makes. A pen's pressure scales it.";
-    share(ui, "Strength", &mut brush.strength, says);
-    let says = "Sets the brush's rim: 0 ends sharply, 1 fades from the middle.";
-    share(ui, "Falloff", &mut brush.falloff, says);
-}
-
-/// The meaning of the colours: from 0.001 to 1000, and rigid.
-fn legend(ui: &mut egui::Ui) {
-    const SIZE: egui::Vec2 = egui::vec2(190.0, 24.0);
-    const RIGID: f32 = 24.0;
-    const BAR: f32 = 9.0;
-    const STEPS: usize = 60;
-    let (rect, _) = ui.allocate_exact_size(SIZE, egui::Sense::hover());
-    let painter = ui.painter();
-    let width = SIZE.x - RIGID - 16.0;
-    let bar = rect.top()..=rect.top() + BAR;
-    for step in 0..STEPS {
-        let [from, to] = [step, step + 1].map(|step| rect.left() + width * step as f32 / STEPS as f32);
-        let decades = 6.0 * (step as f64 + 0.5) / STEPS as f64 - 3.0;
-        let [red, green, blue, _] = stiffness_colour(10_f64.powf(decades));
-        let piece = egui::Rect::from_x_y_ranges(from..=to + 0.5, bar.clone());
-        painter.rect_filled(piece, 0.0, Color32::from_rgb(red, green, blue));
-    }
-    let [red, green, blue, _] = stiffness_colour(f64::INFINITY);
-    let rigid = egui::Rect::from_x_y_ranges(rect.right() - RIGID..=rect.right(), bar);
-    painter.rect_filled(rigid, 0.0, Color32::from_rgb(red, green, blue));
-    let font = egui::TextStyle::Small.resolve(ui.style());
-    let colour = ui.visuals().weak_text_color();
-    for (x, text, align) in [
-        (rect.left(), "0.001", egui::Align2::LEFT_TOP),
-        (rect.left() + 0.5 * width, "1", egui::Align2::CENTER_TOP),
-        (rect.left() + width, "1000", egui::Align2::RIGHT_TOP),
-        (rigid.center().x, "rigid", egui::Align2::CENTER_TOP),
-    ] {
-        let at = egui::pos2(x, rect.top() + BAR + 2.0);
-        painter.text(at, align, text, font.clone(), colour);
-    }
 }

@@ -13,7 +13,7 @@ use crate::window::widgets::number_field::{dragged, number_field};
 use crate::window::widgets::outbox::Outbox;
 use crate::window::widgets::row_label::row_label;
 
-/// Shows the method, its warnings and its one slider.
+/// Shows the method and its one slider.
 pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     let method = editor.document().method();
     let declaration = method.declaration();
@@ -31,10 +31,6 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
         }
     });
     ui.label(RichText::new(declaration.when_to_use).weak().small());
-    for sentence in editor.warnings() {
-        let colour = ui.visuals().warn_fg_color;
-        ui.add(egui::Label::new(RichText::new(sentence).small().color(colour)).wrap());
-    }
     material::show(ui, editor, commands);
 }
 

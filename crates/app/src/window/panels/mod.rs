@@ -72,6 +72,7 @@ pub fn show(
             change = Some(PanelChange::Folded(title));
         }
     };
+    warnings(ui, editor, commands);
     let scrolled = ScrollArea::vertical().id_salt(settings.page as u8).auto_shrink(false);
     scrolled.show(ui, |ui| match settings.page {
         PanelPage::Handles => {
@@ -128,11 +129,39 @@ fn section(ui: &mut egui::Ui, title: &str, folded: &BTreeSet<String>, contents: 
     header.header_response.clicked()
 }
 
+/// Shows the warnings about the edit at the panel's lower end, where they move nothing that a person is about to click.
+fn warnings(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
+    let intersections = editor.intersections().map_or(Vec::new(), |found| found.sentences());
+    let has_any = !editor.warnings().is_empty() || !intersections.is_empty();
+    // It is there without warnings, too: a field keeps the focus only while nothing is added before it.
+    let lower = egui::Panel::bottom("warnings")
+        .resizable(false)
+        .show_separator_line(false);
+    lower.frame(egui::Frame::NONE).show(ui, |ui| {
+        if !has_any {
+            return;
+        }
+        ui.separator();
+        let room = ScrollArea::vertical()
+            .min_scrolled_height(WARNINGS)
+            .max_height(WARNINGS);
+        room.show(ui, |ui| {
+            intersections::show(ui, editor, commands);
+            for sentence in editor.warnings() {
+                let colour = ui.visuals().warn_fg_color;
+                ui.add(egui::Label::new(egui::RichText::new(sentence).small().color(colour)).wrap());
+            }
+        });
+    });
+}
+
+/// The most room for warnings, in points.
+const WARNINGS: f32 = 220.0;
+
 /// The method, and the edit as a whole.
 fn bending(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     method::show(ui, editor, commands);
     strength::show(ui, editor, commands);
-    intersections::show(ui, editor, commands);
     ui.horizontal_wrapped(|ui| {
         for command in [Command::Apply, Command::ResetShape, Command::ClearRegions] {
             if command_button(ui, editor, &command) {
