@@ -1,7 +1,7 @@
 //! A stroke that draws a part of the model's outline anew: the outline that it means becomes a handle that follows it.
 
-use glam::DVec2;
-use pliant_mesh::{Surface, SurfaceVertex};
+use glam::{DVec2, DVec3};
+use pliant_mesh::{Surface, SurfaceVertex, bounding_box};
 
 use super::context::Context;
 use super::gesture::{Gesture, Next};
@@ -17,6 +17,9 @@ use crate::workspace::Workspace;
 
 /// The distance between two points of the line, in points of the view.
 const STEP_PX: f64 = 4.0;
+
+/// The reach of the outline in diagonals of its own box.
+const REACH: f64 = 0.5;
 
 /// A stroke during its drawing.
 #[derive(Debug)]
@@ -137,8 +140,13 @@ impl Gesture for SketchStroke {
             let why = "The line is beside no outline: draw it near the edge of the model that you see.";
             return self.refuse(context, why);
         };
+        let positions: Vec<DVec3> = outline
+            .iter()
+            .map(|&vertex| context.workspace.position(vertex))
+            .collect();
+        let reach = REACH * bounding_box(&positions).map_or(0.0, |bounds| bounds.diagonal());
         self.stroke.finish_with(context.workspace, |stroke, workspace| {
-            stroke.take_with_line(workspace, outline, HandleLine::Sketch(sketch));
+            stroke.take_with_line(workspace, outline, HandleLine::Sketch(sketch), reach);
         });
         Next::End
     }
