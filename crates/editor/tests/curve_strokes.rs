@@ -141,7 +141,7 @@ fn a_curve_on_the_surface_takes_what_is_under_it_and_other_strokes_are_refused_i
 }
 
 #[test]
-fn a_sketch_beside_the_outline_moves_it_onto_the_line() {
+fn a_sketch_beside_the_outline_moves_it_onto_the_line_and_one_far_from_it_is_refused() {
     let mut rig = Rig::open(shapes::icosphere(4));
     rig.choose("bilaplacian");
     rig.command(Command::View(NamedView::Front));
@@ -168,4 +168,20 @@ fn a_sketch_beside_the_outline_moves_it_onto_the_line() {
         .map(|p| px(&rig, p).distance(line(0.5)))
         .fold(f64::INFINITY, f64::min);
     assert!(highest < 4.0, "{highest} points from the line");
+    // A line far from any outline means none.
+    let count = document.handles().len();
+    rig.swipe(&[
+        centre_px,
+        centre_px + DVec2::new(30.0, 0.0),
+        centre_px + DVec2::new(60.0, 10.0),
+    ]);
+    rig.drain();
+    assert!(
+        rig.editor
+            .view()
+            .problem
+            .unwrap()
+            .contains("begin and end it at the edge")
+    );
+    assert_eq!(rig.editor.document().handles().len(), count);
 }
