@@ -66,7 +66,7 @@ pub mod stitching;
 mod transfer;
 pub mod watch;
 
-pub use animate::{Animate, animate};
+pub use animate::{Animate, AnimationReport, MorphReport, animate};
 pub use apply::{Apply, Prepared, Solved, apply, bind, check_bends, check_not_empty, order, prepare, solved};
 pub use difference::{Compared, differences};
 pub use edit::read_edit;

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use glam::DVec3;
 use pliant_io::{
-    Format, MorphDeltas, MorphTarget, Role, Save, SaveError, Saved, SceneAndDrawn, UnsavedShape, quoted,
+    Format, MorphAnimation, MorphDeltas, MorphTarget, Role, Save, SaveError, Saved, SceneAndDrawn, UnsavedShape, quoted,
     with_neighbours_renamed,
 };
 use pliant_mesh::{Cancel, Progress};
@@ -31,6 +31,8 @@ pub struct SaveAs<'a> {
     pub colours: Option<&'a [[u16; 4]]>,
     /// Saves the edit as a morph target beside the unchanged shape.
     pub morph: Option<&'a MorphTarget<'a>>,
+    /// Saves an animation of morph targets; the shape is then that at rest.
+    pub animation: Option<&'a MorphAnimation<'a>>,
     /// The file to write.
     pub output: &'a Path,
     /// A further output with a description: no neighbour may be the same file.
@@ -46,6 +48,7 @@ impl<'a> SaveAs<'a> {
             deltas: MorphDeltas::default(),
             colours: None,
             morph: None,
+            animation: None,
             output,
             beside: None,
         }
@@ -76,15 +79,7 @@ pub fn stage(
     cancel: &Cancel,
 ) -> Result<StagedSave, EngineError> {
     let to = Destination::of(what.output)?;
-    if let Some(morph) = what.morph
-        && loaded.scene.morph_targets().iter().any(|name| name == morph.name)
-    {
-        return Err(EngineError::Unsupported(format!(
-            "{} already has a morph target called {}: give the new one another name",
-            files::shown(&loaded.path),
-            quoted(morph.name)
-        )));
-    }
+    check_names(loaded, what)?;
     // Encoding takes about as long as writing to the disk; reading back takes less.
     let (of_making, of_writing) = (progress.part(0.0, 0.4), progress.part(0.4, 0.8));
     let of_check = progress.part(0.8, 1.0);
@@ -101,10 +96,12 @@ pub fn stage(
         name: &name,
         placement: placement::placement(&loaded.path, &to),
     };
-    let saved = match (what.colours, what.morph) {
-        (Some(colours), _) => loaded.scene.save_with_colours(&save, colours, &of_making, cancel),
-        (None, None) => loaded.scene.save(&save, &of_making, cancel),
-        (None, Some(morph)) => loaded.scene.save_as_morph(&save, morph, &of_making, cancel),
+    let scene = &loaded.scene;
+    let saved = match (what.colours, what.morph, what.animation) {
+        (Some(colours), ..) => scene.save_with_colours(&save, colours, &of_making, cancel),
+        (None, Some(morph), _) => scene.save_as_morph(&save, morph, &of_making, cancel),
+        (None, None, Some(animation)) => scene.save_as_animation(&save, animation, &of_making, cancel),
+        (None, None, None) => scene.save(&save, &of_making, cancel),
     };
     let saved = saved.map_err(|error| refused(what.output, error))?;
     let triangles = saved.triangles.clone();
@@ -121,6 +118,22 @@ pub fn stage(
         staging,
         (&of_writing, &of_check, cancel),
     )
+}
+
+/// Refuses morph targets with names that others of the file already have.
+fn check_names(loaded: &Loaded, what: &SaveAs<'_>) -> Result<(), EngineError> {
+    let of_animation = what.animation.iter().flat_map(|animation| animation.names);
+    let new = what.morph.map(|morph| morph.name);
+    let mut new = new.into_iter().chain(of_animation.map(String::as_str));
+    let known = loaded.scene.morph_targets();
+    match new.find(|name| known.iter().any(|known| known == name)) {
+        None => Ok(()),
+        Some(name) => Err(EngineError::Unsupported(format!(
+            "{} already has a morph target called {}: give the new one another name",
+            files::shown(&loaded.path),
+            quoted(name)
+        ))),
+    }
 }
 
 /// Prepares the files of a shape that no file has yet, as [`stage`] does.

@@ -77,7 +77,10 @@ pub use images::pixels::Rgba8;
 pub use images::{DecodedImage, IMAGE_BYTES, decode_images};
 pub use point_cache::{PointCache, PointCacheFormat};
 pub use quote::{quoted, steers};
-pub use save::{MorphDeltas, MorphTarget, OutputFile, Placement, Role, Save, Saved, numbered};
+pub use save::{
+    FewTargets, MorphAnimation, MorphDeltas, MorphTarget, OutputFile, Placement, Role, Save, Saved, ShapeDirections,
+    numbered,
+};
 pub use scene::pose::positions_in_pose;
 pub use scene::unsaved::UnsavedShape;
 pub use scene::{Scene, SceneAndDrawn, read};

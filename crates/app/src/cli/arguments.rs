@@ -56,7 +56,7 @@ pub(crate) enum Command {
     Bridge(BridgeArguments),
     /// Delete vertices with the triangles that use them, or cut along a plane
     Cut(CutArguments),
-    /// Bend the file over time, by the keys of an edit, and save a file for each frame or a point cache
+    /// Bend the file over time, by the keys of an edit, and save an animated glTF, a point cache or a file for each frame
     Animate(AnimateArguments),
     /// Let dye flow along the surface and save it as vertex colours
     Flow(FlowArguments),
@@ -311,9 +311,17 @@ pub(crate) struct AnimateArguments {
     /// The edit, with `keys`: handles' transforms at times
     #[arg(long, value_name = "EDIT.json")]
     pub edit: PathBuf,
-    /// The files to write: NAME-####.obj and the like, with the frame's number from 0000 on, or a point cache: pc2 or mdd
+    /// The files to write: FILE with an animation of morph targets (glb, gltf), a point cache (pc2, mdd), or
+    /// NAME-####.obj and the like, with the frame's number from 0000 on
     #[arg(long, value_name = "OUT")]
     pub output: PathBuf,
+    /// The file for the figures: times, and the number and the error of the morph targets
+    #[arg(long, value_name = "REPORT.json")]
+    pub report: Option<PathBuf>,
+    /// The largest error of a glTF's frames, as a share of the diagonal of the shape's box: more of it takes fewer morph
+    /// targets
+    #[arg(long, value_name = "SHARE", default_value = "0.00001", value_parser = error_share)]
+    pub tolerance: f64,
     /// The frames a second
     #[arg(long, value_name = "F", default_value = "24", value_parser = frame_rate)]
     pub fps: f64,
@@ -597,6 +605,13 @@ fn unit_number(text: &str) -> Result<f64, String> {
         .ok()
         .filter(|number| (0.0..=1.0).contains(number))
         .ok_or_else(|| "a weight is a number from 0 to 1".to_owned())
+}
+
+fn error_share(text: &str) -> Result<f64, String> {
+    text.parse()
+        .ok()
+        .filter(|number| (1e-7..=0.1).contains(number))
+        .ok_or_else(|| "a share of the diagonal is a number from 1e-7 to 0.1".to_owned())
 }
 
 fn frame_rate(text: &str) -> Result<f64, String> {
