@@ -122,16 +122,16 @@ pub fn stage(
 
 /// Refuses morph targets with names that others of the file already have.
 fn check_names(loaded: &Loaded, what: &SaveAs<'_>) -> Result<(), EngineError> {
-    let of_animation = what.animation.iter().flat_map(|animation| animation.names);
-    let new = what.morph.map(|morph| morph.name);
-    let mut new = new.into_iter().chain(of_animation.map(String::as_str));
+    let of_animation = what.animation.iter().flat_map(|animation| animation.target_names());
+    let new = what.morph.map(|morph| morph.name.to_owned());
+    let mut new = new.into_iter().chain(of_animation);
     let known = loaded.scene.morph_targets();
-    match new.find(|name| known.iter().any(|known| known == name)) {
+    match new.find(|name| known.contains(name)) {
         None => Ok(()),
         Some(name) => Err(EngineError::Unsupported(format!(
             "{} already has a morph target called {}: give the new one another name",
             files::shown(&loaded.path),
-            quoted(name)
+            quoted(&name)
         ))),
     }
 }

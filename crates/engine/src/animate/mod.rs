@@ -250,20 +250,25 @@ impl Run<'_> {
         self.warn_of(moving.as_ref());
         drop(moving);
         self.watch.begin("finding morph targets");
-        let found = directions.targets();
-        self.report.morph = Some(MorphReport::of(&found, bound, diagonal));
-        let FewTargets { targets, weights, .. } = found;
+        let FewTargets {
+            targets,
+            weights,
+            error,
+        } = directions.targets();
         let targets: Vec<Vec<DVec3>> = targets.iter().map(|target| self.of_drawn(target)).collect();
         let times: Vec<f64> = (0..self.count).map(|frame| frame as f64 / self.job.fps).collect();
-        let numbers = 1..=targets.len();
-        let names: Vec<String> = numbers.map(|number| format!("{} {number}", self.job.name)).collect();
         let animation = MorphAnimation {
             name: self.job.name,
-            names: &names,
             times: &times,
             weights: &weights,
             targets: &targets,
         };
+        self.report.morph = Some(MorphReport {
+            targets: animation.target_names().len(),
+            bound,
+            largest_error: error,
+            diagonal,
+        });
         let rest = self.model().rest_positions();
         let save = SaveAs {
             inside_out: &self.setup.inside_out,

@@ -1,6 +1,5 @@
 //! The report about an animation. Times are in milliseconds.
 
-use pliant_io::FewTargets;
 use serde::Serialize;
 
 use crate::loading::Loaded;
@@ -68,16 +67,5 @@ impl AnimationReport {
     pub fn to_json(&self) -> String {
         // A struct of numbers, strings and lists always serialises.
         serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
-    }
-}
-
-impl MorphReport {
-    pub(super) fn of(targets: &FewTargets, bound: f64, diagonal: f64) -> Self {
-        Self {
-            targets: targets.targets.len(),
-            bound,
-            largest_error: targets.error,
-            diagonal,
-        }
     }
 }

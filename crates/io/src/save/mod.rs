@@ -1,6 +1,6 @@
 //! The input and the output of a save.
 
-mod animation;
+pub(crate) mod animation;
 pub(crate) mod bits;
 pub(crate) mod colours;
 pub(crate) mod course;

@@ -6,8 +6,17 @@ use crate::gltf::document::Document;
 use crate::gltf::document::json::At;
 use crate::gltf::save::accessors::number;
 use crate::gltf::save::patch::{Patch, cannot_hold};
-use crate::save::MorphAnimation;
 use crate::{Format, SaveError};
+
+/// An animation of the new targets' weights.
+#[derive(Clone, Copy)]
+pub(super) struct WeightCourse<'a> {
+    pub name: &'a str,
+    /// In seconds.
+    pub times: &'a [f64],
+    /// For each time the weight of each new target.
+    pub weights: &'a [Vec<f32>],
+}
 
 /// A node whose weights the animation changes.
 pub(super) struct Animate {
@@ -31,7 +40,7 @@ impl Patch<'_> {
     /// Adds the animation.
     pub(super) fn push_animation(
         &mut self,
-        animation: &MorphAnimation<'_>,
+        animation: WeightCourse<'_>,
         nodes: &[Animate],
         format: Format,
     ) -> Result<(), SaveError> {
@@ -47,7 +56,7 @@ impl Patch<'_> {
                 Some(&sampler) => sampler,
                 None => {
                     let own = animation.weights.iter();
-                    let rows = own.flat_map(|row| kept.iter().copied().chain(row.iter().map(|weight| *weight as f32)));
+                    let rows = own.flat_map(|row| kept.iter().chain(row).copied());
                     let output = self.push_numbers(&rows.collect::<Vec<f32>>(), "", format)?;
                     samplers.push(format!(
                         "{{\"input\":{input},\"interpolation\":\"LINEAR\",\"output\":{output}}}"

@@ -144,6 +144,23 @@ fn positions(instance: &Instance, drawn: &Drawn, target: &[DVec3]) -> Result<Del
     Ok(deltas)
 }
 
+/// The displacements of each instance by a sum of targets.
+pub(super) fn mixed(of_targets: &[Vec<Deltas>], shares: &[f64]) -> Vec<Deltas> {
+    let count = of_targets.first().map_or(0, Vec::len);
+    let mut out = vec![Deltas::default(); count];
+    let parts = of_targets.iter().zip(shares).filter(|(_, share)| **share != 0.0);
+    for (of_instances, &share) in parts {
+        for (sum, deltas) in out.iter_mut().zip(of_instances) {
+            for (sum, ways) in sum.0.iter_mut().zip(&deltas.0).filter(|(_, ways)| !ways.is_empty()) {
+                sum.resize(ways.len(), [0.0; 4]);
+                let elements = sum.par_iter_mut().with_min_len(CHUNK).zip(ways);
+                elements.for_each(|(sum, way)| (0..3).for_each(|lane| sum[lane] += share as f32 * way[lane]));
+            }
+        }
+    }
+    out
+}
+
 /// The stored normals and tangents of an instance.
 type Rest = [Vec<[f32; 3]>; 2];
 

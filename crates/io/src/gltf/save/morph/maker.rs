@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::animated::{Animated, Channel};
-use super::animation::{Animate, default_weights};
+use super::animation::{Animate, WeightCourse, default_weights};
 use super::deltas::NewTarget;
 use super::nodes::{node_of_different_copies, nodes_of_copies};
 use super::weights::{Missing, append_names, append_weights};
@@ -15,7 +15,6 @@ use crate::gltf::save::changes::{InstanceChange, Semantic};
 use crate::gltf::save::copy_on_write::MeshCopy;
 use crate::gltf::save::patch::{Patch, Patched, cannot_hold};
 use crate::quote::quoted;
-use crate::save::MorphAnimation;
 use crate::save::course::Course;
 use crate::{Format, SaveError};
 
@@ -25,7 +24,7 @@ pub(super) struct TargetMaker<'a, 'b> {
     meshes: &'b [Vec<Primitive>],
     targets: &'b [NewTarget],
     /// The animation that goes through the targets.
-    animation: Option<&'b MorphAnimation<'b>>,
+    animation: Option<WeightCourse<'b>>,
     format: Format,
     /// The accessor of an instance's displacements, by target and attribute.
     deltas: BTreeMap<(usize, usize, usize), usize>,
@@ -44,7 +43,7 @@ impl<'a, 'b> TargetMaker<'a, 'b> {
         document: &'a Document,
         meshes: &'b [Vec<Primitive>],
         targets: &'b [NewTarget],
-        animation: Option<&'b MorphAnimation<'b>>,
+        animation: Option<WeightCourse<'b>>,
         format: Format,
     ) -> Self {
         Self {

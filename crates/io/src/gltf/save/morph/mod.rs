@@ -19,10 +19,12 @@ use crate::gltf::save::changes::{InstanceChange, changes};
 use crate::gltf::save::copy_on_write::{self, MeshCopy};
 use crate::gltf::save::patch::Patched;
 use crate::gltf::save::turned_triangles::Turned;
+use crate::save::animation::Unsigned;
 use crate::save::course::Course;
 use crate::save::moved::Moved;
 use crate::save::{MorphAnimation, MorphDeltas, MorphTarget};
 use crate::{Format, SaveError};
+use animation::WeightCourse;
 use deltas::{Deltas, NewTarget};
 use maker::TargetMaker;
 
@@ -63,14 +65,21 @@ pub(crate) fn with_animation<'a>(
 ) -> Result<Patched<'a>, SaveError> {
     let (of_deltas, course) = course.split(0.7);
     let of_instances = deltas::of_animation((document, meshes, pieces), moved.drawn, animation, format, &of_deltas)?;
-    let named = animation.names.iter().zip(of_instances);
+    let Unsigned { weights, shares } = animation.unsigned();
+    let named = animation.target_names().into_iter().zip(&shares);
     let targets: Vec<NewTarget> = named
-        .map(|(name, of_instances)| NewTarget {
-            name: name.clone(),
+        .map(|(name, shares)| NewTarget {
+            name,
             weight: 0.0,
-            of_instances,
+            of_instances: deltas::mixed(&of_instances, shares),
         })
         .collect();
+    drop(of_instances);
+    let course_of_weights = WeightCourse {
+        name: animation.name,
+        times: animation.times,
+        weights: &weights,
+    };
     let (of_plan, course) = course.split(0.3);
     // Nodes that share a mesh need meshes of their own if any of their targets differ. Those of a shape with all
     // targets, by weights in no simple proportion, differ then too.
@@ -78,7 +87,7 @@ pub(crate) fn with_animation<'a>(
     let mixed = Moved::of(moved.drawn, &mixed, &[], format)?;
     let mixed = changes(document, meshes, pieces, &mixed, MorphDeltas::Stay, &of_plan.part(0.0, 0.5))?;
     let copies = planned(document, meshes, pieces, &mixed, &of_plan.part(0.5, 1.0))?;
-    TargetMaker::new(document, meshes, &targets, Some(animation), format).finished(&copies, &mixed, &course)
+    TargetMaker::new(document, meshes, &targets, Some(course_of_weights), format).finished(&copies, &mixed, &course)
 }
 
 /// The meshes that the changes need.
