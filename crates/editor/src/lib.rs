@@ -96,7 +96,7 @@ pub use scene_view::{ControlPoints, SceneView};
 pub use selection::Selection;
 pub use snapshot::Snapshot;
 pub use status::thousands;
-pub use timeline::{Ease, Timeline};
+pub use timeline::{Ease, HandlePlace, KeySpace, SequenceTimeline, Timeline};
 pub use tool::{
     BrushMetric, Constraint, Correction, CorrectionBrush, Depth, StiffnessAction, StiffnessBrush, StrokeShape, ToolMode,
 };

@@ -62,6 +62,7 @@ pub mod memory;
 mod path_text;
 pub mod report;
 pub mod saving;
+mod sequence;
 pub mod stitching;
 mod transfer;
 pub mod watch;
@@ -73,6 +74,7 @@ pub use edit::read_edit;
 pub use error::EngineError;
 pub use flow::{FlowJob, FlowReport, Flowing, FromTo, flow, read_flow};
 pub use loading::{Loaded, is_project, load, load_bytes, open};
+pub use sequence::{Sequence, SequenceReport, sequence};
 pub use transfer::{Transfer, transfer, transferred};
 
 pub use pliant_io::{Difference, What};

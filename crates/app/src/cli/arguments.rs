@@ -58,6 +58,8 @@ pub(crate) enum Command {
     Cut(CutArguments),
     /// Bend the file over time, by the keys of an edit, and save an animated glTF, a point cache or a file for each frame
     Animate(AnimateArguments),
+    /// Edit a sequence of files of the same vertices and faces, by keys that spread over the frames around them
+    Sequence(SequenceArguments),
     /// Let dye flow along the surface and save it as vertex colours
     Flow(FlowArguments),
     /// Write man pages, shell completions and the manual's pages of commands
@@ -329,6 +331,35 @@ pub(crate) struct AnimateArguments {
     #[arg(long, value_name = "NAME[:OPTION=VALUE..]")]
     pub method: Option<String>,
     /// The most memory for the binding beside the mesh, such as 8GB or 500MB; without it 16GiB, and never more than the
+    /// machine has left
+    #[arg(long, value_name = "SIZE", value_parser = pliant_engine::memory::bytes)]
+    pub memory: Option<u64>,
+    /// The welding of vertices.
+    #[command(flatten)]
+    pub weld: WeldArguments,
+    /// The threads and vectors.
+    #[command(flatten)]
+    pub compute: ComputeArguments,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct SequenceArguments {
+    /// The folder of the frames: files of one format with the same vertices and faces, in the order of their names, in
+    /// which numbers count by their value
+    pub folder: PathBuf,
+    /// The edit, with `keys`: handles' transforms at frames, each with the `span` of frames over which it spreads
+    #[arg(long, value_name = "EDIT.json")]
+    pub edit: PathBuf,
+    /// The folder to write, in which frames keep their names; it is made if it is missing
+    #[arg(long, value_name = "OUT")]
+    pub output: PathBuf,
+    /// The file for the numbers of frames and the warnings
+    #[arg(long, value_name = "REPORT.json")]
+    pub report: Option<PathBuf>,
+    /// Another method than the edit's, with its options, e.g. arap:energy=smooth
+    #[arg(long, value_name = "NAME[:OPTION=VALUE..]")]
+    pub method: Option<String>,
+    /// The most memory for the binding of a frame, such as 8GB or 500MB; without it 16GiB, and never more than the
     /// machine has left
     #[arg(long, value_name = "SIZE", value_parser = pliant_engine::memory::bytes)]
     pub memory: Option<u64>,

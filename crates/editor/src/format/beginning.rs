@@ -110,7 +110,7 @@ impl Beginning {
     pub(crate) fn document(&self, model: &Model) -> Result<Document, EditError> {
         match self {
             Self::Edit(edit) => {
-                refuse_keys(&edit.keys, "use `pliant animate`, or remove them")?;
+                refuse_keys(&edit.keys, "use `pliant animate` or `pliant sequence`, or remove them")?;
                 super::exchange::import(edit, model)
             }
             Self::Project(project) => project.document(model),

@@ -28,6 +28,7 @@ mod refusal;
 mod selector;
 mod setup;
 mod sketch;
+mod spans;
 pub(crate) mod stored_field;
 mod transform;
 

@@ -1,8 +1,12 @@
 //! Handles' motions over time: keys, and the transforms between them.
 
+mod interpolation;
 mod motion;
+mod span;
 mod track;
 
 pub use self::motion::Timeline;
+pub use self::span::{HandlePlace, KeySpace, SequenceTimeline};
+pub(crate) use self::span::{Span, SpanKey};
 pub use self::track::Ease;
 pub(crate) use self::track::{Key, Track};

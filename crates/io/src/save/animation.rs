@@ -57,7 +57,9 @@ impl MorphAnimation<'_> {
             .iter()
             .map(|row| {
                 let parts = row.iter().zip(&ranges);
-                parts.map(|(weight, &range)| ((weight - from(range)) / length(range)) as f32).collect()
+                parts
+                    .map(|(weight, &range)| ((weight - from(range)) / length(range)) as f32)
+                    .collect()
             })
             .collect();
         let mut shares: Vec<Vec<f64>> = vec![vec![0.0; count]; count];
@@ -107,7 +109,9 @@ mod tests {
     #[test]
     fn weights_in_the_file_are_from_0_to_1_and_make_the_same_shapes() {
         let targets = [DVec3::X, DVec3::Y, DVec3::Z].map(|way| vec![way]);
-        let weights: Vec<Vec<f64>> = [[0.0, -1.0, 0.25], [1.0, -0.5, -1.0], [0.5, 0.0, 1.0]].map(Vec::from).into();
+        let weights: Vec<Vec<f64>> = [[0.0, -1.0, 0.25], [1.0, -0.5, -1.0], [0.5, 0.0, 1.0]]
+            .map(Vec::from)
+            .into();
         for (targets, more) in [(&targets[..2], 0), (&targets[..], 1)] {
             let weights: Vec<Vec<f64>> = weights.iter().map(|row| row[..targets.len()].to_vec()).collect();
             let animation = MorphAnimation {
@@ -116,13 +120,20 @@ mod tests {
                 weights: &weights,
                 targets,
             };
-            let Unsigned { weights: stored, shares } = animation.unsigned();
+            let Unsigned {
+                weights: stored,
+                shares,
+            } = animation.unsigned();
             assert_eq!(shares.len(), targets.len() + more);
             assert_eq!(animation.target_names().len(), shares.len());
             for (row, wanted) in stored.iter().zip(&weights) {
                 assert!(row.iter().all(|weight| (0.0..=1.0).contains(weight)), "{row:?}");
                 for (own, wanted) in wanted.iter().enumerate() {
-                    let sum: f64 = row.iter().zip(&shares).map(|(w, shares)| f64::from(*w) * shares[own]).sum();
+                    let sum: f64 = row
+                        .iter()
+                        .zip(&shares)
+                        .map(|(w, shares)| f64::from(*w) * shares[own])
+                        .sum();
                     assert!((sum - wanted).abs() < 1e-6, "{row:?}: {sum} {wanted}");
                 }
             }

@@ -214,7 +214,10 @@ fn lost(targets: &[Vec<DVec3>], weights: &[f64]) -> f64 {
 }
 
 fn largest(ways: &[DVec3]) -> f64 {
-    ways.par_iter().with_min_len(CHUNK).map(|way| way.length()).reduce(|| 0.0, f64::max)
+    ways.par_iter()
+        .with_min_len(CHUNK)
+        .map(|way| way.length())
+        .reduce(|| 0.0, f64::max)
 }
 
 fn add(to: &mut [DVec3], ways: &[DVec3], share: f64) {
@@ -263,7 +266,11 @@ mod tests {
     fn sums_of_targets_are_the_shapes_within_the_bound() {
         for (twist, bound) in [(0.0, 1e-9), (1.0, 1e-2), (1.0, 1e-4), (1.0, 1e-7)] {
             let shapes = shapes(twist, 60);
-            let FewTargets { targets, weights, error } = of(&shapes, bound);
+            let FewTargets {
+                targets,
+                weights,
+                error,
+            } = of(&shapes, bound);
             let mut most = 0.0_f64;
             for (shape, weights) in shapes.iter().zip(&weights) {
                 assert!(weights.iter().all(|weight| weight.abs() <= 1.0));
@@ -273,7 +280,10 @@ mod tests {
                     most = most.max(sum.distance(*wanted));
                 }
             }
-            assert!(most <= error + 1e-12 && error <= bound, "{twist}, {bound}: {most} {error}");
+            assert!(
+                most <= error + 1e-12 && error <= bound,
+                "{twist}, {bound}: {most} {error}"
+            );
             for (a, b) in (0..targets.len()).flat_map(|a| (0..a).map(move |b| (a, b))) {
                 let product: f64 = weights.iter().map(|row| row[a] * row[b]).sum();
                 assert!(product.abs() < 1e-9, "columns {a} and {b}: {product}");

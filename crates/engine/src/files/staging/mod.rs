@@ -47,6 +47,8 @@ struct UnderWay(Mutex<Vec<Weak<Mutex<State>>>>);
 #[derive(Debug, Default)]
 struct State {
     temporary: Vec<PathBuf>,
+    /// Folders that were made for the files.
+    folders: Vec<PathBuf>,
     locks: Vec<Weak<FolderLock>>,
     committed: bool,
     readers: Readers,
@@ -186,6 +188,11 @@ impl Staging {
         Ok(held)
     }
 
+    /// Notes an empty folder that was made for the files: an interrupt removes it too.
+    pub(crate) fn note_folder(&self, folder: &Path) {
+        self.lock().folders.push(folder.to_owned());
+    }
+
     /// Writes and syncs `files` beside their targets, under temporary names.
     ///
     /// # Errors
@@ -264,6 +271,10 @@ impl Staging {
             .drain(..)
             .filter_map(|lock| lock.upgrade())
             .for_each(|lock| lock.remove_file());
+        for folder in state.folders.drain(..) {
+            // A folder with somebody's files stays.
+            let _ = fs::remove_dir(folder);
+        }
         Some(Discarded { _state: state })
     }
 

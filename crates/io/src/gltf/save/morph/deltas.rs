@@ -90,7 +90,10 @@ pub(super) fn of_animation(
 ) -> Result<Vec<Vec<Deltas>>, SaveError> {
     let mut of_targets: Vec<Vec<Deltas>> = Vec::new();
     for target in animation.targets {
-        let of_instances = pieces.instances.iter().map(|instance| positions(instance, drawn, target));
+        let of_instances = pieces
+            .instances
+            .iter()
+            .map(|instance| positions(instance, drawn, target));
         of_targets.push(of_instances.collect::<Result<_, SaveError>>()?);
     }
     let carried = [Semantic::Normal, Semantic::Tangent];

@@ -276,4 +276,3 @@ impl<'a, 'b> TargetMaker<'a, 'b> {
         Some(String::from_utf8_lossy(&text).into_owned())
     }
 }
-

@@ -85,7 +85,14 @@ pub(crate) fn with_animation<'a>(
     // targets, by weights in no simple proportion, differ then too.
     let mixed = animation.mixed(&moved.drawn.positions);
     let mixed = Moved::of(moved.drawn, &mixed, &[], format)?;
-    let mixed = changes(document, meshes, pieces, &mixed, MorphDeltas::Stay, &of_plan.part(0.0, 0.5))?;
+    let mixed = changes(
+        document,
+        meshes,
+        pieces,
+        &mixed,
+        MorphDeltas::Stay,
+        &of_plan.part(0.0, 0.5),
+    )?;
     let copies = planned(document, meshes, pieces, &mixed, &of_plan.part(0.5, 1.0))?;
     TargetMaker::new(document, meshes, &targets, Some(course_of_weights), format).finished(&copies, &mixed, &course)
 }

@@ -24,7 +24,6 @@ pub(super) fn nodes_of_copies(document: &Document, copies: &[MeshCopy]) -> Vec<V
     nodes
 }
 
-
 /// A node with copies (`EXT_mesh_gpu_instancing`) that differ after the edit.
 pub(super) fn node_of_different_copies(copies: &[MeshCopy]) -> Option<usize> {
     let mut copy_of: HashMap<usize, usize> = HashMap::new();

@@ -30,7 +30,11 @@ impl Patch<'_> {
         semantic: Semantic,
         format: Format,
     ) -> Result<usize, SaveError> {
-        let moved: Vec<u32> = (0..).zip(way).filter(|(_, way)| **way != [0.0; 4]).map(|(k, _)| k).collect();
+        let moved: Vec<u32> = (0..)
+            .zip(way)
+            .filter(|(_, way)| **way != [0.0; 4])
+            .map(|(k, _)| k)
+            .collect();
         let (component, size) = match moved.last() {
             Some(0..=0xff) => (5121, 1),
             Some(0x100..=0xffff) => (5123, 2),
@@ -39,7 +43,9 @@ impl Patch<'_> {
         if moved.is_empty() || moved.len() * (ELEMENT + size) + SPARSE_TEXT >= way.len() * ELEMENT {
             return self.push_ways(way, semantic, format);
         }
-        let bytes = moved.iter().flat_map(|element| element.to_le_bytes().into_iter().take(size));
+        let bytes = moved
+            .iter()
+            .flat_map(|element| element.to_le_bytes().into_iter().take(size));
         let indices = self.new_view(None, bytes, "");
         let indices = indices.ok_or_else(|| without_buffer(format))?;
         let values = self.push_elements(moved.iter().map(|element| &way[*element as usize]), "", format)?;
