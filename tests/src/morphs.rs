@@ -79,16 +79,17 @@ impl Glb {
             |accessor: &Value| -> Vec<DVec3> { self.floats(accessor).chunks(3).map(DVec3::from_slice).collect() };
         let mut positions = vectors(&primitive["attributes"]["POSITION"]);
         let targets = primitive["targets"].as_array().unwrap();
-        for (target, weight) in targets.iter().zip(self.weights_at(time)) {
+        let last = self.json["animations"].as_array().unwrap().len() - 1;
+        for (target, weight) in targets.iter().zip(self.weights_at(last, time)) {
             let ways = positions.iter_mut().zip(vectors(&target["POSITION"]));
             ways.for_each(|(position, way)| *position += way * weight);
         }
         positions
     }
 
-    /// The weights of the targets at a time of the last animation, which has one channel.
-    pub fn weights_at(&self, time: f64) -> Vec<f64> {
-        let animation = self.json["animations"].as_array().unwrap().last().unwrap();
+    /// The weights of the targets at a time of an animation, which has one channel.
+    pub fn weights_at(&self, animation: usize, time: f64) -> Vec<f64> {
+        let animation = &self.json["animations"][animation];
         assert_eq!(animation["channels"][0]["target"]["path"], "weights");
         let sampler = &animation["samplers"][index(&animation["channels"][0]["sampler"])];
         let (times, all) = (self.floats(&sampler["input"]), self.floats(&sampler["output"]));

@@ -345,12 +345,17 @@ pub(crate) struct AnimateArguments {
 #[derive(Args, Debug)]
 pub(crate) struct SequenceArguments {
     /// The folder of the frames: files of one format with the same vertices and faces, in the order of their names, in
-    /// which numbers count by their value
-    pub folder: PathBuf,
+    /// which numbers count by their value; or a point cache (pc2, mdd)
+    #[arg(value_name = "FOLDER_OR_FILE")]
+    pub frames: PathBuf,
+    /// The mesh whose vertices a point cache moves
+    #[arg(long, value_name = "MESH")]
+    pub mesh: Option<PathBuf>,
     /// The edit, with `keys`: handles' transforms at frames, each with the `span` of frames over which it spreads
     #[arg(long, value_name = "EDIT.json")]
     pub edit: PathBuf,
-    /// The folder to write, in which frames keep their names; it is made if it is missing
+    /// The folder to write, in which frames keep their names; it is made if it is missing. For a point cache the cache to
+    /// write, of the same kind
     #[arg(long, value_name = "OUT")]
     pub output: PathBuf,
     /// The file for the numbers of frames and the warnings

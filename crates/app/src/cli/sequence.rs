@@ -9,7 +9,8 @@ use crate::cli::threads::on_threads;
 
 pub(super) fn run(arguments: &SequenceArguments, console: &mut Console<'_>) -> Result<(), EngineError> {
     let SequenceArguments {
-        folder,
+        frames,
+        mesh,
         edit: edit_path,
         output,
         report,
@@ -28,7 +29,8 @@ pub(super) fn run(arguments: &SequenceArguments, console: &mut Console<'_>) -> R
         edit.set_method(method);
     }
     let job = Sequence {
-        frames: folder,
+        frames,
+        mesh: mesh.as_deref(),
         edit: &edit,
         edit_path,
         output,

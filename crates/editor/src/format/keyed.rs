@@ -21,6 +21,12 @@ impl EditFile {
                 place: "the edit".to_owned(),
             });
         }
+        if !self.filter.is_empty() {
+            return Err(EditError::Other {
+                place: "the edit".to_owned(),
+                sentence: "has a `filter`, which is for sequences: use `pliant sequence`, or remove it".to_owned(),
+            });
+        }
         let names: Vec<&str> = self.handles.iter().map(|handle| &*handle.name).collect();
         let timed = |(place, key): (usize, &'_ KeyEntry)| match key.time {
             Some(time) => Ok((place, time)),

@@ -42,20 +42,6 @@ fn is_local(space: &KeySpace) -> bool {
     *space == KeySpace::Local
 }
 
-/// Refuses an edit with keys where only one shape is made; `instead` says what makes all of them.
-///
-/// # Errors
-/// [`EditError::Other`], if there are keys.
-pub fn refuse_keys(keys: &[KeyEntry], instead: &str) -> Result<(), EditError> {
-    match keys {
-        [] => Ok(()),
-        _ => Err(EditError::Other {
-            place: "the edit".to_owned(),
-            sentence: format!("has `keys`, and only one shape is made here: {instead}"),
-        }),
-    }
-}
-
 /// Refuses keys of animations and of sequences in one list, and members that don't fit together.
 pub(super) fn check_keys(keys: &[KeyEntry]) -> Result<(), EditError> {
     for (place, key) in keys.iter().enumerate() {

@@ -1,23 +1,27 @@
 //! An edit's keys at frames of a sequence: the spans of its handles.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
+
+use glam::DVec3;
 
 use super::edit_error::EditError;
 use super::edit_file::EditFile;
 use super::keyed::handle_of;
 use super::keys::KeyEntry;
 use super::setup::Setup;
+use crate::HandleTransform;
 use crate::document::SplitTransform;
-use crate::timeline::{HandlePlace, SequenceTimeline, Span, SpanKey};
+use crate::timeline::{HandlePlace, SequenceTimeline, Span, SpanKey, quick_motions};
 use crate::warning::shortened;
 
 impl EditFile {
-    /// The frames of its keys in a sequence of `count` frames, ascending.
+    /// The frames in a sequence of `count` frames in which the places of handles must be known, ascending: those of keys
+    /// and those of filters.
     ///
     /// # Errors
     /// Keys at times, or beyond the last frame; data that fit only one frame: lines, cages, examples, a kept shape;
     /// transforms of handles without a key.
-    pub fn key_frames(&self, count: usize) -> Result<Vec<usize>, EditError> {
+    pub fn frames_with_places(&self, count: usize) -> Result<Vec<usize>, EditError> {
         let refuse = |place: String, sentence: &str| {
             let sentence = sentence.to_owned();
             Err(EditError::Other { place, sentence })
@@ -68,11 +72,22 @@ impl EditFile {
             }
             frames.insert(frame as usize);
         }
+        for (place, filter) in self.filter.iter().enumerate() {
+            let [first, last] = filter.span.map(|frame| frame as usize);
+            if last >= count {
+                return Err(EditError::OutOfRange {
+                    place: format!("filter[{place}].span"),
+                    found: last.to_string(),
+                    allowed: format!("frames from 0 to {}", count.saturating_sub(1)),
+                });
+            }
+            frames.extend(first..=last);
+        }
         Ok(frames.into_iter().collect())
     }
 
-    /// The motions of its handles through a sequence, on the model of `setup`, which is that of the first frame. `place`
-    /// gives the place of a handle in each of the [frames with keys](EditFile::key_frames), and in the first one.
+    /// The motions of its handles through a sequence, on the model of `setup`, where the handles are at `rest`. `place`
+    /// gives the place of a handle, by its number, in each of the [frames](EditFile::frames_with_places).
     ///
     /// # Errors
     /// A name that no handle has, or that two handles have; two keys of a handle at one frame; spans of a handle that
@@ -80,7 +95,8 @@ impl EditFile {
     pub fn sequence_timeline(
         &self,
         setup: &Setup,
-        place: impl Fn(usize, usize) -> HandlePlace,
+        rest: &[HandlePlace],
+        place: impl Fn(usize, usize) -> HandlePlace + Copy,
     ) -> Result<SequenceTimeline, EditError> {
         let names: Vec<&str> = self.handles.iter().map(|handle| &*handle.name).collect();
         let mut spans: Vec<Vec<Span>> = vec![Vec::new(); names.len()];
@@ -88,7 +104,13 @@ impl EditFile {
             for (name, transform) in &key.handles {
                 let in_key = |error: EditError| error.under(&format!("keys[{number}].handles"));
                 let handle = handle_of(name, &names).map_err(in_key)?;
-                let own = self.span_key(setup, key, handle, transform, &place);
+                let pivot = (setup.handles[handle].pivot, &rest[handle]);
+                let own = self.span_key(
+                    key,
+                    transform,
+                    place(key.frame.unwrap_or_default() as usize, handle),
+                    pivot,
+                );
                 add(&mut spans[handle], key, own).map_err(|sentence| EditError::Other {
                     place: format!("keys[{number}]"),
                     sentence: format!("moves `{}`, {sentence}", shortened(name)),
@@ -98,26 +120,51 @@ impl EditFile {
         for span in spans.iter_mut().flatten() {
             span.keys.sort_by_key(|key| key.frame);
         }
-        Ok(SequenceTimeline::new(spans))
+        Ok(SequenceTimeline::new(spans, self.shifts(&names, place)?))
     }
 
+    /// The shifts of each handle by the filters, by frame. The trajectory of a handle with a parent is filtered as the
+    /// parent sees it.
+    fn shifts(
+        &self,
+        names: &[&str],
+        place: impl Fn(usize, usize) -> HandlePlace,
+    ) -> Result<Vec<BTreeMap<usize, DVec3>>, EditError> {
+        let mut shifts = vec![BTreeMap::new(); names.len()];
+        for (number, filter) in self.filter.iter().enumerate() {
+            let in_filter = |error: EditError| error.under(&format!("filter[{number}].handle"));
+            let handle = handle_of(&filter.handle, names).map_err(in_filter)?;
+            let parent = self.handles[handle].parent.map(|parent| parent as usize);
+            let frames = filter.span[0] as usize..=filter.span[1] as usize;
+            let seen = frames.clone().map(|frame| match parent {
+                Some(parent) => place(frame, handle).seen_from(&place(frame, parent)),
+                None => place(frame, handle).centre(),
+            });
+            let quick = quick_motions(&seen.collect::<Vec<DVec3>>(), filter.width);
+            for (frame, quick) in frames.zip(quick) {
+                let shift = quick * filter.gain();
+                let shift = parent.map_or(shift, |parent| place(frame, parent).to_world(shift));
+                *shifts[handle].entry(frame).or_insert(DVec3::ZERO) += shift * self.strength;
+            }
+        }
+        Ok(shifts)
+    }
+
+    /// A key of a handle that has this place there, and whose pivot is a point at another place.
     fn span_key(
         &self,
-        setup: &Setup,
         key: &KeyEntry,
-        handle: usize,
-        transform: &crate::HandleTransform,
-        place: &impl Fn(usize, usize) -> HandlePlace,
+        transform: &HandleTransform,
+        place: HandlePlace,
+        (pivot, at): (DVec3, &HandlePlace),
     ) -> SpanKey {
-        let frame = key.frame.unwrap_or_default() as usize;
-        let own = place(frame, handle);
-        // The pivot of the first frame rides along with the handle.
-        let pivot = own.carried(setup.handles[handle].pivot, &place(0, handle));
+        // The pivot rides along with the handle.
+        let pivot = place.carried(pivot, at);
         SpanKey {
-            frame,
+            frame: key.frame.unwrap_or_default() as usize,
             ease: key.ease,
             space: key.space,
-            place: own,
+            place,
             transform: SplitTransform::of(&transform.part(self.strength, pivot), pivot),
         }
     }

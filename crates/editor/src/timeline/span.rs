@@ -1,9 +1,11 @@
 //! Edits of a sequence: handles' transforms at key frames, spread over the frames around them.
 //!
 //! A key's transform is stored in its handle's own moving frame, as the rotation-invariant coordinates of a handle's
-//! trajectory [XZY*07]: it is the same at every frame relative to the place and the turn that the handle has there.
+//! trajectory [XZY+07]: it is the same at every frame relative to the place and the turn that the handle has there.
 //! Between two keys of a span it is interpolated, and towards the ends of the span it fades to rest. The trajectory
 //! itself, and so the sequence's own motion, is not smoothed by this.
+
+use std::collections::BTreeMap;
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use pliant_deform::RigidMotion;
@@ -47,6 +49,21 @@ impl HandlePlace {
         }
     }
 
+    /// The place of the handle's middle as seen from another handle, in that one's axes.
+    pub(crate) fn seen_from(&self, other: &Self) -> DVec3 {
+        other.rotation.inverse() * (self.centre - other.centre)
+    }
+
+    /// The handle's middle, in world space.
+    pub(crate) fn centre(&self) -> DVec3 {
+        self.centre
+    }
+
+    /// A direction in the handle's axes, in world space.
+    pub(crate) fn to_world(&self, direction: DVec3) -> DVec3 {
+        self.rotation * direction
+    }
+
     /// A point that rides along with the handle from another frame.
     pub(crate) fn carried(&self, point: DVec3, other: &Self) -> DVec3 {
         let turn = self.rotation * other.rotation.inverse();
@@ -78,27 +95,37 @@ pub(crate) struct Span {
 pub struct SequenceTimeline {
     /// The spans of each handle.
     spans: Vec<Vec<Span>>,
+    /// The shifts of each handle by filters, by frame; they are added to the transforms of keys.
+    shifts: Vec<BTreeMap<usize, DVec3>>,
 }
 
 impl SequenceTimeline {
-    pub(crate) fn new(spans: Vec<Vec<Span>>) -> Self {
-        Self { spans }
+    /// One entry for each handle in both.
+    pub(crate) fn new(spans: Vec<Vec<Span>>, shifts: Vec<BTreeMap<usize, DVec3>>) -> Self {
+        Self { spans, shifts }
     }
 
     /// The handles' maps at a frame where they have these places; `None` if no handle is moved.
     pub fn maps_at(&self, frame: usize, places: &[HandlePlace]) -> Option<Vec<DAffine3>> {
-        let of_handle =
-            |(spans, place): (&Vec<Span>, &HandlePlace)| spans.iter().find_map(|span| span.at(frame, place));
-        let maps: Vec<Option<DAffine3>> = self.spans.iter().zip(places).map(of_handle).collect();
+        let of_handle = |((spans, shifts), place): ((&Vec<Span>, &BTreeMap<usize, DVec3>), &HandlePlace)| {
+            let map = spans.iter().find_map(|span| span.at(frame, place));
+            match shifts.get(&frame).filter(|shift| **shift != DVec3::ZERO) {
+                Some(shift) => Some(DAffine3::from_translation(*shift) * map.unwrap_or(DAffine3::IDENTITY)),
+                None => map,
+            }
+        };
+        let handles = self.spans.iter().zip(&self.shifts).zip(places);
+        let maps: Vec<Option<DAffine3>> = handles.map(of_handle).collect();
         if maps.iter().all(Option::is_none) {
             return None;
         }
         Some(maps.into_iter().map(|map| map.unwrap_or(DAffine3::IDENTITY)).collect())
     }
 
-    /// Returns true if a frame is in the span of a key.
+    /// Returns true if a frame is in the span of a key or of a filter.
     pub fn reaches(&self, frame: usize) -> bool {
-        self.spans.iter().flatten().any(|span| span.holds(frame))
+        let is_shifted = self.shifts.iter().any(|shifts| shifts.contains_key(&frame));
+        is_shifted || self.spans.iter().flatten().any(|span| span.holds(frame))
     }
 }
 
@@ -236,7 +263,7 @@ mod tests {
 
     fn span(ease: Ease, space: KeySpace) -> SequenceTimeline {
         let keys = vec![key(4, ease, space, 1.2), key(7, ease, space, -0.4)];
-        SequenceTimeline::new(vec![vec![Span { ends: [2, 12], keys }]])
+        SequenceTimeline::new(vec![vec![Span { ends: [2, 12], keys }]], vec![BTreeMap::new()])
     }
 
     #[test]

@@ -31,6 +31,19 @@ impl SequenceReport {
         }
     }
 
+    /// Notes the end: the time of the whole, and frames that did not settle.
+    pub(super) fn conclude(&mut self, total_ms: f64) {
+        self.total_ms = total_ms;
+        let unsettled = match self.unsettled_frames {
+            0 => return,
+            1 => "1 frame".to_owned(),
+            count => format!("{count} frames"),
+        };
+        self.warn([format!(
+            "{unsettled} did not settle within the step limit: take another method"
+        )]);
+    }
+
     /// The report as JSON text with a newline at its end.
     pub fn to_json(&self) -> String {
         // A struct of numbers, strings and lists always serialises.
