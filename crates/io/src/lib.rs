@@ -44,6 +44,7 @@
 
 mod appearance;
 mod bytes;
+mod cache_frames;
 mod convert;
 mod difference;
 mod error;
@@ -68,6 +69,7 @@ pub use appearance::{
     AlphaMode, Appearance, Group, Image, Lighting, Map, Material, Origin, OriginalMaterial, UvSet, Wrap,
 };
 pub use bytes::Bytes;
+pub use cache_frames::CacheFrames;
 pub use convert::Polygons;
 pub use difference::{Difference, What};
 pub use error::{ImageError, ReadError, SaveError};

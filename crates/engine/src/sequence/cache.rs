@@ -5,10 +5,9 @@ use std::io::{Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
-use pliant_io::PointCacheFormat;
+use pliant_io::{CacheFrames, PointCacheFormat};
 use pliant_mesh::{Model, SurfaceVertex};
 
-use super::cache_frames::CacheFrames;
 use crate::EngineError;
 use crate::file_error::FileError;
 use crate::loading::Loaded;

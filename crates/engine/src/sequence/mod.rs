@@ -6,7 +6,6 @@
 
 mod bend;
 mod cache;
-mod cache_frames;
 mod folder;
 mod frame;
 mod report;

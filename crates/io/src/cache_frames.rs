@@ -2,14 +2,14 @@
 
 use glam::{DVec3, Vec3};
 
-use pliant_io::PointCacheFormat;
+use crate::PointCacheFormat;
 
 /// The bytes of a point: three numbers in single precision.
 const POINT: usize = 12;
 
 /// The places of a point cache's frames.
 ///
-/// ```ignore
+/// ```
 /// use glam::DVec3;
 /// use pliant_io::{CacheFrames, PointCache, PointCacheFormat};
 ///
@@ -121,7 +121,7 @@ impl CacheFrames {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use pliant_io::PointCache;
+    use crate::PointCache;
 
     #[test]
     fn frames_come_back_and_a_changed_point_changes_its_own_bytes() {
