@@ -11,7 +11,7 @@ use super::mode::ToolMode;
 use super::other_side::OtherSide;
 use super::settings::ToolSettings;
 use super::stroke::{Stroke, StrokeGesture, meet};
-use crate::document::{Document, HandleId, Paint};
+use crate::document::{Document, HandleId, HandleLine, Paint};
 use crate::input::Pointer;
 use crate::workspace::{Workspace, tidy_handles};
 
@@ -59,6 +59,27 @@ impl PaintStroke {
             other_side: OtherSide::of(workspace),
         };
         Some(StrokeGesture::new(transaction, stroke, pointer))
+    }
+
+    /// The same without an other side: a curve has none.
+    pub fn begin_on_one_side(
+        workspace: &mut Workspace,
+        settings: &ToolSettings,
+        pointer: Pointer,
+    ) -> Option<StrokeGesture<Self>> {
+        let mut gesture = Self::begin(workspace, settings, pointer)?;
+        gesture.stroke_mut().other_side = None;
+        Some(gesture)
+    }
+
+    /// Paints a handle's vertices on the shown shape, which becomes the rest shape, and lets them follow a line there.
+    pub fn take_with_line(&mut self, workspace: &mut Workspace, vertices: Vec<SurfaceVertex>, line: HandleLine) {
+        workspace.document.apply_shape();
+        self.take(workspace, vertices);
+        if let Paint::Handle(id) = self.paint {
+            workspace.document.unsettle();
+            workspace.document.change_handle(id, |handle| handle.line = Some(line));
+        }
     }
 
     /// Paints vertices, and their partners on the other side.

@@ -107,19 +107,19 @@ fn enabled_unless(ui: &mut egui::Ui, obstacle: Option<Cow<'_, str>>, button: imp
     }
 }
 
-/// Choices side by side, each with its name and meaning; returns the one that is clicked.
+/// Choices in a row of their own, each with its name and meaning; returns the one that is clicked.
 pub fn choices<T: Copy + PartialEq>(ui: &mut egui::Ui, chosen: T, all: &[(T, &str, &str)]) -> Option<T> {
+    ui.horizontal(|ui| choices_in_bar(ui, chosen, all)).inner
+}
+
+/// The same among other widgets, where they wrap one by one.
+pub fn choices_in_bar<T: Copy + PartialEq>(ui: &mut egui::Ui, chosen: T, all: &[(T, &str, &str)]) -> Option<T> {
     let mut clicked = None;
-    ui.horizontal(|ui| {
-        for (choice, name, meaning) in all {
-            if ui
-                .selectable_label(chosen == *choice, *name)
-                .on_hover_text(*meaning)
-                .clicked()
-            {
-                clicked = Some(*choice);
-            }
+    for (choice, name, meaning) in all {
+        let label = ui.selectable_label(chosen == *choice, *name);
+        if label.on_hover_text(*meaning).clicked() {
+            clicked = Some(*choice);
         }
-    });
+    }
     clicked
 }
