@@ -136,7 +136,9 @@ fn positions(instance: &Instance, drawn: &Drawn, target: &[DVec3]) -> Result<Del
     }
     for (element, vertex) in vertices.enumerate() {
         // Vertices that a skin flattens do not change: their moves can't be brought back through it. f32 begins here.
-        let by = linear(element).map_or(DVec3::ZERO, |linear| linear.mesh_from_world * target[vertex]);
+        let by = linear
+            .at(element)
+            .map_or(DVec3::ZERO, |linear| linear.mesh_from_world * target[vertex]);
         let by = by.as_vec3();
         if !by.is_finite() {
             let file_vertex = drawn.file_vertex[vertex].0;
