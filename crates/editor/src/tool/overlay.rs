@@ -226,6 +226,10 @@ fn gizmo(
         ));
     }
     let handle = workspace.selected()?;
+    // The points of a curve that was just drawn are wanted, and the gizmo of the whole would be over them.
+    if settings.draws_curves() && handle.line.is_some() {
+        return None;
+    }
     if !is_shown || !handle.visible || handle.locked || handle.is_pin {
         return None;
     }
