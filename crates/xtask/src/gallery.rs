@@ -8,7 +8,8 @@ use crate::assets::SAMPLES;
 use crate::process::{build_program, cargo, said, target_folder};
 
 /// The methods of the gallery. Besides each method with its defaults, options that change its abilities.
-const METHODS: &str = "bilaplacian,poisson,laplacian,frames,frames:iterations=20,arap,arap:energy=smooth,primo,shells";
+const METHODS: &str = "bilaplacian,poisson,laplacian,frames,frames:iterations=300,arap,arap:energy=smooth,primo,\
+                       shells,rbf,mls,embedded,space-primo,lattice,cage";
 
 /// The coordinates of cages for the legs' pictures, and the other methods for their figures.
 const CAGES: [&str; 3] = [
@@ -25,7 +26,7 @@ const FACE: &str = "face";
 const PAPER_TO_RUBBER: &str = "shells:bending=1e-6,shells:bending=1e-4,shells:bending=1e-3";
 
 /// The size of a sheet in pixels.
-const SIZE: &str = "1200x640";
+const SIZE: &str = "1200x900";
 
 /// Draws `docs/gallery/NAME.png` for each sample and for the legs, and puts the tables of figures into
 /// `docs/methods.md`, each between its marks.
