@@ -69,7 +69,7 @@ fn a_warning_calls_the_handle_by_its_name_in_the_report_and_in_the_window() {
 #[test]
 fn every_method_says_what_came_out_badly_with_the_place_and_another_method() {
     let folder = Folder::new();
-    let file = folder.write_mesh("mesh.off", &shapes::icosphere(3));
+    let file = folder.write_mesh("mesh.off", &shapes::icosphere(2));
     let loaded = open(&file);
     for declaration in METHODS.iter().filter(|declaration| declaration.name != "identity") {
         let mut edit = bend(&json!({ "scale": [1e-3, 1e-3, 1e-3] }));

@@ -382,21 +382,21 @@ fn in_pixels(size_px: [u32; 2]) -> DVec2 {
     DVec2::new(f64::from(size_px[0]), f64::from(size_px[1]))
 }
 
-/// A camera that sees the rest shape and every shape that is not far larger, and the layout in which it sees them
-/// largest.
+/// A camera that sees every shape that is not far larger than the rest shape, and the layout in which it sees them
+/// largest. If there is none, it sees the rest shape.
 fn camera_and_layout(arguments: &CompareArguments, model: &Model, outcomes: &[Outcome]) -> (Camera, Layout) {
     let diagonal = |positions: &[DVec3]| pliant_mesh::bounding_box(positions).map_or(0.0, |bounds| bounds.diagonal());
     let vertices: Vec<usize> = model.vertices_without_specks().map(SurfaceVertex::index).collect();
     let seen_of = |positions: &[DVec3]| -> Vec<DVec3> { vertices.iter().map(|&v| positions[v]).collect() };
-    let mut seen = seen_of(&model.surface.positions);
-    let own = diagonal(&seen);
-    for outcome in outcomes {
-        if let Outcome::Bent { surface_positions, .. } = outcome
-            && let positions = seen_of(surface_positions)
-            && diagonal(&positions) < TOO_FAR * own
-        {
-            seen.extend(positions);
-        }
+    let rest = seen_of(&model.surface.positions);
+    let own = diagonal(&rest);
+    let bent = outcomes.iter().filter_map(|outcome| match outcome {
+        Outcome::Bent { surface_positions, .. } => Some(seen_of(surface_positions)),
+        Outcome::Refused { .. } => None,
+    });
+    let mut seen: Vec<DVec3> = bent.filter(|shape| diagonal(shape) < TOO_FAR * own).flatten().collect();
+    if seen.is_empty() {
+        seen = rest;
     }
     let mut camera = render::looking(arguments.look.up, arguments.look.view, own);
     let seen_from = camera.axes().transpose();

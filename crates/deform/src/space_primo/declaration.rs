@@ -54,7 +54,7 @@ impl DeformMethod for SpacePrimo {
 
     /// The cells give way where they twist most.
     fn follows_turns(&self) -> Option<Followed> {
-        Some(Followed::by_necks(130.0))
+        Some(Followed::by_necks(120.0))
     }
 
     fn needs(&self) -> Needs {

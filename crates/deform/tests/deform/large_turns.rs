@@ -94,7 +94,7 @@ const LIMITED: [(&str, f64, Beyond); 12] = [
     ("primo", 140.0, Beyond::NarrowsNecks),
     ("shells", 150.0, Beyond::NarrowsNecks),
     ("frames", 140.0, Beyond::Narrows),
-    ("space-primo", 130.0, Beyond::NarrowsNecks),
+    ("space-primo", 120.0, Beyond::NarrowsNecks),
 ];
 
 #[test]
