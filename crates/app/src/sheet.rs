@@ -64,7 +64,7 @@ impl Layout {
     pub fn of(count: usize, sheet_px: [u32; 2], aspect: f32) -> Self {
         let [width, height] = sheet_px.map(|side| side as f32);
         let count = count.max(1) as u32;
-        let pixels_per_point = (height / 900.0).min(width / 1100.0).clamp(0.4, 8.0);
+        let pixels_per_point = (height / 900.0).min(width / 1100.0).clamp(0.7, 8.0);
         let caption = (CAPTION * pixels_per_point).ceil();
         // The height of the figure; cells that are too narrow for their text come last.
         let figure = |rows: u32| {
