@@ -11,6 +11,7 @@
 
 #[cfg(unix)]
 pub mod hostile;
+pub mod morphs;
 pub mod sources;
 pub mod trials;
 

@@ -6,6 +6,7 @@ use std::path::Path;
 
 use glam::DVec3;
 use pliant_mesh::{Drawn, shapes};
+use pliant_tests::morphs::Glb;
 use pliant_tests::{Ended, Folder, diagonal, largest_distance, open, run};
 use serde_json::{Value, json};
 
@@ -189,6 +190,12 @@ fn keys_that_can_not_be_followed_are_refused_in_words_and_nothing_is_written() {
         ),
         (with(json!([key(1e9, "top")])), "f-####.off", ["--fps 24", "lower it"]),
         (with(keys()), "f.off", ["--output", "-####"]),
+        (
+            with(json!([{ "frame": 1, "span": [0, 2], "handles": { "top": lifted() } }])),
+            "f-####.off",
+            ["keys[0]", "pliant sequence"],
+        ),
+        (with(json!([{ "handles": {} }])), "f.pc2", ["keys[0]", "`time`"]),
         (with(keys()), "f-####.xyz", ["--output", "xyz"]),
     ] {
         let ended = animate(&folder, &edit, out, &[]);
@@ -201,4 +208,124 @@ fn keys_that_can_not_be_followed_are_refused_in_words_and_nothing_is_written() {
     folder
         .apply(&file, &with(keys()), &folder.at("one.off"), &[])
         .refused(1, &["has `keys`", "pliant animate"]);
+}
+
+#[test]
+fn a_gltf_plays_every_frame_within_the_bound_by_few_targets_and_is_otherwise_the_file() {
+    let folder = Folder::new();
+    let file = folder.write_mesh("bar.off", &bar());
+    // A file with an animation and targets of its own.
+    let own = json!({ "version": 1, "method": { "name": "bilaplacian" } });
+    folder.apply(&file, &own, &folder.at("bar.glb"), &[]).done();
+    let edit_at = folder.write("first.json", edit("bilaplacian", &json!({}), &keys()).to_string());
+    let words = |edit: &Path, from: &str, out: &str| {
+        let words = [
+            "animate".into(),
+            folder.at(from).into_os_string(),
+            "--edit".into(),
+            edit.into(),
+        ];
+        words
+            .into_iter()
+            .chain(["--output".into(), folder.at(out).into_os_string()])
+            .collect::<Vec<_>>()
+    };
+    run(words(&edit_at, "bar.glb", "own.glb")).done();
+    for (method, most) in [("bilaplacian", 9), ("arap", 30)] {
+        let edit_at = folder.write("second.json", edit(method, &json!({}), &keys()).to_string());
+        let report_at = folder.at("report.json");
+        let more = [
+            ["--report".into(), report_at.clone().into_os_string()],
+            ["--fps".into(), "16".into()],
+        ];
+        run(words(&edit_at, "own.glb", "out.glb")
+            .into_iter()
+            .chain(more.into_iter().flatten()))
+        .done();
+        run(words(&edit_at, "own.glb", "f-####.glb")
+            .into_iter()
+            .chain(["--fps".into(), "16".into()]))
+        .done();
+        let report: Value = serde_json::from_slice(&fs::read(report_at).unwrap()).unwrap();
+        let (bound, error) = (
+            report["morph"]["bound"].as_f64().unwrap(),
+            &report["morph"]["largest_error"],
+        );
+        assert!(
+            error.as_f64().unwrap() <= bound && report["frames"]["count"] == 9,
+            "{report}"
+        );
+        let [before, after] = ["own.glb", "out.glb"].map(|name| Glb::of(&fs::read(folder.at(name)).unwrap()));
+        let new = &after.json["meshes"][0]["primitives"][0]["targets"];
+        let added = new.as_array().unwrap().len() - before.json["meshes"][0]["weights"].as_array().unwrap().len();
+        assert_eq!(report["morph"]["targets"], added, "{method}");
+        assert!(added <= most, "{method}: {added} targets");
+        let frame = |frame: usize| {
+            let bytes = fs::read(folder.at(&format!("f-{frame:04}.glb"))).unwrap();
+            let glb = Glb::of(&bytes);
+            let position = glb.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"].clone();
+            glb.floats(&position)
+                .chunks(3)
+                .map(DVec3::from_slice)
+                .collect::<Vec<DVec3>>()
+        };
+        // At frames, and between them, where the shape is interpolated.
+        for time in [0.0, 0.0625, 0.1, 0.25, 0.3, 0.375, 0.4375, 0.49, 0.5, 2.0] {
+            let at = f64::min(time * 16.0, 8.0);
+            let (from, to) = (frame(at.floor() as usize), frame(at.ceil() as usize));
+            let pairs = from.iter().zip(&to);
+            let wanted: Vec<DVec3> = pairs.map(|(from, to)| from.lerp(*to, at.fract())).collect();
+            let away = largest_distance(&after.positions_at(time), &wanted);
+            assert!(away <= 1.01 * bound, "{method} at {time}: {away} of {bound}");
+            let is_clamped = |weight: &f64| (0.0..=1.0).contains(weight);
+            assert!(after.weights_at(1, time).iter().all(is_clamped), "{method} at {time}");
+            // The file's own animation is as before; it does not apply the new targets.
+            let mut own = before.weights_at(0, time);
+            own.resize(own.len() + added, 0.0);
+            assert_eq!(after.weights_at(0, time), own);
+        }
+        // Its accessors are as before.
+        let (mut whole, mut kept) = (after.json["accessors"].clone(), before.json["accessors"].clone());
+        let count = kept.as_array_mut().unwrap().len();
+        whole.as_array_mut().unwrap().truncate(count);
+        assert_eq!(whole, kept);
+        // A second run would give targets of the same names.
+        run(words(&edit_at, "out.glb", "again.glb")).refused(1, &["morph target called second 1", "another name"]);
+    }
+}
+
+#[test]
+fn an_animation_at_rest_gives_a_gltf_back_and_few_moved_vertices_take_few_bytes() {
+    let folder = Folder::new();
+    folder.write_mesh("bar.off", &bar());
+    let none = json!({ "version": 1, "method": { "name": "bilaplacian" } });
+    folder
+        .apply(&folder.at("bar.off"), &none, &folder.at("bar.glb"), &[])
+        .done();
+    let length = |name: &str| fs::read(folder.at(name)).unwrap().len();
+    let run_with = |edit: &Value, out: &str| {
+        let edit_at = folder.write("wave.json", edit.to_string());
+        let words = [
+            "animate".into(),
+            folder.at("bar.glb").into_os_string(),
+            "--edit".into(),
+            edit_at.into(),
+        ];
+        run(words
+            .into_iter()
+            .chain(["--output".into(), folder.at(out).into_os_string()]))
+        .done();
+    };
+    run_with(
+        &edit("arap", &json!({}), &json!([{ "time": 0.0 }, { "time": 1.0 }])),
+        "rest.glb",
+    );
+    assert!(fs::read(folder.at("rest.glb")).unwrap() == fs::read(folder.at("bar.glb")).unwrap());
+    let whole = edit("bilaplacian", &json!({}), &keys());
+    let mut few = whole.clone();
+    few["region"] = json!({ "slab": { "axis": "z", "from": 0.8, "to": 1.0 } });
+    run_with(&whole, "whole.glb");
+    run_with(&few, "few.glb");
+    let [rest, whole, few] = ["bar.glb", "whole.glb", "few.glb"].map(length);
+    assert!(2 * (few - rest) < whole - rest, "{rest} {whole} {few}");
 }

@@ -28,6 +28,8 @@ const TOOLS: [ToolMode; 7] = [
     ToolMode::Pose,
 ];
 
+const PAGES: [&str; 3] = ["Handles", "Scene", "Method"];
+
 /// A control for assistive technologies.
 #[derive(Clone, PartialEq, Eq, PartialOrd, Ord, Debug)]
 struct Control {
@@ -80,10 +82,9 @@ fn begin() -> Option<Session> {
     session.harness.set_size(vec2(1000.0, 2600.0));
     session.harness.state_mut().command(Command::KeepPose);
     session.settle();
-    for section in ["Options", "Advanced"] {
-        session.harness.get_by_label(section).click();
-        session.harness.run_steps(3);
-    }
+    session.page("Method");
+    session.harness.get_by_label("Advanced").click();
+    session.harness.run_steps(3);
     Some(session)
 }
 
@@ -94,6 +95,10 @@ fn every_control_has_a_name_with_every_tool_and_method() {
         session.harness.state_mut().command(Command::SetTool(tool));
         session.settle();
         assert_named(&mut session, &format!("{tool:?}"));
+    }
+    for page in PAGES {
+        session.page(page);
+        assert_named(&mut session, page);
     }
     for method in METHODS {
         let command = Command::SetMethod((method.first_choice)());
@@ -130,10 +135,18 @@ fn every_control_of_menus_and_dialogs_has_a_name() {
 #[test]
 fn tab_comes_to_every_control_of_the_bars_and_the_panel() {
     let Some(mut session) = begin() else { return };
-    // Over the view Tab is the view's own key.
-    session.pointer(pos2(5.0, 2.0), None);
-    let expected: BTreeSet<Control> = controls(&session).into_iter().collect();
-    assert!(expected.len() > 60, "{expected:#?}");
+    for page in PAGES {
+        session.page(page);
+        // Over the view Tab is the view's own key.
+        session.pointer(pos2(5.0, 2.0), None);
+        assert_tab_comes_everywhere(&mut session);
+    }
+}
+
+#[track_caller]
+fn assert_tab_comes_everywhere(session: &mut Session) {
+    let expected: BTreeSet<Control> = controls(session).into_iter().collect();
+    assert!(expected.len() > 40, "{expected:#?}");
     let mut reached = BTreeSet::new();
     for _ in 0..2 * expected.len() {
         session.key(Key::Tab, Modifiers::NONE);

@@ -48,6 +48,42 @@ fn slider(session: &Session) -> Rect {
     slider.expect("the panel has the slider").rect()
 }
 
+/// Moves the focus to the first field of the handle's translation.
+fn focus_move(session: &Session) {
+    let mut fields = session.harness.get_all_by_label("Move");
+    let field = fields.find(|node| node.accesskit_node().role() == Role::SpinButton);
+    field.unwrap().focus();
+}
+
+#[test]
+fn numbers_are_typed_as_sums_with_commas_and_units_and_refused_in_words() {
+    let Some(mut session) = Session::with_handle() else {
+        return;
+    };
+    let start = session.translation();
+    assert_eq!(start, DVec3::ZERO);
+    let mut x = 0.0;
+    for (text, value) in [
+        ("2*5", 10.0),
+        ("1/4", 0.25),
+        ("-5 cm", -0.05),
+        ("0,5", 0.5),
+        ("5 apples", 0.5),
+    ] {
+        focus_move(&session);
+        session.harness.run_steps(2);
+        session.key(Key::A, Modifiers::COMMAND);
+        session.harness.event(egui::Event::Text(text.to_owned()));
+        session.key(Key::Enter, Modifiers::NONE);
+        session.settle();
+        x = session.translation().x;
+        assert!((x - value).abs() < 1e-12, "{text}: {x}");
+    }
+    assert_eq!(x, 0.5);
+    let said = session.harness.state().headline().unwrap();
+    assert!(said.contains("5 apples") && said.contains("type one like"), "{said}");
+}
+
 #[test]
 fn the_strength_is_dragged_and_typed_and_what_is_moved_next_goes_on_from_it() {
     let Some(mut session) = bent(DVec3::X * 0.05, 1.0) else {

@@ -94,6 +94,7 @@ fn a_cage_is_shown_dragged_undone_loaded_and_saved() {
     session.palette("method: cage");
     session.key(Key::Enter, Modifiers::NONE);
     wait(&mut session, |session| count(session) > 8);
+    session.page("Method");
     session.harness.get_by_label_contains("made by the method");
     session.harness.state_mut().command(Command::SetTool(ToolMode::Select));
     session.settle();

@@ -438,6 +438,7 @@ fn vertices_are_joined_as_the_panel_says_and_the_work_stays() {
     };
     assert_eq!(parts(&session), 2);
     edit(&mut session);
+    session.page("Scene");
     let (handle, highest) = (session.translation(), highest(&session));
     for (choice, count) in [("within", 1), ("by mesh", 2), ("equal", 2), ("within", 1)] {
         session.harness.get_by_label(choice).click_accesskit();

@@ -44,6 +44,7 @@ fn begin(path: PathBuf, method: &str) -> Option<Session> {
     let mut session = Session::begin_in(Source::File(path), AppDirectories::default())?;
     session.harness.set_size(vec2(1000.0, 1800.0));
     session.harness.run();
+    session.page("Method");
     let method = Method::from_name(method).unwrap();
     session.harness.state_mut().command(Command::SetMethod(method));
     session.settle();

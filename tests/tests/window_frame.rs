@@ -82,12 +82,16 @@ fn bars_are_laid_out_anew_after_a_resize_without_any_input() {
                 "{tool:?} in a window of {size:?} whose view is at {view:?}"
             );
         }
+        // The tool's settings are in rows between them.
+        let settings = place_of(&session, "Symmetry");
+        assert!(
+            settings.bottom() <= view.top() && view.top() - settings.bottom() < 12.0,
+            "{settings:?} in a window of {size:?} whose view is at {view:?}"
+        );
         let choices = ["Undo", "Clay", "Wireframe"].map(|label| place_of(&session, label));
         for choice in choices {
             assert!(
-                choice.bottom() <= view.top()
-                    && view.top() - choice.bottom() < 12.0
-                    && view.x_range().contains(choice.right()),
+                choice.bottom() <= view.top() && view.x_range().contains(choice.right()),
                 "{choice:?} in a window of {size:?} whose view is at {view:?}"
             );
         }

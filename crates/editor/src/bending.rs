@@ -6,7 +6,7 @@ use glam::{DAffine3, DVec3};
 use pliant_deform::{Attachment, Bound, Solve, SolveError, Step};
 use pliant_mesh::Cancel;
 
-use crate::document::{HandleId, KeptShape};
+use crate::document::{HandleCurve, HandleId, KeptShape};
 use crate::lines::Lines;
 
 /// A frame takes steps for this many vertices before it shows its shape: about as many as fit into its time. There is
@@ -130,15 +130,20 @@ pub struct Kept {
     pub shape: Arc<KeptShape>,
     /// The handles' maps at that time.
     pub targets: Vec<DAffine3>,
+    /// The curve of each handle at that time, if it has one.
+    pub curves: Vec<Option<HandleCurve>>,
 }
 
 impl Kept {
     /// `None` for a handle that did not exist yet.
     pub(crate) fn of(shape: &Arc<KeptShape>, handles: impl Iterator<Item = HandleId>) -> Option<Self> {
-        let targets: Option<Vec<DAffine3>> = handles.map(|id| shape.targets.get(&id).copied()).collect();
+        let own = handles.map(|id| Some((*shape.targets.get(&id)?, shape.curves.get(&id).cloned())));
+        let own: Option<Vec<_>> = own.collect();
+        let (targets, curves) = own?.into_iter().unzip();
         Some(Self {
             shape: Arc::clone(shape),
-            targets: targets?,
+            targets,
+            curves,
         })
     }
 
@@ -155,7 +160,7 @@ impl Kept {
         let is_same = |kept: &&Arc<Vec<DVec3>>| present.controls.as_ref().is_some_and(|own| own.len() == kept.len());
         let first = Targets {
             handles: self.targets,
-            lines: present.lines.clone(),
+            lines: present.lines.moved(|handle| self.curves.get(handle)?.as_ref()),
             line_share: present.line_share,
             controls: own.as_ref().filter(is_same).or(present.controls.as_ref()).cloned(),
             weights: self.shape.weights.clone(),

@@ -79,9 +79,9 @@ pub use event::Event;
 pub use flow_start::FlowStart;
 pub use format::{
     Accuracy, AttachmentEntry, Axis, Beginning, DyeEntry, EDIT_VERSION, EditError, EditFile, ExampleEntry,
-    ExampleSource, ExportError, FieldEntry, FlowFile, FlowMotion, HandleEntry, HandleSetup, JoinsFile, KeyEntry,
-    MeshReference, Placement, PoseEntry, Project, Rest, SOFT_RANGE, STIFFNESS_RANGE, Selector, Setup, StoredKept,
-    VelocityEntry, geometry_hash, refuse_keys,
+    ExampleSource, ExportError, FieldEntry, FilterEntry, FilterKind, FlowFile, FlowMotion, HandleEntry, HandleSetup,
+    JoinsFile, KeyEntry, MeshReference, Placement, PoseEntry, Project, Rest, SOFT_RANGE, STIFFNESS_RANGE, Selector,
+    Setup, StoredKept, VelocityEntry, geometry_hash, refuse_keys,
 };
 pub use input::{Button, Key, Modifiers, Pointer};
 pub use jobs::{
@@ -96,7 +96,7 @@ pub use scene_view::{ControlPoints, SceneView};
 pub use selection::Selection;
 pub use snapshot::Snapshot;
 pub use status::thousands;
-pub use timeline::{Ease, Timeline};
+pub use timeline::{Ease, HandlePlace, KeySpace, SequenceTimeline, Timeline};
 pub use tool::{
     BrushMetric, Constraint, Correction, CorrectionBrush, Depth, StiffnessAction, StiffnessBrush, StrokeShape, ToolMode,
 };

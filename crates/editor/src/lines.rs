@@ -36,7 +36,7 @@ struct Laid {
 #[derive(Clone, PartialEq, Debug)]
 enum Followers {
     /// The place on the curve at rest that is nearest to the vertex.
-    Curve(HandleCurve, Vec<f64>),
+    Curve(HandleCurve, Arc<Vec<f64>>),
     /// The vertex' way to the sketched line.
     Sketch(Vec<DVec3>),
 }
@@ -62,6 +62,21 @@ impl Lines {
             Arc::make_mut(&mut own.each).push(Laid { handle, vertices });
         }
         own
+    }
+
+    /// The same with the present way of each handle's curve, by the handle's number; curves with another rest stay.
+    pub(crate) fn moved<'a>(&self, present: impl Fn(usize) -> Option<&'a HandleCurve>) -> Self {
+        let moved = |laid: &Laid| match (&laid.vertices, present(laid.handle)) {
+            (Followers::Curve(curve, places), Some(present)) if present.rest() == curve.rest() => Laid {
+                handle: laid.handle,
+                vertices: Followers::Curve(present.clone(), Arc::clone(places)),
+            },
+            _ => laid.clone(),
+        };
+        Self {
+            each: Arc::new(self.each.iter().map(moved).collect()),
+            sections: Arc::clone(&self.sections),
+        }
     }
 
     /// Returns true if no handle follows a line.
@@ -134,7 +149,7 @@ fn along_curve(curve: &HandleCurve, vertices: &[usize], surface: &Surface, secti
         sections[*vertex] = section(place / rest.length());
         places.push(place);
     }
-    Followers::Curve(curve.clone(), places)
+    Followers::Curve(curve.clone(), Arc::new(places))
 }
 
 /// Vertices that are not on the outline stay.

@@ -71,6 +71,8 @@ pub struct SceneView<'a> {
     pub outline_px: Vec<DVec2>,
     /// The shape in which the left button selects vertices.
     pub stroke_shape: StrokeShape,
+    /// True if the points of curves follow a dragged one at their distances.
+    pub chain: bool,
     /// The depth of a lasso or a box.
     pub depth: Depth,
     /// The plane across which both sides are painted at once, found or still being searched for.

@@ -2,9 +2,9 @@
 
 use crate::jobs::{Activity, JobKind};
 use crate::region::Counts;
-use crate::tool::{Gesture, ToolMode, ToolSettings};
+use crate::tool::{Gesture, StrokeShape, ToolMode, ToolSettings};
 use crate::view::View;
-use crate::workspace::Workspace;
+use crate::workspace::{Workspace, selected_curve};
 
 /// The whole line.
 pub(crate) fn status(
@@ -56,7 +56,18 @@ fn crossing(workspace: &Workspace) -> Option<String> {
 /// The possible actions without an active gesture, and the number of vertices of each role.
 fn hint(workspace: &Workspace, settings: &ToolSettings) -> String {
     let document = &workspace.document;
-    let hint = if !workspace.controls.is_empty() {
+    let is_sketching = settings.mode == ToolMode::PaintHandle && settings.stroke_shape == StrokeShape::Sketch;
+    let hint = if is_sketching {
+        "Draw the outline anew beside the one that you see; a drag with Alt turns the view"
+    } else if settings.draws_curves() && workspace.controls.is_empty() {
+        match selected_curve(workspace) {
+            Some(_) => "Drag a point of the curve, R twists and S scales the surface around it, or draw another",
+            None if settings.stroke_shape == StrokeShape::Spine => {
+                "Draw through a limb, from the body to its tip, and drag its points"
+            }
+            None => "Draw a curve on the surface and drag its points",
+        }
+    } else if !workspace.controls.is_empty() {
         "Drag the gizmo, or press G, R or S to move, turn or scale the points"
     } else if document.handles().is_empty() && document.examples().is_some() && document.bends_without_handles() {
         "Drag an example's weight, or paint a handle (1)"

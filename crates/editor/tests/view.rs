@@ -81,6 +81,7 @@ fn a_brush_that_reaches_through_takes_the_far_side_and_one_that_does_not_leaves_
     for through in [false, true] {
         let mut rig = Rig::open(shapes::icosphere(4));
         rig.command(Command::View(NamedView::Front));
+        rig.command(Command::SetTool(ToolMode::PaintFixed));
         if through {
             rig.command(Command::SetBrushMetric(BrushMetric::Through));
         }

@@ -135,7 +135,7 @@ pub fn apply(apply: &Apply<'_>, watch: &Watch, staging: &Staging) -> Result<Repo
         source,
     };
     if let Beginning::Edit(edit) = &edit {
-        refuse_keys(&edit.keys, "use `pliant animate`, or remove them").map_err(in_edit)?;
+        refuse_keys(edit, "use `pliant animate` or `pliant sequence`, or remove them").map_err(in_edit)?;
     }
     let setup = edit.resolve(model).map_err(in_edit)?;
     check_bends(apply.file, model, &setup.method)?;

@@ -62,17 +62,19 @@ pub mod memory;
 mod path_text;
 pub mod report;
 pub mod saving;
+mod sequence;
 pub mod stitching;
 mod transfer;
 pub mod watch;
 
-pub use animate::{Animate, animate};
+pub use animate::{Animate, AnimationReport, MorphReport, animate};
 pub use apply::{Apply, Prepared, Solved, apply, bind, check_bends, check_not_empty, order, prepare, solved};
 pub use difference::{Compared, differences};
 pub use edit::read_edit;
 pub use error::EngineError;
 pub use flow::{FlowJob, FlowReport, Flowing, FromTo, flow, read_flow};
 pub use loading::{Loaded, is_project, load, load_bytes, open};
+pub use sequence::{Sequence, SequenceReport, sequence};
 pub use transfer::{Transfer, transfer, transferred};
 
 pub use pliant_io::{Difference, What};

@@ -6,10 +6,10 @@ use std::time::Instant;
 
 use glam::DVec3;
 use pliant_io::{
-    Format, MorphDeltas, MorphTarget, Role, Save, SaveError, Saved, SceneAndDrawn, UnsavedShape, quoted,
-    with_neighbours_renamed,
+    Format, MorphAnimation, MorphDeltas, MorphTarget, Role, Save, SaveError, Saved, Scene, SceneAndDrawn, UnsavedShape,
+    quoted, with_neighbours_renamed,
 };
-use pliant_mesh::{Cancel, Progress};
+use pliant_mesh::{Cancel, Drawn, Progress};
 
 use crate::EngineError;
 use crate::files::check::{self, Written};
@@ -31,6 +31,8 @@ pub struct SaveAs<'a> {
     pub colours: Option<&'a [[u16; 4]]>,
     /// Saves the edit as a morph target beside the unchanged shape.
     pub morph: Option<&'a MorphTarget<'a>>,
+    /// Saves an animation of morph targets; the shape is then that at rest.
+    pub animation: Option<&'a MorphAnimation<'a>>,
     /// The file to write.
     pub output: &'a Path,
     /// A further output with a description: no neighbour may be the same file.
@@ -46,6 +48,7 @@ impl<'a> SaveAs<'a> {
             deltas: MorphDeltas::default(),
             colours: None,
             morph: None,
+            animation: None,
             output,
             beside: None,
         }
@@ -63,6 +66,16 @@ pub struct StagedSave {
     pub check_ms: f64,
 }
 
+/// A file that was read, to be saved with other positions.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Original<'a> {
+    pub path: &'a Path,
+    pub scene: &'a Scene,
+    pub drawn: &'a Drawn,
+    /// For each drawn vertex, whether its part is turned inside out; empty if none is.
+    pub turned: &'a [bool],
+}
+
 /// Prepares a model's files: encoded, written beside their targets, synced and read back, ready for a commit.
 ///
 /// # Errors
@@ -75,44 +88,52 @@ pub fn stage(
     progress: &Progress,
     cancel: &Cancel,
 ) -> Result<StagedSave, EngineError> {
+    check_names(loaded, what)?;
+    let original = Original {
+        path: &loaded.path,
+        scene: &loaded.scene,
+        drawn: &loaded.model.rest(),
+        turned: &loaded.model.drawn_vertices_of(what.inside_out),
+    };
+    stage_of(&original, what, staging, progress, cancel)
+}
+
+/// Prepares the files of one that was read, as [`stage`] does.
+///
+/// # Errors
+/// Those of [`stage`].
+pub(crate) fn stage_of(
+    original: &Original<'_>,
+    what: &SaveAs<'_>,
+    staging: &Staging,
+    progress: &Progress,
+    cancel: &Cancel,
+) -> Result<StagedSave, EngineError> {
     let to = Destination::of(what.output)?;
-    if let Some(morph) = what.morph
-        && loaded.scene.morph_targets().iter().any(|name| name == morph.name)
-    {
-        return Err(EngineError::Unsupported(format!(
-            "{} already has a morph target called {}: give the new one another name",
-            files::shown(&loaded.path),
-            quoted(morph.name)
-        )));
-    }
     // Encoding takes about as long as writing to the disk; reading back takes less.
     let (of_making, of_writing) = (progress.part(0.0, 0.4), progress.part(0.4, 0.8));
     let of_check = progress.part(0.8, 1.0);
     let format = Format::of_name(&what.output.to_string_lossy())?;
     let name = name_in(format, &to);
-    let drawn = loaded.model.rest();
-    let turned = loaded.model.drawn_vertices_of(what.inside_out);
     let save = Save {
         deltas: what.deltas,
-        turned: &turned,
-        drawn: &drawn,
+        turned: original.turned,
+        drawn: original.drawn,
         positions: what.positions,
         format,
         name: &name,
-        placement: placement::placement(&loaded.path, &to),
+        placement: placement::placement(original.path, &to),
     };
-    let saved = match (what.colours, what.morph) {
-        (Some(colours), _) => loaded.scene.save_with_colours(&save, colours, &of_making, cancel),
-        (None, None) => loaded.scene.save(&save, &of_making, cancel),
-        (None, Some(morph)) => loaded.scene.save_as_morph(&save, morph, &of_making, cancel),
+    let scene = original.scene;
+    let saved = match (what.colours, what.morph, what.animation) {
+        (Some(colours), ..) => scene.save_with_colours(&save, colours, &of_making, cancel),
+        (None, Some(morph), _) => scene.save_as_morph(&save, morph, &of_making, cancel),
+        (None, None, Some(animation)) => scene.save_as_animation(&save, animation, &of_making, cancel),
+        (None, None, None) => scene.save(&save, &of_making, cancel),
     };
     let saved = saved.map_err(|error| refused(what.output, error))?;
     let triangles = saved.triangles.clone();
-    let compare = |back: &SceneAndDrawn| {
-        loaded
-            .scene
-            .check_read_back(&save, what.morph, triangles.as_deref(), back)
-    };
+    let compare = |back: &SceneAndDrawn| scene.check_read_back(&save, what.morph, triangles.as_deref(), back);
     stage_saved(
         saved,
         format,
@@ -121,6 +142,22 @@ pub fn stage(
         staging,
         (&of_writing, &of_check, cancel),
     )
+}
+
+/// Refuses morph targets with names that others of the file already have.
+fn check_names(loaded: &Loaded, what: &SaveAs<'_>) -> Result<(), EngineError> {
+    let of_animation = what.animation.iter().flat_map(|animation| animation.target_names());
+    let new = what.morph.map(|morph| morph.name.to_owned());
+    let mut new = new.into_iter().chain(of_animation);
+    let known = loaded.scene.morph_targets();
+    match new.find(|name| known.contains(name)) {
+        None => Ok(()),
+        Some(name) => Err(EngineError::Unsupported(format!(
+            "{} already has a morph target called {}: give the new one another name",
+            files::shown(&loaded.path),
+            quoted(&name)
+        ))),
+    }
 }
 
 /// Prepares the files of a shape that no file has yet, as [`stage`] does.

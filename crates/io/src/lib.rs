@@ -44,6 +44,7 @@
 
 mod appearance;
 mod bytes;
+mod cache_frames;
 mod convert;
 mod difference;
 mod error;
@@ -68,6 +69,7 @@ pub use appearance::{
     AlphaMode, Appearance, Group, Image, Lighting, Map, Material, Origin, OriginalMaterial, UvSet, Wrap,
 };
 pub use bytes::Bytes;
+pub use cache_frames::CacheFrames;
 pub use convert::Polygons;
 pub use difference::{Difference, What};
 pub use error::{ImageError, ReadError, SaveError};
@@ -77,7 +79,10 @@ pub use images::pixels::Rgba8;
 pub use images::{DecodedImage, IMAGE_BYTES, decode_images};
 pub use point_cache::{PointCache, PointCacheFormat};
 pub use quote::{quoted, steers};
-pub use save::{MorphDeltas, MorphTarget, OutputFile, Placement, Role, Save, Saved, numbered};
+pub use save::{
+    FewTargets, MorphAnimation, MorphDeltas, MorphTarget, OutputFile, Placement, Role, Save, Saved, ShapeDirections,
+    numbered,
+};
 pub use scene::pose::positions_in_pose;
 pub use scene::unsaved::UnsavedShape;
 pub use scene::{Scene, SceneAndDrawn, read};

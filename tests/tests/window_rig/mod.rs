@@ -9,6 +9,7 @@
 
 use std::time::{Duration, Instant};
 
+use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
@@ -160,12 +161,19 @@ impl Session {
             .translation
     }
 
+    /// Shows a page of the panel.
+    pub fn page(&mut self, name: &str) {
+        let tab = self.harness.get_by_role_and_label(Role::Tab, name);
+        tab.click();
+        self.harness.run_steps(3);
+    }
+
     /// Clicks into the first of the fields behind a label, which then takes typed digits.
     pub fn click_into(&mut self, label: &str) {
         let field = self
             .harness
             .get_all_by_label(label)
-            .find(|node| node.accesskit_node().role() == egui::accesskit::Role::SpinButton);
+            .find(|node| node.accesskit_node().role() == Role::SpinButton);
         let middle = field.expect("the panel has the field").rect().center();
         for pressed in [true, false] {
             self.pointer(middle, Some(pressed));

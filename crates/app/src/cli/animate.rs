@@ -2,6 +2,7 @@
 
 use pliant_engine::{Animate, EngineError, animate, files, memory, read_edit};
 
+use super::apply::own_name;
 use super::arguments::AnimateArguments;
 use super::method_argument::method_argument;
 use crate::cli::console::{Console, warn};
@@ -12,6 +13,8 @@ pub(super) fn run(arguments: &AnimateArguments, console: &mut Console<'_>) -> Re
         file,
         edit: edit_path,
         output,
+        report,
+        tolerance,
         fps,
         method,
         memory: most_memory,
@@ -19,23 +22,31 @@ pub(super) fn run(arguments: &AnimateArguments, console: &mut Console<'_>) -> Re
         compute,
     } = arguments;
     files::refuse_shared(("--output", output), [("--edit", &**edit_path)])?;
+    if let Some(report) = report {
+        let others = [("FILE", &**file), ("--edit", edit_path), ("--output", output)];
+        files::refuse_shared(("--report", report), others)?;
+    }
     let method = method.as_deref();
     let method = method.map(|name| method_argument("--method", name)).transpose()?;
     let mut edit = read_edit(edit_path, &console.watch)?;
     if let Some(method) = method {
         edit.set_method(method);
     }
+    let name = own_name(edit_path);
     let job = Animate {
         file,
         edit: &edit,
         edit_path,
         output,
+        report: report.as_deref(),
+        name: &name,
+        tolerance: *tolerance,
         fps: *fps,
         weld: weld.weld,
         budget: memory::budget_within(*most_memory),
     };
     let (watch, staging) = (&console.watch, &console.staging);
-    let warnings = on_threads(*compute, || animate(&job, watch, staging))??;
-    warn(console.err, &warnings);
+    let report = on_threads(*compute, || animate(&job, watch, staging))??;
+    warn(console.err, &report.warnings);
     Ok(())
 }

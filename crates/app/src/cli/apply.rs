@@ -1,5 +1,7 @@
 //! `pliant apply`: an edit applied to a file.
 
+use std::path::Path;
+
 use pliant_io::Format;
 
 use super::arguments::ApplyArguments;
@@ -34,9 +36,8 @@ pub(super) fn run(arguments: &ApplyArguments, console: &mut Console<'_>) -> Resu
     if let Some(method) = method {
         edit.set_method(method);
     }
-    let stem = edit_path.file_stem().unwrap_or_default().to_string_lossy();
-    let own_name = stem.strip_suffix(".edit").unwrap_or(&stem);
-    let (deltas, morph) = (morph.deltas(), morph.target(own_name));
+    let own_name = own_name(edit_path);
+    let (deltas, morph) = (morph.deltas(), morph.target(&own_name));
     let job = pliant_engine::Apply {
         file,
         edit: &edit,
@@ -53,4 +54,10 @@ pub(super) fn run(arguments: &ApplyArguments, console: &mut Console<'_>) -> Resu
     let report = on_threads(*compute, || pliant_engine::apply(&job, watch, staging))??;
     warn(console.err, &report.warnings);
     Ok(())
+}
+
+/// The name of an edit, for its morph targets and animations: its file's, without extensions.
+pub(super) fn own_name(edit: &Path) -> String {
+    let stem = edit.file_stem().unwrap_or_default().to_string_lossy();
+    stem.strip_suffix(".edit").unwrap_or(&stem).to_owned()
 }

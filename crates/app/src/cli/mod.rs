@@ -14,6 +14,7 @@ mod interrupt;
 mod method_argument;
 mod progress_line;
 mod render;
+mod sequence;
 mod stitch;
 mod threads;
 mod transfer;
@@ -64,6 +65,7 @@ pub fn run(arguments: Vec<OsString>, console: &mut Console<'_>) -> u8 {
             Some(Command::Cut(arguments)) => stitch::cut(&arguments, console),
             Some(Command::Merge(arguments)) => stitch::merge(&arguments, console),
             Some(Command::Animate(arguments)) => animate::run(&arguments, console),
+            Some(Command::Sequence(arguments)) => sequence::run(&arguments, console),
             Some(Command::Flow(arguments)) => flow::run(&arguments, console),
             Some(Command::Generate(arguments)) => generate::run(&arguments, console),
             None => window::run(Source::of(arguments.file, arguments.edit)),

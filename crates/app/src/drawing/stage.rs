@@ -8,7 +8,7 @@ use pliant_render::{
 
 use super::field::Field;
 
-/// Factor of an overlay's alpha where a surface hides it.
+/// Factor of the alpha of the gizmo and the brush ring where a surface hides them.
 const HIDDEN_SHARE: f32 = 0.35;
 /// Colour of the brush ring, sRGB.
 const RING_COLOUR: [u8; 4] = [255, 255, 255, 220];
@@ -118,29 +118,29 @@ pub fn overlays(view: &SceneView<'_>, centre: DVec3, pixels_per_point: f32) -> V
             }));
     }
     let control_shapes = || view.controls.iter().chain(view.shapes);
-    let edges = control_shapes().flat_map(|shape| {
-        shape.lines.iter().map(|ends| OverlayLine {
+    // Lines of one overlay are drawn over its triangles, so the edges have overlays of their own, before the points.
+    let edges = control_shapes().map(|shape| {
+        let edge = |ends: &[DVec3; 2]| OverlayLine {
             ends: ends.map(relative),
             colours: [shape.colour; 2],
             width_px: CONTROL_WIDTH_POINTS * pixels_per_point,
-        })
+        };
+        Overlay {
+            hidden_share: shape.hidden_share,
+            lines: shape.lines.iter().map(edge).collect(),
+            ..Overlay::default()
+        }
     });
-    let edges = Overlay {
-        hidden_share: HIDDEN_SHARE,
-        lines: edges.collect(),
-        ..Overlay::default()
-    };
-    // Lines of one overlay are drawn over its triangles.
-    let points = control_shapes().flat_map(|shape| {
-        shape.triangles.iter().map(|corners| OverlayTriangle {
+    let points = control_shapes().map(|shape| {
+        let point = |corners: &[DVec3; 3]| OverlayTriangle {
             corners: corners.map(relative),
             colours: [shape.colour; 3],
-        })
+        };
+        Overlay {
+            hidden_share: shape.hidden_share,
+            triangles: shape.triangles.iter().map(point).collect(),
+            ..Overlay::default()
+        }
     });
-    let points = Overlay {
-        hidden_share: HIDDEN_SHARE,
-        triangles: points.collect(),
-        ..Overlay::default()
-    };
-    vec![edges, points, ring, gizmo]
+    edges.chain(points).chain([ring, gizmo]).collect()
 }

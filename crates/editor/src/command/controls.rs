@@ -51,12 +51,15 @@ pub(super) const SELECT_CONTROLS: Entry<()> = Entry {
     listed: &[item(
         (),
         "Select all points",
-        "Selects all points of the cage or lattice.",
+        "Selects all points of the curve, cage or lattice.",
         "control cage lattice everything",
         &[],
     )],
     scope: Scope::Document,
-    unavailable: |state, ()| without_controls(state).or_else(|| not_shown(state)),
+    unavailable: |state, ()| match state.workspace.shown_controls() {
+        Some(_) => None,
+        None => without_controls(state).or_else(|| not_shown(state)),
+    },
     action: Action::Do(|context, ()| {
         let shown = context.workspace.shown_controls();
         let count = shown.map_or(0, |shown| shown.positions.len() as u32);
@@ -69,14 +72,14 @@ pub(super) const DESELECT_CONTROLS: Entry<()> = Entry {
     listed: &[item(
         (),
         "Deselect points",
-        "Deselects the points of the cage or lattice, so that the gizmo moves the handle again.",
+        "Deselects the points of the curve, cage or lattice, so that the gizmo moves the handle again.",
         "control cage lattice none",
         &[],
     )],
     scope: Scope::Document,
     unavailable: |state, ()| {
         let is_selected = !state.workspace.controls.is_empty();
-        unless(is_selected, "No point of a cage or lattice is selected.")
+        unless(is_selected, "No point of a curve, cage or lattice is selected.")
     },
     action: Action::Do(|context, ()| context.workspace.controls.put([])),
 };

@@ -5,6 +5,7 @@
 //! an entry does not compile.
 
 mod controls;
+mod curves;
 mod document;
 mod entry;
 mod examples;

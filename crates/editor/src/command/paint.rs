@@ -105,13 +105,43 @@ pub(super) const SET_STROKE_SHAPE: Entry<StrokeShape> = Entry {
             "component connected linked",
             &[character('j')],
         ),
+        item(
+            StrokeShape::Curve,
+            "Curve",
+            "Draws a curve on the surface, which a new handle follows. Drag its points to bend it.",
+            "line spline sketch",
+            &[],
+        ),
+        item(
+            StrokeShape::Spine,
+            "Spine",
+            "Draws a curve through the middle of a limb, which the limb follows. Drag its end to pose the limb.",
+            "line skeleton chain bone spline ik",
+            &[],
+        ),
+        item(
+            StrokeShape::Sketch,
+            "Sketch",
+            "Draws the outline that you see anew: draw beside a nose or a back, and it follows the line.",
+            "line profile silhouette outline contour",
+            &[],
+        ),
     ],
     scope: Scope::Tool,
     unavailable: always,
     action: Action::Do(|context, shape| {
-        context.settings.stroke_shape = shape;
-        if context.settings.mode == ToolMode::Select {
-            context.settings.mode = ToolMode::PaintHandle;
+        let settings = &mut *context.settings;
+        settings.stroke_shape = shape;
+        // A box or a lasso selects the points of a cage that is shown.
+        let selects_points =
+            matches!(shape, StrokeShape::Lasso | StrokeShape::Box) && context.workspace.shown_controls().is_some();
+        if shape.is_line() || (settings.mode == ToolMode::Select && !selects_points) {
+            settings.mode = ToolMode::PaintHandle;
+        }
+        if shape.is_line() {
+            settings.chain = shape == StrokeShape::Spine;
+            // Another curve, not more of the selected handle.
+            context.workspace.controls.put([]);
         }
     }),
 };
@@ -124,6 +154,13 @@ pub(super) const SET_BRUSH_METRIC: Entry<BrushMetric> = Entry {
             "Brush visible",
             "Sets the brush to paint everything under it that faces you.",
             "screen",
+            &[],
+        ),
+        item(
+            BrushMetric::Round,
+            "Brush round limbs",
+            "Sets the brush to close round limbs that are thinner than it, and to fill folds.",
+            "closed back fill",
             &[],
         ),
         item(
@@ -144,7 +181,7 @@ pub(super) const SET_BRUSH_METRIC: Entry<BrushMetric> = Entry {
     ],
     scope: Scope::View,
     unavailable: always,
-    action: Action::Do(|context, metric| context.settings.brush.metric = metric),
+    action: Action::Do(|context, metric| context.settings.set_brush_metric(metric)),
 };
 
 /// The depth of a lasso or a box.
@@ -236,7 +273,7 @@ pub(super) const GROW_BRUSH: Entry<()> = Entry {
     action: Action::Do(|context, ()| {
         context
             .settings
-            .set_brush_radius(context.settings.brush.radius_px * BRUSH_STEP)
+            .set_brush_radius(context.settings.brush().radius_px * BRUSH_STEP)
     }),
 };
 
@@ -254,7 +291,7 @@ pub(super) const SHRINK_BRUSH: Entry<()> = Entry {
     action: Action::Do(|context, ()| {
         context
             .settings
-            .set_brush_radius(context.settings.brush.radius_px / BRUSH_STEP)
+            .set_brush_radius(context.settings.brush().radius_px / BRUSH_STEP)
     }),
 };
 

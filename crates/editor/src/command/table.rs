@@ -8,7 +8,7 @@ use pliant_deform::{Attachment, ExampleShape, Loose, Method};
 
 use super::entry::{Action, Entry, Reason, Scope, State};
 use super::shortcut::Shortcut;
-use super::{controls, document, examples, handle, look, object, paint, pose, region, transform, view};
+use super::{controls, curves, document, examples, handle, look, object, paint, pose, region, transform, view};
 use crate::document::{HandleId, HandleTransform, ObjectAction, PivotPlace, Reach, SmallParts, Tips};
 use crate::jobs::Symmetry;
 use crate::tool::{BrushMetric, Context, CorrectionBrush, Depth, Gesture, StiffnessBrush, StrokeShape, ToolMode};
@@ -160,6 +160,12 @@ commands! {
     SetCorrection(brush: CorrectionBrush) = paint::SET_CORRECTION;
     /// The stiffness brush's action and numbers, clamped to their ranges.
     SetStiffnessBrush(brush: StiffnessBrush) = paint::SET_STIFFNESS_BRUSH;
+    /// Lets the points of curves follow a dragged one at their distances, or no longer.
+    ToggleChain = curves::TOGGLE_CHAIN;
+    /// Adds points to the selected handle's curve: after each selected one, or between all.
+    DivideCurve = curves::DIVIDE_CURVE;
+    /// Removes the selected points of the selected handle's curve.
+    RemoveCurvePoints = curves::REMOVE_CURVE_POINTS;
     /// Widens the selected handle's reach with the pointer.
     Widen = handle::WIDEN;
     /// The gizmo's mode.

@@ -125,6 +125,15 @@ impl Handle {
         self.transform = transform;
     }
 
+    /// Returns true if a binding depends on nothing in which the lines of both differ: on the curve at rest, or on the
+    /// whole sketch.
+    pub(crate) fn line_binds_as(&self, other: &Self) -> bool {
+        match (&self.line, &other.line) {
+            (Some(HandleLine::Curve(own)), Some(HandleLine::Curve(other))) => own.rest() == other.rest(),
+            (own, other) => own == other,
+        }
+    }
+
     /// Brings it back to its rest position, its line too.
     pub(crate) fn come_to_rest(&mut self) {
         self.put(HandleTransform::IDENTITY);

@@ -106,6 +106,13 @@ impl HandleCurve {
         resting.unwrap_or_else(|_| self.clone())
     }
 
+    /// The curve with the same rest whose control points go to `moved` with these twists and scales; `None` if it would
+    /// be no curve.
+    pub(crate) fn with(&self, moved: Vec<DVec3>, twist_deg: Vec<f64>, scale: Vec<f64>) -> Option<Self> {
+        let rest = self.rest();
+        Self::new(rest.points().to_vec(), rest.is_closed(), moved, twist_deg, scale).ok()
+    }
+
     /// The largest turn or twist of a part of the curve, in radians.
     pub fn largest_turn_rad(&self) -> f64 {
         self.0.path.largest_turn_rad()

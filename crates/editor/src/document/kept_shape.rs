@@ -19,6 +19,7 @@ use glam::{DAffine3, DVec3};
 use rayon::prelude::*;
 
 use super::handle::{Handle, HandleId};
+use super::handle_curve::HandleCurve;
 
 /// The residual of a vertex is gone when the vertex has moved this many times the residual's length. The fading itself
 /// moves a vertex by at most a quarter of its displacement by the drag, so that no vertex visibly runs back.
@@ -29,6 +30,8 @@ const FADES_WITHIN: f64 = 6.0;
 pub struct KeptShape {
     /// Each handle's map of rest positions.
     pub targets: BTreeMap<HandleId, DAffine3>,
+    /// The curves that handles follow, and where they went.
+    pub curves: BTreeMap<HandleId, HandleCurve>,
     /// The moved positions of the control points of the method's attachment; `None` if all rested.
     pub controls: Option<Arc<Vec<DVec3>>>,
     /// The weights of the method's examples, `None` for one that was found.
@@ -66,6 +69,7 @@ impl KeptShape {
             controls,
             weights: weights.to_vec(),
             targets: handles.iter().map(|handle| (handle.id, handle.affine())).collect(),
+            curves: curves(handles).map(|(id, curve)| (id, curve.clone())).collect(),
             shape: Arc::clone(shape),
         }
     }
@@ -95,6 +99,7 @@ impl KeptShape {
             && self.weights == weights
             && self.controls.as_deref() == controls
             && self.targets.len() == handles.len()
+            && curves(handles).all(|(id, curve)| self.curves.get(&id) == Some(curve))
             && handles
                 .iter()
                 .all(|handle| self.targets.get(&handle.id) == Some(&handle.affine()))
@@ -136,6 +141,14 @@ impl KeptShape {
     }
 }
 
+/// The curves of handles.
+fn curves(handles: &[Handle]) -> impl Iterator<Item = (HandleId, &HandleCurve)> {
+    let lines = handles
+        .iter()
+        .filter_map(|handle| Some((handle.id, handle.line.as_ref()?)));
+    lines.filter_map(|(id, line)| Some((id, line.curve()?)))
+}
+
 /// The share f of a residual that remains when the solution has moved this far.
 fn fading(residual: DVec3, way: f64) -> f64 {
     let length = FADES_WITHIN * residual.length();
@@ -158,6 +171,7 @@ mod tests {
         let first = DVec3::new(0.1, 0.8, 0.1);
         let kept = KeptShape {
             targets: BTreeMap::new(),
+            curves: BTreeMap::new(),
             controls: None,
             weights: Vec::new(),
             shape: Arc::new(vec![seen]),

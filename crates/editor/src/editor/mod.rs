@@ -14,7 +14,7 @@ use crate::document::{Document, SavedAs};
 use crate::event::Event;
 use crate::input::{Button, Key, Modifiers, Pointer};
 use crate::jobs::{Activity, Asked, Executor, JobDone, JobKind};
-use crate::tool::{Adjust, Brush, Context, Gesture, Lit, Next, Overlay, ToolMode, ToolSettings, begin, hover};
+use crate::tool::{Adjust, Brush, Context, Gesture, Lit, Next, Overlay, ToolMode, ToolSettings, begin, hover, tint};
 use crate::view::{Shading, View};
 use crate::workspace::{ColouredBy, Workspace, take_mirrored};
 
@@ -160,12 +160,15 @@ impl Editor {
             weights_of: selected.filter(|_| look.shading == Shading::Weights),
             base: look.base,
         };
-        if self.settings.mode != ToolMode::Pose {
+        let is_posing = self.settings.mode == ToolMode::Pose;
+        let pointer_px = self.pointer.map(|pointer| pointer.position_px);
+        let hovering_px = pointer_px.filter(|_| is_posing && gesture.is_none());
+        if !is_posing {
             self.workspace.jobs.forget_joint();
         } else if gesture.is_none() {
-            let pointer_px = self.pointer.map(|pointer| pointer.position_px);
-            hover(&mut self.workspace, &self.view, pointer_px);
+            hover(&mut self.workspace, &self.view, hovering_px);
         }
+        tint(&mut self.workspace, &self.view, hovering_px);
         self.workspace.conclude(activity, by, asked);
         if !gesture.is_some_and(Gesture::moves_camera) {
             self.view.rest();
@@ -300,7 +303,7 @@ impl Editor {
     fn wheel(&mut self, pointer: Pointer, lines: f64) {
         let (modifiers, settings) = (pointer.modifiers, &mut self.settings);
         if modifiers.ctrl && settings.mode.has_brush() {
-            settings.set_brush_radius(settings.brush.radius_px * WHEEL_STEP.powf(lines));
+            settings.set_brush_radius(settings.brush().radius_px * WHEEL_STEP.powf(lines));
         } else if modifiers.ctrl && settings.mode == ToolMode::Pose {
             self.joint_lines += lines;
             let places = self.joint_lines.trunc();

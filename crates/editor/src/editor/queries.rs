@@ -19,7 +19,7 @@ use crate::snapshot::Snapshot;
 use crate::status::status;
 use crate::tool::{Gesture, ToolMode};
 use crate::view::{Cursor, Look, Pick};
-use crate::workspace::{SnapshotKey, Workspace, region_colour, rims};
+use crate::workspace::{ControlSource, SnapshotKey, Workspace, region_colour, rims};
 use crate::{EditFile, MeshReference, geometry_hash};
 
 impl Editor {
@@ -59,15 +59,16 @@ impl Editor {
             cursor: self.cursor(),
             outline_px: gesture.map_or(Vec::new(), Gesture::outline_px),
             stroke_shape: settings.stroke_shape,
+            chain: settings.chain,
             depth: settings.depth,
             symmetry: workspace.symmetry(),
-            brush_metric: settings.brush.metric,
+            brush_metric: settings.brush().metric,
             stiffness_brush: settings.stiffness_brush,
             correction_brush: settings.correction_brush,
             pressure: settings.pressure,
             orientation: settings.orientation,
             wants_pivot: settings.wants_pivot,
-            brush_radius_px: settings.brush.radius_px,
+            brush_radius_px: settings.brush().radius_px,
             handles: document.handles(),
             selected: workspace.selection.selected(),
             companions: workspace.selection.companions(),
@@ -84,6 +85,10 @@ impl Editor {
 
     fn control_points(&self) -> Option<ControlPoints> {
         let declared = self.document().method().declaration().attachments.first()?;
+        let shown = self.workspace.shown_controls()?;
+        if matches!(shown.source, ControlSource::Curve(..)) {
+            return None;
+        }
         let count = self.overlay.control_points.len();
         (count > 0).then(|| ControlPoints {
             title: declared.title,

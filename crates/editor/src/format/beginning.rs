@@ -4,7 +4,7 @@ use glam::DVec3;
 use pliant_mesh::{Model, WeldOptions};
 
 use super::json::parse;
-use super::keys::refuse_keys;
+use super::one_shape::refuse_keys;
 use super::project::StoredKept;
 use crate::document::Document;
 use crate::{Camera, EditError, EditFile, ExampleEntry, Project, Setup};
@@ -110,7 +110,7 @@ impl Beginning {
     pub(crate) fn document(&self, model: &Model) -> Result<Document, EditError> {
         match self {
             Self::Edit(edit) => {
-                refuse_keys(&edit.keys, "use `pliant animate`, or remove them")?;
+                refuse_keys(edit, "use `pliant animate` or `pliant sequence`, or remove them")?;
                 super::exchange::import(edit, model)
             }
             Self::Project(project) => project.document(model),

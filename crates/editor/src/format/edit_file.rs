@@ -11,6 +11,7 @@ use super::attachment::{AttachmentEntries, AttachmentEntry, of_file};
 use super::edit_error::EditError;
 use super::examples::ExampleEntry;
 use super::field::{FieldEntry, FieldKind};
+use super::filters::{FilterEntry, check_filters};
 use super::json::parse;
 use super::keys::{KeyEntry, check_keys};
 use super::loose::{OneOrList, StoredLoose};
@@ -69,6 +70,8 @@ pub struct EditFile {
     /// Transforms of handles at times, for animations ([`EditFile::timeline`]); the window and a single bent file have
     /// no use for them.
     pub keys: Vec<KeyEntry>,
+    /// Filters of handles' trajectories, for sequences ([`EditFile::sequence_timeline`]).
+    pub filter: Vec<FilterEntry>,
     /// The distance within which the mesh's vertices are joined before it is bent, in world units, at least 0; with
     /// `None` it follows from the mesh ([`pliant_mesh::WeldOptions`]).
     pub weld: Option<f64>,
@@ -135,6 +138,8 @@ struct StoredEdit {
     strength: f64,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     keys: Vec<KeyEntry>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    filter: Vec<FilterEntry>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     weld: Option<f64>,
 }
@@ -189,6 +194,7 @@ impl Default for EditFile {
             kept: None,
             strength: 1.0,
             keys: Vec::new(),
+            filter: Vec::new(),
             weld: None,
         }
     }
@@ -265,6 +271,7 @@ impl EditFile {
             .check(stored.strength)
             .map_err(|error| error.under("strength"))?;
         check_keys(&stored.keys)?;
+        check_filters(&stored.filter)?;
         if let Some(weld) = stored.weld {
             WELD.check(weld).map_err(|error| error.under("weld"))?;
         }
@@ -300,6 +307,7 @@ impl EditFile {
             kept: stored.kept,
             strength: stored.strength,
             keys: stored.keys,
+            filter: stored.filter,
             weld: stored.weld,
         })
     }
@@ -333,6 +341,7 @@ impl EditFile {
             kept: self.kept.clone(),
             strength: self.strength,
             keys: self.keys.clone(),
+            filter: self.filter.clone(),
             weld: self.weld,
         };
         json!(stored)

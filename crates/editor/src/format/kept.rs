@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::EditError;
-use crate::document::{Carries, HandleId, KeptShape, bits_equal};
+use crate::document::{Carries, HandleCurve, HandleId, KeptShape, bits_equal};
 use crate::format::method::method_to_value;
 use crate::format::stored_field::Field;
 
@@ -25,6 +25,9 @@ pub struct StoredKept {
     method: Option<Value>,
     /// Each handle's map of rest positions, by its number: three columns and the translation.
     handles: BTreeMap<u32, [f64; 12]>,
+    /// The handles' curves, by the same numbers.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    curves: BTreeMap<u32, HandleCurve>,
     /// The moved positions of control points.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     controls: Option<Vec<[f64; 3]>>,
@@ -71,6 +74,11 @@ impl StoredKept {
             handles: handles
                 .map(|(id, map)| (u32::from(id.0), map.to_cols_array()))
                 .collect(),
+            curves: kept
+                .curves
+                .iter()
+                .map(|(id, curve)| (u32::from(id.0), curve.clone()))
+                .collect(),
             controls: kept
                 .controls
                 .as_ref()
@@ -106,16 +114,14 @@ impl StoredKept {
         };
         let corrections = self.corrections.as_ref();
         let corrections = corrections.map(|field| field.displacements(&format!("{name}: corrections"), model));
-        let handles = self.handles.iter();
+        let handle = |id: &u32| HandleId(u16::try_from(*id).unwrap_or(u16::MAX));
+        let maps = self.handles.iter();
+        let curves = self.curves.iter();
         Ok(KeptShape {
-            targets: handles
-                .map(|(id, map)| {
-                    (
-                        HandleId(u16::try_from(*id).unwrap_or(u16::MAX)),
-                        DAffine3::from_cols_array(map),
-                    )
-                })
+            targets: maps
+                .map(|(id, map)| (handle(id), DAffine3::from_cols_array(map)))
                 .collect(),
+            curves: curves.map(|(id, curve)| (handle(id), curve.clone())).collect(),
             controls: self.controls.as_ref().map(|controls| {
                 let points = controls.iter().map(|point| DVec3::from_array(*point));
                 Arc::new(points.collect())
@@ -150,9 +156,11 @@ impl StoredKept {
 
     /// The same with other numbers for the handles; those without one are left out.
     pub(crate) fn renumbered(mut self, number: impl Fn(HandleId) -> Option<u32>) -> Self {
+        let place = |id: u32| number(HandleId(u16::try_from(id).ok()?));
         let handles = self.handles.into_iter();
-        let handles = handles.filter_map(|(id, map)| Some((number(HandleId(u16::try_from(id).ok()?))?, map)));
-        self.handles = handles.collect();
+        self.handles = handles.filter_map(|(id, map)| Some((place(id)?, map))).collect();
+        let curves = self.curves.into_iter();
+        self.curves = curves.filter_map(|(id, curve)| Some((place(id)?, curve))).collect();
         self
     }
 }

@@ -21,22 +21,38 @@ impl EditFile {
                 place: "the edit".to_owned(),
             });
         }
+        if !self.filter.is_empty() {
+            return Err(EditError::Other {
+                place: "the edit".to_owned(),
+                sentence: "has a `filter`, which is for sequences: use `pliant sequence`, or remove it".to_owned(),
+            });
+        }
         let names: Vec<&str> = self.handles.iter().map(|handle| &*handle.name).collect();
-        let mut keys: Vec<(usize, &KeyEntry)> = self.keys.iter().enumerate().collect();
-        keys.sort_by(|(_, a), (_, b)| a.time.total_cmp(&b.time));
+        let timed = |(place, key): (usize, &'_ KeyEntry)| match key.time {
+            Some(time) => Ok((place, time)),
+            None => Err(EditError::Other {
+                place: format!("keys[{place}]"),
+                sentence: "has the `frame` of a sequence, not a `time`: use `pliant sequence`, or give it a time"
+                    .to_owned(),
+            }),
+        };
+        let timed: Result<Vec<(usize, f64)>, EditError> = self.keys.iter().enumerate().map(timed).collect();
+        let mut keys = timed?;
+        keys.sort_by(|(_, a), (_, b)| a.total_cmp(b));
         let mut of_handle: Vec<Vec<Key>> = vec![Vec::new(); names.len()];
-        for (place, key) in &keys {
+        for &(place, time) in &keys {
+            let key = &self.keys[place];
             for (name, transform) in &key.handles {
                 let handle = handle_of(name, &names).map_err(|error| error.under(&format!("keys[{place}].handles")))?;
                 let pivot = setup.handles[handle].pivot;
                 of_handle[handle].push(Key {
-                    time: key.time,
+                    time,
                     ease: key.ease,
                     transform: SplitTransform::of(&transform.part(self.strength, pivot), pivot),
                 });
             }
         }
-        let duration = keys.last().map_or(0.0, |(_, key)| key.time);
+        let duration = keys.last().map_or(0.0, |(_, time)| *time);
         Ok(Timeline::new(of_handle.into_iter().map(Track::new).collect(), duration))
     }
 }
@@ -49,7 +65,7 @@ impl Setup {
 }
 
 /// The place of the one handle with a name.
-fn handle_of(name: &str, names: &[&str]) -> Result<usize, EditError> {
+pub(super) fn handle_of(name: &str, names: &[&str]) -> Result<usize, EditError> {
     let mut places = (0..names.len()).filter(|&place| names[place] == name);
     match (places.next(), places.next()) {
         (Some(place), None) => Ok(place),

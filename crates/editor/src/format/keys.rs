@@ -6,15 +6,25 @@ use serde::{Deserialize, Serialize};
 
 use super::edit_error::EditError;
 use crate::HandleTransform;
-use crate::timeline::Ease;
+use crate::timeline::{Ease, KeySpace};
 
-/// The transforms of some handles at a time.
-#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
+/// The transforms of some handles at a time, or at a frame of a sequence.
+#[derive(Clone, PartialEq, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct KeyEntry {
-    /// In seconds, at least 0.
-    pub time: f64,
-    /// The way to the next key.
+    /// In seconds, at least 0: a key of an animation.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub time: Option<f64>,
+    /// The frame, counted from 0: a key of a sequence.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub frame: Option<u32>,
+    /// The first and the last frame over which a sequence's key spreads.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub span: Option<[u32; 2]>,
+    /// The axes in which a sequence's key stays the same.
+    #[serde(default, skip_serializing_if = "is_local")]
+    pub space: KeySpace,
+    /// The way to the next key; in a sequence also the way from rest and back to it.
     #[serde(default, skip_serializing_if = "is_smooth")]
     pub ease: Ease,
     /// The transforms, by the handles' names.
@@ -27,35 +37,73 @@ fn is_smooth(ease: &Ease) -> bool {
     *ease == Ease::Smooth
 }
 
-/// Refuses an edit with keys where only one shape is made; `instead` says what makes all of them.
-///
-/// # Errors
-/// [`EditError::Other`], if there are keys.
-pub fn refuse_keys(keys: &[KeyEntry], instead: &str) -> Result<(), EditError> {
-    match keys {
-        [] => Ok(()),
-        _ => Err(EditError::Other {
-            place: "the edit".to_owned(),
-            sentence: format!("has `keys`, and only one shape is made here: {instead}"),
-        }),
-    }
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes by reference")]
+fn is_local(space: &KeySpace) -> bool {
+    *space == KeySpace::Local
 }
 
-/// Refuses times below 0, and two keys at the same time.
+/// Refuses keys of animations and of sequences in one list, and members that don't fit together.
 pub(super) fn check_keys(keys: &[KeyEntry]) -> Result<(), EditError> {
     for (place, key) in keys.iter().enumerate() {
-        let allowed = if key.time < 0.0 {
-            "a time in seconds of at least 0"
-        } else if keys[..place].iter().any(|other| other.time == key.time) {
-            "a time that no other key has"
-        } else {
-            continue;
+        let refuse = |sentence: &str| {
+            Err(EditError::Other {
+                place: format!("keys[{place}]"),
+                sentence: sentence.to_owned(),
+            })
         };
-        return Err(EditError::OutOfRange {
-            place: format!("keys[{place}].time"),
-            found: key.time.to_string(),
-            allowed: allowed.to_owned(),
-        });
+        match (key.time, key.frame) {
+            (Some(_), Some(_)) => {
+                return refuse("has both `time` and `frame`: keep the time in an animation, the frame in a sequence");
+            }
+            (None, None) => {
+                return Err(EditError::Missing {
+                    member: "time",
+                    place: format!("keys[{place}]"),
+                });
+            }
+            (Some(_), None) if key.span.is_some() || key.space != KeySpace::Local => {
+                return refuse(
+                    "has a `time`, so it takes no `span` and no `space`: those are for frames of a sequence",
+                );
+            }
+            (Some(time), None) => check_time(keys, place, time)?,
+            (None, Some(frame)) => check_span(place, frame, key.span)?,
+        }
+        if key.time.is_some() != keys[0].time.is_some() {
+            return refuse("differs from the others: give all keys a `time`, or all of them a `frame`");
+        }
     }
     Ok(())
+}
+
+/// Refuses a time below 0, and one that an earlier key has.
+fn check_time(keys: &[KeyEntry], place: usize, time: f64) -> Result<(), EditError> {
+    let allowed = if time < 0.0 {
+        "a time in seconds of at least 0"
+    } else if keys[..place].iter().any(|other| other.time == Some(time)) {
+        "a time that no other key has"
+    } else {
+        return Ok(());
+    };
+    Err(EditError::OutOfRange {
+        place: format!("keys[{place}].time"),
+        found: time.to_string(),
+        allowed: allowed.to_owned(),
+    })
+}
+
+/// Refuses a span that does not hold its key's frame.
+fn check_span(place: usize, frame: u32, span: Option<[u32; 2]>) -> Result<(), EditError> {
+    match span {
+        None => Err(EditError::Missing {
+            member: "span",
+            place: format!("keys[{place}]"),
+        }),
+        Some([first, last]) if first > frame || frame > last => Err(EditError::OutOfRange {
+            place: format!("keys[{place}].span"),
+            found: format!("[{first}, {last}]"),
+            allowed: format!("a first frame up to the key's own, {frame}, and a last frame from there on"),
+        }),
+        Some(_) => Ok(()),
+    }
 }

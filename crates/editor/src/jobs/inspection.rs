@@ -8,7 +8,7 @@ use pliant_deform::Bound;
 use super::computed::Computed;
 use super::inspected::{Asked, Inspected};
 use super::slot::Work;
-use super::solving::targets;
+use super::solving::{present_lines, targets};
 use crate::bending::Targets;
 use crate::document::{Document, HandleId, sum_of_shapes};
 
@@ -21,7 +21,8 @@ pub(super) fn inspect_work(computed: &Computed, document: &Document, asked: Aske
     let targets = is_base_wanted
         .then(|| targets(document, &document.method, &handles))
         .flatten();
-    let targets = targets.map(|targets| targets.along(&binding.lines, document.strength()));
+    let targets =
+        targets.map(|targets| targets.along(&present_lines(&binding.lines, document, &handles), document.strength()));
     let rest = document.applied.then(|| Arc::clone(&document.rest));
     Some(Box::new(move |_, cancel| {
         cancel.check()?;

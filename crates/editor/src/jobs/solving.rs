@@ -44,8 +44,9 @@ pub(super) fn solve_work(computed: &Computed, document: &Document) -> Option<Wor
 pub(super) fn controls_work(computed: &Computed, document: &Document) -> Option<Work<SolveResult>> {
     let binding = computed.slots.bind.last()?;
     let bound = Arc::clone(&binding.bound);
-    let targets = targets(document, &document.method, &computed.region.handles)?;
-    let targets = targets.along(&binding.lines, document.strength());
+    let handles = &computed.region.handles;
+    let targets = targets(document, &document.method, handles)?;
+    let targets = targets.along(&present_lines(&binding.lines, document, handles), document.strength());
     Some(Box::new(move |_, cancel| {
         cancel.check()?;
         let mut bound = bound.lock().unwrap_or_else(PoisonError::into_inner);
@@ -86,7 +87,9 @@ impl Wanted {
     /// The same with handles that follow these lines.
     pub(super) fn along(self, lines: &Lines, document: &Document) -> Self {
         Self {
-            targets: self.targets.along(lines, document.strength()),
+            targets: self
+                .targets
+                .along(&present_lines(lines, document, &self.handles), document.strength()),
             ..self
         }
     }
@@ -143,6 +146,14 @@ pub(super) fn targets(document: &Document, method: &Method, handles: &[HandleId]
         maps(document, handles)?,
         own.map(|(_, attachment)| attachment),
     ))
+}
+
+/// The lines of a binding of `handles` with the document's present ways of their curves.
+pub(super) fn present_lines(lines: &Lines, document: &Document, handles: &[HandleId]) -> Lines {
+    if lines.is_empty() {
+        return lines.clone();
+    }
+    lines.moved(|number| document.handle(*handles.get(number)?)?.line.as_ref()?.curve())
 }
 
 /// The maps of the handles in the region's order; `None` if one of them no longer exists.

@@ -1,8 +1,14 @@
 //! Handles' motions over time: keys, and the transforms between them.
 
+mod filter;
+mod interpolation;
 mod motion;
+mod span;
 mod track;
 
+pub(crate) use self::filter::quick_motions;
 pub use self::motion::Timeline;
+pub use self::span::{HandlePlace, KeySpace, SequenceTimeline};
+pub(crate) use self::span::{Span, SpanKey};
 pub use self::track::Ease;
 pub(crate) use self::track::{Key, Track};

@@ -7,6 +7,7 @@
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 
+use super::interpolation::between;
 use crate::document::SplitTransform;
 
 /// The way from a key to the next.
@@ -65,7 +66,7 @@ impl Track {
         let share = (time - key.time) / (following.time - key.time);
         let transform = match key.ease {
             Ease::Hold => key.transform,
-            Ease::Linear => linear(&key.transform, &following.transform, share),
+            Ease::Linear => between(&key.transform, &following.transform, share),
             Ease::Smooth => self.smooth(place, share),
         };
         Some(transform.affine())
@@ -134,15 +135,6 @@ struct Rates {
     pivot: DVec3,
     translation: DVec3,
     stretch: DMat3,
-}
-
-fn linear(from: &SplitTransform, to: &SplitTransform, share: f64) -> SplitTransform {
-    SplitTransform {
-        pivot: from.pivot.lerp(to.pivot, share),
-        translation: from.translation.lerp(to.translation, share),
-        rotation: from.rotation.slerp(to.rotation, share).normalize(),
-        stretch: from.stretch * (1.0 - share) + to.stretch * share,
-    }
 }
 
 /// The values of the cubic Hermite polynomials: of both ends, and of the rates at both ends.

@@ -5,12 +5,14 @@ use super::constraint::Constraint;
 use super::context::Context;
 use super::control_box::ControlBox;
 use super::correct;
+use super::curve_stroke::CurveStroke;
 use super::gesture::Gesture;
 use super::mode::{StrokeShape, ToolMode};
 use super::navigate::Navigate;
 use super::outline::OutlineStroke;
 use super::paint::PaintStroke;
 use super::pose::PoseDrag;
+use super::sketch_stroke::SketchStroke;
 use super::smooth::SmoothStroke;
 use super::stiffness::StiffnessStroke;
 use super::taken_handle::is_taken_along;
@@ -57,6 +59,12 @@ pub(crate) fn begin(context: &mut Context<'_>, pointer: Pointer, button: Button)
     if mode.has_brush() && matches!(shape, StrokeShape::Lasso | StrokeShape::Box) {
         return outline(context, pointer, shape);
     }
+    let is_sketching = mode == ToolMode::PaintHandle && shape == StrokeShape::Sketch && !modifiers.ctrl;
+    // A new outline is drawn beside the model, too.
+    if is_sketching && !context.settings.wants_pivot {
+        context.workspace.refusal = None;
+        return Some(Box::new(SketchStroke::begin(context, pointer)?));
+    }
     let Some(pick) = context.workspace.pick(context.view, pointer.position_px) else {
         return navigate(context, pointer, button);
     };
@@ -81,6 +89,14 @@ pub(crate) fn begin(context: &mut Context<'_>, pointer: Pointer, button: Button)
             let mut stroke = PaintStroke::begin(context.workspace, context.settings, pointer)?;
             let part = context.workspace.part_of(pick.vertex);
             stroke.finish_with(context.workspace, |stroke, workspace| stroke.take(workspace, part));
+            None
+        }
+        ToolMode::PaintHandle if context.settings.draws_curves() && !modifiers.ctrl => {
+            Some(Box::new(CurveStroke::begin(context, pointer, shape)?))
+        }
+        _ if shape.is_line() => {
+            let why = "A line makes a handle: choose the Handle tool, or press B for the brush.";
+            context.workspace.refuse(why);
             None
         }
         _ if is_taken_along(context.workspace, context.settings, &pick, modifiers) => {

@@ -2,7 +2,7 @@
 //!
 //! Between two pointer events there are enough dabs to leave no gap. A dab paints every vertex within its radius that
 //! is connected, within that radius, with the point under the pointer and that faces the eye: it does not paint the
-//! back of a thin part and a neighbouring finger.
+//! back of a thin part and a neighbouring finger. A brush that closes round limbs paints their backs, too.
 
 use std::f64::consts::TAU;
 
@@ -16,6 +16,8 @@ pub const BRUSH_RADIUS_PX: std::ops::RangeInclusive<f64> = 2.0..=400.0;
 /// The distance between dabs, as a share of the radius: the remaining scallops are below 1% of the radius.
 const SPACING: f64 = 0.25;
 const RING_SEGMENTS: usize = 48;
+/// The way around half of a limb as thick as the brush, in radii of the brush.
+const HALF_TURN: f64 = std::f64::consts::PI;
 
 /// The measure of the brush's radius.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
@@ -23,6 +25,9 @@ pub enum BrushMetric {
     /// The vertices under the disc on the screen, if they are connected and face the eye.
     #[default]
     Screen,
+    /// The vertices under the disc on the screen, visible or not, that are as near along the surface as the back of a
+    /// limb as thick as the brush: it closes round limbs, fills folds, and leaves other limbs behind it alone.
+    Round,
     /// The vertices within the radius along the surface: into folds and around edges, visible or not.
     Surface,
     /// Everything under the disc, through to the back of the model.
@@ -34,15 +39,6 @@ pub enum BrushMetric {
 pub(crate) struct BrushSize {
     pub(crate) radius_px: f64,
     pub(crate) metric: BrushMetric,
-}
-
-impl Default for BrushSize {
-    fn default() -> Self {
-        Self {
-            radius_px: 30.0,
-            metric: BrushMetric::default(),
-        }
-    }
 }
 
 /// Finds the vertices under the brush; keeps its memory between dabs.
@@ -85,6 +81,18 @@ impl Brush {
             BrushMetric::Surface => {
                 let picks: Vec<Pick> = picks.collect();
                 self.along_surface(picking, &picks, size.radius_px, &mut visit);
+            }
+            BrushMetric::Round => {
+                let picks: Vec<Pick> = picks.collect();
+                let path = Path([from_px, to_px]);
+                self.along_surface(picking, &picks, HALF_TURN * size.radius_px, &mut |vertex, _| {
+                    let seen_px = picking.sight.project(picking.position(vertex));
+                    let off_px = seen_px.map_or(f64::INFINITY, |seen_px| path.distance(seen_px));
+                    // The corners of a triangle larger than the brush are painted anyway.
+                    if off_px <= size.radius_px || picks.iter().any(|pick| pick.vertex == vertex) {
+                        visit(vertex, (off_px / size.radius_px).min(1.0));
+                    }
+                });
             }
         }
     }
@@ -154,6 +162,24 @@ impl Brush {
     }
 }
 
+/// The way of the brush's middle between two pointer events, a segment in the viewport.
+struct Path([DVec2; 2]);
+
+impl Path {
+    /// The distance of a point from it, in points.
+    fn distance(&self, px: DVec2) -> f64 {
+        let [from_px, to_px] = self.0;
+        let along = to_px - from_px;
+        let length_squared = along.length_squared();
+        let share = if length_squared > 0.0 {
+            ((px - from_px).dot(along) / length_squared).clamp(0.0, 1.0)
+        } else {
+            0.0
+        };
+        px.distance(from_px + along * share)
+    }
+}
+
 /// Calls `visit` once for every vertex that appears within `radius_px` of the path from one point of the viewport to
 /// the other, even if it is hidden.
 fn sweep(
@@ -162,18 +188,12 @@ fn sweep(
     radius_px: f64,
     mut visit: impl FnMut(SurfaceVertex, f64),
 ) {
-    let along = to_px - from_px;
-    let length_squared = along.length_squared();
+    let path = Path([from_px, to_px]);
     let mut meet = |vertex: SurfaceVertex, position: DVec3| {
         let Some(seen_px) = picking.sight.project(position) else {
             return;
         };
-        let share = if length_squared > 0.0 {
-            ((seen_px - from_px).dot(along) / length_squared).clamp(0.0, 1.0)
-        } else {
-            0.0
-        };
-        let off_px = seen_px.distance(from_px + along * share);
+        let off_px = path.distance(seen_px);
         if off_px <= radius_px {
             visit(vertex, off_px / radius_px);
         }
@@ -219,7 +239,9 @@ pub(crate) fn ring(picking: &Picking<'_>, position_px: DVec2, pick: &Pick, size:
     let axes = picking.camera.axes();
     let normal = match size.metric {
         BrushMetric::Through => axes.z_axis,
-        BrushMetric::Screen | BrushMetric::Surface => leaning(picking, position_px, pick, size.radius_px, radius),
+        BrushMetric::Screen | BrushMetric::Round | BrushMetric::Surface => {
+            leaning(picking, position_px, pick, size.radius_px, radius)
+        }
     };
     let (right, up) = normal.any_orthonormal_pair();
     // It is moved towards the eye, so that the surface does not hide it.

@@ -16,9 +16,6 @@ pub(super) fn intersection_shapes(workspace: &Workspace, view: &View) -> Option<
     // They are moved towards the eye, so that the surface on either side does not hide them.
     let lifted = |point| point + camera.towards_eye(point) * camera.world_per_px(point, viewport_px);
     let segments = found.places.iter().flat_map(|place| &place.segments);
-    Some(ControlShape {
-        colour: COLOUR,
-        lines: segments.map(|ends| ends.map(lifted)).collect(),
-        triangles: Vec::new(),
-    })
+    let lines = segments.map(|ends| ends.map(lifted)).collect();
+    Some(ControlShape::lines(COLOUR, lines))
 }

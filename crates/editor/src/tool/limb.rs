@@ -12,7 +12,7 @@ use pliant_mesh::{DistanceSearch, Joint, Shape, SurfaceVertex, joint_of};
 use crate::document::{Document, Handle, HandleId, Paint};
 use crate::jobs::JobKind;
 use crate::view::{Pick, View};
-use crate::workspace::{Workspace, members};
+use crate::workspace::{Workspace, members, tint_limb};
 
 /// The limb under the pose brush at a point of the surface.
 #[derive(Clone, Debug)]
@@ -97,6 +97,16 @@ pub(crate) fn hover(workspace: &mut Workspace, view: &View, pointer_px: Option<g
             Ok(joint_of(&shape, pick.triangle, pick.point, up, cancel)?.map(Arc::new))
         }),
     );
+}
+
+/// Tints the limb that a press of the pose brush at `pointer_px` would turn; `None` tints none.
+pub(crate) fn tint(workspace: &mut Workspace, view: &View, pointer_px: Option<glam::DVec2>) {
+    let pick = pointer_px.and_then(|px| workspace.pick(view, px));
+    let joint = match pick.map(|pick| limb_under(workspace, &pick)) {
+        Some(Limb::Untouched(limb)) => Some(limb.joint),
+        _ => None,
+    };
+    tint_limb(workspace, joint.as_ref());
 }
 
 /// The limb at a point of the surface, by the joint that was found last: the handle of that joint, or the part of the

@@ -49,6 +49,19 @@ pub enum StrokeShape {
     Box,
     /// All vertices connected to the one under the pointer.
     Component,
+    /// Those under a curve drawn on the surface, which they then follow.
+    Curve,
+    /// Those around a curve drawn through the middle of a limb, which they then follow.
+    Spine,
+    /// Those of the outline beside a line that draws the outline anew.
+    Sketch,
+}
+
+impl StrokeShape {
+    /// Returns true if a stroke draws a line that a new handle follows.
+    pub(crate) fn is_line(self) -> bool {
+        matches!(self, Self::Curve | Self::Spine | Self::Sketch)
+    }
 }
 
 /// The depth of a lasso or a box.

@@ -2,24 +2,26 @@
 
 use std::sync::Arc;
 
-use glam::DVec3;
-use pliant_deform::Attachment;
+use glam::{DAffine3, DVec3};
+use pliant_mesh::pulled_chain;
 
-use crate::workspace::{Workspace, middle, put_attachment};
+use crate::document::{HandleCurve, HandleId, HandleLine};
+use crate::workspace::{ControlSource, Workspace, middle, put_attachment};
 
-/// The selected points of the method's cage or lattice.
+/// The selected points of the selected handle's curve, or of the method's cage or lattice.
 #[derive(Debug)]
 pub(super) struct MovedControls {
-    name: &'static str,
-    /// The attachment at the beginning of the transform; the first move makes it the document's.
-    attachment: Attachment,
+    /// The owner at the beginning of the transform; the first move makes an attachment the document's.
+    source: ControlSource,
     /// The points, and their visible positions.
     points: Vec<(u32, DVec3)>,
+    /// True if a curve is a chain: the others follow a moved point at their distances.
+    is_chain: bool,
 }
 
 impl MovedControls {
     /// The selected points; `None` if there are none.
-    pub(super) fn of_selected(workspace: &Workspace) -> Option<Self> {
+    pub(super) fn of_selected(workspace: &Workspace, is_chain: bool) -> Option<Self> {
         if workspace.controls.is_empty() {
             return None;
         }
@@ -32,17 +34,21 @@ impl MovedControls {
             .filter_map(|&point| seen(point))
             .collect();
         (!points.is_empty()).then_some(Self {
-            name: shown.name,
-            attachment: shown.attachment,
+            source: shown.source,
             points,
+            is_chain,
         })
     }
 
     /// Their name in the history.
     pub(super) fn designation(&self) -> String {
+        let of = match &self.source {
+            ControlSource::Attachment(name, _) => name,
+            ControlSource::Curve(..) => "curve",
+        };
         match self.points.as_slice() {
-            [(point, _)] => format!("point {point} of the {}", self.name),
-            points => format!("{} points of the {}", points.len(), self.name),
+            [(point, _)] => format!("point {point} of the {of}"),
+            points => format!("{} points of the {of}", points.len()),
         }
     }
 
@@ -64,15 +70,127 @@ impl MovedControls {
 
     /// Moves each point by the displacement of its visible position.
     pub(super) fn put(&self, workspace: &mut Workspace, way: impl Fn(DVec3) -> DVec3) {
-        let mut moved = self.attachment.moved().map_or_else(Vec::new, |moved| moved.to_vec());
-        for (point, seen) in &self.points {
-            moved[*point as usize] += way(*seen);
+        match &self.source {
+            ControlSource::Attachment(name, attachment) => {
+                let mut moved = attachment.moved().map_or_else(Vec::new, |moved| moved.to_vec());
+                for (point, seen) in &self.points {
+                    moved[*point as usize] += way(*seen);
+                }
+                if moved.iter().all(|point| point.is_finite()) {
+                    workspace.refusal = None;
+                    let attachment = attachment.with_moved(Arc::new(moved));
+                    put_attachment(&mut workspace.document, name, attachment);
+                }
+            }
+            ControlSource::Curve(handle, curve, then) => {
+                let moved = self.moved_curve(curve, then, way);
+                let curve = curve.with(moved, curve.twist_deg().to_vec(), curve.scale().to_vec());
+                put_curve(workspace, *handle, curve);
+            }
         }
-        if moved.iter().any(|point| !point.is_finite()) {
-            return;
+    }
+
+    /// Turns a single point of a curve about the curve's tangent there, by a turn about `axis`; false for anything else.
+    pub(super) fn twist(&self, workspace: &mut Workspace, axis: DVec3, angle_rad: f64) -> bool {
+        self.change_point(workspace, |curve, then, point, twist_deg, _| {
+            let place = curve.rest().point_places()[point];
+            let tangent = curve.motion_at(1.0).turn_at(place) * curve.rest().frame(place).z_axis;
+            let side = then.transform_vector3(tangent).dot(axis).signum();
+            twist_deg[point] += side * angle_rad.to_degrees();
+        })
+    }
+
+    /// Scales the surface around a single point of a curve; false for anything else.
+    pub(super) fn scale(&self, workspace: &mut Workspace, factors: DVec3) -> bool {
+        let factor = (factors.x * factors.y * factors.z).abs().cbrt();
+        self.change_point(workspace, |_, _, point, _, scale| scale[point] *= factor)
+    }
+
+    fn change_point(
+        &self,
+        workspace: &mut Workspace,
+        change: impl FnOnce(&HandleCurve, &DAffine3, usize, &mut [f64], &mut [f64]),
+    ) -> bool {
+        let (ControlSource::Curve(handle, curve, then), [(point, _)]) = (&self.source, self.points.as_slice()) else {
+            return false;
+        };
+        let (mut twist_deg, mut scale) = (curve.twist_deg().to_vec(), curve.scale().to_vec());
+        change(curve, then, *point as usize, &mut twist_deg, &mut scale);
+        put_curve(workspace, *handle, curve.with(curve.moved().to_vec(), twist_deg, scale));
+        true
+    }
+
+    /// The control points of a curve after the points' displacements.
+    fn moved_curve(&self, curve: &HandleCurve, then: &DAffine3, way: impl Fn(DVec3) -> DVec3) -> Vec<DVec3> {
+        let back = then.inverse();
+        let mut seen: Vec<DVec3> = curve.moved().iter().map(|p| then.transform_point3(*p)).collect();
+        match self.points.as_slice() {
+            [(point, from)] if self.is_chain && !curve.rest().is_closed() => {
+                seen = pulled_at(&seen, *point as usize, *from + way(*from));
+            }
+            points => {
+                for (point, from) in points {
+                    seen[*point as usize] = *from + way(*from);
+                }
+            }
         }
-        workspace.refusal = None;
-        let attachment = self.attachment.with_moved(Arc::new(moved));
-        put_attachment(&mut workspace.document, self.name, attachment);
+        // Points that stay keep their bits.
+        let moved = seen.into_iter().zip(curve.moved());
+        let moved = moved.map(|(seen, before)| {
+            let stays = seen == then.transform_point3(*before);
+            if stays { *before } else { back.transform_point3(seen) }
+        });
+        moved.collect()
+    }
+}
+
+/// A chain with the given point pulled to a target: its first point stays, and the points beyond the pulled one keep
+/// their distances from it. The first point pulls the chain from its other end.
+fn pulled_at(chain: &[DVec3], point: usize, target: DVec3) -> Vec<DVec3> {
+    if point == 0 {
+        let reversed: Vec<DVec3> = chain.iter().rev().copied().collect();
+        let mut pulled = pulled_chain(&reversed, target);
+        pulled.reverse();
+        return pulled;
+    }
+    let mut pulled = pulled_chain(&chain[..=point], target);
+    let way = pulled[point] - chain[point];
+    pulled.extend(chain[point + 1..].iter().map(|p| *p + way));
+    pulled
+}
+
+/// Gives a handle a curve that is one.
+fn put_curve(workspace: &mut Workspace, handle: HandleId, curve: Option<HandleCurve>) {
+    let Some(curve) = curve else { return };
+    workspace.refusal = None;
+    workspace.document.unsettle();
+    workspace.document.change_handle(handle, |handle| {
+        handle.line = Some(HandleLine::Curve(curve));
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::pulled_at;
+
+    #[test]
+    fn a_pulled_chain_keeps_its_lengths_wherever_it_is_pulled() {
+        let chain: Vec<DVec3> = (0..5)
+            .map(|x| DVec3::new(f64::from(x), 0.1 * f64::from(x * x), 0.0))
+            .collect();
+        let lengths =
+            |chain: &[DVec3]| -> Vec<f64> { chain.windows(2).map(|pair| pair[0].distance(pair[1])).collect() };
+        for point in 0..5 {
+            let target = chain[point] * 0.6 + DVec3::new(0.2, 0.15, 0.1);
+            let pulled = pulled_at(&chain, point, target);
+            // One segment alone reaches nothing but its circle.
+            let is_reached = pulled[point].distance(target) < 1e-6;
+            assert_eq!(is_reached, point != 1, "{point}: {}", pulled[point]);
+            for (before, after) in lengths(&chain).into_iter().zip(lengths(&pulled)) {
+                assert!((before - after).abs() < 1e-9, "{point}");
+            }
+        }
     }
 }

@@ -19,7 +19,7 @@ use crate::view::{
     Camera, ControlShape, GizmoAxes, GizmoPart, GizmoShape, ShownPoint, View, control_at, control_shapes, gizmo_shapes,
     hit_gizmo,
 };
-use crate::workspace::{Workspace, middle};
+use crate::workspace::{ControlSource, Workspace, middle};
 
 /// The shown part of the overlay, by the active gesture.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -118,14 +118,16 @@ impl Overlay {
             let has_ring = !matches!(settings.mode, ToolMode::Select | ToolMode::Pose)
                 && settings.stroke_shape == StrokeShape::Brush;
             if has_ring && !settings.wants_pivot && !takes_handle {
-                line = ring(&picking, pointer.position_px, &pick, &settings.brush);
+                line = ring(&picking, pointer.position_px, &pick, &settings.brush());
             }
         }
         self.hovered = highlighted.filter(|_| lit == Lit::Pointed);
         self.is_over_surface = is_over_surface;
         self.takes_handle = takes_handle;
         let takes_points = lit == Lit::Pointed && highlighted.is_none();
-        let control_px = pointer_px.filter(|_| takes_points && (settings.mode == ToolMode::Select || !is_over_surface));
+        // Points of a drawn curve lie on the surface.
+        let is_in_front = settings.mode == ToolMode::Select || settings.draws_curves() || !is_over_surface;
+        let control_px = pointer_px.filter(|_| takes_points && is_in_front);
         let controls = self.renew_controls(workspace, view, control_px);
         let joint_px = pointer_px.filter(|_| highlighted.is_none());
         shapes.extend(joint(lit, workspace, view, settings, joint_px));
@@ -162,7 +164,8 @@ impl Overlay {
         if let Some(point) = self.pointed_control {
             self.control_points[point as usize].is_pointed_at = true;
         }
-        control_shapes(&self.control_points, &shown.edges, camera, viewport_px)
+        let is_curve = matches!(shown.source, ControlSource::Curve(..));
+        control_shapes(&self.control_points, shown.lines, is_curve, camera, viewport_px)
     }
 }
 
@@ -223,6 +226,10 @@ fn gizmo(
         ));
     }
     let handle = workspace.selected()?;
+    // The points of a curve that was just drawn are wanted, and the gizmo of the whole would be over them.
+    if settings.draws_curves() && handle.line.is_some() {
+        return None;
+    }
     if !is_shown || !handle.visible || handle.locked || handle.is_pin {
         return None;
     }

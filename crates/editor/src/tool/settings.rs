@@ -1,6 +1,6 @@
 //! The settings of tools: the chosen one, its selection of vertices, the gizmo's orientation.
 
-use super::brush::{BRUSH_RADIUS_PX, BrushSize};
+use super::brush::{BRUSH_RADIUS_PX, BrushMetric, BrushSize};
 use super::correction_brush::CorrectionBrush;
 use super::mode::{Depth, StrokeShape, ToolMode};
 use super::stiffness_brush::StiffnessBrush;
@@ -8,23 +8,77 @@ use crate::document::{HandleId, Paint};
 use crate::view::{GizmoMode, GizmoOrientation};
 
 /// The tool, its brushes and the gizmo.
-#[derive(Clone, PartialEq, Debug, Default)]
+#[derive(Clone, PartialEq, Debug)]
 pub(crate) struct ToolSettings {
     pub(crate) mode: ToolMode,
     pub(crate) stroke_shape: StrokeShape,
     pub(crate) depth: Depth,
-    pub(crate) brush: BrushSize,
+    brush_radius_px: f64,
+    /// The measure of the brush for handles: half a shell of a limb would turn into the limb.
+    handle_metric: BrushMetric,
+    /// The measure for everything else that is painted.
+    other_metric: BrushMetric,
     pub(crate) stiffness_brush: StiffnessBrush,
     pub(crate) correction_brush: CorrectionBrush,
     /// The pressure of a pen, 0 to 1; `None` until the system reports it.
     pub(crate) pressure: Option<f64>,
     pub(crate) gizmo_mode: GizmoMode,
     pub(crate) orientation: GizmoOrientation,
+    /// True if the points of a curve follow a dragged one at their distances.
+    pub(crate) chain: bool,
     /// True if the next click moves the selected handle's pivot.
     pub(crate) wants_pivot: bool,
 }
 
+impl Default for ToolSettings {
+    fn default() -> Self {
+        Self {
+            mode: ToolMode::default(),
+            stroke_shape: StrokeShape::default(),
+            depth: Depth::default(),
+            brush_radius_px: 30.0,
+            handle_metric: BrushMetric::Round,
+            other_metric: BrushMetric::Screen,
+            stiffness_brush: StiffnessBrush::default(),
+            correction_brush: CorrectionBrush::default(),
+            pressure: None,
+            gizmo_mode: GizmoMode::default(),
+            orientation: GizmoOrientation::default(),
+            chain: false,
+            wants_pivot: false,
+        }
+    }
+}
+
 impl ToolSettings {
+    /// The brush of the chosen tool.
+    pub(crate) fn brush(&self) -> BrushSize {
+        let is_for_handles = paints_handles(self.mode);
+        BrushSize {
+            radius_px: self.brush_radius_px,
+            metric: if is_for_handles {
+                self.handle_metric
+            } else {
+                self.other_metric
+            },
+        }
+    }
+
+    /// Returns true if a stroke draws a curve that a new handle follows.
+    pub(crate) fn draws_curves(&self) -> bool {
+        let is_curve = self.stroke_shape.is_line() && self.stroke_shape != StrokeShape::Sketch;
+        self.mode == ToolMode::PaintHandle && is_curve
+    }
+
+    /// Chooses the measure of the chosen tool's brush; the tools that paint handles share one, and so do the others.
+    pub(crate) fn set_brush_metric(&mut self, metric: BrushMetric) {
+        if paints_handles(self.mode) {
+            self.handle_metric = metric;
+        } else {
+            self.other_metric = metric;
+        }
+    }
+
     /// The role for region commands: the tool's, else the selected handle's.
     pub(crate) fn selected_role(&self, selected: Option<HandleId>) -> Option<Paint> {
         match self.mode {
@@ -37,7 +91,7 @@ impl ToolSettings {
     /// Chooses the brush's radius, clamped to its range.
     pub(crate) fn set_brush_radius(&mut self, radius_px: f64) {
         if radius_px.is_finite() {
-            self.brush.radius_px = radius_px.clamp(*BRUSH_RADIUS_PX.start(), *BRUSH_RADIUS_PX.end());
+            self.brush_radius_px = radius_px.clamp(*BRUSH_RADIUS_PX.start(), *BRUSH_RADIUS_PX.end());
         }
     }
 
@@ -48,4 +102,9 @@ impl ToolSettings {
             self.pressure = Some(usable.map_or(1.0, |pressure| pressure.clamp(0.0, 1.0)));
         }
     }
+}
+
+/// Returns true if a tool paints handles or erases them.
+fn paints_handles(mode: ToolMode) -> bool {
+    matches!(mode, ToolMode::PaintHandle | ToolMode::Erase | ToolMode::Select)
 }

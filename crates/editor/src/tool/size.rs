@@ -25,7 +25,7 @@ pub(crate) struct SizeBrush {
 impl SizeBrush {
     /// Begins with the pointer on the rim.
     pub(crate) fn begin(settings: &ToolSettings, pointer_px: DVec2) -> Self {
-        let radius_px = settings.brush.radius_px;
+        let radius_px = settings.brush().radius_px;
         Self {
             centre_px: pointer_px - DVec2::X * radius_px,
             radius_px,
@@ -62,7 +62,7 @@ impl Gesture for SizeBrush {
         context
             .settings
             .set_brush_radius(pointer.position_px.distance(self.centre_px));
-        self.radius_px = context.settings.brush.radius_px;
+        self.radius_px = context.settings.brush().radius_px;
         Next::Stay
     }
 

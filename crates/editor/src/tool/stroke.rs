@@ -62,6 +62,11 @@ impl<S: Stroke> StrokeGesture<S> {
         gesture
     }
 
+    /// The effect on the vertices.
+    pub fn stroke_mut(&mut self) -> &mut S {
+        &mut self.stroke
+    }
+
     /// Moves the brush to a point of the viewport.
     pub fn dab(&mut self, context: &mut Context<'_>, to_px: DVec2) {
         let from_px = std::mem::replace(&mut self.last_px, to_px);
@@ -122,7 +127,7 @@ impl<S: Stroke> Gesture for StrokeGesture<S> {
 /// distance from the brush's middle as a share of the radius; vertices may be visited more than once.
 pub(super) fn meet(context: &mut Context<'_>, [from_px, to_px]: [DVec2; 2], visit: impl FnMut(SurfaceVertex, f64)) {
     if let Some(picking) = context.workspace.picking(context.view) {
-        let size = &context.settings.brush;
+        let size = &context.settings.brush();
         context.brush.stroke(&picking, from_px, to_px, size, visit);
     }
 }

@@ -27,20 +27,12 @@ pub(super) fn symmetry_shapes(workspace: &Workspace, ring: &[DVec3]) -> Vec<Cont
         let next = points.iter().cycle().skip(1);
         points.iter().zip(next).map(|(from, to)| [*from, *to]).collect()
     };
-    let mut shapes = vec![ControlShape {
-        colour: EDGE,
-        lines: closed(&outline),
-        triangles: Vec::new(),
-    }];
+    let mut shapes = vec![ControlShape::lines(EDGE, closed(&outline))];
     // The other side of a bent shape is at another place.
     let is_at_rest = !workspace.document.is_displaced() && !workspace.document.is_applied();
     if is_at_rest && !ring.is_empty() {
         let image: Vec<DVec3> = ring.iter().map(|point| sides.plane.mirrored(*point)).collect();
-        shapes.push(ControlShape {
-            colour: RING,
-            lines: closed(&image),
-            triangles: Vec::new(),
-        });
+        shapes.push(ControlShape::lines(RING, closed(&image)));
     }
     shapes
 }

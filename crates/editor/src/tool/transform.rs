@@ -66,7 +66,7 @@ impl TransformDrag {
     ) -> Option<Self> {
         let (orientation, camera) = (context.settings.orientation, context.view.camera());
         let workspace = &mut *context.workspace;
-        if let Some(controls) = MovedControls::of_selected(workspace) {
+        if let Some(controls) = MovedControls::of_selected(workspace, context.settings.chain) {
             let axes = GizmoAxes::of(&HandleTransform::IDENTITY, orientation, camera);
             let start = (HandleTransform::IDENTITY, controls.centre());
             return Some(Self {
@@ -158,6 +158,14 @@ impl TransformDrag {
             Subject::Handle { id, pivot, companions } => self.preview_handle(workspace, view, *id, *pivot, companions),
             Subject::Controls(controls) => {
                 let measure = &self.measure;
+                let is_done = match measure.kind {
+                    TransformKind::Move => false,
+                    TransformKind::Turn => controls.twist(workspace, measure.turn_axis(view), measure.angle_rad()),
+                    TransformKind::Scale => controls.scale(workspace, measure.scale(view)),
+                };
+                if is_done {
+                    return;
+                }
                 controls.put(workspace, |point| {
                     let arm = point - measure.centre;
                     match measure.kind {

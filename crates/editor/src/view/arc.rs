@@ -31,15 +31,9 @@ pub(crate) fn arc_shapes(
     let steps = steps as u32;
     let mut lines: Vec<[DVec3; 2]> = (0..steps).map(|step| [rim(step), rim(step + 1)]).collect();
     lines.extend([[centre, rim(0)], [centre, rim(steps)]]);
-    let fan = ControlShape {
-        colour: FAN,
-        lines: Vec::new(),
-        triangles: (0..steps).map(|step| [centre, rim(step), rim(step + 1)]).collect(),
-    };
-    let line = ControlShape {
-        colour: LINE,
-        lines,
-        triangles: Vec::new(),
-    };
-    [fan, line]
+    let fan = (0..steps).map(|step| [centre, rim(step), rim(step + 1)]);
+    [
+        ControlShape::filled(FAN, fan.collect()),
+        ControlShape::lines(LINE, lines),
+    ]
 }

@@ -14,7 +14,37 @@ pub struct ControlShape {
     pub lines: Vec<[DVec3; 2]>,
     /// Filled triangles.
     pub triangles: Vec<[DVec3; 3]>,
+    /// The share of its opacity where a surface hides it, from 0 to 1.
+    pub hidden_share: f32,
 }
+
+impl ControlShape {
+    /// Line segments of one colour.
+    pub(crate) fn lines(colour: [u8; 4], lines: Vec<[DVec3; 2]>) -> Self {
+        Self {
+            colour,
+            lines,
+            triangles: Vec::new(),
+            hidden_share: HIDDEN_SHARE,
+        }
+    }
+
+    /// Filled triangles of one colour.
+    pub(crate) fn filled(colour: [u8; 4], triangles: Vec<[DVec3; 3]>) -> Self {
+        Self {
+            triangles,
+            ..Self::lines(colour, Vec::new())
+        }
+    }
+
+    /// The same with another share of its opacity where a surface hides it.
+    pub(crate) fn with_hidden_share(self, hidden_share: f32) -> Self {
+        Self { hidden_share, ..self }
+    }
+}
+
+/// The usual share of a shape's opacity where a surface hides it.
+const HIDDEN_SHARE: f32 = 0.35;
 
 /// A visible control point.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -27,6 +57,8 @@ pub(crate) struct ShownPoint {
 
 /// Blue, orange and near-black are distinct from clay, from each other and from both themes' grounds.
 const EDGE: [u8; 4] = [58, 128, 220, 220];
+const CURVE: [u8; 4] = [255, 214, 110, 255];
+const CURVE_HIDDEN_SHARE: f32 = 0.75;
 const POINT: [u8; 4] = [120, 180, 255, 255];
 const SELECTED: [u8; 4] = [255, 150, 30, 255];
 const RIM: [u8; 4] = [18, 24, 36, 255];
@@ -38,36 +70,33 @@ const RIM_PX: f64 = 1.3;
 /// The pointer's distance to a point within which it takes the point.
 const GRAB_PX: f64 = 8.0;
 
-/// The shapes: edges, the points' rims, points and selected ones.
+/// The shapes: edges, the points' rims, points and selected ones. A curve inside a limb is visible through it.
 pub(crate) fn control_shapes(
     points: &[ShownPoint],
-    edges: &[[u32; 2]],
+    lines: Vec<[DVec3; 2]>,
+    is_curve: bool,
     camera: &Camera,
     viewport_px: DVec2,
 ) -> Vec<ControlShape> {
-    let squares = |colour, beyond: f64, wanted: &dyn Fn(&&ShownPoint) -> bool| ControlShape {
-        colour,
-        lines: Vec::new(),
-        triangles: points
-            .iter()
-            .filter(wanted)
-            .flat_map(|point| {
-                let half = if point.is_pointed_at { 1.4 * HALF_PX } else { HALF_PX };
-                square(point.position, half + beyond, camera, viewport_px)
-            })
-            .collect(),
+    let squares = |colour, beyond: f64, wanted: &dyn Fn(&&ShownPoint) -> bool| {
+        let wanted = points.iter().filter(wanted);
+        let squares = wanted.flat_map(|point| {
+            let half = if point.is_pointed_at { 1.4 * HALF_PX } else { HALF_PX };
+            square(point.position, half + beyond, camera, viewport_px)
+        });
+        ControlShape::filled(colour, squares.collect())
     };
-    let lines = edges.iter().map(|edge| edge.map(|end| points[end as usize].position));
-    vec![
-        ControlShape {
-            colour: EDGE,
-            lines: lines.collect(),
-            triangles: Vec::new(),
-        },
+    let (colour, hidden_share) = match is_curve {
+        true => (CURVE, CURVE_HIDDEN_SHARE),
+        false => (EDGE, HIDDEN_SHARE),
+    };
+    let shapes = [
+        ControlShape::lines(colour, lines),
         squares(RIM, RIM_PX, &|_| true),
         squares(POINT, 0.0, &|point| !point.is_selected),
         squares(SELECTED, 0.0, &|point| point.is_selected),
-    ]
+    ];
+    shapes.map(|shape| shape.with_hidden_share(hidden_share)).to_vec()
 }
 
 /// A square across the line of sight.

@@ -1,6 +1,8 @@
 //! Revisions of the colours on the surface, and of the lines between regions: a changed revision means a new upload.
 
-use pliant_mesh::SurfaceVertex;
+use std::sync::Arc;
+
+use pliant_mesh::{Joint, SurfaceVertex};
 
 use super::dirty_colours::DirtyColours;
 use crate::document::{HandleId, Repainted, Version};
@@ -40,6 +42,8 @@ pub(crate) struct Colours {
     sources: Sources,
     /// The highlighted connected part, by its component's number.
     lit: Option<u32>,
+    /// The joint of the limb that a press would turn.
+    turning: Option<Arc<Joint>>,
 }
 
 impl Colours {
@@ -67,6 +71,19 @@ impl Colours {
         self.dirty.add(vertices);
     }
 
+    /// The joint of the limb that a press would turn.
+    pub(crate) fn turning(&self) -> Option<&Arc<Joint>> {
+        self.turning.as_ref()
+    }
+
+    /// Tints another limb, or none.
+    pub(super) fn tint_limb(&mut self, joint: Option<Arc<Joint>>) {
+        let before = std::mem::replace(&mut self.turning, joint);
+        for joint in before.iter().chain(&self.turning) {
+            self.dirty.add(&joint.limb);
+        }
+    }
+
     /// The vertices whose colour may have changed since a revision; `None` is all of them.
     pub(crate) fn since(&self, regions_revision: u64) -> Option<&[SurfaceVertex]> {
         self.dirty.since(regions_revision)
@@ -74,7 +91,7 @@ impl Colours {
 
     /// Everything has changed, and nothing is highlighted.
     pub(super) fn change_all(&mut self) {
-        self.lit = None;
+        (self.lit, self.turning) = (None, None);
         self.regions_revision += 1;
         self.dirty.whole(self.regions_revision);
         self.rims_revision += 1;

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use pliant_deform::Role;
-use pliant_mesh::{ContourLine, SurfaceVertex};
+use pliant_mesh::{ContourLine, Joint, SurfaceVertex};
 
 use super::colour_revisions::ColouredBy;
 use super::state::Workspace;
@@ -37,6 +37,10 @@ const TINT: u8 = 102;
 const FREE: [u8; 4] = [96, 150, 222, TINT];
 const FIXED: [u8; 4] = [112, 112, 116, TINT];
 
+/// The part of a limb that a press of the pose brush would turn, and the part that would bend with it.
+const TURNS: [u8; 4] = [255, 150, 30, TINT];
+const YIELDS: [u8; 4] = [255, 150, 30, TINT / 2];
+
 /// The data for the colour of a vertex, sRGB; alpha is its opacity over the surface's own.
 pub(crate) fn region_colour(workspace: &Workspace) -> impl Fn(SurfaceVertex) -> [u8; 4] {
     // The clay or the material stays unchanged: a share of any grey would wash it out.
@@ -52,12 +56,17 @@ pub(crate) fn region_colour(workspace: &Workspace) -> impl Fn(SurfaceVertex) -> 
         of_handle[usize::from(handle.id.0)] = [red, green, blue, TINT];
     }
     let by = workspace.colours.by();
+    let turning = workspace.colours.turning();
     move |vertex| {
         if lit.is_some_and(|(part, model)| model.topology.component(vertex) == part) {
             return LIT;
         }
         if by == ColouredBy::Stiffness {
             return stiffness_colour(document.stiffness().map_or(1.0, |field| field[vertex.index()]));
+        }
+        if let Some(joint) = turning.filter(|joint| joint.limb.binary_search(&vertex).is_ok()) {
+            let turns_whole = joint.far_side.binary_search(&vertex).is_ok();
+            return if turns_whole { TURNS } else { YIELDS };
         }
         match document.paint[vertex.index()] {
             Paint::Fixed => FIXED,
@@ -83,6 +92,14 @@ pub(crate) fn light_part(workspace: &mut Workspace, part: Option<u32>) {
         let changed = before.into_iter().chain(part);
         let vertices: Vec<_> = changed.flat_map(|part| topology.vertices_of(part)).collect();
         workspace.colours.light(part, &vertices);
+    }
+}
+
+/// Tints the limb that a press would turn, by its joint, instead of the last one; `None` tints none.
+pub(crate) fn tint_limb(workspace: &mut Workspace, joint: Option<&Arc<Joint>>) {
+    let before = workspace.colours.turning();
+    if before.map(Arc::as_ptr) != joint.map(Arc::as_ptr) {
+        workspace.colours.tint_limb(joint.cloned());
     }
 }
 

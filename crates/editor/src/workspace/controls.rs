@@ -12,9 +12,9 @@ use crate::document::Document;
 use crate::jobs::BoundControls;
 
 impl Workspace {
-    /// The shown cage or lattice, with the visible positions of its points: those of the binding, moved at once by
+    /// The cage or lattice, with the visible positions of its points: those of the binding, moved at once by
     /// later moves of the hand, or the document's own if it has no binding.
-    pub(crate) fn shown_controls(&self) -> Option<BoundControls> {
+    pub(super) fn shown_attachment(&self) -> Option<BoundControls> {
         let document = &self.document;
         let method = document.method();
         let own = document.attachment();

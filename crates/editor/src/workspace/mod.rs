@@ -5,6 +5,7 @@ mod colours;
 mod consequences;
 mod control_selection;
 mod controls;
+mod curves;
 mod dirty_colours;
 mod examples;
 mod handle_values;
@@ -17,6 +18,7 @@ mod painting;
 mod poses;
 mod regions;
 mod selection;
+mod shown_controls;
 mod snapshot;
 mod state;
 mod stiffness;
@@ -24,10 +26,11 @@ mod symmetry;
 
 pub(crate) use colour_revisions::ColouredBy;
 pub use colours::stiffness_colour;
-pub(crate) use colours::{light_part, region_colour, rims};
+pub(crate) use colours::{light_part, region_colour, rims, tint_limb};
 pub(crate) use controls::{
     bring as bring_attachment, make as make_controls, middle, put_attachment, reset as reset_controls,
 };
+pub(crate) use curves::{divide_curve, remove_curve_points, selected_curve};
 pub(crate) use examples::{
     add_example, examples_name, keep_example, remove_example, rename_example, set_example_weight,
 };
@@ -48,6 +51,7 @@ pub(crate) use painting::{members, tidy_handles};
 pub(crate) use poses::{keep_pose, remove_pose, rename_pose, renew_pose, take_pose};
 pub use regions::RegionAction;
 pub(crate) use regions::act_on_region;
+pub(crate) use shown_controls::ControlSource;
 pub use snapshot::SnapshotKey;
 pub(crate) use state::Workspace;
 pub use stiffness::StiffnessChange;

@@ -11,6 +11,7 @@ pub(crate) mod unread;
 mod uv_sets;
 pub(crate) mod write;
 
+use std::borrow::Cow;
 use std::ops::Range;
 
 use glam::DVec3;
@@ -152,9 +153,9 @@ impl Stored {
             let in_mesh = positions.iter().enumerate();
             let in_mesh = in_mesh.map(|(element, p)| mesh_from_world(element).transform_point3(*p));
             let in_mesh = in_mesh.filter(|p| p.is_finite()).fold(DVec3::ZERO, largest);
-            let within = |element: usize, linear: Option<Linear>| {
+            let within = |element: usize, linear: Option<Cow<'_, Linear>>| {
                 // Vertices that a skin flattens stay the same, wherever they were moved.
-                let Some(Linear { world_from_mesh, .. }) = linear else {
+                let Some(world_from_mesh) = linear.map(|linear| linear.world_from_mesh) else {
                     return DVec3::INFINITY;
                 };
                 let by_axes = [world_from_mesh.x_axis, world_from_mesh.y_axis, world_from_mesh.z_axis];
@@ -167,10 +168,10 @@ impl Stored {
             };
             let linear = instance.pose.linear();
             match instance.pose {
-                Pose::Node(_) => roundings.push((instance.vertices.clone(), within(0, linear(0)))),
+                Pose::Node(_) => roundings.push((instance.vertices.clone(), within(0, linear.at(0)))),
                 Pose::Skin(_) => roundings.extend(instance.vertices.clone().enumerate().map(|(element, vertex)| {
                     let range = vertex..vertex + 1;
-                    (range, within(element, linear(element)))
+                    (range, within(element, linear.at(element)))
                 })),
             }
         }

@@ -1,16 +1,20 @@
 //! The input and the output of a save.
 
+pub(crate) mod animation;
 pub(crate) mod bits;
 pub(crate) mod colours;
 pub(crate) mod course;
 pub(crate) mod frames;
 pub(crate) mod moved;
+mod targets;
 pub(crate) mod turned;
 mod twins;
 
 use glam::DVec3;
 use pliant_mesh::Drawn;
 
+pub use self::animation::MorphAnimation;
+pub use self::targets::{FewTargets, ShapeDirections};
 use crate::Format;
 
 /// A request to save: the data and the format.

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use eframe::egui::{self, Align2, FontId, Sense, vec2};
 use glam::DVec2;
-use pliant_editor::{Before, Cursor, Event};
+use pliant_editor::{Before, Cursor, Event, ToolMode};
 
 use crate::files::names::file_name;
 use crate::legend;
@@ -14,9 +14,11 @@ use crate::window::bars::hints;
 use crate::window::input::Attention;
 use crate::window::input::event_queue::EventQueue;
 use crate::window::input::file_command::FileCommand;
+use crate::window::panels::notes::Note;
 use crate::window::viewport::before::OriginalView;
 use crate::window::viewport::method_views::MethodViews;
-use crate::window::viewport::{Smoothness, axis_ball, context_menu};
+use crate::window::viewport::{Smoothness, axis_ball, context_menu, stiffness_legend};
+use crate::window::widgets::number_field;
 use crate::window::widgets::outbox::Outbox;
 use crate::window::widgets::theme;
 
@@ -201,6 +203,8 @@ impl Application {
         }
         if let Some(scale) = self.viewport.scale() {
             legend::paint(ui.painter(), rect.left_top() + vec2(14.0, 14.0), scale);
+        } else if shown.tool == ToolMode::PaintStiffness && shown.model.is_some() {
+            stiffness_legend::paint(ui, rect.left_top() + vec2(14.0, 14.0));
         }
         if let Some(readout) = &shown.readout
             && let Some(at_px) = shown.camera.project(readout.at, shown.viewport_px)
@@ -241,6 +245,9 @@ impl Application {
 
     /// Shows messages and the first steps over the corners of the views, which together are `whole`.
     fn words(&mut self, ui: &egui::Ui, rect: egui::Rect) {
+        if let Some(refusal) = number_field::take_refusal(ui.ctx()) {
+            self.notes.headline = Some(Note::Failed(refusal));
+        }
         let problem = self.editor.view().problem;
         let toast = self.toast.show(ui.ctx(), rect, problem, &mut self.notes.headline);
         if self.shows_hints && !self.settings.get().hints_seen && hints::show(ui, rect, toast, &self.editor) {

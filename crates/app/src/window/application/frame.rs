@@ -6,12 +6,12 @@ use eframe::egui::{self, CentralPanel, Panel};
 
 use crate::window::application::Application;
 use crate::window::bars::status::{FileWork, FileWorkAnswer};
-use crate::window::bars::{status, tool_column, top_bar, view_bar};
+use crate::window::bars::{status, tool_column, tool_settings, top_bar, view_bar};
 use crate::window::dialogs::palette::{Found, Outcome};
 use crate::window::dialogs::{keys_window, log, memory_window, question};
 use crate::window::input::event_queue::EventQueue;
 use crate::window::input::file_command::FileCommand;
-use crate::window::panels;
+use crate::window::panels::{self, PanelChange};
 use crate::window::session::OpenFile;
 use crate::window::threads::interface_pool;
 use crate::window::widgets::outbox::Outbox;
@@ -100,7 +100,10 @@ impl Application {
         };
         let tools = Panel::left("tools").exact_size(tool_column::WIDTH).resizable(false);
         let tools = tools.show(ui, |ui| tool_column::show(ui, &self.editor, commands));
-        let view_bar = Panel::top("view bar").show(ui, |ui| view_bar::show(ui, &self.editor, commands));
+        let view_bar = Panel::top("view bar").show(ui, |ui| {
+            view_bar::show(ui, &self.editor, commands);
+            tool_settings::show(ui, &self.editor, commands);
+        });
         let bars = [&top.response, &status.response, &tools.response, &view_bar.response].map(|bar| bar.rect);
         let [top_rect, status_rect, tools_rect, view_bar_rect] = bars;
         let layout = [
@@ -120,17 +123,25 @@ impl Application {
             .default_size(self.settings.get().panel_width)
             .min_size(220.0)
             .show(ui, |ui| {
-                let folded = &self.settings.get().folded;
                 let open = self.session.open.as_ref();
                 let morph_targets = open.map_or(&[][..], |open| &open.morph_targets);
-                panels::show(ui, &self.editor, &self.notes, morph_targets, folded, commands)
+                panels::show(
+                    ui,
+                    &self.editor,
+                    &self.notes,
+                    morph_targets,
+                    self.settings.get(),
+                    commands,
+                )
             });
-        if let Some(title) = panel.inner {
-            self.settings.change(|settings| {
+        match panel.inner {
+            None => {}
+            Some(PanelChange::Page(page)) => self.settings.change(|settings| settings.page = page),
+            Some(PanelChange::Folded(title)) => self.settings.change(|settings| {
                 if !settings.folded.remove(title) {
                     settings.folded.insert(title.to_owned());
                 }
-            });
+            }),
         }
         let rect = panel.response.rect;
         let is_held = ui.ctx().input(|input| input.pointer.any_down());

@@ -1,9 +1,10 @@
-//! The frame of the view: menus above, tools at the left, the choices of the view over it, the status below; the first
-//! steps and the results of requests over its corners.
+//! The frame of the view: menus above, tools at the left, the choices of the view and the tool's settings over it, the
+//! status below; the first steps and the results of requests over its corners.
 
 pub(in crate::window) mod hints;
 pub(in crate::window) mod status;
 pub(in crate::window) mod toast;
 pub(in crate::window) mod tool_column;
+pub(in crate::window) mod tool_settings;
 pub(in crate::window) mod top_bar;
 pub(in crate::window) mod view_bar;

@@ -1,9 +1,9 @@
 //! The limit of memory for binding: the machine's free memory, or a number that the person chooses.
 
-use eframe::egui::{self, DragValue, RichText};
+use eframe::egui::{self, RichText};
 
 use crate::window::files::settings::{MostMemory, SettingsFile};
-use crate::window::widgets::number_field::number_field;
+use crate::window::widgets::number_field::{dragged, number_field};
 
 /// egui's id of its window.
 pub const ID: &str = "memory window";
@@ -56,12 +56,11 @@ fn choose(ui: &mut egui::Ui, most: &mut Option<MostMemory>, dragged_gb: &mut Opt
             let mut shown_gb = dragged_gb.unwrap_or(chosen_gb);
             let field = number_field(ui, &mut shown_gb, |ui, shown_gb| {
                 ui.add(
-                    DragValue::new(shown_gb)
+                    dragged(ui, shown_gb, &[("GB", 1.0)])
                         .range(RANGE_GB)
                         .speed(0.1)
                         .max_decimals(1)
-                        .suffix(" GB")
-                        .update_while_editing(false),
+                        .suffix(" GB"),
                 )
             });
             field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::SpinButton, true, "Most memory in GB"));

@@ -29,6 +29,8 @@ pub struct Settings {
     pub window_size: Option<[f32; 2]>,
     /// True if the window fills the screen; its size is the one for the other case.
     pub maximised: bool,
+    /// The page of the panel that is shown.
+    pub page: PanelPage,
     /// Sections of the panel that are folded away, by their titles.
     pub folded: std::collections::BTreeSet<String>,
     /// True if the person has closed the hints on the canvas.
@@ -122,6 +124,19 @@ fn put_aside(path: &Path) -> Result<PathBuf, String> {
     Ok(aside)
 }
 
+/// A page of the panel.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum PanelPage {
+    /// Handles and poses.
+    #[default]
+    Handles,
+    /// The options of the method.
+    Method,
+    /// Objects, the history and the file.
+    Scene,
+}
+
 /// Light or dark.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -174,6 +189,7 @@ impl Default for Settings {
             panel_width: 280.0,
             window_size: None,
             maximised: false,
+            page: PanelPage::default(),
             folded: Default::default(),
             hints_seen: false,
             memory: None,

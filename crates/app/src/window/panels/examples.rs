@@ -1,12 +1,13 @@
 //! The examples that guide or teach the method: a list with a weight each.
 
-use eframe::egui::{self, RichText, ScrollArea, Slider, SliderClamping};
+use eframe::egui::{self, RichText, ScrollArea, SliderClamping};
 use pliant_deform::{AttachmentKind, LARGEST_WEIGHT};
 use pliant_editor::{Command, Editor};
 
 use crate::window::input::file_command::FileCommand;
 use crate::window::widgets::command_button::command_button;
 use crate::window::widgets::name_label::name_label;
+use crate::window::widgets::number_field::{number_field, slid};
 use crate::window::widgets::outbox::Outbox;
 
 /// Shows the list, if the method takes examples.
@@ -86,10 +87,10 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, morph_targets: &[String], comman
                 ),
             };
             let mut shown = weight.or(found.filter(|_| they_bend)).unwrap_or(without);
-            let slider = Slider::new(&mut shown, range)
-                .clamping(SliderClamping::Never)
-                .fixed_decimals(2);
-            let slider = ui.add_enabled(weight.is_some() || !they_bend, slider);
+            let slider = number_field(ui, &mut shown, |ui, shown| {
+                let slider = slid(ui, shown, range, &[]).clamping(SliderClamping::Never);
+                ui.add_enabled(weight.is_some() || !they_bend, slider.fixed_decimals(2))
+            });
             let slider = slider
                 .labelled_by(label)
                 .on_hover_text(format!("{says}; double-click the number to type one."))

@@ -1,6 +1,6 @@
 //! The list of handles, and the selected one in numbers.
 
-use eframe::egui::{self, Align, Color32, ComboBox, DragValue, Layout, RichText, Sense};
+use eframe::egui::{self, Align, Color32, ComboBox, Layout, RichText, Sense};
 use glam::DVec3;
 use pliant_deform::{CONTINUITY_RANGE, ConstraintKind, METHODS};
 use pliant_editor::{
@@ -9,7 +9,7 @@ use pliant_editor::{
 
 use crate::window::widgets::command_button::command_button;
 use crate::window::widgets::icon::{Icon, toggle};
-use crate::window::widgets::number_field::number_field;
+use crate::window::widgets::number_field::{DEGREES, LENGTHS, Unit, dragged, number_field};
 use crate::window::widgets::outbox::Outbox;
 use crate::window::widgets::row_label::row_label;
 
@@ -159,13 +159,13 @@ fn numbers(ui: &mut egui::Ui, editor: &Editor, handle: &Handle, commands: &mut O
                     };
                     Command::SetHandleTransform(handle.id, transform)
                 };
-                triple(ui, "Move", translation, 0.01, "", commands, |moved| {
+                triple(ui, "Move", translation, 0.01, LENGTHS, commands, |moved| {
                     set(moved, rotation, scale)
                 });
-                triple(ui, "Turn", handle.turn_deg, 0.5, "°", commands, |degrees| {
+                triple(ui, "Turn", handle.turn_deg, 0.5, DEGREES, commands, |degrees| {
                     Command::SetTurn(handle.id, degrees)
                 });
-                triple(ui, "Scale", scale, 0.01, "", commands, |scale| {
+                triple(ui, "Scale", scale, 0.01, &[], commands, |scale| {
                     set(translation, rotation, scale)
                 });
             }
@@ -184,20 +184,21 @@ fn triple(
     label: &str,
     value: DVec3,
     speed: f64,
-    suffix: &str,
+    units: &[Unit],
     commands: &mut Outbox,
     set: impl Fn(DVec3) -> Command,
 ) {
     let name = row_label(ui, label);
+    let suffix = if units == DEGREES { "°" } else { "" };
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
         ui.spacing_mut().interact_size.x = 54.0;
         for axis in 0..3 {
             let mut changed = value;
             let field = number_field(ui, &mut changed[axis], |ui, value| {
-                let field = DragValue::new(value).speed(speed).max_decimals(3).suffix(suffix);
+                let field = dragged(ui, value, units).speed(speed).max_decimals(3).suffix(suffix);
                 let field = field.custom_formatter(without_minus_zero);
-                ui.add(field.update_while_editing(false))
+                ui.add(field)
             });
             let field = field.labelled_by(name.id).on_hover_text(["x", "y", "z"][axis]);
             commands.adjust(&field, || set(changed));
@@ -255,15 +256,15 @@ fn pivot(ui: &mut egui::Ui, handle: &Handle, commands: &mut Outbox) {
 
 fn reach(ui: &mut egui::Ui, handle: &Handle, commands: &mut Outbox) {
     let label = row_label(ui, "Reach");
-    let (mut value, suffix, most, make): (f64, _, _, fn(f64) -> Reach) = match handle.reach {
-        Reach::Radii(radii) => (radii, " radii", 50.0, Reach::Radii),
-        Reach::Length(length) => (length, "", f64::MAX, Reach::Length),
+    let (mut value, suffix, units, most, make): (f64, _, &[Unit], _, fn(f64) -> Reach) = match handle.reach {
+        Reach::Radii(radii) => (radii, " radii", &[("radii", 1.0)], 50.0, Reach::Radii),
+        Reach::Length(length) => (length, "", LENGTHS, f64::MAX, Reach::Length),
     };
     let speed = (0.02 * value).max(1e-4);
     let hover = "Sets the distance along the surface within which it follows this handle.";
     let field = number_field(ui, &mut value, |ui, value| {
-        let field = DragValue::new(value).range(0.0..=most).speed(speed);
-        ui.add(field.max_decimals(3).suffix(suffix).update_while_editing(false))
+        let field = dragged(ui, value, units).range(0.0..=most).speed(speed);
+        ui.add(field.max_decimals(3).suffix(suffix))
     });
     let field = field.labelled_by(label.id).on_hover_text(hover);
     commands.adjust(&field, || Command::SetReach(handle.id, make(value)));
@@ -327,8 +328,8 @@ fn joint(ui: &mut egui::Ui, editor: &Editor, handle: &Handle, commands: &mut Out
                 )
             };
             let field = number_field(ui, &mut value, |ui, value| {
-                let field = DragValue::new(value).range(CONTINUITY_RANGE).speed(0.02);
-                ui.add(field.max_decimals(2).update_while_editing(false))
+                let field = dragged(ui, value, &[]).range(CONTINUITY_RANGE).speed(0.02);
+                ui.add(field.max_decimals(2))
             });
             let field = field
                 .labelled_by(label.id)
@@ -353,8 +354,8 @@ fn softness(ui: &mut egui::Ui, handle: &Handle, commands: &mut Outbox) {
         let hover = "Sets the soft handle's weight: a larger one pulls harder, and at 1 handle and surface yield \
                      equally.";
         let field = number_field(ui, &mut weight, |ui, weight| {
-            let field = DragValue::new(weight).range(SOFT_RANGE).speed(speed);
-            ui.add(field.update_while_editing(false))
+            let field = dragged(ui, weight, &[]).range(SOFT_RANGE).speed(speed);
+            ui.add(field)
         });
         let field = field.on_hover_text(hover);
         commands.adjust(&field, || Command::SetSoft(handle.id, Some(weight)));

@@ -1,43 +1,48 @@
 //! The method and its options: the widgets are made from the methods' declarations, so that every declared option is
 //! shown.
 
-use eframe::egui::{self, Atom, Button, ComboBox, DragValue, RichText};
+use eframe::egui::{self, Atom, Button, ComboBox, RichText};
 use pliant_deform::{AttachmentKind, METHODS, Method, OptionDeclaration, OptionKind, OptionValue};
 use pliant_editor::{Command, Editor};
 
 use super::{examples, material, method_picture};
 use crate::window::input::file_command::FileCommand;
-use crate::window::widgets::command_button::{command_button, command_choice};
-use crate::window::widgets::number_field::number_field;
+use crate::window::widgets::command_button::{command_button, icon_choice};
+use crate::window::widgets::icon::Glyph;
+use crate::window::widgets::number_field::{dragged, number_field};
 use crate::window::widgets::outbox::Outbox;
 use crate::window::widgets::row_label::row_label;
 
-/// Shows the method and its options; `morph_targets` are the names of the file's own.
-pub fn show(ui: &mut egui::Ui, editor: &Editor, morph_targets: &[String], commands: &mut Outbox) {
+/// Shows the method and its one slider.
+pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     let method = editor.document().method();
     let declaration = method.declaration();
     ui.horizontal(|ui| {
         let label = row_label(ui, "Method");
-        let width = ui.available_width();
+        let compared = editor.comparison().is_some();
+        let width = ui.available_width() - COMPARE;
         let (list, chosen) = choose_method(ui, "method", method, width);
         list.labelled_by(label.id);
         if let Some(chosen) = chosen {
             commands.push(Command::SetMethod(chosen));
         }
+        if icon_choice(ui, editor, &Command::CompareMethods, compared, Glyph::LayoutGrid, None) {
+            commands.push(Command::CompareMethods);
+        }
     });
     ui.label(RichText::new(declaration.when_to_use).weak().small());
-    for sentence in editor.warnings() {
-        let colour = ui.visuals().warn_fg_color;
-        ui.add(egui::Label::new(RichText::new(sentence).small().color(colour)).wrap());
-    }
-    if command_choice(ui, editor, &Command::CompareMethods, editor.comparison().is_some()) {
-        commands.push(Command::CompareMethods);
-    }
     material::show(ui, editor, commands);
+}
+
+/// Shows the method's options and attachments; `morph_targets` are the names of the file's own.
+pub fn show_options(ui: &mut egui::Ui, editor: &Editor, morph_targets: &[String], commands: &mut Outbox) {
     examples::show(ui, editor, morph_targets, commands);
     control_points(ui, editor, commands);
-    options(ui, method, commands);
+    options(ui, editor.document().method(), commands);
 }
+
+/// The room for the button that compares methods, in points.
+const COMPARE: f32 = 44.0;
 
 /// The method's options, folded, and separately those for experts.
 fn options(ui: &mut egui::Ui, method: &Method, commands: &mut Outbox) {
@@ -52,7 +57,8 @@ fn options(ui: &mut egui::Ui, method: &Method, commands: &mut Outbox) {
         if own.peek().is_none() {
             continue;
         }
-        egui::CollapsingHeader::new(title).id_salt(title).show(ui, |ui| {
+        let header = egui::CollapsingHeader::new(title).id_salt(title);
+        header.default_open(!is_advanced).show(ui, |ui| {
             egui::Grid::new((title, "of the method")).num_columns(2).show(ui, |ui| {
                 for option in own {
                     row(ui, method, option, commands);
@@ -200,9 +206,11 @@ fn widget(
                 format!(" {unit}")
             };
             let field = number_field(ui, &mut number, |ui, number| {
-                let field = DragValue::new(number).range(range[0]..=range[1]).speed(speed);
+                let field = dragged(ui, number, &[(unit, 1.0)])
+                    .range(range[0]..=range[1])
+                    .speed(speed);
                 let field = field.custom_formatter(|number, _| short(number)).suffix(suffix);
-                ui.add(field.update_while_editing(false))
+                ui.add(field)
             });
             commands.adjust(&field, || set(OptionValue::Number(number)));
             field
@@ -210,8 +218,8 @@ fn widget(
         (OptionKind::Whole { range }, OptionValue::Whole(mut number)) => {
             let speed = (f64::from(number) * 0.02).max(0.1);
             let field = number_field(ui, &mut number, |ui, number| {
-                let field = DragValue::new(number).range(range[0]..=range[1]).speed(speed);
-                ui.add(field.update_while_editing(false))
+                let field = dragged(ui, number, &[]).range(range[0]..=range[1]).speed(speed);
+                ui.add(field)
             });
             commands.adjust(&field, || set(OptionValue::Whole(number)));
             field

@@ -1,6 +1,6 @@
-//! The panel beside the view: handles, brush, the bending of the surface, the history, and information about the file.
+//! The panel beside the view: the bending of the surface, and beneath it a page with handles, with the method's options,
+//! or with objects, history and file.
 
-pub(in crate::window) mod brush;
 mod examples;
 pub(in crate::window) mod file;
 pub(in crate::window) mod handles;
@@ -24,41 +24,95 @@ use eframe::egui;
 use eframe::egui::ScrollArea;
 use pliant_editor::{Command, Editor};
 
+use crate::window::files::settings::{PanelPage, Settings};
 use crate::window::widgets::command_button::command_button;
 use crate::window::widgets::outbox::Outbox;
 use notes::Notes;
 
-/// Shows the panel; commands for the editor are added to `commands`. The title of a section that was folded away or
-/// unfolded is returned.
+/// A change of the panel's own state.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum PanelChange {
+    /// Another page is chosen.
+    Page(PanelPage),
+    /// The section with this title was folded away or unfolded.
+    Folded(&'static str),
+}
+
+const PAGES: [(PanelPage, &str, &str); 3] = [
+    (PanelPage::Handles, "Handles", "Shows the handles and the kept poses."),
+    (
+        PanelPage::Method,
+        "Method",
+        "Shows the method's options, examples, cage or lattice, and the treatment of loose parts.",
+    ),
+    (
+        PanelPage::Scene,
+        "Scene",
+        "Shows the objects, the history and the file.",
+    ),
+];
+
+/// Shows the panel: the bending, which stays in place, and a page beneath it. Commands for the editor are added to
+/// `commands`.
 pub fn show(
     ui: &mut egui::Ui,
     editor: &Editor,
     notes: &Notes,
     morph_targets: &[String],
-    folded: &BTreeSet<String>,
+    settings: &Settings,
     commands: &mut Outbox,
-) -> Option<&'static str> {
-    let mut turned = None;
+) -> Option<PanelChange> {
+    ui.add_space(6.0);
+    bending(ui, editor, commands);
+    ui.add_space(2.0);
+    let mut change = tabs(ui, settings.page).map(PanelChange::Page);
+    ui.separator();
     let mut section = |ui: &mut egui::Ui, title, contents: &mut dyn FnMut(&mut egui::Ui)| {
-        if section(ui, title, folded, contents) {
-            turned = Some(title);
+        if section(ui, title, &settings.folded, contents) {
+            change = Some(PanelChange::Folded(title));
         }
     };
-    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-        ui.add_space(4.0);
-        section(ui, "Handles", &mut |ui| handles::show(ui, editor, commands));
-        if editor.document().poses().is_empty() {
-            poses::show_none(ui, editor, commands);
-        } else {
-            section(ui, "Poses", &mut |ui| poses::show(ui, editor, commands));
+    warnings(ui, editor, commands);
+    let scrolled = ScrollArea::vertical().id_salt(settings.page as u8).auto_shrink(false);
+    scrolled.show(ui, |ui| match settings.page {
+        PanelPage::Handles => {
+            handles::show(ui, editor, commands);
+            ui.separator();
+            if editor.document().poses().is_empty() {
+                poses::show_none(ui, editor, commands);
+            } else {
+                section(ui, "Poses", &mut |ui| poses::show(ui, editor, commands));
+            }
         }
-        section(ui, "Objects", &mut |ui| objects::show(ui, editor, commands));
-        section(ui, "Brush", &mut |ui| brush::show(ui, editor, commands));
-        section(ui, "Bending", &mut |ui| bending(ui, editor, morph_targets, commands));
-        section(ui, "History", &mut |ui| history::show(ui, editor, commands));
-        section(ui, "File", &mut |ui| file::show(ui, editor, notes, commands));
+        PanelPage::Method => {
+            method::show_options(ui, editor, morph_targets, commands);
+            ui.separator();
+            loose::show(ui, editor, commands);
+        }
+        PanelPage::Scene => {
+            section(ui, "Objects", &mut |ui| objects::show(ui, editor, commands));
+            section(ui, "History", &mut |ui| history::show(ui, editor, commands));
+            section(ui, "File", &mut |ui| file::show(ui, editor, notes, commands));
+        }
     });
-    turned
+    change
+}
+
+/// The names of the pages; returns the one that is clicked.
+fn tabs(ui: &mut egui::Ui, shown: PanelPage) -> Option<PanelPage> {
+    let width = (ui.available_width() - 2.0 * ui.spacing().item_spacing.x) / PAGES.len() as f32;
+    let mut chosen = None;
+    ui.horizontal(|ui| {
+        for (page, name, meaning) in PAGES {
+            let tab = egui::Button::selectable(page == shown, name).min_size(egui::vec2(width, 0.0));
+            let tab = ui.add(tab).on_hover_text(meaning);
+            tab.widget_info(|| egui::WidgetInfo::selected(egui::Role::Tab, true, page == shown, name));
+            if tab.clicked() {
+                chosen = Some(page);
+            }
+        }
+    });
+    chosen
 }
 
 /// A part of the panel that can be folded; true if it was folded or unfolded just now.
@@ -75,11 +129,39 @@ fn section(ui: &mut egui::Ui, title: &str, folded: &BTreeSet<String>, contents: 
     header.header_response.clicked()
 }
 
-fn bending(ui: &mut egui::Ui, editor: &Editor, morph_targets: &[String], commands: &mut Outbox) {
-    method::show(ui, editor, morph_targets, commands);
-    loose::show(ui, editor, commands);
+/// Shows the warnings about the edit at the panel's lower end, where they move nothing that a person is about to click.
+fn warnings(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
+    let intersections = editor.intersections().map_or(Vec::new(), |found| found.sentences());
+    let has_any = !editor.warnings().is_empty() || !intersections.is_empty();
+    // It is there without warnings, too: a field keeps the focus only while nothing is added before it.
+    let lower = egui::Panel::bottom("warnings")
+        .resizable(false)
+        .show_separator_line(false);
+    lower.frame(egui::Frame::NONE).show(ui, |ui| {
+        if !has_any {
+            return;
+        }
+        ui.separator();
+        let room = ScrollArea::vertical()
+            .min_scrolled_height(WARNINGS)
+            .max_height(WARNINGS);
+        room.show(ui, |ui| {
+            intersections::show(ui, editor, commands);
+            for sentence in editor.warnings() {
+                let colour = ui.visuals().warn_fg_color;
+                ui.add(egui::Label::new(egui::RichText::new(sentence).small().color(colour)).wrap());
+            }
+        });
+    });
+}
+
+/// The most room for warnings, in points.
+const WARNINGS: f32 = 220.0;
+
+/// The method, and the edit as a whole.
+fn bending(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
+    method::show(ui, editor, commands);
     strength::show(ui, editor, commands);
-    intersections::show(ui, editor, commands);
     ui.horizontal_wrapped(|ui| {
         for command in [Command::Apply, Command::ResetShape, Command::ClearRegions] {
             if command_button(ui, editor, &command) {

@@ -3,13 +3,13 @@
 use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
 
-use eframe::egui::{self, Align, DragValue, Layout, RichText, ScrollArea};
+use eframe::egui::{self, Align, Layout, RichText, ScrollArea};
 use pliant_editor::{Access, Command, Editor, ObjectAction, SmallParts, object_name, thousands};
 use pliant_mesh::{Model, Object};
 
 use crate::window::widgets::command_button::command_button;
 use crate::window::widgets::icon::{Icon, toggle};
-use crate::window::widgets::number_field::number_field;
+use crate::window::widgets::number_field::{dragged, number_field};
 use crate::window::widgets::outbox::Outbox;
 
 /// The number of rows that are visible at a time.
@@ -105,7 +105,7 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
         ui.label(RichText::new(text).weak().small());
     }
     ui.horizontal_wrapped(|ui| {
-        for command in [Command::Isolate, Command::ShowEverything, Command::TurnInsideOut] {
+        for command in [Command::Isolate, Command::ShowEverything] {
             if command_button(ui, editor, &command) {
                 commands.push(command);
             }
@@ -131,11 +131,10 @@ fn small_parts(ui: &mut egui::Ui, model: &Model, access: &Access, commands: &mut
                 let label = ui.add(egui::Label::new("Small parts").truncate());
                 let mut percent = 100.0 * small.share;
                 let field = number_field(ui, &mut percent, |ui, percent| {
-                    let field = DragValue::new(percent)
+                    let field = dragged(ui, percent, &[("%", 1.0)])
                         .range(0.0..=100.0)
                         .speed(0.05)
-                        .suffix(" %")
-                        .update_while_editing(false);
+                        .suffix(" %");
                     ui.add(field).labelled_by(label.id)
                 });
                 let field = field.on_hover_ui(|ui| {

@@ -1,8 +1,9 @@
 //! The shown share of the edit, as a slider.
 
-use eframe::egui::{self, Slider};
+use eframe::egui;
 use pliant_editor::{Command, Editor};
 
+use crate::window::widgets::number_field::{number_field, slid};
 use crate::window::widgets::outbox::Outbox;
 use crate::window::widgets::row_label::row_label;
 
@@ -12,11 +13,11 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     let obstacle = editor.unavailable_because(&Command::SetStrength(0.5));
     ui.horizontal(|ui| {
         let label = row_label(ui, "Strength");
-        let slider = Slider::new(&mut percent, 0.0..=100.0)
-            .suffix(" %")
-            .fixed_decimals(0)
-            .update_while_editing(false);
-        let slider = ui.add_enabled(obstacle.is_none(), slider).labelled_by(label.id);
+        let slider = number_field(ui, &mut percent, |ui, percent| {
+            let slider = slid(ui, percent, 0.0..=100.0, &[("%", 1.0)]);
+            ui.add_enabled(obstacle.is_none(), slider.suffix(" %").fixed_decimals(0))
+        });
+        let slider = slider.labelled_by(label.id);
         let slider = slider
             .on_hover_text(
                 "Shows and saves a share of the edit: every handle moves and turns by this share. The next move \

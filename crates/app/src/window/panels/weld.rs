@@ -1,12 +1,12 @@
 //! The vertices of the file that are welded: by the mesh itself, only equal ones, or those within a distance.
 
-use eframe::egui::{self, DragValue};
+use eframe::egui;
 use pliant_editor::Editor;
 use pliant_mesh::{Model, WeldOptions};
 
 use crate::window::input::file_command::FileCommand;
 use crate::window::widgets::command_button::choices;
-use crate::window::widgets::number_field::number_field;
+use crate::window::widgets::number_field::{LENGTHS, dragged, number_field};
 use crate::window::widgets::outbox::Outbox;
 use crate::window::widgets::row_label::row_label;
 
@@ -69,10 +69,9 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, model: &Model, commands: &mut Ou
         let id = ui.scope_id().with("weld distance");
         let mut value = ui.data(|data| data.get_temp(id)).unwrap_or(distance);
         let field = number_field(ui, &mut value, |ui, value| {
-            let field = DragValue::new(value)
+            let field = dragged(ui, value, LENGTHS)
                 .range(f64::MIN_POSITIVE..=f64::MAX)
-                .speed(0.01 * distance)
-                .update_while_editing(false);
+                .speed(0.01 * distance);
             ui.add_enabled(!editor.is_acting(), field).labelled_by(label.id)
         });
         let field = field.on_hover_text(

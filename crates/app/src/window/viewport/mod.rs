@@ -15,6 +15,7 @@ pub(in crate::window) mod method_views;
 pub(in crate::window) mod pose_queue;
 pub(in crate::window) mod shown;
 pub(in crate::window) mod side_view;
+pub(in crate::window) mod stiffness_legend;
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};

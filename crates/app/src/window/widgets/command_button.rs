@@ -25,6 +25,22 @@ pub fn command_choice(ui: &mut egui::Ui, editor: &Editor, command: &Command, cho
     choice(ui, editor, command, chosen, Button::selectable(chosen, listed.name))
 }
 
+/// The same in a menu, with a tick while it is true.
+pub fn menu_choice(ui: &mut egui::Ui, editor: &Editor, command: &Command, chosen: bool) -> bool {
+    let Some(listed) = command.listed() else { return false };
+    let tick = icon::text(Glyph::Check, 13.0);
+    let tick = if chosen {
+        tick
+    } else {
+        tick.color(egui::Color32::TRANSPARENT)
+    };
+    let mut button = Button::new((tick, listed.name));
+    if let Some(shortcut) = editor.shortcuts(command).first() {
+        button = button.shortcut_text(shortcut.label());
+    }
+    choice(ui, editor, command, chosen, button)
+}
+
 /// The same with an icon, and with `label` beside it if there is room.
 pub fn icon_choice(
     ui: &mut egui::Ui,
@@ -107,19 +123,19 @@ fn enabled_unless(ui: &mut egui::Ui, obstacle: Option<Cow<'_, str>>, button: imp
     }
 }
 
-/// Choices side by side, each with its name and meaning; returns the one that is clicked.
+/// Choices in a row of their own, each with its name and meaning; returns the one that is clicked.
 pub fn choices<T: Copy + PartialEq>(ui: &mut egui::Ui, chosen: T, all: &[(T, &str, &str)]) -> Option<T> {
+    ui.horizontal(|ui| choices_in_bar(ui, chosen, all)).inner
+}
+
+/// The same among other widgets, where they wrap one by one.
+pub fn choices_in_bar<T: Copy + PartialEq>(ui: &mut egui::Ui, chosen: T, all: &[(T, &str, &str)]) -> Option<T> {
     let mut clicked = None;
-    ui.horizontal(|ui| {
-        for (choice, name, meaning) in all {
-            if ui
-                .selectable_label(chosen == *choice, *name)
-                .on_hover_text(*meaning)
-                .clicked()
-            {
-                clicked = Some(*choice);
-            }
+    for (choice, name, meaning) in all {
+        let label = ui.selectable_label(chosen == *choice, *name);
+        if label.on_hover_text(*meaning).clicked() {
+            clicked = Some(*choice);
         }
-    });
+    }
     clicked
 }

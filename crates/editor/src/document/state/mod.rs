@@ -395,10 +395,15 @@ impl Document {
         self.forget_strength_unless_handles_stay(before);
         let after = &self.content.handles;
         let mut changed = vec![Aspect::Handles];
-        if !are_same(before, after, |h| (h.id, h.reach, h.soft, h.continuity)) {
+        if !are_same(before, after, |h| (h.id, h.reach, h.soft, h.continuity))
+            || !before
+                .iter()
+                .zip(after)
+                .all(|(before, after)| before.line_binds_as(after))
+        {
             changed.push(Aspect::Constraints);
         }
-        if !are_same(before, after, Handle::affine) {
+        if !are_same(before, after, |h| (h.affine(), h.line.clone())) {
             changed.push(Aspect::Targets);
         }
         if !are_same(before, after, |h| (h.id, h.colour, h.visible, h.is_pin)) {

@@ -24,7 +24,7 @@ pub(super) struct GrabShape {
 impl GrabShape {
     /// Grabs the surface under the pointer: its connected part, and with symmetry that of the other side.
     pub fn begin(context: &mut Context<'_>, pointer: Pointer, pick: &Pick) -> StrokeGesture<Self> {
-        let radius = context.settings.brush.radius_px
+        let radius = context.settings.brush().radius_px
             * context
                 .view
                 .camera()

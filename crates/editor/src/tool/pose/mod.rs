@@ -9,5 +9,5 @@ mod motion;
 
 pub(super) use self::drag::PoseDrag;
 pub(super) use crate::tool::joint_shapes::joint_shapes;
-pub(crate) use crate::tool::limb::hover;
 pub(super) use crate::tool::limb::{Limb, limb_under};
+pub(crate) use crate::tool::limb::{hover, tint};

@@ -11,7 +11,7 @@
 
 mod commit;
 
-use std::fs;
+use std::fs::{self, File};
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
@@ -47,6 +47,8 @@ struct UnderWay(Mutex<Vec<Weak<Mutex<State>>>>);
 #[derive(Debug, Default)]
 struct State {
     temporary: Vec<PathBuf>,
+    /// Folders that were made for the files.
+    folders: Vec<PathBuf>,
     locks: Vec<Weak<FolderLock>>,
     committed: bool,
     readers: Readers,
@@ -186,6 +188,11 @@ impl Staging {
         Ok(held)
     }
 
+    /// Notes an empty folder that was made for the files: an interrupt removes it too.
+    pub(crate) fn note_folder(&self, folder: &Path) {
+        self.lock().folders.push(folder.to_owned());
+    }
+
     /// Writes and syncs `files` beside their targets, under temporary names.
     ///
     /// # Errors
@@ -264,6 +271,10 @@ impl Staging {
             .drain(..)
             .filter_map(|lock| lock.upgrade())
             .for_each(|lock| lock.remove_file());
+        for folder in state.folders.drain(..) {
+            // A folder with somebody's files stays.
+            let _ = fs::remove_dir(folder);
+        }
         Some(Discarded { _state: state })
     }
 
@@ -280,6 +291,46 @@ impl Staging {
         go_on: &mut dyn FnMut(usize) -> Result<(), EngineError>,
     ) -> Result<StagedFile, EngineError> {
         let NewFile { to, bytes } = file;
+        self.stage_written(to, |temporary| {
+            let refuse = |error| EngineError::from(FileError::writing(&to.given, error));
+            go_on(0)?;
+            for lasting in bytes.chunks(LASTING) {
+                for block in lasting.chunks(BLOCK) {
+                    temporary.write_all(block).map_err(refuse)?;
+                    go_on(block.len())?;
+                }
+                temporary.sync_data().map_err(refuse)?;
+                go_on(0)?;
+            }
+            Ok(())
+        })
+    }
+
+    /// Writes and syncs one file piece by piece: `write` writes all of it.
+    ///
+    /// # Errors
+    /// Those of `write`, and a file that can't be written; nothing is left behind then.
+    pub(crate) fn stage_pieces(
+        &self,
+        to: &Destination,
+        cancel: &Cancel,
+        write: impl FnOnce(&mut File) -> Result<(), EngineError>,
+    ) -> Result<Staged, EngineError> {
+        let held = self.hold([(to, Share::Together)], cancel)?;
+        Ok(Staged {
+            files: vec![self.stage_written(to, write)?],
+            bridges: Vec::new(),
+            held,
+            staging: self.clone(),
+        })
+    }
+
+    /// Makes a temporary file with the attributes of the one that it replaces, lets `write` write it, and syncs it.
+    fn stage_written(
+        &self,
+        to: &Destination,
+        write: impl FnOnce(&mut File) -> Result<(), EngineError>,
+    ) -> Result<StagedFile, EngineError> {
         let refuse = |error| FileError::writing(&to.given, error);
         let existing = to.existing()?;
         // A new neighbour is as private as the file that names it.
@@ -289,15 +340,7 @@ impl Staging {
         // A file that replaces another has no more rights than that one from its first byte on. Other files get the
         // rights of any new file: everybody's, less the umask.
         let mut temporary = self.temporary_in(&to.home, like.is_some()).map_err(refuse)?;
-        go_on(0)?;
-        for lasting in bytes.chunks(LASTING) {
-            for block in lasting.chunks(BLOCK) {
-                temporary.write_all(block).map_err(refuse)?;
-                go_on(block.len())?;
-            }
-            temporary.as_file().sync_data().map_err(refuse)?;
-            go_on(0)?;
-        }
+        write(temporary.as_file_mut())?;
         let mut other_names = OtherNames::default();
         if let Some((existing, at)) = &like {
             attributes::hand_on(temporary.as_file(), existing, at).map_err(refuse)?;

@@ -165,7 +165,9 @@ fn in_world<'a>(instance: &'a Instance, normals: &'a [[f32; 3]]) -> impl Indexed
         .with_min_len(CHUNK)
         .map(move |(element, normal)| {
             let normal = Vec3::from_array(*normal).as_dvec3();
-            let world = linear(element).map(|linear| linear.mesh_from_world.transpose() * normal);
+            let world = linear
+                .at(element)
+                .map(|linear| linear.mesh_from_world.transpose() * normal);
             world.unwrap_or_default().normalize_or_zero()
         })
 }

@@ -1,5 +1,7 @@
 //! The transforms of an instance's vertices from the mesh's own space into the world.
 
+use std::borrow::Cow;
+
 use glam::{DAffine3, DMat3};
 
 /// The transforms of an instance's vertices.
@@ -45,6 +47,35 @@ pub(crate) struct Linear {
     pub mesh_from_world: DMat3,
 }
 
+impl Linear {
+    /// The linear part of a transform; `None` if it has no inverse.
+    fn of(transform: &DAffine3) -> Option<Self> {
+        is_invertible(transform).then(|| Self {
+            world_from_mesh: transform.matrix3,
+            mesh_from_world: transform.matrix3.inverse(),
+        })
+    }
+}
+
+/// The linear parts of the transforms of an instance's vertices.
+pub(crate) enum Linears<'a> {
+    /// The node's, computed once.
+    Same(Option<Linear>),
+    /// One for each vertex.
+    Each(&'a SkinPose),
+}
+
+impl Linears<'_> {
+    /// The linear part of an element's transform; `None` if it has no inverse.
+    pub fn at(&self, element: usize) -> Option<Cow<'_, Linear>> {
+        match self {
+            // Copying both matrices for each vertex took 4% of the time of reading a file with normals.
+            Self::Same(linear) => linear.as_ref().map(Cow::Borrowed),
+            Self::Each(skin) => Linear::of(&skin.transforms[element]).map(Cow::Owned),
+        }
+    }
+}
+
 impl Pose {
     /// The different transforms: a node's single one, or each element's.
     pub fn transforms(&self) -> &[DAffine3] {
@@ -62,22 +93,11 @@ impl Pose {
         }
     }
 
-    /// The linear part of each element's transform; `None` if it has no inverse.
-    pub fn linear(&self) -> impl Fn(usize) -> Option<Linear> + '_ {
-        let of = |transform: &DAffine3| {
-            is_invertible(transform).then(|| Linear {
-                world_from_mesh: transform.matrix3,
-                mesh_from_world: transform.matrix3.inverse(),
-            })
-        };
-        // A node's transform is computed once.
-        let of_node = match self {
-            Self::Node(world_from_node) => of(world_from_node),
-            Self::Skin(_) => None,
-        };
-        move |element| match self {
-            Self::Node(_) => of_node,
-            Self::Skin(skin) => of(&skin.transforms[element]),
+    /// The linear parts of the elements' transforms.
+    pub fn linear(&self) -> Linears<'_> {
+        match self {
+            Self::Node(world_from_node) => Linears::Same(Linear::of(world_from_node)),
+            Self::Skin(skin) => Linears::Each(skin),
         }
     }
 

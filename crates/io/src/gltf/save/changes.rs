@@ -146,7 +146,10 @@ fn instance_change(
     let primitive = &meshes[instance.mesh][instance.primitive];
     // Vertices that a skin flattens do not change: their moves can't be brought back through it.
     let linear = instance.pose.linear();
-    let elements: Vec<u32> = elements.into_iter().filter(|&e| linear(e as usize).is_some()).collect();
+    let elements: Vec<u32> = elements
+        .into_iter()
+        .filter(|&e| linear.at(e as usize).is_some())
+        .collect();
     let stored = |accessor: Option<usize>| appearance::attribute::<4>(document, instance, accessor);
     let positions = stored(primitive.position).unwrap_or_default();
     let turns = target_turns.as_deref();
@@ -161,7 +164,9 @@ fn instance_change(
         // begins here.
         let v = vertex(element).index();
         let way = moved.positions[v] - moved.drawn.positions[v];
-        let by = linear(element as usize).map_or(DVec3::ZERO, |linear| linear.mesh_from_world * way);
+        let by = linear
+            .at(element as usize)
+            .map_or(DVec3::ZERO, |linear| linear.mesh_from_world * way);
         let by = by - shifts.as_ref().map_or(DVec3::ZERO, |shifts| shifts[element as usize]);
         if by == DVec3::ZERO {
             return Vec4::from_array(stored);
@@ -175,7 +180,7 @@ fn instance_change(
     }
     let gradient = |element: u32| -> Option<DMat3> {
         let world = frames?.gradient(vertex(element))?;
-        let linear = linear(element as usize)?;
+        let linear = linear.at(element as usize)?;
         Some(linear.mesh_from_world * world * linear.world_from_mesh)
     };
     let normal = normals.as_deref().unwrap_or_default();

@@ -20,7 +20,7 @@ mod unpack_copies;
 use super::Stored;
 use crate::save::course::Course;
 use crate::save::moved::Moved;
-use crate::save::{MorphDeltas, MorphTarget, Save, Saved};
+use crate::save::{MorphAnimation, MorphDeltas, MorphTarget, Save, Saved};
 use crate::{Format, SaveError};
 use patch::Patched;
 
@@ -77,6 +77,29 @@ impl Stored {
             let course = course.part(0.8, 0.9);
             patched = morph::with_target(document, meshes, pieces, &changes, target, save.format, &course)?;
         }
+        course.reach(9, 10)?;
+        self.deliver(patched, save)
+    }
+
+    /// The file as GLB or `.gltf`, with its shape unchanged and an animation of new morph targets.
+    pub fn save_as_animation(
+        &self,
+        save: &Save<'_>,
+        moved: &Moved<'_>,
+        animation: &MorphAnimation<'_>,
+        course: &Course<'_>,
+    ) -> Result<Saved, SaveError> {
+        let Self {
+            document,
+            meshes,
+            pieces,
+            ..
+        } = self;
+        let of_patch = course.part(0.0, 0.9);
+        let patched = match animation.targets {
+            [] => Patched::unchanged(document),
+            _ => morph::with_animation(document, meshes, pieces, moved, animation, save.format, &of_patch)?,
+        };
         course.reach(9, 10)?;
         self.deliver(patched, save)
     }

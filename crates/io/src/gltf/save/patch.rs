@@ -207,7 +207,7 @@ impl<'a> Patch<'a> {
         Ok(self.out)
     }
 
-    fn append(&mut self, section: &str, elements: &[String]) {
+    pub(super) fn append(&mut self, section: &str, elements: &[String]) {
         let json = &self.document.json;
         match json.member(json.root(), section) {
             Some(list) => self.edits.append_elements(json, list, elements),

@@ -61,7 +61,7 @@ fn turns_of_instance(instance: &Instance, moved: &Moved<'_>, frames: &Frames) ->
     let of_vertex = |vertex: u32| {
         let vertex = DrawnVertex(vertex);
         let gradient = frames.gradient(vertex).filter(|_| moved.moves(vertex))?;
-        let linear = linear((vertex.0 - instance.vertices.start) as usize)?;
+        let linear = linear.at((vertex.0 - instance.vertices.start) as usize)?;
         // The turn as seen in world space: in the mesh's own space, which a skin or a node may shear, it is not a
         // rotation.
         Some(linear.mesh_from_world * rotation(gradient)? * linear.world_from_mesh)

@@ -57,6 +57,8 @@ pub struct Joint {
     pub axis: DVec3,
     /// The radius of the circle that is as long as the ring, in world units.
     pub radius: f64,
+    /// The far end of the limb, in world space.
+    pub tip: DVec3,
     /// The reach of the bend along the surface to either side of the ring, in world units.
     pub falloff: f64,
     /// The limb: every vertex of the component on the point's side of the ring, ascending.
@@ -379,6 +381,7 @@ impl Cut {
         }
         rings[middle] = self.ring;
         (!far_side.is_empty() && count > 0.0).then(|| Joint {
+            tip,
             centre: self.centre,
             axis: (sum / count).normalize_or((tip - self.centre).normalize_or(DVec3::Y)),
             radius: self.radius,

@@ -1,0 +1,57 @@
+//! Commands on the curve of the selected handle.
+
+use super::entry::{Action, Entry, Reason, Scope, State, always, item, unless};
+use crate::workspace::{divide_curve, remove_curve_points, selected_curve};
+
+/// Lets the points of curves follow a dragged one at their distances, or no longer.
+pub(super) const TOGGLE_CHAIN: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Chain",
+        "Makes the other points of a curve follow a dragged one at their distances, like the joints of an arm.",
+        "curve spine ik inverse kinematics",
+        &[],
+    )],
+    scope: Scope::Tool,
+    unavailable: always,
+    action: Action::Do(|context, ()| context.settings.chain = !context.settings.chain),
+};
+
+/// Adds control points.
+pub(super) const DIVIDE_CURVE: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Add curve points",
+        "Adds a point after each selected point of the curve, or between all of them.",
+        "subdivide insert control spline line spine",
+        &[],
+    )],
+    scope: Scope::Document,
+    unavailable: |state, ()| without_curve(state),
+    action: Action::Do(|context, ()| divide_curve(context.workspace)),
+};
+
+/// Removes control points.
+pub(super) const REMOVE_CURVE_POINTS: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Delete curve points",
+        "Removes the selected points of the curve.",
+        "remove control spline line spine",
+        &[],
+    )],
+    scope: Scope::Document,
+    unavailable: |state, ()| {
+        without_curve(state).or_else(|| {
+            let is_selected = !state.workspace.controls.is_empty();
+            unless(is_selected, "No point of the curve is selected: click one.")
+        })
+    },
+    action: Action::Do(|context, ()| remove_curve_points(context.workspace)),
+};
+
+fn without_curve(state: &State<'_>) -> Option<Reason> {
+    let has_curve = selected_curve(state.workspace).is_some();
+    let why = "The selected handle has no curve: draw one with the shape Curve or Spine.";
+    state.unopened().or_else(|| unless(has_curve, why))
+}

@@ -1,0 +1,87 @@
+//! Filters of handles' trajectories through a sequence.
+
+use serde::{Deserialize, Serialize};
+
+use super::edit_error::EditError;
+
+/// A filter of the trajectory of one handle.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FilterEntry {
+    /// The handle's name. If it has a parent, its way relative to the parent is filtered.
+    pub handle: String,
+    /// The first and the last frame, which stay in place.
+    pub span: [u32; 2],
+    /// The effect.
+    pub kind: FilterKind,
+    /// The standard deviation of the Gaussian, in frames, in [`WIDTH_RANGE`].
+    #[serde(default = "usual_width")]
+    pub width: f64,
+    /// The share of the filter, in [`AMOUNT_RANGE`].
+    #[serde(default = "all_of_it")]
+    pub amount: f64,
+}
+
+/// The effect of a filter.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase", expecting = "\"smooth\" or \"exaggerate\"")]
+pub enum FilterKind {
+    /// Takes quick motions off.
+    Smooth,
+    /// Adds quick motions once more: the handle swings back before it moves, and beyond its end (the cartoon filter).
+    Exaggerate,
+}
+
+/// The narrowest and the widest filter, in frames.
+const WIDTH_RANGE: std::ops::RangeInclusive<f64> = 0.1..=1000.0;
+
+/// The least and the largest share of a filter.
+const AMOUNT_RANGE: std::ops::RangeInclusive<f64> = 0.0..=10.0;
+
+fn usual_width() -> f64 {
+    2.0
+}
+
+fn all_of_it() -> f64 {
+    1.0
+}
+
+impl FilterEntry {
+    /// The share of the quick motions that is added to the trajectory.
+    pub(super) fn gain(&self) -> f64 {
+        match self.kind {
+            FilterKind::Smooth => -self.amount,
+            FilterKind::Exaggerate => self.amount,
+        }
+    }
+}
+
+/// Refuses numbers out of range and spans that end before they begin.
+pub(super) fn check_filters(filters: &[FilterEntry]) -> Result<(), EditError> {
+    for (place, filter) in filters.iter().enumerate() {
+        let refuse = |member: &str, found: String, allowed: String| {
+            Err(EditError::OutOfRange {
+                place: format!("filter[{place}].{member}"),
+                found,
+                allowed,
+            })
+        };
+        let numbers =
+            |range: &std::ops::RangeInclusive<f64>| format!("a number from {} to {}", range.start(), range.end());
+        let [first, last] = filter.span;
+        if first > last {
+            return refuse(
+                "span",
+                format!("[{first}, {last}]"),
+                "a last frame from the first one on".to_owned(),
+            );
+        }
+        if !WIDTH_RANGE.contains(&filter.width) {
+            return refuse("width", filter.width.to_string(), numbers(&WIDTH_RANGE));
+        }
+        if !AMOUNT_RANGE.contains(&filter.amount) {
+            return refuse("amount", filter.amount.to_string(), numbers(&AMOUNT_RANGE));
+        }
+    }
+    Ok(())
+}

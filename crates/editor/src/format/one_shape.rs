@@ -1,0 +1,20 @@
+//! Edits where only one shape is made.
+
+use super::edit_error::EditError;
+use super::edit_file::EditFile;
+
+/// Refuses an edit with keys or filters where only one shape is made; `instead` says what makes all of them.
+///
+/// # Errors
+/// [`EditError::Other`], if there are some.
+pub fn refuse_keys(edit: &EditFile, instead: &str) -> Result<(), EditError> {
+    let member = match (edit.keys.is_empty(), edit.filter.is_empty()) {
+        (false, _) => "keys",
+        (true, false) => "filter",
+        (true, true) => return Ok(()),
+    };
+    Err(EditError::Other {
+        place: "the edit".to_owned(),
+        sentence: format!("has `{member}`, and only one shape is made here: {instead}"),
+    })
+}

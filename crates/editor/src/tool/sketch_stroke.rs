@@ -1,0 +1,169 @@
+//! A stroke that draws a part of the model's outline anew: the outline that it means becomes a handle that follows it.
+
+use glam::{DVec2, DVec3};
+use pliant_mesh::{Surface, SurfaceVertex, bounding_box};
+
+use super::context::Context;
+use super::gesture::{Gesture, Next};
+use super::overlay::Lit;
+use super::paint::PaintStroke;
+use super::stroke::StrokeGesture;
+use crate::document::{HandleLine, HandleSketch};
+use crate::input::{Button, Pointer};
+use crate::jobs::Activity;
+use crate::outline;
+use crate::view::{Cursor, View};
+use crate::workspace::Workspace;
+
+/// The distance between two points of the line, in points of the view.
+const STEP_PX: f64 = 4.0;
+
+/// A line begins and ends within this distance of the outline that it means, in points.
+const NEAR_PX: f64 = 60.0;
+
+/// The reach of the outline in diagonals of its own box.
+const REACH: f64 = 0.5;
+
+/// A stroke during its drawing.
+#[derive(Debug)]
+pub(crate) struct SketchStroke {
+    points_px: Vec<DVec2>,
+    /// The stroke that finally paints the outline.
+    stroke: StrokeGesture<PaintStroke>,
+    /// The line, while a job searches for the outline that it means.
+    sketch: Option<HandleSketch>,
+}
+
+impl SketchStroke {
+    pub(super) fn begin(context: &mut Context<'_>, pointer: Pointer) -> Option<Self> {
+        context.workspace.selection.wants_new_handle = true;
+        let stroke = PaintStroke::begin_on_one_side(context.workspace, context.settings, pointer)?;
+        Some(Self {
+            points_px: vec![pointer.position_px],
+            stroke,
+            sketch: None,
+        })
+    }
+
+    /// The line in the present view.
+    fn drawn(&self, view: &View) -> Result<HandleSketch, String> {
+        let size_px = view.viewport_px();
+        let line = self.points_px.iter().map(|px| {
+            let share = *px / size_px;
+            DVec2::new(2.0 * share.x - 1.0, 1.0 - 2.0 * share.y)
+        });
+        HandleSketch::new(view.camera().clip_from_world(size_px), line.collect(), 1.0)
+    }
+
+    fn refuse(&mut self, context: &mut Context<'_>, why: &str) -> Next {
+        self.abort(context);
+        context.workspace.refuse(why);
+        Next::End
+    }
+}
+
+impl Gesture for SketchStroke {
+    fn activity(&self) -> Activity {
+        self.stroke.activity()
+    }
+
+    fn cursor(&self) -> Cursor {
+        self.stroke.cursor()
+    }
+
+    fn lit(&self) -> Lit {
+        self.stroke.lit()
+    }
+
+    fn status(&self, _: &Workspace, _: &View) -> Option<String> {
+        Some(match self.sketch {
+            None => "Drawing the new outline beside the old one: release at its end, Esc to cancel".to_owned(),
+            Some(_) => "Finding the outline that the line means: Esc to cancel".to_owned(),
+        })
+    }
+
+    fn outline_px(&self) -> Vec<DVec2> {
+        // An outline is closed: the way back covers the line that would close it.
+        self.points_px
+            .iter()
+            .chain(self.points_px.iter().rev())
+            .copied()
+            .collect()
+    }
+
+    fn is_looking(&self) -> bool {
+        self.sketch.is_some()
+    }
+
+    fn holds_camera(&self) -> bool {
+        true
+    }
+
+    fn moved(&mut self, _: &mut Context<'_>, pointer: Pointer) -> Next {
+        let is_far = |last: &DVec2| last.distance(pointer.position_px) >= STEP_PX;
+        if self.sketch.is_none() && self.points_px.last().is_none_or(is_far) {
+            self.points_px.push(pointer.position_px);
+        }
+        Next::Stay
+    }
+
+    fn released(&mut self, context: &mut Context<'_>, pointer: Pointer, button: Button) -> Next {
+        if button != Button::Primary || self.is_looking() {
+            return Next::Stay;
+        }
+        self.moved(context, pointer);
+        let (Ok(sketch), Some(model)) = (self.drawn(context.view), context.workspace.model().cloned()) else {
+            let why = "That is too short for an outline: draw a longer line beside the one that you see.";
+            return self.refuse(context, why);
+        };
+        let displacements = context.workspace.document.from_file().clone();
+        let access = &context.workspace.vertex_access;
+        let count = model.surface.positions.len();
+        let is_open: Vec<bool> = (0..count).map(|vertex| access.may_be_painted(vertex)).collect();
+        let (meant, size_px) = (sketch.clone(), context.view.viewport_px());
+        let work = Box::new(move |_: &_, cancel: &pliant_mesh::Cancel| {
+            cancel.check()?;
+            let rest = model.surface.positions.iter().zip(&**displacements);
+            let surface = Surface {
+                positions: rest.map(|(&rest, &moved)| rest + moved).collect(),
+                triangles: model.surface.triangles.clone(),
+            };
+            let matched = outline::matched(&meant, &surface, |vertex| is_open[vertex.index()]).unwrap_or_default();
+            let begins_at = |end: Option<&(SurfaceVertex, DVec3)>, of_line: DVec2| {
+                let seen = end.and_then(|(vertex, _)| meant.seen(surface.positions[vertex.index()]));
+                seen.is_some_and(|seen| ((seen - of_line) * 0.5 * size_px).length() <= NEAR_PX)
+            };
+            let line = meant.line();
+            if !begins_at(matched.first(), line[0]) || !begins_at(matched.last(), line[line.len() - 1]) {
+                return Ok(Vec::new());
+            }
+            let mut vertices: Vec<SurfaceVertex> = matched.into_iter().map(|(vertex, _)| vertex).collect();
+            vertices.sort_unstable();
+            Ok(vertices)
+        });
+        context.workspace.jobs.ask(|slots| &mut slots.enclose, work);
+        self.sketch = Some(sketch);
+        Next::Stay
+    }
+
+    fn found(&mut self, context: &mut Context<'_>, outline: Vec<SurfaceVertex>) -> Next {
+        let Some(sketch) = self.sketch.take().filter(|_| !outline.is_empty()) else {
+            let why = "The line leads from no outline to none: begin and end it at the edge of the model that you see.";
+            return self.refuse(context, why);
+        };
+        let positions: Vec<DVec3> = outline
+            .iter()
+            .map(|&vertex| context.workspace.position(vertex))
+            .collect();
+        let reach = REACH * bounding_box(&positions).map_or(0.0, |bounds| bounds.diagonal());
+        self.stroke.finish_with(context.workspace, |stroke, workspace| {
+            stroke.take_with_line(workspace, outline, HandleLine::Sketch(sketch), reach);
+        });
+        Next::End
+    }
+
+    fn abort(&mut self, context: &mut Context<'_>) {
+        context.workspace.jobs.stop_asking(|slots| &mut slots.enclose);
+        self.stroke.abort(context);
+    }
+}

@@ -1,0 +1,99 @@
+//! Changes of the control points of the selected handle's curve: more of them, or fewer.
+
+use super::state::Workspace;
+use crate::document::{HandleCurve, HandleId, HandleLine};
+
+/// The most control points of a curve that is drawn and divided by hand.
+const MOST_POINTS: usize = 64;
+
+/// Adds a control point in the middle of the spans after the selected points, or of all spans if none is selected.
+/// The curve stays near where it was.
+pub(crate) fn divide_curve(workspace: &mut Workspace) {
+    let Some((handle, curve)) = selected_curve(workspace) else {
+        return;
+    };
+    let motion = curve.motion_at(1.0);
+    let count = curve.rest().points().len();
+    let selected = &workspace.controls;
+    let is_divided = |point: usize| selected.is_empty() || selected.contains(point as u32);
+    let (rest_places, moved_places) = (curve.rest().point_places(), motion.moved().point_places());
+    let mut lists = Lists::default();
+    for point in 0..count {
+        lists.copy(&curve, point);
+        let is_last = point + 1 == count;
+        if !is_divided(point) || (is_last && !curve.rest().is_closed()) {
+            continue;
+        }
+        let middle =
+            |places: &[f64], whole: f64| 0.5 * (places[point] + if is_last { whole } else { places[point + 1] });
+        let rest = middle(&rest_places, curve.rest().length());
+        let moved = middle(&moved_places, motion.moved().length());
+        let next = (point + 1) % count;
+        lists.points.push(curve.rest().position(rest));
+        lists.moved.push(motion.moved().position(moved));
+        lists
+            .twist_deg
+            .push(0.5 * (curve.twist_deg()[point] + curve.twist_deg()[next]));
+        lists.scale.push((curve.scale()[point] * curve.scale()[next]).sqrt());
+    }
+    if lists.points.len() > MOST_POINTS {
+        workspace.refuse(format!(
+            "A curve has at most {MOST_POINTS} points: select the spans to divide."
+        ));
+        return;
+    }
+    lists.put(workspace, "Add curve points", handle, curve.rest().is_closed());
+}
+
+/// Removes the selected control points.
+pub(crate) fn remove_curve_points(workspace: &mut Workspace) {
+    let Some((handle, curve)) = selected_curve(workspace) else {
+        return;
+    };
+    let selected = &workspace.controls;
+    let mut lists = Lists::default();
+    for point in (0..curve.rest().points().len()).filter(|point| !selected.contains(*point as u32)) {
+        lists.copy(&curve, point);
+    }
+    let least = if curve.rest().is_closed() { 3 } else { 2 };
+    if lists.points.len() < least {
+        workspace.refuse(format!("A curve needs {least} points: delete the handle instead."));
+        return;
+    }
+    lists.put(workspace, "Delete curve points", handle, curve.rest().is_closed());
+}
+
+/// The selected handle with its curve.
+pub(crate) fn selected_curve(workspace: &Workspace) -> Option<(HandleId, HandleCurve)> {
+    let handle = workspace.selected()?;
+    Some((handle.id, handle.line.as_ref()?.curve()?.clone()))
+}
+
+/// The lists of a curve's numbers.
+#[derive(Debug, Default)]
+struct Lists {
+    points: Vec<glam::DVec3>,
+    moved: Vec<glam::DVec3>,
+    twist_deg: Vec<f64>,
+    scale: Vec<f64>,
+}
+
+impl Lists {
+    fn copy(&mut self, curve: &HandleCurve, point: usize) {
+        self.points.push(curve.rest().points()[point]);
+        self.moved.push(curve.moved()[point]);
+        self.twist_deg.push(curve.twist_deg()[point]);
+        self.scale.push(curve.scale()[point]);
+    }
+
+    /// Makes them a handle's curve.
+    fn put(self, workspace: &mut Workspace, name: &str, handle: HandleId, is_closed: bool) {
+        let curve = HandleCurve::new(self.points, is_closed, self.moved, self.twist_deg, self.scale);
+        let Ok(curve) = curve else { return };
+        workspace.controls.put([]);
+        workspace.change(name, |document| {
+            document.unsettle();
+            document.change_handle(handle, |handle| handle.line = Some(HandleLine::Curve(curve)));
+        });
+    }
+}

@@ -1,0 +1,397 @@
+//! Animations: an edit with keys over time, as numbered files, as a point cache or as morph targets of a glTF.
+//!
+//! Every frame is solved for the handles' transforms at its time, and starts from the same shape, so that a frame is the
+//! same wherever a run begins.
+
+mod report;
+
+use std::path::Path;
+use std::time::Instant;
+
+use glam::DVec3;
+use pliant_deform::{Bound, Budget};
+use pliant_editor::{Beginning, EditFile, Setup, Start, Timeline, Until, sum_of_shapes};
+use pliant_io::{FewTargets, Format, MorphAnimation, PointCache, PointCacheFormat, ShapeDirections};
+use pliant_mesh::{DrawnVertex, Model, Progress, SurfaceVertex, WeldOptions};
+
+pub use self::report::{AnimationReport, MorphReport};
+use crate::EngineError;
+use crate::apply::{Prepared, check_bends, check_not_empty, prepare};
+use crate::examples;
+use crate::files::{Destination, NewFile, Staged, Staging};
+use crate::frames::Frames;
+use crate::loading::{Loaded, load};
+use crate::report::{FrameTimes, ms_since};
+use crate::saving::{self, SaveAs};
+use crate::watch::Watch;
+
+/// The most frames of an animation: more than an hour at 24 frames a second.
+const MOST_FRAMES: f64 = 100_000.0;
+
+/// A time this many frames before a whole frame still counts as that frame.
+const ROUNDING: f64 = 1e-6;
+
+/// The input of [`animate`].
+#[derive(Clone, Copy, Debug)]
+pub struct Animate<'a> {
+    /// The file to bend.
+    pub file: &'a Path,
+    /// The edit, with keys.
+    pub edit: &'a Beginning,
+    /// The place that the edit was read from, for messages.
+    pub edit_path: &'a Path,
+    /// The files to write: a point cache (pc2, mdd), a glTF (glb, gltf), or a name that ends in `-####` before its
+    /// extension, with the frame's number in place of the `#`s.
+    pub output: &'a Path,
+    /// The file for the report, if one is wanted.
+    pub report: Option<&'a Path>,
+    /// The name of the animation in a glTF; its morph targets have numbers after it.
+    pub name: &'a str,
+    /// The largest distance of a vertex from its place in a frame of a glTF, as a share of the diagonal of the shape's
+    /// box, above 0.
+    pub tolerance: f64,
+    /// The frames a second.
+    pub fps: f64,
+    /// The distance within which vertices of the file are joined, in world units; `None` is the edit's own.
+    pub weld: Option<f64>,
+    /// The memory that binding may use.
+    pub budget: Budget,
+}
+
+/// Solves every frame of an animation and writes it and the report, or nothing at all.
+///
+/// # Errors
+/// Any refusal of the file, of the edit or of a frame. Nothing is written then.
+pub fn animate(job: &Animate<'_>, watch: &Watch, staging: &Staging) -> Result<AnimationReport, EngineError> {
+    let kind = Kind::of(job.output)?;
+    let report_to = job.report.map(Destination::of).transpose()?;
+    let weld = match job.weld {
+        None => job.edit.weld_options(),
+        distance => WeldOptions { distance },
+    };
+    let start = Instant::now();
+    let loaded = load(job.file, &weld, watch)?;
+    let load_ms = ms_since(start);
+    let model = &loaded.model;
+    check_not_empty(job.file, model)?;
+    let mut edit = job.edit.clone();
+    examples::bring(&mut edit, job.edit_path, &loaded, watch)?;
+    let in_edit = |source| EngineError::Edit {
+        edit: job.edit_path.to_owned(),
+        source,
+    };
+    let Beginning::Edit(edit) = &edit else {
+        return Err(EngineError::Arguments(
+            "--edit: a project has no keys: save it as an edit and give that keys".to_owned(),
+        ));
+    };
+    let setup = edit.resolve(model).map_err(in_edit)?;
+    let timeline = edit.timeline(&setup).map_err(in_edit)?;
+    check_bends(job.file, model, &setup.method)?;
+    let count = frame_count(timeline.duration(), job.fps)?;
+    let frames = Frames::of(job.output, count - 1);
+    for place in frames.all() {
+        Destination::of(&place)?;
+        let report = job.report.map(|report| ("--report", report));
+        let outputs: Vec<(&str, &Path)> = [("--output", &*place)].into_iter().chain(report).collect();
+        // Only a glTF comes back whole with the animation, so only that may replace FILE.
+        let edited = matches!(kind, Kind::Morphs).then_some(job.file);
+        watch.refuse_outputs(&outputs, edited)?;
+    }
+    let start = Instant::now();
+    let moving = match is_at_rest(edit) {
+        true => None,
+        false => Some(prepare(job.file, model, &setup, job.budget, watch)?),
+    };
+    let mut run = Run {
+        job,
+        loaded: &loaded,
+        setup: &setup,
+        timeline: &timeline,
+        watch,
+        count,
+        solve_ms: Vec::with_capacity(count),
+        report: AnimationReport {
+            load_ms,
+            bind_ms: ms_since(start),
+            ..AnimationReport::at_start(&loaded, setup.method.name(), job.fps)
+        },
+    };
+    let beside = report_to.as_ref();
+    let mut staged = match kind {
+        Kind::Cache(format) => run.cache(moving, format, staging)?,
+        Kind::Morphs => run.morphs(moving, beside, staging)?,
+        Kind::Files => run.files(moving, &frames, beside, staging)?,
+    };
+    if watch.cancel.is_cancelled() {
+        return Err(EngineError::Interrupted);
+    }
+    let report = run.finished();
+    if let Some(to) = report_to {
+        let text = report.to_json();
+        let file = NewFile {
+            to,
+            bytes: text.as_bytes(),
+        };
+        staged = staged.and(staging.stage_watched(&[file], None, &Progress::new(), &watch.cancel)?);
+    }
+    loaded.refuse_changed(&staged)?;
+    staged.commit()?;
+    Ok(report)
+}
+
+/// The kind of an output.
+enum Kind {
+    Cache(PointCacheFormat),
+    /// A glTF with an animation of morph targets.
+    Morphs,
+    /// A file for each frame.
+    Files,
+}
+
+impl Kind {
+    fn of(output: &Path) -> Result<Self, EngineError> {
+        let name = output.to_string_lossy();
+        if let Some(format) = PointCacheFormat::of_name(&name) {
+            return Ok(Self::Cache(format));
+        }
+        let format = Format::of_name(&name).map_err(|error| EngineError::Arguments(format!("--output: {error}")))?;
+        match (Frames::of(output, 1), format) {
+            (Frames::Each { .. }, _) => Ok(Self::Files),
+            (Frames::Last(..), Format::Glb | Format::Gltf) => Ok(Self::Morphs),
+            (Frames::Last(..), _) => Err(EngineError::Arguments(format!(
+                "--output {name} is one file: end its name in -#### for numbered files, or write a .glb, .pc2 or .mdd"
+            ))),
+        }
+    }
+}
+
+/// The number of frames up to a time, both ends included.
+fn frame_count(duration: f64, fps: f64) -> Result<usize, EngineError> {
+    let last = (duration * fps + ROUNDING).floor();
+    if last >= MOST_FRAMES {
+        return Err(EngineError::Arguments(format!(
+            "--fps {fps} gives {last} frames, more than {MOST_FRAMES}: lower it, or the times of the keys"
+        )));
+    }
+    Ok(last as usize + 1)
+}
+
+/// Returns true if no frame moves anything.
+fn is_at_rest(edit: &EditFile) -> bool {
+    let mut keyed = edit.keys.iter().flat_map(|key| key.handles.values());
+    edit.changes_nothing() && (edit.strength == 0.0 || keyed.all(pliant_editor::HandleTransform::is_identity))
+}
+
+/// An animation that is being written.
+struct Run<'a> {
+    job: &'a Animate<'a>,
+    loaded: &'a Loaded,
+    setup: &'a Setup,
+    timeline: &'a Timeline,
+    watch: &'a Watch,
+    /// The number of frames.
+    count: usize,
+    /// The time of each frame's solve.
+    solve_ms: Vec<f64>,
+    report: AnimationReport,
+}
+
+impl Run<'_> {
+    fn model(&self) -> &Model {
+        &self.loaded.model
+    }
+
+    /// Writes a file for each frame.
+    fn files(
+        &mut self,
+        mut moving: Option<Prepared>,
+        frames: &Frames,
+        beside: Option<&Destination>,
+        staging: &Staging,
+    ) -> Result<Staged, EngineError> {
+        let mut staged: Option<Staged> = None;
+        let progress = self.watch.begin("animating");
+        let mut positions = Vec::new();
+        for (frame, place) in frames.all().enumerate() {
+            let shown = self.frame(moving.as_mut(), frame)?;
+            self.model().drawn_positions(&shown, &mut positions);
+            let save = SaveAs {
+                inside_out: &self.setup.inside_out,
+                beside: beside.map(|report| ("--report", report)),
+                ..SaveAs::shape(&positions, &place)
+            };
+            let saved = self.saved(&save, staging)?;
+            staged = Some(match staged {
+                Some(staged) => staged.and(saved),
+                None => saved,
+            });
+            progress.set((frame + 1) as f32 / self.count as f32);
+        }
+        self.warn_of(moving.as_ref());
+        staged.ok_or(EngineError::Interrupted)
+    }
+
+    /// Writes a glTF with an animation of morph targets.
+    fn morphs(
+        &mut self,
+        mut moving: Option<Prepared>,
+        beside: Option<&Destination>,
+        staging: &Staging,
+    ) -> Result<Staged, EngineError> {
+        let diagonal = self.model().bounds().map_or(0.0, |bounds| bounds.diagonal());
+        let bound = self.job.tolerance * diagonal;
+        let mut directions = ShapeDirections::within(bound);
+        let progress = self.watch.begin("animating");
+        for frame in 0..self.count {
+            directions.push(&self.frame(moving.as_mut(), frame)?);
+            progress.set((frame + 1) as f32 / self.count as f32);
+        }
+        self.warn_of(moving.as_ref());
+        drop(moving);
+        self.watch.begin("finding morph targets");
+        let FewTargets {
+            targets,
+            weights,
+            error,
+        } = directions.targets();
+        let targets: Vec<Vec<DVec3>> = targets.iter().map(|target| self.of_drawn(target)).collect();
+        let times: Vec<f64> = (0..self.count).map(|frame| frame as f64 / self.job.fps).collect();
+        let animation = MorphAnimation {
+            name: self.job.name,
+            times: &times,
+            weights: &weights,
+            targets: &targets,
+        };
+        self.report.morph = Some(MorphReport {
+            targets: animation.target_names().len(),
+            bound,
+            largest_error: error,
+            diagonal,
+        });
+        let rest = self.model().rest_positions();
+        let save = SaveAs {
+            inside_out: &self.setup.inside_out,
+            animation: Some(&animation),
+            beside: beside.map(|report| ("--report", report)),
+            ..SaveAs::shape(&rest, self.job.output)
+        };
+        let progress = self.watch.begin("saving");
+        let staged = self.saved(&save, staging);
+        progress.set(1.0);
+        staged
+    }
+
+    /// The displacements of the drawn vertices.
+    fn of_drawn(&self, of_surface: &[DVec3]) -> Vec<DVec3> {
+        let mut out = Vec::new();
+        let way = |vertex: SurfaceVertex| of_surface[vertex.index()];
+        self.model()
+            .spread(way, |_, vertex| vertex.map_or(DVec3::ZERO, way), &mut out);
+        out
+    }
+
+    /// Stages one save, and keeps its warnings and its time.
+    fn saved(&mut self, save: &SaveAs<'_>, staging: &Staging) -> Result<Staged, EngineError> {
+        let start = Instant::now();
+        let saved = saving::stage(self.loaded, save, staging, &Progress::new(), &self.watch.cancel)?;
+        self.report.save_ms += ms_since(start);
+        for warning in saved.warnings {
+            if !self.report.warnings.contains(&warning) {
+                self.report.warnings.push(warning);
+            }
+        }
+        Ok(saved.staged)
+    }
+
+    /// Writes a point cache of the file's vertices.
+    fn cache(
+        &mut self,
+        mut moving: Option<Prepared>,
+        format: PointCacheFormat,
+        staging: &Staging,
+    ) -> Result<Staged, EngineError> {
+        let drawn = &self.model().drawn;
+        // A vertex of the file that is seen through several nodes is at the first of its places.
+        let mut shown_at = vec![None; drawn.file_vertex_count()];
+        for (vertex, file_vertex) in (0..).zip(drawn.file_vertices()) {
+            shown_at[file_vertex.index()].get_or_insert(DrawnVertex(vertex));
+        }
+        let points = u32::try_from(shown_at.len()).unwrap_or(u32::MAX);
+        let mut cache = PointCache::new(format, self.count as u32, points, self.job.fps);
+        let progress = self.watch.begin("animating");
+        let mut positions = Vec::new();
+        for frame in 0..self.count {
+            let shown = self.frame(moving.as_mut(), frame)?;
+            self.model().drawn_positions(&shown, &mut positions);
+            let place = |shown: &Option<DrawnVertex>| shown.map_or(DVec3::ZERO, |vertex| positions[vertex.index()]);
+            cache.push(shown_at.iter().map(place));
+            progress.set((frame + 1) as f32 / self.count as f32);
+        }
+        self.warn_of(moving.as_ref());
+        let start = Instant::now();
+        let file = NewFile {
+            to: Destination::of(self.job.output)?,
+            bytes: &cache.into_bytes(),
+        };
+        let staged = staging.stage_watched(&[file], None, &Progress::new(), &self.watch.cancel);
+        self.report.save_ms += ms_since(start);
+        staged
+    }
+
+    /// The displacement of each surface vertex in a frame.
+    fn frame(&mut self, moving: Option<&mut Prepared>, frame: usize) -> Result<Vec<DVec3>, EngineError> {
+        if self.watch.cancel.is_cancelled() {
+            return Err(EngineError::Interrupted);
+        }
+        let Some(Prepared { bound, .. }) = moving else {
+            return Ok(vec![DVec3::ZERO; self.model().surface.positions.len()]);
+        };
+        let start = Instant::now();
+        let solved = self.solved(bound, frame as f64 / self.job.fps);
+        self.solve_ms.push(ms_since(start));
+        solved
+    }
+
+    /// The displacement of each surface vertex at a time.
+    fn solved(&mut self, bound: &mut Bound, time: f64) -> Result<Vec<DVec3>, EngineError> {
+        let cancel = &self.watch.cancel;
+        let start = match &self.setup.kept {
+            Some(kept) => Start::Kept(kept.clone()),
+            None => Start::Shape(std::sync::Arc::new(vec![DVec3::ZERO; bound.vertex_count()])),
+        };
+        bound.set_cancel(cancel);
+        let targets = self.setup.targets_during(self.timeline, time);
+        let bent = start.bend(bound, &targets, Until::End, cancel);
+        let bent = bent.map_err(|error| EngineError::Solve {
+            file: self.job.file.to_owned(),
+            source: error.renumbered(|vertex| self.loaded.model.first_file_vertex(SurfaceVertex(vertex)).0),
+        })?;
+        if cancel.is_cancelled() {
+            return Err(EngineError::Interrupted);
+        }
+        self.report.unsettled_frames += usize::from(!bent.step.converged);
+        let rest = self.setup.rest.as_ref().map(|rest| &rest.displacements);
+        Ok(sum_of_shapes(rest, &bent.shown).to_vec())
+    }
+
+    /// Notes the warnings of the binding.
+    fn warn_of(&mut self, moving: Option<&Prepared>) {
+        if let Some(Prepared { bound, .. }) = moving {
+            self.report.warnings.extend(self.setup.worded(bound.warnings()));
+        }
+    }
+
+    /// The report, at the end.
+    fn finished(mut self) -> AnimationReport {
+        self.report.frames = FrameTimes::of(&mut self.solve_ms, &mut []);
+        self.report.warnings.extend(match self.report.unsettled_frames {
+            0 => None,
+            1 => Some("1 frame did not settle within the step limit: take another method".to_owned()),
+            count => Some(format!(
+                "{count} frames did not settle within the step limit: take another method"
+            )),
+        });
+        self.report
+    }
+}

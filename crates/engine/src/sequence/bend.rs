@@ -1,0 +1,111 @@
+//! The solve of a frame: the edit on the frame's own shape.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use glam::DVec3;
+use pliant_deform::{Budget, Ordering, Role};
+use pliant_editor::{HandlePlace, Rest, SequenceTimeline, Setup, Start, Targets, Until};
+use pliant_mesh::{Model, Progress, Surface, SurfaceVertex};
+
+use crate::EngineError;
+use crate::apply::bind;
+use crate::watch::Watch;
+
+/// The data that all frames share.
+pub(super) struct Bending<'a> {
+    /// The first frame's model, whose topology all frames have.
+    pub model: &'a Model,
+    pub setup: &'a Setup,
+    pub timeline: &'a SequenceTimeline,
+    /// The fill-reducing ordering, if the method needs one: it depends on the topology alone.
+    pub ordering: Option<&'a Ordering>,
+    pub budget: Budget,
+    /// The vertices of each handle.
+    pub handles: &'a [Vec<SurfaceVertex>],
+}
+
+/// The result of a frame.
+pub(super) struct Bent {
+    /// The displacement of each surface vertex from its place in the frame.
+    pub displacements: Arc<Vec<DVec3>>,
+    pub is_settled: bool,
+    pub warnings: Vec<String>,
+}
+
+/// The vertices of each handle of a setup, ascending.
+pub(super) fn vertices_of_handles(setup: &Setup) -> Vec<Vec<SurfaceVertex>> {
+    let mut handles = vec![Vec::new(); setup.handles.len()];
+    for (vertex, role) in (0..).zip(&setup.roles) {
+        if let Role::Handle(handle) = role {
+            handles[usize::from(*handle)].push(SurfaceVertex(vertex));
+        }
+    }
+    handles
+}
+
+/// The place of a handle's vertices in a frame, whose surface is at `positions`.
+pub(super) fn place(vertices: &[SurfaceVertex], first: &[DVec3], positions: &[DVec3]) -> HandlePlace {
+    let at = |positions: &[DVec3]| -> Vec<DVec3> { vertices.iter().map(|vertex| positions[vertex.index()]).collect() };
+    HandlePlace::of(&at(first), &at(positions))
+}
+
+impl Bending<'_> {
+    /// Solves a frame whose surface is at `positions`; `None` if nothing moves there. `file` is used in messages.
+    ///
+    /// # Errors
+    /// A frame that can't be bound or solved; [`EngineError::Interrupted`].
+    pub fn frame(
+        &self,
+        frame: usize,
+        file: &Path,
+        positions: &[DVec3],
+        watch: &Watch,
+    ) -> Result<Option<Bent>, EngineError> {
+        if !self.timeline.reaches(frame) {
+            return Ok(None);
+        }
+        let first = &self.model.surface.positions;
+        let handles = self.handles.iter();
+        let places: Vec<HandlePlace> = handles.map(|vertices| place(vertices, first, positions)).collect();
+        let Some(maps) = self.timeline.maps_at(frame, &places) else {
+            return Ok(None);
+        };
+        let displacements: Vec<DVec3> = positions.iter().zip(first).map(|(own, first)| *own - *first).collect();
+        let surface = Surface {
+            positions: positions.to_vec(),
+            triangles: self.model.surface.triangles.clone(),
+        };
+        let setup = Setup {
+            rest: Some(Rest {
+                displacements: Arc::new(displacements),
+                surface: Arc::new(surface),
+            }),
+            ..self.setup.clone()
+        };
+        let cancel = &watch.cancel;
+        let mut bound = bind(
+            file,
+            self.model,
+            &setup,
+            self.ordering,
+            self.budget,
+            (&Progress::new(), cancel),
+        )?;
+        bound.set_cancel(cancel);
+        let start = Start::Shape(Arc::new(vec![DVec3::ZERO; bound.vertex_count()]));
+        let bent = start.bend(&mut bound, &Targets::new(maps, None), Until::End, cancel);
+        let bent = bent.map_err(|error| EngineError::Solve {
+            file: file.to_owned(),
+            source: error.renumbered(|vertex| self.model.first_file_vertex(SurfaceVertex(vertex)).0),
+        })?;
+        if cancel.is_cancelled() {
+            return Err(EngineError::Interrupted);
+        }
+        Ok(Some(Bent {
+            displacements: bent.shown,
+            is_settled: bent.step.converged,
+            warnings: setup.worded(bound.warnings()),
+        }))
+    }
+}

@@ -1,0 +1,169 @@
+//! A sequence that is being written.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use pliant_mesh::{Drawn, Progress};
+use rayon::prelude::*;
+
+use super::bend::{Bending, Bent};
+use super::cache::Cache;
+use super::frame::Frame;
+use super::report::SequenceReport;
+use crate::EngineError;
+use crate::file_error::FileError;
+use crate::files::{Destination, OutputFolder, Staged, Staging};
+use crate::loading::Loaded;
+use crate::saving::{self, Original, SaveAs};
+use crate::watch::Watch;
+
+/// The frames of a sequence.
+pub(super) enum Source {
+    /// A file for each.
+    Folder(Vec<PathBuf>),
+    /// A point cache.
+    Cache(Cache),
+}
+
+impl Source {
+    /// The number of frames.
+    pub fn count(&self) -> usize {
+        match self {
+            Self::Folder(frames) => frames.len(),
+            Self::Cache(cache) => cache.count(),
+        }
+    }
+}
+
+/// A sequence that is being written.
+pub(super) struct Run<'a> {
+    pub bending: &'a Bending<'a>,
+    /// The file whose vertices and faces all frames have.
+    pub first: &'a Loaded,
+    /// Its geometry.
+    pub rest: &'a Drawn,
+    pub source: &'a Source,
+    pub watch: &'a Watch,
+    pub staging: &'a Staging,
+}
+
+/// A frame that is done: its file or its bytes, and the notes about it.
+struct Done<T> {
+    result: T,
+    bent: Option<Bent>,
+    warnings: Vec<String>,
+}
+
+impl Run<'_> {
+    /// A file for each frame.
+    pub fn files(
+        &self,
+        frames: &[PathBuf],
+        output: &OutputFolder,
+        beside: Option<&Destination>,
+        report: &mut SequenceReport,
+    ) -> Result<Staged, EngineError> {
+        let mut staged: Option<Staged> = None;
+        let of_frame = |frame: usize| self.file(frame, &frames[frame], output, beside);
+        self.each(of_frame, report, |frame| {
+            staged = Some(match staged.take() {
+                Some(staged) => staged.and(frame),
+                None => frame,
+            });
+            Ok(())
+        })?;
+        staged.ok_or(EngineError::Interrupted)
+    }
+
+    /// One cache, written frame by frame.
+    pub fn cache(&self, cache: &Cache, to: &Destination, report: &mut SequenceReport) -> Result<Staged, EngineError> {
+        self.staging.stage_pieces(to, &self.watch.cancel, |file| {
+            let refuse = |error| EngineError::from(FileError::writing(&to.given, error));
+            file.write_all(&cache.header()?).map_err(refuse)?;
+            let of_frame = |frame: usize| self.piece(frame, cache);
+            self.each(of_frame, report, |bytes| file.write_all(&bytes).map_err(refuse))
+        })
+    }
+
+    /// Does all frames, side by side in groups as large as the pool, and takes the results in order.
+    fn each<T: Send>(
+        &self,
+        of_frame: impl Fn(usize) -> Result<Done<T>, EngineError> + Sync,
+        report: &mut SequenceReport,
+        mut take: impl FnMut(T) -> Result<(), EngineError>,
+    ) -> Result<(), EngineError> {
+        let progress = self.watch.begin("editing the sequence");
+        let count = self.source.count();
+        let side_by_side = rayon::current_num_threads().max(1);
+        for start in (0..count).step_by(side_by_side) {
+            let group = start..count.min(start + side_by_side);
+            let done: Vec<Result<Done<T>, EngineError>> = group.clone().into_par_iter().map(&of_frame).collect();
+            for done in done {
+                // The first refusal in the order of frames, whatever the number of threads.
+                let done = done?;
+                if let Some(bent) = done.bent {
+                    report.bent_frames += 1;
+                    report.unsettled_frames += usize::from(!bent.is_settled);
+                    report.warn(bent.warnings);
+                }
+                report.warn(done.warnings);
+                take(done.result)?;
+            }
+            progress.set(group.end as f32 / count as f32);
+        }
+        Ok(())
+    }
+
+    /// Reads, bends and stages a file.
+    fn file(
+        &self,
+        frame: usize,
+        path: &Path,
+        output: &OutputFolder,
+        beside: Option<&Destination>,
+    ) -> Result<Done<Staged>, EngineError> {
+        let cancel = &self.watch.cancel;
+        cancel.check().map_err(|_| EngineError::Interrupted)?;
+        let read = Frame::read(path, self.first, self.rest, self.watch)?;
+        let bent = self.bending.frame(frame, path, &read.positions, self.watch)?;
+        let positions = match &bent {
+            Some(bent) => read.displaced(&bent.displacements),
+            None => read.file.drawn.positions.clone(),
+        };
+        let original = Original {
+            path: &read.path,
+            scene: &read.file.scene,
+            drawn: &read.file.drawn,
+            turned: &[],
+        };
+        let output = output.inside(path.file_name().unwrap_or_default())?;
+        let save = SaveAs {
+            beside: beside.map(|report| ("--report", report)),
+            ..SaveAs::shape(&positions, &output.given)
+        };
+        let saved = saving::stage_of(&original, &save, self.staging, &Progress::new(), cancel)?;
+        Ok(Done {
+            result: saved.staged,
+            bent,
+            warnings: saved.warnings,
+        })
+    }
+
+    /// Reads and bends a frame of a cache.
+    fn piece(&self, frame: usize, cache: &Cache) -> Result<Done<Vec<u8>>, EngineError> {
+        self.watch.cancel.check().map_err(|_| EngineError::Interrupted)?;
+        let read = cache.frame(frame)?;
+        let bent = self
+            .bending
+            .frame(frame, &self.first.path, &read.positions, self.watch)?;
+        let result = match &bent {
+            Some(bent) => cache.displaced(read, &bent.displacements),
+            None => read.bytes,
+        };
+        Ok(Done {
+            result,
+            bent,
+            warnings: Vec::new(),
+        })
+    }
+}
