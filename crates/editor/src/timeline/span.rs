@@ -60,7 +60,7 @@ impl HandlePlace {
     }
 
     /// A direction in the handle's axes, in world space.
-    pub(crate) fn to_world(&self, direction: DVec3) -> DVec3 {
+    pub(crate) fn world_from_own(&self, direction: DVec3) -> DVec3 {
         self.rotation * direction
     }
 
