@@ -4,8 +4,10 @@
 
 use std::sync::Arc;
 
+use pliant_deform::METHODS;
 use pliant_editor::{Beginning, Editor, Event, InlineExecutor};
-use pliant_mesh::shapes;
+use pliant_engine::watch::Watch;
+use pliant_mesh::{Damage, shapes};
 use pliant_tests::{Folder, bend, open};
 use serde_json::{Value, json};
 
@@ -60,5 +62,50 @@ fn a_warning_calls_the_handle_by_its_name_in_the_report_and_in_the_window() {
             let said = sentences.iter().find(|sentence| sentence.contains("turns by"));
             assert_eq!(said, None, "{method} follows a small turn");
         }
+    }
+}
+
+/// A turn and a squeeze by which every method that holds the handle crushes triangles.
+#[test]
+fn every_method_says_what_came_out_badly_with_the_place_and_another_method() {
+    let folder = Folder::new();
+    let file = folder.write_mesh("mesh.off", &shapes::icosphere(2));
+    let loaded = open(&file);
+    for declaration in METHODS.iter().filter(|declaration| declaration.name != "identity") {
+        let mut edit = bend(&json!({ "scale": [1e-3, 1e-3, 1e-3] }));
+        edit["method"] = json!({ "name": declaration.name });
+        let edit = Beginning::parse(&edit.to_string()).unwrap();
+        let setup = edit.resolve(&loaded.model).unwrap();
+        let solved = pliant_engine::solved(&file, &edit, None, &loaded, &setup, &Watch::default()).unwrap();
+        let (surface, topology) = (&loaded.model.surface, &loaded.model.topology);
+        let damage = Damage::of(surface, topology, &solved.surface_positions);
+        let kinds = [damage.flipped, damage.collapsed, damage.shrunk, damage.stretched];
+        let counts = kinds.iter().filter(|kind| kind.count > 0);
+        let said: Vec<&String> = (solved.report.warnings.iter())
+            .filter(|said| said.contains("leave more of the surface free"))
+            .collect();
+        assert_eq!(said.len(), counts.count(), "{}: {said:?}", declaration.name);
+        assert!(
+            damage.collapsed.count > 0 && damage.shrunk.count > 0,
+            "{} crushes the handle",
+            declaration.name
+        );
+        let has_other = |said: &&&String| {
+            METHODS
+                .iter()
+                .any(|other| said.contains(&format!("or take {}", other.name)))
+        };
+        let named = said.iter().filter(has_other).count();
+        assert!(
+            named == said.len() || declaration.name == "shells",
+            "{}: {said:?}",
+            declaration.name
+        );
+        assert!(said.iter().all(|said| said.contains("at ")), "{said:?}");
+        assert!(
+            said.iter()
+                .all(|said| !said.contains(&format!("take {}", declaration.name))),
+            "{said:?}"
+        );
     }
 }

@@ -718,7 +718,7 @@ fn nothing_at_the_panels_edge_lies_under_its_scroll_bar() {
     let Some(mut session) = Session::begin() else { return };
     session.page("Scene");
     // So low that the page scrolls.
-    session.harness.set_size(egui::vec2(1000.0, 420.0));
+    session.harness.set_size(vec2(1000.0, 420.0));
     session.harness.run_steps(4);
     let right = session.harness.get_by_label("Lock creature").rect().right();
     let width = session.harness.ctx.content_rect().width();

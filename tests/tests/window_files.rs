@@ -56,6 +56,17 @@ fn a_file_is_opened_with_an_edit_and_saved_in_its_place() {
     let moved = view.displacements.iter().map(|way| way.z).fold(0.0, f64::max);
     assert!((moved - 0.5).abs() < 1e-12, "the edit is made: {moved}");
 
+    // The same edit, chosen for the mesh that is already open.
+    let Some(mut again) = Session::begin_in(Source::File(file.clone()), AppDirectories::default()) else {
+        return;
+    };
+    assert!(again.harness.state().editor().view().handles.is_empty());
+    again.harness.state_mut().ask_to_open(edit.clone());
+    again.settle();
+    let shape = again.harness.state().editor().view().displacements.to_vec();
+    assert_eq!(shape, session.harness.state().editor().view().displacements.to_vec());
+    drop(again);
+
     session.harness.state_mut().save_to(file.clone(), KeepOriginal::Yes);
     session.settle();
     let output = folder.at("applied.off");

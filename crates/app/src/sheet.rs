@@ -1,27 +1,43 @@
 //! A sheet of pictures side by side, each with a name and figures beneath.
 
-use eframe::egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Vec2, pos2, vec2};
+use std::sync::Arc;
+
+use eframe::egui::{Color32, FontId, Galley, Painter, Pos2, Rect, Vec2, pos2, vec2};
 use pliant_render::{Image, RenderError, Renderer};
 
 use crate::painting;
 use pliant_engine::report::Report;
 
-/// The height of a caption in points.
-const CAPTION: f32 = 76.0;
+/// The height of a caption in points: two lines for the title, and one for each figure.
+const CAPTION: f32 = 120.0;
 
-/// The layout of pictures on a sheet.
+/// The least width of a cell in points, if the sheet allows it: narrower ones would need small print.
+const NARROWEST: f32 = 140.0;
+
+/// The distance of a text from its cell's border, in points.
+const MARGIN: f32 = 10.0;
+
+/// The layout of pictures on a sheet: rows of equal height, each filled by its cells.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Layout {
-    /// The sheet's size in pixels.
-    pub sheet_px: [u32; 2],
-    /// The number of cells in a row, and the number of rows.
-    pub grid: [u32; 2],
-    /// A cell's size in pixels, its caption included.
-    pub cell_px: [u32; 2],
-    /// A picture's size in pixels.
-    pub view_px: [u32; 2],
+    sheet_px: [u32; 2],
+    count: u32,
+    rows: u32,
+    /// The height of a caption in pixels.
+    caption_px: u32,
     /// The size of a point of text.
     pub pixels_per_point: f32,
+}
+
+/// A cell's place on its sheet.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Place {
+    /// The upper left corner in pixels.
+    pub corner_px: [u32; 2],
+    /// The cell's size in pixels, its caption included.
+    pub cell_px: [u32; 2],
+    /// The picture's size in pixels.
+    pub view_px: [u32; 2],
 }
 
 /// A picture and the text beneath it.
@@ -43,32 +59,57 @@ pub struct Caption {
 }
 
 impl Layout {
-    /// The layout of so many cells on a sheet of this size that makes the pictures' shorter side longest.
-    pub fn of(count: usize, sheet_px: [u32; 2]) -> Self {
-        let [width, height] = sheet_px;
+    /// The layout of `count` cells on a sheet of this size in which a figure, whose width is `aspect` times its height,
+    /// is largest.
+    pub fn of(count: usize, sheet_px: [u32; 2], aspect: f32) -> Self {
+        let [width, height] = sheet_px.map(|side| side as f32);
         let count = count.max(1) as u32;
-        let pixels_per_point = (height as f32 / 900.0).min(width as f32 / 1100.0).clamp(0.4, 8.0);
-        let caption = (CAPTION * pixels_per_point).ceil() as u32;
-        let columns = columns(count, [width as f32, height as f32], caption as f32);
-        let rows = count.div_ceil(columns);
-        let cell_px = [(width / columns).max(1), (height / rows).max(1)];
+        let pixels_per_point = (height / 900.0).min(width / 1100.0).clamp(0.7, 8.0);
+        let caption = (CAPTION * pixels_per_point).ceil();
+        // The height of the figure; cells that are too narrow for their text come last.
+        let figure = |rows: u32| {
+            let cell = width / count.div_ceil(rows) as f32;
+            let is_legible = cell >= NARROWEST * pixels_per_point;
+            (is_legible, (cell / aspect).min(height / rows as f32 - caption))
+        };
+        let better = |best: u32, rows: u32| if figure(rows) > figure(best) { rows } else { best };
         Self {
             sheet_px,
-            grid: [columns, rows],
-            cell_px,
-            view_px: [cell_px[0], cell_px[1].saturating_sub(caption).max(1)],
+            count,
+            rows: (2..=count).fold(1, better),
+            caption_px: caption as u32,
             pixels_per_point,
         }
     }
 
-    /// The upper left corner of a cell. Pixels that the grid does not divide by are spread between the cells.
-    fn corner_px(&self, cell: usize) -> [u32; 2] {
-        let [columns, rows] = self.grid;
-        let place = [cell as u32 % columns, cell as u32 / columns];
-        [
-            place[0] * self.sheet_px[0] / columns,
-            place[1] * self.sheet_px[1] / rows,
-        ]
+    /// The number of cells in a row: the upper rows take those that are left over.
+    fn columns(&self, row: u32) -> u32 {
+        self.count / self.rows + u32::from(row < self.count % self.rows)
+    }
+
+    /// The place of a cell, counted row by row. Pixels that the grid does not divide by are spread between the cells.
+    pub fn place(&self, cell: usize) -> Place {
+        let (mut row, mut column) = (0, cell as u32);
+        while column >= self.columns(row) && row + 1 < self.rows {
+            column -= self.columns(row);
+            row += 1;
+        }
+        let columns = self.columns(row).max(1);
+        let [width, height] = self.sheet_px;
+        let corner_px = [column * width / columns, row * height / self.rows];
+        let end_px = [(column + 1) * width / columns, (row + 1) * height / self.rows];
+        let cell_px = [0, 1].map(|k| (end_px[k] - corner_px[k]).max(1));
+        Place {
+            corner_px,
+            cell_px,
+            view_px: [cell_px[0], cell_px[1].saturating_sub(self.caption_px).max(1)],
+        }
+    }
+
+    /// The size of the narrowest picture in pixels.
+    pub fn least_view_px(&self) -> [u32; 2] {
+        let places = (0..self.count as usize).map(|cell| self.place(cell).view_px);
+        places.fold([u32::MAX; 2], |least, own| [least[0].min(own[0]), least[1].min(own[1])])
     }
 }
 
@@ -99,22 +140,20 @@ impl Caption {
     /// A method's name and figures. `detail` is its detail error over that of the best.
     pub fn bent(title: &str, report: &Report, detail: Option<f64>) -> Self {
         let (frames, shape) = (&report.frames, &report.distortion);
-        let mut last = format!("volume × {:.3}", shape.volume_ratio);
-        if let Some(detail) = detail {
-            last += &format!("   detail's error {detail:.2} × the best");
-        }
+        let mut lines = vec![
+            times(report.bind_ms, frames.median_ms),
+            stretch([shape.edge_stretch_mean, shape.edge_stretch_max]),
+            format!("volume × {:.3}", shape.volume_ratio),
+        ];
+        lines.extend(detail.map(|detail| format!("detail's error × {detail:.2}")));
         match shape.flipped_faces {
             0 => {}
-            1 => last += "   1 face flipped",
-            count => last += &format!("   {count} faces flipped"),
+            1 => lines.push("1 face flipped".to_owned()),
+            count => lines.push(format!("{count} faces flipped")),
         }
         Self {
             title: title.to_owned(),
-            lines: vec![
-                times(report.bind_ms, frames.median_ms),
-                stretch([shape.edge_stretch_mean, shape.edge_stretch_max]),
-                last,
-            ],
+            lines,
             refusal: None,
         }
     }
@@ -150,16 +189,16 @@ pub fn compose(renderer: &Renderer, layout: &Layout, cells: &[Cell]) -> Result<I
         rgba: PAPER.repeat(width as usize * height as usize),
     };
     for (number, cell) in cells.iter().enumerate() {
-        let corner = layout.corner_px(number);
+        let place = layout.place(number);
         if let Some(picture) = &cell.picture {
-            painting::composite(&mut sheet, picture, corner);
+            painting::composite(&mut sheet, picture, place.corner_px);
         }
-        let size = vec2(layout.cell_px[0] as f32, layout.cell_px[1] as f32) / layout.pixels_per_point;
-        let view = layout.view_px[1] as f32 / layout.pixels_per_point;
+        let size = vec2(place.cell_px[0] as f32, place.cell_px[1] as f32) / layout.pixels_per_point;
+        let view = place.view_px[1] as f32 / layout.pixels_per_point;
         let text = painting::picture(renderer, size, layout.pixels_per_point, |painter| {
             write(painter, size, view, &cell.caption);
         })?;
-        painting::composite(&mut sheet, &text, corner);
+        painting::composite(&mut sheet, &text, place.corner_px);
     }
     Ok(sheet)
 }
@@ -170,53 +209,74 @@ const PAPER: [u8; 4] = [30, 32, 36, 255];
 /// Writes a cell's text: beneath a picture of this height, or a refusal in the picture's place.
 fn write(painter: &Painter, size: Vec2, view: f32, caption: &Caption) {
     let (bright, dim) = (Color32::from_gray(235), Color32::from_gray(190));
-    let margin = 12.0;
     painter.rect_filled(
         Rect::from_min_size(pos2(0.0, view), vec2(size.x, size.y - view)),
         0.0,
         Color32::from_rgb(PAPER[0], PAPER[1], PAPER[2]),
     );
-    let mut at: Pos2 = pos2(margin, view + 14.0);
-    painter.text(
-        at,
-        Align2::LEFT_CENTER,
-        &caption.title,
-        FontId::proportional(15.0),
-        bright,
-    );
+    let width = (size.x - 2.0 * MARGIN).max(1.0);
+    let mut at: Pos2 = pos2(MARGIN, view + 6.0);
+    let title = fitting(painter, &caption.title, 15.0, bright, [width, 2.0]);
+    let title_height = title.size().y;
+    painter.galley(at, title, bright);
+    at.y += title_height + 2.0;
     for line in &caption.lines {
-        at.y += 17.0;
-        painter.text(at, Align2::LEFT_CENTER, line, FontId::proportional(12.0), dim);
+        painter.galley(at, fitting(painter, line, 12.0, dim, [width, 1.0]), dim);
+        at.y += 15.0;
     }
     if let Some(refusal) = &caption.refusal {
-        let galley = painter.layout(
-            refusal.clone(),
-            FontId::proportional(13.0),
-            bright,
-            size.x - 2.0 * margin,
-        );
-        let top = (0.5 * (view - galley.size().y)).max(margin);
-        painter.galley(pos2(margin, top), galley, bright);
+        let galley = painter.layout(refusal.clone(), FontId::proportional(13.0), bright, width);
+        let top = (0.5 * (view - galley.size().y)).max(MARGIN);
+        painter.galley(pos2(MARGIN, top), galley, bright);
     }
 }
+
+/// A text of at most this size in points, smaller if it would not fit into this width and number of rows.
+fn fitting(painter: &Painter, text: &str, mut points: f32, colour: Color32, [width, rows]: [f32; 2]) -> Arc<Galley> {
+    loop {
+        let galley = painter.layout(text.to_owned(), FontId::proportional(points), colour, width);
+        if galley.rows.len() as f32 <= rows || points <= SMALLEST {
+            return galley;
+        }
+        points -= 0.5;
+    }
+}
+
+/// The size of the smallest print in points.
+const SMALLEST: f32 = 6.0;
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn cells_lie_within_the_sheet_and_apart() {
-        for count in 1..14 {
-            for sheet in [[1600, 1000], [300, 2000], [2000, 300], [40, 40]] {
-                let layout = Layout::of(count, sheet);
-                let corners: Vec<[u32; 2]> = (0..count).map(|cell| layout.corner_px(cell)).collect();
-                for (number, corner) in corners.iter().enumerate() {
-                    assert!(corner[0] + layout.cell_px[0] <= sheet[0] && corner[1] + layout.cell_px[1] <= sheet[1]);
-                    assert!(!corners[..number].contains(corner), "{count} {sheet:?}");
+    fn cells_fill_the_sheet_and_lie_apart() {
+        for count in 1..18 {
+            for (sheet, aspect) in [
+                ([1600, 1000], 1.0),
+                ([300, 2000], 0.3),
+                ([2000, 300], 2.0),
+                ([40, 40], 1.0),
+            ] {
+                let layout = Layout::of(count, sheet, aspect);
+                let places: Vec<Place> = (0..count).map(|cell| layout.place(cell)).collect();
+                let ends = |place: &Place| [0, 1].map(|k| place.corner_px[k] + place.cell_px[k]);
+                for (number, place) in places.iter().enumerate() {
+                    let apart = |other: &Place| {
+                        (0..2).any(|k| ends(place)[k] <= other.corner_px[k] || ends(other)[k] <= place.corner_px[k])
+                    };
+                    assert!(places[..number].iter().all(apart), "{count} {sheet:?}");
+                    assert!((0..2).all(|k| ends(place)[k] <= sheet[k] && place.view_px[k] <= place.cell_px[k]));
                 }
-                assert!(layout.view_px[0] <= layout.cell_px[0] && layout.view_px[1] <= layout.cell_px[1]);
+                let area: u32 = places.iter().map(|place| place.cell_px[0] * place.cell_px[1]).sum();
+                assert_eq!(area, sheet[0] * sheet[1], "{count} {sheet:?}: no cell is empty");
             }
         }
-        assert_eq!(Layout::of(6, [1600, 1000]).grid, [3, 2]);
+    }
+
+    #[test]
+    fn tall_figures_stand_side_by_side_and_wide_ones_above_each_other() {
+        let rows = |aspect| Layout::of(8, [1600, 1000], aspect).rows;
+        assert!(rows(0.25) < rows(1.0) && rows(1.0) < rows(4.0));
     }
 }

@@ -61,11 +61,18 @@ impl fmt::Display for Remedy {
                 Self::Heeding(constraint) => declaration.heeds(*constraint),
                 Self::TakingPlaces => method.implementation().takes_places(),
                 Self::FollowingTurns(degrees) => method.implementation().advised_for_degrees() >= *degrees,
+                Self::OfDamageBy(own) => declaration.name != *own && method.implementation().resists_collapse(),
             }
         };
         let most = if *self == Self::OfSpace { 2 } else { METHODS.len() };
         let names = METHODS.iter().filter(can).take(most);
-        f.write_str(&joined(names.map(|declaration| declaration.name.to_owned()), "or"))
+        let names = names.map(|declaration| declaration.name.to_owned());
+        let Self::OfDamageBy(_) = self else {
+            return f.write_str(&joined(names, "or"));
+        };
+        let take = names.map(|name| format!("take {name}"));
+        let less = ["lower the strength", "leave more of the surface free"].map(str::to_owned);
+        f.write_str(&joined(less.into_iter().chain(take), "or"))
     }
 }
 

@@ -16,4 +16,7 @@ pub enum Remedy {
     TakingPlaces,
     /// The methods that follow turns of this many degrees between handles.
     FollowingTurns(u16),
+    /// What can be done about triangles and edges that this method, by its name, has damaged: less of the edit, or a
+    /// method that keeps triangles from collapsing.
+    OfDamageBy(&'static str),
 }

@@ -139,3 +139,49 @@ fn a_curve_on_the_surface_takes_what_is_under_it_and_other_strokes_are_refused_i
     rig.swipe(&[at_px]);
     assert!(rig.editor.view().problem.unwrap().contains("choose the Handle tool"));
 }
+
+#[test]
+fn a_sketch_beside_the_outline_moves_it_onto_the_line_and_one_far_from_it_is_refused() {
+    let mut rig = Rig::open(shapes::icosphere(4));
+    rig.choose("bilaplacian");
+    rig.command(Command::View(NamedView::Front));
+    rig.drain();
+    rig.command(Command::SetTool(ToolMode::PaintHandle));
+    rig.command(Command::SetStrokeShape(StrokeShape::Sketch));
+    let bounds = rig.model.bounds().unwrap();
+    let centre_px = px(&rig, bounds.centre());
+    let radius_px = px(&rig, bounds.centre() + DVec3::Y).distance(centre_px);
+    // A quarter of the outline on top of the ball, a fifth of the radius farther out in its middle.
+    let line = |share: f64| {
+        let angle = (45.0 + 90.0 * share).to_radians();
+        let bump = 0.2 * (share * std::f64::consts::PI).sin();
+        centre_px + DVec2::new(angle.cos(), -angle.sin()) * radius_px * (1.0 + bump)
+    };
+    let way: Vec<DVec2> = (0..=24).map(|step| line(f64::from(step) / 24.0)).collect();
+    rig.swipe(&way);
+    rig.drain();
+    assert_eq!(rig.editor.view().problem, None);
+    let document = rig.editor.document();
+    assert!(document.is_settled() && document.handles()[0].line.as_ref().unwrap().sketch().is_some());
+    let highest = (0..rig.model.surface.positions.len())
+        .map(|v| rig.model.surface.positions[v] + document.from_file()[v])
+        .map(|p| px(&rig, p).distance(line(0.5)))
+        .fold(f64::INFINITY, f64::min);
+    assert!(highest < 4.0, "{highest} points from the line");
+    // A line far from any outline means none.
+    let count = document.handles().len();
+    rig.swipe(&[
+        centre_px,
+        centre_px + DVec2::new(30.0, 0.0),
+        centre_px + DVec2::new(60.0, 10.0),
+    ]);
+    rig.drain();
+    assert!(
+        rig.editor
+            .view()
+            .problem
+            .unwrap()
+            .contains("begin and end it at the edge")
+    );
+    assert_eq!(rig.editor.document().handles().len(), count);
+}

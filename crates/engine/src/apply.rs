@@ -246,7 +246,7 @@ fn faults(model: &Model, method: &Method, solution: &Solution, watch: &Watch) ->
     let progress = watch.begin("finding places where the shape passes through itself");
     let crossings = bvh.new_self_intersections(surface, topology, MOST_CROSSINGS, &progress, &watch.cancel);
     let crossings = crossings.map_err(|_| EngineError::Interrupted)?;
-    let mut sentences = Intersections::of(&crossings, damage).sentences();
+    let mut sentences = Intersections::of(&crossings, damage).sentences(method);
     if !solution.converged {
         let is_limited = method
             .declaration()

@@ -8,7 +8,8 @@ use crate::assets::SAMPLES;
 use crate::process::{build_program, cargo, said, target_folder};
 
 /// The methods of the gallery. Besides each method with its defaults, options that change its abilities.
-const METHODS: &str = "bilaplacian,poisson,laplacian,frames,frames:iterations=20,arap,arap:energy=smooth,primo,shells";
+const METHODS: &str = "bilaplacian,poisson,laplacian,frames,frames:iterations=300,arap,arap:energy=smooth,primo,\
+                       shells,rbf,mls,embedded,space-primo,lattice,cage";
 
 /// The coordinates of cages for the legs' pictures, and the other methods for their figures.
 const CAGES: [&str; 3] = [
@@ -24,8 +25,10 @@ const FACE: &str = "face";
 /// Discrete shells from paper to rubber.
 const PAPER_TO_RUBBER: &str = "shells:bending=1e-6,shells:bending=1e-4,shells:bending=1e-3";
 
-/// The size of a sheet in pixels.
-const SIZE: &str = "1200x640";
+/// The samples whose figures are tall, and the size of their sheets in pixels; the size of the others'.
+const TALL: [&str; 2] = ["bar", "creature"];
+const TALL_SIZE: &str = "1200x900";
+const SIZE: &str = "1200x720";
 
 /// Draws `docs/gallery/NAME.png` for each sample and for the legs, and puts the tables of figures into
 /// `docs/methods.md`, each between its marks.
@@ -50,11 +53,9 @@ pub fn gallery() -> Result<(), String> {
         println!("{name}\n{table}");
         Ok::<_, String>(())
     };
-    for sample in SAMPLES.iter().filter(|sample| sample.name != FACE) {
-        put(
-            sample.name,
-            &sheet(sample.name, sample.name, sample.name, METHODS, &["--size", SIZE])?,
-        )?;
+    for name in SAMPLES.iter().map(|sample| sample.name).filter(|name| *name != FACE) {
+        let size = if TALL.contains(&name) { TALL_SIZE } else { SIZE };
+        put(name, &sheet(name, name, name, METHODS, &["--size", size])?)?;
     }
     let look = ["--size", "960x560", "--view", "front"];
     put(FACE, &sheet(FACE, FACE, FACE, "bilaplacian,wrinkles", &look)?)?;

@@ -315,8 +315,7 @@ fn draw(
     let mut renderer = Headless::new()
         .map_err(|error| EngineError::System(error.to_string()))?
         .renderer;
-    let PictureSize { width, height } = arguments.size;
-    let layout = Layout::of(methods.len(), [width, height]);
+    let (camera, layout) = camera_and_layout(arguments, model, outcomes);
     let regions = arguments.look.shading == arguments::Shading::Regions;
     let look = Look {
         shading: render::shading(arguments.look.shading),
@@ -326,15 +325,14 @@ fn draw(
     };
     let mut style = drawing::style(&look, layout.pixels_per_point);
     style.background = Background::default();
-    let size_px = DVec2::new(f64::from(layout.view_px[0]), f64::from(layout.view_px[1]));
-    let camera = camera(arguments, model, outcomes, size_px);
-    let view = drawing::view(&camera, size_px, drawing.centre());
     let mut cells = Vec::with_capacity(methods.len());
     for (number, (asked, outcome)) in methods.iter().zip(outcomes).enumerate() {
         if watch.cancel.is_cancelled() {
             return Err(EngineError::Interrupted);
         }
         let title = &asked.title();
+        let view_px = layout.place(number).view_px;
+        let view = drawing::view(&camera, in_pixels(view_px), drawing.centre());
         cells.push(match outcome {
             Outcome::Refused { refused } => Cell {
                 picture: None,
@@ -360,7 +358,7 @@ fn draw(
                     overlays: &[],
                 };
                 let mut picture = renderer
-                    .draw_to_image(layout.view_px, Samples::Four, &frame)
+                    .draw_to_image(view_px, Samples::Four, &frame)
                     .map_err(render::refuse)?;
                 if let Some(scale) = scale.filter(|_| number == 0) {
                     let legend = legend::picture(&renderer, &scale, layout.pixels_per_point);
@@ -380,22 +378,34 @@ fn draw(
 /// If a shape is more than this many times as large as the rest shape, only its part in view is shown.
 const TOO_FAR: f64 = 3.0;
 
-/// A camera that sees the rest shape and every shape that is not far larger.
-fn camera(arguments: &CompareArguments, model: &Model, outcomes: &[Outcome], size_px: DVec2) -> Camera {
+fn in_pixels(size_px: [u32; 2]) -> DVec2 {
+    DVec2::new(f64::from(size_px[0]), f64::from(size_px[1]))
+}
+
+/// A camera that sees every shape that is not far larger than the rest shape, and the layout in which it sees them
+/// largest. If there is none, it sees the rest shape.
+fn camera_and_layout(arguments: &CompareArguments, model: &Model, outcomes: &[Outcome]) -> (Camera, Layout) {
     let diagonal = |positions: &[DVec3]| pliant_mesh::bounding_box(positions).map_or(0.0, |bounds| bounds.diagonal());
     let vertices: Vec<usize> = model.vertices_without_specks().map(SurfaceVertex::index).collect();
     let seen_of = |positions: &[DVec3]| -> Vec<DVec3> { vertices.iter().map(|&v| positions[v]).collect() };
-    let mut seen = seen_of(&model.surface.positions);
-    let own = diagonal(&seen);
-    for outcome in outcomes {
-        if let Outcome::Bent { surface_positions, .. } = outcome
-            && let positions = seen_of(surface_positions)
-            && diagonal(&positions) < TOO_FAR * own
-        {
-            seen.extend(positions);
-        }
+    let rest = seen_of(&model.surface.positions);
+    let own = diagonal(&rest);
+    let bent = outcomes.iter().filter_map(|outcome| match outcome {
+        Outcome::Bent { surface_positions, .. } => Some(seen_of(surface_positions)),
+        Outcome::Refused { .. } => None,
+    });
+    let mut seen: Vec<DVec3> = bent.filter(|shape| diagonal(shape) < TOO_FAR * own).flatten().collect();
+    if seen.is_empty() {
+        seen = rest;
     }
     let mut camera = render::looking(arguments.look.up, arguments.look.view, own);
-    camera.frame(&seen, size_px);
-    camera
+    let seen_from = camera.axes().transpose();
+    let extent = pliant_mesh::bounding_box(&seen.iter().map(|p| seen_from * *p).collect::<Vec<_>>())
+        .map_or(DVec3::ONE, |bounds| bounds.extent());
+    // Even a figure that is a line leaves room for its neighbours.
+    let aspect = (extent.x / extent.y).clamp(0.1, 10.0);
+    let PictureSize { width, height } = arguments.size;
+    let layout = Layout::of(outcomes.len(), [width, height], aspect as f32);
+    camera.frame(&seen, in_pixels(layout.least_view_px()));
+    (camera, layout)
 }

@@ -29,6 +29,7 @@ use glam::{DMat3, DVec3};
 use pliant_mesh::{Surface, SurfaceVertex, Topology};
 use rayon::prelude::*;
 
+use super::barrier::{Facing, STRENGTH};
 use super::bend::Bend;
 use super::cells::Cells;
 use crate::coarse::domain::Domain;
@@ -79,17 +80,17 @@ pub(crate) fn ties(surface: &Surface, topology: &Topology, domain: &Domain, stif
 
 /// Adds the term to all cells, whose weights have grown by the `ties` already.
 pub(crate) fn add(cells: &mut Cells, ties: &[f64]) {
-    cells.bending = cells
+    (cells.bending, cells.barriers) = cells
         .rest
         .par_iter_mut()
         .zip(ties)
         .with_min_len(CHUNK)
         .map(|(rest, &tie)| bend(rest, tie))
-        .collect();
+        .unzip();
 }
 
 /// A cell's matrices; its rest matrix gains ν S⁰ N K.
-fn bend(rest: &mut [f64; 6], tie: f64) -> Bend {
+fn bend(rest: &mut [f64; 6], tie: f64) -> (Bend, Facing) {
     let (axes, squares) = eigenvectors(&matrix(rest));
     let own = 0.5 * (squares.x + squares.y + squares.z);
     // β K, ν K N and ν S⁰ N K along each axis; zero along an axis with neither extent nor normal.
@@ -117,11 +118,29 @@ fn bend(rest: &mut [f64; 6], tie: f64) -> Bend {
     for k in [0, 3, 5] {
         gain[k] += 1.0;
     }
-    Bend {
+    let facing = facing(
+        &axes,
+        DVec3::from_array(std::array::from_fn(|k| squares[k] * (1.0 + values[k][1]))),
+        own,
+    );
+    let bend = Bend {
         hold: with(0),
         gain,
         share: (1.0 + tie).recip(),
+    };
+    (bend, facing)
+}
+
+/// The barrier of a cell whose fitted matrix has these unit axes and values along them at rest, and whose area is `area`.
+fn facing(axes: &DMat3, squares: DVec3, area: f64) -> Facing {
+    let least = squares.min_position();
+    let [one, two] = [(least + 1) % 3, (least + 2) % 3];
+    // A cell on a line has no area that could collapse.
+    if squares[one] * squares[two] < 1e-6 * area * area {
+        return [0.0; 7];
     }
+    let [p, q] = [one, two].map(|k| (axes.col(k) / squares[k]).as_vec3());
+    [p.x, p.y, p.z, q.x, q.y, q.z, (STRENGTH * area) as f32]
 }
 
 fn matrix([xx, xy, xz, yy, yz, zz]: &[f64; 6]) -> DMat3 {

@@ -17,6 +17,7 @@
 
 use glam::DVec3;
 
+use super::barrier::Facing;
 use super::bend::Bend;
 pub(crate) use super::bend::Quad;
 
@@ -42,6 +43,8 @@ pub(crate) struct Cells {
     pub constant: Vec<(u32, u32, f64)>,
     /// The bending term of each cell, or none.
     pub bending: Vec<Bend>,
+    /// The barrier of each cell, or none.
+    pub barriers: Vec<Facing>,
     /// ½ Σ w |e|² of the rest shape.
     pub scale: f64,
 }
@@ -100,6 +103,7 @@ impl Cells {
         self.own.extend(part.own);
         self.rest.extend(part.rest);
         self.bending.extend(part.bending);
+        self.barriers.extend(part.barriers);
         self.scale += part.scale;
     }
 }

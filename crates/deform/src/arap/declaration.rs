@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::Arap;
 use super::lead::LedSolver;
+use super::{Arap, ArapEnergy};
 use crate::descent::prescribed::Prescribed;
 use crate::handles::finite::Finite;
 use crate::handles::offsets::Offsets;
@@ -44,9 +44,13 @@ impl DeformMethod for Arap {
         &DECLARATION
     }
 
-    /// A neck can be so short that stretching it costs less than the twist around it.
+    /// A neck can be so short that stretching it costs less than the twist around it, unless the smooth energy's barrier
+    /// makes that dear. In a sharp fold its cross-section becomes oval.
     fn follows_turns(&self) -> Option<Followed> {
-        Some(Followed::by_necks(140.0))
+        match self.energy {
+            ArapEnergy::Spokes | ArapEnergy::SpokesAndRims => Some(Followed::by_necks(140.0)),
+            ArapEnergy::Smooth => Some(Followed::by_folds(140.0)),
+        }
     }
 
     fn advised_for_degrees(&self) -> u16 {

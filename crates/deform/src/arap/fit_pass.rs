@@ -5,6 +5,7 @@ use std::hint::black_box;
 
 use pulp::{Simd, WithSimd};
 
+use super::barrier::Barriers;
 use super::cells::{Cells, Quad, minus};
 use super::gradient_pass::{Turn, times_turn};
 use super::rotation::Rotation;
@@ -61,6 +62,7 @@ impl Cells {
         } = out;
         let mut sum = 0.0;
         let mut fits = Fits::default();
+        let mut barriers = Barriers::default();
         for start in (0..rotations.len()).step_by(LANES) {
             let count = LANES.min(rotations.len() - start);
             let (mut loads, mut forces) = ([[0.0; 4]; LANES], [[[0.0; 4]; 3]; LANES]);
@@ -91,8 +93,17 @@ impl Cells {
                 fits.fit(simd, count);
             }
             fits.finish(simd);
+            if turning == Turning::Best && !self.barriers.is_empty() {
+                for lane in 0..count {
+                    for (lanes, value) in barriers.facing.iter_mut().zip(self.barriers[first + start + lane]) {
+                        lanes.0[lane] = f64::from(value);
+                    }
+                }
+                barriers.resist(simd, &mut fits);
+            }
             for lane in 0..count {
                 sum -= 2.0 * fits.inner.0[lane];
+                sum += barriers.energy.0[lane];
                 for (own, lanes) in rotations[start + lane].iter_mut().zip(&fits.rotation) {
                     *own = lanes.0[lane] as f32;
                 }

@@ -11,9 +11,10 @@ use rayon::prelude::*;
 
 use super::coarse::Coarse;
 use super::end::End;
-use super::shape::{Guesses, IDENTITY};
+use super::shape::{Guesses, IDENTITY, Shape};
 use super::{Arap, ArapSolver};
 use crate::descent::corrections::Corrections;
+use crate::descent::rival::{Rival, compare};
 use crate::descent::rule::State;
 use crate::handles::blend::{Origin, Screws};
 use crate::handles::offsets::Offsets;
@@ -39,6 +40,14 @@ pub(crate) struct LedSolver {
     pub(super) solver: ArapSolver,
     coarse: Option<Coarse>,
     corrections: Corrections,
+    pub(super) rival: Rival<First>,
+}
+
+/// The end of a drag's own descent, while a second one is tried.
+#[derive(Debug)]
+pub(crate) struct First {
+    pub shape: Shape,
+    pub state: State,
 }
 
 impl LedSolver {
@@ -61,22 +70,39 @@ impl LedSolver {
             solver,
             coarse,
             corrections: Corrections::after(1, RAREST),
+            rival: Rival::default(),
         })
     }
 
-    /// One step: see [`ArapSolver::step`].
+    /// One step towards `motions`: writes the solved vertices' displacements. Returns whether the shape converged, and
+    /// the energy.
     pub fn step(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> (bool, f64) {
-        let Some(coarse) = &mut self.coarse else {
-            return self.solver.step(motions, displacements);
-        };
-        let (solver, corrections) = (&mut self.solver, &mut self.corrections);
-        // The pool is entered once: see the solver's own step.
-        rayon::scope(|_| solver.step_led(coarse, corrections, motions));
-        let (has_converged, energy) = solver.read(displacements);
-        if !energy.is_finite() {
-            coarse.rest();
+        self.expect(motions);
+        let Self {
+            solver,
+            coarse,
+            corrections,
+            ..
+        } = self;
+        match coarse {
+            None => solver.step(motions),
+            // The pool is entered once: see the solver's own step.
+            Some(coarse) => rayon::scope(|_| solver.step_led(coarse, corrections, motions)),
         }
-        (has_converged, energy)
+        compare(self);
+        let energy = self.solver.read(self.shown(), displacements);
+        if !energy.is_finite() {
+            // The gate refuses it; the next targets begin afresh.
+            self.rest();
+            return (true, energy);
+        }
+        (self.solver.state == State::Converged, energy)
+    }
+
+    /// The next step of a new descent is a correction.
+    pub(super) fn hurry_corrections(&mut self) {
+        self.corrections = Corrections::after(1, RAREST);
+        self.corrections.hurry();
     }
 
     /// Sets the offsets of handles' vertices from their handles' motions.
@@ -89,6 +115,7 @@ impl LedSolver {
 
     /// Returns to the rest shape.
     pub fn rest(&mut self) {
+        self.rival.end();
         self.solver.rest();
         if let Some(coarse) = &mut self.coarse {
             coarse.rest();

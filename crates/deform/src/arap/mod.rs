@@ -6,12 +6,13 @@
 //! one iteration of the usual local/global method [SA07], which descends slowly: our iterations cost a tenth more, and
 //! an order of magnitude fewer are needed.
 //!
-//! Parts: `domain` numbers the vertices, `rims` and `spokes` make the two energies' `cells` and `bending` adds the
-//! smooth one's term, `shape` evaluates them in a `fit_pass` and a `gradient_pass`, `matrix` and `precondition` make
+//! Parts: `domain` numbers the vertices, `rims` and `spokes` make the two energies' `cells`, `bending` and `barrier` add
+//! the smooth one's terms, `shape` evaluates them in a `fit_pass` and a `gradient_pass`, `matrix` and `precondition` make
 //! the global step and the handles' weights, `start` chooses the first shape, `history` gives the direction and `descent`
 //! makes the energy one that [`crate::descent`] lowers. For a large surface `clusters` make a small one, whose solver is
-//! the `coarse` level and takes the `lead`.
+//! the `coarse` level and takes the `lead`. At the end of a drag a `second` descent begins from rest.
 
+mod barrier;
 mod bend;
 mod bending;
 mod cells;
@@ -28,6 +29,7 @@ mod options;
 mod precondition;
 mod rims;
 mod rotation;
+mod second;
 mod shape;
 mod spokes;
 mod start;
@@ -242,9 +244,8 @@ impl ArapSolver {
         self.state == State::Stalled
     }
 
-    /// One step towards `motions`: writes the solved vertices' displacements. Returns whether it converged, and the
-    /// energy.
-    pub fn step(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> (bool, f64) {
+    /// One step towards `motions`.
+    pub fn step(&mut self, motions: &[Motion]) {
         // The pool is entered once: otherwise each of the many short loops would wait for it.
         rayon::scope(|_| {
             if self.takes_other(motions) {
@@ -254,12 +255,11 @@ impl ArapSolver {
                 self.descend();
             }
         });
-        self.read(displacements)
     }
 
-    /// Writes the solved vertices' displacements. Returns whether the shape converged, and the energy.
-    fn read(&mut self, displacements: &mut [DVec3]) -> (bool, f64) {
-        let (domain, current) = (&self.domain, &self.current);
+    /// Writes the solved vertices' displacements in a shape. Returns its energy.
+    fn read(&self, current: &Shape, displacements: &mut [DVec3]) -> f64 {
+        let domain = &self.domain;
         displacements
             .par_chunks_mut(CHUNK)
             .zip(domain.local_of.par_chunks(CHUNK))
@@ -271,13 +271,7 @@ impl ArapSolver {
                     }
                 }
             });
-        let energy = self.current.energy;
-        if !energy.is_finite() {
-            // The gate refuses it; the next targets begin afresh.
-            self.rest();
-            return (true, energy);
-        }
-        (self.state == State::Converged, self.relative(energy))
+        self.relative(current.energy)
     }
 }
 

@@ -46,7 +46,7 @@ named_choices! {
         SpokesAndRims = "spokes-and-rims",
         /// Spokes and rims, with every cell tied to its own affine map: a thin plate that bumps and free borders do not
         /// disturb, with the aim of \[LG15\] and \[OHS25\]. Handles of a single vertex make no spikes; twists spread
-        /// evenly.
+        /// evenly, and a barrier keeps necks from being pinched by them.
         Smooth = "smooth",
     }
 }

@@ -29,10 +29,7 @@ impl ArapSolver {
         self.leave(motions);
         self.state = State::Descending;
         if was_at_rest {
-            self.history.clear();
-            self.springs.loads.clear();
-            self.carry(&from_rest, Origin::Rest);
-            std::mem::swap(&mut self.current, &mut self.trial);
+            self.start_from_rest();
             (self.until_blend, self.patience) = (0, 1);
             return Origin::Rest;
         }
@@ -60,6 +57,18 @@ impl ArapSolver {
         };
         self.until_blend = self.patience - 1;
         origin
+    }
+
+    /// Begins a descent to the present targets from the rest shape.
+    pub(super) fn start_from_rest(&mut self) {
+        let motions = self.motions.clone();
+        self.leave(&motions);
+        self.history.clear();
+        self.springs.loads.clear();
+        let Screws { from_rest, .. } = Screws::of(&self.handles, &motions, &motions);
+        self.carry(&from_rest, Origin::Rest);
+        std::mem::swap(&mut self.current, &mut self.trial);
+        self.state = State::Descending;
     }
 
     /// Makes the trial shape the rest shape or the current one, carried by `screws`, with the handles at their targets,

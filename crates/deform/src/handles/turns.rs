@@ -32,6 +32,14 @@ impl Followed {
         }
     }
 
+    /// A limb that is folded is flattened; one that is twisted keeps its radius.
+    pub fn by_folds(most_degrees: f64) -> Self {
+        Self {
+            most_degrees,
+            beyond: "flattens a limb that is folded, though not one that is twisted",
+        }
+    }
+
     /// All of the turn is in one place.
     pub fn by_seams(most_degrees: f64) -> Self {
         Self {

@@ -135,6 +135,11 @@ pub(crate) trait DeformMethod: Options {
         0
     }
 
+    /// Returns true if a triangle resists the more, the less of its area is left.
+    fn resists_collapse(&self) -> bool {
+        false
+    }
+
     /// Returns true if it can be bound with an ordering of power 1 instead of its own, by the Laplacian's factor, which takes
     /// less memory and more time.
     fn takes_first_power(&self) -> bool {

@@ -93,8 +93,9 @@ impl Fits {
         ]
     }
 
+    /// S of the cells at `place`, column by column.
     #[inline(always)]
-    fn matrices<S: Simd>(&self, simd: S, place: usize) -> Matrices<S> {
+    pub fn matrices<S: Simd>(&self, simd: S, place: usize) -> Matrices<S> {
         let mut s = self.changes(simd, place);
         let [xx, xy, xz, yy, yz, zz] = Vector::each(simd, &self.rest, place);
         let rest = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];

@@ -25,7 +25,7 @@ pub(crate) struct Vector<S: Simd> {
 }
 
 /// Matrices, column by column.
-pub(super) type Matrices<S> = [[Vector<S>; 3]; 3];
+pub(crate) type Matrices<S> = [[Vector<S>; 3]; 3];
 
 macro_rules! lanewise {
     ($operation:ident, $name:ident, $intrinsic:ident) => {
@@ -142,7 +142,7 @@ impl<S: Simd> Mask<S> {
     }
 
     #[inline(always)]
-    pub(super) fn is_full(self) -> bool {
+    pub(crate) fn is_full(self) -> bool {
         self.simd.first_true_m64s((!self).lanes) >= S::F64_LANES
     }
 }

@@ -9,6 +9,7 @@ use super::joints::Joints;
 use super::pose::Pose;
 use super::springs::Springs;
 use crate::budget::{Budget, bytes_of};
+use crate::descent::rival::{Rival, Stage, compare};
 use crate::descent::rule;
 use crate::handles::blend::HandleFrame;
 use crate::handles::{Handle, Motion};
@@ -41,11 +42,19 @@ pub(crate) struct Bodies {
     pub(super) is_renewed: bool,
     /// The relative decrease of the energy below which iteration ends.
     pub(super) tolerance: f64,
+    pub(super) rival: Rival<First>,
+}
+
+/// The end of a drag's own descent, while a second one is tried.
+#[derive(Debug)]
+pub(crate) struct First {
+    pub pose: Pose,
+    pub state: State,
 }
 
 /// The progress towards the present targets.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) enum State {
+pub(crate) enum State {
     /// Prisms are folded onto their neighbours: local sweeps come first.
     Folded(u32),
     /// Steps lower the energy.
@@ -88,6 +97,7 @@ impl Bodies {
             age: 0,
             is_renewed: false,
             tolerance,
+            rival: Rival::default(),
         })
     }
 
@@ -110,6 +120,7 @@ impl Bodies {
         self.motions.fill(Motion::default());
         self.current = Pose::at_rest(self.joints.count(), 1 + self.handles.len());
         self.memory.clear();
+        self.rival.end();
         self.state = State::Steps(rule::State::Converged);
         // The following steps must be the same as after binding.
         if std::mem::take(&mut self.is_renewed)
@@ -122,12 +133,22 @@ impl Bodies {
     /// One step towards `motions`.
     pub fn advance(&mut self, motions: &[Motion]) {
         if self.motions != motions {
+            self.expect(motions);
             self.start(motions);
         }
         match self.state {
             State::Folded(left) => self.unfold(left),
             State::Steps(rule::State::Descending) => self.descend(),
             State::Steps(_) => {}
+        }
+        compare(self);
+    }
+
+    /// The pose to show: the end of a drag's own descent until a second one has ended.
+    pub fn shown(&self) -> &Pose {
+        match &self.rival.stage {
+            Stage::Against(first) => &first.pose,
+            Stage::Over | Stage::Due => &self.current,
         }
     }
 
@@ -138,7 +159,7 @@ impl Bodies {
 
     /// Returns whether the last step converged, and its energy. If it is not finite the next targets begin afresh.
     pub fn outcome(&mut self) -> (bool, f64) {
-        let energy = self.current.energy;
+        let energy = self.shown().energy;
         if !energy.is_finite() {
             self.rest();
             return (true, energy);

@@ -34,6 +34,7 @@ mod options;
 pub(crate) mod pose;
 mod prisms;
 mod quad;
+mod second;
 mod springs;
 mod start;
 mod sweep;
@@ -155,7 +156,7 @@ impl PrimoSolver {
         // The pool is entered once: otherwise each of the many short loops would wait for it.
         rayon::scope(|_| {
             self.bodies.advance(motions);
-            self.vertices.write(&self.bodies.current, displacements);
+            self.vertices.write(self.bodies.shown(), displacements);
         });
         self.bodies.outcome()
     }

@@ -27,6 +27,16 @@ impl Bodies {
         self.state = self.how_folded();
     }
 
+    /// Begins a descent to the present targets from the rest pose.
+    pub(super) fn start_from_rest(&mut self) {
+        let Screws { from_rest, .. } = Screws::of(&self.handles, &self.motions, &self.motions);
+        self.carry(&from_rest, Origin::Rest);
+        self.memory.clear();
+        std::mem::swap(&mut self.current, &mut self.trial);
+        self.age = 0;
+        self.state = self.how_folded();
+    }
+
     /// Makes the trial pose the rest pose or the current one, moved by `screws`, with the grounds at their targets.
     fn carry(&mut self, screws: &[Screw], origin: Origin) {
         let Self {

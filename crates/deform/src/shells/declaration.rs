@@ -67,6 +67,10 @@ impl DeformMethod for Shells {
         Some(Followed::by_necks(150.0))
     }
 
+    fn resists_collapse(&self) -> bool {
+        true
+    }
+
     fn needs(&self) -> Needs {
         Needs::Surface {
             // A hinge joins the two vertices across its edge, which may both be constrained.

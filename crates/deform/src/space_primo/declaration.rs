@@ -54,7 +54,7 @@ impl DeformMethod for SpacePrimo {
 
     /// The cells give way where they twist most.
     fn follows_turns(&self) -> Option<Followed> {
-        Some(Followed::by_necks(160.0))
+        Some(Followed::by_necks(120.0))
     }
 
     fn needs(&self) -> Needs {
@@ -128,7 +128,7 @@ pub(super) fn bound(options: &SpacePrimo, input: &BindInput<'_>) -> Result<Bound
 impl BoundCells {
     /// The cells' motions at the present pose.
     fn motions(&self) -> Vec<Affine> {
-        let pose = &self.bodies.current;
+        let pose = self.bodies.shown();
         let cells = self.world_centres.iter().enumerate();
         cells
             .map(|(cell, &world_centre)| Affine {

@@ -2,6 +2,7 @@
 //! edges.
 
 use glam::DVec3;
+use pliant_deform::{Method, Remedy};
 use pliant_mesh::{Damage, SelfIntersections, point_in_words};
 
 /// The places where the present shape passes through itself and the file's did not, and its other faults.
@@ -43,9 +44,13 @@ impl Intersections {
         self.places.is_empty()
     }
 
-    /// All faults, in words.
-    pub fn sentences(&self) -> Vec<String> {
-        self.sentence().into_iter().chain(self.damage.sentences()).collect()
+    /// All faults of a shape by this method, in words.
+    pub fn sentences(&self, method: &Method) -> Vec<String> {
+        let remedy = Remedy::OfDamageBy(method.name()).to_string();
+        self.sentence()
+            .into_iter()
+            .chain(self.damage.sentences(&remedy))
+            .collect()
     }
 
     /// The places where the shape passes through itself, and the remedies, in words; `None` if there are none.

@@ -32,6 +32,10 @@ const SPINE_POINTS: usize = 5;
 /// The limb around a spine has the vertices within this many of its half thicknesses.
 const GIRTH: f64 = 1.7;
 
+/// The reach of a spine in half thicknesses, and that of a curve on the surface in its lengths.
+const SPINE_REACH: f64 = 2.5;
+const CURVE_REACH: f64 = 0.4;
+
 /// A stroke during its drawing.
 #[derive(Debug)]
 pub(crate) struct CurveStroke {
@@ -40,6 +44,15 @@ pub(crate) struct CurveStroke {
     points_px: Vec<DVec2>,
     /// The stroke that finally paints the vertices.
     stroke: StrokeGesture<PaintStroke>,
+}
+
+/// The result of a stroke.
+struct Drawn {
+    curve: HandleCurve,
+    /// The vertices that follow it.
+    vertices: Vec<SurfaceVertex>,
+    /// The length within which the surface beside them follows.
+    reach: f64,
 }
 
 /// A sample of the stroke on the surface.
@@ -93,8 +106,8 @@ impl CurveStroke {
         Some(Sample { pick, point, half })
     }
 
-    /// The curve, and the vertices that follow it.
-    fn drawn(&self, workspace: &Workspace, view: &View) -> Option<(HandleCurve, Vec<SurfaceVertex>)> {
+    /// The curve with its surroundings; `None` if the stroke is too short for one.
+    fn drawn(&self, workspace: &Workspace, view: &View) -> Option<Drawn> {
         let picking = workspace.picking(view)?;
         let mut samples = self.samples(&picking);
         let length_px: f64 = self.points_px.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
@@ -110,11 +123,17 @@ impl CurveStroke {
         let points = evenly(&samples, count, is_closed);
         let (twist_deg, scale) = (vec![0.0; points.len()], vec![1.0; points.len()]);
         let curve = HandleCurve::new(points.clone(), is_closed, points, twist_deg, scale).ok()?;
-        let vertices = match self.shape {
-            StrokeShape::Spine => around(curve.rest(), GIRTH * half, &samples, &picking),
-            _ => under(curve.rest(), &samples, &picking),
+        let (vertices, reach) = match self.shape {
+            StrokeShape::Spine => (
+                around(curve.rest(), GIRTH * half, &samples, &picking),
+                SPINE_REACH * half,
+            ),
+            _ => (
+                under(curve.rest(), &samples, &picking),
+                CURVE_REACH * curve.rest().length(),
+            ),
         };
-        (!vertices.is_empty()).then_some((curve, vertices))
+        (!vertices.is_empty()).then_some(Drawn { curve, vertices, reach })
     }
 }
 
@@ -240,7 +259,7 @@ impl Gesture for CurveStroke {
             return Next::Stay;
         }
         self.moved(context, pointer);
-        let Some((curve, vertices)) = self.drawn(context.workspace, context.view) else {
+        let Some(drawn) = self.drawn(context.workspace, context.view) else {
             self.stroke.abort(context);
             context
                 .workspace
@@ -248,7 +267,7 @@ impl Gesture for CurveStroke {
             return Next::End;
         };
         self.stroke.finish_with(context.workspace, |stroke, workspace| {
-            stroke.take_with_line(workspace, vertices, HandleLine::Curve(curve));
+            stroke.take_with_line(workspace, drawn.vertices, HandleLine::Curve(drawn.curve), drawn.reach);
         });
         Next::End
     }

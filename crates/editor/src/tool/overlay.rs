@@ -19,7 +19,7 @@ use crate::view::{
     Camera, ControlShape, GizmoAxes, GizmoPart, GizmoShape, ShownPoint, View, control_at, control_shapes, gizmo_shapes,
     hit_gizmo,
 };
-use crate::workspace::{Workspace, middle};
+use crate::workspace::{ControlSource, Workspace, middle};
 
 /// The shown part of the overlay, by the active gesture.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -164,7 +164,8 @@ impl Overlay {
         if let Some(point) = self.pointed_control {
             self.control_points[point as usize].is_pointed_at = true;
         }
-        control_shapes(&self.control_points, shown.lines, camera, viewport_px)
+        let is_curve = matches!(shown.source, ControlSource::Curve(..));
+        control_shapes(&self.control_points, shown.lines, is_curve, camera, viewport_px)
     }
 }
 
@@ -225,6 +226,10 @@ fn gizmo(
         ));
     }
     let handle = workspace.selected()?;
+    // The points of a curve that was just drawn are wanted, and the gizmo of the whole would be over them.
+    if settings.draws_curves() && handle.line.is_some() {
+        return None;
+    }
     if !is_shown || !handle.visible || handle.locked || handle.is_pin {
         return None;
     }

@@ -3,7 +3,7 @@
 //! No stroke moves a drawn vertex: the first vertex that changes while something is displaced makes the present shape
 //! the rest shape, within the same step.
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use pliant_mesh::SurfaceVertex;
 
 use super::context::Context;
@@ -11,7 +11,7 @@ use super::mode::ToolMode;
 use super::other_side::OtherSide;
 use super::settings::ToolSettings;
 use super::stroke::{Stroke, StrokeGesture, meet};
-use crate::document::{Document, HandleId, HandleLine, Paint};
+use crate::document::{Document, HandleId, HandleLine, Paint, Reach};
 use crate::input::Pointer;
 use crate::workspace::{Workspace, tidy_handles};
 
@@ -72,13 +72,28 @@ impl PaintStroke {
         Some(gesture)
     }
 
-    /// Paints a handle's vertices on the shown shape, which becomes the rest shape, and lets them follow a line there.
-    pub fn take_with_line(&mut self, workspace: &mut Workspace, vertices: Vec<SurfaceVertex>, line: HandleLine) {
+    /// Paints a handle's vertices on the shown shape, which becomes the rest shape, and lets them follow a line there;
+    /// `reach` is the length, in world units, within which the surface beside them follows.
+    pub fn take_with_line(
+        &mut self,
+        workspace: &mut Workspace,
+        vertices: Vec<SurfaceVertex>,
+        line: HandleLine,
+        reach: f64,
+    ) {
         workspace.document.apply_shape();
+        let members = vertices.clone();
         self.take(workspace, vertices);
         if let Paint::Handle(id) = self.paint {
             workspace.document.unsettle();
-            workspace.document.change_handle(id, |handle| handle.line = Some(line));
+            // A handle that its line has moved away keeps the pivot that it has.
+            let positions: Vec<DVec3> = members.iter().map(|&vertex| workspace.position(vertex)).collect();
+            let pivot = positions.iter().sum::<DVec3>() / positions.len().max(1) as f64;
+            workspace.document.change_handle(id, |handle| {
+                handle.pivot = pivot;
+                handle.line = Some(line);
+                handle.reach = Reach::Length(reach);
+            });
         }
     }
 

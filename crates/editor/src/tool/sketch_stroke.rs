@@ -1,7 +1,7 @@
 //! A stroke that draws a part of the model's outline anew: the outline that it means becomes a handle that follows it.
 
-use glam::DVec2;
-use pliant_mesh::{Surface, SurfaceVertex};
+use glam::{DVec2, DVec3};
+use pliant_mesh::{Surface, SurfaceVertex, bounding_box};
 
 use super::context::Context;
 use super::gesture::{Gesture, Next};
@@ -17,6 +17,12 @@ use crate::workspace::Workspace;
 
 /// The distance between two points of the line, in points of the view.
 const STEP_PX: f64 = 4.0;
+
+/// A line begins and ends within this distance of the outline that it means, in points.
+const NEAR_PX: f64 = 60.0;
+
+/// The reach of the outline in diagonals of its own box.
+const REACH: f64 = 0.5;
 
 /// A stroke during its drawing.
 #[derive(Debug)]
@@ -114,7 +120,7 @@ impl Gesture for SketchStroke {
         let access = &context.workspace.vertex_access;
         let count = model.surface.positions.len();
         let is_open: Vec<bool> = (0..count).map(|vertex| access.may_be_painted(vertex)).collect();
-        let meant = sketch.clone();
+        let (meant, size_px) = (sketch.clone(), context.view.viewport_px());
         let work = Box::new(move |_: &_, cancel: &pliant_mesh::Cancel| {
             cancel.check()?;
             let rest = model.surface.positions.iter().zip(&**displacements);
@@ -123,6 +129,14 @@ impl Gesture for SketchStroke {
                 triangles: model.surface.triangles.clone(),
             };
             let matched = outline::matched(&meant, &surface, |vertex| is_open[vertex.index()]).unwrap_or_default();
+            let begins_at = |end: Option<&(SurfaceVertex, DVec3)>, of_line: DVec2| {
+                let seen = end.and_then(|(vertex, _)| meant.seen(surface.positions[vertex.index()]));
+                seen.is_some_and(|seen| ((seen - of_line) * 0.5 * size_px).length() <= NEAR_PX)
+            };
+            let line = meant.line();
+            if !begins_at(matched.first(), line[0]) || !begins_at(matched.last(), line[line.len() - 1]) {
+                return Ok(Vec::new());
+            }
             let mut vertices: Vec<SurfaceVertex> = matched.into_iter().map(|(vertex, _)| vertex).collect();
             vertices.sort_unstable();
             Ok(vertices)
@@ -134,11 +148,16 @@ impl Gesture for SketchStroke {
 
     fn found(&mut self, context: &mut Context<'_>, outline: Vec<SurfaceVertex>) -> Next {
         let Some(sketch) = self.sketch.take().filter(|_| !outline.is_empty()) else {
-            let why = "The line is beside no outline: draw it near the edge of the model that you see.";
+            let why = "The line leads from no outline to none: begin and end it at the edge of the model that you see.";
             return self.refuse(context, why);
         };
+        let positions: Vec<DVec3> = outline
+            .iter()
+            .map(|&vertex| context.workspace.position(vertex))
+            .collect();
+        let reach = REACH * bounding_box(&positions).map_or(0.0, |bounds| bounds.diagonal());
         self.stroke.finish_with(context.workspace, |stroke, workspace| {
-            stroke.take_with_line(workspace, outline, HandleLine::Sketch(sketch));
+            stroke.take_with_line(workspace, outline, HandleLine::Sketch(sketch), reach);
         });
         Next::End
     }

@@ -57,6 +57,8 @@ pub(crate) struct ShownPoint {
 
 /// Blue, orange and near-black are distinct from clay, from each other and from both themes' grounds.
 const EDGE: [u8; 4] = [58, 128, 220, 220];
+const CURVE: [u8; 4] = [255, 214, 110, 255];
+const CURVE_HIDDEN_SHARE: f32 = 0.75;
 const POINT: [u8; 4] = [120, 180, 255, 255];
 const SELECTED: [u8; 4] = [255, 150, 30, 255];
 const RIM: [u8; 4] = [18, 24, 36, 255];
@@ -68,10 +70,11 @@ const RIM_PX: f64 = 1.3;
 /// The pointer's distance to a point within which it takes the point.
 const GRAB_PX: f64 = 8.0;
 
-/// The shapes: edges, the points' rims, points and selected ones.
+/// The shapes: edges, the points' rims, points and selected ones. A curve inside a limb is visible through it.
 pub(crate) fn control_shapes(
     points: &[ShownPoint],
     lines: Vec<[DVec3; 2]>,
+    is_curve: bool,
     camera: &Camera,
     viewport_px: DVec2,
 ) -> Vec<ControlShape> {
@@ -83,12 +86,17 @@ pub(crate) fn control_shapes(
         });
         ControlShape::filled(colour, squares.collect())
     };
-    vec![
-        ControlShape::lines(EDGE, lines),
+    let (colour, hidden_share) = match is_curve {
+        true => (CURVE, CURVE_HIDDEN_SHARE),
+        false => (EDGE, HIDDEN_SHARE),
+    };
+    let shapes = [
+        ControlShape::lines(colour, lines),
         squares(RIM, RIM_PX, &|_| true),
         squares(POINT, 0.0, &|point| !point.is_selected),
         squares(SELECTED, 0.0, &|point| point.is_selected),
-    ]
+    ];
+    shapes.map(|shape| shape.with_hidden_share(hidden_share)).to_vec()
 }
 
 /// A square across the line of sight.

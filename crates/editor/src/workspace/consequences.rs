@@ -77,6 +77,8 @@ impl Workspace {
             self.jobs.drop_solves();
             self.document.unbend();
         } else if self.jobs.is_region_current()
+            // The known region is not that of a handle that was made just now.
+            && !self.document.versions().are_other_problem(&self.seen)
             && self.computed().region.handles.is_empty()
             && !self.document.is_moved_without_handles()
         {

@@ -102,9 +102,8 @@ impl Damage {
         damage
     }
 
-    /// A sentence for each kind that occurs, with the remedy.
-    pub fn sentences(&self) -> Vec<String> {
-        let remedy = "lower the strength, leave more of the surface free, or take another method";
+    /// A sentence for each kind that occurs, which ends with the remedy.
+    pub fn sentences(&self, remedy: &str) -> Vec<String> {
         let told = [
             self.flipped.told(["triangle", "triangles"], "turned over"),
             self.collapsed
@@ -134,7 +133,7 @@ mod tests {
         let rigid: Vec<DVec3> = surface.positions.iter().map(|p| motion.transform_point3(*p)).collect();
         let whole = Damage::of(surface, topology, &rigid);
         assert_eq!(whole, Damage::default());
-        assert!(whole.sentences().is_empty());
+        assert!(whole.sentences("").is_empty());
 
         let inner = (0..surface.positions.len() as u32)
             .map(SurfaceVertex)
@@ -156,6 +155,6 @@ mod tests {
         );
         let over = with(surface.positions[inner] + DVec3::X * 0.4);
         assert!(over.flipped.count > 0);
-        assert_eq!(over.sentences().len(), 1, "{:?}", over.sentences());
+        assert_eq!(over.sentences("").len(), 1, "{:?}", over.sentences(""));
     }
 }

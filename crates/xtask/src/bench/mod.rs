@@ -20,6 +20,7 @@ mod meshes;
 mod peers;
 mod primo;
 pub mod scale;
+mod scenes;
 mod shells;
 mod space;
 mod start;
@@ -87,6 +88,11 @@ const SECTIONS: &[Section] = &[
         name: "space",
         title: "The methods that bend space, medians of a drag, beside Blender's: milliseconds",
         rows: space::rows,
+    },
+    Section {
+        name: "scenes",
+        title: "Every method on the survey's scenes and on limbs of scans: steps, triangles turned over, ratios of edges and volume, the handles' residual in diagonals",
+        rows: scenes::rows,
     },
     Section {
         name: "vectors",

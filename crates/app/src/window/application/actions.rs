@@ -56,6 +56,7 @@ impl Application {
     pub(in crate::window) fn chosen(&mut self, purpose: Purpose, path: Option<PathBuf>) {
         match (purpose, path) {
             (Purpose::Open, Some(path)) => self.open(path),
+            (Purpose::ApplyEdit, Some(path)) => self.ask_to_open(path),
             (Purpose::SaveAs, Some(path)) if is_project(&path) => self.save_project_to(path),
             (Purpose::SaveAs, Some(path)) => self.save_as(path),
             (Purpose::SaveMorph, Some(path)) => self.save_morph_to(path),
@@ -125,12 +126,15 @@ impl Application {
     pub(in crate::window) fn suggested_path(&self, purpose: Purpose) -> PathBuf {
         let beside = |path: &Path, ending: &str| path.with_extension(ending);
         match (purpose, self.path()) {
-            (Purpose::Open | Purpose::LoadCage | Purpose::AddExample | Purpose::SaveAs, Some(path)) => path.to_owned(),
+            (
+                Purpose::Open | Purpose::ApplyEdit | Purpose::LoadCage | Purpose::AddExample | Purpose::SaveAs,
+                Some(path),
+            ) => path.to_owned(),
             (Purpose::SaveMorph, Some(path)) => beside(path, "morph.glb"),
             (Purpose::ExportEdit, Some(path)) => beside(path, "edit.json"),
             (Purpose::SaveProject, Some(path)) => beside(path, "pliant"),
             (Purpose::SavePicture(_), Some(path)) => beside(path, "png"),
-            (Purpose::Open | Purpose::LoadCage | Purpose::AddExample | Purpose::SaveAs, None) => {
+            (Purpose::Open | Purpose::ApplyEdit | Purpose::LoadCage | Purpose::AddExample | Purpose::SaveAs, None) => {
                 PathBuf::from("edited.glb")
             }
             (Purpose::SaveMorph, None) => PathBuf::from("morph.glb"),
@@ -149,7 +153,11 @@ impl Application {
         };
         let open = self.session.open.as_ref();
         let is_own = open.is_some_and(|open| open.is_at(&path) || open.is_project_at(&path));
-        !matches!(purpose, Purpose::Open | Purpose::LoadCage | Purpose::AddExample) && path.is_file() && !is_own
+        !matches!(
+            purpose,
+            Purpose::Open | Purpose::ApplyEdit | Purpose::LoadCage | Purpose::AddExample
+        ) && path.is_file()
+            && !is_own
     }
 
     pub(in crate::window) fn may_write_over(&self) -> bool {
@@ -169,6 +177,7 @@ impl Application {
             },
             FileCommand::SaveProjectAs => self.choose(Purpose::SaveProject),
             FileCommand::ExportEdit => self.choose(Purpose::ExportEdit),
+            FileCommand::ApplyEdit => self.choose(Purpose::ApplyEdit),
             FileCommand::LoadCage | FileCommand::AddExample | FileCommand::AddMorphTarget(_) => {
                 match (command.unavailable_because(&self.editor), command) {
                     (Some(why), _) => self.fail(why.to_owned()),

@@ -27,6 +27,7 @@ use super::dialogs::question::{Question, Then};
 use super::files::app_directories::AppDirectories;
 use super::files::recovery::Recovery;
 use super::files::recovery::left::{left_in, remove};
+use super::files::rest_mesh::MeshSource;
 use super::files::save_request::SaveRequest;
 use super::files::save_wish::SaveWish;
 use super::files::settings::SettingsFile;
@@ -41,6 +42,7 @@ use super::viewport::Viewport;
 use super::viewport::before::{OriginalView, Split};
 use super::viewport::method_views::MethodViews;
 use super::widgets::{icon, theme};
+use crate::files::names::file_name;
 use crate::window::session::{Session, Source};
 use crate::window::viewport::pose_queue::PoseQueue;
 use pliant_engine::EngineError;
@@ -310,8 +312,24 @@ impl Application {
 
     /// Opens a file without asking whether unsaved work may be lost.
     pub fn open(&mut self, path: PathBuf) {
-        self.session
-            .load(Source::File(path), &self.viewport.gpu(), &self.workers);
+        let is_edit = path
+            .extension()
+            .is_some_and(|ending| ending.eq_ignore_ascii_case("json"));
+        let mesh = self.session.open.as_ref().map(|open| &open.mesh.source);
+        let source = match (is_edit, mesh) {
+            (false, _) => Source::File(path),
+            (true, Some(MeshSource::File(file))) => Source::Edited {
+                file: file.clone(),
+                edit: path,
+            },
+            (true, _) => {
+                return self.fail(format!(
+                    "{} is an edit: open the mesh that it is for first.",
+                    file_name(&path)
+                ));
+            }
+        };
+        self.session.load(source, &self.viewport.gpu(), &self.workers);
     }
 
     /// Writes unsaved work where the next session finds it.

@@ -9,7 +9,7 @@ use pliant_editor::{
 
 use crate::window::input::file_command::FileCommand;
 use crate::window::threads::message::{Ground, PictureKind};
-use crate::window::widgets::command_button::{command_button, command_choice};
+use crate::window::widgets::command_button::{command_button, menu_choice};
 use crate::window::widgets::outbox::Outbox;
 
 /// Shows the bar. Commands for the editor are added to `commands`; one for files is returned.
@@ -47,6 +47,7 @@ fn file_menu(ui: &mut egui::Ui, editor: &Editor, recent: &[PathBuf]) -> Option<F
         FileCommand::SaveProject,
         FileCommand::SaveProjectAs,
         FileCommand::ExportEdit,
+        FileCommand::ApplyEdit,
         FileCommand::Quit,
     ] {
         if command == FileCommand::Quit {
@@ -237,7 +238,7 @@ fn view_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     let view = editor.view();
     let look = view.look;
     let mut choice = |ui: &mut egui::Ui, command: Command, chosen: bool| {
-        if command_choice(ui, editor, &command, chosen) {
+        if menu_choice(ui, editor, &command, chosen) {
             commands.push(command);
             ui.close();
         }

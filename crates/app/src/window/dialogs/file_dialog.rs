@@ -32,6 +32,7 @@ fn request(purpose: Purpose) -> Request {
             "Models and projects",
             &["glb", "gltf", "obj", "ply", "stl", "off", "pliant"],
         ),
+        Purpose::ApplyEdit => ("Apply an edit", Asked::ToOpen, "Edits", &["json"]),
         Purpose::LoadCage => ("Load a cage", Asked::ToOpen, "Models", MODELS),
         Purpose::AddExample => ("Add an example", Asked::ToOpen, "Models", MODELS),
         Purpose::SaveAs => ("Save the model as", Asked::ToSave, "Models", MODELS),

@@ -28,6 +28,8 @@ pub enum FileCommand {
     SaveProjectAs,
     /// Write the regions, handles and transforms as an edit for the command line.
     ExportEdit,
+    /// Apply an edit from a file to the open mesh.
+    ApplyEdit,
     /// Weld the open mesh's vertices in another way.
     Weld(WeldOptions),
     /// Take a cage from a file.
@@ -103,6 +105,7 @@ impl FileCommand {
             Self::Scale(_) => command(Key::Num0),
             Self::SaveProjectAs
             | Self::SaveMorph
+            | Self::ApplyEdit
             | Self::Weld(_)
             | Self::LoadCage
             | Self::AddExample
@@ -118,7 +121,7 @@ impl FileCommand {
     }
 
     /// All commands that need no path, in the order of the menu.
-    pub const LISTED: [Self; 18] = [
+    pub const LISTED: [Self; 19] = [
         Self::Open,
         Self::Save,
         Self::SaveAs,
@@ -126,6 +129,7 @@ impl FileCommand {
         Self::SaveProject,
         Self::SaveProjectAs,
         Self::ExportEdit,
+        Self::ApplyEdit,
         Self::LoadCage,
         Self::AddExample,
         Self::SavePicture(PictureKind {
@@ -164,6 +168,7 @@ impl FileCommand {
             Self::Scale(_) => "Interface size",
             Self::Hints => "Canvas hints",
             Self::ExportEdit => "Export edit…",
+            Self::ApplyEdit => "Apply an edit…",
             Self::SavePicture(_) => "Save picture…",
             Self::Quit => "Quit",
         }
@@ -188,6 +193,7 @@ impl FileCommand {
             Self::Scale(_) => "ui zoom",
             Self::Hints => "help first steps",
             Self::ExportEdit => "json command line",
+            Self::ApplyEdit => "json import load again scan",
             Self::SavePicture(_) => "screenshot render image png",
             Self::Quit => "exit close",
         }

@@ -105,7 +105,7 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
         ui.label(RichText::new(text).weak().small());
     }
     ui.horizontal_wrapped(|ui| {
-        for command in [Command::Isolate, Command::ShowEverything, Command::TurnInsideOut] {
+        for command in [Command::Isolate, Command::ShowEverything] {
             if command_button(ui, editor, &command) {
                 commands.push(command);
             }

@@ -141,6 +141,8 @@ pub enum Purpose {
     SaveProject,
     /// To write the edit file to.
     ExportEdit,
+    /// To take an edit from, for the open mesh.
+    ApplyEdit,
     /// To take a cage from.
     LoadCage,
     /// To take an example from.

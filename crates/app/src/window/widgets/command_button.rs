@@ -25,6 +25,22 @@ pub fn command_choice(ui: &mut egui::Ui, editor: &Editor, command: &Command, cho
     choice(ui, editor, command, chosen, Button::selectable(chosen, listed.name))
 }
 
+/// The same in a menu, with a tick while it is true.
+pub fn menu_choice(ui: &mut egui::Ui, editor: &Editor, command: &Command, chosen: bool) -> bool {
+    let Some(listed) = command.listed() else { return false };
+    let tick = icon::text(Glyph::Check, 13.0);
+    let tick = if chosen {
+        tick
+    } else {
+        tick.color(egui::Color32::TRANSPARENT)
+    };
+    let mut button = Button::new((tick, listed.name));
+    if let Some(shortcut) = editor.shortcuts(command).first() {
+        button = button.shortcut_text(shortcut.label());
+    }
+    choice(ui, editor, command, chosen, button)
+}
+
 /// The same with an icon, and with `label` beside it if there is room.
 pub fn icon_choice(
     ui: &mut egui::Ui,
