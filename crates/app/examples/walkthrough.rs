@@ -133,6 +133,9 @@ fn open(folder: &Path) -> Walk {
     }
 }
 
+/// The width of the moving picture in pixels.
+const FILM_WIDTH: u32 = 440;
+
 /// A spine is drawn through the tail, and its end is dragged up and back.
 fn film(folder: &Path) {
     let mut walk = open(folder);
@@ -141,8 +144,8 @@ fn film(folder: &Path) {
     let along = |walk: &Walk, share: f64| {
         walk.point(move |positions| {
             let lowest = positions.iter().map(|p| p.z).fold(f64::INFINITY, f64::min);
-            let from = lowest + share * 0.4;
-            mean(positions.iter().filter(|p| (p.z - from).abs() < 0.02 && p.y > 0.45))
+            let from = lowest + 0.02 + share * 0.46;
+            mean(positions.iter().filter(|p| (p.z - from).abs() < 0.02))
         })
     };
     let way: Vec<Pos2> = (0..8).map(|step| along(&walk, 1.0 - f64::from(step) / 7.2)).collect();
@@ -151,18 +154,18 @@ fn film(folder: &Path) {
     let mut frames = Vec::new();
     let mut shoot = |walk: &mut Walk| {
         walk.harness.run_steps(6);
-        let image = walk.harness.render().expect("the device draws");
-        frames.push(image::imageops::resize(
-            &image,
-            640,
-            400,
-            image::imageops::FilterType::Triangle,
-        ));
+        let mut image = walk.harness.render().expect("the device draws");
+        let view = walk.harness.state().view_rect();
+        let [x, y, width, height] = [view.left(), view.top(), view.width(), view.height()].map(|px| px as u32);
+        let view = image::imageops::crop(&mut image, x, y, width, height).to_image();
+        let small = [FILM_WIDTH, FILM_WIDTH * height / width];
+        let filter = image::imageops::FilterType::Triangle;
+        frames.push(image::imageops::resize(&view, small[0], small[1], filter));
     };
     walk.pointer(end, None);
     walk.pointer(end, Some(true));
-    for step in 0..24 {
-        let angle = f64::from(step) / 24.0 * std::f64::consts::TAU;
+    for step in 0..16 {
+        let angle = f64::from(step) / 16.0 * std::f64::consts::TAU;
         let way = vec2(-40.0 * (1.0 - angle.cos()) as f32, -90.0 * (1.0 - angle.cos()) as f32);
         walk.pointer(end + way + vec2(25.0 * angle.sin() as f32, 0.0), None);
         shoot(&mut walk);
@@ -171,7 +174,7 @@ fn film(folder: &Path) {
     let file = std::fs::File::create(&path).unwrap();
     let mut encoder = image::codecs::gif::GifEncoder::new_with_speed(file, 10);
     encoder.set_repeat(image::codecs::gif::Repeat::Infinite).unwrap();
-    let delay = image::Delay::from_numer_denom_ms(80, 1);
+    let delay = image::Delay::from_numer_denom_ms(110, 1);
     let frames = frames
         .into_iter()
         .map(|frame| image::Frame::from_parts(frame, 0, 0, delay));
