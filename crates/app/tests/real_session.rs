@@ -22,7 +22,7 @@ use pliant_mesh::WeldOptions;
 use serde_json::Value;
 
 /// The middle of the 3D view, which takes the window except the panel.
-const MIDDLE: (i32, i32) = ((SIZE.0 - 270) / 2, SIZE.1 / 2 + 20);
+const MIDDLE: (i32, i32) = ((SIZE.0 - 270) / 2, SIZE.1 / 2 + 36);
 
 fn sample() -> PathBuf {
     let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../assets/bar.glb");
@@ -77,7 +77,7 @@ fn a_whole_session_by_pointer_and_keys_comes_back_by_undo_redo_and_reopening() {
     });
     desktop.shoot("widened");
     desktop.keys(&["shift+n"]);
-    desktop.drag((x - 60, y - 230), (x - 54, y - 226));
+    desktop.drag((x - 60, y - 210), (x - 54, y - 206));
     once("two-handles", &|project| handles(project).len() == 2);
     desktop.shoot("two-handles");
     desktop.keys(&["6"]);
