@@ -415,3 +415,51 @@ fn a_filter_calms_or_exaggerates_a_handles_way_and_keeps_the_ends_of_its_span() 
             .refused(1, &["filter"]);
     }
 }
+
+#[test]
+fn footprints_rest_and_other_frames_keep_their_bytes() {
+    // The bar stands on its lower end: it creeps, hops and creeps again, and sways above.
+    let foot = |frame: usize| match frame {
+        0..=2 => DVec3::new(0.01 * frame as f64, 0.0, 0.0),
+        3..=5 => DVec3::new(0.3 * frame as f64, 0.0, 0.4),
+        _ => DVec3::new(2.0, 0.01 * frame as f64, 0.0),
+    };
+    let take = Take::of(|frame| posed(|p| p + foot(frame) + DVec3::X * 0.02 * frame as f64 * p.z));
+    let mut edit = json!({
+        "version": 1,
+        "fixed": { "ranges": [[200, 349]] },
+        "handles": [{ "name": "foot", "select": { "ranges": [[0, 49]] } }],
+        "footprints": [{ "handle": "foot", "up": "z", "height": 0.05, "speed": 0.1, "fade": 1 }],
+    });
+    for method in ["bilaplacian", "arap"] {
+        edit["method"] = json!({ "name": method });
+        let report_at = take.folder.at("report.json").to_string_lossy().into_owned();
+        take.edited(&edit, "out", &["--report", &report_at]).done();
+        let report: Value = serde_json::from_slice(&fs::read(&report_at).unwrap()).unwrap();
+        assert_eq!(report["footprints"], 2, "{report}");
+        for run in [0..=2, 6..=8] {
+            let held = take.shape("in", (run.start() + run.end()) / 2);
+            for frame in run {
+                let away = largest_distance(&take.shape("out", frame)[..50], &held[..50]);
+                assert!(away < 1e-6, "{method} at {frame}: {away}");
+                assert_eq!(take.shape("out", frame)[200..], take.shape("in", frame)[200..]);
+            }
+        }
+        // One frame beside each fades, and the frame in the middle of a footprint is its place.
+        for frame in 0..FRAMES {
+            let is_same = take.bytes("out", frame) == take.bytes("in", frame);
+            assert_eq!(is_same, [1, 4, 7].contains(&frame), "{method} at {frame}");
+        }
+    }
+    edit["method"] = json!({ "name": "primo" });
+    take.edited(&edit, "no", &[])
+        .refused(1, &["primo", "takes no positions"]);
+    edit["method"] = json!({ "name": "arap" });
+    edit["keys"] = json!([{ "frame": 1, "span": [0, 2], "handles": { "foot": {} } }]);
+    take.edited(&edit, "no", &[])
+        .refused(1, &["footprints[0]", "keep one of them"]);
+    edit["footprints"][0]["speed"] = json!(0);
+    take.edited(&edit, "no", &[])
+        .refused(1, &["footprints[0].speed is 0", "above 0"]);
+    assert!(!take.folder.at("no").exists());
+}

@@ -1,7 +1,7 @@
 //! The pictures of the walk-through in `docs/first-edit.md`, taken from the whole application without a display.
 //!
 //! `cargo run --release -p pliant-app --example walkthrough -- FOLDER` follows the page on the built-in sample, and
-//! writes a picture of each step to FOLDER.
+//! writes a picture of each step to FOLDER, and the moving picture of the README, `drag.gif`.
 
 #![allow(
     clippy::expect_used,
@@ -10,7 +10,7 @@
     reason = "a tool of the documentation fails by panicking and says what it wrote"
 )]
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, pos2, vec2};
@@ -112,9 +112,8 @@ fn mean<'a>(positions: impl Iterator<Item = &'a DVec3>) -> DVec3 {
     sum / count
 }
 
-fn main() {
-    let folder = PathBuf::from(std::env::args_os().nth(1).expect("give a folder"));
-    std::fs::create_dir_all(&folder).unwrap();
+/// The window on the sample, as it is when Pliant is new.
+fn open(folder: &Path) -> Walk {
     let own = tempfile::tempdir().unwrap();
     let places = AppDirectories {
         settings: Some(own.path().join("settings.json")),
@@ -127,11 +126,67 @@ fn main() {
         .build_eframe(move |context| {
             Application::with_places(context, Source::Sample, &places).expect("there is a graphics device")
         });
-    let mut walk = Walk {
+    Walk {
         harness,
-        folder,
+        folder: folder.to_owned(),
         number: 0,
+    }
+}
+
+/// The width of the moving picture in pixels.
+const FILM_WIDTH: u32 = 440;
+
+/// A spine is drawn through the tail, and its end is dragged up and back.
+fn film(folder: &Path) {
+    let mut walk = open(folder);
+    walk.settle();
+    walk.command(Command::SetStrokeShape(StrokeShape::Spine));
+    let along = |walk: &Walk, share: f64| {
+        walk.point(move |positions| {
+            let lowest = positions.iter().map(|p| p.z).fold(f64::INFINITY, f64::min);
+            let from = lowest + 0.02 + share * 0.46;
+            mean(positions.iter().filter(|p| (p.z - from).abs() < 0.02))
+        })
     };
+    let way: Vec<Pos2> = (0..8).map(|step| along(&walk, 1.0 - f64::from(step) / 7.2)).collect();
+    walk.stroke(&way);
+    let end = way[7];
+    let mut frames = Vec::new();
+    let mut shoot = |walk: &mut Walk| {
+        walk.harness.run_steps(6);
+        let mut image = walk.harness.render().expect("the device draws");
+        let view = walk.harness.state().view_rect();
+        let [x, y, width, height] = [view.left(), view.top(), view.width(), view.height()].map(|px| px as u32);
+        let view = image::imageops::crop(&mut image, x, y, width, height).to_image();
+        let small = [FILM_WIDTH, FILM_WIDTH * height / width];
+        let filter = image::imageops::FilterType::Triangle;
+        frames.push(image::imageops::resize(&view, small[0], small[1], filter));
+    };
+    walk.pointer(end, None);
+    walk.pointer(end, Some(true));
+    for step in 0..16 {
+        let angle = f64::from(step) / 16.0 * std::f64::consts::TAU;
+        let way = vec2(-40.0 * (1.0 - angle.cos()) as f32, -90.0 * (1.0 - angle.cos()) as f32);
+        walk.pointer(end + way + vec2(25.0 * angle.sin() as f32, 0.0), None);
+        shoot(&mut walk);
+    }
+    let path = folder.join("drag.gif");
+    let file = std::fs::File::create(&path).unwrap();
+    let mut encoder = image::codecs::gif::GifEncoder::new_with_speed(file, 10);
+    encoder.set_repeat(image::codecs::gif::Repeat::Infinite).unwrap();
+    let delay = image::Delay::from_numer_denom_ms(110, 1);
+    let frames = frames
+        .into_iter()
+        .map(|frame| image::Frame::from_parts(frame, 0, 0, delay));
+    encoder.encode_frames(frames).unwrap();
+    println!("{}", path.display());
+}
+
+fn main() {
+    let folder = PathBuf::from(std::env::args_os().nth(1).expect("give a folder"));
+    std::fs::create_dir_all(&folder).unwrap();
+    film(&folder);
+    let mut walk = open(&folder);
     walk.shoot("opened");
 
     let head = walk.point(|positions| mean(positions.iter().filter(|p| p.y > 0.87 && p.z > 0.28)));

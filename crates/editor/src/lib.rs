@@ -79,9 +79,9 @@ pub use event::Event;
 pub use flow_start::FlowStart;
 pub use format::{
     Accuracy, AttachmentEntry, Axis, Beginning, DyeEntry, EDIT_VERSION, EditError, EditFile, ExampleEntry,
-    ExampleSource, ExportError, FieldEntry, FilterEntry, FilterKind, FlowFile, FlowMotion, HandleEntry, HandleSetup,
-    JoinsFile, KeyEntry, MeshReference, Placement, PoseEntry, Project, Rest, SOFT_RANGE, STIFFNESS_RANGE, Selector,
-    Setup, StoredKept, VelocityEntry, geometry_hash, refuse_keys,
+    ExampleSource, ExportError, FieldEntry, FilterEntry, FilterKind, FlowFile, FlowMotion, FootprintEntry, GroundAxis,
+    HandleEntry, HandleSetup, JoinsFile, KeyEntry, MeshReference, Placement, PoseEntry, Project, Rest, SOFT_RANGE,
+    STIFFNESS_RANGE, Selector, Setup, StoredKept, VelocityEntry, geometry_hash, refuse_keys,
 };
 pub use input::{Button, Key, Modifiers, Pointer};
 pub use jobs::{

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use pliant_deform::{Attachment, ControlMesh, Method};
-use pliant_editor::{Button, Command, Event, GizmoPart, JobKind, Modifiers, Pointer, ToolMode};
+use pliant_editor::{Button, Command, Event, GizmoPart, JobKind, Modifiers, Pointer, StrokeShape, ToolMode};
 use pliant_mesh::shapes;
 use rig::{CENTRE_PX, Fingerprint, Rig, VIEWPORT_PX, at};
 
@@ -245,4 +245,17 @@ fn what_can_not_be_done_with_points_is_told_with_its_reason() {
     assert!(rig.editor.view().problem.unwrap().starts_with("The cage has 3 points"));
     assert!(rig.editor.document().attachments().is_empty());
     rig.move_to(at(CENTRE_PX).position_px);
+}
+
+#[test]
+fn with_the_select_tool_a_box_is_for_the_points_that_are_shown() {
+    let mut rig = ball("cage");
+    rig.command(Command::SetStrokeShape(StrokeShape::Box));
+    assert_eq!(rig.editor.view().tool, ToolMode::Select);
+    rig.swipe(&[DVec2::splat(1.0), CENTRE_PX, VIEWPORT_PX - 1.0]);
+    assert!(selected(&rig) > 2, "{}", selected(&rig));
+    // Without points a box paints.
+    let mut plain = ball("bilaplacian");
+    plain.command(Command::SetStrokeShape(StrokeShape::Box));
+    assert_eq!(plain.editor.view().tool, ToolMode::PaintHandle);
 }

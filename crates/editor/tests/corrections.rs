@@ -152,6 +152,24 @@ fn a_grab_takes_the_surface_along_with_the_pointer_and_keeps_the_volume() {
 }
 
 #[test]
+fn a_grab_pulled_far_beyond_its_radius_folds_nothing() {
+    let mut rig = opened(shapes::icosphere(5), Correction::Grab);
+    rig.command(Command::SetBrushRadius(25.0));
+    let volume_of = |rig: &Rig| {
+        let after = positions(rig);
+        Distortion::of(&rig.model.surface, &rig.model.topology, &after).volume_ratio
+    };
+    // From the rim outwards, by six radii: a single step turns the tip inside out.
+    let camera = *rig.editor.view().camera;
+    let rim = camera.project(DVec3::new(0.95, 0.0, 0.2), VIEWPORT_PX).unwrap();
+    rig.swipe(&[rim, rim + DVec2::new(60.0, 0.0), rim + DVec2::new(150.0, 0.0)]);
+    rig.drain();
+    assert!((volume_of(&rig) - 1.0).abs() < 0.02, "{}", volume_of(&rig));
+    let found = rig.editor.intersections();
+    assert!(found.is_some_and(|found| found.is_empty()), "{found:?}");
+}
+
+#[test]
 fn each_is_one_step_and_escape_and_undo_leave_nothing() {
     for correction in [Correction::Smooth, Correction::Relax, Correction::Grab] {
         let mut rig = opened(bumpy(), correction);

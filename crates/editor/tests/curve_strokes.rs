@@ -4,7 +4,7 @@
 mod rig;
 
 use glam::{DVec2, DVec3};
-use pliant_editor::{Command, HandleCurve, JobKind, NamedView, StrokeShape, ToolMode};
+use pliant_editor::{Command, HandleCurve, JobKind, NamedView, StrokeShape, Symmetry, ToolMode};
 use pliant_mesh::shapes;
 use rig::{Fingerprint, Rig, VIEWPORT_PX};
 
@@ -184,4 +184,49 @@ fn a_sketch_beside_the_outline_moves_it_onto_the_line_and_one_far_from_it_is_ref
             .contains("begin and end it at the edge")
     );
     assert_eq!(rig.editor.document().handles().len(), count);
+}
+
+#[test]
+fn with_symmetry_a_spine_has_a_twin_that_follows_the_mirrored_curve() {
+    let mut rig = tube();
+    rig.command(Command::SetSymmetry(Symmetry::Axis(0)));
+    rig.drain();
+    stroke(&mut rig, StrokeShape::Spine, 0.65, 0.97);
+    let handles = rig.editor.document().handles().to_vec();
+    assert_eq!(handles.len(), 2, "{:?}", rig.editor.view().problem);
+    let of = |rig: &Rig, place: usize| {
+        let line = rig.editor.document().handles()[place].line.clone();
+        line.unwrap().curve().unwrap().clone()
+    };
+    let middle = rig.model.bounds().unwrap().centre().x;
+    let mirrored = |p: &DVec3| DVec3::new(2.0 * middle - p.x, p.y, p.z);
+    let end_px = px(&rig, *of(&rig, 0).moved().last().unwrap());
+    rig.swipe(&[
+        end_px,
+        end_px + DVec2::new(-20.0, -40.0),
+        end_px + DVec2::new(-40.0, -80.0),
+    ]);
+    rig.drain();
+    assert!(!of(&rig, 0).is_rest());
+    for (own, other) in of(&rig, 0).moved().iter().zip(of(&rig, 1).moved()) {
+        assert!(mirrored(own).distance(*other) < 1e-9, "{own} {other}");
+    }
+    // Both halves of the shape are each other's image.
+    let view = rig.editor.view();
+    let positions = rig.model.surface.positions.iter().zip(view.displacements.iter());
+    let heights = positions
+        .filter(|(_, way)| way.length() > 0.5)
+        .map(|(p, way)| ((p.x - middle).signum(), way.y));
+    let (right, left): (Vec<_>, Vec<_>) = heights.partition(|(side, _)| *side > 0.0);
+    let highest = |side: &[(f64, f64)]| side.iter().map(|(_, y)| *y).fold(f64::MIN, f64::max);
+    assert!(
+        right.len() > 50 && right.len() == left.len(),
+        "{} {}",
+        right.len(),
+        left.len()
+    );
+    assert!((highest(&right) - highest(&left)).abs() < 1e-3);
+    rig.undo();
+    rig.drain();
+    assert!(of(&rig, 0).is_rest() && of(&rig, 1).is_rest());
 }

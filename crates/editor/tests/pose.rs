@@ -109,6 +109,39 @@ fn one_drag_bends_an_untouched_limb_about_its_joint_in_one_step() {
     assert_eq!(rig.editor.document().handles().len(), 1);
 }
 
+/// The numbers of surface vertices with x between these, and of those among them with a colour.
+fn coloured(rig: &Rig, x: std::ops::Range<f64>) -> (usize, usize) {
+    let mut colours = Vec::new();
+    rig.editor.region_colours(&mut colours);
+    let within = rig.model.surface.positions.iter().zip(&colours);
+    let within: Vec<_> = within.filter(|(p, _)| x.contains(&p.x)).collect();
+    (within.len(), within.iter().filter(|(_, colour)| colour[3] > 0).count())
+}
+
+#[test]
+fn the_limb_under_the_pointer_is_tinted_until_the_pointer_or_the_tool_goes() {
+    let mut rig = open();
+    let arm = seen(&rig, 3.0..4.0);
+    rig.send(Event::PointerMoved(pointer(arm, Modifiers::NONE)));
+    rig.drain();
+    // The job's result is shown with the next event.
+    rig.send(Event::PointerMoved(pointer(arm, Modifiers::NONE)));
+    let (count, tinted) = coloured(&rig, 2.5..5.1);
+    assert!(count > 100 && tinted == count, "{tinted} of {count}");
+    assert_eq!(
+        coloured(&rig, -5.1..0.5).1,
+        0,
+        "the body and the other arm stay as they are"
+    );
+    rig.send(Event::PointerLeft);
+    rig.drain();
+    assert_eq!(coloured(&rig, -5.1..5.1).1, 0);
+    rig.send(Event::PointerMoved(pointer(arm, Modifiers::NONE)));
+    rig.drain();
+    rig.command(Command::SetTool(ToolMode::PaintFixed));
+    assert_eq!(coloured(&rig, -5.1..5.1).1, 0);
+}
+
 #[test]
 fn a_press_before_the_joint_is_found_loses_nothing_of_the_drag() {
     let mut patient = open();

@@ -212,3 +212,36 @@ fn the_ring_lies_on_the_surface_and_is_as_far_from_its_middle_as_the_brush_reach
         }
     }
 }
+
+#[test]
+fn a_handle_closes_round_a_limb_as_thick_as_the_brush_and_leaves_the_back_of_a_body() {
+    // A ball of radius 1 with a rod of radius 0.2 along x.
+    let profile = |share: f64| {
+        let x: f64 = 3.0 * (1.0 - 2.0 * share);
+        let ball = (1.0 - x * x).max(0.0).sqrt();
+        let rod = if (0.0..2.9).contains(&x) { 0.2 } else { 0.0 };
+        DVec2::new(if share % 1.0 == 0.0 { 0.0 } else { ball.max(rod) }, x.clamp(-1.0, 2.9))
+    };
+    let along_x = glam::DAffine3::from_mat3(glam::DMat3::from_cols(DVec3::Y, DVec3::Z, DVec3::X));
+    let mut rig = Rig::open(shapes::moved(&shapes::turned(120, 32, profile), along_x));
+    rig.command(Command::View(NamedView::Front));
+    rig.drain();
+    let px = |rig: &Rig, p: DVec3| rig.editor.view().camera.project(p, rig::VIEWPORT_PX).unwrap();
+    let radius_px = 1.3 * px(&rig, DVec3::new(2.0, 0.2, 0.0)).distance(px(&rig, DVec3::new(2.0, 0.0, 0.0)));
+    rig.command(Command::SetBrushRadius(radius_px));
+    let sides = |rig: &Rig, x: std::ops::Range<f64>| {
+        let painted = rig.model.surface.positions.iter().zip(rig.editor.document().paint());
+        let painted = painted.filter(|(p, paint)| x.contains(&p.x) && matches!(paint, Paint::Handle(_)));
+        let (front, back): (Vec<_>, Vec<_>) = painted.partition(|(p, _)| p.z > 0.0);
+        (front.len(), back.len())
+    };
+    let way = [1.8, 2.0, 2.2].map(|x| px(&rig, DVec3::new(x, 0.0, 0.2)));
+    rig.paint(ToolMode::PaintHandle, &way);
+    let (front, back) = sides(&rig, 1.5..2.5);
+    assert!(front > 30 && back > front / 2, "{front} {back}");
+    rig.command(Command::NewHandle);
+    let at = px(&rig, DVec3::new(-0.2, 0.0, 1.0));
+    rig.paint(ToolMode::PaintHandle, &[at, at + DVec2::new(4.0, 0.0)]);
+    let (front, back) = sides(&rig, -1.0..0.5);
+    assert!(front > 4 && back == 0, "{front} {back}");
+}

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
-use pliant_mesh::{Curve, CurveMotion, CurvePath, CurveRefused};
+use pliant_mesh::{Curve, CurveMotion, CurvePath, CurveRefused, MirrorPlane};
 
 /// A curve through control points at rest and where they go: each vertex of its handle moves with the frame at its
 /// nearest place on the curve at rest ([`CurveMotion`]). Copies share it.
@@ -111,6 +111,16 @@ impl HandleCurve {
     pub(crate) fn with(&self, moved: Vec<DVec3>, twist_deg: Vec<f64>, scale: Vec<f64>) -> Option<Self> {
         let rest = self.rest();
         Self::new(rest.points().to_vec(), rest.is_closed(), moved, twist_deg, scale).ok()
+    }
+
+    /// Its mirror image across a plane.
+    pub(crate) fn mirrored(&self, plane: &MirrorPlane) -> Option<Self> {
+        let mirrored = |points: &[DVec3]| points.iter().map(|point| plane.mirrored(*point)).collect();
+        let rest = self.rest();
+        let twist_deg = self.twist_deg().iter().map(|twist| -twist).collect();
+        let points = mirrored(rest.points());
+        let moved = mirrored(self.moved());
+        Self::new(points, rest.is_closed(), moved, twist_deg, self.scale().to_vec()).ok()
     }
 
     /// The largest turn or twist of a part of the curve, in radians.

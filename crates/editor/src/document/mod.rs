@@ -50,6 +50,6 @@ pub(crate) use state::Repainted;
 pub(crate) use strength::{Stance, attachment_part};
 pub(crate) use transaction::Transaction;
 pub(crate) use turn::{accumulated, followed, means, rotation_of};
-pub(crate) use twins::link_twins;
+pub(crate) use twins::{link_twins, put_curve};
 pub(crate) use version::{Aspect, Version, Versions};
 pub(crate) use vertex_access::VertexAccess;

@@ -3,6 +3,8 @@
 use pliant_mesh::MirrorPlane;
 
 use super::handle::{HandleId, PivotPlace, Twin};
+use super::handle_curve::HandleCurve;
+use super::handle_line::HandleLine;
 use super::mirror_plane::mirrored_transform;
 use super::state::Document;
 
@@ -21,6 +23,8 @@ pub(crate) fn link_twins(document: &mut Document, id: HandleId, other: HandleId,
         // Mirrored motion needs mirrored pivots.
         second.pivot_place = PivotPlace::Picked;
         second.soft = first.soft;
+        let curve = first.line.as_ref().and_then(HandleLine::curve);
+        second.line = curve.and_then(|curve| curve.mirrored(&plane)).map(HandleLine::Curve);
         second.twin = Some(Twin { handle: id, plane });
     });
     // The twin is known to be at rest; from there it gets its other half's mirrored transform.
@@ -30,4 +34,18 @@ pub(crate) fn link_twins(document: &mut Document, id: HandleId, other: HandleId,
         document.change_handle(other, |second| second.put(mirrored));
         document.unsettle();
     }
+}
+
+/// Gives a handle a curve, and its twin the mirror image if that follows a curve, too.
+pub(crate) fn put_curve(document: &mut Document, id: HandleId, curve: HandleCurve) {
+    let twin = document.handle(id).and_then(|handle| handle.twin);
+    if let Some(Twin { handle, plane }) = twin
+        && let Some(mirrored) = curve.mirrored(&plane)
+    {
+        document.change_handle(handle, |twin| {
+            twin.line = twin.line.is_some().then_some(HandleLine::Curve(mirrored));
+        });
+    }
+    document.unsettle();
+    document.change_handle(id, |handle| handle.line = Some(HandleLine::Curve(curve)));
 }

@@ -12,6 +12,7 @@ use super::edit_error::EditError;
 use super::examples::ExampleEntry;
 use super::field::{FieldEntry, FieldKind};
 use super::filters::{FilterEntry, check_filters};
+use super::footprints::{FootprintEntry, check_footprints};
 use super::json::parse;
 use super::keys::{KeyEntry, check_keys};
 use super::loose::{OneOrList, StoredLoose};
@@ -72,6 +73,8 @@ pub struct EditFile {
     pub keys: Vec<KeyEntry>,
     /// Filters of handles' trajectories, for sequences ([`EditFile::sequence_timeline`]).
     pub filter: Vec<FilterEntry>,
+    /// Handles that are held where they rest on the ground, for sequences.
+    pub footprints: Vec<FootprintEntry>,
     /// The distance within which the mesh's vertices are joined before it is bent, in world units, at least 0; with
     /// `None` it follows from the mesh ([`pliant_mesh::WeldOptions`]).
     pub weld: Option<f64>,
@@ -140,6 +143,8 @@ struct StoredEdit {
     keys: Vec<KeyEntry>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     filter: Vec<FilterEntry>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    footprints: Vec<FootprintEntry>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     weld: Option<f64>,
 }
@@ -195,6 +200,7 @@ impl Default for EditFile {
             strength: 1.0,
             keys: Vec::new(),
             filter: Vec::new(),
+            footprints: Vec::new(),
             weld: None,
         }
     }
@@ -272,6 +278,7 @@ impl EditFile {
             .map_err(|error| error.under("strength"))?;
         check_keys(&stored.keys)?;
         check_filters(&stored.filter)?;
+        check_footprints(&stored.footprints)?;
         if let Some(weld) = stored.weld {
             WELD.check(weld).map_err(|error| error.under("weld"))?;
         }
@@ -308,6 +315,7 @@ impl EditFile {
             strength: stored.strength,
             keys: stored.keys,
             filter: stored.filter,
+            footprints: stored.footprints,
             weld: stored.weld,
         })
     }
@@ -342,6 +350,7 @@ impl EditFile {
             strength: self.strength,
             keys: self.keys.clone(),
             filter: self.filter.clone(),
+            footprints: self.footprints.clone(),
             weld: self.weld,
         };
         json!(stored)

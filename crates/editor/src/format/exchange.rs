@@ -124,6 +124,7 @@ pub(crate) fn export(document: &Document, model: &Arc<Model>) -> Result<EditFile
         strength,
         keys: Vec::new(),
         filter: Vec::new(),
+        footprints: Vec::new(),
         weld: model.weld.distance,
     };
     let setup = edit.resolve(model)?;

@@ -14,10 +14,10 @@ pub struct FilterEntry {
     pub span: [u32; 2],
     /// The effect.
     pub kind: FilterKind,
-    /// The standard deviation of the Gaussian, in frames, in [`WIDTH_RANGE`].
+    /// The standard deviation of the Gaussian, in frames, from 0.1 to 1000.
     #[serde(default = "usual_width")]
     pub width: f64,
-    /// The share of the filter, in [`AMOUNT_RANGE`].
+    /// The share of the filter, from 0 to 10.
     #[serde(default = "all_of_it")]
     pub amount: f64,
 }

@@ -21,10 +21,14 @@ impl EditFile {
                 place: "the edit".to_owned(),
             });
         }
-        if !self.filter.is_empty() {
+        let others = [
+            ("filter", self.filter.is_empty()),
+            ("footprints", self.footprints.is_empty()),
+        ];
+        if let Some((member, _)) = others.into_iter().find(|(_, is_empty)| !is_empty) {
             return Err(EditError::Other {
                 place: "the edit".to_owned(),
-                sentence: "has a `filter`, which is for sequences: use `pliant sequence`, or remove it".to_owned(),
+                sentence: format!("has `{member}`, and that is for sequences: use `pliant sequence`, or remove it"),
             });
         }
         let names: Vec<&str> = self.handles.iter().map(|handle| &*handle.name).collect();

@@ -8,10 +8,13 @@ use super::edit_file::EditFile;
 /// # Errors
 /// [`EditError::Other`], if there are some.
 pub fn refuse_keys(edit: &EditFile, instead: &str) -> Result<(), EditError> {
-    let member = match (edit.keys.is_empty(), edit.filter.is_empty()) {
-        (false, _) => "keys",
-        (true, false) => "filter",
-        (true, true) => return Ok(()),
+    let members = [
+        ("keys", edit.keys.is_empty()),
+        ("filter", edit.filter.is_empty()),
+        ("footprints", edit.footprints.is_empty()),
+    ];
+    let Some((member, _)) = members.into_iter().find(|(_, is_empty)| !is_empty) else {
+        return Ok(());
     };
     Err(EditError::Other {
         place: "the edit".to_owned(),

@@ -6,8 +6,10 @@ use glam::DVec3;
 
 use super::edit_error::EditError;
 use super::edit_file::EditFile;
+use super::footprints::FootprintEntry;
 use super::keyed::handle_of;
 use super::keys::KeyEntry;
+use super::selector::Selector;
 use super::setup::Setup;
 use crate::HandleTransform;
 use crate::document::SplitTransform;
@@ -48,6 +50,12 @@ impl EditFile {
                 "fits only one frame: leave it out, so that the method makes its own, or take another method",
             );
         }
+        if self.inside_out != Selector::None {
+            return refuse(
+                "inside_out".to_owned(),
+                "is for a single file: remove it, and turn the parts in each frame",
+            );
+        }
         if self.kept.is_some() {
             return refuse(
                 "the edit".to_owned(),
@@ -82,6 +90,9 @@ impl EditFile {
                 });
             }
             frames.extend(first..=last);
+        }
+        if !self.footprints.is_empty() {
+            frames.extend(0..count);
         }
         Ok(frames.into_iter().collect())
     }
@@ -123,6 +134,33 @@ impl EditFile {
         Ok(SequenceTimeline::new(spans, self.shifts(&names, place)?))
     }
 
+    /// The footprints, each with the number of its handle.
+    ///
+    /// # Errors
+    /// A name that no handle has, or that two handles have; a handle that a key, a filter or another footprint moves too.
+    pub fn footprints_of_handles(&self) -> Result<Vec<(usize, &FootprintEntry)>, EditError> {
+        let names: Vec<&str> = self.handles.iter().map(|handle| &*handle.name).collect();
+        let mut found: Vec<(usize, &FootprintEntry)> = Vec::new();
+        for (place, footprint) in self.footprints.iter().enumerate() {
+            let name = &footprint.handle;
+            let in_footprint = |error: EditError| error.under(&format!("footprints[{place}].handle"));
+            let handle = handle_of(name, &names).map_err(in_footprint)?;
+            let is_keyed = self.keys.iter().any(|key| key.handles.contains_key(name));
+            let is_filtered = self.filter.iter().any(|filter| filter.handle == *name);
+            if is_keyed || is_filtered || found.iter().any(|(other, _)| *other == handle) {
+                return Err(EditError::Other {
+                    place: format!("footprints[{place}]"),
+                    sentence: format!(
+                        "holds `{}`, which a key, a filter or another footprint moves too: keep one of them",
+                        shortened(name)
+                    ),
+                });
+            }
+            found.push((handle, footprint));
+        }
+        Ok(found)
+    }
+
     /// The shifts of each handle by the filters, by frame. The trajectory of a handle with a parent is filtered as the
     /// parent sees it.
     fn shifts(
@@ -143,7 +181,7 @@ impl EditFile {
             let quick = quick_motions(&seen.collect::<Vec<DVec3>>(), filter.width);
             for (frame, quick) in frames.zip(quick) {
                 let shift = quick * filter.gain();
-                let shift = parent.map_or(shift, |parent| place(frame, parent).to_world(shift));
+                let shift = parent.map_or(shift, |parent| place(frame, parent).world_from_own(shift));
                 *shifts[handle].entry(frame).or_insert(DVec3::ZERO) += shift * self.strength;
             }
         }

@@ -60,7 +60,7 @@ impl HandlePlace {
     }
 
     /// A direction in the handle's axes, in world space.
-    pub(crate) fn to_world(&self, direction: DVec3) -> DVec3 {
+    pub(crate) fn world_from_own(&self, direction: DVec3) -> DVec3 {
         self.rotation * direction
     }
 
@@ -316,6 +316,8 @@ mod tests {
         let found = HandlePlace::of(&first, &now);
         assert!(found.rotation.dot(turn).abs() > 1.0 - 1e-12);
         let at_first = HandlePlace::of(&first, &first);
-        assert!(found.carried(first[3], &at_first).distance(now[3]) < 1e-12);
+        let off = found.carried(first[3], &at_first).distance(now[3]);
+        // The fit is exact to some 1e-12 of the distance between the points, which is 9.
+        assert!(off < 1e-11, "{off}");
     }
 }

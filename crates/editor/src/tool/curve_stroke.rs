@@ -68,7 +68,7 @@ struct Sample {
 impl CurveStroke {
     pub(super) fn begin(context: &mut Context<'_>, pointer: Pointer, shape: StrokeShape) -> Option<Self> {
         context.workspace.selection.wants_new_handle = true;
-        let stroke = PaintStroke::begin_on_one_side(context.workspace, context.settings, pointer)?;
+        let stroke = PaintStroke::begin(context.workspace, context.settings, pointer)?;
         Some(Self {
             shape,
             points_px: vec![pointer.position_px],

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{DAffine3, DVec3};
 use pliant_mesh::pulled_chain;
 
-use crate::document::{HandleCurve, HandleId, HandleLine};
+use crate::document::{HandleCurve, HandleId, put_curve};
 use crate::workspace::{ControlSource, Workspace, middle, put_attachment};
 
 /// The selected points of the selected handle's curve, or of the method's cage or lattice.
@@ -85,7 +85,7 @@ impl MovedControls {
             ControlSource::Curve(handle, curve, then) => {
                 let moved = self.moved_curve(curve, then, way);
                 let curve = curve.with(moved, curve.twist_deg().to_vec(), curve.scale().to_vec());
-                put_curve(workspace, *handle, curve);
+                put(workspace, *handle, curve);
             }
         }
     }
@@ -116,7 +116,7 @@ impl MovedControls {
         };
         let (mut twist_deg, mut scale) = (curve.twist_deg().to_vec(), curve.scale().to_vec());
         change(curve, then, *point as usize, &mut twist_deg, &mut scale);
-        put_curve(workspace, *handle, curve.with(curve.moved().to_vec(), twist_deg, scale));
+        put(workspace, *handle, curve.with(curve.moved().to_vec(), twist_deg, scale));
         true
     }
 
@@ -159,14 +159,12 @@ fn pulled_at(chain: &[DVec3], point: usize, target: DVec3) -> Vec<DVec3> {
     pulled
 }
 
-/// Gives a handle a curve that is one.
-fn put_curve(workspace: &mut Workspace, handle: HandleId, curve: Option<HandleCurve>) {
-    let Some(curve) = curve else { return };
-    workspace.refusal = None;
-    workspace.document.unsettle();
-    workspace.document.change_handle(handle, |handle| {
-        handle.line = Some(HandleLine::Curve(curve));
-    });
+/// Gives a handle a curve, if it is one.
+fn put(workspace: &mut Workspace, handle: HandleId, curve: Option<HandleCurve>) {
+    if let Some(curve) = curve {
+        workspace.refusal = None;
+        put_curve(&mut workspace.document, handle, curve);
+    }
 }
 
 #[cfg(test)]

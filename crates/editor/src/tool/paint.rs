@@ -61,7 +61,7 @@ impl PaintStroke {
         Some(StrokeGesture::new(transaction, stroke, pointer))
     }
 
-    /// The same without an other side: a curve has none.
+    /// The same without an other side: a sketch is of one view.
     pub fn begin_on_one_side(
         workspace: &mut Workspace,
         settings: &ToolSettings,

@@ -1,7 +1,7 @@
 //! Changes of the control points of the selected handle's curve: more of them, or fewer.
 
 use super::state::Workspace;
-use crate::document::{HandleCurve, HandleId, HandleLine};
+use crate::document::{HandleCurve, HandleId, put_curve};
 
 /// The most control points of a curve that is drawn and divided by hand.
 const MOST_POINTS: usize = 64;
@@ -91,9 +91,6 @@ impl Lists {
         let curve = HandleCurve::new(self.points, is_closed, self.moved, self.twist_deg, self.scale);
         let Ok(curve) = curve else { return };
         workspace.controls.put([]);
-        workspace.change(name, |document| {
-            document.unsettle();
-            document.change_handle(handle, |handle| handle.line = Some(HandleLine::Curve(curve)));
-        });
+        workspace.change(name, |document| put_curve(document, handle, curve));
     }
 }

@@ -3,11 +3,12 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use glam::DVec3;
-use pliant_deform::{Budget, Ordering, Role};
-use pliant_editor::{HandlePlace, Rest, SequenceTimeline, Setup, Start, Targets, Until};
+use glam::{DAffine3, DVec3};
+use pliant_deform::{Budget, Ordering, Role, Target};
+use pliant_editor::{HandlePlace, Rest, SequenceTimeline, Setup, settle};
 use pliant_mesh::{Model, Progress, Surface, SurfaceVertex};
 
+use super::footprints::Footprints;
 use crate::EngineError;
 use crate::apply::bind;
 use crate::watch::Watch;
@@ -21,6 +22,8 @@ pub(super) struct Bending<'a> {
     /// The fill-reducing ordering, if the method needs one: it depends on the topology alone.
     pub ordering: Option<&'a Ordering>,
     pub budget: Budget,
+    /// The footprints of handles.
+    pub footprints: &'a [Footprints],
     /// The vertices of each handle.
     pub handles: &'a [Vec<SurfaceVertex>],
 }
@@ -28,7 +31,7 @@ pub(super) struct Bending<'a> {
 /// The result of a frame.
 pub(super) struct Bent {
     /// The displacement of each surface vertex from its place in the frame.
-    pub displacements: Arc<Vec<DVec3>>,
+    pub displacements: Vec<DVec3>,
     pub is_settled: bool,
     pub warnings: Vec<String>,
 }
@@ -50,7 +53,45 @@ pub(super) fn place(vertices: &[SurfaceVertex], first: &[DVec3], positions: &[DV
     HandlePlace::of(&at(first), &at(positions))
 }
 
+/// The maps of all targets, if each is one.
+fn maps(targets: &[Target]) -> Option<Vec<DAffine3>> {
+    let map = |target: &Target| match target {
+        Target::Map(map) => Some(*map),
+        Target::Places(_) | Target::Maps(_) => None,
+    };
+    targets.iter().map(map).collect()
+}
+
 impl Bending<'_> {
+    /// The handles' targets in a frame whose surface is at `positions`; `None` if no handle moves.
+    fn targets(&self, frame: usize, positions: &[DVec3]) -> Option<Vec<Target>> {
+        let held: Vec<&Footprints> = self
+            .footprints
+            .iter()
+            .filter(|own| own.places.contains_key(&frame))
+            .collect();
+        if held.is_empty() && !self.timeline.reaches(frame) {
+            return None;
+        }
+        let first = &self.model.surface.positions;
+        let handles = self.handles.iter();
+        let places: Vec<HandlePlace> = handles.map(|vertices| place(vertices, first, positions)).collect();
+        let maps = self.timeline.maps_at(frame, &places);
+        let is_moved = |own: &&Footprints| {
+            let mut now = self.handles[own.handle].iter().map(|vertex| positions[vertex.index()]);
+            own.places[&frame].iter().any(|place| now.next() != Some(*place))
+        };
+        if maps.is_none() && !held.iter().any(is_moved) {
+            return None;
+        }
+        let maps = maps.unwrap_or_else(|| vec![DAffine3::IDENTITY; self.handles.len()]);
+        let mut targets: Vec<Target> = maps.into_iter().map(Target::Map).collect();
+        for own in held {
+            targets[own.handle] = Target::Places(own.places[&frame].clone());
+        }
+        Some(targets)
+    }
+
     /// Solves a frame whose surface is at `positions`; `None` if nothing moves there. `file` is used in messages.
     ///
     /// # Errors
@@ -62,23 +103,18 @@ impl Bending<'_> {
         positions: &[DVec3],
         watch: &Watch,
     ) -> Result<Option<Bent>, EngineError> {
-        if !self.timeline.reaches(frame) {
-            return Ok(None);
-        }
-        let first = &self.model.surface.positions;
-        let handles = self.handles.iter();
-        let places: Vec<HandlePlace> = handles.map(|vertices| place(vertices, first, positions)).collect();
-        let Some(maps) = self.timeline.maps_at(frame, &places) else {
+        let Some(targets) = self.targets(frame, positions) else {
             return Ok(None);
         };
-        let displacements: Vec<DVec3> = positions.iter().zip(first).map(|(own, first)| *own - *first).collect();
+        let first = &self.model.surface.positions;
+        let from_first: Vec<DVec3> = positions.iter().zip(first).map(|(own, first)| *own - *first).collect();
         let surface = Surface {
             positions: positions.to_vec(),
             triangles: self.model.surface.triangles.clone(),
         };
         let setup = Setup {
             rest: Some(Rest {
-                displacements: Arc::new(displacements),
+                displacements: Arc::new(from_first),
                 surface: Arc::new(surface),
             }),
             ..self.setup.clone()
@@ -93,9 +129,13 @@ impl Bending<'_> {
             (&Progress::new(), cancel),
         )?;
         bound.set_cancel(cancel);
-        let start = Start::Shape(Arc::new(vec![DVec3::ZERO; bound.vertex_count()]));
-        let bent = start.bend(&mut bound, &Targets::new(maps, None), Until::End, cancel);
-        let bent = bent.map_err(|error| EngineError::Solve {
+        let mut displacements = vec![DVec3::ZERO; bound.vertex_count()];
+        let bent = match maps(&targets) {
+            Some(maps) => bound.set_targets(&maps),
+            None => bound.set_places(&targets),
+        };
+        let bent = bent.and_then(|()| settle(&mut bound, &mut displacements, usize::MAX, cancel));
+        let step = bent.map_err(|error| EngineError::Solve {
             file: file.to_owned(),
             source: error.renumbered(|vertex| self.model.first_file_vertex(SurfaceVertex(vertex)).0),
         })?;
@@ -103,8 +143,8 @@ impl Bending<'_> {
             return Err(EngineError::Interrupted);
         }
         Ok(Some(Bent {
-            displacements: bent.shown,
-            is_settled: bent.step.converged,
+            displacements,
+            is_settled: step.converged,
             warnings: setup.worded(bound.warnings()),
         }))
     }

@@ -7,32 +7,31 @@
 mod bend;
 mod cache;
 mod folder;
+mod followed;
+mod footprints;
 mod frame;
 mod report;
 mod run;
 
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use pliant_deform::Budget;
-use pliant_editor::{Beginning, EditFile, HandlePlace, Selector, SequenceTimeline, Setup};
+use pliant_editor::Beginning;
 use pliant_io::PointCacheFormat;
-use pliant_mesh::{Drawn, Progress, SurfaceVertex, WeldOptions};
-use rayon::prelude::*;
+use pliant_mesh::WeldOptions;
 
-use self::bend::{Bending, place, vertices_of_handles};
+use self::bend::{Bending, vertices_of_handles};
 use self::cache::Cache;
 use self::folder::Folder;
-use self::frame::Frame;
+use self::followed::Followed;
 pub use self::report::SequenceReport;
-use self::run::{Run, Source};
+use self::run::{Run, Source, To};
 use crate::EngineError;
 use crate::apply::{check_bends, check_not_empty, order};
-use crate::files::{Destination, NewFile, OutputFolder, Share, Staging};
-use crate::loading::{Loaded, load};
+use crate::files::{Destination, OutputFolder, Staging, refuse_shared};
+use crate::loading::load;
 use crate::path_text::shown;
-use crate::report::ms_since;
 use crate::watch::Watch;
 
 /// The input of [`sequence`].
@@ -76,40 +75,39 @@ pub fn sequence(job: &Sequence<'_>, watch: &Watch, staging: &Staging) -> Result<
     };
     let first = load(kind.mesh(), &weld, watch)?;
     check_not_empty(&first.path, &first.model)?;
+    let rest = first.model.rest();
+    let (source, to, gap) = match kind {
+        Kind::Folder { folder, output, .. } => (Source::Folder(folder.frames), To::Folder(output), folder.gap),
+        Kind::Cache { format, to, .. } => (
+            Source::Cache(Cache::of(job.frames, format, &first)?),
+            To::File(to),
+            None,
+        ),
+    };
     let in_edit = |source| EngineError::Edit {
         edit: job.edit_path.to_owned(),
         source,
-    };
-    if edit.inside_out != Selector::None {
-        let edit = shown(job.edit_path);
-        return Err(EngineError::Unsupported(format!(
-            "{edit}: a sequence does not turn parts inside out: remove `inside_out`, and turn them in each file"
-        )));
-    }
-    let rest = first.model.rest();
-    let (source, gap) = match kind {
-        Kind::Folder(folder, _) => (Source::Folder(folder.frames), folder.gap),
-        Kind::Cache { format, .. } => (Source::Cache(Cache::of(job.frames, format, &first)?), None),
     };
     let needed = edit.frames_with_places(source.count()).map_err(in_edit)?;
     let setup = edit.resolve(&first.model).map_err(in_edit)?;
     check_bends(&first.path, &first.model, &setup.method)?;
     let handles = vertices_of_handles(&setup);
-    let timeline = timeline(edit, &setup, (&first, &rest, &source), &needed, &handles, watch)?.map_err(in_edit)?;
+    let footprints = edit.footprints_of_handles().map_err(in_edit)?;
+    let followed = Followed::of(&needed, (&first, &rest, &source), (&handles, &footprints), watch)?;
+    let timeline = followed.timeline(edit, &setup).map_err(in_edit)?;
+    let footprints = followed.footprints(&footprints);
     let ordering = match needed.is_empty() {
         true => None,
-        false => order(
-            &first.model,
-            &setup,
-            job.budget,
-            &watch.begin("ordering"),
-            &watch.cancel,
-        )?,
+        false => {
+            let progress = watch.begin("ordering");
+            order(&first.model, &setup, job.budget, &progress, &watch.cancel)?
+        }
     };
     let bending = Bending {
         model: &first.model,
         setup: &setup,
         timeline: &timeline,
+        footprints: &footprints,
         ordering: ordering.as_ref(),
         budget: job.budget,
         handles: &handles,
@@ -118,6 +116,7 @@ pub fn sequence(job: &Sequence<'_>, watch: &Watch, staging: &Staging) -> Result<
         method: setup.method.name().to_owned(),
         vertices: rest.file_vertex_count,
         frames: source.count(),
+        footprints: footprints.iter().map(|own| own.count).sum(),
         ..SequenceReport::default()
     };
     report.warn(first.scene.notes().iter().cloned().chain(gap));
@@ -129,43 +128,24 @@ pub fn sequence(job: &Sequence<'_>, watch: &Watch, staging: &Staging) -> Result<
         watch,
         staging,
     };
-    let mut made = None;
-    let mut staged = match &source {
-        Source::Folder(frames) => {
-            let output = OutputFolder::of(job.output, ("FOLDER", job.frames))?;
-            made = Some(output.make(staging)?);
-            // Alone, because frames may have neighbours, and for all frames at once.
-            let held = staging.hold([(&output.inside(".frame")?, Share::Alone)], &watch.cancel)?;
-            let staged = run.files(frames, &output, report_to.as_ref(), &mut report)?;
-            staged.holding(held)
-        }
-        Source::Cache(cache) => run.cache(cache, &Destination::of(job.output)?, &mut report)?,
-    };
-    report.conclude(ms_since(begun));
-    if let Some(to) = report_to {
-        let text = report.to_json();
-        let file = NewFile {
-            to,
-            bytes: text.as_bytes(),
-        };
-        staged = staged.and(staging.stage_watched(&[file], None, &Progress::new(), &watch.cancel)?);
-    }
-    if watch.cancel.is_cancelled() {
-        return Err(EngineError::Interrupted);
-    }
-    staged.commit()?;
-    if let Some(made) = made {
-        made.keep();
-    }
+    run.write(&to, report_to, begun, &mut report)?;
     Ok(report)
 }
 
 /// The kind of a sequence.
 enum Kind {
-    /// A folder of frames, and the first of them.
-    Folder(Folder, PathBuf),
-    /// A point cache, and its mesh.
-    Cache { format: PointCacheFormat, mesh: PathBuf },
+    /// A folder of frames, the first of them, and the folder to write.
+    Folder {
+        folder: Folder,
+        mesh: PathBuf,
+        output: OutputFolder,
+    },
+    /// A point cache, its mesh, and the cache to write.
+    Cache {
+        format: PointCacheFormat,
+        mesh: PathBuf,
+        to: Destination,
+    },
 }
 
 impl Kind {
@@ -179,8 +159,11 @@ impl Kind {
                 ));
             }
             let folder = Folder::of(job.frames)?;
-            let first = folder.frames[0].clone();
-            return Ok(Self::Folder(folder, first));
+            return Ok(Self::Folder {
+                mesh: folder.frames[0].clone(),
+                folder,
+                output: OutputFolder::of(job.output, ("FOLDER", job.frames))?,
+            });
         };
         if format(job.output) != Some(own) {
             return Err(EngineError::Arguments(format!(
@@ -195,53 +178,20 @@ impl Kind {
                 shown(job.frames)
             )));
         };
-        crate::files::refuse_shared(("--output", job.output), [("FILE", job.frames), ("--mesh", mesh)])?;
+        refuse_shared(
+            ("--output", job.output),
+            [("FOLDER_OR_FILE", job.frames), ("--mesh", mesh)],
+        )?;
         Ok(Self::Cache {
             format: own,
             mesh: mesh.to_owned(),
+            to: Destination::of(job.output)?,
         })
     }
 
     /// The file whose vertices and faces all frames have.
     fn mesh(&self) -> &Path {
-        let (Self::Folder(_, mesh) | Self::Cache { mesh, .. }) = self;
+        let (Self::Folder { mesh, .. } | Self::Cache { mesh, .. }) = self;
         mesh
     }
-}
-
-/// The handles' motions by the keys and filters, which need the handles' places in the frames `needed`. The inner error is the edit's.
-fn timeline(
-    edit: &EditFile,
-    setup: &Setup,
-    (first, drawn, source): (&Loaded, &Drawn, &Source),
-    needed: &[usize],
-    handles: &[Vec<SurfaceVertex>],
-    watch: &Watch,
-) -> Result<Result<SequenceTimeline, pliant_editor::EditError>, EngineError> {
-    let progress = watch.begin("following the handles");
-    let rest = &first.model.surface.positions;
-    let places_at = |positions: &[glam::DVec3]| -> Vec<HandlePlace> {
-        handles
-            .iter()
-            .map(|vertices| place(vertices, rest, positions))
-            .collect()
-    };
-    let places_in = |frame: usize| -> Result<(usize, Vec<HandlePlace>), EngineError> {
-        watch.cancel.check().map_err(|_| EngineError::Interrupted)?;
-        let positions = match source {
-            Source::Folder(frames) => Frame::read(&frames[frame], first, drawn, watch)?.positions,
-            Source::Cache(cache) => cache.frame(frame)?.positions,
-        };
-        Ok((frame, places_at(&positions)))
-    };
-    let mut places = BTreeMap::new();
-    for group in needed.chunks(rayon::current_num_threads().max(1)) {
-        let read: Vec<_> = group.par_iter().map(|frame| places_in(*frame)).collect();
-        for read in read {
-            let (frame, of_handles) = read?;
-            places.insert(frame, of_handles);
-        }
-        progress.set(places.len() as f32 / needed.len() as f32);
-    }
-    Ok(edit.sequence_timeline(setup, &places_at(rest), |frame, handle| places[&frame][handle]))
 }

@@ -15,6 +15,8 @@ pub struct SequenceReport {
     pub bent_frames: usize,
     /// The number of those that did not settle within the method's limit.
     pub unsettled_frames: usize,
+    /// The number of footprints that were found.
+    pub footprints: usize,
     /// The time of the whole.
     pub total_ms: f64,
     /// Sentences that a person should know.

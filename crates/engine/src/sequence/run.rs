@@ -2,6 +2,7 @@
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 use pliant_mesh::{Drawn, Progress};
 use rayon::prelude::*;
@@ -12,8 +13,9 @@ use super::frame::Frame;
 use super::report::SequenceReport;
 use crate::EngineError;
 use crate::file_error::FileError;
-use crate::files::{Destination, OutputFolder, Staged, Staging};
+use crate::files::{Destination, NewFile, OutputFolder, Share, Staged, Staging};
 use crate::loading::Loaded;
+use crate::report::ms_since;
 use crate::saving::{self, Original, SaveAs};
 use crate::watch::Watch;
 
@@ -54,9 +56,63 @@ struct Done<T> {
     warnings: Vec<String>,
 }
 
-impl Run<'_> {
+/// The place of the result.
+pub(super) enum To {
     /// A file for each frame.
-    pub fn files(
+    Folder(OutputFolder),
+    /// One file.
+    File(Destination),
+}
+
+impl Run<'_> {
+    /// Writes all frames, and the report if there is a place for it, or nothing at all.
+    ///
+    /// # Errors
+    /// Any refusal of a frame, and a file that can't be written.
+    pub fn write(
+        &self,
+        to: &To,
+        report_to: Option<Destination>,
+        begun: Instant,
+        report: &mut SequenceReport,
+    ) -> Result<(), EngineError> {
+        let mut made = None;
+        let mut staged = match (self.source, to) {
+            (Source::Folder(frames), To::Folder(output)) => {
+                made = Some(output.make(self.staging)?);
+                // Alone, because frames may have neighbours, and for all frames at once.
+                let folder = output.inside(".frame")?;
+                let held = self.staging.hold([(&folder, Share::Alone)], &self.watch.cancel)?;
+                self.files(frames, output, report_to.as_ref(), report)?.holding(held)
+            }
+            (Source::Cache(cache), To::File(to)) => self.cache(cache, to, report)?,
+            (Source::Folder(_), To::File(_)) | (Source::Cache(_), To::Folder(_)) => {
+                return Err(EngineError::Unsupported(
+                    "a folder of frames becomes a folder, and a point cache a point cache: give such an --output"
+                        .to_owned(),
+                ));
+            }
+        };
+        report.conclude(ms_since(begun));
+        if let Some(to) = report_to {
+            let text = report.to_json();
+            let file = NewFile {
+                to,
+                bytes: text.as_bytes(),
+            };
+            let (progress, cancel) = (Progress::new(), &self.watch.cancel);
+            staged = staged.and(self.staging.stage_watched(&[file], None, &progress, cancel)?);
+        }
+        self.watch.cancel.check().map_err(|_| EngineError::Interrupted)?;
+        staged.commit()?;
+        if let Some(made) = made {
+            made.keep();
+        }
+        Ok(())
+    }
+
+    /// A file for each frame.
+    fn files(
         &self,
         frames: &[PathBuf],
         output: &OutputFolder,
@@ -76,7 +132,7 @@ impl Run<'_> {
     }
 
     /// One cache, written frame by frame.
-    pub fn cache(&self, cache: &Cache, to: &Destination, report: &mut SequenceReport) -> Result<Staged, EngineError> {
+    fn cache(&self, cache: &Cache, to: &Destination, report: &mut SequenceReport) -> Result<Staged, EngineError> {
         self.staging.stage_pieces(to, &self.watch.cancel, |file| {
             let refuse = |error| EngineError::from(FileError::writing(&to.given, error));
             file.write_all(&cache.header()?).map_err(refuse)?;

@@ -36,7 +36,9 @@ pub fn parse(text: &str, units: &[Unit]) -> Result<f64, String> {
         (1, false) => sum.replace(',', "."),
         _ => return Err(refused()),
     };
-    let number = exmex::eval_str::<f64>(&sum).map_err(|_| refused())? * size;
+    // Sums have no powers of ten with an e.
+    let number = sum.parse().or_else(|_| exmex::eval_str::<f64>(&sum));
+    let number = number.map_err(|_| refused())? * size;
     if number.is_finite() { Ok(number) } else { Err(refused()) }
 }
 
