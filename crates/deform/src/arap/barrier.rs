@@ -36,6 +36,9 @@ const STRETCHED: f64 = 0.3;
 /// Added to t² − 4 x², whose root has no derivative at 0.
 const ROUND: f64 = 1e-6;
 
+/// Added to x where it divides a × b, which is 0 then.
+const TINY: f64 = 1e-30;
+
 /// A cell's p and q, and μ A, A being its area times its stiffness. **f32**: they define the energy, which is computed
 /// in f64.
 pub(crate) type Facing = [f32; 7];
@@ -55,63 +58,86 @@ impl Barriers {
         for place in 0..LANES / S::F64_LANES {
             let [p0, p1, p2, q0, q1, q2, weight] = Vector::each(simd, &self.facing, place);
             let s = fits.matrices(simd, place);
-            let number = |value: f64| Vector::splat(simd, value);
-            let (zero, two, half) = (number(0.0), number(2.0), number(0.5));
-            let (mut a, mut b) = ([zero; 3], [zero; 3]);
+            let (mut a, mut b) = ([weight; 3], [weight; 3]);
             for k in 0..3 {
                 a[k] = s[0][k] * p0 + s[1][k] * p1 + s[2][k] * p2;
                 b[k] = s[0][k] * q0 + s[1][k] * q1 + s[2][k] * q2;
             }
-            let across = [
-                a[1] * b[2] - a[2] * b[1],
-                a[2] * b[0] - a[0] * b[2],
-                a[0] * b[1] - a[1] * b[0],
-            ];
-            let area = (across[0] * across[0] + across[1] * across[1] + across[2] * across[2]).sqrt();
-            let short = number(RESISTS) - area;
-            let is_short = zero.less(short);
-            if (!is_short).is_full() {
+            let across = cross(a, b);
+            let area = dot(across, across).sqrt();
+            let zero = Vector::splat(simd, 0.0);
+            if (!area.less(Vector::splat(simd, RESISTS))).is_full() {
                 zero.put(&mut self.energy, place);
                 continue;
             }
-            let short = short.or(is_short, zero);
-            let ratio = short / (area + number(LEAST));
-            let collapse = short * short * ratio;
-            let slope = -(ratio * (number(3.0) * short + short * ratio));
-            let square = a[0] * a[0] + a[1] * a[1] + a[2] * a[2] + b[0] * b[0] + b[1] * b[1] + b[2] * b[2];
-            let apart = square * square - number(4.0) * area * area;
-            let apart = (apart.or(zero.less(apart), zero) + number(ROUND)).sqrt();
-            let beyond = half * (square + apart) - number(1.0);
-            let beyond = beyond.or(zero.less(beyond), zero);
-            let k = number(STRETCHED);
-            let below = k + beyond * beyond;
-            let share = beyond * beyond / below;
-            let share_slope = two * k * beyond / (below * below);
-            (weight * collapse * share).put(&mut self.energy, place);
-            // −dψ/dx / |a × b| and −dψ/d(|a|² + |b|²) · 2.
-            let by_stretch = collapse * share_slope;
-            let by_area = slope * share - by_stretch * two * area / apart;
-            let push = -(weight * by_area) / (area + number(1e-30));
-            let pull = -(weight * by_stretch * (number(1.0) + square / apart));
-            let by_a = [
-                push * (b[1] * across[2] - b[2] * across[1]) + pull * a[0],
-                push * (b[2] * across[0] - b[0] * across[2]) + pull * a[1],
-                push * (b[0] * across[1] - b[1] * across[0]) + pull * a[2],
-            ];
-            let by_b = [
-                push * (across[1] * a[2] - across[2] * a[1]) + pull * b[0],
-                push * (across[2] * a[0] - across[0] * a[2]) + pull * b[1],
-                push * (across[0] * a[1] - across[1] * a[0]) + pull * b[2],
-            ];
+            let Slopes {
+                energy,
+                by_area,
+                by_square,
+            } = Slopes::of(simd, area, dot(a, a) + dot(b, b));
+            (weight * energy).put(&mut self.energy, place);
+            let push = weight * by_area / (area + Vector::splat(simd, TINY));
+            let pull = weight * (by_square + by_square);
+            let (by_a, by_b) = (cross(b, across), cross(across, a));
             for (column, (p, q)) in [(p0, q0), (p1, q1), (p2, q2)].into_iter().enumerate() {
                 let mut turn = Vector::each(simd, &fits.turn[column], place);
                 for k in 0..3 {
-                    turn[k] = turn[k] + by_a[k] * p + by_b[k] * q;
+                    turn[k] = turn[k] - (push * by_a[k] + pull * a[k]) * p - (push * by_b[k] + pull * b[k]) * q;
                 }
                 Vector::put_each(turn, &mut fits.turn[column], place);
             }
         }
     }
+}
+
+/// φ h and its derivatives by x and by t.
+struct Slopes<S: Simd> {
+    energy: Vector<S>,
+    by_area: Vector<S>,
+    by_square: Vector<S>,
+}
+
+impl<S: Simd> Slopes<S> {
+    #[inline(always)]
+    fn of(simd: S, area: Vector<S>, square: Vector<S>) -> Self {
+        let (zero, one, two) = (
+            Vector::splat(simd, 0.0),
+            Vector::splat(simd, 1.0),
+            Vector::splat(simd, 2.0),
+        );
+        let short = Vector::splat(simd, RESISTS) - area;
+        let short = short.or(zero.less(short), zero);
+        let ratio = short / (area + Vector::splat(simd, LEAST));
+        let collapse = short * short * ratio;
+        let slope = -(ratio * (Vector::splat(simd, 3.0) * short + short * ratio));
+        let apart = square * square - (area + area) * (area + area);
+        let apart = (apart.or(zero.less(apart), zero) + Vector::splat(simd, ROUND)).sqrt();
+        let beyond = Vector::splat(simd, 0.5) * (square + apart) - one;
+        let beyond = beyond.or(zero.less(beyond), zero);
+        let k = Vector::splat(simd, STRETCHED);
+        let below = k + beyond * beyond;
+        let share = beyond * beyond / below;
+        let by_stretch = collapse * (two * k * beyond / (below * below));
+        Self {
+            energy: collapse * share,
+            by_area: slope * share - by_stretch * two * area / apart,
+            by_square: by_stretch * Vector::splat(simd, 0.5) * (one + square / apart),
+        }
+    }
+}
+
+#[inline(always)]
+fn cross<S: Simd>(a: [Vector<S>; 3], b: [Vector<S>; 3]) -> [Vector<S>; 3] {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
+#[inline(always)]
+fn dot<S: Simd>(a: [Vector<S>; 3], b: [Vector<S>; 3]) -> Vector<S> {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 #[cfg(test)]
