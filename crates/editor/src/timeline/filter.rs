@@ -19,17 +19,21 @@ pub(crate) fn quick_motions(trajectory: &[DVec3], width: f64) -> Vec<DVec3> {
     frames.map(quick).collect()
 }
 
-/// The place at a frame that may be beyond the ends.
+/// The place at a frame that may be beyond the ends, any number of images away.
 fn at(trajectory: &[DVec3], frame: i64) -> DVec3 {
     let last = trajectory.len() as i64 - 1;
-    let own = |frame: i64| trajectory[frame.clamp(0, last) as usize];
-    if frame < 0 {
-        2.0 * own(0) - at(trajectory, (-frame).min(last))
-    } else if frame > last {
-        2.0 * own(last) - at(trajectory, (2 * last - frame).max(0))
-    } else {
-        own(frame)
+    let own = |frame: i64| trajectory[frame as usize];
+    if last == 0 {
+        return own(0);
     }
+    // Two images in the ends one after the other are a shift by twice the way between the ends.
+    let (shifts, frame) = (frame.div_euclid(2 * last), frame.rem_euclid(2 * last));
+    let place = if frame <= last {
+        own(frame)
+    } else {
+        2.0 * own(last) - own(2 * last - frame)
+    };
+    place + (own(last) - own(0)) * (2 * shifts) as f64
 }
 
 #[cfg(test)]

@@ -316,6 +316,7 @@ mod tests {
         let found = HandlePlace::of(&first, &now);
         assert!(found.rotation.dot(turn).abs() > 1.0 - 1e-12);
         let at_first = HandlePlace::of(&first, &first);
-        assert!(found.carried(first[3], &at_first).distance(now[3]) < 1e-12);
+        // The fit holds points on a line by 1e-12 of their inertia.
+        assert!(found.carried(first[3], &at_first).distance(now[3]) < 1e-10);
     }
 }
