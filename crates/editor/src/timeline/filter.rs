@@ -8,9 +8,6 @@ const REACH: f64 = 4.0;
 /// The quick motions of a trajectory: its difference from its mean by a Gaussian with the standard deviation `width`, in
 /// frames. Beyond its ends the trajectory is continued by its image in the end point, so both ends are at 0.
 pub(crate) fn quick_motions(trajectory: &[DVec3], width: f64) -> Vec<DVec3> {
-    if trajectory.len() < 2 {
-        return vec![DVec3::ZERO; trajectory.len()];
-    }
     let reach = (REACH * width).ceil() as i64;
     let weight = |step: i64| (-0.5 * (step as f64 / width).powi(2)).exp();
     let sum: f64 = (-reach..=reach).map(weight).sum();
@@ -22,17 +19,21 @@ pub(crate) fn quick_motions(trajectory: &[DVec3], width: f64) -> Vec<DVec3> {
     frames.map(quick).collect()
 }
 
-/// The place at a frame that may be beyond the ends of a trajectory of two frames or more.
+/// The place at a frame that may be beyond the ends, any number of images away.
 fn at(trajectory: &[DVec3], frame: i64) -> DVec3 {
     let last = trajectory.len() as i64 - 1;
     let own = |frame: i64| trajectory[frame as usize];
-    if frame < 0 {
-        2.0 * own(0) - at(trajectory, -frame)
-    } else if frame > last {
-        2.0 * own(last) - at(trajectory, 2 * last - frame)
-    } else {
-        own(frame)
+    if last == 0 {
+        return own(0);
     }
+    // Two images in the ends one after the other are a shift by twice the way between the ends.
+    let (shifts, frame) = (frame.div_euclid(2 * last), frame.rem_euclid(2 * last));
+    let place = if frame <= last {
+        own(frame)
+    } else {
+        2.0 * own(last) - own(2 * last - frame)
+    };
+    place + (own(last) - own(0)) * (2 * shifts) as f64
 }
 
 #[cfg(test)]

@@ -316,8 +316,8 @@ mod tests {
         let found = HandlePlace::of(&first, &now);
         assert!(found.rotation.dot(turn).abs() > 1.0 - 1e-12);
         let at_first = HandlePlace::of(&first, &first);
+        // The fit holds points on a line by 1e-12 of their inertia.
         let off = found.carried(first[3], &at_first).distance(now[3]);
-        // The fit is exact to some 1e-12 of the distance between the points, which is 9.
         assert!(off < 1e-11, "{off}");
     }
 }
