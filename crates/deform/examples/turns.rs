@@ -29,11 +29,11 @@ fn main() {
         }
         for neck in [1.0, 0.6, 0.3, 0.2] {
             for degrees in [90.0, 120.0, 150.0, 170.0, 180.0] {
-                let twist = |share: f64| DAffine3::from_rotation_z((share * degrees as f64).to_radians());
+                let twist = |share: f64| DAffine3::from_rotation_z((share * degrees).to_radians());
                 let bend = |share: f64| {
                     let pivot = DVec3::new(1.2 * RADIUS, 0.0, 0.5 * LENGTH);
                     DAffine3::from_translation(pivot)
-                        * DAffine3::from_rotation_y((share * degrees as f64).to_radians())
+                        * DAffine3::from_rotation_y((share * degrees).to_radians())
                         * DAffine3::from_translation(-pivot)
                 };
                 let twisted = turned(&method, neck, twist, 1);

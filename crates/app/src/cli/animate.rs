@@ -3,8 +3,8 @@
 use pliant_engine::{Animate, EngineError, animate, files, memory, read_edit};
 
 use super::apply::own_name;
-use super::arguments::AnimateArguments;
 use super::method_argument::method_argument;
+use super::motion_arguments::AnimateArguments;
 use crate::cli::console::{Console, warn};
 use crate::cli::threads::on_threads;
 

@@ -9,9 +9,10 @@ use pliant_deform::{ConstraintKind, METHODS};
 use pliant_editor::Clay;
 use pliant_engine::stitching::Replace;
 use pliant_io::{MorphDeltas, MorphTarget, quoted};
-use pliant_mesh::{Vectors, WeldOptions};
 
 use super::cut_plane::{KeepArgument, PlaneArgument};
+use super::motion_arguments::{AnimateArguments, SequenceArguments};
+use super::shared_arguments::{ComputeArguments, WeldArguments};
 use crate::version::VERSION;
 
 /// Bends scanned meshes.
@@ -127,22 +128,6 @@ pub(crate) struct ApplyArguments {
     /// The threads and vectors.
     #[command(flatten)]
     pub compute: ComputeArguments,
-}
-
-/// The welding of a file's vertices.
-#[derive(Args, Clone, Copy, PartialEq, Debug, Default)]
-pub struct WeldArguments {
-    /// Weld vertices that are closer than this, in the file's units; 0 welds only vertices at equal positions. By
-    /// default the distance follows from the mesh's edges and the rounding of the file's numbers
-    #[arg(long, value_name = "DISTANCE", value_parser = length)]
-    pub weld: Option<f64>,
-}
-
-impl WeldArguments {
-    /// The options of loading.
-    pub fn options(self) -> WeldOptions {
-        WeldOptions { distance: self.weld }
-    }
 }
 
 /// The kind of the output: a shape or a morph target.
@@ -307,76 +292,6 @@ pub(crate) struct CutArguments {
 }
 
 #[derive(Args, Debug)]
-pub(crate) struct AnimateArguments {
-    /// The file to bend: glb, gltf, obj, ply, stl or off
-    pub file: PathBuf,
-    /// The edit, with `keys`: handles' transforms at times
-    #[arg(long, value_name = "EDIT.json")]
-    pub edit: PathBuf,
-    /// The files to write: FILE with an animation of morph targets (glb, gltf), a point cache (pc2, mdd), or
-    /// NAME-####.obj and the like, with the frame's number from 0000 on
-    #[arg(long, value_name = "OUT")]
-    pub output: PathBuf,
-    /// The file for the figures: times, and the number and the error of the morph targets
-    #[arg(long, value_name = "REPORT.json")]
-    pub report: Option<PathBuf>,
-    /// The largest error of a glTF's frames, as a share of the diagonal of the shape's box: more of it takes fewer morph
-    /// targets
-    #[arg(long, value_name = "SHARE", default_value = "0.00001", value_parser = error_share)]
-    pub tolerance: f64,
-    /// The frames a second
-    #[arg(long, value_name = "F", default_value = "24", value_parser = frame_rate)]
-    pub fps: f64,
-    /// Another method than the edit's, with its options, e.g. arap:energy=smooth
-    #[arg(long, value_name = "NAME[:OPTION=VALUE..]")]
-    pub method: Option<String>,
-    /// The most memory for the binding beside the mesh, such as 8GB or 500MB; without it 16GiB, and never more than the
-    /// machine has left
-    #[arg(long, value_name = "SIZE", value_parser = pliant_engine::memory::bytes)]
-    pub memory: Option<u64>,
-    /// The welding of vertices.
-    #[command(flatten)]
-    pub weld: WeldArguments,
-    /// The threads and vectors.
-    #[command(flatten)]
-    pub compute: ComputeArguments,
-}
-
-#[derive(Args, Debug)]
-pub(crate) struct SequenceArguments {
-    /// The folder of the frames: files of one format with the same vertices and faces, in the order of their names, in
-    /// which numbers count by their value; or a point cache (pc2, mdd)
-    #[arg(value_name = "FOLDER_OR_FILE")]
-    pub frames: PathBuf,
-    /// The mesh whose vertices a point cache moves
-    #[arg(long, value_name = "MESH")]
-    pub mesh: Option<PathBuf>,
-    /// The edit, with `keys`: handles' transforms at frames, each with the `span` of frames over which it spreads
-    #[arg(long, value_name = "EDIT.json")]
-    pub edit: PathBuf,
-    /// The folder to write, in which frames keep their names; it is made if it is missing. For a point cache the cache to
-    /// write, of the same kind
-    #[arg(long, value_name = "OUT")]
-    pub output: PathBuf,
-    /// The file for the numbers of frames and the warnings
-    #[arg(long, value_name = "REPORT.json")]
-    pub report: Option<PathBuf>,
-    /// Another method than the edit's, with its options, e.g. arap:energy=smooth
-    #[arg(long, value_name = "NAME[:OPTION=VALUE..]")]
-    pub method: Option<String>,
-    /// The most memory for the binding of a frame, such as 8GB or 500MB; without it 16GiB, and never more than the
-    /// machine has left
-    #[arg(long, value_name = "SIZE", value_parser = pliant_engine::memory::bytes)]
-    pub memory: Option<u64>,
-    /// The welding of vertices.
-    #[command(flatten)]
-    pub weld: WeldArguments,
-    /// The threads and vectors.
-    #[command(flatten)]
-    pub compute: ComputeArguments,
-}
-
-#[derive(Args, Debug)]
 pub(crate) struct FlowArguments {
     /// The file along whose surface dye flows: glb, gltf, obj, ply, stl or off
     pub file: PathBuf,
@@ -458,26 +373,6 @@ pub(crate) struct CompareArguments {
     /// The threads and vectors.
     #[command(flatten)]
     pub compute: ComputeArguments,
-}
-
-/// The threads and vectors of a computation. They do not change the result.
-#[derive(Args, Clone, Copy, PartialEq, Eq, Debug, Default)]
-pub struct ComputeArguments {
-    /// The number of threads, at most four a core; by default all cores. The result does not depend on it
-    #[arg(long, value_name = "N", value_parser = RangedU64ValueParser::<usize>::new().range(1..=65_536))]
-    pub threads: Option<usize>,
-    /// The processor's vectors to use: avx512, avx2 or baseline; by default the widest. The result does not depend on
-    /// them
-    #[arg(long, value_name = "VECTORS", value_parser = vectors)]
-    pub vectors: Option<Vectors>,
-}
-
-/// Vectors by name.
-fn vectors(name: &str) -> Result<Vectors, String> {
-    Vectors::from_name(name).ok_or_else(|| {
-        let names = Vectors::ALL.map(Vectors::name).join(", ");
-        format!("use {names}")
-    })
 }
 
 /// The view and the colours of a picture.
@@ -629,32 +524,11 @@ fn clay() -> impl TypedValueParser<Value = Clay> {
     })
 }
 
-fn length(text: &str) -> Result<f64, String> {
-    text.parse()
-        .ok()
-        .filter(|number: &f64| number.is_finite() && *number >= 0.0)
-        .ok_or_else(|| "a distance is a number from 0".to_owned())
-}
-
 fn unit_number(text: &str) -> Result<f64, String> {
     text.parse()
         .ok()
         .filter(|number| (0.0..=1.0).contains(number))
         .ok_or_else(|| "a weight is a number from 0 to 1".to_owned())
-}
-
-fn error_share(text: &str) -> Result<f64, String> {
-    text.parse()
-        .ok()
-        .filter(|number| (1e-7..=0.1).contains(number))
-        .ok_or_else(|| "a share of the diagonal is a number from 1e-7 to 0.1".to_owned())
-}
-
-fn frame_rate(text: &str) -> Result<f64, String> {
-    text.parse()
-        .ok()
-        .filter(|number| (0.001..=1000.0).contains(number))
-        .ok_or_else(|| "a frame rate is a number from 0.001 to 1000".to_owned())
 }
 
 /// Reads the arguments, the program's name first. The error may be the help that was requested.

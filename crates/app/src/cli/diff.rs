@@ -5,7 +5,8 @@ use std::fmt::Write as _;
 use pliant_io::{Difference, What};
 use serde_json::{Value, json};
 
-use super::arguments::{ComputeArguments, DiffArguments};
+use super::arguments::DiffArguments;
+use super::shared_arguments::ComputeArguments;
 use crate::cli::console::{Console, print, print_json};
 use crate::cli::threads::on_threads;
 use pliant_engine::{Compared, EngineError, differences};

@@ -7,7 +7,8 @@ use pliant_io::{Scene, SceneAndDrawn};
 use pliant_mesh::{FindingKind, Inspection, WeldOptions};
 use serde_json::{Value, json};
 
-use super::arguments::{ComputeArguments, InfoArguments};
+use super::arguments::InfoArguments;
+use super::shared_arguments::ComputeArguments;
 use crate::cli::console::{Console, print, print_json};
 use crate::cli::threads::on_threads;
 use pliant_engine::EngineError;

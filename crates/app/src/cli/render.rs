@@ -13,7 +13,8 @@ use pliant_editor::{
 use pliant_mesh::{Cancel, Model, WeldOptions, bounding_box};
 use pliant_render::{Background, Frame, Headless, RenderError, Renderer, Samples, Surface, SurfaceLine};
 
-use super::arguments::{self, ComputeArguments, PictureSize, ProjectionName, RenderArguments, Up, View, WeldArguments};
+use super::arguments::{self, PictureSize, ProjectionName, RenderArguments, Up, View};
+use super::shared_arguments::{ComputeArguments, WeldArguments};
 use crate::cli::console::{Console, print};
 use crate::cli::threads::on_threads;
 use crate::drawing::{self, Drawing, Pose, Scale};

@@ -2,8 +2,8 @@
 
 use pliant_engine::{EngineError, Sequence, files, memory, read_edit, sequence};
 
-use super::arguments::SequenceArguments;
 use super::method_argument::method_argument;
+use super::motion_arguments::SequenceArguments;
 use crate::cli::console::{Console, warn};
 use crate::cli::threads::on_threads;
 

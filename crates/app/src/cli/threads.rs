@@ -3,7 +3,7 @@
 use pliant_engine::EngineError;
 use pliant_mesh::Vectors;
 
-use super::arguments::ComputeArguments;
+use super::shared_arguments::ComputeArguments;
 
 /// The most threads per core: more cost memory and gain nothing.
 const MOST_THREADS_A_CORE: usize = 4;
