@@ -11,6 +11,7 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -183,9 +184,9 @@ fn the_palette_and_the_panel_have_it() {
     settle(&mut harness);
     assert_eq!(harness.state().editor().document().method().name(), "identity");
 
-    // The panel shows its sentence, and a widget for its option below.
+    // The panel shows its sentence, and a widget for its option on the method's page.
     harness.get_by_label("Moves the handles and leaves the rest in place.");
-    harness.get_by_label("Options").click();
+    harness.get_by_role_and_label(Role::Tab, "Method").click();
     harness.run_steps(8);
     assert!(harness.query_all_by_label("Share").next().is_some());
 }
