@@ -24,7 +24,7 @@ const OF_PROJECTION: f64 = 0.5;
 /// use pliant_io::ShapeDirections;
 ///
 /// // Two vertices on straight ways: one target, however many shapes.
-/// let mut directions = ShapeShapeDirections::within(1e-6);
+/// let mut directions = ShapeDirections::within(1e-6);
 /// for step in 0..10 {
 ///     directions.push(&[DVec3::X * f64::from(step), DVec3::ZERO]);
 /// }
