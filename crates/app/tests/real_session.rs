@@ -77,7 +77,7 @@ fn a_whole_session_by_pointer_and_keys_comes_back_by_undo_redo_and_reopening() {
     });
     desktop.shoot("widened");
     desktop.keys(&["shift+n"]);
-    desktop.drag((x - 60, y - 210), (x - 54, y - 206));
+    desktop.drag((x - 30, y - 210), (x - 24, y - 206));
     once("two-handles", &|project| handles(project).len() == 2);
     desktop.shoot("two-handles");
     desktop.keys(&["6"]);
