@@ -307,7 +307,7 @@ fn sequences_that_can_not_be_edited_are_refused_in_words_and_nothing_is_written(
     take.edited(&with(one()), "out", &[])
         .refused(1, &["walk-5.off", "695 triangles", "696 triangles"]);
     assert_eq!(take.folder.names(), ["edit.json", "in"]);
-    // A missing one is told.
+    // The program names the frames whose numbers are shifted by a missing one.
     fs::remove_file(take.folder.at("in/walk-5.off")).unwrap();
     let told = take.edited(&with(json!([key(3, [1, 5], lifted())])), "out", &[]).done();
     assert!(

@@ -28,12 +28,17 @@ fn px(rig: &Rig, point: DVec3) -> DVec2 {
 
 /// A stroke along the middle of the tube, between these shares of its length.
 fn stroke(rig: &mut Rig, shape: StrokeShape, from: f64, to: f64) {
+    stroke_beside(rig, shape, [from, to], 0.0);
+}
+
+/// The same so far above the middle.
+fn stroke_beside(rig: &mut Rig, shape: StrokeShape, [from, to]: [f64; 2], above: f64) {
     rig.command(Command::SetTool(ToolMode::PaintHandle));
     rig.command(Command::SetStrokeShape(shape));
     let bounds = rig.model.bounds().unwrap();
     let at = |share: f64| {
         let middle = bounds.centre();
-        DVec3::new(bounds.min.x + share * bounds.extent().x, middle.y, middle.z)
+        DVec3::new(bounds.min.x + share * bounds.extent().x, middle.y + above, middle.z)
     };
     let way: Vec<DVec2> = (0..=20)
         .map(|step| px(rig, at(from + (to - from) * f64::from(step) / 20.0)))
@@ -96,6 +101,17 @@ fn a_spine_runs_through_the_middle_of_the_limb_which_follows_its_end_as_a_chain(
     rig.redo();
     rig.drain();
     assert_eq!(Fingerprint::of(rig.editor.document()), after);
+}
+
+#[test]
+fn a_spine_that_is_drawn_beside_the_middle_is_moved_into_it() {
+    let mut rig = tube();
+    let middle = rig.model.bounds().unwrap().centre();
+    stroke_beside(&mut rig, StrokeShape::Spine, [0.3, 0.9], 0.6);
+    for point in curve(&rig).rest().points() {
+        let off = DVec2::new(point.y - middle.y, point.z - middle.z).length();
+        assert!(off < 0.1, "{point}");
+    }
 }
 
 #[test]

@@ -1,9 +1,8 @@
 //! `pliant animate`: an edit with keys over time.
 
-use pliant_engine::{Animate, EngineError, animate, files, memory, read_edit};
+use pliant_engine::{Animate, EngineError, animate, files};
 
 use super::apply::own_name;
-use super::method_argument::method_argument;
 use super::motion_arguments::AnimateArguments;
 use crate::cli::console::{Console, warn};
 use crate::cli::threads::on_threads;
@@ -16,22 +15,14 @@ pub(super) fn run(arguments: &AnimateArguments, console: &mut Console<'_>) -> Re
         report,
         tolerance,
         fps,
-        method,
-        memory: most_memory,
-        weld,
-        compute,
+        bending,
     } = arguments;
     files::refuse_shared(("--output", output), [("--edit", &**edit_path)])?;
     if let Some(report) = report {
         let others = [("FILE", &**file), ("--edit", edit_path), ("--output", output)];
         files::refuse_shared(("--report", report), others)?;
     }
-    let method = method.as_deref();
-    let method = method.map(|name| method_argument("--method", name)).transpose()?;
-    let mut edit = read_edit(edit_path, &console.watch)?;
-    if let Some(method) = method {
-        edit.set_method(method);
-    }
+    let edit = bending.edit(edit_path, &console.watch)?;
     let name = own_name(edit_path);
     let job = Animate {
         file,
@@ -42,11 +33,11 @@ pub(super) fn run(arguments: &AnimateArguments, console: &mut Console<'_>) -> Re
         name: &name,
         tolerance: *tolerance,
         fps: *fps,
-        weld: weld.weld,
-        budget: memory::budget_within(*most_memory),
+        weld: bending.weld.weld,
+        budget: bending.budget(),
     };
     let (watch, staging) = (&console.watch, &console.staging);
-    let report = on_threads(*compute, || animate(&job, watch, staging))??;
+    let report = on_threads(bending.compute, || animate(&job, watch, staging))??;
     warn(console.err, &report.warnings);
     Ok(())
 }

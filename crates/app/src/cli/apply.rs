@@ -5,10 +5,9 @@ use std::path::Path;
 use pliant_io::Format;
 
 use super::arguments::ApplyArguments;
-use super::method_argument::method_argument;
 use crate::cli::console::{Console, warn};
 use crate::cli::threads::on_threads;
-use pliant_engine::{EngineError, files, memory, read_edit};
+use pliant_engine::{EngineError, files};
 
 pub(super) fn run(arguments: &ApplyArguments, console: &mut Console<'_>) -> Result<(), EngineError> {
     let ApplyArguments {
@@ -18,24 +17,16 @@ pub(super) fn run(arguments: &ApplyArguments, console: &mut Console<'_>) -> Resu
         report,
         morph,
         frames,
-        method,
-        memory: most_memory,
-        weld,
-        compute,
+        bending,
     } = arguments;
     let output_name = output.to_string_lossy();
     Format::of_name(&output_name).map_err(|error| EngineError::Arguments(format!("--output: {error}")))?;
-    let method = method.as_deref();
-    let method = method.map(|name| method_argument("--method", name)).transpose()?;
     files::refuse_shared(("--output", output), [("--edit", &**edit_path)])?;
     if let Some(report) = report {
         let others = [("FILE", &**file), ("--edit", edit_path), ("--output", output)];
         files::refuse_shared(("--report", report), others)?;
     }
-    let mut edit = read_edit(edit_path, &console.watch)?;
-    if let Some(method) = method {
-        edit.set_method(method);
-    }
+    let edit = bending.edit(edit_path, &console.watch)?;
     let own_name = own_name(edit_path);
     let (deltas, morph) = (morph.deltas(), morph.target(&own_name));
     let job = pliant_engine::Apply {
@@ -45,13 +36,13 @@ pub(super) fn run(arguments: &ApplyArguments, console: &mut Console<'_>) -> Resu
         output,
         report: report.as_deref(),
         frames: *frames,
-        weld: weld.weld,
-        budget: memory::budget_within(*most_memory),
+        weld: bending.weld.weld,
+        budget: bending.budget(),
         deltas,
         morph,
     };
     let (watch, staging) = (&console.watch, &console.staging);
-    let report = on_threads(*compute, || pliant_engine::apply(&job, watch, staging))??;
+    let report = on_threads(bending.compute, || pliant_engine::apply(&job, watch, staging))??;
     warn(console.err, &report.warnings);
     Ok(())
 }

@@ -12,7 +12,7 @@ use pliant_io::{MorphDeltas, MorphTarget, quoted};
 
 use super::cut_plane::{KeepArgument, PlaneArgument};
 use super::motion_arguments::{AnimateArguments, SequenceArguments};
-use super::shared_arguments::{ComputeArguments, WeldArguments};
+use super::shared_arguments::{BendingArguments, ComputeArguments, WeldArguments};
 use crate::version::VERSION;
 
 /// Bends scanned meshes.
@@ -115,19 +115,9 @@ pub(crate) struct ApplyArguments {
     /// Replay the edit as a drag of N frames (1 to 100000) instead of one solve
     #[arg(long, value_name = "N", value_parser = RangedU64ValueParser::<usize>::new().range(1..=100_000))]
     pub frames: Option<usize>,
-    /// Use this method instead of the edit's, with its defaults or with options set: NAME[:OPTION=VALUE..]
-    #[arg(long, value_name = "NAME")]
-    pub method: Option<String>,
-    /// The most memory for binding, beside the mesh, such as 8GB or 500MB; by default 16GiB, and at most the free
-    /// memory. A larger system is solved with less memory in more time, or refused
-    #[arg(long, value_name = "SIZE", value_parser = pliant_engine::memory::bytes)]
-    pub memory: Option<u64>,
-    /// The welding of vertices.
+    /// The bending.
     #[command(flatten)]
-    pub weld: WeldArguments,
-    /// The threads and vectors.
-    #[command(flatten)]
-    pub compute: ComputeArguments,
+    pub bending: BendingArguments,
 }
 
 /// The kind of the output: a shape or a morph target.

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::shared_arguments::{ComputeArguments, WeldArguments};
+use super::shared_arguments::BendingArguments;
 
 #[derive(Args, Debug)]
 pub(crate) struct AnimateArguments {
@@ -27,19 +27,9 @@ pub(crate) struct AnimateArguments {
     /// The frames a second
     #[arg(long, value_name = "F", default_value = "24", value_parser = frame_rate)]
     pub fps: f64,
-    /// Another method than the edit's, with its options, e.g. arap:energy=smooth
-    #[arg(long, value_name = "NAME[:OPTION=VALUE..]")]
-    pub method: Option<String>,
-    /// The most memory for the binding beside the mesh, such as 8GB or 500MB; without it 16GiB, and never more than the
-    /// machine has left
-    #[arg(long, value_name = "SIZE", value_parser = pliant_engine::memory::bytes)]
-    pub memory: Option<u64>,
-    /// The welding of vertices.
+    /// The bending.
     #[command(flatten)]
-    pub weld: WeldArguments,
-    /// The threads and vectors.
-    #[command(flatten)]
-    pub compute: ComputeArguments,
+    pub bending: BendingArguments,
 }
 
 #[derive(Args, Debug)]
@@ -61,19 +51,9 @@ pub(crate) struct SequenceArguments {
     /// The file for the numbers of frames and the warnings
     #[arg(long, value_name = "REPORT.json")]
     pub report: Option<PathBuf>,
-    /// Another method than the edit's, with its options, e.g. arap:energy=smooth
-    #[arg(long, value_name = "NAME[:OPTION=VALUE..]")]
-    pub method: Option<String>,
-    /// The most memory for the binding of a frame, such as 8GB or 500MB; without it 16GiB, and never more than the
-    /// machine has left
-    #[arg(long, value_name = "SIZE", value_parser = pliant_engine::memory::bytes)]
-    pub memory: Option<u64>,
-    /// The welding of vertices.
+    /// The bending.
     #[command(flatten)]
-    pub weld: WeldArguments,
-    /// The threads and vectors.
-    #[command(flatten)]
-    pub compute: ComputeArguments,
+    pub bending: BendingArguments,
 }
 
 fn error_share(text: &str) -> Result<f64, String> {

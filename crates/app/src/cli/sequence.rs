@@ -1,8 +1,7 @@
 //! `pliant sequence`: an edit of a sequence of shapes.
 
-use pliant_engine::{EngineError, Sequence, files, memory, read_edit, sequence};
+use pliant_engine::{EngineError, Sequence, files, sequence};
 
-use super::method_argument::method_argument;
 use super::motion_arguments::SequenceArguments;
 use crate::cli::console::{Console, warn};
 use crate::cli::threads::on_threads;
@@ -14,20 +13,12 @@ pub(super) fn run(arguments: &SequenceArguments, console: &mut Console<'_>) -> R
         edit: edit_path,
         output,
         report,
-        method,
-        memory: most_memory,
-        weld,
-        compute,
+        bending,
     } = arguments;
     if let Some(report) = report {
         files::refuse_shared(("--report", report), [("--edit", &**edit_path), ("--output", output)])?;
     }
-    let method = method.as_deref();
-    let method = method.map(|name| method_argument("--method", name)).transpose()?;
-    let mut edit = read_edit(edit_path, &console.watch)?;
-    if let Some(method) = method {
-        edit.set_method(method);
-    }
+    let edit = bending.edit(edit_path, &console.watch)?;
     let job = Sequence {
         frames,
         mesh: mesh.as_deref(),
@@ -35,11 +26,11 @@ pub(super) fn run(arguments: &SequenceArguments, console: &mut Console<'_>) -> R
         edit_path,
         output,
         report: report.as_deref(),
-        weld: weld.weld,
-        budget: memory::budget_within(*most_memory),
+        weld: bending.weld.weld,
+        budget: bending.budget(),
     };
     let (watch, staging) = (&console.watch, &console.staging);
-    let report = on_threads(*compute, || sequence(&job, watch, staging))??;
+    let report = on_threads(bending.compute, || sequence(&job, watch, staging))??;
     warn(console.err, &report.warnings);
     Ok(())
 }

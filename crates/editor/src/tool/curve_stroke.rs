@@ -6,15 +6,17 @@ use glam::{DVec2, DVec3};
 use pliant_mesh::{Curve, SurfaceVertex, triangles_under};
 
 use super::context::Context;
+use super::drawn_path::DrawnPath;
 use super::gesture::{Gesture, Next};
 use super::mode::StrokeShape;
 use super::overlay::Lit;
 use super::paint::PaintStroke;
+use super::spine::{Sample, around, to_the_middle};
 use super::stroke::StrokeGesture;
 use crate::document::{HandleCurve, HandleLine};
 use crate::input::{Button, Pointer};
 use crate::jobs::Activity;
-use crate::view::{Cursor, Pick, Picking, Ray, View};
+use crate::view::{Cursor, Picking, View};
 use crate::workspace::Workspace;
 
 /// The distance between two samples of the stroke, in points.
@@ -29,9 +31,6 @@ const SPACING_PX: f64 = 60.0;
 const CURVE_POINTS: std::ops::RangeInclusive<usize> = 3..=12;
 const SPINE_POINTS: usize = 5;
 
-/// The limb around a spine has the vertices within this many of its half thicknesses.
-const GIRTH: f64 = 1.7;
-
 /// The reach of a spine in half thicknesses, and that of a curve on the surface in its lengths.
 const SPINE_REACH: f64 = 2.5;
 const CURVE_REACH: f64 = 0.4;
@@ -40,8 +39,7 @@ const CURVE_REACH: f64 = 0.4;
 #[derive(Debug)]
 pub(crate) struct CurveStroke {
     shape: StrokeShape,
-    /// Samples in points of the view.
-    points_px: Vec<DVec2>,
+    path: DrawnPath,
     /// The stroke that finally paints the vertices.
     stroke: StrokeGesture<PaintStroke>,
 }
@@ -55,23 +53,13 @@ struct Drawn {
     reach: f64,
 }
 
-/// A sample of the stroke on the surface.
-#[derive(Clone, Copy, Debug)]
-struct Sample {
-    pick: Pick,
-    /// The point of the curve.
-    point: DVec3,
-    /// Half of the way through the limb.
-    half: f64,
-}
-
 impl CurveStroke {
     pub(super) fn begin(context: &mut Context<'_>, pointer: Pointer, shape: StrokeShape) -> Option<Self> {
         context.workspace.selection.wants_new_handle = true;
         let stroke = PaintStroke::begin(context.workspace, context.settings, pointer)?;
         Some(Self {
             shape,
-            points_px: vec![pointer.position_px],
+            path: DrawnPath::begin(pointer, STEP_PX),
             stroke,
         })
     }
@@ -79,39 +67,33 @@ impl CurveStroke {
     /// The samples on the surface, evenly along the stroke.
     fn samples(&self, picking: &Picking<'_>) -> Vec<Sample> {
         let mut samples = Vec::new();
-        for pair in self.points_px.windows(2) {
+        for pair in self.path.points_px().windows(2) {
             let steps = (pair[0].distance(pair[1]) / STEP_PX).ceil().max(1.0);
             for step in 0..steps as usize {
                 let px = pair[0].lerp(pair[1], step as f64 / steps);
                 samples.extend(self.sample(picking, px));
             }
         }
-        samples.extend(self.points_px.last().and_then(|px| self.sample(picking, *px)));
+        samples.extend(self.path.points_px().last().and_then(|px| self.sample(picking, *px)));
         samples
     }
 
     fn sample(&self, picking: &Picking<'_>, px: DVec2) -> Option<Sample> {
         let ray = picking.camera.ray(px, picking.viewport_px);
         let pick = picking.along(ray)?;
-        if self.shape == StrokeShape::Curve {
-            let point = pick.point;
-            return Some(Sample { pick, point, half: 0.0 });
+        match self.shape {
+            StrokeShape::Spine => Some(Sample::inside(picking, pick, ray)),
+            _ => Some(Sample::on(pick)),
         }
-        // A little beyond the entry, so that the next hit is the exit.
-        let step = picking.camera.world_per_px(pick.point, picking.viewport_px);
-        let origin = pick.point + ray.direction * step;
-        let exit = picking.along(Ray { origin, ..ray });
-        let half = exit.map_or(0.0, |exit| 0.5 * exit.point.distance(pick.point));
-        let point = pick.point + ray.direction * half;
-        Some(Sample { pick, point, half })
     }
 
     /// The curve with its surroundings; `None` if the stroke is too short for one.
     fn drawn(&self, workspace: &Workspace, view: &View) -> Option<Drawn> {
         let picking = workspace.picking(view)?;
         let mut samples = self.samples(&picking);
-        let length_px: f64 = self.points_px.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
-        let ends_px = [self.points_px.first()?, self.points_px.last()?];
+        let points_px = self.path.points_px();
+        let length_px: f64 = points_px.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
+        let ends_px = [points_px.first()?, points_px.last()?];
         let is_closed = self.shape == StrokeShape::Curve
             && length_px >= SHORTEST_CLOSED_PX
             && ends_px[0].distance(*ends_px[1]) <= CLOSING_PX;
@@ -119,15 +101,15 @@ impl CurveStroke {
             StrokeShape::Spine => SPINE_POINTS,
             _ => ((length_px / SPACING_PX) as usize + 1).clamp(*CURVE_POINTS.start(), *CURVE_POINTS.end()),
         };
-        let half = level_depths(&mut samples);
+        let half = match self.shape {
+            StrokeShape::Spine => to_the_middle(&mut samples, &picking),
+            _ => 0.0,
+        };
         let points = evenly(&samples, count, is_closed);
         let (twist_deg, scale) = (vec![0.0; points.len()], vec![1.0; points.len()]);
         let curve = HandleCurve::new(points.clone(), is_closed, points, twist_deg, scale).ok()?;
         let (vertices, reach) = match self.shape {
-            StrokeShape::Spine => (
-                around(curve.rest(), GIRTH * half, &samples, &picking),
-                SPINE_REACH * half,
-            ),
+            StrokeShape::Spine => (around(curve.rest(), half, &samples, &picking), SPINE_REACH * half),
             _ => (
                 under(curve.rest(), &samples, &picking),
                 CURVE_REACH * curve.rest().length(),
@@ -135,22 +117,6 @@ impl CurveStroke {
         };
         (!vertices.is_empty()).then_some(Drawn { curve, vertices, reach })
     }
-}
-
-/// Gives samples through gaps and neighbouring limbs the usual half thickness, and returns it.
-fn level_depths(samples: &mut [Sample]) -> f64 {
-    let mut halves: Vec<f64> = samples.iter().map(|sample| sample.half).collect();
-    halves.sort_by(f64::total_cmp);
-    let usual = halves.get(halves.len() / 2).copied().unwrap_or(0.0);
-    for sample in samples
-        .iter_mut()
-        .filter(|sample| sample.half > 1.6 * usual || sample.half < 0.4 * usual)
-    {
-        let inwards = (sample.point - sample.pick.point).normalize_or(-sample.pick.normal);
-        sample.point = sample.pick.point + inwards * usual;
-        sample.half = usual;
-    }
-    usual
 }
 
 /// Points at even distances along the samples; a closed line does not come to its first point again.
@@ -187,33 +153,6 @@ fn under(curve: &Curve, samples: &[Sample], picking: &Picking<'_>) -> Vec<Surfac
     vertices.into_iter().collect()
 }
 
-/// The vertices that are connected with the samples within `limit` of a curve.
-fn around(curve: &Curve, limit: f64, samples: &[Sample], picking: &Picking<'_>) -> Vec<SurfaceVertex> {
-    const SPANS: usize = 32;
-    let at = |span: usize| curve.position(curve.length() * span as f64 / SPANS as f64);
-    let line: Vec<DVec3> = (0..=SPANS).map(at).collect();
-    let is_near = |vertex: SurfaceVertex| {
-        let point = picking.position(vertex);
-        line.windows(2).any(|ends| distance_to(point, ends) <= limit)
-    };
-    let mut found: BTreeSet<SurfaceVertex> = BTreeSet::new();
-    let mut stack: Vec<SurfaceVertex> = samples.iter().map(|sample| sample.pick.vertex).collect();
-    while let Some(vertex) = stack.pop() {
-        if !found.contains(&vertex) && is_near(vertex) {
-            found.insert(vertex);
-            stack.extend(picking.model.topology.neighbours(vertex));
-        }
-    }
-    found.into_iter().collect()
-}
-
-/// The distance of a point from a segment.
-fn distance_to(point: DVec3, ends: &[DVec3]) -> f64 {
-    let (from, along) = (ends[0], ends[1] - ends[0]);
-    let share = (point - from).dot(along) / along.length_squared().max(f64::MIN_POSITIVE);
-    point.distance(from + along * share.clamp(0.0, 1.0))
-}
-
 impl Gesture for CurveStroke {
     fn activity(&self) -> Activity {
         self.stroke.activity()
@@ -238,19 +177,11 @@ impl Gesture for CurveStroke {
     }
 
     fn outline_px(&self) -> Vec<DVec2> {
-        // An outline is closed: the way back covers the line that would close it.
-        self.points_px
-            .iter()
-            .chain(self.points_px.iter().rev())
-            .copied()
-            .collect()
+        self.path.as_outline_px()
     }
 
     fn moved(&mut self, _: &mut Context<'_>, pointer: Pointer) -> Next {
-        let is_far = |last: &DVec2| last.distance(pointer.position_px) >= STEP_PX;
-        if self.points_px.last().is_none_or(is_far) {
-            self.points_px.push(pointer.position_px);
-        }
+        self.path.follow(pointer);
         Next::Stay
     }
 

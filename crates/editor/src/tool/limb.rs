@@ -102,6 +102,14 @@ pub(crate) fn hover(workspace: &mut Workspace, view: &View, pointer_px: Option<g
 /// Tints the limb that a press of the pose brush at `pointer_px` would turn; `None` tints none.
 pub(crate) fn tint(workspace: &mut Workspace, view: &View, pointer_px: Option<glam::DVec2>) {
     let pick = pointer_px.and_then(|px| workspace.pick(view, px));
+    // The limb is looked through once for each joint, not at each move of the pointer.
+    let tinted = workspace.colours().turning();
+    let is_known = tinted.map(Arc::as_ptr) == workspace.computed().joint().map(Arc::as_ptr);
+    if let (Some(pick), Some(tinted), true) = (&pick, tinted, is_known)
+        && tinted.limb.binary_search(&pick.vertex).is_ok()
+    {
+        return;
+    }
     let joint = match pick.map(|pick| limb_under(workspace, &pick)) {
         Some(Limb::Untouched(limb)) => Some(limb.joint),
         _ => None,

@@ -4,6 +4,7 @@ use glam::{DVec2, DVec3};
 use pliant_mesh::{Surface, SurfaceVertex, bounding_box};
 
 use super::context::Context;
+use super::drawn_path::DrawnPath;
 use super::gesture::{Gesture, Next};
 use super::overlay::Lit;
 use super::paint::PaintStroke;
@@ -27,7 +28,7 @@ const REACH: f64 = 0.5;
 /// A stroke during its drawing.
 #[derive(Debug)]
 pub(crate) struct SketchStroke {
-    points_px: Vec<DVec2>,
+    path: DrawnPath,
     /// The stroke that finally paints the outline.
     stroke: StrokeGesture<PaintStroke>,
     /// The line, while a job searches for the outline that it means.
@@ -39,7 +40,7 @@ impl SketchStroke {
         context.workspace.selection.wants_new_handle = true;
         let stroke = PaintStroke::begin_on_one_side(context.workspace, context.settings, pointer)?;
         Some(Self {
-            points_px: vec![pointer.position_px],
+            path: DrawnPath::begin(pointer, STEP_PX),
             stroke,
             sketch: None,
         })
@@ -48,7 +49,7 @@ impl SketchStroke {
     /// The line in the present view.
     fn drawn(&self, view: &View) -> Result<HandleSketch, String> {
         let size_px = view.viewport_px();
-        let line = self.points_px.iter().map(|px| {
+        let line = self.path.points_px().iter().map(|px| {
             let share = *px / size_px;
             DVec2::new(2.0 * share.x - 1.0, 1.0 - 2.0 * share.y)
         });
@@ -83,12 +84,7 @@ impl Gesture for SketchStroke {
     }
 
     fn outline_px(&self) -> Vec<DVec2> {
-        // An outline is closed: the way back covers the line that would close it.
-        self.points_px
-            .iter()
-            .chain(self.points_px.iter().rev())
-            .copied()
-            .collect()
+        self.path.as_outline_px()
     }
 
     fn is_looking(&self) -> bool {
@@ -100,9 +96,8 @@ impl Gesture for SketchStroke {
     }
 
     fn moved(&mut self, _: &mut Context<'_>, pointer: Pointer) -> Next {
-        let is_far = |last: &DVec2| last.distance(pointer.position_px) >= STEP_PX;
-        if self.sketch.is_none() && self.points_px.last().is_none_or(is_far) {
-            self.points_px.push(pointer.position_px);
+        if self.sketch.is_none() {
+            self.path.follow(pointer);
         }
         Next::Stay
     }

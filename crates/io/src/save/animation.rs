@@ -49,7 +49,7 @@ impl MorphAnimation<'_> {
         let ranges: Vec<(f64, f64)> = (0..count)
             .map(|target| column(target).fold((0.0, 0.0), |(low, high), weight| (weight.min(low), weight.max(high))))
             .collect();
-        // Of a target whose weights have one sign the least is 0.
+        // If all weights of a target have one sign, the least one is 0.
         let from = |(low, high): (f64, f64)| if high > 0.0 { low } else { 0.0 };
         let length = |(low, high): (f64, f64)| if high > 0.0 { high - low } else { low };
         let mut weights: Vec<Vec<f32>> = self

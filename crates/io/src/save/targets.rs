@@ -36,7 +36,7 @@ const OF_PROJECTION: f64 = 0.5;
 pub struct ShapeDirections {
     /// The largest distance of a vertex from its place, in world units.
     bound: f64,
-    /// Of length 1 over all vertices, and at right angles to each other.
+    /// They have length 1 over all vertices, and they are at right angles to each other.
     directions: Vec<Vec<DVec3>>,
     shapes: Vec<Shape>,
 }

@@ -8,9 +8,9 @@ use pliant_editor::{
 };
 
 use crate::window::widgets::command_button::{choices_in_bar, command_button, command_choice};
-use crate::window::widgets::name_before::name_before;
 use crate::window::widgets::number_field::{dragged, number_field, slid};
 use crate::window::widgets::outbox::Outbox;
+use crate::window::widgets::row_label::bar_label;
 
 /// The length of a slider, in points: the settings of most tools fit in one row of a small window.
 const SLIDER: f32 = 64.0;
@@ -99,7 +99,7 @@ fn stroke_shape(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
 
 /// The brush's radius, and the measure of distance from its centre.
 fn brush(ui: &mut egui::Ui, mut radius_px: f64, metric: BrushMetric, commands: &mut Outbox) {
-    let label = name_before(ui, "Radius");
+    let label = bar_label(ui, "Radius");
     let slider = number_field(ui, &mut radius_px, |ui, radius_px| {
         let slider = slid(ui, radius_px, 4.0..=200.0, &[("px", 1.0)]);
         ui.add(slider.suffix(" px").fixed_decimals(0))
@@ -172,7 +172,7 @@ fn symmetry(ui: &mut egui::Ui, symmetry: Symmetry, commands: &mut Outbox) {
 
 /// A name and a list of choices, each with its meaning; returns another one that is chosen.
 fn list<T: Copy + PartialEq>(ui: &mut egui::Ui, name: &str, present: T, choices: &[(T, &str, &str)]) -> Option<T> {
-    let label = name_before(ui, name);
+    let label = bar_label(ui, name);
     let mut chosen = None;
     let word = choices.iter().find(|(choice, ..)| *choice == present);
     let shown = ComboBox::from_id_salt(name)
@@ -223,7 +223,7 @@ fn correction(ui: &mut egui::Ui, brush: &CorrectionBrush, commands: &mut Outbox)
 
 /// A share from 0 to 1.
 fn share(ui: &mut egui::Ui, name: &str, value: &mut f64, hover: &str) {
-    let label = name_before(ui, name);
+    let label = bar_label(ui, name);
     let slider = number_field(ui, value, |ui, value| {
         let slider = slid(ui, value, 0.0..=1.0, &[]).fixed_decimals(2);
         ui.add(slider)
@@ -284,7 +284,7 @@ fn stiffness(ui: &mut egui::Ui, editor: &Editor, brush: &StiffnessBrush, pressur
 
 /// The painted stiffness.
 fn stiffness_value(ui: &mut egui::Ui, brush: &mut StiffnessBrush) {
-    let label = name_before(ui, "Value");
+    let label = bar_label(ui, "Value");
     let speed = 0.02 * brush.value;
     let field = number_field(ui, &mut brush.value, |ui, value| {
         let field = dragged(ui, value, &[]).range(STIFFNESS_RANGE).speed(speed);

@@ -3,7 +3,6 @@
 pub(in crate::window) mod command_button;
 pub(in crate::window) mod default_button;
 pub(in crate::window) mod icon;
-pub(in crate::window) mod name_before;
 pub(in crate::window) mod name_label;
 pub(in crate::window) mod number_field;
 pub(in crate::window) mod outbox;

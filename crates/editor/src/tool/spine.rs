@@ -1,0 +1,165 @@
+//! The middle of a limb along a stroke, and the limb around it.
+//!
+//! A stroke tells only roughly where the limb is, and nothing about its depth. Rays from each sample across the stroke
+//! find the limb's walls, in depth and beside the stroke, and the sample moves half way between them.
+
+use std::collections::BTreeSet;
+
+use glam::DVec3;
+use pliant_mesh::{Curve, SurfaceVertex};
+
+use crate::view::{Pick, Picking, Ray};
+
+/// The limb around a spine has the vertices within this many of its half thicknesses.
+const GIRTH: f64 = 1.6;
+
+/// Walls that are farther apart than this many times the usual way belong to the body or to another limb.
+const MOST_APART: f64 = 1.6;
+
+/// Samples to either side from which the direction of the stroke and the way to the middle are taken.
+const AROUND: usize = 10;
+
+/// How often samples move to the middle: what is beside the stroke changes the depth, and the other way round.
+const ROUNDS: usize = 3;
+
+/// A sample of a stroke on the surface.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sample {
+    /// The visible surface under the pointer.
+    pub(super) pick: Pick,
+    /// The point of the curve.
+    pub(super) point: DVec3,
+    /// The unit direction away from the viewer.
+    inwards: DVec3,
+}
+
+impl Sample {
+    /// A sample on the surface.
+    pub(super) fn on(pick: Pick) -> Self {
+        Self {
+            pick,
+            point: pick.point,
+            inwards: -pick.normal,
+        }
+    }
+
+    /// A sample half way through what the ray to `pick` goes through there.
+    pub(super) fn inside(picking: &Picking<'_>, pick: Pick, ray: Ray) -> Self {
+        // A little beyond the entry, so that the next hit is the exit.
+        let step = picking.camera.world_per_px(pick.point, picking.viewport_px);
+        let origin = pick.point + ray.direction * step;
+        let exit = picking.along(Ray { origin, ..ray });
+        let half = exit.map_or(0.0, |exit| 0.5 * exit.point.distance(pick.point));
+        Self {
+            pick,
+            point: pick.point + ray.direction * half,
+            inwards: ray.direction,
+        }
+    }
+}
+
+/// Moves samples inside a limb to its middle. Returns its usual half thickness, the larger one of both directions.
+pub(super) fn to_the_middle(samples: &mut [Sample], picking: &Picking<'_>) -> f64 {
+    level_depths(samples);
+    let last = samples.len().saturating_sub(1);
+    let inwards: Vec<DVec3> = samples.iter().map(|sample| sample.inwards).collect();
+    // The directions are those of the stroke as it was drawn: moved samples would turn them.
+    let across = (0..samples.len()).map(|place| {
+        let along = samples[(place + AROUND).min(last)].point - samples[place.saturating_sub(AROUND)].point;
+        along.cross(inwards[place]).normalize_or_zero()
+    });
+    let across: Vec<DVec3> = across.collect();
+    let mut half = 0.0;
+    for _ in 0..ROUNDS {
+        let beside = between_walls(samples, &across, picking);
+        half = between_walls(samples, &inwards, picking).max(beside);
+    }
+    half
+}
+
+/// Gives samples that go through a gap, or through the body too, the usual depth below the visible surface.
+fn level_depths(samples: &mut [Sample]) {
+    let depth = |sample: &Sample| sample.point.distance(sample.pick.point);
+    let mut depths: Vec<f64> = samples.iter().map(depth).collect();
+    depths.sort_by(f64::total_cmp);
+    let Some(&usual) = depths.get(depths.len() / 2) else {
+        return;
+    };
+    for sample in samples {
+        if !(usual / MOST_APART..=usual * MOST_APART).contains(&depth(sample)) {
+            sample.point = sample.pick.point + sample.inwards * usual;
+        }
+    }
+}
+
+/// Moves the samples half way between the walls in a direction and against it. Where these are missing or unusually far
+/// apart, a sample moves as its neighbours do. Returns half of the walls' usual distance; 0 if there are none.
+fn between_walls(samples: &mut [Sample], directions: &[DVec3], picking: &Picking<'_>) -> f64 {
+    let walls = samples.iter().zip(directions).map(|(sample, &direction)| {
+        let wall = |direction| {
+            Some(
+                picking
+                    .along(Ray {
+                        origin: sample.point,
+                        direction,
+                    })?
+                    .point,
+            )
+        };
+        (direction != DVec3::ZERO).then(|| Some((wall(direction)?, wall(-direction)?)))?
+    });
+    let walls: Vec<Option<(DVec3, DVec3)>> = walls.collect();
+    let mut widths: Vec<f64> = walls.iter().flatten().map(|(a, b)| a.distance(*b)).collect();
+    widths.sort_by(f64::total_cmp);
+    let Some(&usual) = widths.get(widths.len() / 2) else {
+        return 0.0;
+    };
+    let way = |(sample, walls): (&Sample, &Option<(DVec3, DVec3)>)| {
+        let (a, b) = walls.filter(|(a, b)| a.distance(*b) <= MOST_APART * usual)?;
+        Some(a.midpoint(b) - sample.point)
+    };
+    let ways: Vec<Option<DVec3>> = samples.iter().zip(&walls).map(way).collect();
+    // The mean over the neighbours with a way, over more of them where few have one.
+    for (place, sample) in samples.iter_mut().enumerate() {
+        let mut reach = AROUND;
+        while reach < 2 * ways.len() {
+            let near = &ways[place.saturating_sub(reach)..(place + reach + 1).min(ways.len())];
+            let known: Vec<DVec3> = near.iter().flatten().copied().collect();
+            if !known.is_empty() {
+                sample.point += known.iter().sum::<DVec3>() / known.len() as f64;
+                break;
+            }
+            reach *= 2;
+        }
+    }
+    0.5 * usual
+}
+
+/// The vertices that are connected with the samples near a curve inside a limb of this half
+/// thickness.
+pub(super) fn around(curve: &Curve, half: f64, samples: &[Sample], picking: &Picking<'_>) -> Vec<SurfaceVertex> {
+    const SPANS: usize = 32;
+    let limit = GIRTH * half;
+    let at = |span: usize| curve.position(curve.length() * span as f64 / SPANS as f64);
+    let line: Vec<DVec3> = (0..=SPANS).map(at).collect();
+    let is_near = |vertex: SurfaceVertex| {
+        let point = picking.position(vertex);
+        line.windows(2).any(|ends| distance_to(point, ends) <= limit)
+    };
+    let mut found: BTreeSet<SurfaceVertex> = BTreeSet::new();
+    let mut stack: Vec<SurfaceVertex> = samples.iter().map(|sample| sample.pick.vertex).collect();
+    while let Some(vertex) = stack.pop() {
+        if !found.contains(&vertex) && is_near(vertex) {
+            found.insert(vertex);
+            stack.extend(picking.model.topology.neighbours(vertex));
+        }
+    }
+    found.into_iter().collect()
+}
+
+/// The distance of a point from a segment.
+fn distance_to(point: DVec3, ends: &[DVec3]) -> f64 {
+    let (from, along) = (ends[0], ends[1] - ends[0]);
+    let share = (point - from).dot(along) / along.length_squared().max(f64::MIN_POSITIVE);
+    point.distance(from + along * share.clamp(0.0, 1.0))
+}
