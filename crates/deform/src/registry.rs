@@ -66,7 +66,7 @@ impl fmt::Display for Remedy {
         };
         let most = if *self == Self::OfSpace { 2 } else { METHODS.len() };
         let names = METHODS.iter().filter(can).take(most);
-        let names = names.map(|declaration| declaration.name.to_owned());
+        let names = names.map(|declaration| format!("`{}`", declaration.name));
         let Self::OfDamageBy(_) = self else {
             return f.write_str(&joined(names, "or"));
         };
@@ -92,7 +92,9 @@ mod tests {
             }
             assert_eq!(Method::from_name(name), Some((declaration.default)()));
             assert!(
-                !declaration.title.is_empty() && declaration.when_to_use.ends_with('.'),
+                !declaration.title.is_empty()
+                    && !declaration.paper.is_empty()
+                    && declaration.when_to_use.ends_with('.'),
                 "{name}"
             );
             assert_eq!(declaration.keywords, declaration.keywords.to_lowercase());

@@ -16,7 +16,8 @@ use crate::{BindError, Picture, SolveError, Warning};
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "frames",
-    title: "Rotation-invariant coordinates",
+    title: "Even turns",
+    paper: "rotation-invariant coordinates",
     when_to_use: "Solves for the surface's turns and then for its positions, in one step: for turns of several \
                   handles by less than half a turn. A handle that is only moved turns nothing unless `iterations` are \
                   added.",
@@ -109,14 +110,14 @@ impl BoundMethod for FramesSolver {
                 let degrees = turn.to_degrees();
                 Warning::of_handle(handle, |handle| {
                     format!(
-                        "{handle} turns by {degrees:.0}°, but frames follows less than half a turn: take poisson, \
+                        "{handle} turns by {degrees:.0}°, but `frames` follows less than half a turn: take `poisson`, \
                          which follows larger turns"
                     )
                 })
             })
             .collect();
         if self.options.iterations == 0 {
-            sentences.extend(only_moved("frames", motions, self.is_held));
+            sentences.extend(only_moved("`frames`", motions, self.is_held));
         }
         sentences
     }

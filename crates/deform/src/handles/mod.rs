@@ -131,7 +131,7 @@ pub(crate) fn only_moved(method: &str, motions: &[Motion], is_held: bool) -> Opt
     let sentence = || {
         format!(
             "{method} turns nothing for moves, and the handles only move, so the surface shears between them: turn a \
-             handle, or take laplacian or arap"
+             handle, or take `laplacian` or `arap`"
         )
     };
     (moves && motions.iter().all(is_only_moved)).then(|| sentence().into())

@@ -12,7 +12,8 @@ use crate::{BindError, Picture, SolveError, Warning};
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "laplacian",
-    title: "Laplacian editing",
+    title: "Wide parts",
+    paper: "Laplacian editing",
     when_to_use: "Turns details with the surface, in one step: for moves, and for turns of wide parts up to about \
                   90°. Limbs collapse from about 70° on, and beyond 90° the surface bulges and shrinks unless `steps` \
                   divides the motion.",
@@ -111,7 +112,7 @@ impl BoundMethod for LaplacianSolver {
         match self.options.transforms {
             Transforms::None if turn > SMALL_RAD => vec![Warning::of_handle(handle, |handle| {
                 format!(
-                    "laplacian turns no details if `transforms` is \"none\", but {handle} turns by {degrees:.0}°: \
+                    "`laplacian` turns no details if `transforms` is \"none\", but {handle} turns by {degrees:.0}°: \
                      take \"implicit\""
                 )
             })],
@@ -119,8 +120,8 @@ impl BoundMethod for LaplacianSolver {
                 let steps = (turn / LARGE_RAD).ceil();
                 vec![Warning::of_handle(handle, |handle| {
                     format!(
-                        "{handle} turns by {degrees:.0}°, but laplacian follows about 90° a step: set `steps` to \
-                         {steps:.0}, or take poisson or arap"
+                        "{handle} turns by {degrees:.0}°, but `laplacian` follows about 90° a step: set `steps` to \
+                         {steps:.0}, or take `poisson` or `arap`"
                     )
                 })]
             }
