@@ -60,6 +60,7 @@ impl fmt::Display for Remedy {
                 Self::OfSpaceForManyHandles => bends_space && method.implementation().handle_row_bytes() == 0,
                 Self::Heeding(constraint) => declaration.heeds(*constraint),
                 Self::TakingPlaces => method.implementation().takes_places(),
+                Self::TurningByMoves => method.implementation().turns_by_moves(),
                 Self::FollowingTurns(degrees) => method.implementation().advised_for_degrees() >= *degrees,
                 Self::OfDamageBy(own) => declaration.name != *own && method.implementation().resists_collapse(),
             }

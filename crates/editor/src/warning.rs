@@ -21,20 +21,19 @@ impl HandleWarning {
         warnings.iter().map(with_handle).collect()
     }
 
-    /// The sentence, with the present name of the handle.
+    /// The sentence in the words of the window, with the present name of the handle.
     pub(crate) fn worded(&self, document: &Document) -> String {
         let handle = self.handle.and_then(|id| document.handle(id));
-        worded(&self.warning, handle.map(|handle| &*handle.name))
+        in_window_words(&worded(&self.warning, handle.map(|handle| &*handle.name)))
     }
 }
 
 /// The sentence of a warning about a handle of this name, if it is about one that has a name.
 pub(crate) fn worded(warning: &Warning, name: Option<&str>) -> String {
-    let sentence = match name.filter(|name| !name.is_empty()) {
+    match name.filter(|name| !name.is_empty()) {
         Some(name) => warning.naming(&format!("\"{}\"", shortened(name))),
         None => warning.to_string(),
-    };
-    in_window_words(&sentence)
+    }
 }
 
 /// A sentence of the engine in the words of the window: names of the edit format, which it has in backticks, become

@@ -58,6 +58,10 @@ impl DeformMethod for Arap {
         140
     }
 
+    fn turns_by_moves(&self) -> bool {
+        true
+    }
+
     fn needs(&self) -> Needs {
         Needs::Surface {
             // Across constrained vertices, too: their cells turn with all their neighbours.

@@ -12,7 +12,7 @@ use crate::handles::turns::Followed;
 use crate::handles::{Motion, only_moved};
 use crate::method::{BindInput, BoundMethod, DeformMethod, FactoredSystem, MethodDeclaration, Stepped};
 use crate::needs::{ConstraintKind, Needs, Solve};
-use crate::{BindError, Picture, SolveError, Warning};
+use crate::{BindError, Picture, Remedy, SolveError, Warning};
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "frames",
@@ -108,10 +108,11 @@ impl BoundMethod for FramesSolver {
             .filter(|(_, turn)| *turn > LARGE_RAD)
             .map(|(handle, turn): (usize, f64)| {
                 let degrees = turn.to_degrees();
+                let others = Remedy::FollowingTurns(degrees.ceil() as u16);
                 Warning::of_handle(handle, |handle| {
                     format!(
-                        "{handle} turns by {degrees:.0}°, but `frames` follows less than half a turn: take `poisson`, \
-                         which follows larger turns"
+                        "{handle} turns by {degrees:.0}°, but `frames` follows less than half a turn: take {others}, \
+                         which can follow it"
                     )
                 })
             })

@@ -8,7 +8,7 @@ use crate::handles::finite::Finite;
 use crate::handles::polar::{Polar, polars_of};
 use crate::method::{BindInput, BoundMethod, DeformMethod, FactoredSystem, MethodDeclaration, Stepped};
 use crate::needs::{ConstraintKind, Needs, Solve};
-use crate::{BindError, Picture, SolveError, Warning};
+use crate::{BindError, Picture, Remedy, SolveError, Warning};
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "laplacian",
@@ -34,6 +34,10 @@ pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
 impl DeformMethod for LaplacianEditing {
     fn declaration(&self) -> &'static MethodDeclaration {
         &DECLARATION
+    }
+
+    fn turns_by_moves(&self) -> bool {
+        true
     }
 
     fn needs(&self) -> Needs {
@@ -118,10 +122,11 @@ impl BoundMethod for LaplacianSolver {
             })],
             Transforms::Implicit | Transforms::InitialGuess if turn > LARGE_RAD * f64::from(self.options.steps) => {
                 let steps = (turn / LARGE_RAD).ceil();
+                let others = Remedy::FollowingTurns(degrees.ceil() as u16);
                 vec![Warning::of_handle(handle, |handle| {
                     format!(
                         "{handle} turns by {degrees:.0}°, but `laplacian` follows about 90° a step: set `steps` to \
-                         {steps:.0}, or take `poisson` or `arap`"
+                         {steps:.0}, or take {others}"
                     )
                 })]
             }

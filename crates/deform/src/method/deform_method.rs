@@ -139,6 +139,11 @@ pub(crate) trait DeformMethod: Options {
         None
     }
 
+    /// Returns true if the surface turns though the handles only move.
+    fn turns_by_moves(&self) -> bool {
+        false
+    }
+
     /// The largest turn between handles for which it is advised instead of a method that follows less; 0 for none.
     fn advised_for_degrees(&self) -> u16 {
         0

@@ -39,6 +39,10 @@ impl DeformMethod for Primo {
         Some(Followed::by_necks(140.0))
     }
 
+    fn turns_by_moves(&self) -> bool {
+        true
+    }
+
     fn needs(&self) -> Needs {
         Needs::Surface {
             // A prism may have free vertices and vertices of a handle, and is coupled with all its neighbours.

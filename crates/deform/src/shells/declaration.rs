@@ -72,6 +72,10 @@ impl DeformMethod for Shells {
         true
     }
 
+    fn turns_by_moves(&self) -> bool {
+        true
+    }
+
     fn needs(&self) -> Needs {
         Needs::Surface {
             // A hinge joins the two vertices across its edge, which may both be constrained.

@@ -5,8 +5,6 @@ use glam::DVec3;
 use pliant_deform::{Method, Remedy};
 use pliant_mesh::{Damage, SelfIntersections, point_in_words};
 
-use crate::warning::in_window_words;
-
 /// The places where the present shape passes through itself and the file's did not, and its other faults.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Intersections {
@@ -49,9 +47,10 @@ impl Intersections {
     /// All faults of a shape by this method, in words.
     pub fn sentences(&self, method: &Method) -> Vec<String> {
         let remedy = Remedy::OfDamageBy(method.name()).to_string();
-        let damage = self.damage.sentences(&remedy);
-        let damage = damage.iter().map(|sentence| in_window_words(sentence));
-        self.sentence().into_iter().chain(damage).collect()
+        self.sentence()
+            .into_iter()
+            .chain(self.damage.sentences(&remedy))
+            .collect()
     }
 
     /// The places where the shape passes through itself, and the remedies, in words; `None` if there are none.
