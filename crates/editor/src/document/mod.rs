@@ -29,6 +29,7 @@ mod vertex_access;
 pub use access::{Access, ObjectAction, SmallParts, object_name};
 pub use content::sum_of_shapes;
 pub use content::{Content, Paint, Tips};
+pub(crate) use handle::PART_RADII;
 pub use handle::{Handle, HandleId, PivotPlace, Reach, Twin};
 pub use handle_colour::HANDLE_COLOURS;
 pub use handle_curve::HandleCurve;
