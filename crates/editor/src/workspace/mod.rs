@@ -8,6 +8,7 @@ mod controls;
 mod curves;
 mod dirty_colours;
 mod examples;
+mod flow;
 mod handle_values;
 mod handles;
 mod mirror;

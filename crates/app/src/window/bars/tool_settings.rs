@@ -7,6 +7,7 @@ use pliant_editor::{
     StrokeShape, Symmetry, ToolMode,
 };
 
+use super::flow_settings;
 use crate::window::widgets::command_button::{choices_in_bar, command_button, command_choice};
 use crate::window::widgets::number_field::{dragged, number_field, slid};
 use crate::window::widgets::outbox::Outbox;
@@ -30,6 +31,10 @@ fn settings(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     ui.spacing_mut().slider_width = SLIDER;
     match view.tool {
         ToolMode::Pose => {}
+        ToolMode::Flow => {
+            brush(ui, view.brush_radius_px, view.brush_metric, commands);
+            return flow_settings::show(ui, editor, commands);
+        }
         ToolMode::PaintStiffness | ToolMode::Correct => {
             brush(ui, view.brush_radius_px, view.brush_metric, commands);
         }
