@@ -9,6 +9,7 @@ mod curves;
 mod dirty_colours;
 mod examples;
 mod flow;
+mod flow_play;
 mod handle_values;
 mod handles;
 mod mirror;

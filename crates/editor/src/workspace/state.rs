@@ -9,7 +9,7 @@ use pliant_mesh::{Model, SurfaceVertex};
 
 use super::colour_revisions::Colours;
 use super::control_selection::ControlSelection;
-use super::flow::FlowPlay;
+use super::flow_play::FlowPlay;
 use super::mirror_request::Mirroring;
 use super::selection::HandleSelection;
 use crate::document::{
