@@ -4,8 +4,9 @@ use std::ops::RangeInclusive;
 
 use eframe::egui;
 use glam::DVec3;
-use pliant_editor::{Command, Editor, FlowAction, FlowBrush, FlowOptions};
+use pliant_editor::{Command, Editor, FlowAction, FlowOptions};
 
+use super::share_slider::share;
 use crate::window::widgets::command_button::{choices_in_bar, command_button, icon_choice};
 use crate::window::widgets::icon::Glyph;
 use crate::window::widgets::number_field::{number_field, slid};
@@ -15,8 +16,7 @@ use crate::window::widgets::row_label::bar_label;
 /// Shows the settings.
 pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     play(ui, editor, commands);
-    brush(ui, &editor.view().flow_brush, commands);
-    forces(ui, editor, commands);
+    brush(ui, editor, commands);
     ui.menu_button("Dye", |ui| {
         for command in [Command::KeepDye, Command::ClearDye, Command::RemoveKeptDye] {
             if command_button(ui, editor, &command) {
@@ -46,7 +46,8 @@ fn play(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     }
 }
 
-fn brush(ui: &mut egui::Ui, brush: &FlowBrush, commands: &mut Outbox) {
+fn brush(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
+    let brush = &editor.view().flow_brush;
     const ACTIONS: [(FlowAction, &str, &str); 4] = [
         (
             FlowAction::PourAndPush,
@@ -69,25 +70,26 @@ fn brush(ui: &mut egui::Ui, brush: &FlowBrush, commands: &mut Outbox) {
     ui.color_edit_button_srgb(&mut changed.colour)
         .labelled_by(label.id)
         .on_hover_text("Sets the colour of the dye.");
-    for (name, value, says) in [
-        (
-            "Strength",
-            &mut changed.strength,
-            "Sets the share of colour and speed that the fluid gets. A pen's pressure scales it.",
-        ),
-        (
-            "Falloff",
-            &mut changed.falloff,
-            "Sets the brush's rim: 0 ends sharply, 1 fades from the middle.",
-        ),
-    ] {
-        let label = bar_label(ui, name);
-        let slider = number_field(ui, value, |ui, value| {
-            let slider = slid(ui, value, 0.0..=1.0, &[]).fixed_decimals(2);
-            ui.add(slider)
+    ui.menu_button("More", |ui| {
+        egui::Grid::new("flow brush").num_columns(2).show(ui, |ui| {
+            for (name, value, says) in [
+                (
+                    "Strength",
+                    &mut changed.strength,
+                    "Sets the share of colour and speed that the fluid gets. A pen's pressure scales it.",
+                ),
+                (
+                    "Falloff",
+                    &mut changed.falloff,
+                    "Sets the brush's rim: 0 ends sharply, 1 fades from the middle.",
+                ),
+            ] {
+                share(ui, name, value, says);
+                ui.end_row();
+            }
+            forces(ui, editor, commands);
         });
-        slider.labelled_by(label.id).on_hover_text(says);
-    }
+    });
     if changed != *brush {
         commands.push(Command::SetFlowBrush(changed));
     }
@@ -125,6 +127,7 @@ fn forces(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
             ..options
         })
     });
+    ui.end_row();
     if let Some(towards) = directions(ui, direction, editor) {
         ui.data_mut(|data| data.insert_temp(id, towards));
         commands.push(Command::SetFlowOptions(FlowOptions {
@@ -132,12 +135,14 @@ fn forces(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
             ..options
         }));
     }
+    ui.end_row();
     let mut viscosity = options.viscosity;
     let says = "Sets how much neighbouring places move alike, in squared units per second.";
     let slider = force(ui, "Viscosity", &mut viscosity, 0.0..=0.02 * size * size, says);
     commands.adjust(&slider, || {
         Command::SetFlowOptions(FlowOptions { viscosity, ..options })
     });
+    ui.end_row();
     let mut confinement = options.confinement;
     let says = "Gives small swirls their energy back, per second.";
     let slider = force(ui, "Swirls", &mut confinement, 0.0..=20.0, says);

@@ -3,6 +3,7 @@
 
 mod flow_settings;
 pub(in crate::window) mod hints;
+mod share_slider;
 pub(in crate::window) mod status;
 pub(in crate::window) mod toast;
 pub(in crate::window) mod tool_column;
