@@ -58,6 +58,7 @@ mod file_error;
 pub mod files;
 pub mod flow;
 mod frames;
+mod inspected;
 mod loading;
 pub mod memory;
 mod path_text;
@@ -74,8 +75,9 @@ pub use difference::{Compared, differences};
 pub use edit::read_edit;
 pub use error::EngineError;
 pub use flow::{FlowJob, FlowReport, Flowing, FromTo, flow, read_flow};
+pub use inspected::{Inspected, inspect};
 pub use loading::{Loaded, is_project, load, load_bytes, open};
 pub use sequence::{Sequence, SequenceReport, sequence};
 pub use transfer::{Transfer, transfer, transferred};
 
-pub use pliant_io::{Difference, What};
+pub use pliant_io::{Difference, MorphDeltas, MorphTarget, What};

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import pliant
-from conftest import METHODS, ROOT, bar, quarter_turn
+from conftest import METHODS, ROOT, bar, quarter_turn, skip, write_off
 
 CREATURE = ROOT / "assets" / "creature.glb"
 
@@ -132,7 +132,7 @@ def test_compare_has_the_command_line_s_figures(program, tmp_path):
     try:
         run(program, *words, "--output", sheet, "--size", "200x200")
     except subprocess.CalledProcessError as error:
-        pytest.skip(f"no picture can be drawn here: {error.stderr}")
+        skip(f"no picture can be drawn here: {error.stderr}")
     expected = json.loads(report.read_text())["methods"]
     members = {name: own for name, own in edit.items() if name not in ("version", "handles", "method")}
     handles = {own["name"]: {k: v for k, v in own.items() if k not in ("name", "transform")} for own in edit["handles"]}
@@ -147,10 +147,7 @@ def test_compare_has_the_command_line_s_figures(program, tmp_path):
 
 def test_flow_gives_the_command_line_s_colours(program, tmp_path):
     vertices, faces = bar()
-    lines = [f"OFF\n{len(vertices)} {len(faces)} 0"]
-    lines += [" ".join(map(repr, map(float, row))) for row in vertices]
-    lines += [f"3 {a} {b} {c}" for a, b, c in np.asarray(faces).tolist()]
-    (tmp_path / "bar.off").write_text("\n".join(lines) + "\n")
+    write_off(tmp_path / "bar.off", vertices, faces)
     members = {
         "dye": [{"select": {"slab": {"axis": "longest", "from": 0.6, "to": 1}}, "color": [0, 0, 1]}],
         "velocity": [{"select": "all", "spin": {"axis": [0, 0, 1], "rate": 2}}],

@@ -6,7 +6,7 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use glam::DVec3;
-use pliant_mesh::Model;
+use pliant_mesh::{Model, bounding_box};
 
 use crate::Beginning;
 use crate::command::{Command, KeyMap, Scope, frame_all};
@@ -15,7 +15,7 @@ use crate::event::Event;
 use crate::input::{Button, Key, Modifiers, Pointer};
 use crate::jobs::{Activity, Asked, Executor, JobDone, JobKind};
 use crate::tool::{Adjust, Brush, Context, Gesture, Lit, Next, Overlay, ToolMode, ToolSettings, begin, hover, tint};
-use crate::view::{Shading, View};
+use crate::view::{Shading, UpAxis, View, up_axis_of};
 use crate::workspace::{ColouredBy, Workspace, take_mirrored};
 
 /// The factor by which a notch of the wheel changes the brush's size.
@@ -370,8 +370,10 @@ impl Editor {
             Some(Ok(document)) => (document, None),
             Some(Err(error)) => (Document::new(count), Some(error.to_string())),
         };
-        let bounds = model.bounds_without_specks();
-        self.begin_file(bounds.map(|bounds| bounds.diagonal()), |workspace| {
+        let shown = model.vertices_without_specks();
+        let shown: Vec<DVec3> = shown.map(|vertex| model.surface.positions[vertex.index()]).collect();
+        let size = bounding_box(&shown).map(|bounds| bounds.diagonal());
+        self.begin_file(size, up_axis_of(&shown), |workspace| {
             workspace.open(model, name, document);
             workspace.refusal = refusal;
         });
@@ -384,7 +386,7 @@ impl Editor {
     }
 
     /// Opens another file in the workspace, and frames all of it.
-    fn begin_file(&mut self, size: Option<f64>, open: impl FnOnce(&mut Workspace)) {
+    fn begin_file(&mut self, size: Option<f64>, up: UpAxis, open: impl FnOnce(&mut Workspace)) {
         self.abort_gesture();
         self.showing_original = None;
         self.view.look.original = false;
@@ -392,7 +394,7 @@ impl Editor {
         self.settings.wants_pivot = false;
         self.brush = Brush::default();
         open(&mut self.workspace);
-        self.view.open(size.map(|size| if size > 0.0 { size } else { 1.0 }));
+        self.view.open(size.map(|size| if size > 0.0 { size } else { 1.0 }), up);
         frame_all(&self.workspace, &mut self.view);
     }
 

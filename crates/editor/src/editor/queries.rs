@@ -19,6 +19,7 @@ use crate::snapshot::Snapshot;
 use crate::status::status;
 use crate::tool::{Gesture, ToolMode};
 use crate::view::{Cursor, Look, Pick};
+use crate::warning::in_window_words;
 use crate::workspace::{ControlSource, SnapshotKey, Workspace, region_colour, rims};
 use crate::{EditFile, MeshReference, geometry_hash};
 
@@ -163,6 +164,15 @@ impl Editor {
     /// the search, and while the shape changes.
     pub fn intersections(&self) -> Option<&Intersections> {
         self.workspace.intersections()
+    }
+
+    /// The faults of the shape by the present method, in the words of the window.
+    pub fn faults(&self) -> Vec<String> {
+        let found = self
+            .intersections()
+            .map(|found| found.sentences(self.document().method()));
+        let sentences = found.unwrap_or_default();
+        sentences.iter().map(|sentence| in_window_words(sentence)).collect()
     }
 
     /// The methods' solutions for the present edit, during a comparison.

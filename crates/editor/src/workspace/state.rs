@@ -18,6 +18,7 @@ use crate::document::{
 use crate::jobs::{BothSides, Computed, Descent, Executor, Intersections, Jobs, Symmetry};
 use crate::revision::Revision;
 use crate::view::{Pick, Picking, View};
+use crate::warning::in_window_words;
 
 /// The document and its consequences.
 pub(crate) struct Workspace {
@@ -140,7 +141,7 @@ impl Workspace {
 
     /// Sets the reason why an action was refused.
     pub(crate) fn refuse(&mut self, why: impl Into<String>) {
-        self.refusal = Some(why.into());
+        self.refusal = Some(in_window_words(&why.into()));
     }
 }
 
