@@ -152,6 +152,7 @@ impl Editor {
         let activity = gesture.map_or(Activity::Still, Gesture::activity);
         let by = match self.settings.mode {
             ToolMode::PaintStiffness => ColouredBy::Stiffness,
+            ToolMode::Flow => ColouredBy::Dye,
             _ => ColouredBy::Region,
         };
         let look = &self.view.look;
@@ -169,6 +170,7 @@ impl Editor {
             hover(&mut self.workspace, &self.view, hovering_px);
         }
         tint(&mut self.workspace, &self.view, hovering_px);
+        self.workspace.follow_flow(gesture.is_none());
         self.workspace.conclude(activity, by, asked);
         if !gesture.is_some_and(Gesture::moves_camera) {
             self.view.rest();
@@ -348,6 +350,10 @@ impl Editor {
             }
             Some(JobKind::Mirror) => take_mirrored(&mut self.workspace, self.gesture.is_none()),
             _ => {}
+        }
+        if kind == JobKind::Flow {
+            self.workspace.take_flowed();
+            self.ask_gesture(|gesture, context| gesture.flowed(context));
         }
         // The search has ended without a result: it was stopped, or it failed.
         let is_search = matches!(kind, JobKind::Enclose | JobKind::Joint);

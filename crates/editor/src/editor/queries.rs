@@ -66,6 +66,8 @@ impl Editor {
             brush_metric: settings.brush().metric,
             stiffness_brush: settings.stiffness_brush,
             correction_brush: settings.correction_brush,
+            flow_brush: settings.flow_brush,
+            is_playing: workspace.flow.is_playing(),
             pressure: settings.pressure,
             orientation: settings.orientation,
             wants_pivot: settings.wants_pivot,
@@ -298,7 +300,9 @@ impl Editor {
         let awaited = |kind: JobKind| kind.is_awaited() && (kind != JobKind::Order || is_displaced);
         let jobs = &self.workspace.jobs;
         let is_busy = || JobKind::ALL.iter().any(|&kind| awaited(kind) && jobs.is_busy(kind));
-        self.gesture.is_none() && self.waiting.is_empty() && !is_busy()
+        // A stretch of play that ends becomes a part of the document.
+        let is_ending = !(self.workspace.flow.is_still() || self.workspace.flow.is_playing());
+        self.gesture.is_none() && self.waiting.is_empty() && !is_ending && !is_busy()
     }
 
     /// The revision of the shape that jobs are stamped with, for tests of lateness.
