@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use glam::{DAffine3, DVec3};
-use pliant_deform::{Arap, Method, Role};
+use pliant_deform::{Arap, ArapEnergy, Method, Role};
 use pliant_mesh::shapes;
 
 use crate::rig::{Scene, apart, settle};
@@ -90,7 +90,7 @@ const LIMITED: [(&str, f64, Beyond); 12] = [
     ("lattice", 90.0, Beyond::Narrows),
     ("cage", 90.0, Beyond::Narrows),
     ("embedded", 120.0, Beyond::NarrowsNecks),
-    ("arap", 140.0, Beyond::NarrowsNecks),
+    ("arap", 95.0, Beyond::NarrowsNecks),
     ("primo", 140.0, Beyond::NarrowsNecks),
     ("shells", 150.0, Beyond::NarrowsNecks),
     ("frames", 140.0, Beyond::Narrows),
@@ -183,6 +183,28 @@ fn folded(method: &Method, degrees: f64) -> f64 {
         (rest[v] + displacements[v]).distance(middle) / rest[v].truncate().length()
     };
     (0..rest.len()).map(share).fold(f64::INFINITY, f64::min)
+}
+
+#[test]
+fn the_plain_energies_say_from_where_on_folds_crease_a_limb() {
+    for energy in [ArapEnergy::Spokes, ArapEnergy::SpokesAndRims] {
+        let mut options = Arap::default();
+        options.energy = energy;
+        let method = Method::from(options);
+        assert!(said(&method, 95.0, true).is_empty() && folded(&method, 95.0) > 0.7);
+        let between = said(&method, 120.0, true);
+        assert!(
+            between[0].contains("flattens a limb that is folded, though not one that is twisted")
+                && between[0].contains("arap with `energy` \"smooth\""),
+            "{between:?}"
+        );
+        assert!(folded(&method, 120.0) < 0.5 && twisted(&method, 120.0, 0.6).0 > 0.7);
+        let beyond = said(&method, 150.0, true);
+        assert!(
+            beyond[0].contains("from 140° on it narrows the limb at thin places"),
+            "{beyond:?}"
+        );
+    }
 }
 
 #[test]
