@@ -167,6 +167,26 @@ fn the_smooth_energy_follows_half_a_turn_with_every_neck_by_one_solve_and_by_a_d
     }
 }
 
+#[test]
+fn a_drag_that_winds_a_limb_up_ends_no_higher_than_one_solve_does() {
+    let smooth = Method::from(Arap::first_choice());
+    for method in [smooth, named("primo"), named("shells"), named("embedded")] {
+        let scene = limb(&method, 1.0);
+        let (_, energies) = settle(&mut scene.bind(), &turn_about_limb(190.0));
+        let mut bound = scene.bind();
+        let mut out = vec![DVec3::ZERO; scene.positions().len()];
+        for frame in 1..19 {
+            bound.set_targets(&turn_about_limb(10.0 * f64::from(frame))).unwrap();
+            for _ in 0..3 {
+                bound.step(&mut out).unwrap();
+            }
+        }
+        let (_, of_drag) = settle(&mut bound, &turn_about_limb(190.0));
+        let [once, dragged] = [&energies, &of_drag].map(|energies| energies[energies.len() - 1]);
+        assert!(dragged < 1.002 * once, "{} {once} {dragged}", method.name());
+    }
+}
+
 /// The share of its radius that a limb keeps where it is thinnest when it is folded about an axis beside it.
 fn folded(method: &Method, degrees: f64) -> f64 {
     let scene = limb(method, 1.0);
