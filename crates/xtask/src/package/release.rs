@@ -96,6 +96,12 @@ mod tests {
     }
 
     #[test]
+    fn the_flatpak_has_the_same_name() {
+        let manifest = text(&format!("packaging/flatpak/{ID}.yml")).unwrap_or_default();
+        assert!(manifest.contains(&format!("\nid: {ID}\n")));
+    }
+
+    #[test]
     fn the_name_is_the_address_backwards() {
         let host = HOMEPAGE
             .trim_start_matches("https://")
