@@ -60,13 +60,14 @@ impl fmt::Display for Remedy {
                 Self::OfSpaceForManyHandles => bends_space && method.implementation().handle_row_bytes() == 0,
                 Self::Heeding(constraint) => declaration.heeds(*constraint),
                 Self::TakingPlaces => method.implementation().takes_places(),
+                Self::TurningByMoves => method.implementation().turns_by_moves(),
                 Self::FollowingTurns(degrees) => method.implementation().advised_for_degrees() >= *degrees,
                 Self::OfDamageBy(own) => declaration.name != *own && method.implementation().resists_collapse(),
             }
         };
         let most = if *self == Self::OfSpace { 2 } else { METHODS.len() };
         let names = METHODS.iter().filter(can).take(most);
-        let names = names.map(|declaration| declaration.name.to_owned());
+        let names = names.map(|declaration| format!("`{}`", declaration.name));
         let Self::OfDamageBy(_) = self else {
             return f.write_str(&joined(names, "or"));
         };
@@ -92,7 +93,9 @@ mod tests {
             }
             assert_eq!(Method::from_name(name), Some((declaration.default)()));
             assert!(
-                !declaration.title.is_empty() && declaration.when_to_use.ends_with('.'),
+                !declaration.title.is_empty()
+                    && !declaration.paper.is_empty()
+                    && declaration.when_to_use.ends_with('.'),
                 "{name}"
             );
             assert_eq!(declaration.keywords, declaration.keywords.to_lowercase());

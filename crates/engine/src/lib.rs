@@ -48,6 +48,7 @@
 
 mod animate;
 mod apply;
+mod coloured;
 pub mod control_mesh;
 mod difference;
 mod edit;
@@ -55,7 +56,7 @@ mod error;
 pub mod examples;
 mod file_error;
 pub mod files;
-mod flow;
+pub mod flow;
 mod frames;
 mod inspected;
 mod loading;

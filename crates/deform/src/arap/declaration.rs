@@ -26,10 +26,11 @@ const RIGID_TO_SMOOTH: OptionSlider = OptionSlider {
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "arap",
-    title: "As rigid as possible",
+    title: "Limbs",
+    paper: "as rigid as possible",
     when_to_use: "Keeps every neighbourhood as rigid as possible, step by step, for large turns and long drags. The \
                   energy \"smooth\" bends and twists evenly; \"spokes-and-rims\" binds sooner and may crease.",
-    keywords: "arap as-rigid-as-possible",
+    keywords: "limb as rigid as possible arap as-rigid-as-possible",
     picture: Picture::Blocks,
     slider: Some(&RIGID_TO_SMOOTH),
     options: Arap::OPTIONS,
@@ -55,6 +56,10 @@ impl DeformMethod for Arap {
 
     fn advised_for_degrees(&self) -> u16 {
         140
+    }
+
+    fn turns_by_moves(&self) -> bool {
+        true
     }
 
     fn needs(&self) -> Needs {
