@@ -37,10 +37,11 @@ fn play(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
         (Glyph::Play, "Play")
     };
     for (command, is_chosen, glyph, label) in [
-        (Command::PlayFlow, is_playing, glyph, label),
-        (Command::StepFlow, false, Glyph::StepForward, "Step"),
+        (Command::PlayFlow, is_playing, glyph, Some(label)),
+        // Its picture says it, and the bar of a small window has one row.
+        (Command::StepFlow, false, Glyph::StepForward, None),
     ] {
-        if icon_choice(ui, editor, &command, is_chosen, glyph, Some(label)) {
+        if icon_choice(ui, editor, &command, is_chosen, glyph, label) {
             commands.push(command);
         }
     }
