@@ -153,10 +153,10 @@ fn an_edit_names_it_and_its_options_and_moves_the_handles_alone() {
         (ConstraintKind::SoftHandles, "soft handles"),
         (ConstraintKind::Stiffness, "parts that are stiffer"),
     ] {
-        let names: Vec<&str> = METHODS
+        let names: Vec<String> = METHODS
             .iter()
             .filter(|other| other.heeds(kind))
-            .map(|other| other.name)
+            .map(|other| format!("`{}`", other.name))
             .collect();
         let (last, others) = names.split_last().unwrap();
         let expected = format!("take {} or {last} for {purpose}", others.join(", "));
@@ -185,7 +185,7 @@ fn the_palette_and_the_panel_have_it() {
     assert_eq!(harness.state().editor().document().method().name(), "identity");
 
     // The panel shows its sentence, and a widget for its option on the method's page.
-    harness.get_by_label("Moves the handles and leaves the rest in place.");
+    harness.get_by_label("Identity. Moves the handles and leaves the rest in place.");
     harness.get_by_role_and_label(Role::Tab, "Method").click();
     harness.run_steps(8);
     assert!(harness.query_all_by_label("Share").next().is_some());

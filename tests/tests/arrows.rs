@@ -17,7 +17,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("pliant-stitch", &["pliant-deform", "pliant-mesh"]),
     ("pliant-flow", &["pliant-deform", "pliant-mesh"]),
     ("pliant-render", &[]),
-    ("pliant-editor", &["pliant-deform", "pliant-mesh"]),
+    ("pliant-editor", &["pliant-deform", "pliant-flow", "pliant-mesh"]),
     (
         "pliant-engine",
         &[

@@ -273,7 +273,7 @@ fn surface_methods_are_refused_on_points_alone_with_methods_of_space_as_the_reme
             let name = file.file_name().unwrap().to_str().unwrap();
             folder
                 .apply(&file, &edit(declaration.name), &out, &[])
-                .refused(1, &[name, "no triangle", declaration.name, "take rbf or"]);
+                .refused(1, &[name, "no triangle", declaration.name, "take `rbf` or"]);
             assert!(!out.exists());
         }
     }

@@ -1,10 +1,16 @@
 //! `pliant flow`: dye along a surface, saved as vertex colours.
 #![allow(clippy::unwrap_used, reason = "tests fail by panicking")]
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
-use pliant_mesh::shapes;
+use glam::DVec3;
+use pliant_engine::Loaded;
+use pliant_engine::files::Staging;
+use pliant_engine::saving::{self, SaveAs};
+use pliant_engine::watch::Watch;
+use pliant_mesh::{Cancel, Progress, WeldOptions, shapes};
 use pliant_tests::{Ended, Folder, open, run};
 use serde_json::{Value, json};
 
@@ -45,7 +51,7 @@ fn a_cap_turns_with_its_sphere_in_every_format_and_nothing_else_changes() {
         );
         let positions = after.model.rest_positions();
         // The cap is now 1 radian further: clear fluid is white, so green tells the dye.
-        let mut middle = glam::DVec3::ZERO;
+        let mut middle = DVec3::ZERO;
         for (position, [red, green, _, alpha]) in positions.iter().zip(colours(&out)) {
             assert!(red > 65_000 && alpha == u16::MAX, "red over white is red");
             middle += *position * (1.0 - f64::from(green) / f64::from(u16::MAX));
@@ -157,5 +163,48 @@ fn what_can_t_be_done_is_refused_in_words_and_writes_nothing() {
     ] {
         flow(&folder, file, &flow_file, &folder.at(out), &[]).refused(status, &[says]);
         assert!(!folder.at(out).exists());
+    }
+}
+
+#[test]
+fn other_colours_are_saved_together_with_another_shape_and_turned_parts() {
+    let folder = Folder::new();
+    folder.write_mesh("ball.off", &shapes::icosphere(3));
+    let load = |path: &Path| pliant_engine::load(path, &WeldOptions::default(), &Watch::default()).unwrap();
+    let save = |loaded: &Loaded, what: &SaveAs<'_>| {
+        let (progress, cancel) = (Progress::new(), Cancel::new());
+        let saved = saving::stage(loaded, what, &Staging::default(), &progress, &cancel).unwrap();
+        saved.staged.commit().unwrap();
+    };
+    for name in ["ball.off", "ball.ply", "ball.obj", "ball.glb"] {
+        let original = load(&folder.at("ball.off"));
+        let positions = original.model.rest_positions();
+        save(&original, &SaveAs::shape(&positions, &folder.at(name)));
+        let loaded = load(&folder.at(name));
+        let rest = loaded.model.rest_positions();
+        let moved: Vec<DVec3> = rest.iter().map(|p| *p * DVec3::new(1.0, 2.0, 1.0)).collect();
+        let share = |p: &DVec3| ((0.5 + 0.5 * p.z.clamp(-1.0, 1.0)) * f64::from(u16::MAX)) as u16;
+        let colours: Vec<[u16; 4]> = rest.iter().map(|p| [share(p), 0, u16::MAX, u16::MAX]).collect();
+        for inside_out in [BTreeSet::new(), BTreeSet::from([0])] {
+            for out in [name.replace("ball", "out"), "out.glb".to_owned()] {
+                let path = folder.at(&out);
+                let coloured = SaveAs {
+                    colours: Some(&colours),
+                    inside_out: &inside_out,
+                    ..SaveAs::shape(&moved, &path)
+                };
+                save(&loaded, &coloured);
+                let back = open(&path);
+                let is_turned = !back.model.inside_out.is_empty();
+                assert_eq!(is_turned, !inside_out.is_empty(), "{name} to {out}");
+                let positions = back.model.rest_positions();
+                for (position, [red, green, blue, _]) in positions.iter().zip(self::colours(&path)) {
+                    let wanted = share(&(*position * DVec3::new(1.0, 0.5, 1.0)));
+                    assert!(red.abs_diff(wanted) < 700, "{name} to {out}: {red} is not {wanted}");
+                    assert_eq!([green, blue], [0, u16::MAX]);
+                }
+                assert!(positions.iter().any(|p| p.y > 1.9), "{name} to {out}");
+            }
+        }
     }
 }

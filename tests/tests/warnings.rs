@@ -93,7 +93,7 @@ fn every_method_says_what_came_out_badly_with_the_place_and_another_method() {
         let has_other = |said: &&&String| {
             METHODS
                 .iter()
-                .any(|other| said.contains(&format!("or take {}", other.name)))
+                .any(|other| said.contains(&format!("or take `{}`", other.name)))
         };
         let named = said.iter().filter(has_other).count();
         assert!(
@@ -104,7 +104,7 @@ fn every_method_says_what_came_out_badly_with_the_place_and_another_method() {
         assert!(said.iter().all(|said| said.contains("at ")), "{said:?}");
         assert!(
             said.iter()
-                .all(|said| !said.contains(&format!("take {}", declaration.name))),
+                .all(|said| !said.contains(&format!("take `{}`", declaration.name))),
             "{said:?}"
         );
     }

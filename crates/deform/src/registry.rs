@@ -60,6 +60,7 @@ impl fmt::Display for Remedy {
                 Self::OfSpaceForManyHandles => bends_space && method.implementation().handle_row_bytes() == 0,
                 Self::Heeding(constraint) => declaration.heeds(*constraint),
                 Self::TakingPlaces => method.implementation().takes_places(),
+                Self::TurningByMoves => method.implementation().turns_by_moves(),
                 Self::FollowingTurns(degrees) => method.implementation().advised_for_degrees() >= *degrees,
                 Self::OfDamageBy(own) => declaration.name != *own && method.implementation().resists_collapse(),
             }
@@ -67,7 +68,7 @@ impl fmt::Display for Remedy {
         let able = |declaration: &&MethodDeclaration| {
             let (default, first_choice) = ((declaration.default)(), (declaration.first_choice)());
             if can(&default) {
-                return Some(declaration.name.to_owned());
+                return Some(format!("`{}`", declaration.name));
             }
             can(&first_choice).then(|| named_with(&first_choice, &default))
         };
@@ -82,14 +83,14 @@ impl fmt::Display for Remedy {
     }
 }
 
-/// The method's name with the options that differ from those of another one: "arap with `energy` "smooth"".
+/// The method's name with the options that differ from those of another one: "`arap` with `energy` smooth".
 fn named_with(method: &Method, other: &Method) -> String {
     let options = method.declaration().options.iter();
     let differing = options.filter_map(|option| {
         let value = method.value(option.name)?;
         (other.value(option.name) != Some(value)).then(|| format!("`{}` {value}", option.name))
     });
-    format!("{} with {}", method.name(), joined(differing, "and"))
+    format!("`{}` with {}", method.name(), joined(differing, "and"))
 }
 
 #[cfg(test)]
@@ -102,11 +103,11 @@ mod tests {
     fn advice_names_the_options_without_which_a_method_cannot_do_it() {
         let said = |degrees| Remedy::FollowingTurns(degrees).to_string();
         assert!(
-            said(90).contains("arap or") || said(90).contains("arap,"),
+            said(90).contains("`arap` or") || said(90).contains("`arap`,"),
             "{}",
             said(90)
         );
-        assert!(said(120).contains("arap with `energy` \"smooth\""), "{}", said(120));
+        assert!(said(120).contains("`arap` with `energy` \"smooth\""), "{}", said(120));
         assert!(!said(170).contains("arap"), "{}", said(170));
     }
 
@@ -120,7 +121,9 @@ mod tests {
             }
             assert_eq!(Method::from_name(name), Some((declaration.default)()));
             assert!(
-                !declaration.title.is_empty() && declaration.when_to_use.ends_with('.'),
+                !declaration.title.is_empty()
+                    && !declaration.paper.is_empty()
+                    && declaration.when_to_use.ends_with('.'),
                 "{name}"
             );
             assert_eq!(declaration.keywords, declaration.keywords.to_lowercase());

@@ -14,6 +14,8 @@ pub enum Remedy {
     Heeding(ConstraintKind),
     /// All methods in which each vertex of a handle can have its own target position.
     TakingPlaces,
+    /// The methods that find turns from handles that only move.
+    TurningByMoves,
     /// The methods that follow turns of this many degrees between handles.
     FollowingTurns(u16),
     /// What can be done about triangles and edges that this method, by its name, has damaged: less of the edit, or a

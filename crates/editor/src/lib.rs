@@ -70,9 +70,9 @@ mod workspace;
 pub use bending::{Bent, Carried, Kept, Start, Targets, Until, settle};
 pub use command::{Command, KeyMap, Listed, Shortcut, WITHOUT_EXAMPLES};
 pub use document::{
-    Access, Carries, Content, Document, HANDLE_COLOURS, HISTORY_BYTES, Handle, HandleCurve, HandleId, HandleLine,
-    HandleSketch, HandleTransform, History, KeptShape, ObjectAction, Paint, PivotPlace, Pose, Reach, SaveMark, SavedAs,
-    SmallParts, Tips, Twin, object_name, sum_of_shapes,
+    Access, Carries, Content, Document, Dye, FlowOptions, Fluid, HANDLE_COLOURS, HISTORY_BYTES, Handle, HandleCurve,
+    HandleId, HandleLine, HandleSketch, HandleTransform, History, KeptShape, ObjectAction, Paint, PivotPlace, Pose,
+    Reach, SaveMark, SavedAs, SmallParts, Tips, Twin, object_name, sum_of_shapes,
 };
 pub use editor::Editor;
 pub use event::Event;
@@ -85,7 +85,7 @@ pub use format::{
 };
 pub use input::{Button, Key, Modifiers, Pointer};
 pub use jobs::{
-    Alternative, BothSides, Compared, Comparison, ControlPlaces, Descent, Executor, Figures, InlineExecutor,
+    Alternative, BothSides, Compared, Comparison, ControlPlaces, Descent, Executor, Figures, Flowed, InlineExecutor,
     Inspectable, Inspected, IntersectionPlace, Intersections, Job, JobDone, JobKind, JobOutcome, JobQueue, JobResult,
     PresentBinding, Running, SolveResult, Solved, Symmetry, Unfinished,
 };
@@ -98,7 +98,8 @@ pub use snapshot::Snapshot;
 pub use status::thousands;
 pub use timeline::{Ease, HandlePlace, KeySpace, SequenceTimeline, Timeline};
 pub use tool::{
-    BrushMetric, Constraint, Correction, CorrectionBrush, Depth, StiffnessAction, StiffnessBrush, StrokeShape, ToolMode,
+    BrushMetric, Constraint, Correction, CorrectionBrush, Depth, FlowAction, FlowBrush, StiffnessAction,
+    StiffnessBrush, StrokeShape, ToolMode,
 };
 pub use view::{
     Before, Camera, Clay, ControlShape, Cursor, GizmoAxes, GizmoMode, GizmoOrientation, GizmoPart, GizmoShape, Look,

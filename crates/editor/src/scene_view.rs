@@ -10,7 +10,7 @@ use pliant_mesh::Model;
 use crate::document::{Handle, HandleId};
 use crate::jobs::{Descent, JobKind, Symmetry};
 use crate::region::Counts;
-use crate::tool::{BrushMetric, CorrectionBrush, Depth, StiffnessBrush, StrokeShape, ToolMode};
+use crate::tool::{BrushMetric, CorrectionBrush, Depth, FlowBrush, StiffnessBrush, StrokeShape, ToolMode};
 use crate::view::{Camera, ControlShape, Cursor, GizmoOrientation, GizmoShape, Look, Orbit, Readout};
 
 /// The whole content of the 3D view and the panels around it.
@@ -83,6 +83,10 @@ pub struct SceneView<'a> {
     pub stiffness_brush: StiffnessBrush,
     /// The brush that corrects the shape.
     pub correction_brush: CorrectionBrush,
+    /// The brush that pours and pushes.
+    pub flow_brush: FlowBrush,
+    /// True while the flow plays.
+    pub is_playing: bool,
     /// The pressure of a pen, 0 to 1; `None` until the system reports it.
     pub pressure: Option<f64>,
     /// The axes of the gizmo.

@@ -57,7 +57,12 @@ fn crossing(workspace: &Workspace) -> Option<String> {
 fn hint(workspace: &Workspace, settings: &ToolSettings) -> String {
     let document = &workspace.document;
     let is_sketching = settings.mode == ToolMode::PaintHandle && settings.stroke_shape == StrokeShape::Sketch;
-    let hint = if is_sketching {
+    let hint = if settings.mode == ToolMode::Flow {
+        match workspace.flow.is_playing() {
+            true => "Pour and push, or press Space to pause",
+            false => "Pour and push, and press Space to play; Ctrl washes, Shift only pushes",
+        }
+    } else if is_sketching {
         "Draw the outline anew beside the one that you see; a drag with Alt turns the view"
     } else if settings.draws_curves() && workspace.controls.is_empty() {
         match selected_curve(workspace) {
@@ -82,7 +87,7 @@ fn hint(workspace: &Workspace, settings: &ToolSettings) -> String {
                 "Drag a limb to turn it about its joint; Ctrl twists it, Shift scales it, Ctrl and the wheel choose its joint"
             }
             ToolMode::Correct => "Brush over the shape to correct it",
-            ToolMode::Erase | ToolMode::Select | ToolMode::PaintStiffness => {
+            ToolMode::Erase | ToolMode::Select | ToolMode::PaintStiffness | ToolMode::Flow => {
                 "Press 1 and paint the part that you want to move"
             }
         }

@@ -219,12 +219,7 @@ fn a_shape_of_another_mesh_is_refused() {
     assert_eq!(weights(rig.editor.document()).len(), 1);
     rig.choose("arap");
     let command = Command::AddExample(lifted(&rig, "Smile"));
-    assert!(
-        rig.editor
-            .unavailable_because(&command)
-            .unwrap()
-            .contains("Discrete shells")
-    );
+    assert!(rig.editor.unavailable_because(&command).unwrap().contains("Cloth"));
 }
 
 #[test]
@@ -237,7 +232,7 @@ fn keeping_is_refused_with_a_reason_where_it_can_not_be() {
             .unwrap()
             .into_owned()
     };
-    assert!(refused(&rig).contains("Discrete shells"));
+    assert!(refused(&rig).contains("Cloth"));
     rig.choose("shells");
     rig.drain();
     assert!(refused(&rig).contains("bent"));

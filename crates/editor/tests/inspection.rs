@@ -7,12 +7,15 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use pliant_deform::{Method, OptionValue, Role};
-use pliant_editor::{Command, Event, JobKind, Key, Shading, ToolMode};
+use pliant_editor::{Command, Event, JobKind, Key, Shading, ToolMode, UpAxis};
 use pliant_mesh::shapes;
 use rig::{CENTRE_PX, Rig};
 
 fn tube() -> Rig {
-    Rig::open(shapes::tube(16, 24, 3.0))
+    let mut rig = Rig::open(shapes::tube(16, 24, 3.0));
+    // The tube stands along Z. These tests paint its end.
+    rig.command(Command::SetUp(UpAxis::Y));
+    rig
 }
 
 fn set(rig: &mut Rig, method: &str, option: &str, value: &'static str) {
@@ -70,7 +73,7 @@ fn the_weights_are_those_of_the_selected_handle_and_follow_method_and_options() 
     rig.choose("arap");
     assert_eq!(rig.editor.view().weights, None);
     assert!(
-        why_not(&rig, &show).contains("As rigid as possible uses no weights"),
+        why_not(&rig, &show).contains("\"Limbs\" uses no weights"),
         "{}",
         why_not(&rig, &show)
     );
@@ -88,7 +91,7 @@ fn the_smooth_base_is_shown_in_place_of_the_surface_and_nothing_else_changes() {
     rig.choose("bilaplacian");
     rig.paint_handle();
     rig.drain();
-    assert!(why_not(&rig, &Command::ToggleBase).contains("option detail"));
+    assert!(why_not(&rig, &Command::ToggleBase).contains("option Detail"));
     set(&mut rig, "bilaplacian", "detail", "normal-displacements");
     rig.type_keys("gz.3");
     rig.key(Key::Enter);

@@ -48,6 +48,7 @@
 
 mod animate;
 mod apply;
+mod coloured;
 pub mod control_mesh;
 mod difference;
 mod edit;
@@ -55,8 +56,9 @@ mod error;
 pub mod examples;
 mod file_error;
 pub mod files;
-mod flow;
+pub mod flow;
 mod frames;
+mod inspected;
 mod loading;
 pub mod memory;
 mod path_text;
@@ -73,8 +75,9 @@ pub use difference::{Compared, differences};
 pub use edit::read_edit;
 pub use error::EngineError;
 pub use flow::{FlowJob, FlowReport, Flowing, FromTo, flow, read_flow};
+pub use inspected::{Inspected, inspect};
 pub use loading::{Loaded, is_project, load, load_bytes, open};
 pub use sequence::{Sequence, SequenceReport, sequence};
 pub use transfer::{Transfer, transfer, transferred};
 
-pub use pliant_io::{Difference, What};
+pub use pliant_io::{Difference, MorphDeltas, MorphTarget, What};

@@ -12,6 +12,7 @@ use pliant_io::{
 use pliant_mesh::{Cancel, Drawn, Progress};
 
 use crate::EngineError;
+use crate::coloured::save_with_colours;
 use crate::files::check::{self, Written};
 use crate::files::placement::{self, Action, Settled};
 use crate::files::{self, Bridge, Destination, NewFile, Share, Staged, Staging};
@@ -27,7 +28,7 @@ pub struct SaveAs<'a> {
     pub inside_out: &'a BTreeSet<u32>,
     /// The deltas of the file's morph targets: turning with the surface, or kept.
     pub deltas: MorphDeltas,
-    /// Other colours, linear and from 0 to 65535, one for each drawn vertex; the shape is then that at rest.
+    /// Other colours, linear and from 0 to 65535, one for each drawn vertex.
     pub colours: Option<&'a [[u16; 4]]>,
     /// Saves the edit as a morph target beside the unchanged shape.
     pub morph: Option<&'a MorphTarget<'a>>,
@@ -125,13 +126,18 @@ pub(crate) fn stage_of(
         placement: placement::placement(original.path, &to),
     };
     let scene = original.scene;
+    let refused = |error| refused(what.output, error);
     let saved = match (what.colours, what.morph, what.animation) {
-        (Some(colours), ..) => scene.save_with_colours(&save, colours, &of_making, cancel),
-        (None, Some(morph), _) => scene.save_as_morph(&save, morph, &of_making, cancel),
-        (None, None, Some(animation)) => scene.save_as_animation(&save, animation, &of_making, cancel),
-        (None, None, None) => scene.save(&save, &of_making, cancel),
-    };
-    let saved = saved.map_err(|error| refused(what.output, error))?;
+        (Some(colours), ..) => {
+            let course = (&of_making, cancel);
+            save_with_colours((original.path, scene), &save, colours, refused, course)
+        }
+        (None, Some(morph), _) => scene.save_as_morph(&save, morph, &of_making, cancel).map_err(refused),
+        (None, None, Some(animation)) => scene
+            .save_as_animation(&save, animation, &of_making, cancel)
+            .map_err(refused),
+        (None, None, None) => scene.save(&save, &of_making, cancel).map_err(refused),
+    }?;
     let triangles = saved.triangles.clone();
     let compare = |back: &SceneAndDrawn| scene.check_read_back(&save, what.morph, triangles.as_deref(), back);
     stage_saved(

@@ -1,8 +1,10 @@
 //! A flow and its steps.
 
+use std::sync::Arc;
+
 use glam::{DVec2, DVec3};
 use pliant_deform::{Budget, Ordering, PoissonEquation};
-use pliant_mesh::{Cancel, Progress, Surface, Topology};
+use pliant_mesh::{Cancel, Model, Progress, Surface, Topology};
 use rayon::prelude::*;
 
 use crate::advection::{Dye, Scratch, advect};
@@ -10,6 +12,7 @@ use crate::conservation::{conserve, integrals};
 use crate::error::FlowError;
 use crate::fluid::Fluid;
 use crate::forces::{confine, pull};
+use crate::held::Held;
 use crate::projection::{Pressure, divergence_norm};
 use crate::settings::FlowSettings;
 use crate::sheets::Sheets;
@@ -36,6 +39,33 @@ pub struct Flow<'a> {
     scratch: Scratch,
 }
 
+impl Flow<'static> {
+    /// As [`Flow::bind`], on a model that it shares with others. With `displacements`, one for each vertex, the surface
+    /// is bent by these.
+    ///
+    /// # Errors
+    /// Those of [`Flow::bind`].
+    pub fn bind_shape(
+        model: &Arc<Model>,
+        displacements: Option<&[DVec3]>,
+        budget: Budget,
+        progress: &Progress,
+        cancel: &Cancel,
+    ) -> Result<Self, FlowError> {
+        let surface = match displacements {
+            None => Held::OfModel(Arc::clone(model)),
+            Some(displacements) => {
+                let mut bent = model.surface.clone();
+                let moved = bent.positions.iter_mut().zip(displacements);
+                moved.for_each(|(position, displacement)| *position += *displacement);
+                Held::Own(Box::new(bent))
+            }
+        };
+        let topology = Held::OfModel(Arc::clone(model));
+        Self::bind_held(surface, topology, budget, progress, cancel)
+    }
+}
+
 impl<'a> Flow<'a> {
     /// Lays the surface out and factors its Laplacian. The fluid rests and is clear.
     ///
@@ -44,6 +74,16 @@ impl<'a> Flow<'a> {
     pub fn bind(
         surface: &'a Surface,
         topology: &'a Topology,
+        budget: Budget,
+        progress: &Progress,
+        cancel: &Cancel,
+    ) -> Result<Self, FlowError> {
+        Self::bind_held(Held::Lent(surface), Held::Lent(topology), budget, progress, cancel)
+    }
+
+    fn bind_held(
+        surface: Held<'a, Surface>,
+        topology: Held<'a, Topology>,
         budget: Budget,
         progress: &Progress,
         cancel: &Cancel,
@@ -79,18 +119,49 @@ impl<'a> Flow<'a> {
     /// Adds the tangential part of a field of velocities, in world units per second at world positions. `shares` has a
     /// factor for each vertex of the surface; a triangle takes the mean of its corners'.
     pub fn add_velocity(&mut self, shares: &[f64], field: impl Fn(DVec3) -> DVec3 + Sync) {
+        self.change_velocity(shares, |share, _, middle| field(middle) * share);
+    }
+
+    /// Moves the velocity towards the tangential part of another, in world units per second, by `shares` from 0 to 1,
+    /// one for each vertex of the surface; a triangle takes the mean of its corners'.
+    pub fn push(&mut self, shares: &[f64], towards: DVec3) {
+        self.change_velocity(shares, |share, own, _| (towards - own) * share);
+    }
+
+    /// Adds the tangential part of `change` where the mean share of a triangle's corners is not 0. `change` takes that
+    /// share, the triangle's velocity and its middle.
+    fn change_velocity(&mut self, shares: &[f64], change: impl Fn(f64, DVec3, DVec3) -> DVec3 + Sync) {
         let fluid = &self.fluid;
         let share = |vertex: usize| shares.get(fluid.sheets.original(vertex)).copied().unwrap_or(0.0);
         let add = |(triangle, velocity): (usize, &mut DVec2)| {
             let mean = fluid.corners(triangle).map(share).iter().sum::<f64>() / 3.0;
             if mean != 0.0 {
-                let pushed = field(fluid.middle(triangle)) * mean;
-                *velocity += DVec2::from(fluid.axes(triangle).map(|axis| axis.dot(pushed)));
+                let [x, y] = fluid.axes(triangle);
+                let change = change(mean, x * velocity.x + y * velocity.y, fluid.middle(triangle));
+                *velocity += DVec2::new(x.dot(change), y.dot(change));
             }
         };
         let velocities = self.velocity.par_iter_mut().with_min_len(CHUNK);
         velocities.enumerate().for_each(add);
         self.has_added = true;
+    }
+
+    /// Goes back or forth to another state: the tangential part of a velocity for each triangle of the surface, in
+    /// world units per second, and a dye for each vertex, as [`Flow::dyes`] gives it. The next step begins there.
+    pub fn set_state(&mut self, velocity: impl Fn(usize) -> DVec3 + Sync, dye: impl Fn(usize) -> [f64; 4] + Sync) {
+        let fluid = &self.fluid;
+        for given in 0..fluid.triangle_count() {
+            let (triangle, own) = (fluid.sheets.triangle(given), velocity(given));
+            self.velocity[triangle] = DVec2::from(fluid.axes(triangle).map(|axis| axis.dot(own)));
+        }
+        let dyes = (0..fluid.vertex_count()).into_par_iter().with_min_len(CHUNK);
+        self.dye = dyes.map(|vertex| dye(fluid.sheets.original(vertex))).collect();
+        self.poured = integrals(fluid, &self.dye);
+        if self.dye.iter().all(|dye| dye[3] == 0.0) {
+            self.dye = Vec::new();
+        }
+        self.has_added = true;
+        self.last_step = 0.0;
     }
 
     /// Pours dye over the dye that is there. `amounts` has a coverage from 0 to 1 for each vertex of the surface; the
@@ -103,6 +174,15 @@ impl<'a> Flow<'a> {
                 .map_or(0.0, |amount| amount.clamp(0.0, 1.0));
             let poured = [red, green, blue, 1.0].map(|value| value.clamp(0.0, 1.0));
             *dye = std::array::from_fn(|k| dye[k] + amount * (poured[k] - dye[k]));
+        }
+        self.poured = integrals(&self.fluid, &self.dye);
+    }
+
+    /// Takes dye away: `amounts` has the share that is lost, from 0 to 1, for each vertex of the surface.
+    pub fn clear(&mut self, amounts: &[f64]) {
+        for (vertex, dye) in self.dye.iter_mut().enumerate() {
+            let amount = amounts.get(self.fluid.sheets.original(vertex)).copied().unwrap_or(0.0);
+            *dye = dye.map(|value| value * (1.0 - amount.clamp(0.0, 1.0)));
         }
         self.poured = integrals(&self.fluid, &self.dye);
     }

@@ -42,6 +42,7 @@ mod fans;
 mod flow;
 mod fluid;
 mod forces;
+mod held;
 mod hinges;
 mod plane;
 mod projection;

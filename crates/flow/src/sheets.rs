@@ -3,17 +3,16 @@
 //! A flow has one way on across an edge. Where more than two triangles meet, where two disagree about the outside, or
 //! where sheets touch in a vertex, the sheets are cut apart: each keeps its fluid, as between borders.
 
-use std::borrow::Cow;
-
 use pliant_mesh::{Surface, SurfaceVertex, Topology};
 
+use crate::held::Held;
 use crate::hinges::{Hinges, corner_at};
 
 /// A surface on which each vertex has one fan.
 #[derive(Debug)]
 pub(crate) struct Sheets<'a> {
-    pub surface: Cow<'a, Surface>,
-    pub topology: Cow<'a, Topology>,
+    pub surface: Held<'a, Surface>,
+    pub topology: Held<'a, Topology>,
     /// The number of the given surface's vertices. They keep their numbers; copies follow.
     own_count: usize,
     /// The vertex of which each further one is a copy.
@@ -24,26 +23,26 @@ pub(crate) struct Sheets<'a> {
 
 impl<'a> Sheets<'a> {
     /// The surface itself if it is a manifold.
-    pub fn of(surface: &'a Surface, topology: &'a Topology) -> Self {
+    pub fn of(surface: Held<'a, Surface>, topology: Held<'a, Topology>) -> Self {
         let own_count = surface.positions.len();
         let is_manifold = topology.non_manifold_edges() == 0
             && topology.non_manifold_vertices() == 0
             && topology.misoriented_edges() == 0;
         if is_manifold {
             return Self {
-                surface: Cow::Borrowed(surface),
-                topology: Cow::Borrowed(topology),
+                surface,
+                topology,
                 own_count,
                 copied: Vec::new(),
                 triangle_of: Vec::new(),
             };
         }
-        let (cut, copied) = cut(surface, topology);
+        let (cut, copied) = cut(&surface, &topology);
         let (surface, triangle_of) = sorted(cut);
         let topology = Topology::of(&surface);
         Self {
-            surface: Cow::Owned(surface),
-            topology: Cow::Owned(topology),
+            surface: Held::Own(Box::new(surface)),
+            topology: Held::Own(Box::new(topology)),
             own_count,
             copied,
             triangle_of,
@@ -129,7 +128,7 @@ mod tests {
     fn a_cut_surface_is_a_manifold_with_the_same_triangles() {
         for (name, drawn) in shapes::classes() {
             let model = shapes::model(drawn);
-            let sheets = Sheets::of(&model.surface, &model.topology);
+            let sheets = Sheets::of(Held::Lent(&model.surface), Held::Lent(&model.topology));
             assert_eq!(sheets.topology.non_manifold_edges(), 0, "{name}");
             assert_eq!(sheets.topology.non_manifold_vertices(), 0, "{name}");
             assert_eq!(sheets.topology.misoriented_edges(), 0, "{name}");

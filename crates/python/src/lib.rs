@@ -10,11 +10,14 @@
 //! (`interruptible`).
 
 mod arrays;
+mod bent_files;
 mod bound;
 mod compare;
 mod compared;
 mod edit;
 mod flow;
+mod given;
+mod information;
 mod interruptible;
 mod mesh;
 mod methods;
@@ -23,6 +26,8 @@ mod pool;
 mod refusal;
 mod rows;
 mod shape;
+mod stitched_files;
+mod symmetry;
 mod targets;
 mod transfer;
 mod values;
@@ -34,6 +39,8 @@ use pyo3::pymodule;
 #[pymodule(name = "_native")]
 mod native {
     #[pymodule_export]
+    use super::bent_files::{animate, apply, sequence};
+    #[pymodule_export]
     use super::bound::{BoundMesh, bind};
     #[pymodule_export]
     use super::compare::compare;
@@ -42,10 +49,15 @@ mod native {
     #[pymodule_export]
     use super::flow::flow;
     #[pymodule_export]
+    use super::information::info;
+    #[pymodule_export]
     use super::mesh::{Mesh, load, save};
     #[pymodule_export]
     use super::methods::methods;
-
+    #[pymodule_export]
+    use super::stitched_files::{bridge, cut, fill, merge};
+    #[pymodule_export]
+    use super::symmetry::symmetry;
     #[pymodule_export]
     use super::transfer::transfer;
 

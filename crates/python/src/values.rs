@@ -71,6 +71,14 @@ fn at_depth(any: &Bound<'_, PyAny>, place: &str, depth: usize) -> PyResult<Value
     )))
 }
 
+/// Python's dicts, lists and numbers of a JSON text.
+///
+/// # Errors
+/// If the text is not JSON.
+pub fn as_python<'py>(py: Python<'py>, json: &str) -> PyResult<Bound<'py, PyAny>> {
+    py.import("json")?.call_method1("loads", (json,))
+}
+
 /// The welding of vertices, with the distance if one is given.
 ///
 /// # Errors

@@ -1,5 +1,6 @@
 """Meshes for the tests, and the command line for comparing results."""
 
+import importlib
 import os
 import shutil
 from pathlib import Path
@@ -26,6 +27,30 @@ def bar(around=12, along=40):
     return vertices, faces
 
 
+def skip(why):
+    """Skips a test; where `PLIANT_PYTHON_TESTS` is `required`, as in CI, a test that can't run has failed."""
+    if os.environ.get("PLIANT_PYTHON_TESTS") == "required":
+        pytest.fail(f"{why}, and PLIANT_PYTHON_TESTS requires every test")
+    pytest.skip(why)
+
+
+def needed(module):
+    """A module that a test needs, or its skip."""
+    try:
+        return importlib.import_module(module)
+    except ImportError:
+        package = {"igl": "libigl", "dask.distributed": "dask distributed"}.get(module, module)
+        skip(f"{module} is not installed: pip install {package}")
+
+
+def write_off(path, vertices, faces):
+    """Writes an OFF file."""
+    lines = [f"OFF\n{len(vertices)} {len(faces)} 0"]
+    lines += [" ".join(map(repr, map(float, row))) for row in vertices]
+    lines += [f"3 {a} {b} {c}" for a, b, c in np.asarray(faces).tolist()]
+    path.write_text("\n".join(lines) + "\n")
+
+
 @pytest.fixture
 def mesh():
     return bar()
@@ -45,7 +70,7 @@ def program():
     built = [ROOT / "target" / profile / "pliant" for profile in ("release", "debug")]
     found = [Path(path) for path in [named, *built] if path and Path(path).is_file()]
     if not found:
-        pytest.skip("pliant is not built: cargo build --release --bin pliant")
+        skip("pliant is not built: cargo build --release --bin pliant")
     return found[0]
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import pliant
-from conftest import METHODS, ROOT, bar, quarter_turn
+from conftest import METHODS, ROOT, bar, quarter_turn, skip, write_off
 
 CREATURE = ROOT / "assets" / "creature.glb"
 
@@ -132,7 +132,7 @@ def test_compare_has_the_command_line_s_figures(program, tmp_path):
     try:
         run(program, *words, "--output", sheet, "--size", "200x200")
     except subprocess.CalledProcessError as error:
-        pytest.skip(f"no picture can be drawn here: {error.stderr}")
+        skip(f"no picture can be drawn here: {error.stderr}")
     expected = json.loads(report.read_text())["methods"]
     members = {name: own for name, own in edit.items() if name not in ("version", "handles", "method")}
     handles = {own["name"]: {k: v for k, v in own.items() if k not in ("name", "transform")} for own in edit["handles"]}
@@ -147,10 +147,7 @@ def test_compare_has_the_command_line_s_figures(program, tmp_path):
 
 def test_flow_gives_the_command_line_s_colours(program, tmp_path):
     vertices, faces = bar()
-    lines = [f"OFF\n{len(vertices)} {len(faces)} 0"]
-    lines += [" ".join(map(repr, map(float, row))) for row in vertices]
-    lines += [f"3 {a} {b} {c}" for a, b, c in np.asarray(faces).tolist()]
-    (tmp_path / "bar.off").write_text("\n".join(lines) + "\n")
+    write_off(tmp_path / "bar.off", vertices, faces)
     members = {
         "dye": [{"select": {"slab": {"axis": "longest", "from": 0.6, "to": 1}}, "color": [0, 0, 1]}],
         "velocity": [{"select": "all", "spin": {"axis": [0, 0, 1], "rate": 2}}],
@@ -176,3 +173,18 @@ def test_flow_gives_the_command_line_s_colours(program, tmp_path):
     assert np.array_equal(np.sort(stored[:, 0]), np.sort(np.round(65535 * (1 - coverage)).astype(int)))
     with pytest.raises(ValueError, match="dye"):
         pliant.flow((vertices, faces), dye=[{"select": "none", "color": [1, 1, 1]}])
+
+
+def test_symmetry_finds_the_plane_of_a_mirrored_shape(mesh):
+    vertices, faces = mesh
+    # Uneven in y and z, the same on both sides of the plane x = 0.25.
+    uneven = np.c_[vertices[:, 0], vertices[:, 1] ** 2, vertices[:, 2] * (1 + vertices[:, 1]) + vertices[:, 1] ** 3]
+    found = pliant.symmetry((uneven + [0.25, 0, 0], faces))
+    normal, distance = np.array(found["plane"][:3]), found["plane"][3]
+    assert np.allclose(np.abs(normal), [1, 0, 0], atol=1e-6) and np.isclose(distance * normal[0], 0.25, atol=1e-6)
+    images = found["images"]
+    assert np.array_equal(images[images], np.arange(len(vertices)))
+    assert np.allclose(uneven[images], uneven * [-1, 1, 1], atol=1e-6)
+    assert pliant.symmetry((np.random.default_rng(1).random((90, 3)), np.arange(90).reshape(-1, 3))) is None
+    with pytest.raises(ValueError, match="mesh is not a mesh"):
+        pliant.symmetry(vertices)

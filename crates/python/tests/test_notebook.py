@@ -4,16 +4,16 @@ import os
 import re
 from pathlib import Path
 
-import pytest
+from conftest import needed
 
 NOTEBOOK = Path(__file__).parents[1] / "notebooks" / "arap.ipynb"
 
 
 def test_the_tutorial_notebook_runs_with_libigl_and_pliant():
-    nbformat = pytest.importorskip("nbformat")
-    nbclient = pytest.importorskip("nbclient")
-    for needed in ("igl", "matplotlib", "scipy", "ipykernel"):
-        pytest.importorskip(needed)
+    nbformat = needed("nbformat")
+    nbclient = needed("nbclient")
+    for package in ("igl", "matplotlib", "scipy", "ipykernel"):
+        needed(package)
     notebook = nbformat.read(NOTEBOOK, as_version=4)
     assert all(not cell.get("outputs") for cell in notebook.cells), "it is kept without outputs"
     nbclient.NotebookClient(notebook, timeout=600, resources={"metadata": {"path": str(NOTEBOOK.parent)}}).execute()

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import pliant
-from conftest import METHODS, ROOT, bar, quarter_turn
+from conftest import METHODS, ROOT, bar, needed, quarter_turn
 
 TAKERS = ["bilaplacian", "arap", "shells", "wrinkles", "poisson", "frames"]
 
@@ -186,7 +186,7 @@ def test_a_handle_of_a_thousand_points_binds_as_one_point_does():
 
 
 def test_libigl_s_constraints_give_libigl_s_shape(mesh, ends):
-    igl = pytest.importorskip("igl")
+    igl = needed("igl")
     vertices, faces = mesh
     b = np.r_[ends["fixed"], ends["handles"]["top"]]
     bc = np.where(vertices[b, 1:2] > 0.5, moved(vertices[b], quarter_turn((0.2, 0.3, 0))), vertices[b])

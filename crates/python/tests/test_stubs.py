@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 import pliant
-from conftest import METHODS
+from conftest import METHODS, skip
 
 USE = """
 import numpy as np
@@ -30,6 +30,16 @@ stretch = pliant.distortion(mesh, bent)["edge_stretch_mean"] + 1.0
 sentences = [one["sentence"] for one in pliant.diff("a.glb", pliant.load("b.glb"))]
 outcomes = pliant.compare(mesh, {"tip": np.eye(4)}, methods=["arap", {"name": "rbf"}], handles={"tip": [0]})
 ratio = outcomes["arap"].get("detail_error_ratio")
+report = pliant.apply("a.glb", edit={"version": 1, "method": {"name": "arap"}}, output="b.glb", method="rbf", frames=3)
+pliant.animate("a.glb", edit="keys.json", output="wave-####.obj", fps=30)
+pliant.sequence("frames", edit="keys.json", output="bent")
+holes: int = pliant.fill("a.glb", output="b.glb", largest=1)["holes_filled"]
+pliant.cut("a.glb", output="b.glb", plane=[0, 1, 0, 0.5], keep="both")
+pliant.merge("a.glb", "b.glb", joins={"version": 1}, output="c.glb")
+pliant.bridge("a.glb", borders=(0, 1), output="b.glb")
+faults = pliant.info("a.glb")["findings"]
+mirror = pliant.symmetry(mesh)
+normal: float = mirror["plane"][0] if mirror else 0.0
 coverage = pliant.flow(mesh, dye=[{"select": "all", "color": [1, 0, 0]}], gravity=[0, -9.81, 0], seconds=0.1)[:, 3]
 """
 
@@ -91,7 +101,7 @@ def test_help_shows_the_stub_s_text():
 @pytest.mark.parametrize("checker", [["mypy", "--strict"], ["pyright"]])
 def test_the_stubs_are_clean_under_type_checkers(checker, tmp_path):
     if not shutil.which(checker[0]):
-        pytest.skip(f"{checker[0]} is not installed: pip install {checker[0]}")
+        skip(f"{checker[0]} is not installed: pip install {checker[0]}")
     (tmp_path / "use.py").write_text(USE)
     (tmp_path / "pyrightconfig.json").write_text(json.dumps({"typeCheckingMode": "strict", "include": ["use.py"]}))
     package = tmp_path / "pliant"

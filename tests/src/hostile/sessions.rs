@@ -182,6 +182,7 @@ impl Desk {
         let shape = || Shape {
             displacements: Arc::clone(self.editor.view().displacements),
             inside_out: Arc::clone(self.editor.document().inside_out()),
+            dye: None,
         };
         let content = match save.kind {
             Kind::Model | Kind::Copy => Content::Model(Model {

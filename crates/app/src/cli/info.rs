@@ -1,61 +1,36 @@
 //! `pliant info`: the contents of a file and the faults of its mesh.
 
 use std::fmt::Write as _;
-use std::path::Path;
-
-use pliant_io::{Scene, SceneAndDrawn};
-use pliant_mesh::{FindingKind, Inspection, WeldOptions};
-use serde_json::{Value, json};
 
 use super::arguments::InfoArguments;
 use super::shared_arguments::ComputeArguments;
 use crate::cli::console::{Console, print, print_json};
 use crate::cli::threads::on_threads;
-use pliant_engine::EngineError;
 use pliant_engine::files::shown;
-use pliant_engine::watch::Watch;
+use pliant_engine::{EngineError, Inspected, inspect};
 
 /// The number of components that are listed one by one.
 const LISTED_COMPONENTS: usize = 12;
 
 pub(super) fn run(arguments: &InfoArguments, console: &mut Console<'_>) -> Result<(), EngineError> {
     let watch = &console.watch;
-    let looked_at = on_threads(ComputeArguments::default(), || {
-        look_at(&arguments.file, arguments.weld.options(), watch)
+    let inspected = on_threads(ComputeArguments::default(), || {
+        inspect(&arguments.file, arguments.weld.options(), watch)
     })??;
     if arguments.json {
-        print_json(console.out, &as_json(&looked_at))
+        print_json(console.out, &inspected.to_json())
     } else {
-        print(console.out, &as_text(&looked_at))
+        print(console.out, &as_text(&inspected))
     }
-}
-
-/// A file and its geometry.
-struct LookedAt<'a> {
-    path: &'a Path,
-    scene: Scene,
-    inspection: Inspection,
-}
-
-fn look_at<'a>(path: &'a Path, weld: WeldOptions, watch: &Watch) -> Result<LookedAt<'a>, EngineError> {
-    let SceneAndDrawn { scene, drawn } = pliant_engine::open(path, watch)?;
-    let progress = watch.begin("welding");
-    let inspection = Inspection::of(drawn, &weld, &progress, &watch.cancel);
-    let inspection = inspection.map_err(|_| EngineError::Interrupted)?;
-    Ok(LookedAt {
-        path,
-        scene,
-        inspection,
-    })
 }
 
 /// The report on a file, for a person.
 fn as_text(
-    LookedAt {
+    Inspected {
         path,
         scene,
         inspection,
-    }: &LookedAt<'_>,
+    }: &Inspected<'_>,
 ) -> String {
     let summary = scene.summary();
     let mut text = format!("{}: {}\n", shown(path), scene.format());
@@ -135,66 +110,4 @@ fn as_text(
         line("note", note.clone());
     }
     text
-}
-
-/// The report on a file, for a program.
-fn as_json(
-    LookedAt {
-        path,
-        scene,
-        inspection,
-    }: &LookedAt<'_>,
-) -> Value {
-    let findings = &inspection.findings;
-    let appearance = scene.appearance();
-    let bounds = inspection
-        .bounds
-        .map(|bounds| json!({ "min": bounds.min.to_array(), "max": bounds.max.to_array() }));
-    let components: Vec<Value> = inspection
-        .components
-        .iter()
-        .map(|component| {
-            json!({
-                "vertices": component.vertex_count, "triangles": component.face_count,
-                "first_vertex": component.first_file_vertex.0,
-            })
-        })
-        .collect();
-    let mut found = serde_json::Map::new();
-    for kind in FindingKind::ALL
-        .into_iter()
-        .filter(|kind| *kind != FindingKind::Components)
-    {
-        let finding = findings.of(kind);
-        let located = inspection.located_findings.iter().find(|finding| finding.kind == kind);
-        let places = located.into_iter().flat_map(|located| &located.examples);
-        let places: Vec<Value> = places
-            .map(|example| example.position.map_or(Value::Null, |place| json!(place.to_array())))
-            .collect();
-        let mut told = json!({ "count": finding.count, "examples": finding.examples });
-        if !places.is_empty() {
-            told["positions"] = places.into();
-        }
-        found.insert(kind.key().to_owned(), told);
-    }
-    json!({
-        "file": path.to_string_lossy(),
-        "format": scene.format().extension(),
-        "holds": scene.summary(),
-        "vertices": inspection.file_vertices,
-        "drawn_vertices": inspection.drawn_vertices,
-        "welded_vertices": inspection.surface_vertices,
-        "points": inspection.bare_points,
-        "drawn_triangles": inspection.drawn_triangles,
-        "triangles": inspection.surface_triangles,
-        "bounding_box": bounds,
-        "components": components,
-        "normals": appearance.normals.is_some(),
-        "texture_coordinates": appearance.uvs.is_some(),
-        "colours": appearance.colours.is_some(),
-        "materials": appearance.materials.iter().map(|material| &material.name).collect::<Vec<_>>(),
-        "findings": found,
-        "sentences": findings.sentences(),
-        "notes": scene.notes(),
-    })
 }

@@ -52,11 +52,14 @@ fn filled(
 }
 
 pub(super) fn cut(arguments: &CutArguments, console: &mut Console<'_>) -> Result<(), EngineError> {
+    let watch = &console.watch;
+    let delete = arguments.delete.as_deref();
+    let selector = delete.map(|path| stitching::read_selector(path, watch)).transpose()?;
     let job = Cut {
         remaking: remaking(&arguments.file, &arguments.output, &arguments.weld)?,
-        along: match (&arguments.plane, &arguments.delete) {
+        along: match (&arguments.plane, selector.as_ref().zip(delete)) {
             (Some(plane), _) => CutAlong::Plane(plane.0, arguments.keep.into()),
-            (None, Some(delete)) => CutAlong::Selector(delete),
+            (None, Some((selector, path))) => CutAlong::Selector(selector, path),
             (None, None) => return Err(EngineError::Arguments("give --delete or --plane".to_owned())),
         },
     };
@@ -69,7 +72,8 @@ pub(super) fn merge(arguments: &MergeArguments, console: &mut Console<'_>) -> Re
     let job = Merge {
         remaking: remaking(&arguments.first, &arguments.output, &arguments.weld)?,
         second: &arguments.second,
-        joins: &arguments.joins,
+        joins: &stitching::read_joins(&arguments.joins, &console.watch)?,
+        joins_path: &arguments.joins,
     };
     let (watch, staging) = (&console.watch, &console.staging);
     let stitched = on_threads(arguments.compute, || stitching::merge(&job, watch, staging))??;
@@ -83,7 +87,7 @@ fn remaking<'a>(file: &'a Path, to: &'a NewShapeArguments, weld: &WeldArguments)
     Ok(Remaking {
         file,
         output: &to.output,
-        report: to.report.as_deref(),
+        report: to.report.as_deref().into(),
         replace: to.replace(),
         weld: weld.options(),
     })

@@ -26,10 +26,11 @@ const RIGID_TO_SMOOTH: OptionSlider = OptionSlider {
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "arap",
-    title: "As rigid as possible",
+    title: "Limbs",
+    paper: "as rigid as possible",
     when_to_use: "Keeps every neighbourhood as rigid as possible, step by step, for large turns and long drags. The \
                   energy \"smooth\" bends and twists evenly; \"spokes-and-rims\" binds sooner and may crease.",
-    keywords: "arap as-rigid-as-possible",
+    keywords: "limb as rigid as possible arap as-rigid-as-possible",
     picture: Picture::Blocks,
     slider: Some(&RIGID_TO_SMOOTH),
     options: Arap::OPTIONS,
@@ -58,6 +59,10 @@ impl DeformMethod for Arap {
             ArapEnergy::Spokes | ArapEnergy::SpokesAndRims => 95,
             ArapEnergy::Smooth => 140,
         }
+    }
+
+    fn turns_by_moves(&self) -> bool {
+        true
     }
 
     fn needs(&self) -> Needs {

@@ -27,9 +27,10 @@ const FINE_TO_SMOOTH: OptionSlider = OptionSlider {
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "bilaplacian",
-    title: "Thin plate",
+    title: "Soft",
+    paper: "thin plate",
     when_to_use: "Bends like a thin plate, in one step: for small turns and smooth bulges.",
-    keywords: "bilaplacian bi-laplacian biharmonic linear shell laplacian",
+    keywords: "thin plate bilaplacian bi-laplacian biharmonic linear shell laplacian",
     picture: Picture::Plate,
     slider: Some(&FINE_TO_SMOOTH),
     options: Bilaplacian::OPTIONS,

@@ -77,4 +77,4 @@ impl Plate {
 
 /// The sentence about natural boundaries that were left out.
 pub(crate) const PLAIN: &str = "the plate's own factor does not fit the free memory, so stiff parts may shear, soft \
-                                ones swell, and free borders curl: raise the memory limit, or take arap";
+                                ones swell, and free borders curl: raise the memory limit";

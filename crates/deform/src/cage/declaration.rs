@@ -35,6 +35,7 @@ use crate::sparse::system_error::SystemError;
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "cage",
     title: "Cage",
+    paper: "cage coordinates",
     when_to_use: "Bends the space in a coarse cage around the surface: for broad bends of everything inside it, \
                   including loose pieces. The cage fits the handles closely, not exactly; harmonic coordinates keep \
                   limbs that are near each other apart.",

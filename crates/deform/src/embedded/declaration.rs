@@ -21,7 +21,8 @@ use crate::{BindError, Picture, SolveError};
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "embedded",
-    title: "Embedded graph",
+    title: "Loose parts",
+    paper: "embedded graph",
     when_to_use: "Bends a few hundred nodes as rigidly as possible, step by step, and moves everything around them \
                   along: for large bends of large scans, and of loose or broken pieces.",
     keywords: "embedded deformation graph nodes sumner rigid nonlinear space points soup",

@@ -12,11 +12,12 @@ use crate::handles::turns::Followed;
 use crate::handles::{Motion, only_moved};
 use crate::method::{BindInput, BoundMethod, DeformMethod, FactoredSystem, MethodDeclaration, Stepped};
 use crate::needs::{ConstraintKind, Needs, Solve};
-use crate::{BindError, Picture, SolveError, Warning};
+use crate::{BindError, Picture, Remedy, SolveError, Warning};
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "frames",
-    title: "Rotation-invariant coordinates",
+    title: "Even turns",
+    paper: "rotation-invariant coordinates",
     when_to_use: "Solves for the surface's turns and then for its positions, in one step: for turns of several \
                   handles by less than half a turn. A handle that is only moved turns nothing unless `iterations` are \
                   added.",
@@ -111,16 +112,17 @@ impl BoundMethod for FramesSolver {
             .filter(|(_, turn)| *turn > LARGE_RAD)
             .map(|(handle, turn): (usize, f64)| {
                 let degrees = turn.to_degrees();
+                let others = Remedy::FollowingTurns(degrees.ceil() as u16);
                 Warning::of_handle(handle, |handle| {
                     format!(
-                        "{handle} turns by {degrees:.0}°, but frames follows less than half a turn: take poisson, \
-                         which follows larger turns"
+                        "{handle} turns by {degrees:.0}°, but `frames` follows less than half a turn: take {others}, \
+                         which can follow it"
                     )
                 })
             })
             .collect();
         if self.options.iterations == 0 {
-            sentences.extend(only_moved("frames", motions, self.is_held));
+            sentences.extend(only_moved("`frames`", motions, self.is_held));
         }
         sentences
     }

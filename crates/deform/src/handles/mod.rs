@@ -15,8 +15,8 @@ pub(crate) mod turns;
 use glam::{DAffine3, DMat3, DVec3};
 use rayon::prelude::*;
 
-use crate::Warning;
 use crate::numerical::rigid_fit::RigidMotion;
+use crate::{Remedy, Warning};
 
 /// The number of surface vertices that one task displaces.
 pub(crate) const FRAME_CHUNK: usize = 4096;
@@ -131,7 +131,8 @@ pub(crate) fn only_moved(method: &str, motions: &[Motion], is_held: bool) -> Opt
     let sentence = || {
         format!(
             "{method} turns nothing for moves, and the handles only move, so the surface shears between them: turn a \
-             handle, or take laplacian or arap"
+             handle, or take {}",
+            Remedy::TurningByMoves
         )
     };
     (moves && motions.iter().all(is_only_moved)).then(|| sentence().into())

@@ -15,6 +15,7 @@ use crate::{BindError, Picture, SolveError};
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "identity",
     title: "Handles alone",
+    paper: "identity",
     when_to_use: "Moves the handles and leaves the rest in place.",
     keywords: "identity nothing",
     picture: Picture::Bar,

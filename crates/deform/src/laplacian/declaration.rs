@@ -8,11 +8,12 @@ use crate::handles::finite::Finite;
 use crate::handles::polar::{Polar, polars_of};
 use crate::method::{BindInput, BoundMethod, DeformMethod, FactoredSystem, MethodDeclaration, Stepped};
 use crate::needs::{ConstraintKind, Needs, Solve};
-use crate::{BindError, Picture, SolveError, Warning};
+use crate::{BindError, Picture, Remedy, SolveError, Warning};
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "laplacian",
-    title: "Laplacian editing",
+    title: "Wide parts",
+    paper: "Laplacian editing",
     when_to_use: "Turns details with the surface, in one step: for moves, and for turns of wide parts up to about \
                   90°. Limbs collapse from about 70° on, and beyond 90° the surface bulges and shrinks unless `steps` \
                   divides the motion.",
@@ -33,6 +34,10 @@ pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
 impl DeformMethod for LaplacianEditing {
     fn declaration(&self) -> &'static MethodDeclaration {
         &DECLARATION
+    }
+
+    fn turns_by_moves(&self) -> bool {
+        true
     }
 
     fn needs(&self) -> Needs {
@@ -111,16 +116,17 @@ impl BoundMethod for LaplacianSolver {
         match self.options.transforms {
             Transforms::None if turn > SMALL_RAD => vec![Warning::of_handle(handle, |handle| {
                 format!(
-                    "laplacian turns no details if `transforms` is \"none\", but {handle} turns by {degrees:.0}°: \
+                    "`laplacian` turns no details if `transforms` is \"none\", but {handle} turns by {degrees:.0}°: \
                      take \"implicit\""
                 )
             })],
             Transforms::Implicit | Transforms::InitialGuess if turn > LARGE_RAD * f64::from(self.options.steps) => {
                 let steps = (turn / LARGE_RAD).ceil();
+                let others = Remedy::FollowingTurns(degrees.ceil() as u16);
                 vec![Warning::of_handle(handle, |handle| {
                     format!(
-                        "{handle} turns by {degrees:.0}°, but laplacian follows about 90° a step: set `steps` to \
-                         {steps:.0}, or take poisson or arap"
+                        "{handle} turns by {degrees:.0}°, but `laplacian` follows about 90° a step: set `steps` to \
+                         {steps:.0}, or take {others}"
                     )
                 })]
             }

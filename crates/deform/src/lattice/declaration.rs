@@ -23,6 +23,7 @@ use crate::{BindError, Picture, SolveError};
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "lattice",
     title: "Lattice",
+    paper: "free-form deformation",
     when_to_use: "Bends a box around the surface by a coarse lattice: for broad, soft bends and stretches of \
                   everything inside it, including loose pieces. The lattice fits the handles closely, not exactly.",
     keywords: "lattice ffd free-form deformation box spline space",

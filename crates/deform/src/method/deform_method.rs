@@ -22,8 +22,10 @@ pub struct Method(pub(super) Box<dyn DeformMethod>);
 pub struct MethodDeclaration {
     /// Its name in the edit format and on the command line.
     pub name: &'static str,
-    /// Its label for a person.
+    /// Its label for a person, in words of its use.
     pub title: &'static str,
+    /// Its name in the literature.
+    pub paper: &'static str,
     /// One sentence on its use.
     pub when_to_use: &'static str,
     /// Its other names, in lower case.
@@ -48,6 +50,13 @@ impl MethodDeclaration {
     /// The attachment of this name, if the method takes it.
     pub fn attachment(&self, name: &str) -> Option<&'static AttachmentDeclaration> {
         self.attachments.iter().find(|attachment| attachment.name == name)
+    }
+
+    /// Its name in the literature and its use, in sentences.
+    pub fn explanation(&self) -> String {
+        let mut paper = self.paper.chars();
+        let first = paper.next().map(|first| first.to_uppercase().to_string());
+        format!("{}{}. {}", first.unwrap_or_default(), paper.as_str(), self.when_to_use)
     }
 
     /// Returns true if it supports this constraint.
@@ -128,6 +137,11 @@ pub(crate) trait DeformMethod: Options {
     /// The largest turns of a limb that it does not narrow; `None` if it follows half a turn, or has its own sentence.
     fn follows_turns(&self) -> Option<Followed> {
         None
+    }
+
+    /// Returns true if the surface turns though the handles only move.
+    fn turns_by_moves(&self) -> bool {
+        false
     }
 
     /// The largest turn between handles for which it is advised instead of a method that follows less; 0 for none.

@@ -14,7 +14,8 @@ use crate::space::field::FIELD_ROW;
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "mls",
-    title: "Moving least squares",
+    title: "Quick space",
+    paper: "moving least squares",
     when_to_use: "Turns and moves each place like the handles around it, in one step: for quick poses of scans of \
                   loose or broken pieces. Everything near in space moves along, connected or not.",
     keywords: "mls moving least squares schaefer rigid similarity affine space points soup warp",

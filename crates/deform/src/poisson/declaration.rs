@@ -15,11 +15,12 @@ use crate::{BindError, Picture, SolveError, Warning};
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "poisson",
-    title: "Gradient editing",
+    title: "Twists",
+    paper: "gradient editing",
     when_to_use: "Spreads the handles' turns and stretches over the surface, in one step and beyond half a turn: for \
                   bends and twists of detailed shapes. A handle that is only moved turns nothing, and details shear \
                   there.",
-    keywords: "poisson gradient harmonic geodesic material propagation",
+    keywords: "twist editing poisson gradient harmonic geodesic material propagation",
     picture: Picture::Arrows,
     slider: None,
     options: Poisson::OPTIONS,
@@ -90,7 +91,7 @@ impl BoundMethod for PoissonSolver {
     }
 
     fn blind_to(&self, motions: &[Motion]) -> Vec<Warning> {
-        crate::handles::only_moved("poisson", motions, self.is_held)
+        crate::handles::only_moved("`poisson`", motions, self.is_held)
             .into_iter()
             .collect()
     }

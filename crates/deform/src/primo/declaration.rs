@@ -12,9 +12,10 @@ use crate::{BindError, Picture, SolveError};
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "primo",
-    title: "Coupled prisms",
+    title: "Rubber",
+    paper: "coupled prisms",
     when_to_use: "Bends like a rubber sheet of a thickness you choose, step by step: for even bends and twists.",
-    keywords: "primo rubber nonlinear shell",
+    keywords: "coupled prisms primo rubber nonlinear shell",
     picture: Picture::Prisms,
     slider: None,
     options: Primo::OPTIONS,
@@ -36,6 +37,10 @@ impl DeformMethod for Primo {
     /// Like ARAP, it gives way where the surface twists most.
     fn follows_turns(&self) -> Option<Followed> {
         Some(Followed::by_necks(140.0))
+    }
+
+    fn turns_by_moves(&self) -> bool {
+        true
     }
 
     fn needs(&self) -> Needs {

@@ -17,10 +17,11 @@ use crate::space::linear::BoundLinear;
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "rbf",
-    title: "Radial basis functions",
+    title: "Space",
+    paper: "radial basis functions",
     when_to_use: "Bends the space around the surface as smoothly as possible, in one step: for scans of loose or \
                   broken pieces. Everything near in space moves along, connected or not.",
-    keywords: "rbf radial triharmonic space points soup warp",
+    keywords: "basis functions rbf radial triharmonic space points soup warp",
     picture: Picture::Circles,
     slider: None,
     options: Rbf::OPTIONS,
@@ -93,7 +94,7 @@ impl DeformMethod for Rbf {
         };
         let missed = (fitted.error > self.tolerance).then(|| {
             format!(
-                "rbf misses its constraints by up to {:.1e} of the handles' motion with {} centres: allow more \
+                "`rbf` misses its constraints by up to {:.1e} of the handles' motion with {} centres: allow more \
                  `centres`, or a larger `tolerance`",
                 fitted.error,
                 fitted.weights.centres.len()

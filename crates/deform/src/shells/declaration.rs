@@ -32,11 +32,12 @@ const PAPER_TO_RUBBER: OptionSlider = OptionSlider {
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "shells",
-    title: "Discrete shells",
+    title: "Cloth",
+    paper: "discrete shells",
     when_to_use: "Keeps the surface's lengths and angles and, if you wish, its volume, step by step: for skin, sheets \
                   and balloons, from paper, which creases (`bending` 1e-6), to thick rubber, which bends evenly \
                   (1e-2). Poses that you keep as examples guide it, and their weights alone blend shapes along arcs.",
-    keywords: "discrete shells nonlinear thin shell paper cloth rubber balloon volume isometric developable examples pose blend interpolation grinspun",
+    keywords: "skin discrete shells nonlinear thin shell paper cloth rubber balloon volume isometric developable examples pose blend interpolation grinspun",
     picture: Picture::Triangles,
     slider: Some(&PAPER_TO_RUBBER),
     options: Shells::OPTIONS,
@@ -68,6 +69,10 @@ impl DeformMethod for Shells {
     }
 
     fn resists_collapse(&self) -> bool {
+        true
+    }
+
+    fn turns_by_moves(&self) -> bool {
         true
     }
 

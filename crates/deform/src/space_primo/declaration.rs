@@ -20,7 +20,8 @@ use crate::{BindError, Picture, SolveError};
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "space-primo",
-    title: "Rigid cells",
+    title: "Rubber block",
+    paper: "rigid cells",
     when_to_use: "Bends the space around the shape like rubber, step by step: for even bends and twists of closed \
                   shapes, and of loose or broken pieces.",
     keywords: "space primo rigid cells octree botsch rubber solid nonlinear points soup",

@@ -19,7 +19,8 @@ use crate::{BindError, Picture, ReusableFactor, SolveError};
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "wrinkles",
-    title: "Wrinkles from examples",
+    title: "Wrinkles",
+    paper: "pose-space deformation",
     when_to_use: "Bends like a thin plate, in one step, and adds the wrinkles of its examples where the surface is \
                   strained like them: for faces and cloth whose folds you sculpted in a few poses. Without examples \
                   it is the thin plate.",

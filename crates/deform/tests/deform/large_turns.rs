@@ -106,7 +106,7 @@ fn methods_that_fail_between_large_turns_say_so_and_name_others() {
             let said = said(method, turn, true);
             let is_told = |said: &String| said.contains(name) && said.contains("poisson");
             assert!(!said.is_empty() && said.iter().all(is_told), "{name} {said:?}");
-            assert!(turn.abs() < 140.0 || !said[0].contains("arap or"), "{name} {said:?}");
+            assert!(turn.abs() < 140.0 || !said[0].contains("`arap` or"), "{name} {said:?}");
         }
         let said = said(method, 170.0, false);
         assert!(said.is_empty(), "{name}: what all turns is not narrowed");
@@ -215,7 +215,7 @@ fn the_plain_energies_say_from_where_on_folds_crease_a_limb() {
         let between = said(&method, 120.0, true);
         assert!(
             between[0].contains("flattens a limb that is folded, though not one that is twisted")
-                && between[0].contains("arap with `energy` \"smooth\""),
+                && between[0].contains("`arap` with `energy` \"smooth\""),
             "{between:?}"
         );
         assert!(folded(&method, 120.0) < 0.5 && twisted(&method, 120.0, 0.6).0 > 0.7);

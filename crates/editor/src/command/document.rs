@@ -13,7 +13,8 @@ pub(super) const UNDO: Entry<()> = Entry {
     scope: Scope::History,
     unavailable: |state, ()| {
         let undo = state.workspace.history.undo_name();
-        unless(undo.is_some(), "There is nothing to undo.")
+        let is_still = state.workspace.flow.is_still();
+        unless(undo.is_some() || !is_still, "There is nothing to undo.")
     },
     action: Action::Do(|context, ()| context.workspace.undo()),
 };
@@ -205,5 +206,6 @@ pub(super) const CANCEL_JOBS: Entry<()> = Entry {
     action: Action::Do(|context, ()| {
         let workspace = &mut *context.workspace;
         workspace.jobs.give_up(&workspace.document);
+        workspace.stop_flow();
     }),
 };

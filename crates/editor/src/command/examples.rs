@@ -10,7 +10,7 @@ pub(super) const KEEP_EXAMPLE: Entry<()> = Entry {
     listed: &[item(
         (),
         "Keep as example",
-        "Keeps the present shape as an example for Discrete shells or Wrinkles from examples.",
+        "Keeps the present shape as an example for the methods \"Cloth\" and \"Wrinkles\".",
         "pose shape blend morph interpolate in-between example",
         &[],
     )],
@@ -63,7 +63,7 @@ pub(super) const REMOVE_EXAMPLE: Entry<usize> = Entry {
 };
 
 /// The message if the method takes no examples.
-pub const WITHOUT_EXAMPLES: &str = "The method takes no examples: choose Discrete shells or Wrinkles from examples.";
+pub const WITHOUT_EXAMPLES: &str = "The method takes no examples: choose \"Cloth\" or \"Wrinkles\".";
 
 /// The reason if the method takes no examples.
 fn without_examples(state: &State<'_>) -> Option<Reason> {

@@ -135,7 +135,8 @@ pub(super) const SET_SHADING: Entry<Shading> = Entry {
 
 /// The reason why no handle's weights can be shown.
 fn no_weights(state: &State<'_>) -> Option<Reason> {
-    let why = |title: &str| format!("{title} uses no weights: choose a method that does, such as Gradient editing.");
+    let why =
+        |title: &str| format!("The method \"{title}\" uses no weights: choose one that does, such as \"Twists\".");
     let inspectable = |inspectable: Inspectable| inspectable.weights;
     state
         .selected()
@@ -168,8 +169,9 @@ pub(super) const TOGGLE_BASE: Entry<()> = Entry {
     )],
     scope: Scope::View,
     unavailable: |state, ()| {
-        let why =
-            |title: &str| format!("{title} has no smooth base here: choose Thin plate and set its option detail.");
+        let why = |title: &str| {
+            format!("The method \"{title}\" has no smooth base here: choose \"Soft\" and set its option Detail.")
+        };
         let reason = || not_in_binding(state, |inspectable| inspectable.base, why);
         // An active display can always be turned off.
         (!state.view.look.base).then(reason).flatten()

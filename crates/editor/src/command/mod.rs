@@ -9,6 +9,7 @@ mod curves;
 mod document;
 mod entry;
 mod examples;
+mod flow;
 mod handle;
 mod key_map;
 mod look;

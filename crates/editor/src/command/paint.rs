@@ -68,6 +68,13 @@ pub(super) const SET_TOOL: Entry<ToolMode> = Entry {
             "sculpt brush armpit crease smooth relax grab",
             &[character('8')],
         ),
+        item(
+            ToolMode::Flow,
+            "Flow",
+            "Pours colour that flows along the surface, and pushes it with the stroke. Space plays and pauses.",
+            "fluid dye paint ink rust marble liquid vertex color",
+            &[character('9')],
+        ),
     ],
     scope: Scope::Tool,
     unavailable: always,

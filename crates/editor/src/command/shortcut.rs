@@ -29,6 +29,7 @@ impl Shortcut {
             }
         }
         match self.key {
+            Key::Character(' ') => label.push_str("Space"),
             Key::Character(character) => label.extend(character.to_uppercase()),
             Key::Escape => label.push_str("Esc"),
             Key::Enter => label.push_str("Enter"),
@@ -68,6 +69,7 @@ impl Shortcut {
             (.., "delete") => Key::Delete,
             (.., "home") => Key::Home,
             (.., "tab") => Key::Tab,
+            (.., "space") => Key::Character(' '),
             // "Num 5": a digit of the numeric pad.
             (.., name) => {
                 let digit = name.strip_prefix("num ")?.parse().ok()?;

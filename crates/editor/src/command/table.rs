@@ -8,10 +8,12 @@ use pliant_deform::{Attachment, ExampleShape, Loose, Method};
 
 use super::entry::{Action, Entry, Reason, Scope, State};
 use super::shortcut::Shortcut;
-use super::{controls, curves, document, examples, handle, look, object, paint, pose, region, transform, view};
-use crate::document::{HandleId, HandleTransform, ObjectAction, PivotPlace, Reach, SmallParts, Tips};
+use super::{controls, curves, document, examples, flow, handle, look, object, paint, pose, region, transform, view};
+use crate::document::{FlowOptions, HandleId, HandleTransform, ObjectAction, PivotPlace, Reach, SmallParts, Tips};
 use crate::jobs::Symmetry;
-use crate::tool::{BrushMetric, Context, CorrectionBrush, Depth, Gesture, StiffnessBrush, StrokeShape, ToolMode};
+use crate::tool::{
+    BrushMetric, Context, CorrectionBrush, Depth, FlowBrush, Gesture, StiffnessBrush, StrokeShape, ToolMode,
+};
 use crate::view::{Before, Clay, GizmoMode, GizmoOrientation, NamedView, Orbit, Shading, UpAxis};
 use crate::workspace::{RegionAction, StiffnessChange};
 
@@ -160,6 +162,22 @@ commands! {
     SetCorrection(brush: CorrectionBrush) = paint::SET_CORRECTION;
     /// The stiffness brush's action and numbers, clamped to their ranges.
     SetStiffnessBrush(brush: StiffnessBrush) = paint::SET_STIFFNESS_BRUSH;
+    /// Lets the dye flow along the surface, or pauses it.
+    PlayFlow = flow::PLAY_FLOW;
+    /// Pauses the flow if it plays.
+    PauseFlow = flow::PAUSE_FLOW;
+    /// Lets the dye flow for one step.
+    StepFlow = flow::STEP_FLOW;
+    /// Makes the dye vertex colours, which are saved with the model.
+    KeepDye = flow::KEEP_DYE;
+    /// Removes the dye that flows, and stops the fluid.
+    ClearDye = flow::CLEAR_DYE;
+    /// Removes the vertex colours that were kept from the dye.
+    RemoveKeptDye = flow::REMOVE_KEPT_DYE;
+    /// Chooses the forces in the flow.
+    SetFlowOptions(options: FlowOptions) = flow::SET_FLOW_OPTIONS;
+    /// The flow brush's action, colour and numbers, clamped to their ranges.
+    SetFlowBrush(brush: FlowBrush) = flow::SET_FLOW_BRUSH;
     /// Lets the points of curves follow a dragged one at their distances, or no longer.
     ToggleChain = curves::TOGGLE_CHAIN;
     /// Adds points to the selected handle's curve: after each selected one, or between all.

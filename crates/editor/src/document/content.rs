@@ -7,6 +7,7 @@ use glam::DVec3;
 use pliant_deform::{Attachment, Loose, Method};
 
 use super::access::Access;
+use super::fluid::{FlowOptions, Fluid};
 use super::handle::{Handle, HandleId};
 use super::kept_shape::KeptShape;
 use super::pose::Pose;
@@ -78,6 +79,10 @@ pub struct Content {
     pub(crate) strength: Option<Arc<Strength>>,
     /// The kept poses.
     pub(crate) poses: Arc<Vec<Pose>>,
+    /// The fluid on the surface, which bends nothing.
+    pub(crate) fluid: Fluid,
+    /// The forces in its flow.
+    pub(crate) flow_options: FlowOptions,
 }
 
 impl Content {
@@ -106,6 +111,8 @@ impl Content {
             settled: true,
             strength: None,
             poses: Arc::default(),
+            fluid: Fluid::default(),
+            flow_options: FlowOptions::default(),
         }
     }
 

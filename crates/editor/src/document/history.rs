@@ -15,6 +15,7 @@ use pliant_deform::{Attachment, ExampleShape, Loose, Method};
 
 use super::access::Access;
 use super::content::{Paint, Tips};
+use super::fluid::{FlowOptions, Fluid};
 use super::handle::{Handle, HandleId};
 use super::kept_shape::KeptShape;
 use super::pose::{Placed, Pose};
@@ -58,6 +59,10 @@ pub(crate) enum Change {
     Strength(Option<Arc<Strength>>),
     /// The kept poses.
     Poses(Arc<Vec<Pose>>),
+    /// The fluid on the surface.
+    Fluid(Fluid),
+    /// The forces in its flow.
+    FlowOptions(FlowOptions),
 }
 
 /// A named step.
@@ -102,11 +107,13 @@ impl Step {
                     let of_pose = |pose| size_of::<Pose>() + of_handles(pose) + of_points(pose) * size_of::<DVec3>();
                     poses.iter().map(of_pose).sum()
                 }
+                Change::Fluid(fluid) => fluid.bytes(),
                 Change::Kept(None)
                 | Change::Strength(None)
                 | Change::Continuity(None)
                 | Change::Options(..)
                 | Change::Tips(_)
+                | Change::FlowOptions(_)
                 | Change::Settled(_) => size_of::<Change>(),
             })
             .sum();
@@ -329,6 +336,8 @@ fn swap(change: &mut Change, document: &mut Document, strength: &mut Option<Arc<
         Change::Kept(kept) => document.swap_kept(kept),
         Change::Settled(settled) => document.swap_settled(settled),
         Change::Poses(poses) => document.swap_poses(poses),
+        Change::Fluid(fluid) => document.swap_fluid(fluid),
+        Change::FlowOptions(options) => document.swap_flow_options(options),
         Change::Strength(other) => std::mem::swap(other, strength),
     }
 }

@@ -123,6 +123,12 @@ fn differences(before: &Document, after: &Document) -> Vec<Change> {
     if !Arc::ptr_eq(&before.poses, &after.poses) && before.poses != after.poses {
         changes.push(Change::Poses(Arc::clone(&before.poses)));
     }
+    if differ(Aspect::Fluid) && before.fluid != after.fluid {
+        changes.push(Change::Fluid(before.fluid.clone()));
+    }
+    if before.flow_options != after.flow_options {
+        changes.push(Change::FlowOptions(before.flow_options));
+    }
     if before.strength != after.strength {
         changes.push(Change::Strength(before.strength.clone()));
     }

@@ -41,10 +41,12 @@ pub(crate) enum Aspect {
     Targets,
     /// The look of handles: colours, visibility.
     Appearance,
+    /// The fluid on the surface.
+    Fluid,
 }
 
 impl Aspect {
-    pub(crate) const ALL: [Self; 17] = [
+    pub(crate) const ALL: [Self; 18] = [
         Self::Paint,
         Self::Stiffness,
         Self::Continuity,
@@ -62,6 +64,7 @@ impl Aspect {
         Self::Constraints,
         Self::Targets,
         Self::Appearance,
+        Self::Fluid,
     ];
 
     /// The aspects from which the region and the factorisation follow.

@@ -6,7 +6,7 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use glam::DVec3;
-use pliant_mesh::Model;
+use pliant_mesh::{Model, bounding_box};
 
 use crate::Beginning;
 use crate::command::{Command, KeyMap, Scope, frame_all};
@@ -15,7 +15,7 @@ use crate::event::Event;
 use crate::input::{Button, Key, Modifiers, Pointer};
 use crate::jobs::{Activity, Asked, Executor, JobDone, JobKind};
 use crate::tool::{Adjust, Brush, Context, Gesture, Lit, Next, Overlay, ToolMode, ToolSettings, begin, hover, tint};
-use crate::view::{Shading, View};
+use crate::view::{Shading, UpAxis, View, up_axis_of};
 use crate::workspace::{ColouredBy, Workspace, take_mirrored};
 
 /// The factor by which a notch of the wheel changes the brush's size.
@@ -152,6 +152,7 @@ impl Editor {
         let activity = gesture.map_or(Activity::Still, Gesture::activity);
         let by = match self.settings.mode {
             ToolMode::PaintStiffness => ColouredBy::Stiffness,
+            ToolMode::Flow => ColouredBy::Dye,
             _ => ColouredBy::Region,
         };
         let look = &self.view.look;
@@ -169,6 +170,7 @@ impl Editor {
             hover(&mut self.workspace, &self.view, hovering_px);
         }
         tint(&mut self.workspace, &self.view, hovering_px);
+        self.workspace.follow_flow(gesture.is_none());
         self.workspace.conclude(activity, by, asked);
         if !gesture.is_some_and(Gesture::moves_camera) {
             self.view.rest();
@@ -349,6 +351,10 @@ impl Editor {
             Some(JobKind::Mirror) => take_mirrored(&mut self.workspace, self.gesture.is_none()),
             _ => {}
         }
+        if kind == JobKind::Flow {
+            self.workspace.take_flowed();
+            self.ask_gesture(|gesture, context| gesture.flowed(context));
+        }
         // The search has ended without a result: it was stopped, or it failed.
         let is_search = matches!(kind, JobKind::Enclose | JobKind::Joint);
         if is_search && self.is_looking() && !self.workspace.jobs.is_busy(kind) {
@@ -364,8 +370,10 @@ impl Editor {
             Some(Ok(document)) => (document, None),
             Some(Err(error)) => (Document::new(count), Some(error.to_string())),
         };
-        let bounds = model.bounds_without_specks();
-        self.begin_file(bounds.map(|bounds| bounds.diagonal()), |workspace| {
+        let shown = model.vertices_without_specks();
+        let shown: Vec<DVec3> = shown.map(|vertex| model.surface.positions[vertex.index()]).collect();
+        let size = bounding_box(&shown).map(|bounds| bounds.diagonal());
+        self.begin_file(size, up_axis_of(&shown), |workspace| {
             workspace.open(model, name, document);
             workspace.refusal = refusal;
         });
@@ -378,7 +386,7 @@ impl Editor {
     }
 
     /// Opens another file in the workspace, and frames all of it.
-    fn begin_file(&mut self, size: Option<f64>, open: impl FnOnce(&mut Workspace)) {
+    fn begin_file(&mut self, size: Option<f64>, up: UpAxis, open: impl FnOnce(&mut Workspace)) {
         self.abort_gesture();
         self.showing_original = None;
         self.view.look.original = false;
@@ -386,7 +394,7 @@ impl Editor {
         self.settings.wants_pivot = false;
         self.brush = Brush::default();
         open(&mut self.workspace);
-        self.view.open(size.map(|size| if size > 0.0 { size } else { 1.0 }));
+        self.view.open(size.map(|size| if size > 0.0 { size } else { 1.0 }), up);
         frame_all(&self.workspace, &mut self.view);
     }
 

@@ -9,7 +9,7 @@ use pliant_mesh::{ContourLine, SurfaceVertex};
 
 use super::Editor;
 use crate::command::{Command, Shortcut, State};
-use crate::document::{Document, History, SaveMark};
+use crate::document::{Document, HandleId, History, SaveMark};
 use crate::format::{ExportError, export};
 use crate::jobs::{Comparison, Intersections, JobKind};
 use crate::region::Rim;
@@ -19,6 +19,7 @@ use crate::snapshot::Snapshot;
 use crate::status::status;
 use crate::tool::{Gesture, ToolMode};
 use crate::view::{Cursor, Look, Pick};
+use crate::warning::in_window_words;
 use crate::workspace::{ControlSource, SnapshotKey, Workspace, region_colour, rims};
 use crate::{EditFile, MeshReference, geometry_hash};
 
@@ -65,6 +66,8 @@ impl Editor {
             brush_metric: settings.brush().metric,
             stiffness_brush: settings.stiffness_brush,
             correction_brush: settings.correction_brush,
+            flow_brush: settings.flow_brush,
+            is_playing: workspace.flow.is_playing(),
             pressure: settings.pressure,
             orientation: settings.orientation,
             wants_pivot: settings.wants_pivot,
@@ -139,6 +142,14 @@ impl Editor {
         &self.workspace.computed().region.roles
     }
 
+    /// The reach of a handle along the surface, in world units, in the last measured region; `None` if it has no vertices
+    /// there.
+    pub fn reach_length(&self, handle: HandleId) -> Option<f64> {
+        let region = &self.workspace.computed().region;
+        let place = region.handles.iter().position(|id| *id == handle)?;
+        region.reaches.get(place).copied()
+    }
+
     /// The highlighted connected part, by its component's number.
     pub fn lit_part(&self) -> Option<u32> {
         self.workspace.colours().lit()
@@ -161,6 +172,15 @@ impl Editor {
     /// the search, and while the shape changes.
     pub fn intersections(&self) -> Option<&Intersections> {
         self.workspace.intersections()
+    }
+
+    /// The faults of the shape by the present method, in the words of the window.
+    pub fn faults(&self) -> Vec<String> {
+        let found = self
+            .intersections()
+            .map(|found| found.sentences(self.document().method()));
+        let sentences = found.unwrap_or_default();
+        sentences.iter().map(|sentence| in_window_words(sentence)).collect()
     }
 
     /// The methods' solutions for the present edit, during a comparison.
@@ -280,7 +300,9 @@ impl Editor {
         let awaited = |kind: JobKind| kind.is_awaited() && (kind != JobKind::Order || is_displaced);
         let jobs = &self.workspace.jobs;
         let is_busy = || JobKind::ALL.iter().any(|&kind| awaited(kind) && jobs.is_busy(kind));
-        self.gesture.is_none() && self.waiting.is_empty() && !is_busy()
+        // A stretch of play that ends becomes a part of the document.
+        let is_ending = !(self.workspace.flow.is_still() || self.workspace.flow.is_playing());
+        self.gesture.is_none() && self.waiting.is_empty() && !is_ending && !is_busy()
     }
 
     /// The revision of the shape that jobs are stamped with, for tests of lateness.

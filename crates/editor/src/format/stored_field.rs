@@ -14,6 +14,7 @@ use pliant_mesh::{DrawnVertex, Model, SurfaceVertex};
 use serde::{Deserialize, Serialize};
 
 use crate::EditError;
+use crate::document::Dye;
 use crate::format::selector::ranges_of;
 
 /// First and last drawn vertex of runs, ascending.
@@ -124,6 +125,25 @@ impl Field {
                 range.end()
             ))),
             None => Ok(Arc::new(numbers)),
+        }
+    }
+
+    /// A dye for each surface vertex, none if none is stored.
+    ///
+    /// # Errors
+    /// Those of [`Self::read`], and a number that is not from 0 to 1.
+    pub(super) fn dyes(&self, name: &str, model: &Model) -> Result<Arc<Vec<Dye>>, EditError> {
+        let mut dyes = vec![Dye::default(); model.surface.positions.len()];
+        let mut are_in_range = true;
+        self.read(name, model, f64::is_finite, |vertex, dye: [f64; 4]| {
+            are_in_range &= dye.iter().all(|value| (0.0..=1.0).contains(value));
+            dyes[vertex.index()] = dye.map(|value| value as f32);
+        })?;
+        match are_in_range {
+            true => Ok(Arc::new(dyes)),
+            false => Err(EditError::Project(format!(
+                "`{name}` has a number that is not from 0 to 1: save it again"
+            ))),
         }
     }
 

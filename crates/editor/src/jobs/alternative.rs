@@ -14,6 +14,7 @@ use super::solved::Solved;
 use super::solving::Wanted;
 use crate::Setup;
 use crate::document::Document;
+use crate::warning::in_window_words;
 
 /// The message about a method whose job a person has stopped.
 const STOPPED: &str = "it was stopped: compare again";
@@ -168,7 +169,7 @@ impl Alternative {
     }
 
     fn refuse(&mut self, sentence: String, of: Edit) {
-        self.refusal = Some(sentence);
+        self.refusal = Some(in_window_words(&sentence));
         self.answers = Some(of);
     }
 }

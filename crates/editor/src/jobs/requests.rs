@@ -7,6 +7,7 @@ use glam::DVec3;
 use pliant_mesh::Joint;
 
 use super::comparison::Comparison;
+use super::flowed::{FlowRequest, flow_work};
 use super::inspected::Asked;
 use super::inspection::inspect_work;
 use super::scheduler::Jobs;
@@ -62,6 +63,19 @@ impl Jobs {
             self.stop_asking(|slots| &mut slots.joint);
             self.computed.slots.joint.take();
         }
+    }
+
+    /// Requests a step of the flow; none must be under way.
+    pub(crate) fn flow(&mut self, request: FlowRequest) {
+        let (revision, allowance) = (self.next_revision(), self.allowance);
+        self.computed.slots.flow.follow(revision);
+        self.computed.slots.flow.request(flow_work(request, allowance));
+    }
+
+    /// The time in milliseconds since some moment, for the speed of a stroke; constant in an executor that does not
+    /// measure.
+    pub(crate) fn now_ms(&self) -> f64 {
+        self.executor.clock_ms()()
     }
 
     /// Begins a comparison of the methods on the edit.

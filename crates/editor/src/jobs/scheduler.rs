@@ -36,8 +36,8 @@ pub(crate) enum Activity {
 
 /// The jobs and their last results.
 pub(crate) struct Jobs {
-    executor: Box<dyn Executor>,
-    allowance: Allowance,
+    pub(super) executor: Box<dyn Executor>,
+    pub(super) allowance: Allowance,
     counter: u64,
     pub(crate) computed: Computed,
     /// The other methods' results for the edit, during a comparison.
@@ -181,12 +181,13 @@ impl Jobs {
         self.computed.slots.bind.cancel();
     }
 
-    /// Stops every job but the pointer's for good: each is tried again only after its input has changed.
+    /// Stops every job but the pointer's and the flow's for good: each is tried again only after its input has changed.
     pub(crate) fn give_up(&mut self, document: &Document) {
         if let Some(comparison) = &mut self.comparison {
             comparison.stop(document);
         }
-        for &kind in JobKind::ALL.iter().filter(|kind| **kind != JobKind::Pick) {
+        let goes_on = |kind: &&JobKind| matches!(kind, JobKind::Pick | JobKind::Flow);
+        for &kind in JobKind::ALL.iter().filter(|kind| !goes_on(kind)) {
             self.computed.slots.of_mut(kind).give_up();
         }
     }

@@ -11,6 +11,7 @@ use pliant_mesh::{Cancel, Joint, Progress, SurfaceVertex};
 
 use super::both_sides::BothSides;
 use super::compared::Compared;
+use super::flowed::Flowed;
 use super::inspected::Inspected;
 use super::intersections::Intersections;
 use super::present_binding::PresentBinding;
@@ -145,6 +146,8 @@ jobs! {
     inspect: Inspect(Inspected) = Row { doing: "inspecting the binding", is_awaited: true, is_named: false };
     /// The joint of the limb under the pointer; `None` if there is none.
     joint: Joint(Option<Arc<Joint>>) = Row { doing: "finding the joint", is_awaited: false, is_named: false };
+    /// A step of the flow on the surface.
+    flow: Flow(Box<Flowed>) = Row { doing: "flowing", is_awaited: false, is_named: false };
     /// The places where the present shape passes through itself.
     intersect: Intersect(Intersections) = Row {
         doing: "finding places where the shape passes through itself",

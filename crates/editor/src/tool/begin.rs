@@ -6,6 +6,7 @@ use super::context::Context;
 use super::control_box::ControlBox;
 use super::correct;
 use super::curve_stroke::CurveStroke;
+use super::flow_stroke::FlowStroke;
 use super::gesture::Gesture;
 use super::mode::{StrokeShape, ToolMode};
 use super::navigate::Navigate;
@@ -83,6 +84,7 @@ pub(crate) fn begin(context: &mut Context<'_>, pointer: Pointer, button: Button)
         mode if modifiers.shift && mode.paints_roles() => Some(Box::new(SmoothStroke::begin(context, pointer))),
         ToolMode::PaintStiffness => Some(Box::new(StiffnessStroke::begin(context, pointer))),
         ToolMode::Correct => Some(correct::begin(context, pointer, &pick)),
+        ToolMode::Flow => Some(Box::new(FlowStroke::begin(context, pointer))),
         ToolMode::Select => select(context, pointer, button, pick),
         ToolMode::Pose => Some(Box::new(PoseDrag::begin(context, pointer, pick)?)),
         _ if shape == StrokeShape::Component => {
@@ -167,6 +169,7 @@ fn outline(context: &mut Context<'_>, pointer: Pointer, shape: StrokeShape) -> B
     let why = match context.settings.mode {
         ToolMode::PaintStiffness => Some("Stiffness is painted with the brush: press B for it."),
         ToolMode::Correct => Some("The shape is corrected with the brush: press B for it."),
+        ToolMode::Flow => Some("Colour is poured with the brush: press B for it."),
         _ => None,
     };
     if let Some(why) = why {

@@ -107,6 +107,11 @@ pub(crate) trait Gesture: std::fmt::Debug {
         Next::Stay
     }
 
+    /// The flow on the surface has taken a step.
+    fn flowed(&mut self, _context: &mut Context<'_>) -> Next {
+        Next::Stay
+    }
+
     /// Restores the earlier state.
     fn abort(&mut self, context: &mut Context<'_>);
 }

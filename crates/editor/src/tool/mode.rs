@@ -20,6 +20,8 @@ pub enum ToolMode {
     Pose,
     /// Corrects the shape by hand.
     Correct,
+    /// Pours colour into the fluid on the surface, and moves it.
+    Flow,
 }
 
 impl ToolMode {

@@ -2,6 +2,7 @@
 
 use super::brush::{BRUSH_RADIUS_PX, BrushMetric, BrushSize};
 use super::correction_brush::CorrectionBrush;
+use super::flow_brush::FlowBrush;
 use super::mode::{Depth, StrokeShape, ToolMode};
 use super::stiffness_brush::StiffnessBrush;
 use crate::document::{HandleId, Paint};
@@ -20,6 +21,7 @@ pub(crate) struct ToolSettings {
     other_metric: BrushMetric,
     pub(crate) stiffness_brush: StiffnessBrush,
     pub(crate) correction_brush: CorrectionBrush,
+    pub(crate) flow_brush: FlowBrush,
     /// The pressure of a pen, 0 to 1; `None` until the system reports it.
     pub(crate) pressure: Option<f64>,
     pub(crate) gizmo_mode: GizmoMode,
@@ -41,6 +43,7 @@ impl Default for ToolSettings {
             other_metric: BrushMetric::Screen,
             stiffness_brush: StiffnessBrush::default(),
             correction_brush: CorrectionBrush::default(),
+            flow_brush: FlowBrush::default(),
             pressure: None,
             gizmo_mode: GizmoMode::default(),
             orientation: GizmoOrientation::default(),

@@ -1,5 +1,6 @@
 //! The stiffness brush: its action, its strength, and its softness at the rim.
 
+use super::firmness::firmness;
 use crate::STIFFNESS_RANGE;
 
 /// The stiffness brush's action.
@@ -56,11 +57,6 @@ impl StiffnessBrush {
 
     /// The firmness of the brush at a share of its radius: 1 inside, 0 at the rim, a smooth step between.
     pub(super) fn firmness(&self, share: f64) -> f64 {
-        let inner = 1.0 - self.falloff;
-        if share <= inner || self.falloff == 0.0 {
-            return 1.0;
-        }
-        let t = ((1.0 - share) / self.falloff).clamp(0.0, 1.0);
-        t * t * (3.0 - 2.0 * t)
+        firmness(self.falloff, share)
     }
 }

@@ -35,6 +35,11 @@ pub(crate) trait Stroke: std::fmt::Debug {
     fn holds_camera(&self) -> bool {
         false
     }
+
+    /// Returns true if it acts again at every step of the flow, even if the pointer rests.
+    fn goes_on_by_itself(&self, _workspace: &Workspace) -> bool {
+        false
+    }
 }
 
 /// An active stroke.
@@ -118,6 +123,13 @@ impl<S: Stroke> Gesture for StrokeGesture<S> {
         Next::End
     }
 
+    fn flowed(&mut self, context: &mut Context<'_>) -> Next {
+        if self.stroke.goes_on_by_itself(context.workspace) {
+            self.dab(context, self.last_px);
+        }
+        Next::Stay
+    }
+
     fn abort(&mut self, context: &mut Context<'_>) {
         context.workspace.abort(&self.transaction);
     }
@@ -139,12 +151,35 @@ pub(super) fn firmest(
     way_px: [DVec2; 2],
     firmness: impl Fn(f64) -> f64,
 ) -> Vec<(SurfaceVertex, f64)> {
-    let mut met: Vec<(SurfaceVertex, f64)> = Vec::new();
-    meet(context, way_px, |vertex, share| met.push((vertex, firmness(share))));
-    let workspace = &*context.workspace;
-    if let Some(sides) = workspace.both_sides() {
+    let mut met = under_brush(context, way_px, firmness);
+    if let Some(sides) = context.workspace.both_sides() {
         met.extend(sides.opposite_with(&met));
     }
+    once(met, context.workspace)
+}
+
+/// The same without symmetry.
+pub(super) fn met_once(
+    context: &mut Context<'_>,
+    way_px: [DVec2; 2],
+    firmness: impl Fn(f64) -> f64,
+) -> Vec<(SurfaceVertex, f64)> {
+    let met = under_brush(context, way_px, firmness);
+    once(met, context.workspace)
+}
+
+fn under_brush(
+    context: &mut Context<'_>,
+    way_px: [DVec2; 2],
+    firmness: impl Fn(f64) -> f64,
+) -> Vec<(SurfaceVertex, f64)> {
+    let mut met = Vec::new();
+    meet(context, way_px, |vertex, share| met.push((vertex, firmness(share))));
+    met
+}
+
+/// The vertices that may be changed, in order, each once, with its largest firmness.
+fn once(mut met: Vec<(SurfaceVertex, f64)>, workspace: &Workspace) -> Vec<(SurfaceVertex, f64)> {
     met.retain(|(vertex, _)| workspace.vertex_access.may_be_painted(vertex.index()));
     met.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(b.1.total_cmp(&a.1)));
     met.dedup_by_key(|(vertex, _)| *vertex);

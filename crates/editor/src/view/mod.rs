@@ -11,6 +11,7 @@ mod picking;
 mod pointer;
 mod sight;
 mod state;
+mod upright;
 
 pub(crate) use arc::arc_shapes;
 pub use camera::{Camera, NamedView, Orbit, Projection, Ray, UpAxis};
@@ -24,3 +25,4 @@ pub use picking::Pick;
 pub(crate) use picking::Picking;
 pub use pointer::{Cursor, Readout};
 pub(crate) use state::View;
+pub(crate) use upright::up_axis_of;

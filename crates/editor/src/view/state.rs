@@ -121,10 +121,10 @@ impl View {
         });
     }
 
-    /// Begins a file of this size without a place to go back to. The up axis belongs to the file: it begins with Y.
-    pub(crate) fn open(&mut self, scale: Option<f64>) {
+    /// Begins a file of this size and up axis without a place to go back to.
+    pub(crate) fn open(&mut self, scale: Option<f64>, up: UpAxis) {
         self.adjust(|camera| {
-            camera.up = UpAxis::Y;
+            camera.up = up;
             camera.scale = scale.unwrap_or(camera.scale);
         });
         self.history = CameraHistory::default();

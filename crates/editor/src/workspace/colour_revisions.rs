@@ -16,6 +16,8 @@ pub(crate) enum ColouredBy {
     Region,
     /// The painted stiffness.
     Stiffness,
+    /// The dye alone.
+    Dye,
 }
 
 /// The sources of the regions' colours and of the lines between them, except paint and stiffness.
@@ -28,6 +30,8 @@ pub(super) struct Sources {
     /// The last measured region.
     pub(super) roles: Revision,
     pub(super) by: ColouredBy,
+    /// The revision of the playing flow's colours.
+    pub(super) flow: u64,
     pub(super) selected: Option<HandleId>,
 }
 
@@ -104,7 +108,7 @@ impl Colours {
         if line_sources(&before) != line_sources(&sources) {
             self.rims_revision += 1;
         }
-        let colour_sources = |s: &Sources| (s.appearance, s.roles, s.by);
+        let colour_sources = |s: &Sources| (s.appearance, s.roles, s.by, s.flow);
         match repainted {
             Repainted::Vertices(vertices) if colour_sources(&before) == colour_sources(&sources) => {
                 self.dirty.add(&vertices);

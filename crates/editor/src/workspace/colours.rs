@@ -56,6 +56,11 @@ pub(crate) fn region_colour(workspace: &Workspace) -> impl Fn(SurfaceVertex) -> 
         of_handle[usize::from(handle.id.0)] = [red, green, blue, TINT];
     }
     let by = workspace.colours.by();
+    let (fluid, flowing) = (document.fluid(), workspace.flow.colours());
+    let dye = move |vertex: usize| match flowing {
+        Some(colours) => colours[vertex],
+        None => fluid.colour(vertex),
+    };
     let turning = workspace.colours.turning();
     move |vertex| {
         if lit.is_some_and(|(part, model)| model.topology.component(vertex) == part) {
@@ -64,11 +69,15 @@ pub(crate) fn region_colour(workspace: &Workspace) -> impl Fn(SurfaceVertex) -> 
         if by == ColouredBy::Stiffness {
             return stiffness_colour(document.stiffness().map_or(1.0, |field| field[vertex.index()]));
         }
+        let dye = dye(vertex.index());
+        if by == ColouredBy::Dye {
+            return dye;
+        }
         if let Some(joint) = turning.filter(|joint| joint.limb.binary_search(&vertex).is_ok()) {
             let turns_whole = joint.far_side.binary_search(&vertex).is_ok();
-            return if turns_whole { TURNS } else { YIELDS };
+            return layered(if turns_whole { TURNS } else { YIELDS }, dye);
         }
-        match document.paint[vertex.index()] {
+        let tint = match document.paint[vertex.index()] {
             Paint::Fixed => FIXED,
             Paint::Free => FREE,
             Paint::Handle(HandleId(id)) => of_handle.get(usize::from(id)).copied().unwrap_or(STILL),
@@ -76,8 +85,23 @@ pub(crate) fn region_colour(workspace: &Workspace) -> impl Fn(SurfaceVertex) -> 
                 Some(Role::Free) => FREE,
                 _ => STILL,
             },
-        }
+        };
+        layered(tint, dye)
     }
+}
+
+/// A colour over another, both with their opacities.
+fn layered(top: [u8; 4], under: [u8; 4]) -> [u8; 4] {
+    match (top[3], under[3]) {
+        (_, 0) => return top,
+        (0, _) => return under,
+        _ => {}
+    }
+    let [above, below] = [top, under].map(|colour| f64::from(colour[3]) / 255.0);
+    let below = below * (1.0 - above);
+    let whole = above + below;
+    let mix = |k: usize| (f64::from(top[k]) * above + f64::from(under[k]) * below) / whole;
+    [mix(0), mix(1), mix(2), 255.0 * whole].map(|value| value.round() as u8)
 }
 
 /// Highlights a connected part, by its component's number, instead of the last one; `None` highlights none.

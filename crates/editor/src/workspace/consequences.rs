@@ -34,6 +34,7 @@ impl Workspace {
             access: versions.of(Aspect::Access),
             roles: self.jobs.roles_revision,
             by: coloured_by,
+            flow: self.flow.revision(),
             selected: self.selection.selected(),
         };
         self.colours.follow(sources, self.document.take_repainted());

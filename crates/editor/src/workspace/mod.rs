@@ -8,6 +8,8 @@ mod controls;
 mod curves;
 mod dirty_colours;
 mod examples;
+mod flow;
+mod flow_play;
 mod handle_values;
 mod handles;
 mod mirror;

@@ -9,6 +9,7 @@ use pliant_mesh::{Model, SurfaceVertex};
 
 use super::colour_revisions::Colours;
 use super::control_selection::ControlSelection;
+use super::flow_play::FlowPlay;
 use super::mirror_request::Mirroring;
 use super::selection::HandleSelection;
 use crate::document::{
@@ -17,6 +18,7 @@ use crate::document::{
 use crate::jobs::{BothSides, Computed, Descent, Executor, Intersections, Jobs, Symmetry};
 use crate::revision::Revision;
 use crate::view::{Pick, Picking, View};
+use crate::warning::in_window_words;
 
 /// The document and its consequences.
 pub(crate) struct Workspace {
@@ -44,6 +46,7 @@ pub(crate) struct Workspace {
     pub(super) seen: Versions,
     /// Whether anything is painted, and the paint for which that was computed.
     pub(super) painted: (bool, Version),
+    pub(crate) flow: FlowPlay,
     /// The step of an active widget.
     adjusting: Option<Transaction>,
     pub(super) mirroring: Option<Mirroring>,
@@ -72,6 +75,7 @@ impl Workspace {
             vertex_access_of: None,
             colours: Colours::default(),
             shape_revision: 0,
+            flow: FlowPlay::default(),
             adjusting: None,
             mirroring: None,
             symmetry: Symmetry::None,
@@ -95,6 +99,7 @@ impl Workspace {
         self.symmetry = Symmetry::None;
         self.both_sides = None;
         self.jobs.open(model);
+        self.flow.reset();
         self.seen = *self.document.versions();
         self.shape_revision += 1;
         self.colours.change_all();
@@ -136,7 +141,7 @@ impl Workspace {
 
     /// Sets the reason why an action was refused.
     pub(crate) fn refuse(&mut self, why: impl Into<String>) {
-        self.refusal = Some(why.into());
+        self.refusal = Some(in_window_words(&why.into()));
     }
 }
 
@@ -212,8 +217,11 @@ impl Workspace {
         }
     }
 
-    /// Undoes the last step.
+    /// Undoes the last step, or the stretch of the flow that plays.
     pub(crate) fn undo(&mut self) {
+        if !self.flow.is_still() {
+            return self.flow.drop_stretch();
+        }
         self.jobs.drop_solves();
         let before: Vec<HandleId> = self.document.handles().iter().map(|handle| handle.id).collect();
         self.history.undo(&mut self.document);
@@ -227,6 +235,7 @@ impl Workspace {
     /// Redoes the last undone step.
     pub(crate) fn redo(&mut self) {
         self.jobs.drop_solves();
+        self.flow.drop_stretch();
         self.history.redo(&mut self.document);
         // A restored handle is probably the next one to be edited.
         let last = self.document.handles().last().map(|handle| handle.id);
@@ -236,6 +245,7 @@ impl Workspace {
     /// Goes back or forth to the state after this many steps of the history.
     pub(crate) fn go_to_step(&mut self, steps: usize) {
         self.jobs.drop_solves();
+        self.flow.drop_stretch();
         while self.history.names().1 > steps && self.history.undo(&mut self.document).is_some() {}
         while self.history.names().1 < steps && self.history.redo(&mut self.document).is_some() {}
     }

@@ -1,10 +1,18 @@
 //! Dye over a file's own colours.
 
+use pliant_editor::Dye;
 use pliant_mesh::{DrawnVertex, Model};
 
 use crate::loading::Loaded;
 
 const MOST: f64 = u16::MAX as f64;
+
+/// A file's colours with a dye for each surface vertex over them, linear and from 0 to 65535, one for each drawn vertex;
+/// `None` if nothing is dyed.
+pub fn dyed(loaded: &Loaded, dyes: &[Dye]) -> Option<Vec<[u16; 4]>> {
+    let dyes: Vec<[f64; 4]> = dyes.iter().map(|dye| dye.map(f64::from)).collect();
+    Colours::of(loaded).with(&dyes, &loaded.model)
+}
 
 /// The file's own colours, one for each drawn vertex; white if it has none.
 pub(super) struct Colours(Vec<[u16; 4]>);

@@ -23,6 +23,7 @@ use crate::saving::{self, SaveAs};
 use crate::watch::Watch;
 use colours::Colours;
 
+pub use colours::dyed;
 pub use flowing::Flowing;
 pub use report::{FlowReport, FromTo};
 

@@ -27,8 +27,9 @@ pub struct Cut<'a> {
 /// The line along which a file is cut.
 #[derive(Clone, Copy, Debug)]
 pub enum CutAlong<'a> {
-    /// The border of the vertices that the selector in this file deletes, with every triangle that uses one.
-    Selector(&'a Path),
+    /// The border of the vertices that a selector deletes, with every triangle that uses one; and the place that the
+    /// selector was read from, for messages.
+    Selector(&'a Selector, &'a Path),
     /// A plane; triangles that it crosses are split.
     Plane(Plane, Keep),
 }
@@ -42,19 +43,17 @@ pub fn cut(job: &Cut<'_>, watch: &Watch, staging: &Staging) -> Result<Stitched, 
         file, output, report, ..
     } = job.remaking;
     job.remaking.check_paths()?;
-    let selector = match job.along {
-        CutAlong::Selector(path) => Some((path, read_selector(path, watch)?)),
+    let [loaded] = job.remaking.load([file], watch)?;
+    let selection = match job.along {
+        CutAlong::Selector(selector, place) => {
+            let of_selector = |source| EngineError::Edit {
+                edit: place.to_owned(),
+                source,
+            };
+            Some(selector.evaluate(&loaded.model).map_err(of_selector)?)
+        }
         CutAlong::Plane(..) => None,
     };
-    let [loaded] = job.remaking.load([file], watch)?;
-    let selection = selector.map(|(path, selector)| {
-        let of_selector = |source| EngineError::Edit {
-            edit: path.to_owned(),
-            source,
-        };
-        selector.evaluate(&loaded.model).map_err(of_selector)
-    });
-    let selection = selection.transpose()?;
 
     watch.begin("cutting");
     let drawn = loaded.model.rest();
@@ -62,7 +61,7 @@ pub fn cut(job: &Cut<'_>, watch: &Watch, staging: &Staging) -> Result<Stitched, 
     let channels = Channels::of(&sources);
     let shape = sources[0].with_part(channels, |part| match (job.along, &selection) {
         (CutAlong::Plane(plane, keep), _) => NewShape::cut_along(part, &plane, keep),
-        (CutAlong::Selector(_), selection) => deleted(part, &loaded.model, selection.as_ref()),
+        (CutAlong::Selector(..), selection) => deleted(part, &loaded.model, selection.as_ref()),
     });
     let mut shape = shape.map_err(|error| refused(file, error))?;
     let dressed = Dressed::of(&mut shape, &sources, channels);
@@ -75,10 +74,8 @@ pub fn cut(job: &Cut<'_>, watch: &Watch, staging: &Staging) -> Result<Stitched, 
         Age::New => Change::Changed,
         Age::Old => Change::OfPart(0),
     };
-    let after = report
-        .map(|_| judged(&shape, dressed.triangles(), change, watch))
-        .transpose()?;
-    let (staged, warnings) = job.remaking.stage(
+    let after = report.wanted(|| judged(&shape, dressed.triangles(), change, watch))?;
+    let written = job.remaking.stage(
         (&shape, &dressed),
         |warnings| {
             json!({
@@ -100,14 +97,19 @@ pub fn cut(job: &Cut<'_>, watch: &Watch, staging: &Staging) -> Result<Stitched, 
         count => format!(" and split {}", counted(count, "triangle", "triangles")),
     };
     Ok(Stitched {
-        staged,
+        staged: written.staged,
         done: format!("deleted {}{split}", counted(gone, "triangle", "triangles")),
-        warnings,
+        report: written.report,
+        warnings: written.warnings,
         loaded: vec![loaded],
     })
 }
 
-fn read_selector(path: &Path, watch: &Watch) -> Result<Selector, EngineError> {
+/// Reads the file of the selector of a cut.
+///
+/// # Errors
+/// A file that can't be read, or no selector, naming the file.
+pub fn read_selector(path: &Path, watch: &Watch) -> Result<Selector, EngineError> {
     watch.note_read("--delete", path);
     let selector = Selector::parse(&files::read_text(path)?);
     selector.map_err(|source| EngineError::Edit {

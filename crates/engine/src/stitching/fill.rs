@@ -65,9 +65,7 @@ pub fn fill(job: &Fill<'_>, watch: &Watch, staging: &Staging) -> Result<Stitched
         Age::New => Change::Changed,
         Age::Old => Change::OfPart(0),
     };
-    let after = report
-        .map(|_| judged(&shape, dressed.triangles(), change, watch))
-        .transpose()?;
+    let after = report.wanted(|| judged(&shape, dressed.triangles(), change, watch))?;
     if let Some((_, crossings)) = after.filter(|(_, crossings)| *crossings > 0) {
         let places = counted(crossings, "place", "places");
         warnings.push(format!("the new triangles pass through others in {places}"));
@@ -86,7 +84,7 @@ pub fn fill(job: &Fill<'_>, watch: &Watch, staging: &Staging) -> Result<Stitched
             "faired": hole.is_faired,
         })
     };
-    let (staged, warnings) = job.remaking.stage(
+    let written = job.remaking.stage(
         (&shape, &dressed),
         |warnings| {
             json!({
@@ -117,9 +115,10 @@ pub fn fill(job: &Fill<'_>, watch: &Watch, staging: &Staging) -> Result<Stitched
         }
     };
     Ok(Stitched {
-        staged,
+        staged: written.staged,
         done,
-        warnings,
+        report: written.report,
+        warnings: written.warnings,
         loaded: vec![loaded],
     })
 }

@@ -24,8 +24,10 @@ pub struct Merge<'a> {
     pub remaking: Remaking<'a>,
     /// B, which is put onto it.
     pub second: &'a Path,
-    /// The file of the joins.
-    pub joins: &'a Path,
+    /// The joins.
+    pub joins: &'a JoinsFile,
+    /// The place that the joins were read from, for messages.
+    pub joins_path: &'a Path,
 }
 
 /// Joins two files at their borders and writes the result beside its place.
@@ -37,12 +39,11 @@ pub fn merge(job: &Merge<'_>, watch: &Watch, staging: &Staging) -> Result<Stitch
         file, output, report, ..
     } = job.remaking;
     job.remaking.check_paths()?;
-    watch.note_read("--joins", job.joins);
+    let joins = job.joins;
     let of_joins = |source| EngineError::Edit {
-        edit: job.joins.to_owned(),
+        edit: job.joins_path.to_owned(),
         source,
     };
-    let joins = JoinsFile::parse(&files::read_text(job.joins)?).map_err(of_joins)?;
     let start = Instant::now();
     let paths = [file, job.second];
     let loaded = job.remaking.load(paths, watch)?;
@@ -61,7 +62,7 @@ pub fn merge(job: &Merge<'_>, watch: &Watch, staging: &Staging) -> Result<Stitch
         Prepared::of(&loaded[side], &sources[side], &selection, transform, refuse, means)
     };
     let prepared = [prepare(0)?, prepare(1)?];
-    let pairs = pairs(&joins, &loaded, &prepared).map_err(|(side, error)| refused(paths[side], error))?;
+    let pairs = pairs(joins, &loaded, &prepared).map_err(|(side, error)| refused(paths[side], error))?;
     let channels = Channels::of(&sources);
     let has_normals = sources.iter().any(|source| source.look.normals.is_some());
     let value = |side: usize| {
@@ -168,9 +169,7 @@ pub fn merge(job: &Merge<'_>, watch: &Watch, staging: &Staging) -> Result<Stitch
             false => Change::OfPart(source.part),
         }
     };
-    let after = report
-        .map(|_| judged(shape, dressed.triangles(), change, watch))
-        .transpose()?;
+    let after = report.wanted(|| judged(shape, dressed.triangles(), change, watch))?;
     if let Some((_, crossings)) = after.filter(|(_, crossings)| *crossings > 0) {
         let places = counted(crossings, "pair", "pairs");
         warnings.push(format!(
@@ -183,7 +182,7 @@ pub fn merge(job: &Merge<'_>, watch: &Watch, staging: &Staging) -> Result<Stitch
             "gap_mean": seam.gap[0], "gap_max": seam.gap[1],
         })
     };
-    let (staged, warnings) = job.remaking.stage(
+    let written = job.remaking.stage(
         (shape, &dressed),
         |warnings| {
             json!({
@@ -208,10 +207,24 @@ pub fn merge(job: &Merge<'_>, watch: &Watch, staging: &Staging) -> Result<Stitch
     )?;
     let joined = counted(merged.seams.len(), "border", "borders");
     Ok(Stitched {
-        staged,
+        staged: written.staged,
         done: format!("joined {joined}"),
-        warnings,
+        report: written.report,
+        warnings: written.warnings,
         loaded: loaded.into(),
+    })
+}
+
+/// Reads the file of the joins of a merge.
+///
+/// # Errors
+/// A file that can't be read, or members that its format does not have, naming the file.
+pub fn read_joins(path: &Path, watch: &Watch) -> Result<JoinsFile, EngineError> {
+    watch.note_read("--joins", path);
+    let joins = JoinsFile::parse(&files::read_text(path)?);
+    joins.map_err(|source| EngineError::Edit {
+        edit: path.to_owned(),
+        source,
     })
 }
 

@@ -12,6 +12,7 @@ use std::path::Path;
 
 use pliant_mesh::WeldOptions;
 use pliant_stitch::NewShape;
+use serde_json::Value;
 
 use crate::EngineError;
 use crate::apply::check_not_empty;
@@ -21,9 +22,9 @@ use crate::saving;
 use crate::watch::Watch;
 use look::Dressed;
 
-pub use cut::{Cut, CutAlong, cut};
+pub use cut::{Cut, CutAlong, cut, read_selector};
 pub use fill::{Fill, fill};
-pub use merge::{Merge, merge};
+pub use merge::{Merge, merge, read_joins};
 pub use pliant_stitch::{Holes, Keep, Plane};
 pub use shape_report::ShapeCounts;
 
@@ -37,6 +38,42 @@ pub enum Replace {
     WithOriginalKept,
 }
 
+/// The receiver of the figures about a new shape.
+#[derive(Clone, Copy, Debug, Default)]
+pub enum ReportTo<'a> {
+    /// Nobody: the shape is not judged.
+    #[default]
+    Nobody,
+    /// The caller, with the result.
+    Caller,
+    /// This file, and the caller.
+    File(&'a Path),
+}
+
+impl<'a> ReportTo<'a> {
+    /// The file that is written.
+    fn file(self) -> Option<&'a Path> {
+        match self {
+            Self::File(path) => Some(path),
+            Self::Nobody | Self::Caller => None,
+        }
+    }
+
+    /// Calls `judge` if somebody gets the figures.
+    fn wanted<T, E>(self, judge: impl FnOnce() -> Result<T, E>) -> Result<Option<T>, E> {
+        match self {
+            Self::Nobody => Ok(None),
+            Self::Caller | Self::File(_) => judge().map(Some),
+        }
+    }
+}
+
+impl<'a> From<Option<&'a Path>> for ReportTo<'a> {
+    fn from(file: Option<&'a Path>) -> Self {
+        file.map_or(Self::Nobody, Self::File)
+    }
+}
+
 /// A new shape that is written beside its place, ready to be committed.
 #[derive(Debug)]
 pub struct Stitched {
@@ -46,6 +83,8 @@ pub struct Stitched {
     pub staged: Staged,
     /// A sentence that says how much was done.
     pub done: String,
+    /// The report's members, if somebody gets them.
+    pub report: Option<Value>,
     /// Sentences that a person should know.
     pub warnings: Vec<String>,
 }
@@ -74,8 +113,8 @@ pub struct Remaking<'a> {
     pub file: &'a Path,
     /// The file to write.
     pub output: &'a Path,
-    /// The file for the report, if one is wanted.
-    pub report: Option<&'a Path>,
+    /// The receiver of the report.
+    pub report: ReportTo<'a>,
     /// Whether the output may be the file that is read.
     pub replace: Replace,
     /// The joining of vertices on reading.
@@ -86,7 +125,7 @@ impl Remaking<'_> {
     /// Refuses places that are no files, before anything is read.
     fn check_paths(&self) -> Result<(), EngineError> {
         Destination::of(self.output)?;
-        self.report.map(Destination::of).transpose()?;
+        self.report.file().map(Destination::of).transpose()?;
         Ok(())
     }
 
@@ -106,7 +145,7 @@ impl Remaking<'_> {
     /// Refuses places of files that were read.
     fn refuse_inputs(&self, watch: &Watch) -> Result<(), EngineError> {
         let file = self.file;
-        let report = self.report.map(|report| ("--report", report));
+        let report = self.report.file().map(|report| ("--report", report));
         let outputs: Vec<(&str, &Path)> = [("--output", self.output)].into_iter().chain(report).collect();
         if self.replace == Replace::Never && files::is_same(file, self.output) {
             return Err(EngineError::Arguments(format!(
@@ -122,20 +161,21 @@ impl Remaking<'_> {
     fn stage(
         &self,
         (shape, dressed): (&NewShape, &Dressed),
-        report: impl FnOnce(&[String]) -> serde_json::Value,
+        report: impl FnOnce(&[String]) -> Value,
         mut warnings: Vec<String>,
         staging: &Staging,
         watch: &Watch,
-    ) -> Result<(Staged, Vec<String>), EngineError> {
+    ) -> Result<Written, EngineError> {
         let progress = watch.begin("saving");
-        let report_to = self.report.map(Destination::of).transpose()?;
+        let report_to = self.report.file().map(Destination::of).transpose()?;
         let beside = report_to.as_ref().map(|to| ("--report", to));
         let unsaved = dressed.unsaved(shape);
         let saved = saving::stage_new(&unsaved, self.output, beside, staging, &progress, &watch.cancel)?;
         warnings.extend(saved.warnings);
         let mut staged = saved.staged;
-        if let Some(to) = report_to {
-            let text = format!("{:#}\n", report(&warnings));
+        let report = self.report.wanted(|| Ok::<_, EngineError>(report(&warnings)))?;
+        if let Some((to, report)) = report_to.zip(report.as_ref()) {
+            let text = format!("{report:#}\n");
             let file = NewFile {
                 to,
                 bytes: text.as_bytes(),
@@ -146,8 +186,19 @@ impl Remaking<'_> {
         if watch.cancel.is_cancelled() {
             return Err(EngineError::Interrupted);
         }
-        Ok((staged, warnings))
+        Ok(Written {
+            staged,
+            report,
+            warnings,
+        })
     }
+}
+
+/// The files of a new shape, beside their places.
+struct Written {
+    staged: Staged,
+    report: Option<Value>,
+    warnings: Vec<String>,
 }
 
 /// The refusal of a stitch, which names its file.

@@ -4,7 +4,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use pliant_engine::files::Staging;
-use pliant_engine::stitching::{Cut, CutAlong, Fill, Holes, Merge, Remaking, Replace, Stitched, cut, fill, merge};
+use pliant_engine::stitching::{
+    Cut, CutAlong, Fill, Holes, Merge, Remaking, Replace, ReportTo, Stitched, cut, fill, merge, read_joins,
+    read_selector,
+};
 use pliant_engine::watch::Watch;
 use pliant_engine::{EngineError, load};
 use pliant_mesh::{Model, WeldOptions, shapes};
@@ -47,7 +50,7 @@ pub fn filled(file: &Path, output: &Path, holes: Holes, replace: Replace) -> Res
     let report = output.with_extension("json");
     let job = Fill {
         remaking: Remaking {
-            report: Some(&report),
+            report: ReportTo::File(&report),
             replace,
             ..remaking(file, output)
         },
@@ -58,7 +61,8 @@ pub fn filled(file: &Path, output: &Path, holes: Holes, replace: Replace) -> Res
 
 /// Cuts a file, and gives the warnings.
 pub fn cut_out(file: &Path, delete: &Path, output: &Path) -> Result<Vec<String>, EngineError> {
-    cut_along(file, CutAlong::Selector(delete), output)
+    let selector = read_selector(delete, &Watch::default())?;
+    cut_along(file, CutAlong::Selector(&selector, delete), output)
 }
 
 /// Cuts a file in any way, and gives the warnings.
@@ -75,7 +79,8 @@ pub fn merged([first, second]: [&Path; 2], joins: &Path, output: &Path) -> Resul
     let job = Merge {
         remaking: remaking(first, output),
         second,
-        joins,
+        joins: &read_joins(joins, &Watch::default())?,
+        joins_path: joins,
     };
     committed(merge(&job, &Watch::default(), &Staging::default()))
 }
@@ -84,7 +89,7 @@ fn remaking<'a>(file: &'a Path, output: &'a Path) -> Remaking<'a> {
     Remaking {
         file,
         output,
-        report: None,
+        report: ReportTo::Nobody,
         replace: Replace::Never,
         weld: WeldOptions::default(),
     }

@@ -279,9 +279,16 @@ impl Scene {
         }
     }
 
-    /// The file with other vertex colours: linear, from 0 to 65535, one for each drawn vertex. The shape stays as in the
-    /// file, so `save.positions` must be those at rest, and nothing may be turned. In the file's own format only colours
-    /// are added or replaced: `COLOR_0` in 16 bits in glTF, beside textures, sRGB bytes elsewhere.
+    /// Returns true if a save in this format patches the file, and does not convert it.
+    pub fn is_of_kind(&self, format: Format) -> bool {
+        let is_gltf = |format| matches!(format, Format::Glb | Format::Gltf);
+        self.format() == format || (is_gltf(self.format()) && is_gltf(format))
+    }
+
+    /// The file with other vertex colours: linear, from 0 to 65535, one for each drawn vertex. In the file's own format
+    /// ([`Self::is_of_kind`]) only colours are added or replaced: `COLOR_0` in 16 bits in glTF, beside textures, sRGB
+    /// bytes elsewhere. The shape then stays as in the file, so `save.positions` must be those at rest, and nothing may
+    /// be turned.
     ///
     /// # Errors
     /// A wrong number of colours; a format without colours of vertices; [`SaveError::Cancelled`] soon after `cancel` is
@@ -301,7 +308,8 @@ impl Scene {
     fn coloured(&self, save: &Save<'_>, colours: &[[u16; 4]], course: &Course<'_>) -> Result<Saved, SaveError> {
         course.reach(0, 1)?;
         let moved = Moved::of(save.drawn, save.positions, save.turned, save.format)?;
-        if colours.len() != save.drawn.positions.len() || !moved.is_nothing() {
+        let moves_patched = self.is_of_kind(save.format) && !moved.is_nothing();
+        if colours.len() != save.drawn.positions.len() || moves_patched {
             return Err(SaveError::OtherScene {
                 given: colours.len(),
                 wanted: save.drawn.positions.len(),

@@ -77,6 +77,13 @@ a handle that is not named is at rest. The only handle's target needs no list.""
 Shape = Union["Mesh", tuple[npt.ArrayLike, npt.ArrayLike]]
 """A mesh from a file, or a pair (vertices, faces) like those of `bind`."""
 
+File = Union[str, os.PathLike[str]]
+"""A file's path."""
+
+FileOrMembers = Union[str, os.PathLike[str], Mapping[str, Any]]
+"""The path of a JSON file, or a dict of its members. The files that a dict names are relative to the working
+directory."""
+
 Out = TypeVar("Out", npt.NDArray[np.float64], npt.NDArray[np.float32])
 
 class OptionValues(TypedDict, total=False):
@@ -138,7 +145,7 @@ def bind(
     :raises ValueError: one sentence that names the culprit and the remedy.
     """
 
-def load(path: str | os.PathLike[str], *, weld: float | None = None) -> Mesh:
+def load(path: File, *, weld: float | None = None) -> Mesh:
     """Reads a mesh from a glTF, GLB, OBJ, PLY, STL or OFF file.
 
     :param weld: the distance within which vertices are joined, in the file's units; 0 joins only equal ones. Without
@@ -147,7 +154,7 @@ def load(path: str | os.PathLike[str], *, weld: float | None = None) -> Mesh:
     :raises ValueError: if it is not such a file.
     """
 
-def save(path: str | os.PathLike[str], mesh: Mesh, vertices: npt.ArrayLike | None = None) -> list[str]:
+def save(path: File, mesh: Mesh, vertices: npt.ArrayLike | None = None) -> list[str]:
     """Saves a mesh with new positions of its vertices, in the format that the path's extension names.
 
     In the format of the file that was read, only the numbers of moved vertices differ, and if nothing moved the bytes
@@ -158,6 +165,200 @@ def save(path: str | os.PathLike[str], mesh: Mesh, vertices: npt.ArrayLike | Non
     :return: warnings, as sentences.
     :raises OSError: if the file can't be written.
     :raises ValueError: if the format can't hold it.
+    """
+
+def info(file: File, *, weld: float | None = None) -> dict[str, Any]:
+    """The contents of a file and the faults of its mesh, like `pliant info --json`.
+
+    :param file: a glTF, GLB, OBJ, PLY, STL or OFF file.
+    :param weld: the distance within which vertices are joined, as in `load`.
+    :return: `format`, `holds`, `vertices`, `welded_vertices`, `triangles`, `bounding_box`, `components`, `findings`,
+        `sentences` and the other members of the command's JSON.
+    :raises OSError: if the file can't be read.
+    :raises ValueError: if it is not such a file.
+    """
+
+def apply(
+    file: File,
+    *,
+    edit: FileOrMembers,
+    output: File,
+    report: File | None = None,
+    frames: int | None = None,
+    as_morph: str | bool | None = None,
+    morph_weight: float = 1.0,
+    morph_deltas: Literal["turn", "stay"] | None = None,
+    method: Method | None = None,
+    memory: int | str | None = None,
+    weld: float | None = None,
+) -> dict[str, Any]:
+    """Applies an edit to a file and writes the result, like `pliant apply`.
+
+    Either all files are written or none: they are written beside their places and read back before they take them.
+
+    :param file: the file to bend.
+    :param edit: the path of an edit or of a project, or a dict in the edit format.
+    :param output: the file to write, in the format that its extension names.
+    :param report: the file for the report.
+    :param frames: replays the edit as a drag of this many frames, 1 to 100000, instead of one solve.
+    :param as_morph: keeps the shape and saves the new one as a morph target with this name; True names it after the
+        edit's file. `output` must be glb or gltf.
+    :param morph_weight: the morph target's default weight, 0 to 1.
+    :param morph_deltas: whether the deltas of the file's own morph targets turn with the surface. By default they turn
+        if they would otherwise be wrong by more than 30 degrees.
+    :param method: the method instead of the edit's: a name, or a dict of its `name` and options.
+    :param memory: the most memory for binding, in bytes or as text such as "8GB".
+    :param weld: the distance within which vertices are joined; by default the edit's.
+    :return: the report: `method`, `free_vertices`, `iterations`, `converged`, `distortion`, `warnings`, times in
+        milliseconds and so on. The warnings also come as `UserWarning`.
+    :raises OSError: if a file can't be read or written.
+    :raises ValueError: one sentence that names the culprit and the remedy. Nothing is written then.
+    """
+
+def animate(
+    file: File,
+    *,
+    edit: FileOrMembers,
+    output: File,
+    report: File | None = None,
+    tolerance: float = 0.00001,
+    fps: float = 24.0,
+    method: Method | None = None,
+    memory: int | str | None = None,
+    weld: float | None = None,
+) -> dict[str, Any]:
+    """Solves an edit with keys frame by frame and writes the animation, like `pliant animate`.
+
+    :param file: the file to bend.
+    :param edit: the path of an edit with `keys`, or a dict in the edit format.
+    :param output: a glb or gltf with an animation of morph targets, a point cache (pc2, mdd), or a name that ends in
+        `-####` before its extension, for a file for each frame.
+    :param report: the file for the report.
+    :param tolerance: the largest error of a glTF's frames, 1e-7 to 0.1, as a share of the diagonal of the shape's box.
+    :param fps: the frames a second, 0.001 to 1000.
+    :param method: the method instead of the edit's, as in `apply`.
+    :param memory: the most memory for binding, as in `apply`.
+    :param weld: the distance within which vertices are joined; by default the edit's.
+    :return: the report. The warnings also come as `UserWarning`.
+    :raises OSError: if a file can't be read or written.
+    :raises ValueError: one sentence that names the culprit and the remedy. Nothing is written then.
+    """
+
+def sequence(
+    frames: File,
+    *,
+    edit: FileOrMembers,
+    output: File,
+    mesh: File | None = None,
+    report: File | None = None,
+    method: Method | None = None,
+    memory: int | str | None = None,
+    weld: float | None = None,
+) -> dict[str, Any]:
+    """Bends the frames of a sequence, each on its own shape, like `pliant sequence`.
+
+    :param frames: the folder of the frames, or a point cache (pc2, mdd).
+    :param edit: the path of an edit with `keys` at frames, or a dict in the edit format.
+    :param output: the folder to write, in which frames keep their names; for a point cache the cache to write.
+    :param mesh: the mesh whose vertices a point cache moves.
+    :param report: the file for the report.
+    :param method: the method instead of the edit's, as in `apply`.
+    :param memory: the most memory for the binding of a frame, as in `apply`.
+    :param weld: the distance within which vertices are joined; by default the edit's.
+    :return: the report. The warnings also come as `UserWarning`.
+    :raises OSError: if a file can't be read or written.
+    :raises ValueError: one sentence that names the culprit and the remedy. Nothing is written then.
+    """
+
+def merge(
+    first: File,
+    second: File,
+    *,
+    joins: FileOrMembers,
+    output: File,
+    report: File | None = None,
+    weld: float | None = None,
+) -> dict[str, Any]:
+    """Joins two files at their borders, like `pliant merge`.
+
+    :param first: the file that stays where it is.
+    :param second: the file that is joined to it.
+    :param joins: the parts to delete and the places to join: the path of a file of joins, or a dict of its members.
+    :param output: the file to write; it can't be a file that is read.
+    :param report: the file for the report.
+    :param weld: the distance within which vertices are joined, as in `load`.
+    :return: the report. The warnings also come as `UserWarning`.
+    :raises OSError: if a file can't be read or written.
+    :raises ValueError: one sentence that names the culprit and the remedy. Nothing is written then.
+    """
+
+def fill(
+    file: File,
+    *,
+    output: File,
+    largest: int | None = None,
+    at: int | None = None,
+    report: File | None = None,
+    weld: float | None = None,
+) -> dict[str, Any]:
+    """Fills holes of a file, like `pliant fill`.
+
+    :param file: the file with holes.
+    :param output: the file to write; it can't be the file that is read.
+    :param largest: fills only so many of the longest borders. Without it and `at`, every hole is filled, except the
+        outer border of an open sheet.
+    :param at: fills only the border that passes this vertex of the file.
+    :param report: the file for the report.
+    :param weld: the distance within which vertices are joined, as in `load`.
+    :return: the report: `holes_filled`, `vertices_added`, `triangles_added`, `warnings` and so on. The warnings also
+        come as `UserWarning`.
+    :raises OSError: if a file can't be read or written.
+    :raises ValueError: one sentence that names the culprit and the remedy. Nothing is written then.
+    """
+
+def bridge(
+    file: File,
+    *,
+    borders: tuple[int, int],
+    output: File,
+    report: File | None = None,
+    weld: float | None = None,
+) -> dict[str, Any]:
+    """Joins two borders of a file by a tube, like `pliant bridge`.
+
+    :param file: the file with the borders.
+    :param borders: a vertex of each border, by the file's numbers.
+    :param output: the file to write; it can't be the file that is read.
+    :param report: the file for the report.
+    :param weld: the distance within which vertices are joined, as in `load`.
+    :return: the report, as in `fill`. The warnings also come as `UserWarning`.
+    :raises OSError: if a file can't be read or written.
+    :raises ValueError: one sentence that names the culprit and the remedy. Nothing is written then.
+    """
+
+def cut(
+    file: File,
+    *,
+    output: File,
+    delete: FileOrMembers | None = None,
+    plane: Sequence[float] | None = None,
+    keep: Literal["positive", "negative", "both"] = "positive",
+    report: File | None = None,
+    weld: float | None = None,
+) -> dict[str, Any]:
+    """Cuts a part out of a file, like `pliant cut`. Give either `delete` or `plane`.
+
+    :param file: the file to cut.
+    :param output: the file to write; it can't be the file that is read.
+    :param delete: the vertices to delete: the path of a file with a selector, or a dict such as {"vertices": [0, 1]}.
+    :param plane: the numbers (nx, ny, nz, d) of the plane of the points p with (nx, ny, nz) . p = d, in world units.
+    :param keep: the side of the plane to keep: the one to which (nx, ny, nz) points, the other, or both.
+    :param report: the file for the report.
+    :param weld: the distance within which vertices are joined, as in `load`.
+    :return: the report: `vertices_deleted`, `triangles_deleted`, `triangles_split`, `warnings` and so on. The warnings
+        also come as `UserWarning`.
+    :raises OSError: if a file can't be read or written.
+    :raises ValueError: one sentence that names the culprit and the remedy. Nothing is written then.
     """
 
 class Distortion(TypedDict):
@@ -199,7 +400,7 @@ class Difference(DifferencePlace, total=False):
     largest: float
     """The largest difference of two numbers; infinite if one of them is not finite."""
 
-def diff(first: str | os.PathLike[str] | Mesh, second: str | os.PathLike[str] | Mesh) -> list[Difference]:
+def diff(first: File | Mesh, second: File | Mesh) -> list[Difference]:
     """The differences of two files, as in `pliant diff --json`; an empty list if they hold the same.
 
     :param first: a path, or a result of `load`: the file as it was read.
@@ -250,6 +451,24 @@ def flow(
     :return: the dye at each vertex, shape (n, 4): linear red, green and blue multiplied by the coverage, and the
         coverage. The colour there is the dye plus 1 - coverage times the mesh's own. Warnings come as `UserWarning`.
     :raises ValueError: one sentence that names the culprit and the remedy.
+    """
+
+class Symmetry(TypedDict):
+    """A mesh's plane of symmetry."""
+
+    plane: tuple[float, float, float, float]
+    """(nx, ny, nz, d): the plane of the points p with (nx, ny, nz) . p = d; the normal has the length 1."""
+    images: npt.NDArray[np.int64]
+    """For each vertex the row of the vertex nearest to its mirror image, shape (n,): its own if it is on the plane, and
+    -1 if the mesh has none there."""
+
+def symmetry(mesh: Shape) -> Symmetry | None:
+    """The plane across which a mesh is its own mirror image, up to the unevenness of a scan.
+
+    :param mesh: a result of `load`, or a pair (vertices, faces).
+    :return: `plane`, the numbers (nx, ny, nz, d), and `images`, the row of the vertex on the other side for each vertex;
+        `None` if no plane comes close to it.
+    :raises ValueError: if `mesh` is not a mesh.
     """
 
 class Outcome(TypedDict, total=False):

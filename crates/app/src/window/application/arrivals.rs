@@ -21,7 +21,7 @@ impl Application {
         let mut is_news = false;
         while let Ok(message) = self.messages.try_recv() {
             let is_shape = match &message {
-                Message::Job(done, _) => done.kind == JobKind::Solve,
+                Message::Job(done, _) => matches!(done.kind, JobKind::Solve | JobKind::Flow),
                 Message::Posed(..) => true,
                 _ => false,
             };

@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use pliant_editor::{Event, Revision, SavedAs};
+use pliant_editor::{Command, Event, Revision, SavedAs};
 
 use crate::files::names::{file_name, free_name};
 use crate::window::application::Application;
@@ -38,6 +38,8 @@ impl Application {
     }
 
     fn wish(&mut self, wish: SaveWish) {
+        // A stretch of play that has not ended is in no file.
+        self.editor.handle(Event::Command(Command::PauseFlow));
         let (same, others) = std::mem::take(&mut self.wishes)
             .into_iter()
             .partition(|other| other.path() == wish.path());
@@ -95,6 +97,7 @@ impl Application {
         Shape {
             displacements: Arc::clone(self.editor.view().displacements),
             inside_out: Arc::clone(self.editor.document().inside_out()),
+            dye: self.editor.document().fluid().kept.clone(),
         }
     }
 

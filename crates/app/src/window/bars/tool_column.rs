@@ -28,6 +28,7 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
         (ToolMode::PaintStiffness, Glyph::Bone, "Stiffness"),
         (ToolMode::Pose, Glyph::PersonStanding, "Pose"),
         (ToolMode::Correct, Glyph::Brush, "Correct"),
+        (ToolMode::Flow, Glyph::Droplets, "Flow"),
     ]
     .map(|(tool, glyph, label)| (Command::SetTool(tool), chosen == tool, glyph, label));
     let modes = [

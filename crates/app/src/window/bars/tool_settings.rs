@@ -7,6 +7,8 @@ use pliant_editor::{
     StrokeShape, Symmetry, ToolMode,
 };
 
+use super::flow_settings;
+use super::share_slider::share;
 use crate::window::widgets::command_button::{choices_in_bar, command_button, command_choice};
 use crate::window::widgets::number_field::{dragged, number_field, slid};
 use crate::window::widgets::outbox::Outbox;
@@ -30,6 +32,10 @@ fn settings(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     ui.spacing_mut().slider_width = SLIDER;
     match view.tool {
         ToolMode::Pose => {}
+        ToolMode::Flow => {
+            brush(ui, view.brush_radius_px, view.brush_metric, commands);
+            return flow_settings::show(ui, editor, commands);
+        }
         ToolMode::PaintStiffness | ToolMode::Correct => {
             brush(ui, view.brush_radius_px, view.brush_metric, commands);
         }
@@ -219,16 +225,6 @@ fn correction(ui: &mut egui::Ui, brush: &CorrectionBrush, commands: &mut Outbox)
     if changed != *brush {
         commands.push(Command::SetCorrection(changed));
     }
-}
-
-/// A share from 0 to 1.
-fn share(ui: &mut egui::Ui, name: &str, value: &mut f64, hover: &str) {
-    let label = bar_label(ui, name);
-    let slider = number_field(ui, value, |ui, value| {
-        let slider = slid(ui, value, 0.0..=1.0, &[]).fixed_decimals(2);
-        ui.add(slider)
-    });
-    slider.labelled_by(label.id).on_hover_text(hover);
 }
 
 fn stiffness(ui: &mut egui::Ui, editor: &Editor, brush: &StiffnessBrush, pressure: Option<f64>, commands: &mut Outbox) {

@@ -161,7 +161,7 @@ fn entries(context: &egui::Context, editor: &Editor, typed: &str) -> Vec<Entry> 
         let command = Command::SetMethod((declaration.first_choice)());
         Entry {
             name: format!("Method: {}", declaration.title),
-            tooltip: declaration.when_to_use.to_owned(),
+            tooltip: declaration.explanation(),
             keywords: declaration.keywords,
             shortcut: String::new(),
             obstacle: match editor.document().method().name() == declaration.name {

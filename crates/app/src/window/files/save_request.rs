@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use glam::DVec3;
-use pliant_editor::{EditFile, SaveMark, Snapshot};
+use pliant_editor::{Dye, EditFile, SaveMark, Snapshot};
 use pliant_render::Image;
 
 use super::rest_mesh::{MeshSource, RestMesh};
@@ -72,6 +72,8 @@ pub struct Shape {
     pub displacements: Arc<Vec<DVec3>>,
     /// The connected parts that are turned inside out, by their numbers.
     pub inside_out: Arc<BTreeSet<u32>>,
+    /// The dye that was kept as vertex colours, for each surface vertex.
+    pub dye: Option<Arc<Vec<Dye>>>,
 }
 
 /// The fate of the file that a save replaces.

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use pliant_io::MorphTarget;
+use pliant_io::{Format, MorphTarget};
 use pliant_mesh::{Cancel, Progress};
 use pliant_render::Image;
 
@@ -15,6 +15,7 @@ use crate::files::original::{Kept, Original};
 use crate::picture_file;
 use pliant_engine::EngineError;
 use pliant_engine::files::{self, Staged, Staging, Stamp};
+use pliant_engine::flow::dyed;
 use pliant_engine::saving::{self, SaveAs};
 
 /// Writes the content. A save that was stopped in time has changed nothing.
@@ -160,6 +161,10 @@ fn ready(request: &SaveRequest, staging: &Staging, progress: &Progress, cancel: 
     }
 }
 
+/// The note about colours that are not saved.
+const WITHOUT_COLOURS: &str =
+    "STL has no vertex colours, so the kept dye is not in the file: save as GLB, PLY or OBJ, too.";
+
 /// The model, together with the original of the file that it replaces.
 fn ready_model(
     model: &Model,
@@ -177,8 +182,13 @@ fn ready_model(
     let keeps = model.keep_original == KeepOriginal::Yes || is_source;
     let split = if keeps { 0.5 } else { 1.0 };
     let (of_save, of_original) = (progress.part(0.0, split), progress.part(split, 1.0));
+    let holds_colours = Format::of_name(&path.to_string_lossy()).is_ok_and(|format| format != Format::Stl);
+    let colours = shape.dye.as_ref().and_then(|dye| dyed(loaded, dye));
+    let lost = (colours.is_some() && !holds_colours).then(|| WITHOUT_COLOURS.to_owned());
+    let colours = colours.filter(|_| holds_colours);
     let save = SaveAs {
         inside_out: &shape.inside_out,
+        colours: colours.as_deref(),
         ..SaveAs::shape(&positions, path)
     };
     let saved = saving::stage(loaded, &save, staging, &of_save, cancel)?;
@@ -187,7 +197,7 @@ fn ready_model(
         saved: Arc::clone(&shape.displacements),
     };
     let mut ready = Ready {
-        notes: saved.warnings,
+        notes: saved.warnings.into_iter().chain(lost).collect(),
         ..Ready::new(saved.staged, written(is_source.then_some(MeshSource::Gone)))
     };
     if !keeps {

@@ -13,7 +13,7 @@ const SHOWN: usize = 8;
 pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     let Some(found) = editor.intersections() else { return };
     let colour = ui.visuals().warn_fg_color;
-    for sentence in found.sentences(editor.document().method()) {
+    for sentence in editor.faults() {
         ui.add(egui::Label::new(RichText::new(sentence).small().color(colour)).wrap());
     }
     if found.is_empty() {

@@ -30,7 +30,7 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
             commands.push(Command::CompareMethods);
         }
     });
-    ui.label(RichText::new(declaration.when_to_use).weak().small());
+    ui.label(RichText::new(declaration.explanation()).weak().small());
     material::show(ui, editor, commands);
 }
 
@@ -155,9 +155,10 @@ pub fn choose_method(ui: &mut egui::Ui, id: &str, present: &Method, width: f32) 
                 let picture = Atom::paint(method_picture::SIZE, |ui: &egui::Ui, place| {
                     method_picture::paint(ui, place.rect, declaration.picture, place.fallback_text_color);
                 });
+                let paper = RichText::new(declaration.paper).weak().small();
                 let choice = ui
-                    .add(Button::selectable(is_present, (picture, declaration.title)))
-                    .on_hover_text(declaration.when_to_use);
+                    .add(Button::selectable(is_present, (picture, declaration.title)).right_text(paper))
+                    .on_hover_text(declaration.explanation());
                 if choice.clicked() && !is_present {
                     chosen = Some((declaration.first_choice)());
                 }

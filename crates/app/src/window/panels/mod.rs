@@ -131,10 +131,7 @@ fn section(ui: &mut egui::Ui, title: &str, folded: &BTreeSet<String>, contents: 
 
 /// Shows the warnings about the edit at the panel's lower end, where they move nothing that a person is about to click.
 fn warnings(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
-    let intersections = editor
-        .intersections()
-        .map_or(Vec::new(), |found| found.sentences(editor.document().method()));
-    let has_any = !editor.warnings().is_empty() || !intersections.is_empty();
+    let has_any = !editor.warnings().is_empty() || !editor.faults().is_empty();
     // It is there without warnings, too: a field keeps the focus only while nothing is added before it.
     let lower = egui::Panel::bottom("warnings")
         .resizable(false)

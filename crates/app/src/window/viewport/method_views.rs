@@ -262,7 +262,7 @@ fn button(ui: &Ui, cell: Rect, number: usize, alternative: &Alternative, is_own:
         (false, false) => Stroke::NONE,
     };
     ui.painter().rect_stroke(cell, 4.0, stroke, StrokeKind::Inside);
-    let says = format!("{}. {}", declaration.title, declaration.when_to_use);
+    let says = format!("{}: {}", declaration.title, declaration.when_to_use);
     response.on_hover_text(says).clicked()
 }
 

@@ -19,7 +19,8 @@ impl Document {
     /// Restores the earlier state, versions included.
     pub(crate) fn go_back_to(&mut self, before: Self) {
         let is_same = |aspect| !self.versions().differ(before.versions(), aspect);
-        if !(is_same(Aspect::Paint) && is_same(Aspect::Stiffness)) {
+        let coloured = [Aspect::Paint, Aspect::Stiffness, Aspect::Fluid];
+        if !coloured.into_iter().all(is_same) {
             self.repainted = Repainted::All;
         }
         self.marks.go_back_to(before.versions());

@@ -7,6 +7,7 @@
 //! ([`Versions`]), undo and redo included. Cloning is cheap: the long vectors are shared until one side changes.
 
 mod exchange;
+mod fluid;
 mod poses;
 mod reloaded;
 mod shapes;

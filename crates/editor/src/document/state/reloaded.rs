@@ -9,6 +9,7 @@ use pliant_deform::Attachment;
 use super::Document;
 use crate::document::access::Access;
 use crate::document::content::{Content, Paint};
+use crate::document::fluid::Fluid;
 use crate::document::kept_shape::KeptShape;
 use crate::document::matching::Matching;
 
@@ -25,6 +26,13 @@ impl Document {
             tips: self.tips,
             loose: self.loose,
             poses: Arc::clone(&self.poses),
+            flow_options: self.flow_options,
+            // The fluid's velocity belongs to the old triangles: it rests.
+            fluid: Fluid {
+                dye: self.fluid.dye.as_ref().map(|dye| Arc::new(map.field(dye, [0.0; 4]))),
+                velocity: None,
+                kept: self.fluid.kept.as_ref().map(|kept| Arc::new(map.field(kept, [0.0; 4]))),
+            },
             strength: self.strength.clone(),
             paint: Arc::new(map.field(&self.paint, Paint::Bare)),
             stiffness: self.stiffness.as_ref().map(|field| Arc::new(map.field(field, 1.0))),

@@ -7,6 +7,7 @@
 
 mod camera;
 mod examples;
+mod flow;
 mod handle;
 mod objects;
 mod poses;
@@ -23,6 +24,7 @@ use sha2::{Digest, Sha256};
 
 use self::camera::StoredCamera;
 use self::examples::{are_weighed, read_examples, stored_examples};
+use self::flow::StoredFlow;
 use self::handle::StoredHandle;
 use self::objects::{StoredObject, StoredSmallParts, access, stored_objects};
 use self::poses::StoredPose;
@@ -109,6 +111,9 @@ pub struct Project {
     /// The kept poses.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     poses: Vec<StoredPose>,
+    /// The fluid on the surface, and the forces in its flow.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    flow: Option<StoredFlow>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     camera: Option<StoredCamera>,
 }
@@ -256,6 +261,7 @@ impl Project {
             weld: model.weld.distance,
             strength: document.strength.as_ref().map(|strength| strength.share),
             poses: document.poses.iter().map(StoredPose::of).collect(),
+            flow: StoredFlow::of(&document.fluid, &document.flow_options, model),
             camera: camera.map(StoredCamera::of),
         }
     }
@@ -385,6 +391,10 @@ impl Project {
             document.kept = Some(Arc::new(kept.on(model, "kept")?));
         }
         document.settled = self.settled;
+        if let Some(flow) = &self.flow {
+            document.flow_options = flow.options()?;
+            document.fluid = flow.fluid(model)?;
+        }
         document.poses = Arc::new(self.poses.iter().map(StoredPose::pose).collect());
         let mut document = Document::from(document);
         if let Some(strength) = self.strength {

@@ -1,0 +1,89 @@
+//! The flow on the surface between the document and its jobs.
+
+use std::sync::Arc;
+
+use pliant_flow::Flow;
+
+use crate::document::{Fluid, Version};
+use crate::jobs::Splash;
+use crate::revision::Revision;
+
+/// The flow between the document and its jobs.
+#[derive(Default)]
+pub(crate) struct FlowPlay {
+    pub(super) phase: Phase,
+    /// The flow after its last step, unless a job has it.
+    pub(super) bound: Option<Bound>,
+    /// The shape under the flow that a job has, and the stretch for which it has it.
+    pub(super) lent: Option<(Ground, u64)>,
+    /// The number of stretches that have ended.
+    pub(super) stretches: u64,
+    /// The colours during a stretch of play; `None` are those of the document.
+    pub(super) colours: Option<Arc<Vec<[u8; 4]>>>,
+    /// The brush's effects since the last step.
+    pub(super) splashes: Vec<Splash>,
+    /// Grows when the colours changed.
+    pub(super) revision: u64,
+}
+
+/// A flow that is ready for a step.
+pub(super) struct Bound {
+    pub(super) flow: Box<Flow<'static>>,
+    pub(super) on: Ground,
+    /// The document's fluid in whose state it is; `None` after a step in the middle of a stretch.
+    pub(super) at: Option<Version>,
+}
+
+/// The model and the shape under a flow.
+pub(super) type Ground = (Revision, Version);
+
+/// A part of a stretch of play.
+#[derive(Default)]
+pub(super) enum Phase {
+    #[default]
+    Still,
+    /// The next job is a step, the first one if the flag says so.
+    Playing { is_first: bool },
+    /// The next job gives the state, after as many steps.
+    Ending { steps: usize, is_first: bool },
+    /// The state that the history gets once nothing else is going on.
+    Ended(Fluid),
+}
+
+impl FlowPlay {
+    /// Returns true between play and pause.
+    pub(crate) fn is_playing(&self) -> bool {
+        matches!(self.phase, Phase::Playing { .. })
+    }
+
+    /// Returns true if no stretch has begun or is about to end.
+    pub(crate) fn is_still(&self) -> bool {
+        matches!(self.phase, Phase::Still)
+    }
+
+    /// The colour of each surface vertex during a stretch of play, sRGB with its coverage.
+    pub(crate) fn colours(&self) -> Option<&[[u8; 4]]> {
+        self.colours.as_ref().map(|colours| colours.as_slice())
+    }
+
+    /// Grows when the colours changed.
+    pub(super) fn revision(&self) -> u64 {
+        self.revision
+    }
+
+    /// Ends a stretch without a trace.
+    pub(super) fn drop_stretch(&mut self) {
+        self.phase = Phase::Still;
+        self.stretches += 1;
+        self.splashes.clear();
+        if self.colours.take().is_some() {
+            self.revision += 1;
+        }
+    }
+
+    /// Another file: nothing flows there yet.
+    pub(super) fn reset(&mut self) {
+        self.drop_stretch();
+        (self.bound, self.lent) = (None, None);
+    }
+}

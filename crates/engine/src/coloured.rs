@@ -1,0 +1,88 @@
+//! Saves other vertex colours together with another shape.
+//!
+//! Colours are patched into a file whose shape stays ([`Scene::save_with_colours`](pliant_io::Scene)). So the shape is
+//! saved first, in memory, and the colours go into the file that this gives.
+
+use std::path::Path;
+
+use pliant_io::{Bytes, Format, OutputFile, Resolver, Save, SaveError, Saved, Scene, SceneAndDrawn};
+use pliant_mesh::{Cancel, Drawn, Progress};
+
+use crate::EngineError;
+use crate::files::Neighbours;
+
+/// The file that was read from `path`, with the shape of `save` and these colours of its drawn vertices.
+///
+/// # Errors
+/// Those of a save, as `refused` words them.
+pub(crate) fn save_with_colours(
+    (path, scene): (&Path, &Scene),
+    save: &Save<'_>,
+    colours: &[[u16; 4]],
+    refused: impl Fn(SaveError) -> EngineError,
+    (progress, cancel): (&Progress, &Cancel),
+) -> Result<Saved, EngineError> {
+    let moves = save.positions != save.drawn.positions.as_slice() || save.turned.contains(&true);
+    if !moves || !scene.is_of_kind(save.format) {
+        let coloured = scene.save_with_colours(save, colours, progress, cancel);
+        return coloured.map_err(&refused);
+    }
+    let (of_shape, of_reading) = (progress.part(0.0, 0.5), progress.part(0.5, 0.7));
+    let shaped = scene.save(save, &of_shape, cancel).map_err(&refused)?;
+    let neighbours = Neighbours::of(path);
+    let beside = Beside(&shaped.files, &neighbours);
+    let bytes = shaped.files.first().map(|file| file.bytes.clone()).unwrap_or_default();
+    let back = pliant_io::read(bytes, save.format, save.name, &beside, &of_reading, cancel);
+    let SceneAndDrawn { scene, drawn } = back.map_err(EngineError::Read)?;
+    let colours = carried(save, &drawn, colours);
+    let again = Save {
+        drawn: &drawn,
+        positions: &drawn.positions,
+        turned: &[],
+        ..*save
+    };
+    let coloured = scene.save_with_colours(&again, &colours, &progress.part(0.7, 1.0), cancel);
+    let mut coloured = coloured.map_err(refused)?;
+    let is_there = |file: &OutputFile| coloured.files.iter().any(|own| own.name == file.name);
+    let further: Vec<OutputFile> = shaped
+        .files
+        .into_iter()
+        .skip(1)
+        .filter(|file| !is_there(file))
+        .collect();
+    coloured.files.extend(further);
+    let warnings = shaped.warnings.into_iter().chain(coloured.warnings);
+    coloured.warnings = warnings.collect();
+    coloured.triangles = shaped.triangles;
+    Ok(coloured)
+}
+
+/// The colours on the drawn vertices of the saved shape. Faces that were turned may show a text file's vertices in
+/// another order.
+fn carried(save: &Save<'_>, drawn: &Drawn, colours: &[[u16; 4]]) -> Vec<[u16; 4]> {
+    if matches!(save.format, Format::Glb | Format::Gltf) {
+        return colours.to_vec();
+    }
+    let mut of_file = vec![[u16::MAX; 4]; save.drawn.file_vertex_count];
+    for (vertex, colour) in save.drawn.file_vertex.iter().zip(colours) {
+        of_file[vertex.0 as usize] = *colour;
+    }
+    let own = |vertex: u32| of_file.get(vertex as usize).copied().unwrap_or([u16::MAX; 4]);
+    drawn.file_vertex.iter().map(|vertex| own(vertex.0)).collect()
+}
+
+/// The neighbours that the saved shape has, and those of the original.
+struct Beside<'a>(&'a [OutputFile], &'a Neighbours);
+
+impl Resolver for Beside<'_> {
+    fn read(&self, uri: &str) -> Result<Bytes, String> {
+        match self.0.iter().skip(1).find(|file| file.name == uri) {
+            Some(file) => Ok(Bytes::from(file.bytes.clone())),
+            None => self.1.read(uri),
+        }
+    }
+
+    fn note_unread(&self, uri: &str) -> bool {
+        self.1.note_unread(uri)
+    }
+}
