@@ -13,7 +13,7 @@
 //! frame. A product is a pass over the faces, which reads the field at their corners, and one over the vertices, which
 //! reads four numbers and a gradient of each face around them.
 
-use glam::{DMat3, DVec3, Vec3};
+use glam::{DMat3, DVec3, Mat3, Vec3};
 use rayon::prelude::*;
 
 use super::base::Base;
@@ -21,7 +21,7 @@ use super::faces::Faces;
 use super::normals::NormalDisplacements;
 use super::prism::{gradient, volume};
 use crate::numerical::rows::CHUNK;
-use crate::numerical::sums::{Field, add, dot};
+use crate::numerical::sums::CHUNKS_A_TASK;
 use crate::region::boundary_problem::BoundaryProblem;
 
 /// The prisms over the base's triangles, and the displacements that a frame begins with.
@@ -36,6 +36,8 @@ pub(crate) struct Volumes {
     root_areas: Vec<f64>,
     /// 3 λ Σ A over the faces around each local vertex.
     evenness: Vec<f64>,
+    /// The unit of the vertices' blocks, whose inverses are in single precision: the triangles' mean area.
+    block_unit: f64,
     /// A frame's sum of |V − V⁰| that is small enough.
     enough: f64,
     /// Whether the corrections move the local vertex.
@@ -56,12 +58,19 @@ struct Room {
     gradients: Vec<[Vec3; 3]>,
     /// Of each prism what the vertices around it read: ∇V · x / √A, and λ A Σ x over its corners.
     sums: Vec<[f64; 4]>,
-    inverse_blocks: Vec<DMat3>,
-    correction: Field,
-    residual: Field,
-    conditioned: Field,
-    direction: Field,
-    image: Field,
+    steps: Steps,
+}
+
+/// The fields of the conjugate gradient steps, a vector for each local vertex.
+#[derive(Debug, Default)]
+struct Steps {
+    /// The inverse of each vertex' own block of the system, the preconditioner. **f32**: it only shapes the steps.
+    inverse_blocks: Vec<Mat3>,
+    correction: Vec<DVec3>,
+    residual: Vec<DVec3>,
+    conditioned: Vec<DVec3>,
+    direction: Vec<DVec3>,
+    image: Vec<DVec3>,
 }
 
 /// λ: with 0.01 the volumes are no nearer after three corrections and some triangles are stretched more.
@@ -80,7 +89,7 @@ const TOLERANCE: f64 = 1e-3;
 const ROUNDING: f64 = 1e-12;
 
 /// .. or with a correction that leaves more than this share of the sum.
-const LEFT: f64 = 0.8;
+const LEFT: f64 = 0.6;
 
 impl Volumes {
     /// The prisms of the base's faces.
@@ -117,6 +126,7 @@ impl Volumes {
         Self {
             enough: TOLERANCE * total + ROUNDING * patch.size * whole,
             evenness: evenness.collect(),
+            block_unit: whole / root_areas.len().max(1) as f64,
             root_areas,
             room: Room {
                 tops,
@@ -155,8 +165,8 @@ impl Volumes {
             }
             self.correct(posed, &mut room);
             room.before.clone_from(&room.tops);
-            for (top, [x, y, z]) in room.tops.iter_mut().zip(&room.correction) {
-                *top += DVec3::new(*x, *y, *z);
+            for (top, correction) in room.tops.iter_mut().zip(&room.steps.correction) {
+                *top += *correction;
             }
             let next = self.measure(posed, &mut room);
             if next.is_nan() || next >= error {
@@ -194,33 +204,30 @@ impl Volumes {
         lacking
             .map(|(lack, root)| [lack / root, 0.0, 0.0, 0.0])
             .collect_into_vec(&mut room.sums);
-        self.gather(&room.gradients, &room.sums, None, &mut room.residual);
-        room.correction.clear();
-        room.correction.resize(posed.len(), [0.0; 3]);
-        condition(&room.inverse_blocks, &room.residual, &mut room.conditioned);
-        room.direction.clone_from(&room.conditioned);
-        let mut square = dot(&room.residual, &room.conditioned);
+        let (gradients, steps) = (&room.gradients, &mut room.steps);
+        self.gather(gradients, &room.sums, None, &mut steps.residual);
+        for field in [&mut steps.correction, &mut steps.direction, &mut steps.image] {
+            field.clear();
+            field.resize(posed.len(), DVec3::ZERO);
+        }
+        steps.conditioned.resize(posed.len(), DVec3::ZERO);
+        let mut square = steps.walk(0.0);
         let least = RESIDUAL * RESIDUAL * square;
+        let mut share = 0.0;
         for _ in 0..STEPS {
             if square <= least {
                 break;
             }
-            self.sum(&room.gradients, &room.direction, &mut room.sums);
-            self.gather(&room.gradients, &room.sums, Some(&room.direction), &mut room.image);
-            let step = square / dot(&room.direction, &room.image);
-            if !step.is_finite() {
+            steps.turn(share);
+            self.sum(gradients, &steps.direction, &mut room.sums);
+            let along = self.gather(gradients, &room.sums, Some(&steps.direction), &mut steps.image);
+            let length = square / along;
+            if !length.is_finite() {
                 break;
             }
-            add(&mut room.correction, step, &room.direction);
-            add(&mut room.residual, -step, &room.image);
-            condition(&room.inverse_blocks, &room.residual, &mut room.conditioned);
-            let next = dot(&room.residual, &room.conditioned);
-            let share = next / square;
+            let next = steps.walk(length);
+            share = next / square;
             square = next;
-            let rows = room.direction.par_iter_mut().zip(&room.conditioned).with_min_len(CHUNK);
-            rows.for_each(|(direction, conditioned)| {
-                *direction = std::array::from_fn(|k| conditioned[k] + share * direction[k]);
-            });
         }
     }
 
@@ -238,26 +245,26 @@ impl Volumes {
         let slopes = room.gradients.as_flattened();
         let inverse = |local: usize| {
             if !self.is_free[local] {
-                return DMat3::ZERO;
+                return Mat3::ZERO;
             }
             let mut block = DMat3::from_diagonal(DVec3::splat(2.0 / 3.0 * self.evenness[local]));
             for &slot in self.faces().slots(local) {
                 let slope = slopes[slot as usize].as_dvec3();
                 block += DMat3::from_cols(slope * slope.x, slope * slope.y, slope * slope.z);
             }
-            block.inverse()
+            (block * self.block_unit.recip()).inverse().as_mat3()
         };
         let locals = (0..posed.len()).into_par_iter().with_min_len(CHUNK);
-        locals.map(inverse).collect_into_vec(&mut room.inverse_blocks);
+        locals.map(inverse).collect_into_vec(&mut room.steps.inverse_blocks);
     }
 
     /// Fills in the sums of a field x over the corners of each prism.
-    fn sum(&self, gradients: &[[Vec3; 3]], x: &Field, sums: &mut Vec<[f64; 4]>) {
+    fn sum(&self, gradients: &[[Vec3; 3]], x: &[DVec3], sums: &mut Vec<[f64; 4]>) {
         let prisms = self.faces().corners.par_iter().zip(gradients).zip(&self.root_areas);
         prisms
             .with_min_len(CHUNK)
             .map(|((corners, gradients), root)| {
-                let x = corners.map(|corner| DVec3::from_array(x[corner as usize]));
+                let x = corners.map(|corner| x[corner as usize]);
                 let along = |k: usize| gradients[k].as_dvec3().dot(x[k]);
                 let even = (x[0] + x[1] + x[2]) * (EVENNESS * root * root);
                 [along(0) + along(1) + along(2), even.x, even.y, even.z]
@@ -266,22 +273,78 @@ impl Volumes {
     }
 
     /// Fills in Σ_f ∇V_f c_f / √A_f at each free vertex, c being the first of the prisms' `sums`, and with a field x
-    /// also λ Σ_f A_f Σ_j (x_i − x_j), whose sum over j is in the others.
-    fn gather(&self, gradients: &[[Vec3; 3]], sums: &[[f64; 4]], x: Option<&Field>, out: &mut Field) {
+    /// also λ Σ_f A_f Σ_j (x_i − x_j), whose sum over j is in the others. Returns the product of x and the result.
+    fn gather(&self, gradients: &[[Vec3; 3]], sums: &[[f64; 4]], x: Option<&[DVec3]>, out: &mut Vec<DVec3>) -> f64 {
         let gradients = gradients.as_flattened();
-        let at = |local: usize| {
+        let at = |local: usize, own: DVec3| {
             if !self.is_free[local] {
-                return [0.0; 3];
+                return DVec3::ZERO;
             }
-            let mut sum = x.map_or(DVec3::ZERO, |x| DVec3::from_array(x[local]) * self.evenness[local]);
+            let mut sum = own * self.evenness[local];
             for &slot in self.faces().slots(local) {
                 let [change, even @ ..] = sums[slot as usize / 3];
                 sum += gradients[slot as usize].as_dvec3() * change - DVec3::from_array(even);
             }
-            sum.to_array()
+            sum
         };
-        let locals = (0..self.is_free.len()).into_par_iter().with_min_len(CHUNK);
-        locals.map(at).collect_into_vec(out);
+        out.resize(self.is_free.len(), DVec3::ZERO);
+        let chunks = out.par_chunks_mut(CHUNK).enumerate();
+        let partial: Vec<f64> = chunks
+            .map(|(chunk, out)| {
+                let mut along = 0.0;
+                for (place, out) in out.iter_mut().enumerate() {
+                    let local = chunk * CHUNK + place;
+                    let own = x.map_or(DVec3::ZERO, |x| x[local]);
+                    *out = at(local, own);
+                    along += own.dot(*out);
+                }
+                along
+            })
+            .collect();
+        partial.iter().sum()
+    }
+}
+
+impl Steps {
+    /// Goes this far along the direction, whose image is known, and conditions the residual that is left. Returns the
+    /// product of both.
+    fn walk(&mut self, length: f64) -> f64 {
+        let moved = self
+            .correction
+            .par_chunks_mut(CHUNK)
+            .zip(self.residual.par_chunks_mut(CHUNK));
+        let along = self.direction.par_chunks(CHUNK).zip(self.image.par_chunks(CHUNK));
+        let conditioned = self.conditioned.par_chunks_mut(CHUNK);
+        let conditioned = conditioned.zip(self.inverse_blocks.par_chunks(CHUNK));
+        let chunks = moved.zip(along).zip(conditioned).with_min_len(CHUNKS_A_TASK);
+        let partial: Vec<f64> = chunks
+            .map(
+                |(((correction, residual), (direction, image)), (conditioned, blocks))| {
+                    let mut square = 0.0;
+                    for place in 0..correction.len() {
+                        correction[place] += direction[place] * length;
+                        residual[place] -= image[place] * length;
+                        conditioned[place] = blocks[place].as_dmat3() * residual[place];
+                        square += residual[place].dot(conditioned[place]);
+                    }
+                    square
+                },
+            )
+            .collect();
+        partial.iter().sum()
+    }
+
+    /// Makes the next direction: the conditioned residual and this share of the last direction.
+    fn turn(&mut self, share: f64) {
+        let chunks = self
+            .direction
+            .par_chunks_mut(CHUNK)
+            .zip(self.conditioned.par_chunks(CHUNK));
+        chunks.with_min_len(CHUNKS_A_TASK).for_each(|(direction, conditioned)| {
+            for (direction, conditioned) in direction.iter_mut().zip(conditioned) {
+                *direction = *conditioned + *direction * share;
+            }
+        });
     }
 }
 
@@ -297,12 +360,4 @@ fn put(base: &Base, posed: &[DVec3], points: &[DVec3], tops: &mut Vec<DVec3>) {
 fn volume_of(corners: [u32; 3], posed: &[DVec3], tops: &[DVec3]) -> f64 {
     let of = |points: &[DVec3]| corners.map(|corner| points[corner as usize]);
     volume(of(posed), of(tops))
-}
-
-/// Multiplies each row by its block.
-fn condition(blocks: &[DMat3], rows: &Field, out: &mut Field) {
-    let pairs = blocks.par_iter().zip(rows).with_min_len(CHUNK);
-    pairs
-        .map(|(block, row)| (*block * DVec3::from_array(*row)).to_array())
-        .collect_into_vec(out);
 }
