@@ -193,7 +193,8 @@ fn spread(fluid: &Fluid<'_>, triangle: usize, field: &[DVec2]) -> f64 {
     let rotations = fluid.domain.fans.rotations(triangle);
     let corners = fluid.corners(triangle);
     let [a, b, c] = [0, 1, 2].map(|k| turned_back(rotations[k], field[corners[k]]));
-    a.distance(b).max(b.distance(c)).max(c.distance(a))
+    let squares = [a.distance_squared(b), b.distance_squared(c), c.distance_squared(a)];
+    squares.into_iter().fold(0.0, f64::max).sqrt()
 }
 
 /// The dye at a place.

@@ -8,7 +8,7 @@ use pliant_mesh::{Surface, SurfaceVertex, Topology};
 
 use crate::chart::Chart;
 use crate::hinges::{Hinges, WALL, corner_at, last, next};
-use crate::plane::{rotation_between, small_rotation, turned};
+use crate::plane::{rotation_between, small_rotation, turned, turned_back};
 
 /// The corners around each vertex.
 #[derive(Clone, Debug)]
@@ -21,20 +21,31 @@ pub(crate) struct Fans {
     starts: Vec<f64>,
     /// Angle in the plane of a vertex over angle on the surface: 1 at borders.
     scales: Vec<f64>,
-    /// The rotations from each triangle's plane to that of each of its corners, in the middle of the corner.
-    rotations: Vec<[DVec2; 3]>,
-    /// By how much the rotation at a corner's last edge is more than that at its first: the part of the vertex's angle
-    /// defect that the corner takes.
-    twists: Vec<[f64; 3]>,
+    /// How the plane of each triangle fits to those of its corners.
+    turns: Vec<[Turn; 3]>,
 }
 
-/// An edge of a corner, counterclockwise.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(crate) enum End {
-    /// To the triangle's next corner.
-    First,
-    /// To the one before.
-    Last,
+/// How a triangle's plane fits to that of one of its corners. Both numbers are wanted together, at scattered triangles.
+#[derive(Clone, Copy, Debug)]
+struct Turn {
+    /// The rotation from the triangle's plane to the corner's, in the middle of the corner.
+    rotation: DVec2,
+    /// By how much the rotation at the corner's last edge is more than that at its first: the part of the vertex's angle
+    /// defect that the corner takes.
+    twist: f64,
+}
+
+impl Turn {
+    const NONE: Self = Self {
+        rotation: DVec2::X,
+        twist: 0.0,
+    };
+
+    /// The rotation at this share of the corner's angle from its middle.
+    #[inline]
+    fn at(self, share: f64) -> DVec2 {
+        turned(small_rotation(share * self.twist), self.rotation)
+    }
 }
 
 /// Where a direction at a vertex leads.
@@ -55,8 +66,7 @@ impl Fans {
             corners: Vec::with_capacity(3 * charts.len()),
             starts: Vec::with_capacity(3 * charts.len()),
             scales: Vec::with_capacity(count),
-            rotations: vec![[DVec2::X; 3]; charts.len()],
-            twists: vec![[0.0; 3]; charts.len()],
+            turns: vec![[Turn::NONE; 3]; charts.len()],
         };
         fans.offsets.push(0);
         for vertex in (0..count as u32).map(SurfaceVertex) {
@@ -82,8 +92,10 @@ impl Fans {
             // The middles of both agree, so that neither side of the triangle is preferred.
             let middle = turned(DVec2::from_angle(0.5 * angle), chart.edge((k + 2) % 3));
             let here = DVec2::from_angle(scale * (start + 0.5 * angle));
-            self.rotations[corner as usize / 3][k] = rotation_between(middle, here);
-            self.twists[corner as usize / 3][k] = (scale - 1.0) * angle;
+            self.turns[corner as usize / 3][k] = Turn {
+                rotation: rotation_between(middle, here),
+                twist: (scale - 1.0) * angle,
+            };
             self.corners.push(corner);
             self.starts.push(scale * start);
             start += angle;
@@ -100,7 +112,12 @@ impl Fans {
     /// The rotation from a corner's triangle to the tangent plane of its vertex.
     #[inline]
     pub fn rotation(&self, corner: u32) -> DVec2 {
-        self.rotations[corner as usize / 3][corner as usize % 3]
+        self.turn(corner).rotation
+    }
+
+    #[inline]
+    fn turn(&self, corner: u32) -> Turn {
+        self.turns[corner as usize / 3][corner as usize % 3]
     }
 
     /// The rotation from a corner's triangle to the tangent plane of its vertex for vectors that come along the ray of
@@ -111,25 +128,24 @@ impl Fans {
     pub fn rotation_along(&self, corner: u32, after: f64, before: f64) -> DVec2 {
         let both = after + before;
         let share = if both > 0.0 { before / both - 0.5 } else { 0.0 };
-        let twist = self.twists[corner as usize / 3][corner as usize % 3];
-        turned(small_rotation(share * twist), self.rotation(corner))
+        self.turn(corner).at(share)
     }
 
-    /// The same for vectors along the first or the last edge of a corner.
+    /// A vector at the vertex of each of a triangle's corners as it is in the triangle's plane, along the first edge of
+    /// the corner and along its last one: to the next corner and to the one before.
     #[inline]
-    pub fn rotation_at(&self, corner: u32, end: End) -> DVec2 {
-        let share = match end {
-            End::First => -0.5,
-            End::Last => 0.5,
-        };
-        let twist = self.twists[corner as usize / 3][corner as usize % 3];
-        turned(small_rotation(share * twist), self.rotation(corner))
+    pub fn at_edges(&self, triangle: usize, vectors: [DVec2; 3]) -> [[DVec2; 2]; 3] {
+        std::array::from_fn(|k| {
+            let Turn { rotation, twist } = self.turns[triangle][k];
+            let (middle, half) = (turned_back(rotation, vectors[k]), small_rotation(0.5 * twist));
+            [turned(half, middle), turned_back(half, middle)]
+        })
     }
 
     /// The rotations from a triangle to the tangent planes of its vertices, in the middles of its corners.
     #[inline]
     pub fn rotations(&self, triangle: usize) -> [DVec2; 3] {
-        self.rotations[triangle]
+        self.turns[triangle].map(|turn| turn.rotation)
     }
 
     /// The way that begins at a vertex with `direction`. A direction that leaves the surface at a border is projected
@@ -139,18 +155,29 @@ impl Fans {
         let corners = self.corners(vertex);
         let (&first, &end) = (corners.first()?, corners.last()?);
         let starts = &self.starts[self.offsets[vertex] as usize..][..corners.len()];
-        let angle = direction.y.atan2(direction.x).rem_euclid(TAU);
+        let angle = match direction.y.atan2(direction.x) {
+            angle if angle < 0.0 => angle + TAU,
+            angle => angle,
+        };
         let place = starts.iter().rposition(|&start| start <= angle).unwrap_or(0);
-        let corner = corners[place];
-        let (chart, k) = (&charts[corner as usize / 3], corner as usize % 3);
-        let inside = (angle - starts[place]) / self.scales[vertex];
-        if place + 1 == corners.len() && hinges.after(end) == WALL && inside > chart.angle(k) {
-            return self.along_border(vertex, direction, (first, end), charts);
-        }
-        let edge = chart.edge((k + 2) % 3).normalize();
+        let (corner, start) = (corners[place], starts[place]);
+        let next = match starts.get(place + 1) {
+            Some(next) => *next,
+            None if hinges.after(end) == WALL => {
+                let angle_there = charts[end as usize / 3].angle(end as usize % 3);
+                if angle - start > angle_there {
+                    return self.along_border(vertex, direction, (first, end), charts);
+                }
+                start + angle_there
+            }
+            None => TAU,
+        };
+        // Angles at the vertex are scaled. The triangle's rotation is that of the corner's middle.
+        let off_middle = angle - 0.5 * (start + next);
+        let unscaled = small_rotation(off_middle * (self.scales[vertex].recip() - 1.0));
         Some(Way {
             corner,
-            direction: turned(DVec2::from_angle(inside), edge) * direction.length(),
+            direction: turned(unscaled, turned_back(self.turn(corner).rotation, direction)),
         })
     }
 
