@@ -21,31 +21,11 @@ pub(crate) struct Fans {
     starts: Vec<f64>,
     /// Angle in the plane of a vertex over angle on the surface: 1 at borders.
     scales: Vec<f64>,
-    /// How the plane of each triangle fits to those of its corners.
-    turns: Vec<[Turn; 3]>,
-}
-
-/// How a triangle's plane fits to that of one of its corners. Both numbers are wanted together, at scattered triangles.
-#[derive(Clone, Copy, Debug)]
-struct Turn {
-    /// The rotation from the triangle's plane to the corner's, in the middle of the corner.
-    rotation: DVec2,
-    /// By how much the rotation at the corner's last edge is more than that at its first: the part of the vertex's angle
+    /// The rotations from each triangle's plane to that of each of its corners, in the middle of the corner.
+    rotations: Vec<[DVec2; 3]>,
+    /// By how much the rotation at a corner's last edge is more than that at its first: the part of the vertex's angle
     /// defect that the corner takes.
-    twist: f64,
-}
-
-impl Turn {
-    const NONE: Self = Self {
-        rotation: DVec2::X,
-        twist: 0.0,
-    };
-
-    /// The rotation at this share of the corner's angle from its middle.
-    #[inline]
-    fn at(self, share: f64) -> DVec2 {
-        turned(small_rotation(share * self.twist), self.rotation)
-    }
+    twists: Vec<[f64; 3]>,
 }
 
 /// Where a direction at a vertex leads.
@@ -66,7 +46,8 @@ impl Fans {
             corners: Vec::with_capacity(3 * charts.len()),
             starts: Vec::with_capacity(3 * charts.len()),
             scales: Vec::with_capacity(count),
-            turns: vec![[Turn::NONE; 3]; charts.len()],
+            rotations: vec![[DVec2::X; 3]; charts.len()],
+            twists: vec![[0.0; 3]; charts.len()],
         };
         fans.offsets.push(0);
         for vertex in (0..count as u32).map(SurfaceVertex) {
@@ -92,10 +73,8 @@ impl Fans {
             // The middles of both agree, so that neither side of the triangle is preferred.
             let middle = turned(DVec2::from_angle(0.5 * angle), chart.edge((k + 2) % 3));
             let here = DVec2::from_angle(scale * (start + 0.5 * angle));
-            self.turns[corner as usize / 3][k] = Turn {
-                rotation: rotation_between(middle, here),
-                twist: (scale - 1.0) * angle,
-            };
+            self.rotations[corner as usize / 3][k] = rotation_between(middle, here);
+            self.twists[corner as usize / 3][k] = (scale - 1.0) * angle;
             self.corners.push(corner);
             self.starts.push(scale * start);
             start += angle;
@@ -112,12 +91,7 @@ impl Fans {
     /// The rotation from a corner's triangle to the tangent plane of its vertex.
     #[inline]
     pub fn rotation(&self, corner: u32) -> DVec2 {
-        self.turn(corner).rotation
-    }
-
-    #[inline]
-    fn turn(&self, corner: u32) -> Turn {
-        self.turns[corner as usize / 3][corner as usize % 3]
+        self.rotations[corner as usize / 3][corner as usize % 3]
     }
 
     /// The rotation from a corner's triangle to the tangent plane of its vertex for vectors that come along the ray of
@@ -128,7 +102,8 @@ impl Fans {
     pub fn rotation_along(&self, corner: u32, after: f64, before: f64) -> DVec2 {
         let both = after + before;
         let share = if both > 0.0 { before / both - 0.5 } else { 0.0 };
-        self.turn(corner).at(share)
+        let twist = self.twists[corner as usize / 3][corner as usize % 3];
+        turned(small_rotation(share * twist), self.rotation(corner))
     }
 
     /// A vector at the vertex of each of a triangle's corners as it is in the triangle's plane, along the first edge of
@@ -136,8 +111,8 @@ impl Fans {
     #[inline]
     pub fn at_edges(&self, triangle: usize, vectors: [DVec2; 3]) -> [[DVec2; 2]; 3] {
         std::array::from_fn(|k| {
-            let Turn { rotation, twist } = self.turns[triangle][k];
-            let (middle, half) = (turned_back(rotation, vectors[k]), small_rotation(0.5 * twist));
+            let middle = turned_back(self.rotations[triangle][k], vectors[k]);
+            let half = small_rotation(0.5 * self.twists[triangle][k]);
             [turned(half, middle), turned_back(half, middle)]
         })
     }
@@ -145,7 +120,7 @@ impl Fans {
     /// The rotations from a triangle to the tangent planes of its vertices, in the middles of its corners.
     #[inline]
     pub fn rotations(&self, triangle: usize) -> [DVec2; 3] {
-        self.turns[triangle].map(|turn| turn.rotation)
+        self.rotations[triangle]
     }
 
     /// The way that begins at a vertex with `direction`. A direction that leaves the surface at a border is projected
@@ -177,7 +152,7 @@ impl Fans {
         let unscaled = small_rotation(off_middle * (self.scales[vertex].recip() - 1.0));
         Some(Way {
             corner,
-            direction: turned(unscaled, turned_back(self.turn(corner).rotation, direction)),
+            direction: turned(unscaled, turned_back(self.rotation(corner), direction)),
         })
     }
 
