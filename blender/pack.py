@@ -1,4 +1,7 @@
-"""Packs the add-on with a wheel into the archive that Blender installs: pack.py WHEEL FOLDER."""
+"""Packs the add-on with wheels into the archive that Blender installs: pack.py WHEEL.. FOLDER.
+
+With one wheel the archive is for its platform; with several it is for all of theirs.
+"""
 
 import re
 import sys
@@ -26,16 +29,27 @@ def platform(wheel):
     raise SystemExit(f"{wheel.name} is for {tag}, which Blender does not run on: build the wheel for another platform")
 
 
-def pack(wheel, folder):
-    """The path of the archive. Equal files give equal bytes."""
+def listed(name, values, manifest):
+    """The manifest with another list of this name."""
+    values = ", ".join(f'"{value}"' for value in values)
+    return re.sub(rf"^{name} = \[.*\]", f"{name} = [{values}]", manifest, flags=re.MULTILINE)
+
+
+def pack(wheels, folder):
+    """The path of the archive. Equal files give equal bytes, in any order of the wheels."""
+    platforms = [platform(wheel) for wheel in wheels]
+    for name in platforms:
+        if platforms.count(name) > 1:
+            raise SystemExit(f"several wheels are for {name}: give one for each platform")
+    wheels = dict(sorted(zip(platforms, wheels)))
     source = Path(__file__).parent / "addon"
-    manifest = (source / "blender_manifest.toml").read_text()
+    manifest = (source / "blender_manifest.toml").read_text(encoding="utf-8")
     version = re.search(r'^version = "(.*)"', manifest, re.MULTILINE)[1]
-    manifest = re.sub(r"^wheels = \[.*\]", f'wheels = ["./wheels/{wheel.name}"]', manifest, flags=re.MULTILINE)
-    manifest = re.sub(r"^platforms = \[.*\]", f'platforms = ["{platform(wheel)}"]', manifest, flags=re.MULTILINE)
+    manifest = listed("wheels", [f"./wheels/{wheel.name}" for wheel in wheels.values()], manifest)
+    manifest = listed("platforms", wheels, manifest)
     files = {path.name: path.read_bytes() for path in [*source.glob("*.py"), source / "LICENSE"]}
     files["blender_manifest.toml"] = manifest.encode()
-    files[f"wheels/{wheel.name}"] = wheel.read_bytes()
+    files |= {f"wheels/{wheel.name}": wheel.read_bytes() for wheel in wheels.values()}
     archive = folder / f"pliant-blender-{version}.zip"
     with zipfile.ZipFile(archive, "w", zipfile.ZIP_DEFLATED) as out:
         for name in sorted(files):
@@ -44,4 +58,5 @@ def pack(wheel, folder):
 
 
 if __name__ == "__main__":
-    print(pack(Path(sys.argv[1]), Path(sys.argv[2])))
+    *wheels, folder = map(Path, sys.argv[1:])
+    print(pack(wheels, folder))

@@ -136,6 +136,9 @@ fn open(folder: &Path) -> Walk {
 /// The width of the moving picture in pixels.
 const FILM_WIDTH: u32 = 440;
 
+/// The largest change of a channel that the moving picture leaves out: repeated pixels take no bytes.
+const HELD: u8 = 6;
+
 /// A spine is drawn through the tail, and its end is dragged up and back.
 fn film(folder: &Path) {
     let mut walk = open(folder);
@@ -171,15 +174,42 @@ fn film(folder: &Path) {
         shoot(&mut walk);
     }
     let path = folder.join("drag.gif");
-    let file = std::fs::File::create(&path).unwrap();
-    let mut encoder = image::codecs::gif::GifEncoder::new_with_speed(file, 10);
-    encoder.set_repeat(image::codecs::gif::Repeat::Infinite).unwrap();
-    let delay = image::Delay::from_numer_denom_ms(110, 1);
-    let frames = frames
-        .into_iter()
-        .map(|frame| image::Frame::from_parts(frame, 0, 0, delay));
-    encoder.encode_frames(frames).unwrap();
+    write_film(&path, frames);
     println!("{}", path.display());
+}
+
+/// Writes the frames as a GIF that repeats.
+fn write_film(path: &Path, mut frames: Vec<image::RgbaImage>) {
+    leave_out_repetitions(&mut frames);
+    let [width, height] = [frames[0].width(), frames[0].height()].map(|side| u16::try_from(side).unwrap());
+    let file = std::fs::File::create(path).unwrap();
+    let mut encoder = gif::Encoder::new(file, width, height, &[]).unwrap();
+    encoder.set_repeat(gif::Repeat::Infinite).unwrap();
+    for frame in frames {
+        let mut frame = gif::Frame::from_rgba_speed(width, height, &mut frame.into_raw(), 10);
+        // In hundredths of a second. Transparent pixels show the frames before, which stay.
+        frame.delay = 11;
+        frame.dispose = gif::DisposalMethod::Keep;
+        encoder.write_frame(&frame).unwrap();
+    }
+}
+
+/// Makes the pixels of each frame transparent that look like those before, which then stay.
+fn leave_out_repetitions(frames: &mut [image::RgbaImage]) {
+    let Some((first, later)) = frames.split_first_mut() else {
+        return;
+    };
+    let mut shown = first.clone();
+    for frame in later {
+        for (pixel, before) in frame.pixels_mut().zip(shown.pixels_mut()) {
+            let mut channels = pixel.0.iter().zip(&before.0);
+            if channels.all(|(now, before)| now.abs_diff(*before) <= HELD) {
+                *pixel = image::Rgba([0; 4]);
+            } else {
+                *before = *pixel;
+            }
+        }
+    }
 }
 
 fn main() {

@@ -27,6 +27,7 @@ mod refusal;
 mod rows;
 mod shape;
 mod stitched_files;
+mod symmetry;
 mod targets;
 mod transfer;
 mod values;
@@ -55,6 +56,8 @@ mod native {
     use super::methods::methods;
     #[pymodule_export]
     use super::stitched_files::{bridge, cut, fill, merge};
+    #[pymodule_export]
+    use super::symmetry::symmetry;
     #[pymodule_export]
     use super::transfer::transfer;
 

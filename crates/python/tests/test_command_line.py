@@ -173,3 +173,18 @@ def test_flow_gives_the_command_line_s_colours(program, tmp_path):
     assert np.array_equal(np.sort(stored[:, 0]), np.sort(np.round(65535 * (1 - coverage)).astype(int)))
     with pytest.raises(ValueError, match="dye"):
         pliant.flow((vertices, faces), dye=[{"select": "none", "color": [1, 1, 1]}])
+
+
+def test_symmetry_finds_the_plane_of_a_mirrored_shape(mesh):
+    vertices, faces = mesh
+    # Uneven in y and z, the same on both sides of the plane x = 0.25.
+    uneven = np.c_[vertices[:, 0], vertices[:, 1] ** 2, vertices[:, 2] * (1 + vertices[:, 1]) + vertices[:, 1] ** 3]
+    found = pliant.symmetry((uneven + [0.25, 0, 0], faces))
+    normal, distance = np.array(found["plane"][:3]), found["plane"][3]
+    assert np.allclose(np.abs(normal), [1, 0, 0], atol=1e-6) and np.isclose(distance * normal[0], 0.25, atol=1e-6)
+    images = found["images"]
+    assert np.array_equal(images[images], np.arange(len(vertices)))
+    assert np.allclose(uneven[images], uneven * [-1, 1, 1], atol=1e-6)
+    assert pliant.symmetry((np.random.default_rng(1).random((90, 3)), np.arange(90).reshape(-1, 3))) is None
+    with pytest.raises(ValueError, match="mesh is not a mesh"):
+        pliant.symmetry(vertices)

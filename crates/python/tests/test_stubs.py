@@ -38,6 +38,8 @@ pliant.cut("a.glb", output="b.glb", plane=[0, 1, 0, 0.5], keep="both")
 pliant.merge("a.glb", "b.glb", joins={"version": 1}, output="c.glb")
 pliant.bridge("a.glb", borders=(0, 1), output="b.glb")
 faults = pliant.info("a.glb")["findings"]
+mirror = pliant.symmetry(mesh)
+normal: float = mirror["plane"][0] if mirror else 0.0
 coverage = pliant.flow(mesh, dye=[{"select": "all", "color": [1, 0, 0]}], gravity=[0, -9.81, 0], seconds=0.1)[:, 3]
 """
 

@@ -69,7 +69,8 @@ fn command_line() -> String {
     let mut page = "# The command line\n".to_owned();
     let commands = program.get_subcommands().cloned();
     for mut command in std::iter::once(program.clone()).chain(commands) {
-        let name = command.get_display_name().unwrap_or_default().replace('-', " ");
+        // The program itself has no display name.
+        let name = command.get_display_name().unwrap_or("pliant").replace('-', " ");
         // Writing to a String can't fail.
         let _ = write!(
             page,
@@ -132,6 +133,7 @@ mod tests {
         generate(folder.path()).unwrap();
         let read = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
         let (page, commands) = (read("command-line.md"), read("commands.md"));
+        assert!(page.contains("\n## pliant\n"), "the program itself has a heading");
         for listed in Command::all_listed() {
             assert!(commands.contains(listed.tooltip), "{}", listed.name);
         }

@@ -71,19 +71,19 @@ pub struct Twin {
     pub plane: MirrorPlane,
 }
 
+/// The most radii of a handle that [`Reach::Part`] is.
+pub(crate) const PART_RADII: f64 = 3.0;
+
 /// The distance along the surface within which a handle moves the surface.
-#[derive(Clone, Copy, PartialEq, Debug)]
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub enum Reach {
+    /// To the end of the part that the handle is on, where the surface around it widens; at most [`PART_RADII`] radii.
+    #[default]
+    Part,
     /// This many of the handle's own radii (above 0).
     Radii(f64),
     /// This distance in world units (0: only the painted vertices).
     Length(f64),
-}
-
-impl Default for Reach {
-    fn default() -> Self {
-        Self::Radii(3.0)
-    }
 }
 
 impl Handle {

@@ -32,6 +32,7 @@ pub use content::sum_of_shapes;
 pub use content::{Content, Paint, Tips};
 pub use fluid::{Dye, FlowOptions, Fluid};
 pub(crate) use fluid::{dye_colour, from_srgb, over};
+pub(crate) use handle::PART_RADII;
 pub use handle::{Handle, HandleId, PivotPlace, Reach, Twin};
 pub use handle_colour::HANDLE_COLOURS;
 pub use handle_curve::HandleCurve;

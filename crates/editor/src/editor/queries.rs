@@ -9,7 +9,7 @@ use pliant_mesh::{ContourLine, SurfaceVertex};
 
 use super::Editor;
 use crate::command::{Command, Shortcut, State};
-use crate::document::{Document, History, SaveMark};
+use crate::document::{Document, HandleId, History, SaveMark};
 use crate::format::{ExportError, export};
 use crate::jobs::{Comparison, Intersections, JobKind};
 use crate::region::Rim;
@@ -140,6 +140,14 @@ impl Editor {
     /// The role of each surface vertex in the last measured region.
     pub fn roles(&self) -> &[Role] {
         &self.workspace.computed().region.roles
+    }
+
+    /// The reach of a handle along the surface, in world units, in the last measured region; `None` if it has no vertices
+    /// there.
+    pub fn reach_length(&self, handle: HandleId) -> Option<f64> {
+        let region = &self.workspace.computed().region;
+        let place = region.handles.iter().position(|id| *id == handle)?;
+        region.reaches.get(place).copied()
     }
 
     /// The highlighted connected part, by its component's number.

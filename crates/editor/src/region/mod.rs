@@ -9,6 +9,7 @@
 //! vertices are free, unless some vertices were painted free.
 
 mod loose;
+mod part;
 mod reach;
 mod rim;
 mod tips;
@@ -54,6 +55,8 @@ pub struct Region {
     pub roles: Arc<Vec<Role>>,
     /// The handles that have vertices: [`Role::Handle`]'s number is the index.
     pub handles: Arc<Vec<HandleId>>,
+    /// The reach of each of these handles, in world units.
+    pub(crate) reaches: Arc<Vec<f64>>,
     /// Numbers of vertices by role.
     pub counts: Counts,
     /// The lines between roles.
@@ -94,7 +97,8 @@ impl Region {
     pub(crate) fn still(vertex_count: usize) -> Self {
         Self {
             roles: Arc::new(vec![Role::Fixed; vertex_count]),
-            handles: Arc::new(Vec::new()),
+            handles: Arc::default(),
+            reaches: Arc::default(),
             counts: Counts {
                 fixed: vertex_count,
                 ..Counts::default()
@@ -120,7 +124,7 @@ impl Region {
         let is_locked = |vertex: usize| locked.as_ref().is_some_and(|locked| locked[vertex]);
         let (members, painted) = painted(input, is_locked);
         let mut roles = vec![Role::Fixed; input.paint.len()];
-        let mut handles = Vec::new();
+        let (mut handles, mut reaches) = (Vec::new(), Vec::new());
         let mut search = DistanceSearch::default();
         let position = |v: SurfaceVertex| surface.positions[v.index()];
         // Per component: whether it is wholly in some handle's ball.
@@ -145,6 +149,7 @@ impl Region {
                 .for_each(|(within, this)| *within |= this);
             within_this.fill(true);
             handles.push(*id);
+            reaches.push(limit);
         }
         if handles.is_empty() && input.has_controls && !input.paint.contains(&Paint::Free) {
             roles.fill(Role::Free);
@@ -176,6 +181,7 @@ impl Region {
         let rims = rims(surface, &roles);
         Ok(Self {
             handles: Arc::new(handles),
+            reaches: Arc::new(reaches),
             counts: Counts::of(&roles),
             roles: Arc::new(roles),
             rims: Arc::new(rims),

@@ -225,6 +225,10 @@ fn gizmo(
             highlighted,
         ));
     }
+    // These tools turn and move by themselves, on the surface that the gizmo would be over.
+    if matches!(settings.mode, ToolMode::Pose | ToolMode::Correct) && !matches!(lit, Lit::Gizmo(_)) {
+        return None;
+    }
     let handle = workspace.selected()?;
     // The points of a curve that was just drawn are wanted, and the gizmo of the whole would be over them.
     if settings.draws_curves() && handle.line.is_some() {

@@ -11,7 +11,7 @@ mod joint;
 
 use glam::DVec3;
 
-pub use self::joint::{JOINT_RINGS, Joint, Shape, joint_of};
+pub use self::joint::{JOINT_RINGS, Joint, Shape, joint_of, level_crossing};
 use crate::geodesics::front::Front;
 use crate::{Surface, SurfaceVertex, Topology};
 

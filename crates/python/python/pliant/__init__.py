@@ -30,6 +30,7 @@ from ._native import (
     methods,
     save,
     sequence,
+    symmetry,
     transfer,
 )
 
@@ -53,5 +54,6 @@ __all__ = [
     "methods",
     "save",
     "sequence",
+    "symmetry",
     "transfer",
 ]

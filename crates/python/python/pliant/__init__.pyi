@@ -453,6 +453,24 @@ def flow(
     :raises ValueError: one sentence that names the culprit and the remedy.
     """
 
+class Symmetry(TypedDict):
+    """A mesh's plane of symmetry."""
+
+    plane: tuple[float, float, float, float]
+    """(nx, ny, nz, d): the plane of the points p with (nx, ny, nz) . p = d; the normal has the length 1."""
+    images: npt.NDArray[np.int64]
+    """For each vertex the row of the vertex nearest to its mirror image, shape (n,): its own if it is on the plane, and
+    -1 if the mesh has none there."""
+
+def symmetry(mesh: Shape) -> Symmetry | None:
+    """The plane across which a mesh is its own mirror image, up to the unevenness of a scan.
+
+    :param mesh: a result of `load`, or a pair (vertices, faces).
+    :return: `plane`, the numbers (nx, ny, nz, d), and `images`, the row of the vertex on the other side for each vertex;
+        `None` if no plane comes close to it.
+    :raises ValueError: if `mesh` is not a mesh.
+    """
+
 class Outcome(TypedDict, total=False):
     """One method's result: its shape and figures, or only `refused`."""
 

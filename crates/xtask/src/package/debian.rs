@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use super::release::Release;
+use super::release::{HOMEPAGE, Release};
 use super::tree::{DOCUMENTS, compress, plain_permissions};
 use crate::files;
 use crate::process::said;
@@ -93,6 +93,7 @@ fn control(release: &Release, architecture: &str, libraries: &str, kibibytes: u6
          Installed-Size: {kibibytes}\n\
          Depends: {libraries}, {loaded}\n\
          Recommends: mesa-vulkan-drivers | vulkan-icd, xdg-desktop-portal\n\
+         Homepage: {HOMEPAGE}\n\
          Section: graphics\n\
          Priority: optional\n\
          Description: editor that bends scanned meshes\n \

@@ -5,6 +5,7 @@
 
 mod archive;
 mod debian;
+pub mod glibc;
 mod icons;
 pub mod inventory;
 mod macos;
@@ -24,6 +25,8 @@ use release::Release;
 #[derive(Default)]
 struct Outcome {
     made: Vec<PathBuf>,
+    /// The systems on which they run.
+    runs: Vec<String>,
     left: Vec<String>,
 }
 
@@ -62,6 +65,9 @@ pub fn package() -> Result<(), String> {
     for file in &outcome.made {
         println!("made: {}", file.display());
     }
+    for sentence in &outcome.runs {
+        println!("runs: {sentence}");
+    }
     for sentence in &outcome.left {
         println!("left: {sentence}");
     }
@@ -76,6 +82,7 @@ fn linux(release: &Release, folder: &std::path::Path, outcome: &mut Outcome) -> 
         return Ok(());
     }
     let built = program::build(release, folder)?;
+    outcome.runs.push(glibc::sentence(&built.program)?);
     let papers = inventory::write(release, folder)?;
     let tree = tree::grow(release, &built, &papers, folder)?;
     outcome.made.extend([built.debug_info, papers.bill_of_materials]);

@@ -3,8 +3,9 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use super::glibc::{self, Linked};
 use super::release::Release;
-use crate::process::{cargo, cargo_home, succeed, target_folder};
+use crate::process::{cargo_home, succeed};
 use crate::tool::Tool;
 
 /// The tools for stripping.
@@ -43,14 +44,26 @@ pub fn build(release: &Release, folder: &Path) -> Result<Program, String> {
     Ok(built)
 }
 
-/// Compiles the program with more arguments for its linker, into `target/dist`, and returns its path.
+/// Compiles the program with more arguments for its linker, and returns its path.
 ///
 /// # Errors
 /// One sentence if it can't be compiled.
 pub fn compile(link_arguments: &[String]) -> Result<PathBuf, String> {
     println!("Building Pliant for its packages; the first time takes some minutes.");
-    let mut rustc = cargo(&["rustc", "--locked", "--profile", "dist"]);
-    rustc.args(["--package", "pliant-app", "--bin", "pliant", "--"]);
+    let Linked {
+        command: mut rustc,
+        folder,
+    } = glibc::rustc();
+    rustc.args([
+        "--locked",
+        "--profile",
+        "dist",
+        "--package",
+        "pliant-app",
+        "--bin",
+        "pliant",
+        "--",
+    ]);
     rustc.args(
         link_arguments
             .iter()
@@ -58,7 +71,7 @@ pub fn compile(link_arguments: &[String]) -> Result<PathBuf, String> {
     );
     succeed(rustc.env("RUSTFLAGS", neutral_paths()))?;
     let name = format!("pliant{}", std::env::consts::EXE_SUFFIX);
-    Ok(target_folder().join("dist").join(name))
+    Ok(folder.join(name))
 }
 
 /// Compiler flags that keep this machine's folders out of the program.

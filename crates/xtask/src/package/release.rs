@@ -4,6 +4,12 @@ use std::process::Command;
 
 use crate::process;
 
+/// The program's name for desktops and stores, in reverse order of the project's address.
+pub const ID: &str = "org.example.pliant";
+
+/// The project's address.
+pub const HOMEPAGE: &str = env!("CARGO_PKG_HOMEPAGE");
+
 /// The version and the time of the packaged program.
 pub struct Release {
     /// The workspace's version, such as "0.1.0".
@@ -54,9 +60,11 @@ impl Release {
         process::said(&mut date).map(|line| line.trim().to_owned())
     }
 
-    /// A text with `@VERSION@` filled in.
+    /// A text with `@VERSION@`, `@ID@` and `@HOMEPAGE@` filled in.
     pub fn filled(&self, text: &str) -> String {
-        text.replace("@VERSION@", self.version)
+        let values = [("@VERSION@", self.version), ("@ID@", ID), ("@HOMEPAGE@", HOMEPAGE)];
+        let fill = |text: String, (name, value): (&str, &str)| text.replace(name, value);
+        values.into_iter().fold(text.to_owned(), fill)
     }
 
     /// The beginning of file names: `pliant-0.1.0-x86_64-linux`.
@@ -67,5 +75,40 @@ impl Release {
             std::env::consts::ARCH,
             std::env::consts::OS
         )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::files::text;
+
+    #[test]
+    fn every_file_that_names_the_address_has_the_same() {
+        let website = format!("website = \"{HOMEPAGE}\"");
+        for (file, named) in [
+            ("blender/addon/blender_manifest.toml", website.as_str()),
+            ("README.md", HOMEPAGE),
+            ("packaging/linux/copyright", HOMEPAGE),
+        ] {
+            assert!(text(file).unwrap_or_default().contains(named), "{file}");
+        }
+    }
+
+    #[test]
+    fn the_flatpak_has_the_same_name() {
+        let manifest = text(&format!("packaging/flatpak/{ID}.yml")).unwrap_or_default();
+        assert!(manifest.contains(&format!("\nid: {ID}\n")));
+    }
+
+    #[test]
+    fn the_name_is_the_address_backwards() {
+        let host = HOMEPAGE
+            .trim_start_matches("https://")
+            .split('/')
+            .next()
+            .unwrap_or_default();
+        let backwards: Vec<&str> = host.rsplit('.').collect();
+        assert_eq!(format!("{}.pliant", backwards.join(".")), ID);
     }
 }

@@ -6,7 +6,7 @@ use std::process::Command;
 use super::icons;
 use super::inventory::Papers;
 use super::program::Program;
-use super::release::Release;
+use super::release::{ID, Release};
 use crate::files;
 use crate::process::succeed;
 use crate::tool::Tool;
@@ -64,7 +64,7 @@ fn desktop(release: &Release, share: &Path) -> Result<(), String> {
     )?;
     let description = release.filled(&files::text("packaging/linux/pliant.metainfo.xml")?);
     let description = description.replace("@DATE@", &release.date("+%F")?);
-    files::write(&share.join("metainfo/local.pliant.pliant.metainfo.xml"), description)
+    files::write(&share.join(format!("metainfo/{ID}.metainfo.xml")), description)
 }
 
 /// The files that the program writes from the definition of its command line.

@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::process::Command;
 
+use super::release::ID;
 use crate::process::succeed;
 use crate::tool::Tool;
 
@@ -14,7 +15,7 @@ pub fn validate(tree: &Path, package: Option<&Path>) -> Result<Vec<String>, Stri
     let share = tree.join("share");
     let (entry, description) = (
         share.join("applications/pliant.desktop"),
-        share.join("metainfo/local.pliant.pliant.metainfo.xml"),
+        share.join(format!("metainfo/{ID}.metainfo.xml")),
     );
     let size = std::fs::metadata(tree.join("bin/pliant")).map_or(0, |about| about.len());
     if size > LARGEST_PROGRAM {

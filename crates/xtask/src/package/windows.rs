@@ -1,5 +1,8 @@
 //! The zip for Windows: the program with its icon and version, and the debug information beside it.
 //!
+//! Windows decides by a mark in a program whether it gets a console. So the program is linked twice: `pliant.exe` for
+//! the command line, and `pliantw.exe`, which opens the window without a console beside it.
+//!
 //! This is untested.
 
 use std::path::{Path, PathBuf};
@@ -30,11 +33,15 @@ pub fn zip(release: &Release, folder: &Path) -> Result<Vec<PathBuf>, String> {
     all_there(&[TOOLS, inventory::TOOLS].concat())?;
     let name = release.name();
     let resource = resource(release, folder)?;
-    let built = program::compile(&[resource.display().to_string()])?;
+    let resource = resource.display().to_string();
+    let unpacked = folder.join(&name);
+    let without_console = ["/SUBSYSTEM:WINDOWS", "/ENTRY:mainCRTStartup"].map(str::to_owned);
+    let built = program::compile(&[[resource.clone()].as_slice(), &without_console].concat())?;
+    files::copy(&built, &unpacked.join("pliantw.exe"))?;
+    let built = program::compile(&[resource])?;
     let debug_info = folder.join(format!("{name}.pdb"));
     files::copy(&built.with_extension("pdb"), &debug_info)?;
     let papers = inventory::write(release, folder)?;
-    let unpacked = folder.join(&name);
     files::copy(&built, &unpacked.join("pliant.exe"))?;
     for name in ["LICENSE-MIT", "LICENSE-APACHE", "README.md"] {
         files::copy(&crate::root::root().join(name), &unpacked.join(name))?;

@@ -8,7 +8,7 @@ use std::process::Command;
 
 use crate::files;
 use crate::package::release::Release;
-use crate::package::{inventory, program};
+use crate::package::{glibc, inventory, program};
 use crate::process::{said, succeed, target_folder};
 use crate::root::root;
 use crate::tool::Tool;
@@ -21,8 +21,16 @@ const PYTHON: Tool = Tool {
 const MANIFEST: &str = "crates/python/Cargo.toml";
 
 /// The versions of Blender for the add-on's tests: the oldest, the one with long support and the newest. Each is built
-/// for one version of Python alone.
-const BLENDERS: [&str; 3] = ["bpy==4.2.0", "bpy==4.5.15", "bpy==5.0.1"];
+/// for one version of Python alone. Blender 5 has left Macs with Intel's processors, and there is none for Linux on ARM.
+const BLENDERS: &[&str] = match (
+    cfg!(target_os = "linux"),
+    cfg!(target_os = "macos"),
+    cfg!(target_arch = "x86_64"),
+) {
+    (true, _, false) => &[],
+    (_, true, true) => &["bpy==4.2.0", "bpy==4.5.15"],
+    _ => &["bpy==4.2.0", "bpy==4.5.15", "bpy==5.0.1"],
+};
 const BLENDER_PYTHON: Tool = Tool {
     program: "python3.11",
     install: "apt install python3.11-venv, or pyenv install 3.11",
@@ -50,12 +58,13 @@ pub fn python() -> Result<(), String> {
     install(&clean, &[&with_tests])?;
     tests(&clean, "crates/python/tests", &extension, &program)?;
 
-    let Ok(python) = BLENDER_PYTHON.find() else {
-        println!(
-            "skipped: the add-on's tests ({} is not installed: {})",
-            BLENDER_PYTHON.program, BLENDER_PYTHON.install
-        );
-        return Ok(());
+    let python = match BLENDER_PYTHON.find() {
+        Ok(python) => python,
+        Err(sentence) if unpacked::are_required() => return Err(format!("The add-on can't be tested: {sentence}.")),
+        Err(sentence) => {
+            println!("skipped: the add-on's tests ({sentence})");
+            return Ok(());
+        }
     };
     for version in BLENDERS {
         let blender = environment(&python, &folder.join(version.replace("==", "-")))?;
@@ -73,7 +82,12 @@ pub fn python() -> Result<(), String> {
 /// The wheel, built by maturin: from the commit and the tools alone, like packages, and with the same licences.
 fn wheel(release: &Release, python: &Path, folder: &Path) -> Result<PathBuf, String> {
     let tools = environment(python, &folder.join("tools"))?;
-    install(&tools, &["maturin>=1.9.4,<2"])?;
+    // Zig's linker makes a wheel for older systems than this one.
+    let maturin = match cfg!(target_os = "linux") {
+        true => "maturin[zig]==1.16.0",
+        false => "maturin==1.16.0",
+    };
+    install(&tools, &[maturin])?;
     let wheels = folder.join("wheels");
     files::fresh_folder(&wheels)?;
     licences(&root().join("crates/python/licenses"))?;
@@ -82,6 +96,10 @@ fn wheel(release: &Release, python: &Path, folder: &Path) -> Result<PathBuf, Str
     maturin.args(["-m", "maturin", "build", "--profile", "dist", "--locked"]);
     if let Some(bill) = bill {
         maturin.arg("--sbom-include").arg(bill);
+    }
+    if cfg!(target_os = "linux") {
+        let oldest = glibc::OLDEST.replace('.', "_");
+        maturin.args(["--zig", "--compatibility", &format!("manylinux_{oldest}")]);
     }
     maturin.args(["--manifest-path", MANIFEST, "--out"]);
     maturin.arg(&wheels).current_dir(root());

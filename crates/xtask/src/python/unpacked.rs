@@ -11,15 +11,30 @@ use crate::process::{cargo, output, program, succeed, target_folder};
 use crate::root::root;
 use crate::verdict::Verdict;
 
+/// If this variable is `required`, as in continuous integration, then skipped tests of the package, of the wheel and of
+/// the add-on are failures.
+const VARIABLE: &str = "PLIANT_PYTHON_TESTS";
+
+/// Whether tests in Python must run.
+pub fn are_required() -> bool {
+    std::env::var_os(VARIABLE).is_some_and(|value| value == "required")
+}
+
 /// Builds the module in the development profile and runs the package's tests on it, except the notebook's, which
 /// measure. If no Python has the needed packages, they are named as skipped.
 pub fn tests(verdict: &mut Verdict) {
     let has_all = |name: &&str| output(name, &["-c", "import numpy, pytest"]).is_some();
     let Some(python) = ["python3", "python"].into_iter().find(has_all).and_then(program) else {
-        return verdict.skip(
-            "Python's tests (there is no python3 with numpy and pytest: pip install numpy pytest, or cargo xtask python, \
-             which makes an environment of its own)",
-        );
+        let sentence = "Python's tests (there is no python3 with numpy and pytest: pip install numpy pytest, or cargo \
+                        xtask python, which makes an environment of its own)";
+        return match are_required() {
+            true => verdict.record(
+                "Python",
+                Err(format!("{VARIABLE} requires {sentence}.")),
+                Instant::now(),
+            ),
+            false => verdict.skip(sentence),
+        };
     };
     println!("\n── Python: {} -m pytest crates/python/tests", python.display());
     let started = Instant::now();

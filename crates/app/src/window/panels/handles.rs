@@ -170,7 +170,7 @@ fn numbers(ui: &mut egui::Ui, editor: &Editor, handle: &Handle, commands: &mut O
                 });
             }
             pivot(ui, handle, commands);
-            reach(ui, handle, commands);
+            reach(ui, editor, handle, commands);
             joint(ui, editor, handle, commands);
             softness(ui, handle, commands);
             ui.end_row();
@@ -254,14 +254,19 @@ fn pivot(ui: &mut egui::Ui, handle: &Handle, commands: &mut Outbox) {
     ui.end_row();
 }
 
-fn reach(ui: &mut egui::Ui, handle: &Handle, commands: &mut Outbox) {
+fn reach(ui: &mut egui::Ui, editor: &Editor, handle: &Handle, commands: &mut Outbox) {
     let label = row_label(ui, "Reach");
     let (mut value, suffix, units, most, make): (f64, _, &[Unit], _, fn(f64) -> Reach) = match handle.reach {
+        Reach::Part => {
+            let length = editor.reach_length(handle.id).unwrap_or_default();
+            (length, " (part)", LENGTHS, f64::MAX, Reach::Length)
+        }
         Reach::Radii(radii) => (radii, " radii", &[("radii", 1.0)], 50.0, Reach::Radii),
         Reach::Length(length) => (length, "", LENGTHS, f64::MAX, Reach::Length),
     };
     let speed = (0.02 * value).max(1e-4);
-    let hover = "Sets the distance along the surface within which it follows this handle.";
+    let hover = "Sets the distance along the surface within which it follows this handle. Without a number of yours it \
+                 ends a little beyond the part that the handle is on.";
     let field = number_field(ui, &mut value, |ui, value| {
         let field = dragged(ui, value, units).range(0.0..=most).speed(speed);
         ui.add(field.max_decimals(3).suffix(suffix))

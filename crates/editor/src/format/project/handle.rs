@@ -61,6 +61,7 @@ enum StoredPivotPlace {
 #[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 enum StoredReach {
+    Part,
     Radii(f64),
     Length(f64),
 }
@@ -107,6 +108,7 @@ impl StoredHandle {
                 PivotPlace::Picked => StoredPivotPlace::Picked,
             },
             reach: match handle.reach {
+                Reach::Part => StoredReach::Part,
                 Reach::Radii(radii) => StoredReach::Radii(radii),
                 Reach::Length(length) => StoredReach::Length(length),
             },
@@ -137,11 +139,13 @@ impl StoredHandle {
     }
 
     pub(super) fn handle(&self) -> Result<Handle, EditError> {
-        let (StoredReach::Radii(size) | StoredReach::Length(size)) = self.reach;
+        let is_reach_refused = match self.reach {
+            StoredReach::Part => false,
+            StoredReach::Radii(size) | StoredReach::Length(size) => !(size.is_finite() && size >= 0.0),
+        };
         let refused_weight = self.soft.is_some_and(|weight| !SOFT_RANGE.contains(&weight))
             || self.continuity.is_some_and(|value| !CONTINUITY_RANGE.contains(&value));
-        if !(size.is_finite() && size >= 0.0) || refused_weight || self.twin.is_some_and(|twin| twin.plane().is_none())
-        {
+        if is_reach_refused || refused_weight || self.twin.is_some_and(|twin| twin.plane().is_none()) {
             return Err(EditError::Project(format!(
                 "the handle `{}` has an invalid reach, weight, continuity or twin: save it again",
                 shortened(&self.name)
@@ -165,6 +169,7 @@ impl StoredHandle {
                 StoredPivotPlace::Picked => PivotPlace::Picked,
             },
             reach: match self.reach {
+                StoredReach::Part => Reach::Part,
                 StoredReach::Radii(radii) => Reach::Radii(radii),
                 StoredReach::Length(length) => Reach::Length(length),
             },

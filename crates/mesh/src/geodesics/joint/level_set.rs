@@ -17,8 +17,9 @@ pub(super) fn segments(shape: &Shape<'_>, field: &[f64], level: f64) -> Segments
     pieces.collect()
 }
 
-/// The line in a triangle on which a linear function with these values at the corners is 0; `None` if it has one sign.
-pub(super) fn crossing(corners: [DVec3; 3], values: [f64; 3]) -> Option<[DVec3; 2]> {
+/// The line in a triangle on which a linear function with these values at the corners is 0; `None` if it has one sign,
+/// or a value is not a number.
+pub fn crossing(corners: [DVec3; 3], values: [f64; 3]) -> Option<[DVec3; 2]> {
     let is_above = values.map(|value| value >= 0.0);
     if values.iter().any(|value| value.is_nan()) || is_above == [true; 3] || is_above == [false; 3] {
         return None;

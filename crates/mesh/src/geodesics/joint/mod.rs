@@ -22,6 +22,7 @@ use std::f64::consts::TAU;
 use glam::DVec3;
 
 use self::level_set::Segments;
+pub use self::level_set::crossing as level_crossing;
 use self::rings::{Body, End, Field, Narrowest, Rings, Source};
 pub use self::shape::Shape;
 use super::DistanceSearch;
