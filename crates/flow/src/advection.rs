@@ -20,6 +20,9 @@ use crate::settings::Advection;
 use crate::sums::CHUNK;
 use crate::trace::Place;
 
+/// The number of vertices that are looked back from at a time.
+const BLOCK: usize = 64;
+
 /// Dye at a vertex: red, green and blue, multiplied by the coverage, and the coverage, each from 0 to 1.
 pub(crate) type Dye = [f64; 4];
 
@@ -104,14 +107,6 @@ fn backward(
     let domain = &fluid.domain;
     let (own, carried) = (&scratch.own, &scratch.carried);
     let at = |place: &Place, field: &[DVec2]| domain.vector_at(place, fluid.corners(place.triangle as usize), field);
-    let of = |vertex: usize| {
-        let here = own[vertex];
-        let half = domain.trace(vertex, here * (-0.5 * seconds))?;
-        let middle = at(&half, own);
-        let back = domain.trace(vertex, middle * -seconds)?;
-        // The velocity half a step forward, by extrapolation.
-        Some((back, (2.0 * here - middle) * seconds))
-    };
     let dyes = chunks_of(&mut scratch.first_dye, fluid.vertex_count());
     let velocities = scratch
         .first
@@ -122,14 +117,33 @@ fn backward(
         .enumerate()
         .try_for_each(|(chunk, (((first, forward), source), first_dye))| {
             cancel.check()?;
-            for i in 0..first.len() {
-                let vertex = chunk * CHUNK + i;
-                let Some((back, ahead)) = of(vertex) else { continue };
-                first[i] = at(&back, carried);
-                forward[i] = ahead;
-                source[i] = back.triangle;
-                if let Some(first_dye) = first_dye.get_mut(i) {
-                    *first_dye = dye_at(fluid, &back, dye);
+            // One thing after another for several vertices, so that the processor waits for several places at a time.
+            let mut places = [None; BLOCK];
+            for start in (0..first.len()).step_by(BLOCK) {
+                let vertices = start..(start + BLOCK).min(first.len());
+                let vertex = |i: usize| chunk * CHUNK + i;
+                for (i, place) in vertices.clone().zip(&mut places) {
+                    *place = domain.trace(vertex(i), own[vertex(i)] * (-0.5 * seconds));
+                }
+                for (i, place) in vertices.clone().zip(&places) {
+                    forward[i] = place.map_or(DVec2::ZERO, |half| at(&half, own));
+                }
+                for (i, place) in vertices.clone().zip(&mut places) {
+                    let middle = forward[i];
+                    *place = domain.trace(vertex(i), middle * -seconds);
+                    // The velocity half a step forward, by extrapolation.
+                    forward[i] = (2.0 * own[vertex(i)] - middle) * seconds;
+                }
+                for (i, place) in vertices.clone().zip(&places) {
+                    if let Some(back) = place {
+                        first[i] = at(back, carried);
+                        source[i] = back.triangle;
+                    }
+                }
+                for (first_dye, place) in first_dye.iter_mut().skip(start).zip(&places) {
+                    if let Some(back) = place {
+                        *first_dye = dye_at(fluid, back, dye);
+                    }
                 }
             }
             Ok(())
@@ -152,22 +166,26 @@ fn correct(fluid: &Fluid<'_>, dye: &[Dye], scratch: &mut Scratch, cancel: &Cance
     let chunks = change.par_chunks_mut(CHUNK).zip(dyes);
     chunks.enumerate().try_for_each(|(chunk, (change, new_dye))| {
         cancel.check()?;
-        for i in 0..change.len() {
-            let vertex = chunk * CHUNK + i;
-            let Some(ahead) = fluid.domain.trace(vertex, change[i]) else {
-                change[i] = DVec2::ZERO;
-                continue;
-            };
-            let triangle = source[vertex] as usize;
-            let returned = fluid
-                .domain
-                .vector_at(&ahead, fluid.corners(ahead.triangle as usize), first);
-            let correction = 0.5 * (carried[vertex] - returned);
-            let limited = correction.clamp_length_max(spread(fluid, triangle, carried));
-            change[i] = first[vertex] + limited - carried[vertex];
-            if let Some(new_dye) = new_dye.get_mut(i) {
-                let returned = dye_at(fluid, &ahead, first_dye);
-                let bounds = fluid.corners(triangle).map(|corner| dye[corner]);
+        let mut places = [None; BLOCK];
+        for start in (0..change.len()).step_by(BLOCK) {
+            let vertices = start..(start + BLOCK).min(change.len());
+            for (i, place) in vertices.clone().zip(&mut places) {
+                *place = fluid.domain.trace(chunk * CHUNK + i, change[i]);
+            }
+            for (i, place) in vertices.clone().zip(&places) {
+                let vertex = chunk * CHUNK + i;
+                change[i] = place.map_or(DVec2::ZERO, |ahead| {
+                    let corners = fluid.corners(ahead.triangle as usize);
+                    let correction = 0.5 * (carried[vertex] - fluid.domain.vector_at(&ahead, corners, first));
+                    let most = spread(fluid, source[vertex] as usize, carried);
+                    first[vertex] + correction.clamp_length_max(most) - carried[vertex]
+                });
+            }
+            for (i, (new_dye, place)) in new_dye.iter_mut().skip(start).zip(&places).enumerate() {
+                let vertex = chunk * CHUNK + start + i;
+                let Some(ahead) = place else { continue };
+                let returned = dye_at(fluid, ahead, first_dye);
+                let bounds = fluid.corners(source[vertex] as usize).map(|corner| dye[corner]);
                 *new_dye = std::array::from_fn(|k| {
                     let corrected = first_dye[vertex][k] + 0.5 * (dye[vertex][k] - returned[k]);
                     let [a, b, c] = bounds.map(|bound| bound[k]);
@@ -193,7 +211,8 @@ fn spread(fluid: &Fluid<'_>, triangle: usize, field: &[DVec2]) -> f64 {
     let rotations = fluid.domain.fans.rotations(triangle);
     let corners = fluid.corners(triangle);
     let [a, b, c] = [0, 1, 2].map(|k| turned_back(rotations[k], field[corners[k]]));
-    a.distance(b).max(b.distance(c)).max(c.distance(a))
+    let squares = [a.distance_squared(b), b.distance_squared(c), c.distance_squared(a)];
+    squares.into_iter().fold(0.0, f64::max).sqrt()
 }
 
 /// The dye at a place.

@@ -8,7 +8,7 @@ use pliant_mesh::{Surface, SurfaceVertex, Topology};
 
 use crate::chart::Chart;
 use crate::hinges::{Hinges, WALL, corner_at, last, next};
-use crate::plane::{rotation_between, small_rotation, turned};
+use crate::plane::{rotation_between, small_rotation, turned, turned_back};
 
 /// The corners around each vertex.
 #[derive(Clone, Debug)]
@@ -26,15 +26,6 @@ pub(crate) struct Fans {
     /// By how much the rotation at a corner's last edge is more than that at its first: the part of the vertex's angle
     /// defect that the corner takes.
     twists: Vec<[f64; 3]>,
-}
-
-/// An edge of a corner, counterclockwise.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(crate) enum End {
-    /// To the triangle's next corner.
-    First,
-    /// To the one before.
-    Last,
 }
 
 /// Where a direction at a vertex leads.
@@ -115,15 +106,15 @@ impl Fans {
         turned(small_rotation(share * twist), self.rotation(corner))
     }
 
-    /// The same for vectors along the first or the last edge of a corner.
+    /// A vector at the vertex of each of a triangle's corners as it is in the triangle's plane, along the first edge of
+    /// the corner and along its last one: to the next corner and to the one before.
     #[inline]
-    pub fn rotation_at(&self, corner: u32, end: End) -> DVec2 {
-        let share = match end {
-            End::First => -0.5,
-            End::Last => 0.5,
-        };
-        let twist = self.twists[corner as usize / 3][corner as usize % 3];
-        turned(small_rotation(share * twist), self.rotation(corner))
+    pub fn at_edges(&self, triangle: usize, vectors: [DVec2; 3]) -> [[DVec2; 2]; 3] {
+        std::array::from_fn(|k| {
+            let middle = turned_back(self.rotations[triangle][k], vectors[k]);
+            let half = small_rotation(0.5 * self.twists[triangle][k]);
+            [turned(half, middle), turned_back(half, middle)]
+        })
     }
 
     /// The rotations from a triangle to the tangent planes of its vertices, in the middles of its corners.
@@ -139,18 +130,29 @@ impl Fans {
         let corners = self.corners(vertex);
         let (&first, &end) = (corners.first()?, corners.last()?);
         let starts = &self.starts[self.offsets[vertex] as usize..][..corners.len()];
-        let angle = direction.y.atan2(direction.x).rem_euclid(TAU);
+        let angle = match direction.y.atan2(direction.x) {
+            angle if angle < 0.0 => angle + TAU,
+            angle => angle,
+        };
         let place = starts.iter().rposition(|&start| start <= angle).unwrap_or(0);
-        let corner = corners[place];
-        let (chart, k) = (&charts[corner as usize / 3], corner as usize % 3);
-        let inside = (angle - starts[place]) / self.scales[vertex];
-        if place + 1 == corners.len() && hinges.after(end) == WALL && inside > chart.angle(k) {
-            return self.along_border(vertex, direction, (first, end), charts);
-        }
-        let edge = chart.edge((k + 2) % 3).normalize();
+        let (corner, start) = (corners[place], starts[place]);
+        let next = match starts.get(place + 1) {
+            Some(next) => *next,
+            None if hinges.after(end) == WALL => {
+                let angle_there = charts[end as usize / 3].angle(end as usize % 3);
+                if angle - start > angle_there {
+                    return self.along_border(vertex, direction, (first, end), charts);
+                }
+                start + angle_there
+            }
+            None => TAU,
+        };
+        // Angles at the vertex are scaled. The triangle's rotation is that of the corner's middle.
+        let off_middle = angle - 0.5 * (start + next);
+        let unscaled = small_rotation(off_middle * (self.scales[vertex].recip() - 1.0));
         Some(Way {
             corner,
-            direction: turned(DVec2::from_angle(inside), edge) * direction.length(),
+            direction: turned(unscaled, turned_back(self.rotation(corner), direction)),
         })
     }
 

@@ -8,9 +8,9 @@ use pliant_mesh::{SurfaceVertex, face_normal};
 use rayon::prelude::*;
 
 use crate::chart::Chart;
-use crate::fans::{End, Fans};
+use crate::fans::Fans;
 use crate::hinges::Hinges;
-use crate::plane::{turned, turned_back};
+use crate::plane::turned;
 use crate::sheets::Sheets;
 use crate::sums::{CHUNK, sum, sums};
 use crate::trace::Domain;
@@ -138,14 +138,14 @@ impl<'a> Fluid<'a> {
             let chart = &self.domain.charts[triangle];
             let corners = self.corners(triangle);
             let gradients = chart.gradients();
+            let at = self
+                .domain
+                .fans
+                .at_edges(triangle, corners.map(|corner| changes[corner]));
             let mut sum = DVec2::ZERO;
             for k in 0..3 {
                 let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-                let along = |corner: usize, end: End| {
-                    let rotation = self.domain.fans.rotation_at((3 * triangle + corner) as u32, end);
-                    turned_back(rotation, changes[corners[corner]])
-                };
-                let circulation = 0.5 * chart.edge(k).dot(along(i, End::First) + along(j, End::Last));
+                let circulation = 0.5 * chart.edge(k).dot(at[i][0] + at[j][1]);
                 sum += (gradients[j] - gradients[i]) * circulation;
             }
             *velocity += sum / 3.0;

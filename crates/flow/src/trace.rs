@@ -8,7 +8,7 @@ use glam::DVec2;
 use crate::chart::Chart;
 use crate::fans::Fans;
 use crate::hinges::{Hinges, WALL, last, next};
-use crate::plane::{conjugate, rotation_between, turned, turned_back};
+use crate::plane::{conjugate, turned, turned_back};
 
 /// A way ends after this many edges. Only a velocity far above an edge a step, or a pile of needles, comes so far.
 const MOST_EDGES: usize = 1024;
@@ -37,6 +37,8 @@ struct Walk {
     weights: [f64; 3],
     /// The rest of the way.
     left: DVec2,
+    /// The change of the weights along it.
+    rates: [f64; 3],
     rotation: DVec2,
 }
 
@@ -53,12 +55,13 @@ impl Domain {
         let k = corner as usize % 3;
         let mut weights = [0.0; 3];
         weights[k] = 1.0;
-        let rates = self.charts[corner as usize / 3].gradients();
-        let [after, before] = [(k + 1) % 3, (k + 2) % 3].map(|other| rates[other].dot(left).max(0.0));
+        let rates = self.charts[corner as usize / 3].rates(left);
+        let [after, before] = [(k + 1) % 3, (k + 2) % 3].map(|other| rates[other].max(0.0));
         Some(self.walk(Walk {
             triangle: corner / 3,
             weights,
             left,
+            rates,
             rotation: conjugate(self.fans.rotation_along(corner, after, before)),
         }))
     }
@@ -71,9 +74,7 @@ impl Domain {
             if walk.left == DVec2::ZERO {
                 break;
             }
-            let rates = self.charts[walk.triangle as usize]
-                .gradients()
-                .map(|gradient| gradient.dot(walk.left));
+            let rates = walk.rates;
             let Some((k, share)) = exit(walk.weights, rates, entered) else {
                 for (weight, rate) in walk.weights.iter_mut().zip(rates) {
                     *weight += rate;
@@ -111,6 +112,7 @@ impl Domain {
         walk.triangle = other / 3;
         walk.weights = weights;
         walk.left = turned(turn, walk.left);
+        walk.rates = self.charts[other as usize / 3].rates(walk.left);
         walk.rotation = turned(turn, walk.rotation);
         m
     }
@@ -119,7 +121,9 @@ impl Domain {
     #[inline]
     pub fn turn(&self, edge: u32, other: u32) -> DVec2 {
         let vector = |edge: u32| self.charts[edge as usize / 3].edge(edge as usize % 3);
-        rotation_between(vector(edge), -vector(other))
+        // Both have the same length.
+        let (from, to) = (vector(edge), -vector(other));
+        turned_back(from, to) / from.length_squared()
     }
 
     /// Follows the border, on which the walk stands at `edge`. Where the border turns, the way turns with it.
@@ -276,6 +280,7 @@ mod tests {
                 triangle: first / 3,
                 weights: [0.0; 3],
                 left: along * length,
+                rates: [0.0; 3],
                 rotation: DVec2::X,
             };
             walk.weights[first as usize % 3] = 1.0;

@@ -12,6 +12,7 @@ mod cholesky;
 mod differential;
 mod editor;
 mod files;
+mod flow;
 mod frames;
 mod growth;
 mod linear;
@@ -88,6 +89,11 @@ const SECTIONS: &[Section] = &[
         name: "space",
         title: "The methods that bend space, medians of a drag, beside Blender's: milliseconds",
         rows: space::rows,
+    },
+    Section {
+        name: "flow",
+        title: "Dye on a bumpy torus, second-order steps of a sixtieth of a second: milliseconds, medians; megabytes",
+        rows: flow::rows,
     },
     Section {
         name: "scenes",
