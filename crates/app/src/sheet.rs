@@ -9,7 +9,7 @@ use crate::painting;
 use pliant_engine::report::Report;
 
 /// The height of a caption in points: two lines for the title, and one for each figure.
-const CAPTION: f32 = 120.0;
+const CAPTION: f32 = 105.0;
 
 /// The least width of a cell in points, if the sheet allows it: narrower ones would need small print.
 const NARROWEST: f32 = 140.0;
@@ -137,11 +137,11 @@ pub fn stretch([mean, largest]: [f64; 2]) -> String {
 }
 
 impl Caption {
-    /// A method's name and figures. `detail` is its detail error over that of the best.
+    /// A method's name and figures, without times: a picture is looked at long after its machine was busy or idle.
+    /// `detail` is its detail error over that of the best.
     pub fn bent(title: &str, report: &Report, detail: Option<f64>) -> Self {
-        let (frames, shape) = (&report.frames, &report.distortion);
+        let shape = &report.distortion;
         let mut lines = vec![
-            times(report.bind_ms, frames.median_ms),
             stretch([shape.edge_stretch_mean, shape.edge_stretch_max]),
             format!("volume × {:.3}", shape.volume_ratio),
         ];

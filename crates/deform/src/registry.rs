@@ -52,8 +52,8 @@ impl Default for Method {
 
 impl fmt::Display for Remedy {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let can = |declaration: &&&MethodDeclaration| {
-            let method = (declaration.default)();
+        let can = |method: &Method| {
+            let declaration = method.declaration();
             let bends_space = method.needs() == Needs::Points;
             match self {
                 Self::OfSpace => bends_space,
@@ -65,9 +65,15 @@ impl fmt::Display for Remedy {
                 Self::OfDamageBy(own) => declaration.name != *own && method.implementation().resists_collapse(),
             }
         };
+        let able = |declaration: &&MethodDeclaration| {
+            let (default, first_choice) = ((declaration.default)(), (declaration.first_choice)());
+            if can(&default) {
+                return Some(format!("`{}`", declaration.name));
+            }
+            can(&first_choice).then(|| named_with(&first_choice, &default))
+        };
         let most = if *self == Self::OfSpace { 2 } else { METHODS.len() };
-        let names = METHODS.iter().filter(can).take(most);
-        let names = names.map(|declaration| format!("`{}`", declaration.name));
+        let names = METHODS.iter().filter_map(able).take(most);
         let Self::OfDamageBy(_) = self else {
             return f.write_str(&joined(names, "or"));
         };
@@ -77,11 +83,33 @@ impl fmt::Display for Remedy {
     }
 }
 
+/// The method's name with the options that differ from those of another one: "`arap` with `energy` smooth".
+fn named_with(method: &Method, other: &Method) -> String {
+    let options = method.declaration().options.iter();
+    let differing = options.filter_map(|option| {
+        let value = method.value(option.name)?;
+        (other.value(option.name) != Some(value)).then(|| format!("`{}` {value}", option.name))
+    });
+    format!("`{}` with {}", method.name(), joined(differing, "and"))
+}
+
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "tests")]
 mod tests {
     use super::*;
     use crate::{OptionKind, OptionValue};
+
+    #[test]
+    fn advice_names_the_options_without_which_a_method_cannot_do_it() {
+        let said = |degrees| Remedy::FollowingTurns(degrees).to_string();
+        assert!(
+            said(90).contains("`arap` or") || said(90).contains("`arap`,"),
+            "{}",
+            said(90)
+        );
+        assert!(said(120).contains("`arap` with `energy` \"smooth\""), "{}", said(120));
+        assert!(!said(170).contains("arap"), "{}", said(170));
+    }
 
     #[test]
     fn every_declaration_is_complete_and_its_defaults_are_its_own() {

@@ -78,8 +78,30 @@ fn sheet(picture: &str, sample: &str, edit: &str, methods: &str, look: &[&str]) 
     command.args(["compare", &format!("assets/{sample}.glb"), "--methods", methods]);
     command.args(look);
     command.args(["--edit", &format!("assets/{edit}.edit.json"), "--output"]);
-    said(command.arg(root.join(format!("docs/gallery/{picture}.png"))))
+    let table = said(command.arg(root.join(format!("docs/gallery/{picture}.png"))))?;
+    Ok(without_times(&table))
 }
+
+/// The table without its columns of times, which depend on the machine and its load. Lines of another length than the
+/// header are sentences and stay.
+fn without_times(table: &str) -> String {
+    let header = table.lines().next().unwrap_or_default();
+    let Some(times_end) = header.find(LAST_TIME).map(|start| start + LAST_TIME.len()) else {
+        return table.to_owned();
+    };
+    let is_row = |line: &&str| line.len() == header.len();
+    let first = |line: &str| line.split(' ').next().unwrap_or_default().to_owned();
+    let names = table.lines().filter(is_row).map(|line| first(line).len()).max();
+    let width = names.unwrap_or_default();
+    let row = |line: &str| match line.get(times_end..) {
+        Some(rest) if is_row(&line) => format!("{:<width$}{rest}\n", first(line)),
+        _ => format!("{line}\n"),
+    };
+    table.lines().map(row).collect()
+}
+
+/// The heading of the last column of times.
+const LAST_TIME: &str = "frame ms";
 
 /// The line before a sample's table.
 fn mark(name: &str) -> String {
@@ -98,7 +120,25 @@ fn with_table(text: &str, name: &str, table: &str) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::with_table;
+    use super::{with_table, without_times};
+
+    #[test]
+    fn the_times_leave_a_table_and_nothing_else_does() {
+        let table = "\
+method           bind ms  frame ms  stretch
+cage               72.41      0.16    1.169
+arap:iterations   5372.4  13813.65    1.062
+primo: this edit has no handle
+";
+        let kept = "\
+method           stretch
+cage               1.169
+arap:iterations    1.062
+primo: this edit has no handle
+";
+        assert_eq!(without_times(table), kept);
+        assert_eq!(without_times("rbf  3.5%\n"), "rbf  3.5%\n");
+    }
 
     #[test]
     fn a_table_takes_the_place_of_the_one_before() {

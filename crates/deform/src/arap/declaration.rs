@@ -46,16 +46,19 @@ impl DeformMethod for Arap {
     }
 
     /// A neck can be so short that stretching it costs less than the twist around it, unless the smooth energy's barrier
-    /// makes that dear. In a sharp fold its cross-section becomes oval.
+    /// makes that dear. In a sharp fold its cross-section becomes oval, and a crease where bending is free.
     fn follows_turns(&self) -> Option<Followed> {
         match self.energy {
-            ArapEnergy::Spokes | ArapEnergy::SpokesAndRims => Some(Followed::by_necks(140.0)),
+            ArapEnergy::Spokes | ArapEnergy::SpokesAndRims => Some(Followed::by_folds_and_necks(95.0, 140.0)),
             ArapEnergy::Smooth => Some(Followed::by_folds(140.0)),
         }
     }
 
     fn advised_for_degrees(&self) -> u16 {
-        140
+        match self.energy {
+            ArapEnergy::Spokes | ArapEnergy::SpokesAndRims => 95,
+            ArapEnergy::Smooth => 140,
+        }
     }
 
     fn turns_by_moves(&self) -> bool {

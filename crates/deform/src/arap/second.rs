@@ -3,7 +3,7 @@
 use super::end::End;
 use super::lead::{First, LedSolver};
 use super::shape::{Guesses, Shape};
-use crate::descent::rival::{NEAR, Rival, Stage, Twice, is_far};
+use crate::descent::rival::{NEAR, Rival, Twice, is_far};
 use crate::descent::rule::State;
 use crate::handles::Motion;
 
@@ -23,10 +23,7 @@ impl LedSolver {
 
     /// The shape to show: the first descent's end until the second has ended.
     pub(super) fn shown(&self) -> &Shape {
-        match &self.rival.stage {
-            Stage::Against(first) => &first.shape,
-            Stage::Over | Stage::Due => &self.solver.current,
-        }
+        self.rival.first().map_or(&self.solver.current, |first| &first.shape)
     }
 }
 

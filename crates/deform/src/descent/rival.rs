@@ -43,11 +43,13 @@ pub(crate) trait Twice {
 /// After a step: begins the second descent when the first one has ended, and keeps the lower end when the second one
 /// has.
 pub(crate) fn compare(descent: &mut impl Twice) {
-    if !descent.energy().is_finite() {
-        descent.rival().end();
-        return;
-    }
+    let is_finite = descent.energy().is_finite();
     match std::mem::take(&mut descent.rival().stage) {
+        Stage::Against(first) if !is_finite => {
+            descent.rival().end();
+            descent.put_back(first);
+        }
+        _ if !is_finite => descent.rival().end(),
         Stage::Due if descent.has_ended() => {
             descent.rival().stage = Stage::Against(descent.end());
             descent.begin_again();
@@ -106,6 +108,14 @@ impl<S> Rival<S> {
         let is_due = goes_on && self.was_far;
         let next = if is_due { Stage::Due } else { Stage::Over };
         match std::mem::replace(&mut self.stage, next) {
+            Stage::Against(first) => Some(first),
+            Stage::Over | Stage::Due => None,
+        }
+    }
+
+    /// The end of the first descent while a second one descends.
+    pub fn first(&self) -> Option<&S> {
+        match &self.stage {
             Stage::Against(first) => Some(first),
             Stage::Over | Stage::Due => None,
         }

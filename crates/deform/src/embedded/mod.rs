@@ -25,12 +25,14 @@
 //!   (`space::blend`), so that hard handles are met exactly.
 //!
 //! Parts: `region::nodes` spreads them, `graph` joins them, `energy` has the terms, `system` the Gauss–Newton matrix, whose
-//! pattern is analysed once, and `solver` takes the steps.
+//! pattern is analysed once, and `solver` takes the steps. At the end of a drag a `second` descent begins from
+//! rest.
 
 mod declaration;
 mod energy;
 mod graph;
 mod options;
+mod second;
 mod solver;
 mod system;
 

@@ -5,9 +5,11 @@ use glam::{DMat3, DVec3};
 
 use super::energy::{DOF, Energy, NodeMap};
 use super::graph::Graph;
+use super::second::First;
 use super::system::System;
 use crate::descent;
 use crate::descent::energy::lower;
+use crate::descent::rival::{Rival, compare};
 use crate::descent::rule::{Rule, State};
 use crate::handles::Motion;
 use crate::handles::blend::{HandleFrame, Screw, Screws, carried};
@@ -23,18 +25,19 @@ pub(super) struct Solver {
     pub energy: Energy,
     system: System,
     /// The nodes, relative to the first handle's centre, in world units.
-    nodes: Vec<DVec3>,
-    handles: Vec<HandleFrame>,
+    pub(super) nodes: Vec<DVec3>,
+    pub(super) handles: Vec<HandleFrame>,
     /// The handles' harmonic weights, one row a node.
     weights: Vec<f64>,
-    maps: Vec<NodeMap>,
-    motions: Vec<Motion>,
+    pub(super) maps: Vec<NodeMap>,
+    pub(super) motions: Vec<Motion>,
     /// E at `maps`.
-    value: f64,
-    has_converged: bool,
+    pub(super) value: f64,
+    pub(super) has_converged: bool,
     /// True if the descent has stalled: no step was found that lowers the energy, though the maps have not converged.
-    has_stalled: bool,
+    pub(super) has_stalled: bool,
     tolerance: f64,
+    pub(super) rival: Rival<First>,
 }
 
 const REST: NodeMap = NodeMap {
@@ -64,6 +67,7 @@ impl Solver {
             energy,
             system,
             tolerance,
+            rival: Rival::default(),
         }
     }
 
@@ -75,11 +79,16 @@ impl Solver {
     /// Returns true if the descent has stalled: no step was found that lowers the energy, though the maps have not
     /// converged.
     pub fn has_stalled(&self) -> bool {
-        self.has_stalled
+        self.has_stalled && self.rival.first().is_none()
     }
 
-    /// Returns to rest.
+    /// Returns to rest, as after binding.
     pub fn rest(&mut self) {
+        self.rival.end();
+        self.back_to_rest();
+    }
+
+    pub(super) fn back_to_rest(&mut self) {
         self.maps.fill(REST);
         self.motions.fill(Motion::default());
         self.value = 0.0;
@@ -90,21 +99,27 @@ impl Solver {
     /// One step towards `motions`. Returns whether it converged, and the energy per node.
     pub fn step(&mut self, motions: &[Motion]) -> (bool, f64) {
         if self.motions != motions {
+            self.expect(motions);
             self.start(motions);
         } else if !self.has_converged && !self.has_stalled {
             self.descend();
         }
-        let value = self.value;
+        compare(self);
+        let first = self.rival.first();
+        // The second descent may have ended with its first step.
+        let has_converged = self.has_converged && first.is_none();
+        let value = first.map_or(self.value, |first| first.value);
         if !value.is_finite() {
             // The result is refused; the next targets begin afresh.
             self.rest();
         }
-        (self.has_converged, value / self.energy.count().max(1) as f64)
+        (has_converged, value / self.energy.count().max(1) as f64)
     }
 
-    /// The nodes' motions in world units.
+    /// The nodes' motions in world units: those of a drag's own descent until a second one has ended.
     pub fn affine(&self, graph: &Graph) -> Vec<Affine> {
-        let maps = graph.world_nodes.iter().zip(&self.maps);
+        let shown = self.rival.first().map_or(&self.maps, |first| &first.maps);
+        let maps = graph.world_nodes.iter().zip(shown);
         maps.map(|(&world_centre, map)| Affine {
             world_centre,
             linear: map.linear,
@@ -114,7 +129,7 @@ impl Solver {
     }
 
     /// Takes the better of two starts, and a step from there.
-    fn start(&mut self, motions: &[Motion]) {
+    pub(super) fn start(&mut self, motions: &[Motion]) {
         let was_at_rest = self.motions.iter().all(Motion::is_rest);
         let Screws { from_rest, onwards } = Screws::of(&self.handles, &self.motions, motions);
         self.motions.copy_from_slice(motions);

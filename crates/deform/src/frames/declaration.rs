@@ -41,7 +41,11 @@ impl DeformMethod for Frames {
 
     /// Edges join the frames, and the mean of two frames that are half a turn apart has no length.
     fn follows_turns(&self) -> Option<Followed> {
-        Some(Followed::by_limbs(140.0))
+        // With iterations it descends as ARAP over rims does.
+        Some(match self.iterations {
+            0 => Followed::by_limbs(140.0),
+            _ => Followed::by_folds_and_necks(95.0, 140.0),
+        })
     }
 
     fn needs(&self) -> Needs {

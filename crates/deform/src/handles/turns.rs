@@ -13,41 +13,53 @@ pub(crate) struct Followed {
     most_degrees: f64,
     /// The effect of larger turns.
     beyond: &'static str,
+    /// The turn from which a twisted limb narrows at thin places too, if that is another one.
+    necks_degrees: Option<f64>,
 }
 
 impl Followed {
-    /// Every limb narrows.
-    pub fn by_limbs(most_degrees: f64) -> Self {
+    fn until(most_degrees: f64, beyond: &'static str) -> Self {
         Self {
             most_degrees,
-            beyond: "narrows the limb",
+            beyond,
+            necks_degrees: None,
         }
+    }
+
+    /// Every limb narrows.
+    pub fn by_limbs(most_degrees: f64) -> Self {
+        Self::until(most_degrees, "narrows the limb")
     }
 
     /// A limb narrows only where it is thinner than elsewhere.
     pub fn by_necks(most_degrees: f64) -> Self {
-        Self {
-            most_degrees,
-            beyond: "narrows the limb at thin places",
-        }
+        Self::until(most_degrees, NARROWS_NECKS)
     }
 
     /// A limb that is folded is flattened; one that is twisted keeps its radius.
     pub fn by_folds(most_degrees: f64) -> Self {
-        Self {
+        Self::until(
             most_degrees,
-            beyond: "flattens a limb that is folded, though not one that is twisted",
+            "flattens a limb that is folded, though not one that is twisted",
+        )
+    }
+
+    /// A limb that is folded is flattened; one that is twisted narrows where it is thinner than elsewhere, from a larger
+    /// turn on.
+    pub fn by_folds_and_necks(most_degrees: f64, necks_degrees: f64) -> Self {
+        Self {
+            necks_degrees: Some(necks_degrees),
+            ..Self::by_folds(most_degrees)
         }
     }
 
     /// All of the turn is in one place.
     pub fn by_seams(most_degrees: f64) -> Self {
-        Self {
-            most_degrees,
-            beyond: "twists the limb in one place",
-        }
+        Self::until(most_degrees, "twists the limb in one place")
     }
 }
+
+const NARROWS_NECKS: &str = "narrows the limb at thin places";
 
 /// The limit of a method, and its name.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -69,7 +81,11 @@ impl TurnLimit {
 
     /// The same about the handles that are `counted`.
     pub fn warning_of(&self, handles: &[Handle], motions: &[Motion], counted: &[bool]) -> Option<Warning> {
-        let Followed { most_degrees, beyond } = self.followed;
+        let Followed {
+            most_degrees,
+            beyond,
+            necks_degrees,
+        } = self.followed;
         let turn = |(handle, motion): (&Handle, &Motion)| Polar::of(&handle.linear(motion)).turn_rad;
         let own = handles.iter().zip(motions).enumerate();
         let turns: Vec<(usize, DQuat)> = own
@@ -90,6 +106,12 @@ impl TurnLimit {
         }
         let (degrees, number) = worst;
         let others = Remedy::FollowingTurns(degrees.ceil() as u16);
+        let beyond = match necks_degrees {
+            Some(necks_degrees) if degrees > necks_degrees => {
+                format!("flattens a limb that is folded, and from {necks_degrees:.0}° on it {NARROWS_NECKS} in a twist")
+            }
+            _ => beyond.to_owned(),
+        };
         (degrees > most_degrees + ROOM_DEGREES).then(|| {
             Warning::of_handle(number, |handle| {
                 format!(

@@ -9,7 +9,7 @@ use super::joints::Joints;
 use super::pose::Pose;
 use super::springs::Springs;
 use crate::budget::{Budget, bytes_of};
-use crate::descent::rival::{Rival, Stage, compare};
+use crate::descent::rival::{Rival, compare};
 use crate::descent::rule;
 use crate::handles::blend::HandleFrame;
 use crate::handles::{Handle, Motion};
@@ -146,10 +146,7 @@ impl Bodies {
 
     /// The pose to show: the end of a drag's own descent until a second one has ended.
     pub fn shown(&self) -> &Pose {
-        match &self.rival.stage {
-            Stage::Against(first) => &first.pose,
-            Stage::Over | Stage::Due => &self.current,
-        }
+        self.rival.first().map_or(&self.current, |first| &first.pose)
     }
 
     /// Returns true if no step lowers the energy although the pose has not converged.

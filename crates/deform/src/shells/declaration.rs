@@ -127,14 +127,14 @@ impl BoundMethod for ShellsSolver {
         let elements = &self.energy.elements;
         let solved = &elements.vertices[..elements.solved_count];
         let placed = self.placed();
-        let own = placed.as_ref().unwrap_or(&self.current.displacements);
+        let own = placed.as_ref().unwrap_or(&self.shown().displacements);
         for (&vertex, displacement) in solved.iter().zip(own) {
             displacements[vertex as usize] = *displacement;
         }
         let (converged, energy) = outcome;
         Ok(Stepped {
             converged,
-            stalled: self.has_stalled,
+            stalled: self.has_stalled && self.rival.first().is_none(),
             energy,
             finite: Finite::Unknown,
         })
@@ -151,13 +151,14 @@ impl BoundMethod for ShellsSolver {
     }
 
     fn rest(&mut self) {
+        self.rival.end();
         self.back_to_rest();
     }
 
     fn energy_of(&self, motions: &[Motion], displacements: &[DVec3]) -> Option<f64> {
         let mut springs = self.energy.springs.clone();
         springs.aim(motions);
-        let mut shape = self.current.clone();
+        let mut shape = self.shown().clone();
         for (own, &vertex) in shape.displacements.iter_mut().zip(&self.energy.elements.vertices) {
             *own = displacements[vertex as usize];
         }
@@ -170,7 +171,7 @@ impl BoundMethod for ShellsSolver {
     }
 
     fn weights(&self) -> &[f64] {
-        &self.current.weights
+        &self.shown().weights
     }
 
     fn solved_count(&self) -> usize {

@@ -31,7 +31,7 @@
 //! gradient and barrier, `curvature` their second derivatives, `enclosed` the volumes, `springs` the soft handles,
 //! `shape` the positions and their energy, `system` the matrix, and `unfolded` a quadratic energy that gives the
 //! handles' weights. `start` chooses the first shape for new targets, `blended` gives the one for examples, and
-//! `descent` takes a step. A large surface has a `coarse` level that takes the `lead`; `carry` transfers its motion.
+//! `descent` takes a step. At the end of a drag a `second` descent begins from rest. A large surface has a `coarse` level that takes the `lead`; `carry` transfers its motion.
 
 mod blended;
 mod carry;
@@ -48,6 +48,7 @@ mod hinge;
 mod lead;
 mod leaning;
 mod options;
+mod second;
 mod shape;
 mod springs;
 mod start;
@@ -66,11 +67,13 @@ use self::blended::Turns;
 use self::carry::Carrier;
 use self::elements::Elements;
 use self::examples::Examples;
+use self::second::First;
 use self::shape::{Energy, Shape, Slopes};
 use self::system::{Pattern, System};
 use self::unfolded::{Preconditioner, Unfolded};
 use crate::budget::bytes_of;
 use crate::descent::prescribed::Prescribed;
+use crate::descent::rival::{Rival, compare};
 use crate::handles::blend::HandleFrame;
 use crate::handles::offsets::Offsets;
 use crate::handles::{Handle, Motion};
@@ -115,6 +118,7 @@ pub(crate) struct ShellsSolver {
     /// True if the offsets of handles' vertices changed since the last step.
     has_other_offsets: bool,
     tolerance: f64,
+    rival: Rival<First>,
     warnings: Vec<String>,
 }
 
@@ -279,6 +283,7 @@ impl ShellsSolver {
             has_other_weights: false,
             has_other_offsets: false,
             tolerance: options.tolerance,
+            rival: Rival::default(),
             warnings: warnings(options, &energy),
             descent: Some(descent),
             blending,
@@ -292,17 +297,21 @@ impl ShellsSolver {
         let has_other_weights = std::mem::take(&mut self.has_other_weights);
         let has_other_offsets = std::mem::take(&mut self.has_other_offsets);
         if self.motions != motions || has_other_weights || has_other_offsets {
+            self.expect(motions);
             self.has_stalled = false;
             self.head_for(motions);
         } else if !self.has_converged && !self.has_stalled {
             self.descend();
         }
-        let energy = self.current.energy;
+        compare(self);
+        let energy = self.shown().energy;
         if !energy.is_finite() {
             // The shape is refused; the next targets start from rest.
             self.back_to_rest();
         }
-        (self.has_converged, energy * self.energy.unit)
+        // The second descent may have ended with its first step.
+        let is_over = self.rival.first().is_none();
+        (self.has_converged && is_over, energy * self.energy.unit)
     }
 
     /// Sets the weights of the examples; the next step approaches them.
@@ -330,10 +339,11 @@ impl ShellsSolver {
     /// there are no such components.
     pub fn placed(&self) -> Option<Vec<DVec3>> {
         let Energy { frames, elements, .. } = &self.energy;
-        let mut placed = (!frames.is_empty()).then(|| self.current.displacements.clone());
+        let shown = self.shown();
+        let mut placed = (!frames.is_empty()).then(|| shown.displacements.clone());
         if let Some(placed) = &mut placed {
             for frame in frames {
-                frame.place(&elements.rest, &self.current.weights, placed);
+                frame.place(&elements.rest, &shown.weights, placed);
             }
         }
         placed

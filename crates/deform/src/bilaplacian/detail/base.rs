@@ -5,6 +5,8 @@
 //! so details shorter than about 2π ℓ vanish and a limb of radius r keeps r / (1 + (ℓ / r)²ᵏ). Without end, every limb
 //! shrinks to a line.
 //!
+//! Where stiffness s is painted, the time is shorter: a stiff part is its own base and has no details.
+//!
 //! L is measured on the surface, as for bending. Handles, fixed vertices and borders keep their positions. At a border
 //! L x is the flux across it, which does not vanish on a plane, so the border's cells are left out of the energy: a
 //! flat sheet is then its own base, with free borders or without.
@@ -21,6 +23,7 @@ use crate::bilaplacian::setup::bent_rows;
 use crate::bilaplacian::solver::BilaplacianSolver;
 use crate::handles::Motion;
 use crate::method::BindInput;
+use crate::region::boundary_problem::BoundaryProblem;
 use crate::region::patch::Patch;
 use crate::region::slender;
 use crate::sparse::ordering::hubs::hub_degree;
@@ -40,6 +43,9 @@ pub(crate) struct Base {
     pub centre: DVec3,
     carried: Carried,
 }
+
+/// Without a finite time, a part of stiffness s is faired for the time of this length ℓ (s − 1)^(−1/2k), in sizes.
+const STIFF_LENGTH: f64 = 0.05;
 
 /// The base's points, one for each surface vertex, relative to the centre of the surface's bounding box.
 pub(crate) struct Faired {
@@ -101,7 +107,8 @@ impl Faired {
         let diagonal = bounds.map_or(0.0, |bounds| bounds.diagonal());
         let mut operator = BilaplacianOperator::new(laplacian, &fairing, diagonal);
         operator.hub_degree = hub_degree(triangulation.vertex_count());
-        let tied = length.map(|length| tie(&mut operator, &faired, length));
+        let ties = Ties::of(problem, &faired, length, operator.power);
+        ties.add_to(&mut operator);
         let elimination = input.ordering()?.elimination(&faired);
         let refuse = |error| refused(error, input);
         let budget = partition.budget;
@@ -113,7 +120,7 @@ impl Faired {
             [point.x, point.y, point.z, 1.0]
         };
         let mut field: Vec<[f64; 4]> = vertices.iter().map(row).collect();
-        field.extend(tied.into_iter().flatten().map(|vertex| row(&vertex)));
+        field.extend(ties.vertices.iter().map(row));
         let error = system.check(&mut field, cancel).map_err(refuse)?;
         if error.is_nan() || error > TOLERANCE {
             let vertex = faired[0];
@@ -136,16 +143,44 @@ impl Faired {
     }
 }
 
-/// Ties the faired vertices to their rest positions by springs of M ℓ⁻²ᵏ; returns the vertices, in the order of the
-/// springs.
-fn tie<'a>(operator: &mut BilaplacianOperator, faired: &'a [u32], length: f64) -> impl Iterator<Item = u32> + use<'a> {
-    let laplacian = &operator.laplacian;
-    let locals = laplacian.locals(faired);
-    let firmness = operator.bending / length.powi(2 * operator.power as i32);
-    let strength = |&local: &u32| firmness / laplacian.inverse_areas()[local as usize];
-    let strengths: Vec<f64> = locals.iter().map(strength).collect();
-    operator.hang(&locals, &strengths);
-    faired.iter().copied()
+/// The faired vertices that springs of M k_b ℓ⁻²ᵏ tie to their rest positions, and ℓ⁻²ᵏ of each.
+#[derive(Default)]
+struct Ties {
+    vertices: Vec<u32>,
+    firmness: Vec<f64>,
+}
+
+impl Ties {
+    /// Ties for a time of this length, and where the surface is stiff.
+    ///
+    /// A stiff part's displacements are those of a body, taken at the surface: on a base that has shrunk away from the
+    /// surface they would be those of a larger body, and the base would swell.
+    fn of(problem: &BoundaryProblem<'_>, faired: &[u32], length: Option<f64>, power: u32) -> Self {
+        let own = |length: f64| length.powi(-2 * power as i32);
+        let stiff = own(STIFF_LENGTH * problem.size());
+        let firmness = |vertex: u32| {
+            let stiffness = problem.stiffness[vertex as usize];
+            match length {
+                Some(length) => own(length) * stiffness.max(1.0),
+                None => stiff * (stiffness - 1.0).max(0.0),
+            }
+        };
+        let tied = faired.iter().map(|&vertex| (vertex, firmness(vertex)));
+        let (vertices, firmness) = tied.filter(|(_, firmness)| *firmness > 0.0).unzip();
+        Self { vertices, firmness }
+    }
+
+    fn add_to(&self, operator: &mut BilaplacianOperator) {
+        if self.vertices.is_empty() {
+            return;
+        }
+        let laplacian = &operator.laplacian;
+        let locals = laplacian.locals(&self.vertices);
+        let strength =
+            |(&local, firmness): (&u32, &f64)| operator.bending * firmness / laplacian.inverse_areas()[local as usize];
+        let strengths: Vec<f64> = locals.iter().zip(&self.firmness).map(strength).collect();
+        operator.hang(&locals, &strengths);
+    }
 }
 
 impl Base {

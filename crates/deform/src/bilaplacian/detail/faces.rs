@@ -14,9 +14,9 @@ use crate::region::patch::Patch;
 pub(crate) struct Faces {
     /// The corners of each triangle, as local vertices of the patch.
     pub corners: Vec<[u32; 3]>,
-    /// The start of each local vertex' entries of `around`; one more at the end.
+    /// The start of each local vertex' entries of `slots`; one more at the end.
     starts: Vec<u32>,
-    around: Vec<u32>,
+    slots: Vec<u32>,
 }
 
 impl Faces {
@@ -46,35 +46,35 @@ impl Faces {
             starts[local + 1] += starts[local];
         }
         let mut next = starts.clone();
-        let mut around = vec![0; corners.len() * 3];
-        for (face, corners) in (0..).zip(&corners) {
-            for &corner in corners {
-                around[next[corner as usize] as usize] = face;
-                next[corner as usize] += 1;
-            }
+        let mut slots = vec![0; corners.len() * 3];
+        for (slot, &corner) in (0..).zip(corners.as_flattened()) {
+            slots[next[corner as usize] as usize] = slot;
+            next[corner as usize] += 1;
         }
-        Self {
-            corners,
-            starts,
-            around,
-        }
+        Self { corners, starts, slots }
+    }
+
+    /// The places of a local vertex among the flattened `corners`: three times the triangle, plus the corner.
+    #[inline]
+    pub fn slots(&self, local: usize) -> &[u32] {
+        &self.slots[self.starts[local] as usize..self.starts[local + 1] as usize]
     }
 
     /// The triangles around a local vertex.
     #[inline]
-    pub fn around(&self, local: usize) -> &[u32] {
-        &self.around[self.starts[local] as usize..self.starts[local + 1] as usize]
+    pub fn around(&self, local: usize) -> impl Iterator<Item = u32> {
+        self.slots(local).iter().map(|slot| slot / 3)
     }
 
     /// Fills in the unit normal of each local vertex: the direction of its triangles' area vectors in sum, zero if it
     /// has none.
     pub fn normals(&self, points: &[DVec3], normals: &mut Vec<DVec3>) {
         let normal = |local: usize| {
-            let area = |&face: &u32| {
+            let area = |face: u32| {
                 let [a, b, c] = self.corners[face as usize].map(|corner| points[corner as usize]);
                 (b - a).cross(c - a)
             };
-            let sum: DVec3 = self.around(local).iter().map(area).sum();
+            let sum: DVec3 = self.around(local).map(area).sum();
             sum.try_normalize().unwrap_or(DVec3::ZERO)
         };
         (0..self.starts.len() - 1)

@@ -75,7 +75,7 @@ impl RestBase<'_> {
         for _ in 0..WALK {
             let mut is_nearer = false;
             for corner in corners {
-                for &face in self.faces.around(corner as usize) {
+                for face in self.faces.around(corner as usize) {
                     let places = self.faces.corners[face as usize].map(|corner| self.points[corner as usize]);
                     let weights = nearest_in(point, places);
                     let square = mix(weights, places).distance_squared(point);
@@ -145,7 +145,7 @@ impl RestBase<'_> {
     fn across(&self, face: u32, corner: usize) -> Option<u32> {
         let corners = self.faces.corners[face as usize];
         let (from, to) = (corners[(corner + 1) % 3], corners[(corner + 2) % 3]);
-        let mut around = self.faces.around(from as usize).iter().copied();
+        let mut around = self.faces.around(from as usize);
         around.find(|&next| next != face && self.faces.corners[next as usize].contains(&to))
     }
 

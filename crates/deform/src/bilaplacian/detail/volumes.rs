@@ -9,9 +9,11 @@
 //! with A_f the surface's area at rest: the first term is the squared error of the mean height, integrated over the
 //! surface, the second keeps neighbours together where the volumes leave the vertices free, as in sliding along a
 //! smooth surface. There are twice as many prisms as vertices, but each vertex has three coordinates, so the volumes can
-//! be met. Conjugate gradients find a correction; nothing is factored, because the gradients change in each frame.
+//! be met. A few conjugate gradient steps find a correction; nothing is factored, because the gradients change in each
+//! frame. A product is a pass over the faces, which reads the field at their corners, and one over the vertices, which
+//! reads four numbers and a gradient of each face around them.
 
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec3, Vec3};
 use rayon::prelude::*;
 
 use super::base::Base;
@@ -30,8 +32,10 @@ pub(crate) struct Volumes {
     corrections: u32,
     /// The prisms' volumes at rest.
     volumes: Vec<f64>,
-    /// The rest area of the surface's triangle, and its inverse.
-    areas: Vec<[f64; 2]>,
+    /// √A of the surface's triangles.
+    root_areas: Vec<f64>,
+    /// 3 λ Σ A over the faces around each local vertex.
+    evenness: Vec<f64>,
     /// A frame's sum of |V − V⁰| that is small enough.
     enough: f64,
     /// Whether the corrections move the local vertex.
@@ -48,9 +52,10 @@ struct Room {
     /// The rows' points by normal displacements.
     points: Vec<DVec3>,
     lacks: Vec<f64>,
-    gradients: Vec<[DVec3; 3]>,
-    /// ∇V · x / A of each prism.
-    changes: Vec<f64>,
+    /// ∇V / √A of each prism by its corners. **f32**: they give corrections alone, whose result is measured in f64.
+    gradients: Vec<[Vec3; 3]>,
+    /// Of each prism what the vertices around it read: ∇V · x / √A, and λ A Σ x over its corners.
+    sums: Vec<[f64; 4]>,
     inverse_blocks: Vec<DMat3>,
     correction: Field,
     residual: Field,
@@ -62,8 +67,8 @@ struct Room {
 /// λ: with 0.01 the volumes are no nearer after three corrections and some triangles are stretched more.
 const EVENNESS: f64 = 0.1;
 
-/// The most conjugate gradient steps of a correction: 40 leave the same error after the next one.
-const STEPS: usize = 15;
+/// The most conjugate gradient steps of a correction: 15 and 40 leave the same error after the next one.
+const STEPS: usize = 6;
 
 /// Conjugate gradients end when the residual has fallen to this share of its length.
 const RESIDUAL: f64 = 1e-3;
@@ -101,12 +106,18 @@ impl Volumes {
         // A sliver's error of height counts no more than that of a triangle of this area.
         let least = 1e-3 * whole / areas.len().max(1) as f64;
         let total: f64 = volumes.iter().map(|volume| volume.abs()).sum();
+        let root_areas: Vec<f64> = areas.iter().map(|area| area.max(least).sqrt()).collect();
+        let around = |local: usize| {
+            normals
+                .faces
+                .around(local)
+                .map(|face| root_areas[face as usize].powi(2))
+        };
+        let evenness = (0..patch.vertices.len()).map(|local| 3.0 * EVENNESS * around(local).sum::<f64>());
         Self {
             enough: TOLERANCE * total + ROUNDING * patch.size * whole,
-            areas: areas
-                .iter()
-                .map(|area| [area.max(least), area.max(least).recip()])
-                .collect(),
+            evenness: evenness.collect(),
+            root_areas,
             room: Room {
                 tops,
                 ..Room::default()
@@ -178,23 +189,12 @@ impl Volumes {
     /// Finds the correction of all local vertices by conjugate gradients with the vertices' own blocks as
     /// preconditioner.
     fn correct(&self, posed: &[DVec3], room: &mut Room) {
-        let faces = self.faces();
-        let corners = faces.corners.par_iter().with_min_len(CHUNK);
-        corners
-            .map(|corners| {
-                let of = |points: &[DVec3]| corners.map(|corner| points[corner as usize]);
-                gradient(of(posed), of(&room.tops))
-            })
-            .collect_into_vec(&mut room.gradients);
-        let blocks = (0..posed.len()).into_par_iter().with_min_len(CHUNK);
-        blocks
-            .map(|local| self.inverse_block(local, &room.gradients))
-            .collect_into_vec(&mut room.inverse_blocks);
-        let weighted = room.lacks.par_iter().zip(&self.areas).with_min_len(CHUNK);
-        weighted
-            .map(|(lack, [_, inverse])| lack * inverse)
-            .collect_into_vec(&mut room.changes);
-        self.gather(&room.gradients, &room.changes, None, &mut room.residual);
+        self.differentiate(posed, room);
+        let lacking = room.lacks.par_iter().zip(&self.root_areas).with_min_len(CHUNK);
+        lacking
+            .map(|(lack, root)| [lack / root, 0.0, 0.0, 0.0])
+            .collect_into_vec(&mut room.sums);
+        self.gather(&room.gradients, &room.sums, None, &mut room.residual);
         room.correction.clear();
         room.correction.resize(posed.len(), [0.0; 3]);
         condition(&room.inverse_blocks, &room.residual, &mut room.conditioned);
@@ -205,15 +205,8 @@ impl Volumes {
             if square <= least {
                 break;
             }
-            let changes = faces.corners.par_iter().zip(&room.gradients).zip(&self.areas);
-            changes
-                .with_min_len(CHUNK)
-                .map(|((corners, gradients), [_, inverse])| {
-                    let along = |k: usize| gradients[k].dot(DVec3::from_array(room.direction[corners[k] as usize]));
-                    (along(0) + along(1) + along(2)) * inverse
-                })
-                .collect_into_vec(&mut room.changes);
-            self.gather(&room.gradients, &room.changes, Some(&room.direction), &mut room.image);
+            self.sum(&room.gradients, &room.direction, &mut room.sums);
+            self.gather(&room.gradients, &room.sums, Some(&room.direction), &mut room.image);
             let step = square / dot(&room.direction, &room.image);
             if !step.is_finite() {
                 break;
@@ -231,53 +224,64 @@ impl Volumes {
         }
     }
 
-    /// Fills in Σ_f ∇V_f c_f at each free vertex, c being `changes`, and with a field x also λ Σ_f A_f Σ_j (x_i − x_j).
-    fn gather(&self, gradients: &[[DVec3; 3]], changes: &[f64], x: Option<&Field>, out: &mut Field) {
-        let faces = self.faces();
+    /// Fills in the prisms' gradients, and the inverse of each vertex' own block of the system.
+    fn differentiate(&self, posed: &[DVec3], room: &mut Room) {
+        let tops = &room.tops;
+        let corners = self.faces().corners.par_iter().zip(&self.root_areas);
+        corners
+            .with_min_len(CHUNK)
+            .map(|(corners, root)| {
+                let of = |points: &[DVec3]| corners.map(|corner| points[corner as usize]);
+                gradient(of(posed), of(tops)).map(|gradient| (gradient / *root).as_vec3())
+            })
+            .collect_into_vec(&mut room.gradients);
+        let slopes = room.gradients.as_flattened();
+        let inverse = |local: usize| {
+            if !self.is_free[local] {
+                return DMat3::ZERO;
+            }
+            let mut block = DMat3::from_diagonal(DVec3::splat(2.0 / 3.0 * self.evenness[local]));
+            for &slot in self.faces().slots(local) {
+                let slope = slopes[slot as usize].as_dvec3();
+                block += DMat3::from_cols(slope * slope.x, slope * slope.y, slope * slope.z);
+            }
+            block.inverse()
+        };
+        let locals = (0..posed.len()).into_par_iter().with_min_len(CHUNK);
+        locals.map(inverse).collect_into_vec(&mut room.inverse_blocks);
+    }
+
+    /// Fills in the sums of a field x over the corners of each prism.
+    fn sum(&self, gradients: &[[Vec3; 3]], x: &Field, sums: &mut Vec<[f64; 4]>) {
+        let prisms = self.faces().corners.par_iter().zip(gradients).zip(&self.root_areas);
+        prisms
+            .with_min_len(CHUNK)
+            .map(|((corners, gradients), root)| {
+                let x = corners.map(|corner| DVec3::from_array(x[corner as usize]));
+                let along = |k: usize| gradients[k].as_dvec3().dot(x[k]);
+                let even = (x[0] + x[1] + x[2]) * (EVENNESS * root * root);
+                [along(0) + along(1) + along(2), even.x, even.y, even.z]
+            })
+            .collect_into_vec(sums);
+    }
+
+    /// Fills in Σ_f ∇V_f c_f / √A_f at each free vertex, c being the first of the prisms' `sums`, and with a field x
+    /// also λ Σ_f A_f Σ_j (x_i − x_j), whose sum over j is in the others.
+    fn gather(&self, gradients: &[[Vec3; 3]], sums: &[[f64; 4]], x: Option<&Field>, out: &mut Field) {
+        let gradients = gradients.as_flattened();
         let at = |local: usize| {
             if !self.is_free[local] {
                 return [0.0; 3];
             }
-            let mut sum = DVec3::ZERO;
-            for &face in faces.around(local) {
-                let face = face as usize;
-                let corners = faces.corners[face];
-                for (corner, gradient) in corners.iter().zip(&gradients[face]) {
-                    if *corner as usize == local {
-                        sum += *gradient * changes[face];
-                    }
-                }
-                if let Some(x) = x {
-                    let [a, b, c] = corners.map(|corner| DVec3::from_array(x[corner as usize]));
-                    let apart = DVec3::from_array(x[local]) * 3.0 - (a + b + c);
-                    sum += apart * (EVENNESS * self.areas[face][0]);
-                }
+            let mut sum = x.map_or(DVec3::ZERO, |x| DVec3::from_array(x[local]) * self.evenness[local]);
+            for &slot in self.faces().slots(local) {
+                let [change, even @ ..] = sums[slot as usize / 3];
+                sum += gradients[slot as usize].as_dvec3() * change - DVec3::from_array(even);
             }
             sum.to_array()
         };
         let locals = (0..self.is_free.len()).into_par_iter().with_min_len(CHUNK);
         locals.map(at).collect_into_vec(out);
-    }
-
-    /// The inverse of a vertex' own block of the system.
-    fn inverse_block(&self, local: usize, gradients: &[[DVec3; 3]]) -> DMat3 {
-        if !self.is_free[local] {
-            return DMat3::ZERO;
-        }
-        let faces = self.faces();
-        let mut block = DMat3::ZERO;
-        for &face in faces.around(local) {
-            let face = face as usize;
-            let [area, inverse] = self.areas[face];
-            block += DMat3::from_diagonal(DVec3::splat(2.0 * EVENNESS * area));
-            for (corner, gradient) in faces.corners[face].iter().zip(&gradients[face]) {
-                if *corner as usize == local {
-                    let scaled = *gradient * inverse;
-                    block += DMat3::from_cols(*gradient * scaled.x, *gradient * scaled.y, *gradient * scaled.z);
-                }
-            }
-        }
-        block.inverse()
     }
 }
 

@@ -1,0 +1,77 @@
+//! The second descent of a drag's end, from rest: see [`crate::descent::rival`].
+
+use super::energy::NodeMap;
+use super::solver::Solver;
+use crate::descent::rival::{NEAR, Rival, Twice, is_far};
+use crate::handles::Motion;
+
+/// The end of a drag's own descent, while a second one is tried.
+#[derive(Debug)]
+pub(crate) struct First {
+    pub maps: Vec<NodeMap>,
+    pub value: f64,
+    has_converged: bool,
+    has_stalled: bool,
+}
+
+impl Solver {
+    /// Prepares for new motions.
+    pub(super) fn expect(&mut self, motions: &[Motion]) {
+        let goes_on = !self.motions.iter().all(Motion::is_rest);
+        let is_far = is_far(&self.handles, motions, self.size());
+        if let Some(first) = self.rival.aim(goes_on, is_far) {
+            self.put_back(first);
+        }
+    }
+
+    /// The diagonal of the box around the nodes.
+    fn size(&self) -> f64 {
+        pliant_mesh::bounding_box(&self.nodes).map_or(0.0, |bounds| bounds.diagonal())
+    }
+}
+
+impl Twice for Solver {
+    type End = First;
+
+    fn rival(&mut self) -> &mut Rival<First> {
+        &mut self.rival
+    }
+
+    fn has_ended(&self) -> bool {
+        self.has_converged || self.has_stalled
+    }
+
+    fn energy(&self) -> f64 {
+        self.value
+    }
+
+    fn energy_at(first: &First) -> f64 {
+        first.value
+    }
+
+    fn end(&self) -> First {
+        First {
+            maps: self.maps.clone(),
+            value: self.value,
+            has_converged: self.has_converged,
+            has_stalled: self.has_stalled,
+        }
+    }
+
+    fn begin_again(&mut self) {
+        let motions = self.motions.clone();
+        self.back_to_rest();
+        self.start(&motions);
+    }
+
+    fn is_near(&self, first: &First) -> bool {
+        let limit = NEAR * self.size() / self.energy.world_unit;
+        let mut pairs = self.maps.iter().zip(&first.maps);
+        pairs.all(|(now, first)| now.shift.distance(first.shift) < limit)
+    }
+
+    fn put_back(&mut self, first: First) {
+        (self.maps, self.value) = (first.maps, first.value);
+        (self.has_converged, self.has_stalled) = (first.has_converged, first.has_stalled);
+    }
+}
