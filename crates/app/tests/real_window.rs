@@ -175,6 +175,23 @@ fn killed_in_the_middle_of_drags_the_window_recovers_each_time() {
 
 /// A window that filled the screen does so when the program starts again; another one has its size.
 #[test]
+fn text_comes_from_other_programs_and_goes_to_them() {
+    let Some(desktop) = Desktop::open(&sample()) else {
+        return;
+    };
+    if !desktop.copy_elsewhere("painted") {
+        return;
+    }
+    // The palette's field.
+    desktop.key("F1");
+    desktop.key("ctrl+v");
+    desktop.type_text(" stiffness");
+    desktop.key("ctrl+a");
+    desktop.key("ctrl+c");
+    desktop.wait_for_clipboard("painted stiffness");
+}
+
+#[test]
 fn a_maximised_window_comes_back_maximised() {
     let Some(mut desktop) = Desktop::open(&sample()) else {
         return;

@@ -7,7 +7,7 @@
     reason = "tests fail by panicking and say what they skip"
 )]
 
-use std::io::{BufRead, BufReader};
+use std::io::{BufRead, BufReader, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -283,6 +283,43 @@ impl Desktop {
     pub fn type_text(&self, text: &str) {
         self.xdotool(&["type", "--delay", "20", text]);
         sleep(PAUSE);
+    }
+
+    /// Puts text onto the display's clipboard, as another program does; `false`, reported by name, if there is none.
+    pub fn copy_elsewhere(&self, text: &str) -> bool {
+        // It stays in the background until another program owns the clipboard.
+        let started = Command::new("xclip")
+            .args(["-selection", "clipboard", "-in"])
+            .env("DISPLAY", &self.display)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn();
+        let Ok(mut xclip) = started else {
+            eprintln!("skipped: the clipboard (xclip is not installed: apt install xclip)");
+            return false;
+        };
+        let mut input = xclip.stdin.take().unwrap();
+        input.write_all(text.as_bytes()).unwrap();
+        drop(input);
+        assert!(xclip.wait().unwrap().success());
+        true
+    }
+
+    /// Waits until another program can paste this text.
+    pub fn wait_for_clipboard(&self, text: &str) {
+        let start = Instant::now();
+        loop {
+            let mut xclip = Command::new("xclip");
+            let pasted = xclip.args(["-selection", "clipboard", "-out"]);
+            let pasted = pasted.env("DISPLAY", &self.display).output().unwrap().stdout;
+            if pasted == text.as_bytes() {
+                return;
+            }
+            let pasted = String::from_utf8_lossy(&pasted);
+            assert!(start.elapsed() < PATIENCE, "the clipboard has {pasted:?}");
+            sleep(PAUSE);
+        }
     }
 
     /// Types a path into the question that appears if the system has no file dialog, and waits for the file.
