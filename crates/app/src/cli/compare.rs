@@ -88,7 +88,7 @@ fn asked(names: &[String]) -> Result<Vec<Asked>, EngineError> {
 impl Asked {
     /// Its name for a person, with the options that are set.
     fn title(&self) -> String {
-        let title = self.method.declaration().title.to_owned();
+        let title = self.method.declaration().paper_title();
         match self.name.split_once(':') {
             Some((_, options)) => format!("{title} ({})", options.replace(':', ", ").replace('=', " ")),
             None => title,

@@ -52,11 +52,16 @@ impl MethodDeclaration {
         self.attachments.iter().find(|attachment| attachment.name == name)
     }
 
-    /// Its name in the literature and its use, in sentences.
-    pub fn explanation(&self) -> String {
+    /// Its name in the literature, with a capital.
+    pub fn paper_title(&self) -> String {
         let mut paper = self.paper.chars();
         let first = paper.next().map(|first| first.to_uppercase().to_string());
-        format!("{}{}. {}", first.unwrap_or_default(), paper.as_str(), self.when_to_use)
+        first.unwrap_or_default() + paper.as_str()
+    }
+
+    /// Its name in the literature and its use, in sentences.
+    pub fn explanation(&self) -> String {
+        format!("{}. {}", self.paper_title(), self.when_to_use)
     }
 
     /// Returns true if it supports this constraint.
