@@ -30,6 +30,7 @@
 
 mod declaration;
 mod energy;
+mod first;
 mod graph;
 mod options;
 mod second;

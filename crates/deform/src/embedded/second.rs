@@ -1,18 +1,9 @@
 //! The second descent of a drag's end, from rest: see [`crate::descent::rival`].
 
-use super::energy::NodeMap;
+use super::first::First;
 use super::solver::Solver;
 use crate::descent::rival::{NEAR, Rival, Twice, is_far};
 use crate::handles::Motion;
-
-/// The end of a drag's own descent, while a second one is tried.
-#[derive(Debug)]
-pub(crate) struct First {
-    pub maps: Vec<NodeMap>,
-    pub value: f64,
-    has_converged: bool,
-    has_stalled: bool,
-}
 
 impl Solver {
     /// Prepares for new motions.

@@ -4,8 +4,8 @@ use faer::Mat;
 use glam::{DMat3, DVec3};
 
 use super::energy::{DOF, Energy, NodeMap};
+use super::first::First;
 use super::graph::Graph;
-use super::second::First;
 use super::system::System;
 use crate::descent;
 use crate::descent::energy::lower;

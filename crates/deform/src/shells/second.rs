@@ -1,17 +1,10 @@
 //! The second descent of a drag's end, from rest: see [`crate::descent::rival`].
 
 use super::ShellsSolver;
+use super::first::First;
 use super::shape::Shape;
 use crate::descent::rival::{NEAR, Rival, Twice, is_far};
 use crate::handles::Motion;
-
-/// The end of a drag's own descent, while a second one is tried.
-#[derive(Debug)]
-pub(crate) struct First {
-    shape: Shape,
-    has_converged: bool,
-    has_stalled: bool,
-}
 
 impl ShellsSolver {
     /// Prepares for new targets.
