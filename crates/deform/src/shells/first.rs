@@ -5,7 +5,7 @@ use super::shape::Shape;
 /// The end of a drag's own descent, while a second one is tried.
 #[derive(Debug)]
 pub(crate) struct First {
-    pub shape: Shape,
+    pub(super) shape: Shape,
     pub has_converged: bool,
     pub has_stalled: bool,
 }
