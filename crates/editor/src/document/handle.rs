@@ -77,7 +77,7 @@ pub(crate) const PART_RADII: f64 = 3.0;
 /// The distance along the surface within which a handle moves the surface.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub enum Reach {
-    /// To the end of the part that the handle is on, where the surface around it widens; at most [`PART_RADII`] radii.
+    /// To the end of the part that the handle is on, where the surface around it widens; at most three radii.
     #[default]
     Part,
     /// This many of the handle's own radii (above 0).
