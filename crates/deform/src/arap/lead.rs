@@ -14,7 +14,7 @@ use super::end::End;
 use super::shape::{Guesses, IDENTITY, Shape};
 use super::{Arap, ArapSolver};
 use crate::descent::corrections::Corrections;
-use crate::descent::rival::{Rival, compare};
+use crate::descent::rival::{Rival, aim, compare};
 use crate::descent::rule::State;
 use crate::handles::blend::{Origin, Screws};
 use crate::handles::offsets::Offsets;
@@ -77,7 +77,9 @@ impl LedSolver {
     /// One step towards `motions`: writes the solved vertices' displacements. Returns whether the shape converged, and
     /// the energy.
     pub fn step(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> (bool, f64) {
-        self.expect(motions);
+        if self.solver.has_other_offsets || self.solver.motions != motions {
+            aim(self, motions);
+        }
         let Self {
             solver,
             coarse,

@@ -3,24 +3,12 @@
 use super::end::End;
 use super::lead::{First, LedSolver};
 use super::shape::{Guesses, Shape};
-use crate::descent::rival::{NEAR, Rival, Twice, is_far};
+use crate::descent::rival::{NEAR, Rival, Twice};
 use crate::descent::rule::State;
 use crate::handles::Motion;
+use crate::handles::blend::HandleFrame;
 
 impl LedSolver {
-    /// Prepares for motions that may differ from the last step's.
-    pub(super) fn expect(&mut self, motions: &[Motion]) {
-        let solver = &self.solver;
-        if !solver.has_other_offsets && solver.motions == motions {
-            return;
-        }
-        let goes_on = !solver.motions.iter().all(Motion::is_rest);
-        let is_far = is_far(&solver.handles, motions, solver.unit);
-        if let Some(first) = self.rival.aim(goes_on, is_far) {
-            self.put_back(first);
-        }
-    }
-
     /// The shape to show: the first descent's end until the second has ended.
     pub(super) fn shown(&self) -> &Shape {
         self.rival.first().map_or(&self.solver.current, |first| &first.shape)
@@ -29,6 +17,18 @@ impl LedSolver {
 
 impl Twice for LedSolver {
     type End = First;
+
+    fn handles(&self) -> &[HandleFrame] {
+        &self.solver.handles
+    }
+
+    fn size(&self) -> f64 {
+        self.solver.unit
+    }
+
+    fn goes_on(&self) -> bool {
+        !self.solver.motions.iter().all(Motion::is_rest)
+    }
 
     fn rival(&mut self) -> &mut Rival<First> {
         &mut self.rival

@@ -15,6 +15,15 @@ pub(crate) trait Twice {
     /// A shape at which it ended.
     type End;
 
+    /// The handles.
+    fn handles(&self) -> &[HandleFrame];
+
+    /// The size of the bending part, in the unit of the handles' motions.
+    fn size(&self) -> f64;
+
+    /// True if the last motions were not at rest.
+    fn goes_on(&self) -> bool;
+
     /// The second descent.
     fn rival(&mut self) -> &mut Rival<Self::End>;
 
@@ -38,6 +47,16 @@ pub(crate) trait Twice {
 
     /// Makes the end the present shape.
     fn put_back(&mut self, end: Self::End);
+}
+
+/// Before a step towards other targets: a second descent becomes due where it may find another minimum, and one that
+/// has not ended gives way to the first end.
+pub(crate) fn aim(descent: &mut impl Twice, motions: &[Motion]) {
+    let goes_on = descent.goes_on();
+    let is_far = is_far(descent.handles(), motions, descent.size());
+    if let Some(first) = descent.rival().aim(goes_on, is_far) {
+        descent.put_back(first);
+    }
 }
 
 /// After a step: begins the second descent when the first one has ended, and keeps the lower end when the second one
@@ -103,7 +122,7 @@ impl<S> Default for Rival<S> {
 impl<S> Rival<S> {
     /// Prepares for new targets: a second descent is due if the first one goes on from another shape than rest, and if
     /// targets were far from rest. Returns the end of the first descent if the second one has not ended.
-    pub fn aim(&mut self, goes_on: bool, is_far: bool) -> Option<S> {
+    fn aim(&mut self, goes_on: bool, is_far: bool) -> Option<S> {
         self.was_far |= is_far;
         let is_due = goes_on && self.was_far;
         let next = if is_due { Stage::Due } else { Stage::Over };
@@ -142,7 +161,7 @@ const SHIFT: f64 = 0.5;
 
 /// Returns true if these motions of the handles are so far from rest that a drag may end in another minimum. `size` is
 /// about the model's.
-pub(crate) fn is_far(handles: &[HandleFrame], motions: &[Motion], size: f64) -> bool {
+fn is_far(handles: &[HandleFrame], motions: &[Motion], size: f64) -> bool {
     handles.iter().zip(motions).any(|(handle, motion)| {
         let turn = fit(&handle.linear(motion), DQuat::IDENTITY);
         2.0 * turn.w.abs().min(1.0).acos() > TURN_RAD || motion.shift.length() > SHIFT * size

@@ -2,27 +2,25 @@
 
 use super::first::First;
 use super::solver::Solver;
-use crate::descent::rival::{NEAR, Rival, Twice, is_far};
+use crate::descent::rival::{NEAR, Rival, Twice};
 use crate::handles::Motion;
+use crate::handles::blend::HandleFrame;
 
-impl Solver {
-    /// Prepares for new motions.
-    pub(super) fn expect(&mut self, motions: &[Motion]) {
-        let goes_on = !self.motions.iter().all(Motion::is_rest);
-        let is_far = is_far(&self.handles, motions, self.size());
-        if let Some(first) = self.rival.aim(goes_on, is_far) {
-            self.put_back(first);
-        }
+impl Twice for Solver {
+    type End = First;
+
+    fn handles(&self) -> &[HandleFrame] {
+        &self.handles
     }
 
     /// The diagonal of the box around the nodes.
     fn size(&self) -> f64 {
         pliant_mesh::bounding_box(&self.nodes).map_or(0.0, |bounds| bounds.diagonal())
     }
-}
 
-impl Twice for Solver {
-    type End = First;
+    fn goes_on(&self) -> bool {
+        !self.motions.iter().all(Motion::is_rest)
+    }
 
     fn rival(&mut self) -> &mut Rival<First> {
         &mut self.rival

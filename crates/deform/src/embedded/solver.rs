@@ -9,7 +9,7 @@ use super::graph::Graph;
 use super::system::System;
 use crate::descent;
 use crate::descent::energy::lower;
-use crate::descent::rival::{Rival, compare};
+use crate::descent::rival::{Rival, aim, compare};
 use crate::descent::rule::{Rule, State};
 use crate::handles::Motion;
 use crate::handles::blend::{HandleFrame, Screw, Screws, carried};
@@ -99,7 +99,7 @@ impl Solver {
     /// One step towards `motions`. Returns whether it converged, and the energy per node.
     pub fn step(&mut self, motions: &[Motion]) -> (bool, f64) {
         if self.motions != motions {
-            self.expect(motions);
+            aim(self, motions);
             self.start(motions);
         } else if !self.has_converged && !self.has_stalled {
             self.descend();

@@ -9,7 +9,7 @@ use super::joints::Joints;
 use super::pose::Pose;
 use super::springs::Springs;
 use crate::budget::{Budget, bytes_of};
-use crate::descent::rival::{Rival, compare};
+use crate::descent::rival::{Rival, aim, compare};
 use crate::descent::rule;
 use crate::handles::blend::HandleFrame;
 use crate::handles::{Handle, Motion};
@@ -133,7 +133,7 @@ impl Bodies {
     /// One step towards `motions`.
     pub fn advance(&mut self, motions: &[Motion]) {
         if self.motions != motions {
-            self.expect(motions);
+            aim(self, motions);
             self.start(motions);
         }
         match self.state {

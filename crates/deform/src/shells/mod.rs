@@ -74,7 +74,7 @@ use self::system::{Pattern, System};
 use self::unfolded::{Preconditioner, Unfolded};
 use crate::budget::bytes_of;
 use crate::descent::prescribed::Prescribed;
-use crate::descent::rival::{Rival, compare};
+use crate::descent::rival::{Rival, aim, compare};
 use crate::handles::blend::HandleFrame;
 use crate::handles::offsets::Offsets;
 use crate::handles::{Handle, Motion};
@@ -298,7 +298,7 @@ impl ShellsSolver {
         let has_other_weights = std::mem::take(&mut self.has_other_weights);
         let has_other_offsets = std::mem::take(&mut self.has_other_offsets);
         if self.motions != motions || has_other_weights || has_other_offsets {
-            self.expect(motions);
+            aim(self, motions);
             self.has_stalled = false;
             self.head_for(motions);
         } else if !self.has_converged && !self.has_stalled {

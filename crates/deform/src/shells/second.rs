@@ -3,32 +3,31 @@
 use super::ShellsSolver;
 use super::first::First;
 use super::shape::Shape;
-use crate::descent::rival::{NEAR, Rival, Twice, is_far};
-use crate::handles::Motion;
+use crate::descent::rival::{NEAR, Rival, Twice};
+use crate::handles::blend::HandleFrame;
 
 impl ShellsSolver {
-    /// Prepares for new targets.
-    pub(super) fn expect(&mut self, motions: &[Motion]) {
-        let goes_on = !self.is_at_rest();
-        let is_far = is_far(&self.handles, motions, self.size());
-        if let Some(first) = self.rival.aim(goes_on, is_far) {
-            self.put_back(first);
-        }
-    }
-
     /// The shape to show: the first descent's end until the second has ended.
     pub(super) fn shown(&self) -> &Shape {
         self.rival.first().map_or(&self.current, |first| &first.shape)
+    }
+}
+
+impl Twice for ShellsSolver {
+    type End = First;
+
+    fn handles(&self) -> &[HandleFrame] {
+        &self.handles
     }
 
     /// The diagonal of the box around the solved part at rest.
     fn size(&self) -> f64 {
         pliant_mesh::bounding_box(&self.energy.elements.rest).map_or(0.0, |bounds| bounds.diagonal())
     }
-}
 
-impl Twice for ShellsSolver {
-    type End = First;
+    fn goes_on(&self) -> bool {
+        !self.is_at_rest()
+    }
 
     fn rival(&mut self) -> &mut Rival<First> {
         &mut self.rival
