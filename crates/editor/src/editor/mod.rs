@@ -6,7 +6,7 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use glam::DVec3;
-use pliant_mesh::{Model, bounding_box};
+use pliant_mesh::Model;
 
 use crate::Beginning;
 use crate::command::{Command, KeyMap, Scope, frame_all};
@@ -370,10 +370,8 @@ impl Editor {
             Some(Ok(document)) => (document, None),
             Some(Err(error)) => (Document::new(count), Some(error.to_string())),
         };
-        let shown = model.vertices_without_specks();
-        let shown: Vec<DVec3> = shown.map(|vertex| model.surface.positions[vertex.index()]).collect();
-        let size = bounding_box(&shown).map(|bounds| bounds.diagonal());
-        self.begin_file(size, up_axis_of(&shown), |workspace| {
+        let size = model.bounds_without_specks().map(|bounds| bounds.diagonal());
+        self.begin_file(size, up_axis_of(&model), |workspace| {
             workspace.open(model, name, document);
             workspace.refusal = refusal;
         });

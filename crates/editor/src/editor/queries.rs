@@ -145,9 +145,7 @@ impl Editor {
     /// The reach of a handle along the surface, in world units, in the last measured region; `None` if it has no vertices
     /// there.
     pub fn reach_length(&self, handle: HandleId) -> Option<f64> {
-        let region = &self.workspace.computed().region;
-        let place = region.handles.iter().position(|id| *id == handle)?;
-        region.reaches.get(place).copied()
+        self.workspace.computed().region.reach_length(handle)
     }
 
     /// The highlighted connected part, by its component's number.

@@ -24,11 +24,13 @@ use pliant_mesh::{Cancel, Cancelled, ContourLine, DistanceSearch, Model, Surface
 
 use self::loose::Ball;
 pub(crate) use self::loose::FileContacts;
-pub(crate) use self::reach::{centroid, reach_length};
+use self::part::end_of_part;
+pub(crate) use self::reach::centroid;
+use self::reach::most_of;
 pub use self::rim::Rim;
 pub(crate) use self::rim::bounded;
 use self::tips::free_tips;
-use crate::document::{Access, Document, HandleId, Paint, Reach, Tips};
+use crate::document::{Access, Document, HandleId, PART_RADII, Paint, Reach, Tips};
 use crate::region::rim::rims;
 
 /// The input of the region. The job that measures it shares the model.
@@ -109,6 +111,12 @@ impl Region {
         }
     }
 
+    /// The reach of a handle along the surface, in world units; `None` if it has no vertices.
+    pub(crate) fn reach_length(&self, handle: HandleId) -> Option<f64> {
+        let place = self.handles.iter().position(|id| *id == handle)?;
+        self.reaches.get(place).copied()
+    }
+
     /// Measures the region.
     pub(crate) fn measure<M: Deref<Target = Model>>(
         input: &RegionInput<M>,
@@ -125,7 +133,7 @@ impl Region {
         let (members, painted) = painted(input, is_locked);
         let mut roles = vec![Role::Fixed; input.paint.len()];
         let (mut handles, mut reaches) = (Vec::new(), Vec::new());
-        let mut search = DistanceSearch::default();
+        let (mut search, mut distances) = (DistanceSearch::default(), Vec::new());
         let position = |v: SurfaceVertex| surface.positions[v.index()];
         // Per component: whether it is wholly in some handle's ball.
         let (mut within, mut within_this) = (vec![false; painted.len()], vec![true; painted.len()]);
@@ -134,10 +142,17 @@ impl Region {
                 continue;
             }
             cancel.check()?;
-            let limit = reach_length(*reach, surface, topology, members);
-            let seeds: Vec<(SurfaceVertex, f64)> = members.iter().map(|&vertex| (vertex, 0.0)).collect();
-            if limit > 0.0 {
-                for &(vertex, _) in search.within(&surface.triangles, topology, position, &seeds, limit) {
+            let most = most_of(*reach, surface, topology, members);
+            let mut limit = most;
+            if most > 0.0 {
+                let seeds: Vec<(SurfaceVertex, f64)> = members.iter().map(|&vertex| (vertex, 0.0)).collect();
+                let reached = search.within(&surface.triangles, topology, position, &seeds, most);
+                if *reach == Reach::Part {
+                    distances.resize(surface.positions.len(), f64::NAN);
+                    let radius = most / PART_RADII;
+                    limit = end_of_part(surface, topology, reached, &mut distances, radius, most);
+                }
+                for (vertex, _) in reached.iter().take_while(|(_, distance)| *distance <= limit) {
                     roles[vertex.index()] = Role::Free;
                 }
             }

@@ -4,7 +4,7 @@
 //! 2π times the distance. Along a limb, a nose or a head they keep their length, or shorten at a neck, and lengthen where
 //! the part joins the body. A handle on such a part reaches a little beyond that place, and not across the body.
 
-use pliant_mesh::{DistanceSearch, Surface, SurfaceVertex, Topology};
+use pliant_mesh::{Surface, SurfaceVertex, Topology};
 
 /// The number of lines.
 const LINES: usize = 60;
@@ -21,19 +21,26 @@ const PART_RADII: f64 = 0.5;
 /// The least reach, in radii of the handle: a shorter one would crease.
 const LEAST_RADII: f64 = 1.0;
 
-/// The reach of a handle of this radius, in world units: `most`, or less if the part ends before that.
-pub(super) fn reach_in_part(
+/// The reach of a handle of this radius, in world units: `most`, or less if the part ends before that. `reached` are the
+/// vertices within `most` of the handle with their distances, and `distances` is scratch memory of one NaN a vertex.
+pub(super) fn end_of_part(
     surface: &Surface,
     topology: &Topology,
-    members: &[SurfaceVertex],
+    reached: &[(SurfaceVertex, f64)],
+    distances: &mut [f64],
     radius: f64,
     most: f64,
 ) -> f64 {
     if !(most > 0.0 && most.is_finite()) {
         return most;
     }
-    let lengths = line_lengths(surface, topology, members, most);
-    let distance = |line: usize| distance_of(line, most);
+    for &(vertex, distance) in reached {
+        distances[vertex.index()] = distance;
+    }
+    let lengths = line_lengths(surface, topology, reached, distances, most);
+    for (vertex, _) in reached {
+        distances[vertex.index()] = f64::NAN;
+    }
     let mut shortest = f64::INFINITY;
     // The last line that is as short as the shortest so far.
     let mut narrow = 0;
@@ -41,8 +48,8 @@ pub(super) fn reach_in_part(
         shortest = shortest.min(length);
         if length <= AS_SHORT * shortest {
             narrow = line;
-        } else if length > WIDER * shortest && distance(narrow) >= PART_RADII * radius {
-            return distance(line).max(LEAST_RADII * radius).min(most);
+        } else if length > WIDER * shortest && distance_of(narrow, most) >= PART_RADII * radius {
+            return distance_of(line, most).max(LEAST_RADII * radius).min(most);
         }
     }
     most
@@ -55,15 +62,14 @@ fn distance_of(line: usize, most: f64) -> f64 {
 }
 
 /// The lengths of the lines at even distances up to `most`; those at which nothing is left are left out.
-fn line_lengths(surface: &Surface, topology: &Topology, members: &[SurfaceVertex], most: f64) -> Vec<f64> {
-    let seeds: Vec<(SurfaceVertex, f64)> = members.iter().map(|&vertex| (vertex, 0.0)).collect();
+fn line_lengths(
+    surface: &Surface,
+    topology: &Topology,
+    reached: &[(SurfaceVertex, f64)],
+    distances: &[f64],
+    most: f64,
+) -> Vec<f64> {
     let position = |v: SurfaceVertex| surface.positions[v.index()];
-    let mut search = DistanceSearch::default();
-    let reached = search.within(&surface.triangles, topology, position, &seeds, most);
-    let mut distances = vec![f64::NAN; surface.positions.len()];
-    for &(vertex, distance) in reached {
-        distances[vertex.index()] = distance;
-    }
     let mut lengths = vec![0.0; LINES];
     for &(vertex, highest) in reached {
         for face in topology.faces(vertex, &surface.triangles) {
@@ -96,14 +102,24 @@ fn line_lengths(surface: &Surface, topology: &Topology, members: &[SurfaceVertex
 #[cfg(test)]
 mod tests {
     use glam::DVec3;
-    use pliant_mesh::shapes;
+    use pliant_mesh::{DistanceSearch, Model, shapes};
 
     use super::*;
 
     const MOST: f64 = 3.0;
 
+    fn reach(model: &Model, members: &[SurfaceVertex], radius: f64, most: f64) -> f64 {
+        let seeds: Vec<(SurfaceVertex, f64)> = members.iter().map(|&vertex| (vertex, 0.0)).collect();
+        let (surface, topology) = (&model.surface, &model.topology);
+        let position = |v: SurfaceVertex| surface.positions[v.index()];
+        let mut search = DistanceSearch::default();
+        let reached = search.within(&surface.triangles, topology, position, &seeds, most);
+        let mut distances = vec![f64::NAN; surface.positions.len()];
+        end_of_part(surface, topology, reached, &mut distances, radius, most)
+    }
+
     /// A sheet of 4 × 4 from whose middle a limb of radius .4 and height `height` rises, with a round end.
-    fn limb_on_a_sheet(height: f64) -> pliant_mesh::Model {
+    fn limb_on_a_sheet(height: f64) -> Model {
         let mut drawn = shapes::grid(160, 160);
         let middle = drawn.positions.iter().sum::<DVec3>() / drawn.positions.len() as f64;
         let size = drawn
@@ -125,7 +141,7 @@ mod tests {
     }
 
     /// The vertices within so far of the limb's end.
-    fn cap(model: &pliant_mesh::Model, height: f64) -> Vec<SurfaceVertex> {
+    fn cap(model: &Model, height: f64) -> Vec<SurfaceVertex> {
         let vertices = (0..).map(SurfaceVertex).zip(&model.surface.positions);
         vertices
             .filter(|(_, p)| p.z > height - 1e-9)
@@ -137,7 +153,7 @@ mod tests {
     fn a_handle_at_the_end_of_a_limb_reaches_to_the_body_and_a_little_beyond() {
         let height = 1.5;
         let model = limb_on_a_sheet(height);
-        let reach = reach_in_part(&model.surface, &model.topology, &cap(&model, height), 0.4, MOST);
+        let reach = reach(&model, &cap(&model, height), 0.4, MOST);
         assert!((height..height + 0.5).contains(&reach), "{reach}");
     }
 
@@ -154,8 +170,7 @@ mod tests {
         let near = vertices.filter(|(_, p)| p.distance(middle) < 0.2 * size);
         let members: Vec<SurfaceVertex> = near.map(|(vertex, _)| vertex).collect();
         let most = 0.6 * size;
-        let reach = reach_in_part(&model.surface, &model.topology, &members, 0.2 * size, most);
-        assert_eq!(reach, most);
+        assert_eq!(reach(&model, &members, 0.2 * size, most), most);
     }
 
     #[test]
@@ -169,9 +184,6 @@ mod tests {
         let vertices = (0..).map(SurfaceVertex).zip(&model.surface.positions);
         let members = vertices.filter(|(_, p)| p.z < low + 0.5).map(|(vertex, _)| vertex);
         let members: Vec<SurfaceVertex> = members.collect();
-        assert_eq!(
-            reach_in_part(&model.surface, &model.topology, &members, 1.0, MOST),
-            MOST
-        );
+        assert_eq!(reach(&model, &members, 1.0, MOST), MOST);
     }
 }

@@ -5,18 +5,14 @@ use std::f64::consts::PI;
 use glam::DVec3;
 use pliant_mesh::{Surface, SurfaceVertex, Topology, face_area};
 
-use super::part::reach_in_part;
 use crate::document::{PART_RADII, Reach};
 
-/// A reach in world units.
-pub(crate) fn reach_length(reach: Reach, surface: &Surface, topology: &Topology, members: &[SurfaceVertex]) -> f64 {
+/// The most that a reach can be, in world units.
+pub(super) fn most_of(reach: Reach, surface: &Surface, topology: &Topology, members: &[SurfaceVertex]) -> f64 {
     match reach {
         Reach::Length(length) => length,
         Reach::Radii(radii) => radii * handle_radius(surface, topology, members),
-        Reach::Part => {
-            let radius = handle_radius(surface, topology, members);
-            reach_in_part(surface, topology, members, radius, PART_RADII * radius)
-        }
+        Reach::Part => PART_RADII * handle_radius(surface, topology, members),
     }
 }
 

@@ -7,9 +7,8 @@ use super::gesture::{Gesture, Next};
 use super::overlay::Lit;
 use crate::document::{HandleId, Reach, Transaction};
 use crate::input::{Button, Key, Modifiers, Pointer};
-use crate::region::reach_length;
 use crate::view::{Cursor, View};
-use crate::workspace::{Workspace, members};
+use crate::workspace::Workspace;
 
 /// A reach that follows the pointer; a click keeps it.
 #[derive(Debug)]
@@ -25,9 +24,10 @@ impl Widen {
     /// Begins with the selected handle; `None` if none is selected, or it is not in front of the eye.
     pub(crate) fn begin(workspace: &mut Workspace, view: &View, pointer: Option<Pointer>) -> Option<Self> {
         let handle = workspace.selected()?.clone();
-        let model = workspace.model()?;
-        let members = members(&workspace.document, handle.id);
-        let start_length = reach_length(handle.reach, &model.surface, &model.topology, &members);
+        let start_length = match handle.reach {
+            Reach::Length(length) => length,
+            Reach::Part | Reach::Radii(_) => workspace.computed().region.reach_length(handle.id).unwrap_or(0.0),
+        };
         let (camera, viewport_px) = (view.camera(), view.viewport_px());
         let centre_px = camera.project(handle.centre(), viewport_px)?;
         let pointer_px = pointer.map_or(centre_px + DVec2::X * 60.0, |pointer| pointer.position_px);

@@ -6,7 +6,7 @@
 use std::f64::consts::TAU;
 
 use glam::{DVec2, DVec3};
-use pliant_mesh::bounding_box;
+use pliant_mesh::{Model, bounding_box};
 
 use super::UpAxis;
 
@@ -27,15 +27,17 @@ const CLEARLY: f64 = 4.0;
 
 /// The up axis of a shape: Y, as in glTF, unless it stands clearly better with Z up. A shape that is thinnest along Z is
 /// left alone: a mask or a relief faces Z, and lies well on its back.
-pub(crate) fn up_axis_of(positions: &[DVec3]) -> UpAxis {
-    let sample: Vec<DVec3> = positions
-        .iter()
-        .copied()
-        .step_by(1 + positions.len() / SAMPLE)
-        .collect();
-    let margin = |axis: UpAxis| margin(&sample, axis);
+pub(crate) fn up_axis_of(model: &Model) -> UpAxis {
+    let every = 1 + model.surface.positions.len() / SAMPLE;
+    let shown = model.vertices_without_specks().step_by(every);
+    let sample: Vec<DVec3> = shown.map(|vertex| model.surface.positions[vertex.index()]).collect();
+    stands_on(&sample)
+}
+
+fn stands_on(sample: &[DVec3]) -> UpAxis {
+    let margin = |axis: UpAxis| margin(sample, axis);
     let upon_z = margin(UpAxis::Z);
-    let extents = bounding_box(&sample).map_or(DVec3::ZERO, |bounds| bounds.max - bounds.min);
+    let extents = bounding_box(sample).map_or(DVec3::ZERO, |bounds| bounds.max - bounds.min);
     if extents.z > extents.x.min(extents.y) && upon_z > STANDS && upon_z > CLEARLY * margin(UpAxis::Y) {
         UpAxis::Z
     } else {
@@ -95,8 +97,8 @@ mod tests {
 
     #[test]
     fn a_table_stands_on_its_legs() {
-        assert_eq!(up_axis_of(&table(UpAxis::Y)), UpAxis::Y);
-        assert_eq!(up_axis_of(&table(UpAxis::Z)), UpAxis::Z);
+        assert_eq!(stands_on(&table(UpAxis::Y)), UpAxis::Y);
+        assert_eq!(stands_on(&table(UpAxis::Z)), UpAxis::Z);
     }
 
     #[test]
@@ -113,7 +115,7 @@ mod tests {
         let line = [DVec3::ZERO, DVec3::X];
         let relief: Vec<DVec3> = cube.iter().map(|p| *p * DVec3::new(1.0, 1.0, 0.2)).collect();
         for shape in [&cube[..], &relief, &line, &[], &[DVec3::ONE]] {
-            assert_eq!(up_axis_of(shape), UpAxis::Y);
+            assert_eq!(stands_on(shape), UpAxis::Y);
         }
     }
 }
