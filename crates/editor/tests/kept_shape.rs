@@ -141,6 +141,27 @@ fn what_is_painted_fixed_on_a_bent_shape_is_a_pin_that_stays_whatever_is_dragged
 }
 
 #[test]
+fn the_gizmo_is_not_over_the_surface_that_a_tool_drags() {
+    let mut rig = Rig::open(shapes::icosphere(3));
+    rig.paint(ToolMode::PaintHandle, &[CENTRE_PX]);
+    rig.drain();
+    for (mode, is_shown) in [
+        (ToolMode::Select, true),
+        (ToolMode::PaintHandle, true),
+        (ToolMode::Pose, false),
+        (ToolMode::Correct, false),
+        (ToolMode::Flow, false),
+    ] {
+        rig.command(Command::SetTool(mode));
+        assert_eq!(!rig.editor.view().gizmo.is_empty(), is_shown, "{mode:?}");
+        // A key that moves the handle shows it with every tool.
+        rig.type_keys("g");
+        assert!(!rig.editor.view().gizmo.is_empty(), "{mode:?}");
+        rig.key(Key::Escape);
+    }
+}
+
+#[test]
 fn a_stroke_goes_through_the_gizmo_but_on_a_part_that_the_pointer_rests_on() {
     let mut rig = Rig::open(shapes::icosphere(4));
     let aside = DVec2::X * 80.0;

@@ -30,6 +30,11 @@ impl ToolMode {
         !matches!(self, Self::Select | Self::Pose)
     }
 
+    /// Returns true if its drags begin anywhere on the surface and act on that place, whatever handle is selected.
+    pub(crate) fn drags_surface(self) -> bool {
+        matches!(self, Self::Pose | Self::Correct | Self::Flow)
+    }
+
     /// Returns true if it paints vertices' roles.
     pub(crate) fn paints_roles(self) -> bool {
         matches!(

@@ -225,8 +225,8 @@ fn gizmo(
             highlighted,
         ));
     }
-    // These tools turn and move by themselves, on the surface that the gizmo would be over.
-    if matches!(settings.mode, ToolMode::Pose | ToolMode::Correct) && !matches!(lit, Lit::Gizmo(_)) {
+    // The gizmo of a handle would be over the surface that these tools drag, until a key moves the handle.
+    if settings.mode.drags_surface() && !matches!(lit, Lit::Gizmo(_)) {
         return None;
     }
     let handle = workspace.selected()?;
