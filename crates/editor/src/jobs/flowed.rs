@@ -14,13 +14,22 @@ use crate::document::{Dye, FlowOptions, Fluid, dye_colour, over};
 /// The length of a step, in seconds: a picture of a common screen.
 pub(crate) const FLOW_STEP: f64 = 1.0 / 60.0;
 
+/// The fluid that a brush puts in place of the one under it.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(crate) enum Poured {
+    /// Dye of this colour: linear red, green and blue.
+    Dye([f64; 3]),
+    /// Clear fluid.
+    Clear,
+}
+
 /// The effect of a brush on a flow.
 #[derive(Clone, PartialEq, Debug)]
 pub(crate) struct Splash {
     /// The vertices under the brush, each with its share from 0 to 1.
     pub(crate) vertices: Vec<(SurfaceVertex, f64)>,
-    /// The poured colour, linear red, green and blue; clear fluid in place of the dye with `Some(None)`.
-    pub(crate) colour: Option<Option<[f64; 3]>>,
+    /// The fluid that is poured, if any.
+    pub(crate) poured: Option<Poured>,
     /// The velocity that the brush gives the fluid.
     pub(crate) velocity: Option<DVec3>,
 }
@@ -130,9 +139,9 @@ fn pour(flow: &mut Flow<'_>, splash: &Splash, vertex_count: usize) {
         .vertices
         .iter()
         .for_each(|(vertex, share)| shares[vertex.index()] = *share);
-    match splash.colour {
-        Some(Some(colour)) => flow.pour(&shares, colour),
-        Some(None) => flow.clear(&shares),
+    match splash.poured {
+        Some(Poured::Dye(colour)) => flow.pour(&shares, colour),
+        Some(Poured::Clear) => flow.clear(&shares),
         None => {}
     }
     if let Some(velocity) = splash.velocity {

@@ -29,7 +29,7 @@ pub use compared::{Compared, Figures};
 pub use comparison::Comparison;
 pub(crate) use computed::Computed;
 pub use flowed::Flowed;
-pub(crate) use flowed::{FLOW_STEP, FlowRequest, Splash};
+pub(crate) use flowed::{FLOW_STEP, FlowRequest, Poured, Splash};
 pub use inline_executor::InlineExecutor;
 pub(crate) use inspected::Asked;
 pub use inspected::{Inspectable, Inspected};

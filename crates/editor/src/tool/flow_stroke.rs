@@ -9,10 +9,10 @@ use pliant_mesh::{Model, SurfaceVertex, face_normal};
 use super::context::Context;
 use super::firmness::firmness;
 use super::flow_brush::{FlowAction, FlowBrush};
-use super::stroke::{Stroke, StrokeGesture, met_once};
+use super::stroke::{Stroke, StrokeGesture, firmest_on_one_side};
 use crate::document::{Document, Dye, from_srgb};
 use crate::input::Pointer;
-use crate::jobs::{FLOW_STEP, Splash};
+use crate::jobs::{FLOW_STEP, Poured, Splash};
 use crate::workspace::Workspace;
 
 /// The stroke's action.
@@ -61,21 +61,22 @@ impl FlowStroke {
         (from != to).then(|| (to - from) / seconds)
     }
 
-    /// The linear colour that is poured; `None` inside for clear fluid.
-    fn colour(&self) -> Option<Option<[f64; 3]>> {
+    /// The fluid that is poured, if any.
+    fn poured(&self) -> Option<Poured> {
         match self.brush.action {
-            FlowAction::PourAndPush | FlowAction::Pour => Some(Some(self.brush.colour.map(from_srgb))),
-            FlowAction::Wash => Some(None),
+            FlowAction::PourAndPush | FlowAction::Pour => Some(Poured::Dye(self.brush.colour.map(from_srgb))),
+            FlowAction::Wash => Some(Poured::Clear),
             FlowAction::Push => None,
         }
     }
 
     /// Pours into the paused fluid.
     fn dye(&mut self, document: &mut Document, before: &Document, met: &[(SurfaceVertex, f64)]) {
-        let Some(colour) = self.colour() else { return };
-        let poured = colour.map_or([0.0; 4], |[red, green, blue]| {
-            [red, green, blue, 1.0].map(|value| value as f32)
-        });
+        let poured: Dye = match self.poured() {
+            None => return,
+            Some(Poured::Clear) => [0.0; 4],
+            Some(Poured::Dye([red, green, blue])) => [red, green, blue, 1.0].map(|value| value as f32),
+        };
         let (firmest, before) = (&mut self.firmest, &before.fluid().dye);
         document.change_dye(|dye| {
             let mut changed = Vec::new();
@@ -110,17 +111,17 @@ impl Stroke for FlowStroke {
         };
         let strength = self.brush.strength * context.settings.pressure.unwrap_or(1.0);
         let falloff = self.brush.falloff;
-        let met = met_once(context, way_px, |share| strength * firmness(falloff, share));
+        let met = firmest_on_one_side(context, way_px, |share| strength * firmness(falloff, share));
         let velocity = self.velocity(context, way_px[1]).filter(|_| self.brush.pushes());
         if met.is_empty() {
             return;
         }
         let workspace = &mut *context.workspace;
         if workspace.flow.is_playing() {
-            let colour = self.colour();
+            let poured = self.poured();
             return workspace.splash(Splash {
                 vertices: met,
-                colour,
+                poured,
                 velocity,
             });
         }

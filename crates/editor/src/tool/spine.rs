@@ -135,8 +135,7 @@ fn between_walls(samples: &mut [Sample], directions: &[DVec3], picking: &Picking
     0.5 * usual
 }
 
-/// The vertices that are connected with the samples near a curve inside a limb of this half
-/// thickness.
+/// The vertices near a curve inside a limb of this half thickness that are connected with the samples.
 pub(super) fn around(curve: &Curve, half: f64, samples: &[Sample], picking: &Picking<'_>) -> Vec<SurfaceVertex> {
     const SPANS: usize = 32;
     let limit = GIRTH * half;

@@ -159,7 +159,7 @@ pub(super) fn firmest(
 }
 
 /// The same without symmetry.
-pub(super) fn met_once(
+pub(super) fn firmest_on_one_side(
     context: &mut Context<'_>,
     way_px: [DVec2; 2],
     firmness: impl Fn(f64) -> f64,

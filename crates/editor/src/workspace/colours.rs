@@ -145,7 +145,7 @@ mod tests {
     use glam::{DMat3, DVec3};
 
     use super::{FIXED, FREE, TINT};
-    use crate::document::HANDLE_COLOURS;
+    use crate::document::{HANDLE_COLOURS, from_srgb};
 
     /// The perceived colours, in linear light, without and with the three blindnesses [MOF09, severity 1], by rows.
     const VISIONS: [(&str, [f64; 9]); 4] = [
@@ -172,15 +172,7 @@ mod tests {
 
     /// A colour as linear light.
     fn linear([red, green, blue, _]: [u8; 4]) -> DVec3 {
-        let linear = |channel: u8| {
-            let value = f64::from(channel) / 255.0;
-            if value <= 0.04045 {
-                value / 12.92
-            } else {
-                ((value + 0.055) / 1.055).powf(2.4)
-            }
-        };
-        DVec3::new(linear(red), linear(green), linear(blue))
+        DVec3::from_array([red, green, blue].map(from_srgb))
     }
 
     /// Linear light in CIE L*a*b* under a vision.
