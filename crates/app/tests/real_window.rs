@@ -173,7 +173,6 @@ fn killed_in_the_middle_of_drags_the_window_recovers_each_time() {
     }
 }
 
-/// A window that filled the screen does so when the program starts again; another one has its size.
 #[test]
 fn text_comes_from_other_programs_and_goes_to_them() {
     let Some(desktop) = Desktop::open(&sample()) else {
@@ -191,6 +190,7 @@ fn text_comes_from_other_programs_and_goes_to_them() {
     desktop.wait_for_clipboard("painted stiffness");
 }
 
+/// A window that filled the screen does so when the program starts again; another one has its size.
 #[test]
 fn a_maximised_window_comes_back_maximised() {
     let Some(mut desktop) = Desktop::open(&sample()) else {

@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 
 use eframe::egui;
 use glam::DVec3;
-use pliant_editor::{Command, Editor, FlowAction, FlowOptions};
+use pliant_editor::{Command, Editor, FlowAction, FlowOptions, UpAxis};
 
 use super::share_slider::share;
 use crate::window::widgets::command_button::{choices_in_bar, command_button, icon_choice};
@@ -96,26 +96,30 @@ fn brush(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     }
 }
 
-/// The directions of gravity, by name.
-const DIRECTIONS: [(&str, DVec3); 6] = [
-    ("down", DVec3::NEG_Y),
-    ("up", DVec3::Y),
-    ("left", DVec3::NEG_X),
-    ("right", DVec3::X),
-    ("back", DVec3::NEG_Z),
-    ("front", DVec3::Z),
-];
+/// The directions of gravity, by name, in a file with this axis up.
+fn named_directions(up: UpAxis) -> [(&'static str, DVec3); 6] {
+    let (up, front) = match up {
+        UpAxis::Y => (DVec3::Y, DVec3::Z),
+        UpAxis::Z => (DVec3::Z, DVec3::NEG_Y),
+    };
+    [
+        ("down", -up),
+        ("up", up),
+        ("left", DVec3::NEG_X),
+        ("right", DVec3::X),
+        ("back", -front),
+        ("front", front),
+    ]
+}
 
 fn forces(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     let options = *editor.document().flow_options();
-    let size = editor
-        .view()
-        .model
-        .and_then(|model| model.bounds_without_specks())
-        .map_or(1.0, |bounds| bounds.diagonal());
+    let camera = editor.view().camera;
+    let size = camera.scale;
+    let [(_, down), ..] = named_directions(camera.up);
     // A gravity of 0 keeps the direction in which it is set next.
     let id = egui::Id::unique("direction of the flow's gravity");
-    let kept: DVec3 = ui.data(|data| data.get_temp(id)).unwrap_or(DVec3::NEG_Y);
+    let kept: DVec3 = ui.data(|data| data.get_temp(id)).unwrap_or(down);
     let direction = options.gravity.try_normalize().unwrap_or(kept);
     ui.data_mut(|data| data.insert_temp(id, direction));
 
@@ -167,7 +171,8 @@ fn force(ui: &mut egui::Ui, name: &str, value: &mut f64, range: RangeInclusive<f
 /// The direction of gravity; returns another one that is chosen.
 fn directions(ui: &mut egui::Ui, present: DVec3, editor: &Editor) -> Option<DVec3> {
     let label = bar_label(ui, "Towards");
-    let name = DIRECTIONS
+    let directions = named_directions(editor.view().camera.up);
+    let name = directions
         .iter()
         .find(|(_, direction)| direction.distance(present) < 1e-9);
     let mut chosen = None;
@@ -175,7 +180,7 @@ fn directions(ui: &mut egui::Ui, present: DVec3, editor: &Editor) -> Option<DVec
         .selected_text(name.map_or("other", |(name, _)| name))
         .width(0.0)
         .show_ui(ui, |ui| {
-            for (name, direction) in DIRECTIONS {
+            for (name, direction) in directions {
                 if ui.selectable_label(direction == present, name).clicked() {
                     chosen = Some(direction);
                 }

@@ -9,11 +9,11 @@ use crate::window::widgets::outbox::Outbox;
 /// The number of places that have a button: the largest ones.
 const SHOWN: usize = 8;
 
-/// Shows the warnings, if there are any.
-pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
+/// Shows the sentences about the faults, and the buttons.
+pub fn show(ui: &mut egui::Ui, editor: &Editor, faults: &[String], commands: &mut Outbox) {
     let Some(found) = editor.intersections() else { return };
     let colour = ui.visuals().warn_fg_color;
-    for sentence in editor.faults() {
+    for sentence in faults {
         ui.add(egui::Label::new(RichText::new(sentence).small().color(colour)).wrap());
     }
     if found.is_empty() {

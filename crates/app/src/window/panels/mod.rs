@@ -131,13 +131,13 @@ fn section(ui: &mut egui::Ui, title: &str, folded: &BTreeSet<String>, contents: 
 
 /// Shows the warnings about the edit at the panel's lower end, where they move nothing that a person is about to click.
 fn warnings(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
-    let has_any = !editor.warnings().is_empty() || !editor.faults().is_empty();
+    let (warnings, faults) = (editor.warnings(), editor.faults());
     // It is there without warnings, too: a field keeps the focus only while nothing is added before it.
     let lower = egui::Panel::bottom("warnings")
         .resizable(false)
         .show_separator_line(false);
     lower.frame(egui::Frame::NONE).show(ui, |ui| {
-        if !has_any {
+        if warnings.is_empty() && faults.is_empty() {
             return;
         }
         ui.separator();
@@ -145,8 +145,8 @@ fn warnings(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
             .min_scrolled_height(WARNINGS)
             .max_height(WARNINGS);
         room.show(ui, |ui| {
-            intersections::show(ui, editor, commands);
-            for sentence in editor.warnings() {
+            intersections::show(ui, editor, &faults, commands);
+            for sentence in warnings {
                 let colour = ui.visuals().warn_fg_color;
                 ui.add(egui::Label::new(egui::RichText::new(sentence).small().color(colour)).wrap());
             }
