@@ -11,10 +11,9 @@ use pyo3::prelude::*;
 use pyo3::types::PyBool;
 
 use crate::given::{Given, budget, given, method};
-use crate::interruptible::interruptible;
-use crate::refusal::{of_engine, refused};
-use crate::values::{as_python, weld_options};
-use crate::warned::warn;
+use crate::refusal::refused;
+use crate::reported::reported;
+use crate::values::weld_options;
 
 #[doc = include_str!(concat!(env!("OUT_DIR"), "/apply.txt"))]
 #[pyfunction]
@@ -205,16 +204,12 @@ impl Bending {
         py: Python<'py>,
         command: impl Fn(&Watch, &Beginning) -> Result<(String, Vec<String>), EngineError> + Sync,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let job = |watch: &Watch| {
+        reported(py, |watch| {
             let mut edit = self.edit.edit(watch)?;
             if let Some(method) = &self.method {
                 edit.set_method(method.clone());
             }
             command(watch, &edit)
-        };
-        let told = interruptible(py, |pool, cancel| pool.install(|| job(&Watch::cancelled_by(cancel))))?;
-        let (report, warnings) = told.map_err(|error| of_engine(&error))?;
-        warn(py, &warnings)?;
-        as_python(py, &report)
+        })
     }
 }

@@ -24,6 +24,7 @@ mod methods;
 mod origin;
 mod pool;
 mod refusal;
+mod reported;
 mod rows;
 mod shape;
 mod stitched_files;

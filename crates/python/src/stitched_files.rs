@@ -12,10 +12,9 @@ use pliant_engine::watch::Watch;
 use pyo3::prelude::*;
 
 use crate::given::given;
-use crate::interruptible::interruptible;
-use crate::refusal::{of_engine, refused};
-use crate::values::{as_python, weld_options};
-use crate::warned::warn;
+use crate::refusal::refused;
+use crate::reported::reported;
+use crate::values::weld_options;
 
 #[doc = include_str!(concat!(env!("OUT_DIR"), "/merge.txt"))]
 #[pyfunction]
@@ -162,15 +161,11 @@ fn run<'py>(
     py: Python<'py>,
     stitch: impl Fn(&Watch) -> Result<Stitched, EngineError> + Sync,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let job = |watch: &Watch| {
+    reported(py, |watch| {
         let mut stitched = stitch(watch)?;
         let report = stitched.report.take().unwrap_or_default().to_string();
         let warnings = stitched.warnings.clone();
         stitched.commit(None)?;
         Ok((report, warnings))
-    };
-    let told = interruptible(py, |pool, cancel| pool.install(|| job(&Watch::cancelled_by(cancel))))?;
-    let (report, warnings) = told.map_err(|error: EngineError| of_engine(&error))?;
-    warn(py, &warnings)?;
-    as_python(py, &report)
+    })
 }
