@@ -58,7 +58,7 @@ impl Chart {
     /// The changes of the three barycentric coordinates along a vector.
     #[inline]
     pub fn rates(&self, along: DVec2) -> [f64; 3] {
-        // Of corner 2 by the height, and of corner 1 by the rest of the way along the base.
+        // Corner 2 changes by the height, and corner 1 by the rest of the way along the base.
         let of_2 = along.y / self.apex.y;
         let of_1 = (along.x - self.apex.x * of_2) / self.base;
         [-of_1 - of_2, of_1, of_2]

@@ -56,7 +56,7 @@ struct Room {
     lacks: Vec<f64>,
     /// ∇V / √A of each prism by its corners. **f32**: they give corrections alone, whose result is measured in f64.
     gradients: Vec<[Vec3; 3]>,
-    /// Of each prism what the vertices around it read: ∇V · x / √A, and λ A Σ x over its corners.
+    /// Four numbers for each prism, which the vertices around it read: ∇V · x / √A, and λ A Σ x over its corners.
     sums: Vec<[f64; 4]>,
     steps: Steps,
 }
