@@ -136,9 +136,20 @@ fn a_recent_file_has_a_small_picture_from_its_opening_on() {
     let Some(mut session) = Session::begin_in(Source::File(file.clone()), places.clone()) else {
         return;
     };
-    let kept = |folder: &Folder| fs::read_dir(folder.at("pictures")).into_iter().flatten().flatten().count();
+    let kept = |folder: &Folder| {
+        fs::read_dir(folder.at("pictures"))
+            .into_iter()
+            .flatten()
+            .flatten()
+            .count()
+    };
     wait_until(&mut session, |_| kept(&folder) > 0);
-    let picture = fs::read_dir(folder.at("pictures")).unwrap().next().unwrap().unwrap().path();
+    let picture = fs::read_dir(folder.at("pictures"))
+        .unwrap()
+        .next()
+        .unwrap()
+        .unwrap()
+        .path();
     let picture = image::open(picture).unwrap().into_rgba8();
     assert_eq!(picture.dimensions(), (192, 144));
     let corner = *picture.get_pixel(3, 3);
@@ -152,7 +163,9 @@ fn a_recent_file_has_a_small_picture_from_its_opening_on() {
     }
     wait_until(&mut session, |_| kept(&folder) == 1);
     drop(session);
-    let Some(mut session) = Session::begin_in(Source::Sample, places) else { return };
+    let Some(mut session) = Session::begin_in(Source::Sample, places) else {
+        return;
+    };
     click(&mut session, "File");
     click(&mut session, "Open recent");
     assert!(has(&session, "10.off") && !has(&session, "ball.off"));
@@ -166,7 +179,10 @@ fn menus_open_by_keys_and_the_arrows_go_through_them() {
     assert!(has(&session, "Save model as…"), "F10 opens the first menu");
     session.key(Key::ArrowRight, Modifiers::NONE);
     session.harness.run_steps(4);
-    assert!(has(&session, "Apply shape") || has(&session, "Clear regions"), "the arrow opens the next");
+    assert!(
+        has(&session, "Apply shape") || has(&session, "Clear regions"),
+        "the arrow opens the next"
+    );
     assert!(!has(&session, "Save model as…"));
     session.key(Key::Escape, Modifiers::NONE);
     session.harness.run_steps(3);
@@ -179,18 +195,25 @@ fn menus_open_by_keys_and_the_arrows_go_through_them() {
     session.key(Key::ArrowDown, Modifiers::NONE);
     session.key(Key::Enter, Modifiers::NONE);
     session.harness.run_steps(3);
-    assert!(session.harness.state().editor().view().camera_revision > before + 1, "the first command is done");
+    assert!(
+        session.harness.state().editor().view().camera_revision > before + 1,
+        "the first command is done"
+    );
     assert!(!has(&session, "Show everything"), "and the menu is closed");
 }
 
 #[test]
 fn a_right_click_offers_what_fits_the_place() {
-    let Some(mut session) = Session::with_handle() else { return };
+    let Some(mut session) = Session::with_handle() else {
+        return;
+    };
     let top = session.point_of(|positions| *positions.iter().max_by(|a, b| a.y.total_cmp(&b.y)).unwrap());
     right_click(&mut session, top + vec2(0.0, 8.0));
     assert!(has(&session, "Rename") && has(&session, "Delete handle"));
     click(&mut session, "Rename");
-    let field = session.harness.get_by_role_and_label(Role::TextInput, "Name of the handle");
+    let field = session
+        .harness
+        .get_by_role_and_label(Role::TextInput, "Name of the handle");
     field.focus();
     session.harness.run_steps(2);
     session.key(Key::A, Modifiers::COMMAND);
@@ -201,7 +224,10 @@ fn a_right_click_offers_what_fits_the_place() {
     assert_eq!(session.harness.state().editor().document().handles()[0].name, "horn");
 
     // A region that is painted beside it.
-    session.harness.state_mut().command(Command::SetTool(ToolMode::PaintFixed));
+    session
+        .harness
+        .state_mut()
+        .command(Command::SetTool(ToolMode::PaintFixed));
     let middle = session.harness.state().view_rect().center();
     session.stroke(middle, middle + vec2(6.0, 0.0));
     let fixed = |session: &Session| {
@@ -216,7 +242,11 @@ fn a_right_click_offers_what_fits_the_place() {
     click(&mut session, "Clear this region");
     session.settle();
     assert_eq!(fixed(&session), 0);
-    assert_eq!(session.harness.state().editor().view().tool, ToolMode::Select, "the tool stays");
+    assert_eq!(
+        session.harness.state().editor().view().tool,
+        ToolMode::Select,
+        "the tool stays"
+    );
 
     // The bare surface: the command is for the clicked place, though the pointer is on the menu.
     right_click(&mut session, middle);
@@ -253,15 +283,24 @@ fn a_drag_ends_when_the_window_loses_the_focus_with_the_button_down() {
     let steps = session.harness.state().editor().history().names().1;
     session.pointer(middle + vec2(90.0, 40.0), None);
     session.settle();
-    assert_eq!(session.harness.state().editor().history().names().1, steps, "moving paints nothing");
+    assert_eq!(
+        session.harness.state().editor().history().names().1,
+        steps,
+        "moving paints nothing"
+    );
 }
 
 #[test]
 fn long_names_of_poses_end_before_their_buttons() {
-    let Some(mut session) = Session::with_handle() else { return };
+    let Some(mut session) = Session::with_handle() else {
+        return;
+    };
     session.harness.state_mut().command(Command::KeepPose);
     let name = "the pose of a very tired dancer after the last performance of the season";
-    session.harness.state_mut().command(Command::RenamePose(0, name.to_owned()));
+    session
+        .harness
+        .state_mut()
+        .command(Command::RenamePose(0, name.to_owned()));
     session.harness.run_steps(4);
     let label = session.harness.get_by_label(name).rect();
     for verb in ["Apply", "Update", "Remove"] {
@@ -274,12 +313,20 @@ fn long_names_of_poses_end_before_their_buttons() {
 #[test]
 fn undo_back_to_the_saved_state_is_saved() {
     let folder = Folder::new();
-    let Some(mut session) = Session::with_handle() else { return };
-    session.harness.state_mut().save_to(folder.at("saved.glb"), KeepOriginal::No);
+    let Some(mut session) = Session::with_handle() else {
+        return;
+    };
+    session
+        .harness
+        .state_mut()
+        .save_to(folder.at("saved.glb"), KeepOriginal::No);
     session.settle();
     let unsaved = |session: &Session| session.harness.state().editor().view().unsaved;
     assert!(!unsaved(&session));
-    session.harness.state_mut().command(Command::SetTool(ToolMode::PaintFixed));
+    session
+        .harness
+        .state_mut()
+        .command(Command::SetTool(ToolMode::PaintFixed));
     let middle = session.harness.state().view_rect().center();
     session.stroke(middle, middle + vec2(6.0, 0.0));
     assert!(unsaved(&session));

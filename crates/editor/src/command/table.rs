@@ -32,6 +32,29 @@ pub struct Listed {
     pub keywords: &'static str,
     /// Keys that send it; the first is shown.
     pub shortcuts: &'static [Shortcut],
+    /// The name of its group.
+    pub group: &'static str,
+}
+
+/// The name of the group whose entries are in the module of this path.
+fn group_of(entry: &str) -> &'static str {
+    let module = entry.split("::").next().unwrap_or(entry).trim();
+    match module {
+        "document" => "Edit",
+        "controls" => "Cage and lattice",
+        "examples" => "Examples",
+        "pose" => "Poses",
+        "paint" => "Tools and brush",
+        "flow" => "Flow",
+        "curves" => "Curves",
+        "handle" => "Handles",
+        "transform" => "Move, turn and scale",
+        "region" => "Regions and stiffness",
+        "object" => "Objects and parts",
+        "view" => "View",
+        "look" => "Look",
+        _ => "Others",
+    }
 }
 
 /// A question to the entry of any command, with the command's values.
@@ -76,6 +99,7 @@ macro_rules! commands {
                         tooltip: item.tooltip,
                         keywords: item.keywords,
                         shortcuts: item.shortcuts,
+                        group: group_of(stringify!($entry)),
                     });
                 })+
                 list

@@ -11,7 +11,7 @@ use super::Editor;
 use crate::command::{Command, Shortcut, State};
 use crate::document::{Document, HandleId, History, SaveMark};
 use crate::format::{ExportError, export};
-use crate::jobs::{Comparison, Intersections, JobKind};
+use crate::jobs::{Activity, Comparison, Intersections, JobKind};
 use crate::region::Rim;
 use crate::revision::Revision;
 use crate::scene_view::{ControlPoints, SceneView};
@@ -47,6 +47,7 @@ impl Editor {
             rims_revision: workspace.colours().rims_revision(),
             overlay_revision: self.overlay.revision,
             camera_revision: view.revision(),
+            is_dragging: gesture.is_some_and(|gesture| gesture.activity() == Activity::Dragging),
             brush_ring: &self.overlay.ring,
             gizmo: &self.overlay.gizmo,
             controls: &self.overlay.controls,

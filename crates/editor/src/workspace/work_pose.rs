@@ -45,7 +45,7 @@ pub(crate) fn carry_corrections(workspace: &mut Workspace, before: &Document) {
     let former = work.corrected.as_deref();
     let corrected = (0..now.len()).into_par_iter().with_min_len(1 << 12).map(|vertex| {
         let so_far = former.map_or(DVec3::ZERO, |corrected| corrected[vertex]);
-        if bits_equal(&now[vertex], &posed[vertex]) {
+        if bits_equal(now[vertex], posed[vertex]) {
             return so_far;
         }
         let edge = |shape: &[DVec3], to: usize| rest(to) + shape[to] - rest(vertex) - shape[vertex];

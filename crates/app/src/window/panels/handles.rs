@@ -200,14 +200,17 @@ fn triple(
     set: impl Fn(DVec3) -> Command,
 ) {
     let name = row_label(ui, label);
-    let suffix = if units == DEGREES { "°" } else { "" };
+    let (suffix, decimals) = if units == DEGREES { ("°", 1) } else { ("", 3) };
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
         ui.spacing_mut().interact_size.x = 54.0;
         for axis in 0..3 {
             let mut changed = value;
             let field = number_field(ui, &mut changed[axis], |ui, value| {
-                let field = dragged(ui, value, units).speed(speed).max_decimals(3).suffix(suffix);
+                let field = dragged(ui, value, units)
+                    .speed(speed)
+                    .max_decimals(decimals)
+                    .suffix(suffix);
                 let field = field.custom_formatter(without_minus_zero);
                 ui.add(field)
             });

@@ -368,6 +368,7 @@ impl Viewport {
             overlay: view.overlay_revision,
             camera: view.camera_revision,
             look: view.look,
+            is_faded: view.is_dragging,
             size_px,
             samples,
             detail: Detail::Full,
@@ -412,7 +413,10 @@ impl Viewport {
                     Some(_) if !is_alone => Shadows::On,
                     _ => Shadows::Off,
                 },
-                ..drawing::style(&self.present_look(key.look), pixels_per_point)
+                ..match key.is_faded {
+                    true => drawing::faded_style(&self.present_look(key.look), pixels_per_point),
+                    false => drawing::style(&self.present_look(key.look), pixels_per_point),
+                }
             },
             surfaces: &surfaces,
             grid: ground.as_ref().filter(|_| has_ground),
