@@ -27,6 +27,7 @@ fn places(folder: &Folder) -> AppDirectories {
     AppDirectories {
         settings: Some(folder.at("settings.json")),
         recovery: Some(folder.at("recovery")),
+        pictures: Some(folder.at("pictures")),
     }
 }
 

@@ -712,3 +712,33 @@ fn a_limb_that_is_not_there_is_refused_in_words() {
     let refused = EditFile::from_value(&stored).unwrap_err().to_string();
     assert!(refused.contains("handles[0] has both `select` and `pose`"), "{refused}");
 }
+
+#[test]
+fn a_loose_part_that_touches_a_limb_leads_to_the_limb_and_turns_with_it() {
+    let place = DVec3::new(4.0, 0.0, 0.42);
+    let button = DAffine3::from_scale_rotation_translation(DVec3::splat(0.12), glam::DQuat::IDENTITY, place);
+    let button = shapes::moved(&shapes::icosphere(2), button);
+    let mut rig = Rig::open(shapes::together(&[body_with_arms(), button]));
+    rig.command(Command::SetTool(ToolMode::Pose));
+    rig.command(Command::View(pliant_editor::NamedView::Front));
+    rig.drain();
+    let view = rig.editor.view();
+    let from_px = view.camera.project(place + DVec3::Z * 0.12, VIEWPORT_PX).unwrap();
+    let part = rig.editor.pick(from_px).unwrap().vertex;
+    let part = rig.model.topology.component(part);
+    let parts = rig.model.topology.components().len();
+    assert_eq!(parts, 2);
+    assert!(
+        rig.model.topology.vertices_of(part).len() < 400,
+        "the pointer is on the button"
+    );
+    drag(&mut rig, from_px, DVec2::new(0.0, -40.0), Modifiers::NONE);
+    let document = rig.editor.document();
+    assert_eq!(document.handles().len(), 1, "{}", rig.editor.view().status);
+    let handle = &document.handles()[0];
+    assert!((handle.centre().x - JOINT).abs() < 0.4, "{}", handle.centre());
+    let own = |vertex: u32| document.paint()[vertex as usize] == Paint::Handle(handle.id);
+    assert!(rig.model.topology.vertices_of(part).all(|vertex| own(vertex.0)));
+    let hand = (0..).zip(&rig.model.surface.positions).filter(|(_, p)| p.x > 4.7);
+    assert!(hand.map(|(vertex, _)| vertex).all(own));
+}

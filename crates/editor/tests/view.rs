@@ -6,7 +6,7 @@ mod rig;
 use glam::{DVec2, DVec3};
 use pliant_editor::{
     BrushMetric, Button, Command, Event, GizmoPart, Key, Modifiers, NamedView, Orbit, Paint, Pointer, Projection,
-    ToolMode,
+    StiffnessBrush, ToolMode,
 };
 use pliant_mesh::shapes;
 use rig::{CENTRE_PX, Rig};
@@ -244,4 +244,67 @@ fn a_handle_closes_round_a_limb_as_thick_as_the_brush_and_leaves_the_back_of_a_b
     rig.paint(ToolMode::PaintHandle, &[at, at + DVec2::new(4.0, 0.0)]);
     let (front, back) = sides(&rig, -1.0..0.5);
     assert!(front > 4 && back == 0, "{front} {back}");
+}
+
+#[test]
+fn a_soft_brush_shows_where_it_has_half_of_its_strength_and_a_hard_one_does_not() {
+    let mut rig = Rig::open(shapes::icosphere(5));
+    rig.command(Command::View(NamedView::Front));
+    rig.command(Command::SetTool(ToolMode::PaintStiffness));
+    let inner = |rig: &mut Rig, falloff: f64| {
+        rig.command(Command::SetStiffnessBrush(StiffnessBrush {
+            falloff,
+            ..StiffnessBrush::default()
+        }));
+        rig.move_to(CENTRE_PX);
+        let view = rig.editor.view();
+        let points: Vec<DVec3> = view
+            .shapes
+            .iter()
+            .flat_map(|shape| shape.lines.iter().map(|line| line[0]))
+            .collect();
+        let radius = view.brush_radius_px * view.camera.world_per_px(DVec3::Z, rig::VIEWPORT_PX);
+        points
+            .iter()
+            .map(|point| point.truncate().length() / radius)
+            .collect::<Vec<_>>()
+    };
+    assert!(inner(&mut rig, 0.0).is_empty());
+    for falloff in [0.4, 1.0] {
+        let shares = inner(&mut rig, falloff);
+        assert!(!shares.is_empty());
+        for share in shares {
+            assert!((share - (1.0 - falloff / 2.0)).abs() < 0.1, "{share} at {falloff}");
+        }
+    }
+}
+
+#[test]
+fn shift_damps_the_pointer_from_where_it_is_held() {
+    let moved = |steps: &[(f64, bool)]| {
+        let mut rig = with_handle(Projection::Orthographic);
+        rig.move_to(CENTRE_PX);
+        rig.type_keys("g");
+        for &(x, is_fine) in steps {
+            let pointer = Pointer {
+                position_px: CENTRE_PX + DVec2::X * x,
+                modifiers: Modifiers {
+                    shift: is_fine,
+                    ..Modifiers::NONE
+                },
+            };
+            rig.send(Event::PointerMoved(pointer));
+        }
+        rig.key(Key::Enter);
+        rig.editor.document().handles()[0].affine().translation.x
+    };
+    let whole = moved(&[(50.0, false)]);
+    assert!(whole > 0.0);
+    let is_near = |a: f64, b: f64| (a - b).abs() < 1e-9 * whole;
+    assert!(is_near(moved(&[(50.0, true)]), 0.1 * whole));
+    // Nothing jumps when the key goes up or down.
+    assert!(is_near(
+        moved(&[(20.0, false), (50.0, true), (70.0, false)]),
+        (20.0 + 3.0 + 20.0) / 50.0 * whole
+    ));
 }

@@ -29,7 +29,7 @@ pub use ground::ground;
 pub use materials::{DecodedMaterials, EncodedMaterials};
 pub use outlines::outlines;
 pub use pose::Pose;
-pub use scene_view::{field, overlays, style, view};
+pub use scene_view::{faded_style, field, overlays, style, view};
 pub use wires::wires;
 
 use normals::NormalGroups;

@@ -15,6 +15,9 @@ const RING_COLOUR: [u8; 4] = [255, 255, 255, 220];
 /// Width of the brush ring in points.
 const RING_WIDTH_POINTS: f32 = 2.0;
 
+/// The share of the regions' colours that is left while the surface is dragged.
+const FADED_SHARE: f32 = 0.3;
+
 /// The width in points of a cage's or lattice's edges.
 const CONTROL_WIDTH_POINTS: f32 = 1.1;
 
@@ -62,10 +65,27 @@ pub fn style(look: &Look, pixels_per_point: f32) -> Style {
         faces: if look.flat { Faces::Flat } else { Faces::Smooth },
         wireframe: if look.wireframe { Wireframe::On } else { Wireframe::Off },
         borders: if look.borders { Borders::On } else { Borders::Off },
-        outlines: if look.outlines { Outlines::On } else { Outlines::Off },
+        outlines: match look.outlines && look.regions {
+            true => Outlines::On,
+            false => Outlines::Off,
+        },
         shadows: if look.shadow { Shadows::On } else { Shadows::Off },
         pixels_per_point,
         ..Style::default()
+    }
+}
+
+/// The same while the surface is dragged: the regions' colours fade, and numbers that are shown as colours stay.
+pub fn faded_style(look: &Look, pixels_per_point: f32) -> Style {
+    let style = style(look, pixels_per_point);
+    let share = if field(look.shading).is_some() {
+        1.0
+    } else {
+        FADED_SHARE
+    };
+    Style {
+        region_share: share * style.region_share,
+        ..style
     }
 }
 

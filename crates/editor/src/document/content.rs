@@ -12,6 +12,7 @@ use super::handle::{Handle, HandleId};
 use super::kept_shape::KeptShape;
 use super::pose::Pose;
 use super::strength::Strength;
+use super::work_pose::WorkPose;
 
 /// The paint of a vertex.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug, Default, Hash)]
@@ -79,6 +80,8 @@ pub struct Content {
     pub(crate) strength: Option<Arc<Strength>>,
     /// The kept poses.
     pub(crate) poses: Arc<Vec<Pose>>,
+    /// The state to which the document returns from a work pose; `None` outside one.
+    pub(crate) work_pose: Option<Arc<WorkPose>>,
     /// The fluid on the surface, which bends nothing.
     pub(crate) fluid: Fluid,
     /// The forces in its flow.
@@ -111,6 +114,7 @@ impl Content {
             settled: true,
             strength: None,
             poses: Arc::default(),
+            work_pose: None,
             fluid: Fluid::default(),
             flow_options: FlowOptions::default(),
         }

@@ -26,6 +26,7 @@ mod turn;
 mod twins;
 mod version;
 mod vertex_access;
+mod work_pose;
 
 pub use access::{Access, ObjectAction, SmallParts, object_name};
 pub use content::sum_of_shapes;
@@ -45,6 +46,7 @@ pub use kept_shape::{Carries, KeptShape};
 pub(crate) use matching::Matching;
 pub(crate) use mirror_plane::mirrored_transform;
 pub(crate) use parents::{find_parents_anew, is_within};
+pub(crate) use polar::polar_decomposition;
 pub(crate) use pose::Placed;
 pub use pose::Pose;
 pub use saved::{SaveMark, SavedAs};

@@ -80,6 +80,12 @@ impl Application {
                         browser.set_contents(&folder, contents);
                     }
                 }
+                Message::Shown(result) => {
+                    if let Err(sentence) = result {
+                        self.fail(sentence);
+                    }
+                }
+                Message::RecentPictures(pictures) => self.recent_pictures.take(pictures),
                 Message::Chosen(purpose, path) => self.chosen(purpose, path),
                 Message::NoDialog(purpose, suggested) => self.browse(purpose, &suggested),
             }
@@ -112,6 +118,7 @@ impl Application {
         } = opened;
         if let Some(path) = project.or(path).filter(|_| recovered.is_none()) {
             self.settings.change(|settings| settings.remember(&path));
+            self.recent_pictures.want(&path);
         }
         let name = self.session.open.as_ref().map(OpenFile::name).unwrap_or_default();
         self.workers.set_pose_source(PoseSource {
