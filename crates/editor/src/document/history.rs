@@ -14,7 +14,7 @@ use glam::DVec3;
 use pliant_deform::{Attachment, ExampleShape, Loose, Method};
 
 use super::access::Access;
-use super::content::{Paint, Tips};
+use super::content::{Paint, Tips, WorkPose};
 use super::fluid::{FlowOptions, Fluid};
 use super::handle::{Handle, HandleId};
 use super::kept_shape::KeptShape;
@@ -24,7 +24,6 @@ use super::sparse::Sparse;
 use super::state::Document;
 use super::strength::{Stance, Strength};
 use super::version::{Aspect, Version};
-use super::work_pose::WorkPose;
 
 /// The bytes of deltas that are kept before the oldest steps are forgotten.
 pub const HISTORY_BYTES: usize = 256 << 20;

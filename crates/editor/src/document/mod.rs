@@ -26,7 +26,6 @@ mod turn;
 mod twins;
 mod version;
 mod vertex_access;
-mod work_pose;
 
 pub use access::{Access, ObjectAction, SmallParts, object_name};
 pub use content::sum_of_shapes;

@@ -5,11 +5,11 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::Document;
+use crate::document::content::WorkPose;
 use crate::document::handle::Handle;
 use crate::document::handle_transform::HandleTransform;
 use crate::document::pose::Placed;
 use crate::document::version::Aspect;
-use crate::document::work_pose::WorkPose;
 
 impl Document {
     /// Returns true if the document is in a work pose, from which it returns exactly.

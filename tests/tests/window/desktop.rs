@@ -1,0 +1,334 @@
+//! The window among other programs: the file manager, the browser, the list of recent files; its menus by keys and by
+//! the right button. Skipped by name if there is no graphics device at all.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    reason = "tests fail by panicking and say what they skip"
+)]
+
+use std::fs;
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
+
+use crate::window_rig::Session;
+use egui::accesskit::Role;
+use egui::{Event, Key, Modifiers, PointerButton, Pos2, vec2};
+use egui_kittest::kittest::Queryable;
+use pliant_app::window::{AppDirectories, Desktop, Elsewhere, KeepOriginal, Source};
+use pliant_editor::{Command, Paint, ToolMode};
+use pliant_tests::Folder;
+
+fn ball(folder: &Folder) -> std::path::PathBuf {
+    folder.write_mesh("ball.off", &pliant_mesh::shapes::icosphere(3))
+}
+
+#[track_caller]
+fn wait_until(session: &mut Session, is_done: impl Fn(&Session) -> bool) {
+    let start = Instant::now();
+    while !is_done(session) {
+        assert!(start.elapsed() < Duration::from_secs(60), "it never came about");
+        std::thread::sleep(Duration::from_millis(10));
+        session.harness.step();
+    }
+}
+
+#[track_caller]
+fn click(session: &mut Session, label: &str) {
+    session.harness.get_by_role_and_label(Role::Button, label).click();
+    session.harness.run_steps(4);
+}
+
+fn has(session: &Session, label: &str) -> bool {
+    session.harness.query_all_by_label_contains(label).next().is_some()
+}
+
+/// Opens a menu and chooses a command.
+#[track_caller]
+fn choose(session: &mut Session, menu: &str, command: &str) {
+    click(session, menu);
+    click(session, command);
+}
+
+fn right_click(session: &mut Session, at: Pos2) {
+    session.pointer(at, None);
+    for pressed in [true, false] {
+        session.harness.event(Event::PointerButton {
+            pos: at,
+            button: PointerButton::Secondary,
+            pressed,
+            modifiers: Modifiers::NONE,
+        });
+        session.harness.step();
+    }
+    session.harness.run_steps(4);
+}
+
+#[test]
+fn the_desktop_shows_the_folder_the_manual_and_the_place_for_faults() {
+    let folder = Folder::new();
+    let file = ball(&folder);
+    let Some(mut session) = Session::begin_in(Source::File(file.clone()), AppDirectories::default()) else {
+        return;
+    };
+    let shown: Arc<Mutex<Vec<Elsewhere>>> = Arc::default();
+    let told = Arc::clone(&shown);
+    session.harness.state_mut().set_desktop(Desktop::new(move |elsewhere| {
+        told.lock().unwrap().push(elsewhere.clone());
+        match elsewhere {
+            Elsewhere::Page(address) => Err(format!("no browser opens {address}")),
+            Elsewhere::File(_) => Ok(()),
+        }
+    }));
+    let last = |session: &mut Session| {
+        wait_until(session, |_| !shown.lock().unwrap().is_empty());
+        shown.lock().unwrap().pop()
+    };
+    choose(&mut session, "File", "Show in folder");
+    assert_eq!(last(&mut session), Some(Elsewhere::File(file)));
+    // After a save the message offers the same for the saved file.
+    let copy = folder.at("copy.off");
+    session.harness.state_mut().save_to(copy.clone(), KeepOriginal::No);
+    session.settle();
+    click(&mut session, "Show in folder");
+    assert_eq!(last(&mut session), Some(Elsewhere::File(copy)));
+
+    choose(&mut session, "Help", "Manual");
+    assert!(matches!(last(&mut session), Some(Elsewhere::Page(address)) if address.contains("manual")));
+    wait_until(&mut session, |session| has(session, "no browser opens"));
+    choose(&mut session, "Help", "About Pliant");
+    for fact in [env!("CARGO_PKG_VERSION"), "MIT OR Apache-2.0", "/issues"] {
+        assert!(has(&session, fact), "{fact}");
+    }
+    click(&mut session, "Report a fault");
+    assert!(matches!(last(&mut session), Some(Elsewhere::Page(address)) if address.ends_with("/issues")));
+    session.key(Key::Escape, Modifiers::NONE);
+    session.harness.run_steps(3);
+    assert!(!has(&session, "MIT OR Apache-2.0"));
+}
+
+#[test]
+fn the_sample_is_opened_from_the_menu_and_is_in_no_folder() {
+    let folder = Folder::new();
+    let file = ball(&folder);
+    let Some(mut session) = Session::begin_in(Source::File(file), AppDirectories::default()) else {
+        return;
+    };
+    choose(&mut session, "File", "New from sample");
+    session.settle();
+    assert_eq!(session.harness.state().editor().file_name(), "creature.glb");
+    assert_eq!(session.harness.state().path(), None);
+    choose(&mut session, "File", "Show in folder");
+    assert!(session.harness.state().headline().unwrap().contains("save it first"));
+}
+
+#[test]
+fn a_recent_file_has_a_small_picture_from_its_opening_on() {
+    let folder = Folder::new();
+    let file = ball(&folder);
+    let places = AppDirectories {
+        settings: Some(folder.at("settings.json")),
+        pictures: Some(folder.at("pictures")),
+        ..AppDirectories::default()
+    };
+    let Some(mut session) = Session::begin_in(Source::File(file.clone()), places.clone()) else {
+        return;
+    };
+    let kept = |folder: &Folder| {
+        fs::read_dir(folder.at("pictures"))
+            .into_iter()
+            .flatten()
+            .flatten()
+            .count()
+    };
+    wait_until(&mut session, |_| kept(&folder) > 0);
+    let picture = fs::read_dir(folder.at("pictures"))
+        .unwrap()
+        .next()
+        .unwrap()
+        .unwrap()
+        .path();
+    let picture = image::open(picture).unwrap().into_rgba8();
+    assert_eq!(picture.dimensions(), (192, 144));
+    let corner = *picture.get_pixel(3, 3);
+    let middle = *picture.get_pixel(96, 72);
+    assert_ne!(corner, middle, "the ball is in the middle");
+    // Eleven more files push the first one out of the list, and its picture out of the folder.
+    for number in 0..11 {
+        let other = folder.write_mesh(&format!("{number}.off"), &pliant_mesh::shapes::icosphere(1));
+        session.harness.state_mut().open(other);
+        session.settle();
+    }
+    wait_until(&mut session, |_| kept(&folder) == 1);
+    drop(session);
+    let Some(mut session) = Session::begin_in(Source::Sample, places) else {
+        return;
+    };
+    click(&mut session, "File");
+    click(&mut session, "Open recent");
+    assert!(has(&session, "10.off") && !has(&session, "ball.off"));
+}
+
+#[test]
+fn menus_open_by_keys_and_the_arrows_go_through_them() {
+    let Some(mut session) = Session::begin() else { return };
+    session.key(Key::F10, Modifiers::NONE);
+    session.harness.run_steps(3);
+    assert!(has(&session, "Save model as…"), "F10 opens the first menu");
+    session.key(Key::ArrowRight, Modifiers::NONE);
+    session.harness.run_steps(4);
+    assert!(
+        has(&session, "Apply shape") || has(&session, "Clear regions"),
+        "the arrow opens the next"
+    );
+    assert!(!has(&session, "Save model as…"));
+    session.key(Key::Escape, Modifiers::NONE);
+    session.harness.run_steps(3);
+    assert!(!has(&session, "Clear regions"));
+    session.key(Key::V, Modifiers::ALT);
+    session.harness.run_steps(3);
+    assert!(has(&session, "Frame all"));
+    let before = session.harness.state().editor().view().camera_revision;
+    session.harness.state_mut().command(Command::StepView([1, 0]));
+    session.key(Key::ArrowDown, Modifiers::NONE);
+    session.key(Key::Enter, Modifiers::NONE);
+    session.harness.run_steps(3);
+    assert!(
+        session.harness.state().editor().view().camera_revision > before + 1,
+        "the first command is done"
+    );
+    assert!(!has(&session, "Show everything"), "and the menu is closed");
+}
+
+#[test]
+fn a_right_click_offers_what_fits_the_place() {
+    let Some(mut session) = Session::with_handle() else {
+        return;
+    };
+    let top = session.point_of(|positions| *positions.iter().max_by(|a, b| a.y.total_cmp(&b.y)).unwrap());
+    right_click(&mut session, top + vec2(0.0, 8.0));
+    assert!(has(&session, "Rename") && has(&session, "Delete handle"));
+    click(&mut session, "Rename");
+    let field = session
+        .harness
+        .get_by_role_and_label(Role::TextInput, "Name of the handle");
+    field.focus();
+    session.harness.run_steps(2);
+    session.key(Key::A, Modifiers::COMMAND);
+    session.harness.event(Event::Text("horn".to_owned()));
+    session.harness.step();
+    session.key(Key::Enter, Modifiers::NONE);
+    session.harness.run_steps(3);
+    assert_eq!(session.harness.state().editor().document().handles()[0].name, "horn");
+
+    // A region that is painted beside it.
+    session
+        .harness
+        .state_mut()
+        .command(Command::SetTool(ToolMode::PaintFixed));
+    let middle = session.harness.state().view_rect().center();
+    session.stroke(middle, middle + vec2(6.0, 0.0));
+    let fixed = |session: &Session| {
+        let paint = session.harness.state().editor().document().paint().iter();
+        paint.filter(|paint| **paint == Paint::Fixed).count()
+    };
+    let count = fixed(&session);
+    assert!(count > 0);
+    session.harness.state_mut().command(Command::SetTool(ToolMode::Select));
+    right_click(&mut session, middle);
+    assert!(has(&session, "Fixed part") && !has(&session, "Rename"));
+    click(&mut session, "Clear this region");
+    session.settle();
+    assert_eq!(fixed(&session), 0);
+    assert_eq!(
+        session.harness.state().editor().view().tool,
+        ToolMode::Select,
+        "the tool stays"
+    );
+
+    // The bare surface: the command is for the clicked place, though the pointer is on the menu.
+    right_click(&mut session, middle);
+    assert!(!has(&session, "Fixed part"));
+    click(&mut session, "Isolate part");
+    session.settle();
+    assert!(session.harness.state().editor().document().access().isolated.is_some());
+}
+
+#[test]
+fn an_object_is_locked_from_the_palette_while_the_pointer_is_on_it() {
+    let Some(mut session) = Session::begin() else { return };
+    let middle = session.harness.state().view_rect().center();
+    session.pointer(middle, None);
+    session.palette("lock object");
+    session.key(Key::Enter, Modifiers::NONE);
+    session.settle();
+    assert_eq!(session.harness.state().editor().document().access().locked.len(), 1);
+}
+
+#[test]
+fn a_drag_ends_when_the_window_loses_the_focus_with_the_button_down() {
+    let Some(mut session) = Session::begin() else { return };
+    let middle = session.harness.state().view_rect().center();
+    session.pointer(middle, None);
+    session.pointer(middle, Some(true));
+    session.pointer(middle + vec2(5.0, 0.0), None);
+    assert!(session.harness.state().editor().is_acting());
+    session.harness.event(Event::WindowFocused(false));
+    session.harness.run_steps(3);
+    assert!(!session.harness.state().editor().is_acting());
+    session.harness.event(Event::WindowFocused(true));
+    session.settle();
+    let steps = session.harness.state().editor().history().names().1;
+    session.pointer(middle + vec2(90.0, 40.0), None);
+    session.settle();
+    assert_eq!(
+        session.harness.state().editor().history().names().1,
+        steps,
+        "moving paints nothing"
+    );
+}
+
+#[test]
+fn long_names_of_poses_end_before_their_buttons() {
+    let Some(mut session) = Session::with_handle() else {
+        return;
+    };
+    session.harness.state_mut().command(Command::KeepPose);
+    let name = "the pose of a very tired dancer after the last performance of the season";
+    session
+        .harness
+        .state_mut()
+        .command(Command::RenamePose(0, name.to_owned()));
+    session.harness.run_steps(4);
+    let label = session.harness.get_by_label(name).rect();
+    for verb in ["Apply", "Update", "Remove"] {
+        let button = session.harness.get_by_label(&format!("{verb} {name}")).rect();
+        assert!(label.right() <= button.left(), "{label:?} {verb} {button:?}");
+        assert!(button.right() <= 1000.0);
+    }
+}
+
+#[test]
+fn undo_back_to_the_saved_state_is_saved() {
+    let folder = Folder::new();
+    let Some(mut session) = Session::with_handle() else {
+        return;
+    };
+    session
+        .harness
+        .state_mut()
+        .save_to(folder.at("saved.glb"), KeepOriginal::No);
+    session.settle();
+    let unsaved = |session: &Session| session.harness.state().editor().view().unsaved;
+    assert!(!unsaved(&session));
+    session
+        .harness
+        .state_mut()
+        .command(Command::SetTool(ToolMode::PaintFixed));
+    let middle = session.harness.state().view_rect().center();
+    session.stroke(middle, middle + vec2(6.0, 0.0));
+    assert!(unsaved(&session));
+    session.key(Key::Z, Modifiers::COMMAND);
+    session.settle();
+    assert!(!unsaved(&session));
+}
