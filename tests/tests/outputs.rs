@@ -10,7 +10,7 @@ use glam::{DAffine3, DQuat, DVec3};
 use pliant_editor::Beginning;
 use pliant_engine::files::Staging;
 use pliant_engine::watch::Watch;
-use pliant_engine::{Apply, apply, memory};
+use pliant_engine::{Apply, EditJob, apply, memory};
 use pliant_mesh::shapes;
 use pliant_tests::{Folder, bare_edit, bend, run};
 use serde_json::json;
@@ -114,16 +114,18 @@ fn a_file_that_changes_while_it_is_bent_is_not_replaced() {
     let edit = Beginning::parse(&bend(&json!({ "translation": [0.0, 0.5, 0.0] })).to_string()).unwrap();
     let job = |output: &Path| {
         let job = Apply {
-            file: &file,
-            edit: &edit,
-            edit_path: Path::new("edit.json"),
-            output,
-            report: None,
+            job: EditJob {
+                file: &file,
+                edit: &edit,
+                edit_path: Path::new("edit.json"),
+                output,
+                report: None,
+                budget: memory::budget(),
+                weld: Default::default(),
+            },
             frames: None,
-            budget: memory::budget(),
             deltas: pliant_io::MorphDeltas::WhereFarOff,
             morph: None,
-            weld: Default::default(),
         };
         apply(&job, &Watch::default(), &Staging::default())
     };

@@ -92,8 +92,8 @@ fn paint_stays_and_handles_made_in_it_are_where_their_vertices_were() {
     stroke(
         &mut rig,
         ToolMode::PaintHandle,
-        CENTRE_PX + DVec2::new(-120.0, -60.0),
-        CENTRE_PX + DVec2::new(-100.0, -60.0),
+        CENTRE_PX + DVec2::new(-70.0, -75.0),
+        CENTRE_PX + DVec2::new(-50.0, -80.0),
     );
     let new = rig.editor.document().handles()[1].id;
     let own = rig.count(Paint::Handle(new));

@@ -12,8 +12,8 @@ use pliant_mesh::{Model, SurfaceVertex};
 use pliant_render::{Background, Frame, Headless, Image, Samples};
 use serde::Serialize;
 
-use super::arguments::{self, CompareArguments, PictureSize};
 use super::method_argument::method_argument;
+use super::picture_arguments::{self, CompareArguments, PictureSize};
 use super::render::{self, Posed, Shape, Uploaded};
 use crate::cli::console::{Console, print, warn};
 use crate::cli::threads::on_threads;
@@ -316,7 +316,7 @@ fn draw(
         .map_err(|error| EngineError::System(error.to_string()))?
         .renderer;
     let (camera, layout) = camera_and_layout(arguments, model, outcomes);
-    let regions = arguments.look.shading == arguments::Shading::Regions;
+    let regions = arguments.look.shading == picture_arguments::Shading::Regions;
     let look = Look {
         shading: render::shading(arguments.look.shading),
         regions,

@@ -13,20 +13,23 @@ mod info;
 mod interrupt;
 mod method_argument;
 mod motion_arguments;
+mod picture_arguments;
 mod progress_line;
 mod render;
 mod sequence;
 mod shared_arguments;
 mod stitch;
+mod stitch_arguments;
 mod threads;
+mod tracing_output;
 mod transfer;
 
 use std::ffi::OsString;
 use std::io::{self, IsTerminal};
 use std::process::ExitCode;
 
-pub use arguments::{LookArguments, PictureSize, RenderArguments, Shading, Up, View};
 pub use console::Console;
+pub use picture_arguments::{LookArguments, PictureSize, RenderArguments, Shading, Up, View};
 
 use crate::window::{self, Source};
 use arguments::Command;
@@ -48,7 +51,11 @@ pub fn main() -> ExitCode {
         watch,
         staging,
     };
-    ExitCode::from(run(std::env::args_os().collect(), &mut console))
+    let status = match tracing_output::begin() {
+        Ok(()) => run(std::env::args_os().collect(), &mut console),
+        Err(error) => refuse(&error, &mut console),
+    };
+    ExitCode::from(status)
 }
 
 /// Executes the arguments' request (the program's name comes first) and gives the exit status: 0 done, 1 refused, 2
@@ -81,6 +88,11 @@ pub fn run(arguments: Vec<OsString>, console: &mut Console<'_>) -> u8 {
         Err(_) if console.watch.cancel.is_cancelled() => EngineError::Interrupted,
         Err(error) => error,
     };
+    refuse(&error, console)
+}
+
+/// Writes a refusal as one line and gives its exit status.
+fn refuse(error: &EngineError, console: &mut Console<'_>) -> u8 {
     let line = plain(&error.to_string().replace(['\n', '\r'], " "));
     // If not even the error can be written, the exit status still reports it.
     let _ = writeln!(console.err, "pliant: {line}");

@@ -13,7 +13,7 @@ use pliant_editor::{
 use pliant_mesh::{Cancel, Model, WeldOptions, bounding_box};
 use pliant_render::{Background, Frame, Headless, RenderError, Renderer, Samples, Surface, SurfaceLine};
 
-use super::arguments::{self, PictureSize, ProjectionName, RenderArguments, Up, View};
+use super::picture_arguments::{self, PictureSize, ProjectionName, RenderArguments, Up, View};
 use super::shared_arguments::{ComputeArguments, WeldArguments};
 use crate::cli::console::{Console, print};
 use crate::cli::threads::on_threads;
@@ -85,8 +85,8 @@ fn look(arguments: &RenderArguments) -> Look {
         flat: arguments.flat,
         wireframe: arguments.wireframe,
         borders: arguments.borders,
-        regions: arguments.look.shading == arguments::Shading::Regions,
-        outlines: arguments.outlines || arguments.look.shading == arguments::Shading::Regions,
+        regions: arguments.look.shading == picture_arguments::Shading::Regions,
+        outlines: arguments.outlines || arguments.look.shading == picture_arguments::Shading::Regions,
         grid: arguments.grid,
         shadow: arguments.shadow,
         original: false,
@@ -96,16 +96,16 @@ fn look(arguments: &RenderArguments) -> Look {
 }
 
 /// The editor's shading for that of the arguments.
-pub(super) fn shading(shading: arguments::Shading) -> Shading {
+pub(super) fn shading(shading: picture_arguments::Shading) -> Shading {
     match shading {
-        arguments::Shading::Clay | arguments::Shading::Regions => Shading::Clay,
-        arguments::Shading::Material => Shading::Material,
-        arguments::Shading::Stiffness => Shading::Stiffness,
-        arguments::Shading::Distortion => Shading::Stretch,
-        arguments::Shading::Area => Shading::Area,
-        arguments::Shading::Curvature => Shading::Curvature,
-        arguments::Shading::Zebra => Shading::Zebra,
-        arguments::Shading::Normals => Shading::Normals,
+        picture_arguments::Shading::Clay | picture_arguments::Shading::Regions => Shading::Clay,
+        picture_arguments::Shading::Material => Shading::Material,
+        picture_arguments::Shading::Stiffness => Shading::Stiffness,
+        picture_arguments::Shading::Distortion => Shading::Stretch,
+        picture_arguments::Shading::Area => Shading::Area,
+        picture_arguments::Shading::Curvature => Shading::Curvature,
+        picture_arguments::Shading::Zebra => Shading::Zebra,
+        picture_arguments::Shading::Normals => Shading::Normals,
     }
 }
 

@@ -8,8 +8,8 @@ use pliant_engine::stitching::{self, Cut, CutAlong, Fill, Holes, Merge, Remaking
 use pliant_io::Format;
 use pliant_mesh::Progress;
 
-use super::arguments::{BridgeArguments, CutArguments, FillArguments, MergeArguments, NewShapeArguments};
 use super::shared_arguments::{ComputeArguments, WeldArguments};
+use super::stitch_arguments::{BridgeArguments, CutArguments, FillArguments, MergeArguments, NewShapeArguments};
 use crate::cli::console::{Console, print, warn};
 use crate::cli::threads::on_threads;
 use crate::files::original::{Kept, Original};

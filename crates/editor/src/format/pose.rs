@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use pliant_deform::{Loose, Role};
-use pliant_mesh::{Cancel, DistanceSearch, Joint, Model, Shape, SurfaceVertex, joint_of};
+use pliant_mesh::{Cancel, DistanceSearch, Joint, Model, Shape, SurfaceVertex};
 use serde::{Deserialize, Serialize};
 
 use super::edit_error::EditError;

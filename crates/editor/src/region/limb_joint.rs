@@ -1,6 +1,6 @@
 //! The joint of a limb on a body with loose parts: eyes, teeth and shells that touch it count as the body's own.
 
-use pliant_mesh::{Cancel, Cancelled, Joint, Model, Shape, SurfaceVertex, joint_of};
+use pliant_mesh::{Cancel, Cancelled, Joint, Model, Shape, joint_of};
 
 use glam::DVec3;
 

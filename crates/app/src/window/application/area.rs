@@ -137,13 +137,14 @@ impl Application {
 
     /// Draws the views of the methods into `place` while they are compared.
     fn method_views(&mut self, ui: &mut egui::Ui, place: Option<egui::Rect>) -> Result<(), pliant_render::RenderError> {
-        let (Some(place), Some(comparison), Some(stage)) = (place, self.editor.comparison(), self.workers.stage())
+        let (Some(place), Some(comparison), Some(source)) =
+            (place, self.editor.comparison(), self.workers.pose_source())
         else {
             // Their data on the device is dropped with them.
             self.method_views = MethodViews::default();
             return Ok(());
         };
-        self.method_views.follow(ui.ctx(), comparison, &self.viewport, &stage);
+        self.method_views.follow(ui.ctx(), comparison, &self.viewport, &source);
         let are_settled = self.method_views.are_settled(comparison);
         let smooth = if are_settled {
             self.smoothness()
@@ -182,14 +183,14 @@ impl Application {
         smooth: Smoothness,
     ) -> Result<(), pliant_render::RenderError> {
         let before = self.editor.view().look.before;
-        let (Some(stage), true) = (self.workers.stage(), before != Before::Off) else {
+        let (Some(source), true) = (self.workers.pose_source(), before != Before::Off) else {
             // Its data on the device is dropped with it.
             self.original = None;
             return Ok(());
         };
         let new = || OriginalView::beside(ui.ctx(), &self.viewport);
         let original = self.original.get_or_insert_with(new);
-        original.follow(&self.editor, &self.viewport, &stage);
+        original.follow(&self.editor, &self.viewport, &source);
         if original.show(ui, rect, &self.editor, self.split, smooth)? {
             ui.ctx().request_repaint_after(REST);
         }

@@ -12,7 +12,7 @@ use crate::window::dialogs::question::Question;
 use crate::window::panels::notes::Notes;
 use crate::window::session::OpenFile;
 use crate::window::threads::message::{ImagesOf, LoadedMaterials, Message, ModelToShow, Posed};
-use crate::window::threads::workers::Stage;
+use crate::window::threads::workers::PoseSource;
 
 impl Application {
     /// Takes the results of other threads. Returns whether there was anything besides new shapes, which come at every
@@ -121,7 +121,7 @@ impl Application {
             self.recent_pictures.want(&path);
         }
         let name = self.session.open.as_ref().map(OpenFile::name).unwrap_or_default();
-        self.workers.set_stage(Stage {
+        self.workers.set_pose_source(PoseSource {
             loaded: Arc::clone(&loaded),
             drawing: Arc::clone(&drawing),
             field: self.wanted_field(),
@@ -220,12 +220,14 @@ impl Application {
     /// its binding is ready).
     pub(in crate::window) fn request_pose(&mut self) {
         let field = self.wanted_field();
-        let Some(mut stage) = self.workers.stage() else { return };
-        if stage.field != field {
-            stage.field = field;
-            self.workers.set_stage(stage.clone());
+        let Some(mut source) = self.workers.pose_source() else {
+            return;
+        };
+        if source.field != field {
+            source.field = field;
+            self.workers.set_pose_source(source.clone());
         }
         self.poses
-            .follow(self.editor.view().drawn, &self.viewport, &stage, &self.workers);
+            .follow(self.editor.view().drawn, &self.viewport, &source, &self.workers);
     }
 }

@@ -23,6 +23,7 @@ impl eframe::App for Application {
             interface_pool::is_installed(),
             "the window's loops would wait behind jobs' on this thread"
         );
+        let _span = tracing::trace_span!("frame").entered();
         let (start, drawn_before) = (Instant::now(), self.drawing_time());
         let context = ui.ctx().clone();
         let has_heard = self.take_messages() || context.input(|input| input.events.iter().any(may_change_layout));

@@ -14,7 +14,7 @@ use pliant_render::RenderError;
 use super::side_view::SideView;
 use super::{Smoothness, Viewport};
 use crate::sheet;
-use crate::window::threads::workers::Stage;
+use crate::window::threads::workers::PoseSource;
 use crate::window::widgets::icon::{Icon, toggle};
 use crate::window::widgets::theme;
 use pliant_engine::report::finite_or;
@@ -55,7 +55,7 @@ impl MethodViews {
 
     /// Takes over the shapes of the comparison, and the results of other threads. The file is uploaded for one view
     /// after the other.
-    pub fn follow(&mut self, context: &egui::Context, comparison: &Comparison, first: &Viewport, stage: &Stage) {
+    pub fn follow(&mut self, context: &egui::Context, comparison: &Comparison, first: &Viewport, source: &PoseSource) {
         let alternatives = comparison.alternatives();
         self.views.truncate(alternatives.len());
         while self.views.len() < alternatives.len() {
@@ -63,13 +63,13 @@ impl MethodViews {
         }
         for (view, alternative) in self.views.iter_mut().zip(alternatives) {
             while let Some(message) = view.receive() {
-                view.take(message, &alternative.shape, stage);
+                view.take(message, &alternative.shape, source);
             }
         }
         let mut is_uploading = false;
         for (view, alternative) in self.views.iter_mut().zip(alternatives) {
-            if !is_uploading || view.viewport.shows(&stage.drawing) {
-                view.follow(&alternative.shape, first, stage);
+            if !is_uploading || view.viewport.shows(&source.drawing) {
+                view.follow(&alternative.shape, first, source);
             }
             is_uploading |= view.is_uploading();
         }
