@@ -298,3 +298,18 @@ fn a_copy_is_saved_under_a_typed_name_and_a_file_in_its_place_is_asked_about_onc
     assert!(!has(&session, "Replace second.off?"));
     assert_eq!(fs::read(folder.at("second.off")).unwrap(), fs::read(&first).unwrap());
 }
+
+#[test]
+fn a_model_is_saved_in_the_format_that_is_chosen_beside_its_name() {
+    let folder = Folder::new();
+    let Some(mut session) = begin(&folder) else { return };
+    session.harness.state_mut().browse_to_save();
+    await_row(&mut session, "second.off");
+    session.harness.get_by_role_and_label(Role::ComboBox, "Format").click();
+    session.harness.run_steps(3);
+    click(&mut session, "PLY (.ply)");
+    assert_eq!(text_of(&session, "Name"), "first.ply");
+    session.key(Key::Enter, Modifiers::NONE);
+    session.settle();
+    assert!(fs::read(folder.at("first.ply")).unwrap().starts_with(b"ply"));
+}

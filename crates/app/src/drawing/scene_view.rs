@@ -164,3 +164,32 @@ pub fn overlays(view: &SceneView<'_>, centre: DVec3, pixels_per_point: f32) -> V
     });
     edges.chain(points).chain([ring, gizmo]).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_switch_hides_regions_and_a_drag_fades_them_but_no_numbers() {
+        let shown = style(&Look::default(), 1.0);
+        assert!(shown.region_share > 0.0 && shown.outlines == Outlines::On);
+        let faded = faded_style(&Look::default(), 1.0);
+        assert!(faded.region_share > 0.0 && faded.region_share < 0.5 * shown.region_share);
+        let off = Look {
+            regions: false,
+            ..Look::default()
+        };
+        assert_eq!(
+            (style(&off, 1.0).region_share, style(&off, 1.0).outlines),
+            (0.0, Outlines::Off)
+        );
+        let numbers = Look {
+            shading: Shading::Stretch,
+            ..Look::default()
+        };
+        assert_eq!(
+            faded_style(&numbers, 1.0).region_share,
+            style(&numbers, 1.0).region_share
+        );
+    }
+}

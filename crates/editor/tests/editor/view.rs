@@ -307,3 +307,14 @@ fn shift_damps_the_pointer_from_where_it_is_held() {
         (20.0 + 3.0 + 20.0) / 50.0 * whole
     ));
 }
+
+#[test]
+fn regions_fade_from_the_beginning_of_a_drag_to_its_end() {
+    let mut rig = with_handle(Projection::Perspective);
+    assert!(!rig.editor.view().is_dragging);
+    drag_with_ctrl(&mut rig, GizmoPart::Arrow(0), DVec2::new(30.0, 0.0));
+    assert!(rig.editor.view().is_dragging);
+    rig.release(CENTRE_PX);
+    rig.drain();
+    assert!(!rig.editor.view().is_dragging);
+}

@@ -1,17 +1,15 @@
 //! The keys of the menu bar: F10 opens the first menu, Alt and a letter its own one. Inside a menu the arrows go up and
 //! down, and to the neighbouring menus.
 
-use eframe::egui::{Context, Key, KeyboardShortcut, Modifiers, Popup, Response};
+use eframe::egui::{Context, Key, Modifiers, Popup, Response};
 
-/// The key of a menu with this letter.
-pub fn shortcut(letter: Key) -> KeyboardShortcut {
-    KeyboardShortcut::new(Modifiers::ALT, letter)
-}
+use crate::window::input::own_keys::menu_key;
 
 /// Opens the menu that a key asks for, from the buttons of the bar with their letters.
 pub fn follow(context: &Context, buttons: &[(Response, Key)]) {
     let is_pressed = |modifiers, key| context.input_mut(|input| input.consume_key(modifiers, key));
-    let asked = buttons.iter().find(|(_, letter)| is_pressed(Modifiers::ALT, *letter));
+    let is_asked = |letter: Key| context.input_mut(|input| input.consume_shortcut(&menu_key(letter)));
+    let asked = buttons.iter().find(|(_, letter)| is_asked(*letter));
     let first = buttons.first().filter(|_| is_pressed(Modifiers::NONE, Key::F10));
     if let Some((button, _)) = asked.or(first) {
         open(context, button);
@@ -19,14 +17,22 @@ pub fn follow(context: &Context, buttons: &[(Response, Key)]) {
         return;
     }
     let is_open = |button: &Response| Popup::is_id_open(context, Popup::default_response_id(button));
-    let is_any_open = buttons.iter().any(|(button, _)| is_open(button));
-    // The arrows have moved the focus to another menu's button.
-    let entered = buttons
+    // Inside a menu the arrow to the left leads to the menu's button, and from there on to the neighbour.
+    let Some(place) = buttons
         .iter()
-        .find(|(button, _)| button.gained_focus() && !is_open(button));
-    if let Some((button, _)) = entered.filter(|_| is_any_open) {
-        open(context, button);
-    }
+        .position(|(button, _)| is_open(button) && button.has_focus())
+    else {
+        return;
+    };
+    let count = buttons.len();
+    let next = match [Key::ArrowLeft, Key::ArrowRight].map(|key| is_pressed(Modifiers::NONE, key)) {
+        [true, _] => (place + count - 1) % count,
+        [_, true] => (place + 1) % count,
+        [false, false] => return,
+    };
+    let (button, _) = &buttons[next];
+    open(context, button);
+    button.request_focus();
 }
 
 fn open(context: &Context, button: &Response) {

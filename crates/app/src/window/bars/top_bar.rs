@@ -1,6 +1,6 @@
 //! The bar above everything: the menus, and the open file.
 
-use eframe::egui::{self, Key, MenuBar, RichText};
+use eframe::egui::{self, MenuBar, RichText};
 use pliant_editor::{
     Before, Clay, Command, Editor, NamedView, Orbit, Projection, RegionAction, Shading, StiffnessChange, Tips, UpAxis,
 };
@@ -8,6 +8,7 @@ use pliant_editor::{
 use super::menu_keys;
 use super::recent_menu::{self, Recent};
 use crate::window::input::file_command::FileCommand;
+use crate::window::input::own_keys::{MENUS, menu_key};
 use crate::window::threads::message::{Ground, PictureKind};
 use crate::window::widgets::command_button::{command_button, menu_choice};
 use crate::window::widgets::outbox::Outbox;
@@ -24,33 +25,20 @@ pub fn show(
 ) -> Option<FileCommand> {
     let mut chosen = None;
     MenuBar::new().ui(ui, |ui| {
-        let file = ui
-            .menu_button("File", |ui| chosen = file_menu(ui, editor, recent))
-            .response;
-        let edit = ui.menu_button("Edit", |ui| edit_menu(ui, editor, commands)).response;
-        let region = ui
-            .menu_button("Region", |ui| region_menu(ui, editor, commands))
-            .response;
-        let view = ui.menu_button("View", |ui| view_menu(ui, editor, commands)).response;
-        let window = ui
-            .menu_button("Window", |ui| file_commands(ui, &WINDOW_MENU, &mut chosen))
-            .response;
-        let help = ui
-            .menu_button("Help", |ui| file_commands(ui, &HELP_MENU, &mut chosen))
-            .response;
+        let [file, edit, region, view, window, help] = MENUS.map(|(name, _)| name);
         let buttons = [
-            (file, Key::F),
-            (edit, Key::E),
-            (region, Key::R),
-            (view, Key::V),
-            (window, Key::W),
-            // Alt and H shows everything that is hidden.
-            (help, Key::P),
+            ui.menu_button(file, |ui| chosen = file_menu(ui, editor, recent)),
+            ui.menu_button(edit, |ui| edit_menu(ui, editor, commands)),
+            ui.menu_button(region, |ui| region_menu(ui, editor, commands)),
+            ui.menu_button(view, |ui| view_menu(ui, editor, commands)),
+            ui.menu_button(window, |ui| file_commands(ui, &WINDOW_MENU, &mut chosen)),
+            ui.menu_button(help, |ui| file_commands(ui, &HELP_MENU, &mut chosen)),
         ];
-        let buttons = buttons.map(|(button, letter)| {
-            let key = ui.ctx().format_shortcut(&menu_keys::shortcut(letter));
-            (button.on_hover_text(key), letter)
+        let with_letters = buttons.into_iter().zip(MENUS).map(|(button, (_, letter))| {
+            let key = ui.ctx().format_shortcut(&menu_key(letter));
+            (button.response.on_hover_text(key), letter)
         });
+        let buttons: Vec<_> = with_letters.collect();
         if takes_keys {
             menu_keys::follow(ui.ctx(), &buttons);
         }
