@@ -1,10 +1,10 @@
 //! The problem to solve: a surface, and the role of each of its vertices.
 
-use pliant_mesh::{Surface, Topology};
+use pliant_mesh::{Cancel, Cancelled, Progress, Surface, Topology};
 
 use crate::budget::{ORDERING_ROW, bytes_of};
 use crate::region::boundary_problem::BoundaryProblem;
-use crate::{Attachment, BindError, Budget, Constraints, Loose, Method, Role};
+use crate::{Attachment, BindError, Budget, Constraints, Loose, Method, Ordering, Role};
 
 /// Everything that a deformation depends on, except the handles' transforms.
 ///
@@ -36,6 +36,10 @@ pub struct Problem<'a> {
     /// The caller's stamp, handed back by [`crate::Bound::revision`].
     pub revision: u64,
 }
+
+/// The fewest vertices of a surface of which only a part is ordered: a smaller one is ordered at once, and its shape
+/// has the same bits here as in the window.
+const LARGE: usize = 100_000;
 
 /// Sizes whose logarithms differ by less than this need no sentence.
 const ABOUT_ALIKE: f64 = 0.25;
@@ -117,6 +121,39 @@ impl<'a> Problem<'a> {
         self.method.ordering_power_within(self.free_count(), budget)
     }
 
+    /// The ordering for [`Problem::bind_within`] this budget, if the method needs one: of the whole surface, or, if much
+    /// of a large one stays where it is, of the surroundings of what moves.
+    ///
+    /// # Errors
+    /// [`Cancelled`] soon after `cancel` is raised.
+    pub fn ordering_within(
+        &self,
+        budget: Budget,
+        progress: &Progress,
+        cancel: &Cancel,
+    ) -> Result<Option<Ordering>, Cancelled> {
+        let Some(power) = self.ordering_power_within(budget) else {
+            return Ok(None);
+        };
+        let ordering = match self.ordered_part() {
+            Some(solved) => Ordering::around(self.topology, &solved, power, progress, cancel),
+            None => Ordering::of(self.topology, power, progress, cancel),
+        };
+        ordering.map(Some)
+    }
+
+    /// The vertices that may be solved for, if an ordering of their surroundings pays.
+    fn ordered_part(&self) -> Option<Vec<bool>> {
+        let is_solved = |role: &Role| match role {
+            Role::Free => true,
+            Role::Handle(handle) => self.constraints.weight(*handle).is_some(),
+            Role::Fixed => false,
+        };
+        let solved: Vec<bool> = self.roles.iter().map(is_solved).collect();
+        let count = solved.iter().filter(|is_solved| **is_solved).count();
+        (solved.len() >= LARGE && 2 * count < solved.len()).then_some(solved)
+    }
+
     fn free_count(&self) -> usize {
         self.roles.iter().filter(|role| **role == Role::Free).count()
     }
@@ -127,7 +164,11 @@ impl<'a> Problem<'a> {
     /// [`BindError::Budget`].
     pub fn check_tables(&self, budget: Budget) -> Result<(), BindError> {
         let power = self.ordering_power_within(budget).map_or(0, |power| power as usize);
-        let bytes = bytes_of(self.roles.len(), ORDERING_ROW * power);
+        let ordered = match self.ordered_part() {
+            Some(solved) => solved.iter().filter(|is_solved| **is_solved).count(),
+            None => self.roles.len(),
+        };
+        let bytes = bytes_of(ordered, ORDERING_ROW * power);
         let free = self.free_count();
         let checked = budget.without(bytes).map(|_| ());
         checked.map_err(|limit| BindError::budget(free, limit).with_culprit(self.topology, budget))

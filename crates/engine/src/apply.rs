@@ -36,9 +36,8 @@ pub fn order(
     cancel: &Cancel,
 ) -> Result<Option<Ordering>, EngineError> {
     let _span = info_span!("order").entered();
-    let power = setup.problem(model).ordering_power_within(budget);
-    let ordering = power.map(|power| Ordering::of(&model.topology, power, progress, cancel));
-    ordering.transpose().map_err(|_| EngineError::Interrupted)
+    let ordering = setup.problem(model).ordering_within(budget, progress, cancel);
+    ordering.map_err(|_| EngineError::Interrupted)
 }
 
 /// Binds a setup.

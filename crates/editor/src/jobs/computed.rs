@@ -22,7 +22,7 @@ pub(crate) struct Computed {
     pub(crate) slots: Slots,
     /// The triangles for rays.
     pub(super) shown: ShownTriangles,
-    /// One ordering per power of the Laplacian that a method has asked for.
+    /// One ordering per power of the Laplacian that a method has asked for, which serves the present region.
     pub(super) orderings: Vec<Arc<Ordering>>,
     /// The region, from the beginning on.
     pub(crate) region: Region,

@@ -7,18 +7,28 @@ use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::rc::Rc;
 
-use super::table::{Executor, Job, JobDone, JobKind};
+use super::table::{Executor, Job, JobDone, JobKind, LARGE_MESH};
 
 /// A list of waiting jobs. Clones share the list: one goes to the editor, one stays with the caller.
 #[derive(Clone, Debug, Default)]
 pub struct InlineExecutor {
     waiting: Rc<RefCell<VecDeque<Job>>>,
+    /// The answer to [`Executor::large_mesh`], if it is not the usual one.
+    large_mesh: Option<usize>,
 }
 
 impl InlineExecutor {
     /// An empty list.
     pub fn new() -> Self {
         Self::default()
+    }
+
+    /// An empty list, whose editor takes meshes of at least this many vertices for very large ones.
+    pub fn with_large_mesh(vertices: usize) -> Self {
+        Self {
+            large_mesh: Some(vertices),
+            ..Self::default()
+        }
     }
 
     /// The kinds of the waiting jobs, in the order of their arrival.
@@ -48,5 +58,9 @@ impl InlineExecutor {
 impl Executor for InlineExecutor {
     fn start(&mut self, job: Job) {
         self.waiting.borrow_mut().push_back(job);
+    }
+
+    fn large_mesh(&self) -> usize {
+        self.large_mesh.unwrap_or(LARGE_MESH)
     }
 }

@@ -13,6 +13,7 @@ mod inspected;
 mod inspection;
 mod intersections;
 mod job_queue;
+pub(crate) mod ordering;
 mod present_binding;
 mod requests;
 mod scheduler;

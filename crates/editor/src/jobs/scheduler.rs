@@ -13,11 +13,12 @@ use super::allowance::Allowance;
 use super::comparison::Comparison;
 use super::computed::Computed;
 use super::inspected::Asked;
+use super::ordering::{order_work, serves};
 use super::slot::{Ended, Scheduled, Slot, Unfinished, Work};
 use super::solved::{ControlPlaces, SolveResult, Solved};
 use super::solving::{controls_work, solve_work};
 use super::table::{Executor, JobDone, JobKind, Slots};
-use super::work::{bind_work, order_work, pick_work, region_work};
+use super::work::{bind_work, pick_work, region_work};
 use crate::document::Document;
 use crate::pickable::ShownTriangles;
 use crate::region::{Region, region_input};
@@ -252,8 +253,14 @@ impl Jobs {
             .method
             .ordering_power()
             .filter(|&power| self.computed.ordering(power).is_none());
-        if let Some(power) = missing {
-            self.want(|slots| &mut slots.order, |_| order_work(&model, power));
+        if let Some(power) = missing
+            && self.may_order(document, &model, activity)
+        {
+            let large = self.executor.large_mesh();
+            self.want(
+                |slots| &mut slots.order,
+                |computed| order_work(&model, &computed.region, large, power),
+            );
         }
         if activity != Activity::Painting {
             if !self.is_region_current() {
@@ -302,6 +309,12 @@ impl Jobs {
         !self.computed.region.handles.is_empty() || document.bends_without_handles()
     }
 
+    /// Whether an ordering can be made: one by region waits for the region, and for something that bends it.
+    fn may_order(&self, document: &Document, model: &Model, activity: Activity) -> bool {
+        let is_by_region = model.surface.positions.len() >= self.executor.large_mesh();
+        !is_by_region || (activity != Activity::Painting && self.is_region_current() && self.binds_something(document))
+    }
+
     /// Requests the next shape of the comparison if the document's own binding is not pending: its memory has priority.
     fn compare(&mut self, document: &Document, model: &Arc<Model>) {
         let Some(comparison) = &mut self.comparison else { return };
@@ -321,7 +334,11 @@ impl Jobs {
             if self.computed.slots.order.has_given_up() {
                 comparison.stop(document);
             }
-            self.want(|slots| &mut slots.order, |_| order_work(model, power));
+            let large = self.executor.large_mesh();
+            self.want(
+                |slots| &mut slots.order,
+                |computed| order_work(model, &computed.region, large, power),
+            );
         } else if let Some(work) = comparison.next_work(document, &self.computed, times) {
             self.ask(|slots| &mut slots.compare, work);
         }
@@ -341,9 +358,15 @@ impl Jobs {
             Ended::Stored => {}
         }
         match kind {
-            JobKind::Order => self.computed.orderings.extend(self.computed.slots.order.take()),
+            JobKind::Order => {
+                let made = self.computed.slots.order.take();
+                let region = &self.computed.region;
+                // The region may have grown since it was asked for.
+                self.computed.orderings.extend(made.filter(|made| serves(made, region)));
+            }
             JobKind::Region => {
                 if let Some(region) = self.computed.slots.region.take() {
+                    self.computed.orderings.retain(|ordering| serves(ordering, &region));
                     self.computed.region = region;
                 }
                 self.roles_revision = self.next_revision();

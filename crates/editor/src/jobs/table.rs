@@ -223,6 +223,9 @@ pub struct JobDone {
     pub outcome: JobOutcome,
 }
 
+/// The answer to [`Executor::large_mesh`] of an executor that has no other.
+pub(super) const LARGE_MESH: usize = 1_000_000;
+
 /// The place where jobs run. The app's executor has threads; a test's has a list.
 pub trait Executor {
     /// Takes a job and returns at once (or, for a tiny program, does the work first). The result comes back as
@@ -234,6 +237,12 @@ pub trait Executor {
     /// beginning, on its own thread.
     fn budget(&self) -> fn(Option<u64>) -> Budget {
         Budget::of_most
+    }
+
+    /// The fewest vertices of a mesh whose equations are ordered by region, because ordering all of them would take
+    /// longer than everything else.
+    fn large_mesh(&self) -> usize {
+        LARGE_MESH
     }
 
     /// The time in milliseconds since some moment, only for figures that a person reads. It is constant in an executor

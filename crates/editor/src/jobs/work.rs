@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use pliant_deform::{BindError, Ordering, Problem};
+use pliant_deform::{BindError, Problem};
 use pliant_mesh::{Bvh, Damage, Model, SurfaceVertex};
 
 use super::allowance::Allowance;
@@ -18,14 +18,6 @@ use crate::region::{Region, RegionInput};
 
 /// This many pairs of triangles are enough to show the places.
 const MOST_PAIRS: usize = 20_000;
-
-/// Makes the ordering for a power of the Laplacian.
-pub(super) fn order_work(model: &Arc<Model>, power: u32) -> Option<Work<Arc<Ordering>>> {
-    let model = Arc::clone(model);
-    Some(Box::new(move |progress, cancel| {
-        Ok(Arc::new(Ordering::of(&model.topology, power, progress, cancel)?))
-    }))
-}
 
 /// Measures the region.
 pub(super) fn region_work(input: RegionInput) -> Option<Work<Region>> {

@@ -15,6 +15,7 @@ mod inspection;
 mod intersections;
 mod joints;
 mod kept_shape;
+mod large_mesh;
 mod lateness;
 mod laws;
 mod memory_limit;

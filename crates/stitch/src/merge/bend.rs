@@ -92,9 +92,7 @@ impl Bending<'_> {
                 source,
             },
         };
-        let power = problem.ordering_power_within(self.budget);
-        let ordering = power.map(|power| pliant_deform::Ordering::of(self.topology, power, progress, cancel));
-        let ordering = ordering.transpose()?;
+        let ordering = problem.ordering_within(self.budget, progress, cancel)?;
         let mut bound = problem
             .bind_within(ordering.as_ref(), self.budget, progress, cancel)
             .map_err(bind)?;

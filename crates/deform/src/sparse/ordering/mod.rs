@@ -1,7 +1,8 @@
 //! One fill-reducing ordering per mesh and operator power.
 //!
 //! Ordering costs as much as factoring but depends only on the surface: it is made once per mesh and *restricted* to
-//! the solved vertices, which takes almost no time. The graph must be that of the system, Lᵏ: an ordering made for L
+//! the solved vertices, which takes almost no time. A batch job, which binds once, orders only the surroundings of what
+//! it solves for. The graph must be that of the system, Lᵏ: an ordering made for L
 //! gives seven times the fill when used for L².
 
 mod bisection;
@@ -12,21 +13,26 @@ pub(crate) mod graph;
 pub(crate) mod hubs;
 mod labels;
 mod leaf;
+mod surroundings;
 
 use std::sync::OnceLock;
 
-use pliant_mesh::{Cancel, Cancelled, Progress, Topology};
+use pliant_mesh::{Cancel, Cancelled, Progress, SurfaceVertex, Topology};
 
 use crate::sparse::ordering::dissection::dissect;
 use crate::sparse::ordering::elimination::Elimination;
+use crate::sparse::ordering::surroundings::Surroundings;
 
-/// An elimination order of all surface vertices for systems with the graph of Lᵏ.
+/// The rank of a vertex that was not ordered.
+const NONE: u32 = u32::MAX;
+
+/// An elimination order of all surface vertices, or of those around a region, for systems with the graph of Lᵏ.
 #[derive(Clone, Debug)]
 pub struct Ordering {
     power: u32,
     /// The vertices in the order of elimination.
     order: Vec<u32>,
-    /// The place of each vertex in it.
+    /// The place of each surface vertex in it, or [`NONE`].
     rank: Vec<u32>,
     /// The end of each of its blocks.
     ends: Vec<u32>,
@@ -52,19 +58,44 @@ impl Ordering {
     /// # Errors
     /// [`Cancelled`] soon after `cancel` is raised.
     pub fn of(topology: &Topology, power: u32, progress: &Progress, cancel: &Cancel) -> Result<Self, Cancelled> {
-        let Elimination { order, ends } = dissect(topology, topology.vertex_count(), power, cancel)?;
-        let mut rank = vec![0; order.len()];
+        let elimination = dissect(topology, topology.vertex_count(), power, cancel)?;
+        progress.set(1.0);
+        Ok(Self::new(power, topology.vertex_count(), elimination))
+    }
+
+    /// Like [`Ordering::of`], for systems that solve only for vertices marked in `solved`, one mark a surface vertex.
+    /// The time is that of their surroundings.
+    ///
+    /// # Errors
+    /// [`Cancelled`] soon after `cancel` is raised.
+    pub fn around(
+        topology: &Topology,
+        solved: &[bool],
+        power: u32,
+        progress: &Progress,
+        cancel: &Cancel,
+    ) -> Result<Self, Cancelled> {
+        let near = Surroundings::of(topology, solved, power);
+        let mut elimination = dissect(&near, near.vertices.len(), power, cancel)?;
+        for vertex in &mut elimination.order {
+            *vertex = near.vertices[*vertex as usize];
+        }
+        progress.set(1.0);
+        Ok(Self::new(power, topology.vertex_count(), elimination))
+    }
+
+    fn new(power: u32, vertex_count: usize, Elimination { order, ends }: Elimination) -> Self {
+        let mut rank = vec![NONE; vertex_count];
         for (place, &vertex) in order.iter().enumerate() {
             rank[vertex as usize] = place as u32;
         }
-        progress.set(1.0);
-        Ok(Self {
+        Self {
             power,
             order,
             rank,
             ends,
             of_laplacian: OnceLock::new(),
-        })
+        }
     }
 
     /// The ordering of power 1 of the same surface: this one, or one that is made on the first request and kept for the
@@ -76,7 +107,12 @@ impl Ordering {
         if let Some(known) = self.known_of_laplacian() {
             return Ok(known);
         }
-        let made = Self::of(topology, 1, &Progress::new(), cancel)?;
+        let made = if self.is_whole() {
+            Self::of(topology, 1, &Progress::new(), cancel)?
+        } else {
+            let is_ordered: Vec<bool> = self.rank.iter().map(|&rank| rank != NONE).collect();
+            Self::around(topology, &is_ordered, 1, &Progress::new(), cancel)?
+        };
         Ok(self.of_laplacian.get_or_init(|| Box::new(made)))
     }
 
@@ -93,12 +129,23 @@ impl Ordering {
         self.power
     }
 
-    /// The number of ordered vertices.
+    /// The number of the surface's vertices.
     pub fn vertex_count(&self) -> usize {
-        self.order.len()
+        self.rank.len()
     }
 
-    /// The vertices `solved` (each once) in the order of elimination.
+    /// Returns true if every surface vertex is ordered.
+    pub fn is_whole(&self) -> bool {
+        self.order.len() == self.rank.len()
+    }
+
+    /// Returns true if this vertex is ordered.
+    pub fn covers(&self, vertex: SurfaceVertex) -> bool {
+        self.rank[vertex.index()] != NONE
+    }
+
+    /// The vertices `solved` (each once) in the order of elimination. Those that were not ordered come last, at the cost
+    /// of more fill.
     pub fn restricted(&self, solved: &[u32]) -> Vec<u32> {
         self.elimination(solved).order
     }
@@ -106,8 +153,12 @@ impl Ordering {
     /// Like [`Ordering::restricted`], in blocks.
     pub(crate) fn elimination(&self, solved: &[u32]) -> Elimination {
         let mut wanted = vec![false; self.order.len()];
+        let mut others = Vec::new();
         for &vertex in solved {
-            wanted[self.rank[vertex as usize] as usize] = true;
+            match self.rank[vertex as usize] {
+                NONE => others.push(vertex),
+                rank => wanted[rank as usize] = true,
+            }
         }
         let mut elimination = Elimination {
             order: Vec::with_capacity(solved.len()),
@@ -127,6 +178,12 @@ impl Ordering {
                 elimination.ends.push(elimination.order.len() as u32);
             }
             first = block.end;
+        }
+        if !others.is_empty() {
+            elimination.append(Elimination {
+                ends: vec![others.len() as u32],
+                order: others,
+            });
         }
         elimination
     }

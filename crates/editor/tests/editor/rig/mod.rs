@@ -115,8 +115,18 @@ impl Rig {
         Self::open_model(weld(drawn))
     }
 
+    /// A program with this mesh open, which it takes for a very large one, and every job done.
+    pub fn open_as_large(drawn: Drawn) -> Self {
+        let mut rig = Self::open_by(InlineExecutor::with_large_mesh(0), weld(drawn));
+        rig.drain();
+        rig
+    }
+
     fn open_model(model: Arc<Model>) -> Self {
-        let jobs = InlineExecutor::new();
+        Self::open_by(InlineExecutor::new(), model)
+    }
+
+    fn open_by(jobs: InlineExecutor, model: Arc<Model>) -> Self {
         let mut editor = Editor::new(Box::new(jobs.clone()));
         editor.handle(Event::Viewport { size_px: VIEWPORT_PX });
         editor.handle(Event::Opened {
