@@ -2,13 +2,14 @@
 
 use std::path::PathBuf;
 
-use clap::builder::{PossibleValuesParser, RangedU64ValueParser, TypedValueParser};
+use clap::builder::{PossibleValue, PossibleValuesParser, RangedU64ValueParser, TypedValueParser};
 use clap::error::ContextValue;
 use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 use pliant_deform::{ConstraintKind, METHODS};
 use pliant_editor::Clay;
 use pliant_engine::stitching::Replace;
 use pliant_io::{MorphDeltas, MorphTarget, quoted};
+use pliant_picture::{Choice, LookOptions, PictureSize, ProjectionName, Shading, StillOptions, Up, View};
 
 use super::cut_plane::{KeepArgument, PlaneArgument};
 use super::motion_arguments::{AnimateArguments, SequenceArguments};
@@ -63,6 +64,8 @@ pub(crate) enum Command {
     Sequence(SequenceArguments),
     /// Let dye flow along the surface and save it as vertex colours
     Flow(FlowArguments),
+    /// Serve an assistant by the Model Context Protocol on standard input and output
+    Mcp,
     /// Write man pages, shell completions and the manual's pages of commands
     Generate(GenerateArguments),
 }
@@ -369,14 +372,22 @@ pub(crate) struct CompareArguments {
 #[derive(Args, Clone, Copy, PartialEq, Eq, Debug)]
 pub struct LookArguments {
     /// The axis that points up
-    #[arg(long, value_enum, default_value = "y")]
+    #[arg(long, default_value = "y", value_parser = chosen(Up::CHOICES))]
     pub up: Up,
     /// The direction of view
-    #[arg(long, value_enum, default_value = "three-quarter")]
+    #[arg(long, default_value = "three-quarter", value_parser = chosen(View::CHOICES))]
     pub view: View,
     /// The surface's colours
-    #[arg(long, value_enum, default_value = "clay")]
+    #[arg(long, default_value = "clay", value_parser = chosen(Shading::CHOICES))]
     pub shading: Shading,
+}
+
+impl LookArguments {
+    /// The options of the picture.
+    pub fn options(self) -> LookOptions {
+        let Self { up, view, shading } = self;
+        LookOptions { up, view, shading }
+    }
 }
 
 /// The arguments of `pliant render`.
@@ -400,7 +411,7 @@ pub struct RenderArguments {
     #[arg(long, default_value = "clay", value_parser = clay())]
     pub clay: Clay,
     /// The projection
-    #[arg(long, value_enum, default_value = "perspective")]
+    #[arg(long, default_value = "perspective", value_parser = chosen(ProjectionName::CHOICES))]
     pub projection: ProjectionName,
     /// Shade each triangle flat instead of interpolating normals
     #[arg(long)]
@@ -431,79 +442,38 @@ pub struct RenderArguments {
     pub weld: WeldArguments,
 }
 
-/// The axis that points up in a picture.
-#[derive(ValueEnum, Clone, Copy, PartialEq, Eq, Debug)]
-#[expect(missing_docs, reason = "each variant is what its name says")]
-pub enum Up {
-    Y,
-    Z,
-}
-
-/// The direction of view of a picture.
-#[derive(ValueEnum, Clone, Copy, PartialEq, Eq, Debug)]
-#[expect(missing_docs, reason = "each variant is what its name says")]
-pub enum View {
-    Front,
-    Back,
-    Left,
-    Right,
-    Top,
-    Bottom,
-    ThreeQuarter,
-}
-
-/// The surface's colours in a picture.
-#[derive(ValueEnum, Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Shading {
-    /// Clay, which shows the shape alone
-    Clay,
-    /// The file's materials
-    Material,
-    /// Clay with the edit's regions in colour
-    Regions,
-    /// The edit's stiffness, with a legend
-    Stiffness,
-    /// Lengths of edges over those at rest, with a legend
-    Distortion,
-    /// Areas over those at rest, with a legend
-    Area,
-    /// Mean curvature, with a legend
-    Curvature,
-    /// Mirrored stripes: they break at creases and kink where curvature jumps
-    Zebra,
-    /// The direction in which the surface faces
-    Normals,
-}
-
-/// The projection of a picture.
-#[derive(ValueEnum, Clone, Copy, PartialEq, Eq, Debug)]
-pub enum ProjectionName {
-    Perspective,
-    Orthographic,
-}
-
-/// A picture's size in pixels, 1 to 16384 each way.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub struct PictureSize {
-    /// The width.
-    pub width: u32,
-    /// The height.
-    pub height: u32,
-}
-
-impl std::str::FromStr for PictureSize {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let side = |text: &str| text.parse().ok().filter(|side| (1..=16384).contains(side));
-        let sides = text
-            .split_once(['x', 'X'])
-            .and_then(|(width, height)| Some((side(width)?, side(height)?)));
-        match sides {
-            Some((width, height)) => Ok(Self { width, height }),
-            None => Err("a size is WIDTHxHEIGHT, such as 1280x800, each from 1 to 16384".to_owned()),
+impl RenderArguments {
+    /// The options of the picture.
+    pub fn options(&self) -> StillOptions {
+        StillOptions {
+            size: self.size,
+            look: self.look.options(),
+            clay: self.clay,
+            projection: self.projection,
+            flat: self.flat,
+            wireframe: self.wireframe,
+            borders: self.borders,
+            outlines: self.outlines,
+            grid: self.grid,
+            shadow: self.shadow,
+            transparent: self.transparent,
+            turntable: self.turntable,
         }
     }
+}
+
+/// Reads a choice by its name.
+fn chosen<T: Copy + Send + Sync>(choices: &'static [Choice<T>]) -> impl TypedValueParser<Value = T> {
+    let named = |choice: &Choice<T>| {
+        let value = PossibleValue::new(choice.name);
+        if choice.help.is_empty() {
+            value
+        } else {
+            value.help(choice.help)
+        }
+    };
+    let parser = PossibleValuesParser::new(choices.iter().map(named).collect::<Vec<_>>());
+    parser.try_map(|name| pliant_picture::named(choices, &name))
 }
 
 /// Reads a clay by its name.
@@ -532,7 +502,7 @@ pub(crate) fn definition() -> clap::Command {
 }
 
 /// Each method with its options, for the help.
-fn methods_help() -> String {
+pub(super) fn methods_help() -> String {
     let mut help = "Methods and their options, as members of the edit's `method`:".to_owned();
     for declaration in METHODS {
         help += &format!("\n  {}: {}", declaration.name, declaration.when_to_use);
@@ -631,9 +601,6 @@ mod tests {
             panic!("not a render")
         };
         assert_eq!(render.size, PictureSize { width: 64, height: 48 });
-        for size in ["64", "0x48", "ax3", "64x48x2", "99999x2"] {
-            assert!(size.parse::<PictureSize>().is_err(), "{size}");
-        }
     }
 
     #[test]

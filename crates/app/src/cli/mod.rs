@@ -11,10 +11,12 @@ mod flow;
 mod generate;
 mod info;
 mod interrupt;
+mod mcp;
 mod method_argument;
 mod motion_arguments;
 mod progress_line;
 mod render;
+mod replaced;
 mod sequence;
 mod shared_arguments;
 mod stitch;
@@ -25,7 +27,6 @@ use std::ffi::OsString;
 use std::io::{self, IsTerminal};
 use std::process::ExitCode;
 
-pub use arguments::{LookArguments, PictureSize, RenderArguments, Shading, Up, View};
 pub use console::Console;
 
 use crate::window::{self, Source};
@@ -69,6 +70,7 @@ pub fn run(arguments: Vec<OsString>, console: &mut Console<'_>) -> u8 {
             Some(Command::Animate(arguments)) => animate::run(&arguments, console),
             Some(Command::Sequence(arguments)) => sequence::run(&arguments, console),
             Some(Command::Flow(arguments)) => flow::run(&arguments, console),
+            Some(Command::Mcp) => mcp::run(console),
             Some(Command::Generate(arguments)) => generate::run(&arguments, console),
             None => window::run(Source::of(arguments.file, arguments.edit)),
         },
