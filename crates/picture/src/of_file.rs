@@ -4,9 +4,9 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use pliant_editor::Beginning;
+use pliant_engine::EngineError;
 use pliant_engine::files::{self, Destination};
 use pliant_engine::watch::Watch;
-use pliant_engine::EngineError;
 use pliant_render::Image;
 
 use crate::options::StillOptions;
@@ -32,11 +32,7 @@ pub struct OfFile<'a> {
 ///
 /// # Errors
 /// A name that is no picture's or no file's, or that of a source.
-pub fn outputs(
-    output: &Path,
-    turntable: Option<u32>,
-    sources: &[(&str, &Path)],
-) -> Result<Vec<PathBuf>, EngineError> {
+pub fn outputs(output: &Path, turntable: Option<u32>, sources: &[(&str, &Path)]) -> Result<Vec<PathBuf>, EngineError> {
     check_png(output)?;
     let numbered = |number: u32| {
         let mut name = output.file_stem().unwrap_or_default().to_owned();

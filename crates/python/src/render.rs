@@ -8,8 +8,8 @@ use pliant_engine::EngineError;
 use pliant_engine::files::Staging;
 use pliant_engine::watch::Watch;
 use pliant_picture::{
-    Choice, LookOptions, OfFile, PictureSize, ProjectionName, Shading, StillOptions, Up, View, draw_file, named, outputs,
-    picture_file,
+    Choice, LookOptions, OfFile, PictureSize, ProjectionName, Shading, StillOptions, Up, View, draw_file, named,
+    outputs, picture_file,
 };
 use pyo3::prelude::*;
 
@@ -139,8 +139,11 @@ fn picture_size(size: Option<&Bound<'_, PyAny>>) -> PyResult<PictureSize> {
         Ok((width, height)) => format!("{width}x{height}"),
         Err(_) => any.extract().unwrap_or_default(),
     };
-    text.parse()
-        .map_err(|_| refused(format!("size is {any}: give \"1280x800\" or (1280, 800), each side from 1 to 16384")))
+    text.parse().map_err(|_| {
+        refused(format!(
+            "size is {any}: give \"1280x800\" or (1280, 800), each side from 1 to 16384"
+        ))
+    })
 }
 
 /// The number of pictures of a turntable.
