@@ -114,6 +114,7 @@ fn outcome(loaded: &Loaded, edit: &Value) -> Result<String, EngineError> {
     let Solved {
         surface_positions,
         report,
+        ..
     } = pliant_engine::solved("scene".as_ref(), &beginning, None, loaded, &setup, &watch)?;
     let (surface, topology) = (&loaded.model.surface, &loaded.model.topology);
     let rest = &surface.positions;

@@ -30,8 +30,25 @@ const ARROWS: &[(&str, &[&str])] = &[
         ],
     ),
     (
+        "pliant-picture",
+        &[
+            "pliant-deform",
+            "pliant-editor",
+            "pliant-engine",
+            "pliant-io",
+            "pliant-mesh",
+            "pliant-render",
+        ],
+    ),
+    (
         "pliant-python",
-        &["pliant-deform", "pliant-editor", "pliant-engine", "pliant-mesh"],
+        &[
+            "pliant-deform",
+            "pliant-editor",
+            "pliant-engine",
+            "pliant-mesh",
+            "pliant-picture",
+        ],
     ),
     (
         "pliant-app",
@@ -42,6 +59,7 @@ const ARROWS: &[(&str, &[&str])] = &[
             "pliant-engine",
             "pliant-io",
             "pliant-mesh",
+            "pliant-picture",
             "pliant-render",
         ],
     ),
@@ -63,7 +81,8 @@ const NEVER_LINKED: &[(&str, &[&str])] = &[
     ("pliant-render", &["egui", "eframe", "winit", "faer", "obvhs", "gltf"]),
     ("pliant-editor", &["wgpu", "naga", "egui", "eframe", "winit", "gltf"]),
     ("pliant-engine", &["wgpu", "naga", "egui", "eframe", "winit"]),
-    ("pliant-python", &["wgpu", "naga", "egui", "eframe", "winit"]),
+    ("pliant-picture", &["eframe", "winit"]),
+    ("pliant-python", &["eframe", "winit"]),
 ];
 
 /// The crates on which a crate must not depend directly.
@@ -85,6 +104,17 @@ const NEVER_WRITTEN: &[(&str, &[&str])] = &[
     ),
     (
         "editor",
+        &[
+            "std::time",
+            "std::thread",
+            "std::fs",
+            "std::env",
+            "std::net",
+            "std::process",
+        ],
+    ),
+    (
+        "picture",
         &[
             "std::time",
             "std::thread",

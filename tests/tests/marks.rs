@@ -17,14 +17,14 @@ use std::path::Path;
 use std::sync::Arc;
 
 use glam::DVec2;
-use pliant_app::drawing::{self, Drawing, Field, Scale};
-use pliant_app::{legend, painting};
 use pliant_editor::{
     Button, Command, Editor, Event, GizmoMode, GizmoPart, HandleId, InlineExecutor, Modifiers, NamedView, Pointer,
     Reach, Shading, ToolMode,
 };
 use pliant_io::Appearance;
 use pliant_mesh::{Cancel, Model, Progress, WeldOptions, shapes};
+use pliant_picture::drawing::{self, Drawing, Field, Scale};
+use pliant_picture::{legend, painting};
 use pliant_render::{Frame, Headless, Image, Renderer, Samples};
 
 /// The view's size in points, and the picture's pixels per point.

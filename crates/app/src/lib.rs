@@ -25,12 +25,7 @@
 //! ```
 
 pub mod cli;
-pub mod drawing;
 mod files;
-pub mod legend;
-pub mod painting;
-mod picture_file;
-pub mod sheet;
 mod version;
 pub mod window;
 

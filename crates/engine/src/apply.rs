@@ -173,6 +173,7 @@ pub fn solved(
         return Err(EngineError::Interrupted);
     }
     Ok(Solved {
+        positions: solution.positions.clone(),
         surface_positions: solution.surface_positions.clone(),
         report: report(loaded, setup, solution, FileTimes::default(), Vec::new(), watch)?,
     })
@@ -181,6 +182,8 @@ pub fn solved(
 /// A shape and the report about it.
 #[derive(Clone, Debug)]
 pub struct Solved {
+    /// The position of each drawn vertex, in world space.
+    pub positions: Vec<DVec3>,
     /// The position of each surface vertex, in world space.
     pub surface_positions: Vec<DVec3>,
     /// Its report, without the times of files.

@@ -139,4 +139,20 @@ impl EngineError {
             _ => 1,
         }
     }
+
+    /// Its sentence for callers whose arguments have no dashes before their names.
+    pub fn without_dashes(&self) -> String {
+        let sentence = self.to_string();
+        let Self::Arguments(_) = self else {
+            return sentence;
+        };
+        let names = [
+            "output", "report", "edit", "joins", "delete", "mesh", "fps", "methods", "replace",
+        ];
+        names.iter().fold(sentence, |said, name| {
+            [" ", ":", ","].iter().fold(said, |said, end| {
+                said.replace(&format!("--{name}{end}"), &format!("{name}{end}"))
+            })
+        })
+    }
 }

@@ -28,6 +28,14 @@ impl Watch {
         }
     }
 
+    /// A watch over other work, which stops when `cancel` is raised, that knows the files that were read under this one.
+    pub fn of_next(&self, cancel: &Cancel) -> Self {
+        Self {
+            read: Arc::clone(&self.read),
+            ..Self::cancelled_by(cancel)
+        }
+    }
+
     /// Begins the stage `doing` ("reading", "binding"); the work reports its progress to the result.
     pub fn begin(&self, doing: &'static str) -> Progress {
         let progress = Progress::new();

@@ -6,11 +6,11 @@ use pliant_deform::{Budget, Method};
 use pliant_editor::Beginning;
 use pliant_engine::files::{Staging, refuse_shared};
 use pliant_engine::watch::Watch;
-use pliant_engine::{Animate, Apply, EditJob, EngineError, MorphDeltas, MorphTarget, Sequence};
+use pliant_engine::{Animate, Apply, EditJob, EngineError, Given, MorphDeltas, MorphTarget, Sequence};
 use pyo3::prelude::*;
 use pyo3::types::PyBool;
 
-use crate::given::{Given, budget, given, method};
+use crate::given::{budget, given, method};
 use crate::refusal::refused;
 use crate::reported::reported;
 use crate::values::weld_options;

@@ -1,25 +1,14 @@
 //! Arguments that are either the path of a JSON file or its contents: edits, joins and selectors.
 
-use std::path::{Path, PathBuf};
-
 use pliant_deform::{Budget, Method};
-use pliant_editor::{Beginning, EDIT_VERSION, EditError, EditFile, JoinsFile, Selector};
-use pliant_engine::watch::Watch;
-use pliant_engine::{EngineError, control_mesh, memory, read_edit, stitching};
+use pliant_editor::{EDIT_VERSION, EditFile};
+use pliant_engine::{Given, memory};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyInt, PyString};
-use serde_json::{Value, json};
+use serde_json::json;
 
 use crate::refusal::refused;
 use crate::values::value;
-
-/// A JSON file, or its contents.
-pub enum Given {
-    /// The file's path.
-    File(PathBuf),
-    /// The contents, and the argument's name.
-    Contents(Value, &'static str),
-}
 
 /// The argument `name`: a path, or a dict.
 ///
@@ -36,75 +25,6 @@ pub fn given(any: &Bound<'_, PyAny>, name: &'static str) -> PyResult<Given> {
             "{name} is of type {kind}: give a path, or a dict of the file's members"
         ))
     })
-}
-
-impl Given {
-    /// The path, or the argument's name: the place that messages name. The files that a dict names are relative to the
-    /// working directory.
-    pub fn place(&self) -> &Path {
-        match self {
-            Self::File(path) => path,
-            Self::Contents(_, name) => Path::new(name),
-        }
-    }
-
-    /// The path with its role, unless it is a dict: no output may be this file.
-    pub fn source(&self) -> Option<(&'static str, &Path)> {
-        match self {
-            Self::File(path) => Some(("--edit", path)),
-            Self::Contents(..) => None,
-        }
-    }
-
-    /// The name of an edit: that of its file without extensions, or `edit`.
-    pub fn own_name(&self) -> String {
-        let stem = self.place().file_stem().unwrap_or_default().to_string_lossy();
-        stem.strip_suffix(".edit").unwrap_or(&stem).to_owned()
-    }
-
-    /// The edit or project.
-    ///
-    /// # Errors
-    /// A file that can't be read, or members that the format does not have.
-    pub fn edit(&self, watch: &Watch) -> Result<Beginning, EngineError> {
-        match self {
-            Self::File(path) => read_edit(path, watch),
-            Self::Contents(contents, _) => {
-                let mut edit = Beginning::from(EditFile::from_value(contents).map_err(|error| self.refused(error))?);
-                control_mesh::bring(&mut edit, self.place(), watch)?;
-                Ok(edit)
-            }
-        }
-    }
-
-    /// The joins.
-    ///
-    /// # Errors
-    /// A file that can't be read, or members that the format does not have.
-    pub fn joins(&self, watch: &Watch) -> Result<JoinsFile, EngineError> {
-        match self {
-            Self::File(path) => stitching::read_joins(path, watch),
-            Self::Contents(contents, _) => JoinsFile::parse(&contents.to_string()).map_err(|error| self.refused(error)),
-        }
-    }
-
-    /// The selector.
-    ///
-    /// # Errors
-    /// A file that can't be read, or no selector.
-    pub fn selector(&self, watch: &Watch) -> Result<Selector, EngineError> {
-        match self {
-            Self::File(path) => stitching::read_selector(path, watch),
-            Self::Contents(contents, _) => Selector::parse(&contents.to_string()).map_err(|error| self.refused(error)),
-        }
-    }
-
-    fn refused(&self, source: EditError) -> EngineError {
-        EngineError::Edit {
-            edit: self.place().to_owned(),
-            source,
-        }
-    }
 }
 
 /// The method that replaces an edit's: a name, or a dict of its `name` and options.

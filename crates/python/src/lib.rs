@@ -24,6 +24,7 @@ mod methods;
 mod origin;
 mod pool;
 mod refusal;
+mod render;
 mod reported;
 mod rows;
 mod shape;
@@ -55,6 +56,8 @@ mod native {
     use super::mesh::{Mesh, load, save};
     #[pymodule_export]
     use super::methods::methods;
+    #[pymodule_export]
+    use super::render::render;
     #[pymodule_export]
     use super::stitched_files::{bridge, cut, fill, merge};
     #[pymodule_export]

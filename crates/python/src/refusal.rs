@@ -23,18 +23,8 @@ pub fn of_engine(error: &EngineError) -> PyErr {
         EngineError::File(error) => of_file(error),
         EngineError::System(_) => PyOSError::new_err(error.to_string()),
         EngineError::Interrupted => PyKeyboardInterrupt::new_err(()),
-        EngineError::Arguments(sentence) => refused(without_dashes(sentence)),
-        _ => refused(error),
+        _ => refused(error.without_dashes()),
     }
-}
-
-/// The names of arguments, which begin with dashes on the command line alone.
-fn without_dashes(sentence: &str) -> String {
-    let names = ["output", "report", "edit", "joins", "delete", "mesh", "fps"];
-    names.iter().fold(sentence.to_owned(), |said, name| {
-        said.replace(&format!("--{name} "), &format!("{name} "))
-            .replace(&format!("--{name}:"), &format!("{name}:"))
-    })
 }
 
 /// The refusal of an edit that does not fit the mesh. For arrays it says "the mesh has" and never "the file".

@@ -188,3 +188,46 @@ def test_symmetry_finds_the_plane_of_a_mirrored_shape(mesh):
     assert pliant.symmetry((np.random.default_rng(1).random((90, 3)), np.arange(90).reshape(-1, 3))) is None
     with pytest.raises(ValueError, match="mesh is not a mesh"):
         pliant.symmetry(vertices)
+
+
+def test_render_gives_the_command_line_s_picture(program, tmp_path):
+    bar = ROOT / "assets" / "bar.glb"
+    edit = ROOT / "assets" / "bar.edit.json"
+    look = {"size": (96, 64), "view": "front", "shading": "regions", "transparent": True}
+    try:
+        pixels = pliant.render(bar, edit=edit, **look)
+    except OSError as error:
+        skip(f"pictures ({error})")
+    assert pixels.shape == (64, 96, 4) and pixels.dtype == np.uint8
+    assert pixels[0, 0, 3] == 0 and pixels[32, 48, 3] == 255
+    members = json.loads(edit.read_text())
+    assert np.array_equal(pliant.render(bar, edit=members, **look), pixels)
+    assert not np.array_equal(pliant.render(bar, **look), pixels)
+
+    own, expected = tmp_path / "own.png", tmp_path / "expected.png"
+    assert pliant.render(bar, edit=edit, output=own, **look) is None
+    words = ["--size", "96x64", "--view", "front", "--shading", "regions", "--transparent"]
+    run(program, "render", bar, "--edit", edit, "--output", expected, *words)
+    assert own.read_bytes() == expected.read_bytes()
+
+    around = pliant.render(bar, size="48x32", turntable=2)
+    assert around.shape == (2, 32, 48, 4) and not np.array_equal(*around)
+    assert pliant.render(bar, size="48x32", turntable=2, output=tmp_path / "turn.png") is None
+    assert sorted(path.name for path in tmp_path.glob("turn*")) == ["turn-0001.png", "turn-0002.png"]
+
+
+def test_render_refuses_what_the_command_line_refuses(tmp_path):
+    bar = ROOT / "assets" / "bar.glb"
+    for wrong, said in [
+        ({"view": "behind"}, "view is \"behind\": give one of front"),
+        ({"size": "large"}, "size is large"),
+        ({"size": (0, 5)}, "from 1 to 16384"),
+        ({"turntable": 1}, "turntable is 1: give a number from 2"),
+        ({"output": tmp_path / "bar.jpg"}, "bar.jpg is not a .png"),
+        ({"edit": {"version": 1}}, "method"),
+        ({"weld": -1.0}, "weld is not a distance"),
+    ]:
+        with pytest.raises(ValueError, match=said):
+            pliant.render(bar, **wrong)
+    with pytest.raises(FileNotFoundError):
+        pliant.render(tmp_path / "none.glb")

@@ -4,10 +4,10 @@
 use std::collections::HashMap;
 
 use glam::{DAffine3, DVec3, Mat3, Vec3};
-use pliant_app::drawing::Drawing;
 use pliant_deform::{Method, Problem, Role};
 use pliant_io::Appearance;
 use pliant_mesh::{Cancel, Drawn, Model, Progress, shapes};
+use pliant_picture::drawing::Drawing;
 
 /// A shape, its upper cap turned and moved by radial basis functions, its lower half fixed: the model, the displacements
 /// and their Jacobians.

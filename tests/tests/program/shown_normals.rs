@@ -3,9 +3,9 @@
 #![allow(clippy::unwrap_used, reason = "tests fail by panicking")]
 
 use glam::{DAffine3, DQuat, DVec3, Vec3};
-use pliant_app::drawing::Drawing;
 use pliant_io::Appearance;
 use pliant_mesh::{Drawn, DrawnVertex, Model, SurfaceVertex, shapes};
+use pliant_picture::drawing::Drawing;
 
 /// The shown normals of the shape moved by `displacements`.
 fn shown(model: &Model, stored: Option<&[[f32; 3]]>, displacements: &[DVec3]) -> Vec<Vec3> {

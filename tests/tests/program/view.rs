@@ -11,9 +11,9 @@
 use std::path::Path;
 
 use glam::{DQuat, DVec2, DVec3};
-use pliant_app::drawing::{self, Drawing};
 use pliant_editor::{Camera, Look, NamedView, Projection};
 use pliant_mesh::{Bvh, Model};
+use pliant_picture::drawing::{self, Drawing};
 use pliant_render::{Frame, Headless, IdTarget, PixelRect, Renderer};
 use pliant_tests::{Folder, assets, datum, open, run};
 

@@ -4,11 +4,11 @@
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
-use pliant_app::drawing::{self, Drawing};
 use pliant_editor::{
     BrushMetric, Button, Command, Editor, Event, InlineExecutor, JobKind, Modifiers, Pointer, ToolMode,
 };
 use pliant_mesh::Model;
+use pliant_picture::drawing::{self, Drawing};
 use pliant_render::{RenderError, Renderer, Surface};
 
 use crate::{SIZE_PX, median, timed};

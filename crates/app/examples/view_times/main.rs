@@ -11,10 +11,10 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use glam::{DVec2, DVec3};
-use pliant_app::drawing::{self, Drawing};
 use pliant_editor::{Camera, Look, Shading};
 use pliant_io::Appearance;
 use pliant_mesh::{Cancel, Model, Progress, WeldOptions};
+use pliant_picture::drawing::{self, Drawing};
 use pliant_render::{Detail, Frame, Headless, Samples, Style, Surface, Target};
 
 const SIZE_PX: [u32; 2] = [1280, 800];

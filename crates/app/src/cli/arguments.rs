@@ -62,6 +62,8 @@ pub(crate) enum Command {
     Sequence(SequenceArguments),
     /// Let dye flow along the surface and save it as vertex colours
     Flow(FlowArguments),
+    /// Serve an assistant by the Model Context Protocol on standard input and output
+    Mcp,
     /// Write man pages, shell completions and the manual's pages of commands
     Generate(GenerateArguments),
 }
@@ -234,7 +236,7 @@ pub(crate) fn definition() -> clap::Command {
 }
 
 /// Each method with its options, for the help.
-fn methods_help() -> String {
+pub(super) fn methods_help() -> String {
     let mut help = "Methods and their options, as members of the edit's `method`:".to_owned();
     for declaration in METHODS {
         help += &format!("\n  {}: {}", declaration.name, declaration.when_to_use);

@@ -11,11 +11,13 @@ mod flow;
 mod generate;
 mod info;
 mod interrupt;
+mod mcp;
 mod method_argument;
 mod motion_arguments;
 mod picture_arguments;
 mod progress_line;
 mod render;
+mod replaced;
 mod sequence;
 mod shared_arguments;
 mod stitch;
@@ -29,7 +31,6 @@ use std::io::{self, IsTerminal};
 use std::process::ExitCode;
 
 pub use console::Console;
-pub use picture_arguments::{LookArguments, PictureSize, RenderArguments, Shading, Up, View};
 
 use crate::window::{self, Source};
 use arguments::Command;
@@ -76,6 +77,7 @@ pub fn run(arguments: Vec<OsString>, console: &mut Console<'_>) -> u8 {
             Some(Command::Animate(arguments)) => animate::run(&arguments, console),
             Some(Command::Sequence(arguments)) => sequence::run(&arguments, console),
             Some(Command::Flow(arguments)) => flow::run(&arguments, console),
+            Some(Command::Mcp) => mcp::run(console),
             Some(Command::Generate(arguments)) => generate::run(&arguments, console),
             None => window::run(Source::of(arguments.file, arguments.edit)),
         },

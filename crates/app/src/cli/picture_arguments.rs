@@ -2,9 +2,10 @@
 
 use std::path::PathBuf;
 
-use clap::builder::{PossibleValuesParser, RangedU64ValueParser, TypedValueParser};
-use clap::{Args, ValueEnum};
+use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser, RangedU64ValueParser, TypedValueParser};
 use pliant_editor::Clay;
+use pliant_picture::{Choice, LookOptions, PictureSize, ProjectionName, Shading, StillOptions, Up, View};
 
 use super::shared_arguments::{ComputeArguments, WeldArguments};
 
@@ -46,14 +47,22 @@ pub(crate) struct CompareArguments {
 #[derive(Args, Clone, Copy, PartialEq, Eq, Debug)]
 pub struct LookArguments {
     /// The axis that points up
-    #[arg(long, value_enum, default_value = "y")]
+    #[arg(long, default_value = "y", value_parser = chosen(Up::CHOICES))]
     pub up: Up,
     /// The direction of view
-    #[arg(long, value_enum, default_value = "three-quarter")]
+    #[arg(long, default_value = "three-quarter", value_parser = chosen(View::CHOICES))]
     pub view: View,
     /// The surface's colours
-    #[arg(long, value_enum, default_value = "clay")]
+    #[arg(long, default_value = "clay", value_parser = chosen(Shading::CHOICES))]
     pub shading: Shading,
+}
+
+impl LookArguments {
+    /// The options of the picture.
+    pub fn options(self) -> LookOptions {
+        let Self { up, view, shading } = self;
+        LookOptions { up, view, shading }
+    }
 }
 
 /// The arguments of `pliant render`.
@@ -77,7 +86,7 @@ pub struct RenderArguments {
     #[arg(long, default_value = "clay", value_parser = clay())]
     pub clay: Clay,
     /// The projection
-    #[arg(long, value_enum, default_value = "perspective")]
+    #[arg(long, default_value = "perspective", value_parser = chosen(ProjectionName::CHOICES))]
     pub projection: ProjectionName,
     /// Shade each triangle flat instead of interpolating normals
     #[arg(long)]
@@ -108,79 +117,38 @@ pub struct RenderArguments {
     pub weld: WeldArguments,
 }
 
-/// The axis that points up in a picture.
-#[derive(ValueEnum, Clone, Copy, PartialEq, Eq, Debug)]
-#[expect(missing_docs, reason = "each variant is what its name says")]
-pub enum Up {
-    Y,
-    Z,
-}
-
-/// The direction of view of a picture.
-#[derive(ValueEnum, Clone, Copy, PartialEq, Eq, Debug)]
-#[expect(missing_docs, reason = "each variant is what its name says")]
-pub enum View {
-    Front,
-    Back,
-    Left,
-    Right,
-    Top,
-    Bottom,
-    ThreeQuarter,
-}
-
-/// The surface's colours in a picture.
-#[derive(ValueEnum, Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Shading {
-    /// Clay, which shows the shape alone
-    Clay,
-    /// The file's materials
-    Material,
-    /// Clay with the edit's regions in colour
-    Regions,
-    /// The edit's stiffness, with a legend
-    Stiffness,
-    /// Lengths of edges over those at rest, with a legend
-    Distortion,
-    /// Areas over those at rest, with a legend
-    Area,
-    /// Mean curvature, with a legend
-    Curvature,
-    /// Mirrored stripes: they break at creases and kink where curvature jumps
-    Zebra,
-    /// The direction in which the surface faces
-    Normals,
-}
-
-/// The projection of a picture.
-#[derive(ValueEnum, Clone, Copy, PartialEq, Eq, Debug)]
-pub enum ProjectionName {
-    Perspective,
-    Orthographic,
-}
-
-/// A picture's size in pixels, 1 to 16384 each way.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub struct PictureSize {
-    /// The width.
-    pub width: u32,
-    /// The height.
-    pub height: u32,
-}
-
-impl std::str::FromStr for PictureSize {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let side = |text: &str| text.parse().ok().filter(|side| (1..=16384).contains(side));
-        let sides = text
-            .split_once(['x', 'X'])
-            .and_then(|(width, height)| Some((side(width)?, side(height)?)));
-        match sides {
-            Some((width, height)) => Ok(Self { width, height }),
-            None => Err("a size is WIDTHxHEIGHT, such as 1280x800, each from 1 to 16384".to_owned()),
+impl RenderArguments {
+    /// The options of the picture.
+    pub fn options(&self) -> StillOptions {
+        StillOptions {
+            size: self.size,
+            look: self.look.options(),
+            clay: self.clay,
+            projection: self.projection,
+            flat: self.flat,
+            wireframe: self.wireframe,
+            borders: self.borders,
+            outlines: self.outlines,
+            grid: self.grid,
+            shadow: self.shadow,
+            transparent: self.transparent,
+            turntable: self.turntable,
         }
     }
+}
+
+/// Reads a choice by its name.
+fn chosen<T: Copy + Send + Sync>(choices: &'static [Choice<T>]) -> impl TypedValueParser<Value = T> {
+    let named = |choice: &Choice<T>| {
+        let value = PossibleValue::new(choice.name);
+        if choice.help.is_empty() {
+            value
+        } else {
+            value.help(choice.help)
+        }
+    };
+    let parser = PossibleValuesParser::new(choices.iter().map(named).collect::<Vec<_>>());
+    parser.try_map(|name| pliant_picture::named(choices, &name))
 }
 
 /// Reads a clay by its name.
@@ -189,17 +157,4 @@ fn clay() -> impl TypedValueParser<Value = Clay> {
         let called = Clay::NAMES.into_iter().find(|(name, _)| *name == chosen);
         called.map_or(Clay::default(), |(_, clay)| clay)
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::PictureSize;
-
-    #[test]
-    fn a_size_is_two_numbers_within_their_range() {
-        assert_eq!("64x48".parse(), Ok(PictureSize { width: 64, height: 48 }));
-        for size in ["64", "0x48", "ax3", "64x48x2", "99999x2"] {
-            assert!(size.parse::<PictureSize>().is_err(), "{size}");
-        }
-    }
 }

@@ -6,13 +6,12 @@ use pliant_engine::EngineError;
 use pliant_engine::files;
 use pliant_engine::stitching::{self, Cut, CutAlong, Fill, Holes, Merge, Remaking, Stitched};
 use pliant_io::Format;
-use pliant_mesh::Progress;
 
+use super::replaced::keep_replaced;
 use super::shared_arguments::{ComputeArguments, WeldArguments};
 use super::stitch_arguments::{BridgeArguments, CutArguments, FillArguments, MergeArguments, NewShapeArguments};
 use crate::cli::console::{Console, print, warn};
 use crate::cli::threads::on_threads;
-use crate::files::original::{Kept, Original};
 
 pub(super) fn fill(arguments: &FillArguments, console: &mut Console<'_>) -> Result<(), EngineError> {
     let remaking = remaking(&arguments.file, &arguments.output, &arguments.weld)?;
@@ -100,17 +99,8 @@ fn conclude(stitched: Stitched, to: &NewShapeArguments, console: &mut Console<'_
         .loaded
         .iter()
         .find(|loaded| files::is_same(&loaded.path, &to.output));
-    let mut kept = None;
-    let mut first = None;
-    if let Some(loaded) = replaced {
-        let original = Original::of(&to.output, loaded, cancel)?;
-        let (place, staged) = original.keep(&[], loaded, staging, &Progress::new(), cancel)?;
-        first = staged;
-        kept = match place {
-            Kept::Already(place) | Kept::Under(place) => Some(place),
-            Kept::Nothing => None,
-        };
-    }
+    let kept = replaced.map(|loaded| keep_replaced(loaded, &to.output, staging, cancel));
+    let (kept, first) = kept.transpose()?.unwrap_or_default();
     let (done, warnings) = (stitched.done.clone(), stitched.warnings.clone());
     stitched.commit(first)?;
     warn(console.err, &warnings);

@@ -37,6 +37,23 @@ pub enum Replace {
     WithOriginalKept,
 }
 
+impl Replace {
+    /// Refuses an output that is the file that was read, unless it may be replaced.
+    ///
+    /// # Errors
+    /// [`EngineError::Arguments`], naming the output.
+    pub fn check(self, file: &Path, output: &Path) -> Result<(), EngineError> {
+        if self == Self::Never && files::is_same(file, output) {
+            return Err(EngineError::Arguments(format!(
+                "--output {} is the file that is read: give another name, or --replace, which keeps the original beside \
+                 it",
+                files::shown(output)
+            )));
+        }
+        Ok(())
+    }
+}
+
 /// The receiver of the figures about a new shape.
 #[derive(Clone, Copy, Debug, Default)]
 pub enum ReportTo<'a> {
@@ -146,13 +163,7 @@ impl Remaking<'_> {
         let file = self.file;
         let report = self.report.file().map(|report| ("--report", report));
         let outputs: Vec<(&str, &Path)> = [("--output", self.output)].into_iter().chain(report).collect();
-        if self.replace == Replace::Never && files::is_same(file, self.output) {
-            return Err(EngineError::Arguments(format!(
-                "--output {} is the file that is read: give another name, or --replace, which keeps the original beside \
-                 it",
-                files::shown(self.output)
-            )));
-        }
+        self.replace.check(file, self.output)?;
         watch.refuse_outputs(&outputs, Some(file))
     }
 

@@ -178,6 +178,57 @@ def info(file: File, *, weld: float | None = None) -> dict[str, Any]:
     :raises ValueError: if it is not such a file.
     """
 
+def render(
+    file: File,
+    *,
+    output: File | None = None,
+    edit: FileOrMembers | None = None,
+    size: str | tuple[int, int] | None = None,
+    up: Literal["y", "z"] = "y",
+    view: Literal["front", "back", "left", "right", "top", "bottom", "three-quarter"] = "three-quarter",
+    shading: Literal[
+        "clay", "material", "regions", "stiffness", "distortion", "area", "curvature", "zebra", "normals"
+    ] = "clay",
+    clay: Literal["clay", "plaster", "wax", "bronze", "porcelain", "graphite"] = "clay",
+    projection: Literal["perspective", "orthographic"] = "perspective",
+    flat: bool = False,
+    wireframe: bool = False,
+    borders: bool = False,
+    outlines: bool = False,
+    grid: bool = False,
+    shadow: bool = False,
+    transparent: bool = False,
+    turntable: int | None = None,
+    weld: float | None = None,
+) -> npt.NDArray[np.uint8] | None:
+    """A picture of a file, with an edit if there is one, like `pliant render`. It needs no display, but a driver for
+    Vulkan, Metal or Direct3D 12; Mesa's `lavapipe` draws without a graphics card.
+
+    :param file: the file to draw.
+    :param output: a PNG file to write. Without it the pixels are returned.
+    :param edit: an edit's or a project's file, or an edit as a dict.
+    :param size: the width and height in pixels, as a text such as `1280x800` or as a pair; by default 1280 by 800.
+    :param up: the axis that points up.
+    :param view: the direction of view.
+    :param shading: the surface's colours.
+    :param clay: the clay of the shadings `clay` and `regions`.
+    :param projection: the projection.
+    :param flat: shades each triangle flat.
+    :param wireframe: draws the triangles' edges.
+    :param borders: marks the edges where the surface ends and those of more than two triangles.
+    :param outlines: outlines the edit's handles and the free region.
+    :param grid: draws the ground's grid.
+    :param shadow: draws a soft shadow on the ground.
+    :param transparent: leaves the background transparent.
+    :param turntable: the number of pictures around the up axis, 2 to 9999; the files are numbered, as in
+        `OUT-0001.png`.
+    :param weld: the distance within which vertices are joined, as in `load`.
+    :return: red, green, blue and straight alpha in sRGB, shape (height, width, 4), or (turntable, height, width, 4);
+        `None` if `output` is given.
+    :raises OSError: if a file can't be read or written, or if there is no driver to draw with.
+    :raises ValueError: if the file or the edit is refused.
+    """
+
 def apply(
     file: File,
     *,

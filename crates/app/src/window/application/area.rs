@@ -8,7 +8,6 @@ use glam::DVec2;
 use pliant_editor::{Before, Cursor, Event, ToolMode};
 
 use crate::files::names::file_name;
-use crate::legend;
 use crate::window::application::{Application, REST};
 use crate::window::bars::{hints, work_pose};
 use crate::window::files::desktop::Elsewhere;
@@ -24,6 +23,7 @@ use crate::window::viewport::{Smoothness, axis_ball, context_menu, stiffness_leg
 use crate::window::widgets::number_field;
 use crate::window::widgets::outbox::Outbox;
 use crate::window::widgets::theme;
+use pliant_picture::legend;
 
 impl Application {
     /// While the pointer is over the view and the view has the keyboard, Tab belongs to the view: it selects the next

@@ -6,13 +6,13 @@ use glam::DVec3;
 use pliant_editor::{Event, JobKind, Shading};
 use pliant_mesh::Cancel;
 
-use crate::drawing::{self, Field};
 use crate::window::application::Application;
 use crate::window::dialogs::question::Question;
 use crate::window::panels::notes::Notes;
 use crate::window::session::OpenFile;
 use crate::window::threads::message::{ImagesOf, LoadedMaterials, Message, ModelToShow, Posed};
 use crate::window::threads::workers::PoseSource;
+use pliant_picture::drawing::{self, Field};
 
 impl Application {
     /// Takes the results of other threads. Returns whether there was anything besides new shapes, which come at every

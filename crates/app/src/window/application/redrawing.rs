@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use crate::drawing::Drawing;
 use crate::window::application::Application;
 use crate::window::threads::message::{Message, Redrawn};
+use pliant_picture::drawing::Drawing;
 
 impl Application {
     /// Returns true if the drawing turns the same parts inside out as the document.

@@ -10,7 +10,7 @@ use pliant_engine::files::{self, Staging};
 use pliant_render::Image;
 
 use super::recovery::make_private_folder;
-use crate::picture_file;
+use pliant_picture::picture_file;
 
 /// The size of a picture in pixels.
 pub const SIZE_PX: [u32; 2] = [192, 144];

@@ -12,11 +12,11 @@ use super::rest_mesh::MeshSource;
 use super::save_request::{Changed, Content, KeepOriginal, Model, SaveRequest, Unwritten, Written, WrittenKind};
 use crate::files::names::file_name;
 use crate::files::original::{Kept, Original};
-use crate::picture_file;
 use pliant_engine::EngineError;
 use pliant_engine::files::{self, Staged, Staging, Stamp};
 use pliant_engine::flow::dyed;
 use pliant_engine::saving::{self, SaveAs};
+use pliant_picture::picture_file;
 
 /// Writes the content. A save that was stopped in time has changed nothing.
 ///

@@ -9,7 +9,6 @@ use std::sync::Arc;
 use glam::DVec3;
 use pliant_editor::{JobQueue, Revision, SaveMark};
 
-use crate::drawing::Drawing;
 use crate::files::names::file_name;
 use crate::files::original::Original;
 use crate::window::files::rest_mesh::RestMesh;
@@ -25,6 +24,7 @@ use pliant_engine::Loaded;
 use pliant_engine::files::{KnownFiles, is_same};
 use pliant_engine::watch::Watch;
 use pliant_mesh::Cancel;
+use pliant_picture::drawing::Drawing;
 
 /// The open file and the jobs that read and write it.
 #[derive(Default)]

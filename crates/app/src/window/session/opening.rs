@@ -7,7 +7,6 @@ use glam::DVec3;
 use pliant_editor::{Beginning, SavedAs, Snapshot};
 use pliant_mesh::WeldOptions;
 
-use crate::drawing::Drawing;
 use crate::files::names::saved_name;
 use crate::window::files::project_file;
 use crate::window::files::recovery::left::opened_project;
@@ -17,6 +16,7 @@ use crate::window::viewport::gpu::Gpu;
 use pliant_engine::files::Stamp;
 use pliant_engine::watch::Watch;
 use pliant_engine::{EngineError, examples, files};
+use pliant_picture::drawing::Drawing;
 
 /// The source of a model.
 #[derive(Clone, Debug)]

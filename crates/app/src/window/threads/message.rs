@@ -9,13 +9,13 @@ use pliant_editor::{Beginning, JobDone, Revision, SavedAs, SnapshotKey};
 use pliant_mesh::Cancel;
 use pliant_render::{Image, Materials, Surface};
 
-use crate::drawing::{Drawing, Field, Pose, Scale};
 use crate::files::original::Kept;
 use crate::window::files::listing::Entry;
 use crate::window::files::rest_mesh::MeshSource;
 use crate::window::files::save_request::{Unwritten, Written};
 use pliant_engine::Loaded;
 use pliant_engine::files::Stamp;
+use pliant_picture::drawing::{Drawing, Field, Pose, Scale};
 
 /// A result of another thread; the window takes all waiting ones at the start of each frame.
 pub enum Message {

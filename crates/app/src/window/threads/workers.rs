@@ -17,9 +17,9 @@ use pliant_editor::{Executor, Job, JobDone, JobResult, SolveResult, Unfinished};
 use super::message::{Message, Painted, Posed};
 use tracing::debug_span;
 
-use crate::drawing::{self, Drawing, Field, Scale};
 use pliant_engine::report::ms_since;
 use pliant_engine::{Loaded, memory};
+use pliant_picture::drawing::{self, Drawing, Field, Scale};
 
 /// Starts work off the window's thread and wakes the window when it ends. Cloning shares the channel.
 #[derive(Clone)]

@@ -4,7 +4,7 @@ use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
 
 use pliant_render::{Materials, RenderError, Renderer, Surface};
 
-use crate::drawing::{DecodedMaterials, Drawing, Pose};
+use pliant_picture::drawing::{DecodedMaterials, Drawing, Pose};
 
 /// The device, shared with the threads that upload files. Drawing needs exclusive access, and skips a frame rather than
 /// wait.

@@ -13,11 +13,11 @@ use pliant_render::RenderError;
 
 use super::side_view::SideView;
 use super::{Smoothness, Viewport};
-use crate::sheet;
 use crate::window::threads::workers::PoseSource;
 use crate::window::widgets::icon::{Icon, toggle};
 use crate::window::widgets::theme;
 use pliant_engine::report::finite_or;
+use pliant_picture::sheet;
 
 /// The height of a caption of two lines, in points.
 const CAPTION: f32 = 36.0;

@@ -29,13 +29,13 @@ use pliant_render::{
     Background, Detail, Frame, Image, Materials, RenderError, Renderer, Samples, Shadows, Style, Surface, Target,
 };
 
-use crate::drawing::{self, Drawing, Field, Scale};
 use crate::window::threads::message::{Ground, PictureKind, Posed};
 use crate::window::viewport::drawn_key::DrawnKey;
-use crate::{legend, painting};
 use backdrop::Backdrop;
 use coarseness::Coarseness;
 use gpu::Gpu;
+use pliant_picture::drawing::{self, Drawing, Field, Scale};
+use pliant_picture::{legend, painting};
 use shown::{Colours, Shown, address};
 
 /// Surfaces above this many triangles are not drawn a second time for smooth borders on a software device.

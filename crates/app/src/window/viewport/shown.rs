@@ -8,7 +8,7 @@ use pliant_mesh::SurfaceVertex;
 use pliant_render::{Grid, Materials, RenderError, Renderer, Surface};
 
 use super::gpu::Gpu;
-use crate::drawing::{self, Drawing, Field, Scale};
+use pliant_picture::drawing::{self, Drawing, Field, Scale};
 
 /// The surface in GPU buffers and its present contents.
 pub struct Shown {

@@ -7,10 +7,10 @@ use eframe::egui;
 use glam::DVec3;
 
 use super::Viewport;
-use crate::drawing::Drawing;
 use crate::window::threads::message::{Message, Posed};
 use crate::window::threads::workers::{PoseSource, Workers};
 use crate::window::viewport::pose_queue::PoseQueue;
+use pliant_picture::drawing::Drawing;
 
 /// A view beside the first, with its own threads.
 pub struct SideView {

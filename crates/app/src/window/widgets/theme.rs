@@ -81,9 +81,9 @@ mod tests {
     use pliant_render::Background;
 
     use super::*;
-    use crate::drawing::ground;
     use crate::window::bars::status;
     use crate::window::viewport::backdrop::Backdrop;
+    use pliant_picture::drawing::ground;
 
     /// The least contrast of text, by the Web Content Accessibility Guidelines 2.2 (1.4.3).
     const LEAST: f64 = 4.5;

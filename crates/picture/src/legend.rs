@@ -1,6 +1,6 @@
 //! The legend of a colour scale: a bar with numbers. The window and `pliant render` paint it with the same function.
 
-use eframe::egui::{self, Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Stroke, StrokeKind, pos2, vec2};
+use egui::{Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Stroke, StrokeKind, pos2, vec2};
 use pliant_render::{Image, RenderError, Renderer};
 
 use crate::drawing::{Scale, colour_at};

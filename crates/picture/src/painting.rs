@@ -1,6 +1,6 @@
 //! Pictures that egui paints, without a window: legends, captions.
 
-use eframe::egui::{self, Painter, Pos2, Rect, Vec2};
+use egui::{Painter, Pos2, Rect, Vec2};
 use pliant_render::{Image, RenderError, Renderer};
 
 /// The picture that `paint` makes in a rectangle of this size in points, with the origin at its upper left corner, as

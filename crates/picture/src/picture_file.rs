@@ -2,14 +2,23 @@
 
 use std::io::Cursor;
 
-use eframe::egui::ecolor::{gamma_from_linear, linear_from_gamma};
+use egui::ecolor::{gamma_from_linear, linear_from_gamma};
 use pliant_render::Image;
 
 use pliant_engine::EngineError;
 
-/// A picture as PNG bytes. The renderer's colours are premultiplied by alpha, in linear light; PNG's are straight.
-pub fn png(mut picture: Image) -> Result<Vec<u8>, EngineError> {
+/// The picture with straight colours. The renderer's are premultiplied by alpha, in linear light.
+pub fn straight(mut picture: Image) -> Image {
     picture.rgba.chunks_exact_mut(4).for_each(straighten);
+    picture
+}
+
+/// A picture of the renderer as PNG bytes, whose colours are straight.
+///
+/// # Errors
+/// The encoder's.
+pub fn png(picture: Image) -> Result<Vec<u8>, EngineError> {
+    let picture = straight(picture);
     let refuse = |reason: String| EngineError::System(format!("the picture can't be written as PNG: {reason}"));
     let Image { width, height, rgba } = picture;
     let image = image::RgbaImage::from_raw(width, height, rgba).ok_or_else(|| refuse("it is incomplete".to_owned()))?;
