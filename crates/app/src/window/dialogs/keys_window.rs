@@ -121,11 +121,12 @@ impl KeysWindow {
     }
 
     fn row(&mut self, ui: &mut egui::Ui, editor: &Editor, listed: &Listed) {
-        ui.add_sized(
-            [NAME_WIDTH, ui.spacing().interact_size.y],
-            egui::Label::new(listed.name).truncate(),
-        )
-        .on_hover_text(listed.tooltip);
+        let size = egui::vec2(NAME_WIDTH, ui.spacing().interact_size.y);
+        ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
+            ui.set_min_width(NAME_WIDTH);
+            ui.add(egui::Label::new(listed.name).truncate())
+                .on_hover_text(listed.tooltip);
+        });
         let keys = editor.shortcuts(&listed.command);
         let shown = match (self.waiting == Some(listed.name), keys.first()) {
             (true, _) => "press a key".to_owned(),
