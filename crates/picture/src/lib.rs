@@ -1,21 +1,36 @@
 //! Pictures of mesh files without a window, as PNG or as pixels. The window draws with the same parts.
 //!
-//! ```no_run
+//! ```
+//! use pliant_engine::EngineError;
 //! use pliant_engine::watch::Watch;
-//! use pliant_picture::{OfFile, StillOptions, draw_file, picture_file};
+//! use pliant_picture::{OfFile, PictureSize, StillOptions, draw_file, picture_file};
 //!
+//! let folder = tempfile::tempdir()?;
+//! let file = folder.path().join("triangle.off");
+//! std::fs::write(&file, "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")?;
+//! let options = StillOptions {
+//!     size: PictureSize { width: 64, height: 48 },
+//!     ..StillOptions::default()
+//! };
 //! let job = OfFile {
-//!     file: "scan.glb".as_ref(),
+//!     file: &file,
 //!     edit: None,
 //!     weld: None,
-//!     options: &StillOptions::default(),
+//!     options: &options,
 //! };
 //! let mut pngs = Vec::new();
-//! draw_file(&job, &[], &Watch::default(), |picture| {
+//! let drawn = draw_file(&job, &[], &Watch::default(), |picture| {
+//!     assert_eq!((picture.width, picture.height), (64, 48));
 //!     pngs.push(picture_file::png(picture)?);
 //!     Ok(())
-//! })?;
-//! # Ok::<(), pliant_engine::EngineError>(())
+//! });
+//! match drawn {
+//!     Ok(_) => assert!(pngs[0].starts_with(b"\x89PNG")),
+//!     // A machine without a graphics driver says so.
+//!     Err(EngineError::System(sentence)) => println!("{sentence}"),
+//!     Err(other) => return Err(other.into()),
+//! }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
 mod camera;

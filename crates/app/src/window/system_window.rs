@@ -9,7 +9,7 @@ use super::application::{Application, REST};
 impl Application {
     /// Fills the screen after the window appears: X11's window managers ignore earlier requests.
     pub(super) fn fill_screen(&mut self, context: &egui::Context) {
-        if !self.is_to_fill_screen {
+        if !self.layout.is_to_fill_screen {
             return;
         }
         self.last_change = Instant::now();
@@ -17,7 +17,7 @@ impl Application {
             context.request_repaint();
             return;
         }
-        self.is_to_fill_screen = false;
+        self.layout.is_to_fill_screen = false;
         if context.input(|input| input.viewport().maximized) != Some(true) {
             context.send_viewport_cmd(egui::ViewportCommand::Maximized(true));
         }
@@ -50,16 +50,16 @@ impl Application {
 
     /// Puts the name of the open file, or the waiting question, in the window's title.
     pub(super) fn entitle(&mut self, context: &egui::Context) {
-        let about = match (&self.question, &self.session.open) {
+        let about = match (&self.dialogs.question, &self.session.open) {
             (Some(question), _) => question.title().to_owned(),
             (None, Some(open)) => open.name(),
             (None, None) if self.session.doing().is_some() => "opening".to_owned(),
             (None, None) => "nothing is open".to_owned(),
         };
         let title = format!("Pliant — {about}");
-        if self.title != title {
+        if self.layout.title != title {
             context.send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));
-            self.title = title;
+            self.layout.title = title;
         }
     }
 }

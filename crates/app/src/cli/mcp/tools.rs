@@ -162,7 +162,7 @@ pub const TOOLS: [Tool; 9] = [
 ];
 
 /// The manual's page about edits.
-const EDIT_FORMAT: &str = include_str!("../../../../../docs/edit-format.md");
+const EDIT_FORMAT: &str = include_str!("../../../edit-format.md");
 
 /// Advice for the use of the tools together.
 pub const INSTRUCTIONS: &str = "Pliant bends scanned meshes and saves them back with only the shape changed. A session: \
@@ -253,4 +253,14 @@ fn look(size: &str) -> Value {
 fn names<T>(choices: &[Choice<T>]) -> Value {
     let names: Vec<&str> = choices.iter().map(|choice| choice.name).collect();
     json!({ "enum": names })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::EDIT_FORMAT;
+
+    #[test]
+    fn the_page_about_edits_is_the_manuals_and_not_the_name_of_a_link() {
+        assert!(EDIT_FORMAT.len() > 5000 && EDIT_FORMAT.contains("\"handles\""));
+    }
 }

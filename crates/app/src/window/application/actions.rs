@@ -29,7 +29,7 @@ use pliant_engine::{EngineError, Loaded, examples, is_project};
 
 impl Application {
     pub(in crate::window) fn file_shortcuts(&mut self, context: &egui::Context) {
-        if self.question.is_some() || self.keys.takes_keys() {
+        if self.dialogs.question.is_some() || self.dialogs.keys.takes_keys() {
             return;
         }
         let is_typing = EventQueue::is_typing(context) || context.egui_wants_keyboard_input();
@@ -37,7 +37,7 @@ impl Application {
             let Some(shortcut) = command.shortcut() else { continue };
             // A letter goes to the field that has the focus.
             let is_letter = shortcut.modifiers.is_none() && shortcut.logical_key == egui::Key::N;
-            if is_letter && (self.palette.is_some() || self.editor.is_acting() || is_typing) {
+            if is_letter && (self.dialogs.palette.is_some() || self.editor.is_acting() || is_typing) {
                 continue;
             }
             let is_pressed = context.input_mut(|input| match is_letter {
@@ -74,7 +74,7 @@ impl Application {
                 Err(error) => self.fail(error.to_string()),
             },
             // The action that was to follow the save is given up with it.
-            (_, None) => self.after_saving = None,
+            (_, None) => self.waiting.then = None,
         }
     }
 
@@ -102,13 +102,13 @@ impl Application {
     /// Asks for a file by the window's own dialog, which begins at `suggested`.
     pub(in crate::window) fn browse(&mut self, purpose: Purpose, suggested: &Path) {
         let browser = file_dialog::browser(purpose, suggested, self.path(), &self.settings.get().recent);
-        self.question = Some(Question::File(purpose, Box::new(browser)));
+        self.dialogs.question = Some(Question::File(purpose, Box::new(browser)));
         self.read_folder();
     }
 
     /// Reads the folder that the window's own dialog wants to show, off the window's thread.
     pub(in crate::window) fn read_folder(&mut self) {
-        let Some(Question::File(_, browser)) = &mut self.question else {
+        let Some(Question::File(_, browser)) = &mut self.dialogs.question else {
             return;
         };
         if let Some(folder) = browser.take_wanted() {
@@ -173,7 +173,7 @@ impl Application {
             FileCommand::ShowInFolder => self.show_in_folder(),
             FileCommand::Manual => self.show_page(MANUAL),
             FileCommand::Report => self.show_page(REPORTS),
-            FileCommand::About => self.about.open = true,
+            FileCommand::About => self.dialogs.about.open = true,
             FileCommand::Save => self.save(),
             FileCommand::SaveAs => self.choose(Purpose::SaveAs),
             FileCommand::SaveMorph => self.choose(Purpose::SaveMorph),
@@ -193,11 +193,11 @@ impl Application {
                 }
             }
             FileCommand::Weld(weld) => self.weld_anew(weld),
-            FileCommand::Palette => self.palette = Some(Palette::default()),
-            FileCommand::Panel => self.is_panel_hidden = !self.is_panel_hidden,
-            FileCommand::Log => self.log.open = true,
-            FileCommand::Keys => self.keys.open = true,
-            FileCommand::Memory => self.memory.open = true,
+            FileCommand::Palette => self.dialogs.palette = Some(Palette::default()),
+            FileCommand::Panel => self.layout.is_panel_hidden = !self.layout.is_panel_hidden,
+            FileCommand::Log => self.dialogs.log.open = true,
+            FileCommand::Keys => self.dialogs.keys.open = true,
+            FileCommand::Memory => self.dialogs.memory.open = true,
             FileCommand::NextTheme => {
                 self.settings.change(|settings| settings.theme = settings.theme.next());
                 theme::apply(context, self.settings.get());
@@ -293,9 +293,9 @@ impl Application {
     /// Goes on at once after the running saves, or when the person has agreed to lose unsaved work.
     fn unless_unsaved(&mut self, then: Then) {
         if self.is_saving() {
-            self.after_saving = Some(then);
+            self.waiting.then = Some(then);
         } else if self.editor.view().unsaved {
-            self.question = Some(self.about_unsaved(then));
+            self.dialogs.question = Some(self.about_unsaved(then));
         } else {
             self.go_on(then);
         }
@@ -316,13 +316,13 @@ impl Application {
     }
 
     pub(in crate::window) fn answer(&mut self, answer: Answer) {
-        let question = self.question.take();
+        let question = self.dialogs.question.take();
         match answer {
             Answer::WriteOver(path) => self.write_over(path),
             Answer::SaveAs => self.choose(Purpose::SaveAs),
             Answer::Save => {
                 if let Some(Question::Discard(then, _)) = question {
-                    self.after_saving = Some(then);
+                    self.waiting.then = Some(then);
                 }
                 self.save_what_is_open();
             }
@@ -330,7 +330,7 @@ impl Application {
             Answer::Overwrite => self.overwrite(),
             Answer::Beside => self.save_beside(),
             Answer::Path(purpose, path) if self.would_be_lost(purpose, &path) => {
-                self.question = Some(Question::Replace(purpose, path));
+                self.dialogs.question = Some(Question::Replace(purpose, path));
             }
             Answer::Path(purpose, path) | Answer::Replace(purpose, path) => self.chosen(purpose, Some(path)),
             Answer::Rename(purpose, path) => {
@@ -343,8 +343,8 @@ impl Application {
             }
             Answer::Forget(projects) => projects.iter().for_each(|project| left::remove(project)),
             Answer::Cancel => {
-                self.after_saving = None;
-                self.unwritten = None;
+                self.waiting.then = None;
+                self.waiting.unwritten = None;
             }
         }
     }

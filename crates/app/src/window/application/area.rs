@@ -52,7 +52,7 @@ impl Application {
         if rect.width() < 1.0 || rect.height() < 1.0 {
             return Ok(());
         }
-        self.view_rect = rect;
+        self.layout.view_rect = rect;
         let size_px = DVec2::new(f64::from(rect.width()), f64::from(rect.height()));
         if self.editor.view().viewport_px != size_px {
             self.editor.handle(Event::Viewport { size_px });
@@ -63,7 +63,7 @@ impl Application {
         let renamed = context_menu::show(&response, &self.editor, &mut commands);
         if let Some(handle) = renamed.and_then(|id| self.editor.document().handle(id)) {
             handles::rename(ui.ctx(), handle);
-            self.is_panel_hidden = false;
+            self.layout.is_panel_hidden = false;
             self.settings.change(|settings| settings.page = PanelPage::Handles);
             ui.ctx().request_repaint();
         }
@@ -102,7 +102,7 @@ impl Application {
         let typing = EventQueue::is_typing(ui.ctx());
         Self::keep_tab(ui, response.contains_pointer(), typing);
         let pointer = ui.input(|input| input.pointer.latest_pos());
-        let is_asked = self.question.is_some() || self.palette.is_some();
+        let is_asked = self.dialogs.question.is_some() || self.dialogs.palette.is_some();
         let attention = Attention {
             rect,
             pointer: pointer.unwrap_or(rect.center()),
@@ -111,9 +111,9 @@ impl Application {
                 && !is_asked
                 && !egui::Popup::is_any_open(ui.ctx())
                 && !axis_ball::contains(rect, pointer)
-                && !self.split.takes(rect, pointer, self.editor.view().look.before),
+                && !self.beside.split.takes(rect, pointer, self.editor.view().look.before),
             follows_pointer: self.editor.view().cursor == Cursor::Move,
-            keys: !is_asked && !self.keys.takes_keys() && !typing && !ui.ctx().egui_wants_keyboard_input(),
+            keys: !is_asked && !self.dialogs.keys.takes_keys() && !typing && !ui.ctx().egui_wants_keyboard_input(),
             more_to_come: EventQueue::has_more(ui.ctx()),
         };
         let events = self.input.events(ui.ctx(), attention);
@@ -141,17 +141,19 @@ impl Application {
             (place, self.editor.comparison(), self.workers.pose_source())
         else {
             // Their data on the device is dropped with them.
-            self.method_views = MethodViews::default();
+            self.beside.methods = MethodViews::default();
             return Ok(());
         };
-        self.method_views.follow(ui.ctx(), comparison, &self.viewport, &source);
-        let are_settled = self.method_views.are_settled(comparison);
+        self.beside
+            .methods
+            .follow(ui.ctx(), comparison, &self.viewport, &source);
+        let are_settled = self.beside.methods.are_settled(comparison);
         let smooth = if are_settled {
             self.smoothness()
         } else {
             Smoothness::Moving
         };
-        let shown = self.method_views.show(ui, place, &self.editor, smooth)?;
+        let shown = self.beside.methods.show(ui, place, &self.editor, smooth)?;
         if shown.again {
             ui.ctx().request_repaint_after(REST);
         }
@@ -185,17 +187,17 @@ impl Application {
         let before = self.editor.view().look.before;
         let (Some(source), true) = (self.workers.pose_source(), before != Before::Off) else {
             // Its data on the device is dropped with it.
-            self.original = None;
+            self.beside.original = None;
             return Ok(());
         };
         let new = || OriginalView::beside(ui.ctx(), &self.viewport);
-        let original = self.original.get_or_insert_with(new);
+        let original = self.beside.original.get_or_insert_with(new);
         original.follow(&self.editor, &self.viewport, &source);
-        if original.show(ui, rect, &self.editor, self.split, smooth)? {
+        if original.show(ui, rect, &self.editor, self.beside.split, smooth)? {
             ui.ctx().request_repaint_after(REST);
         }
         if before == Before::Split {
-            self.split.show(ui, rect);
+            self.beside.split.show(ui, rect);
         }
         Ok(())
     }
@@ -264,7 +266,7 @@ impl Application {
         if let Some(saved) = self.toast.take_to_show() {
             self.show_elsewhere(Elsewhere::File(saved));
         }
-        if self.shows_hints && !self.settings.get().hints_seen && hints::show(ui, rect, toast, &self.editor) {
+        if self.layout.shows_hints && !self.settings.get().hints_seen && hints::show(ui, rect, toast, &self.editor) {
             self.settings.change(|settings| settings.hints_seen = true);
         }
     }

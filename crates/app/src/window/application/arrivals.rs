@@ -58,7 +58,7 @@ impl Application {
                 },
                 Message::Written(stamp, result) => self.written(stamp, result),
                 Message::OriginalFound(path, kept) => {
-                    if let Some(Question::WriteOver(asked, found)) = &mut self.question
+                    if let Some(Question::WriteOver(asked, found)) = &mut self.dialogs.question
                         && *asked == path
                     {
                         *found = Some(kept);
@@ -76,7 +76,7 @@ impl Application {
                 Message::Cage(mesh) => self.take_cage(mesh),
                 Message::Example(loaded, shape) => self.take_example(&loaded, shape),
                 Message::Folder(folder, contents) => {
-                    if let Some(Question::File(_, browser)) = &mut self.question {
+                    if let Some(Question::File(_, browser)) = &mut self.dialogs.question {
                         browser.set_contents(&folder, contents);
                     }
                 }
@@ -100,8 +100,8 @@ impl Application {
     fn adopt(&mut self, opened: ModelToShow) {
         self.session.adopt(&opened);
         // Requests of the former file do not apply to this one.
-        self.wishes.clear();
-        self.unwritten = None;
+        self.waiting.wishes.clear();
+        self.waiting.unwritten = None;
         self.redrawing = None;
         let ModelToShow {
             loaded,

@@ -36,7 +36,7 @@ impl eframe::App for Application {
 
         let mut commands = Outbox::default();
         let (file_command, layout) = self.bars_and_panel(ui, &mut commands);
-        if std::mem::replace(&mut self.layout, layout) != layout || has_heard {
+        if std::mem::replace(&mut self.layout.bars, layout) != layout || has_heard {
             // egui lays out by its measurements of the frame before.
             context.request_repaint();
         }
@@ -81,9 +81,9 @@ impl Application {
         let context = ui.ctx().clone();
         let title = self.session.open.as_ref().map(OpenFile::name).unwrap_or_default();
         let top = Panel::top("top").show(ui, |ui| {
-            let takes_keys = self.question.is_none()
-                && self.palette.is_none()
-                && !self.keys.takes_keys()
+            let takes_keys = self.dialogs.question.is_none()
+                && self.dialogs.palette.is_none()
+                && !self.dialogs.keys.takes_keys()
                 && !self.editor.is_acting();
             let recent = Recent {
                 files: &self.settings.get().recent,
@@ -105,7 +105,7 @@ impl Application {
             Some(FileWorkAnswer::SaveAsItIs) => self.save_as_it_is(),
             None => {}
         }
-        let panel = match self.is_panel_hidden {
+        let panel = match self.layout.is_panel_hidden {
             true => egui::Rect::NOTHING,
             false => self.panel(ui, commands),
         };
@@ -170,21 +170,21 @@ impl Application {
             self.editor.view().problem.map(str::to_owned),
             self.settled_with(),
         ] {
-            self.log.say(sentence.as_deref().unwrap_or_default());
+            self.dialogs.log.say(sentence.as_deref().unwrap_or_default());
         }
-        self.log.show(context);
-        if self.keys.show(context, &self.editor, &mut self.settings) {
+        self.dialogs.log.show(context);
+        if self.dialogs.keys.show(context, &self.editor, &mut self.settings) {
             self.take_keys();
         }
-        if self.memory.show(context, &mut self.settings) {
+        if self.dialogs.memory.show(context, &mut self.settings) {
             self.take_memory();
         }
-        if self.about.open
-            && let Some(command) = self.about.show(context, &self.viewport.device())
+        if self.dialogs.about.open
+            && let Some(command) = self.dialogs.about.show(context, &self.viewport.device())
         {
             self.file_command(context, command);
         }
-        let question = self.question.as_mut();
+        let question = self.dialogs.question.as_mut();
         if let Some(answer) = question.and_then(|question| question::ask(context, question)) {
             self.answer(answer);
             context.request_repaint();
@@ -193,9 +193,11 @@ impl Application {
     }
 
     fn show_palette(&mut self, context: &egui::Context) {
-        let Some(palette) = &mut self.palette else { return };
+        let Some(palette) = &mut self.dialogs.palette else {
+            return;
+        };
         if let Outcome::Chosen(found) = palette.show(context, &self.editor) {
-            self.palette = None;
+            self.dialogs.palette = None;
             match found {
                 Some(Found::Editor(command)) => self.command(command),
                 Some(Found::File(command)) => self.file_command(context, command),
@@ -209,18 +211,18 @@ impl Application {
     /// the gesture of a tool; then it closes the topmost window of the list of keys, the choice of memory, the log and
     /// the version; only if none is open does the editor get it.
     fn close_by_escape(&mut self, context: &egui::Context) {
-        let is_taken = self.question.is_some()
-            || self.palette.is_some()
-            || self.keys.takes_keys()
+        let is_taken = self.dialogs.question.is_some()
+            || self.dialogs.palette.is_some()
+            || self.dialogs.keys.takes_keys()
             || egui::Popup::is_any_open(context)
             || context.egui_wants_keyboard_input()
             || EventQueue::is_typing(context)
             || self.editor.is_acting();
         let windows = [
-            (keys_window::ID, &mut self.keys.open),
-            (memory_window::ID, &mut self.memory.open),
-            (log::ID, &mut self.log.open),
-            (about::ID, &mut self.about.open),
+            (keys_window::ID, &mut self.dialogs.keys.open),
+            (memory_window::ID, &mut self.dialogs.memory.open),
+            (log::ID, &mut self.dialogs.log.open),
+            (about::ID, &mut self.dialogs.about.open),
         ];
         let mut open: Vec<_> = windows.into_iter().filter(|(_, open)| **open).collect();
         if is_taken || open.is_empty() {

@@ -5,8 +5,10 @@ pub(in crate::window) mod area;
 pub(in crate::window) mod arrivals;
 mod elsewhere;
 pub(in crate::window) mod frame;
+pub(in crate::window) mod layout;
 pub(in crate::window) mod redrawing;
 pub(in crate::window) mod saves;
+pub(in crate::window) mod waiting_saves;
 
 use std::collections::{BTreeSet, VecDeque};
 use std::path::{Path, PathBuf};
@@ -19,21 +21,17 @@ use glam::DVec3;
 use pliant_editor::{Command, Editor, Event, KeyMap, Shading};
 use pliant_mesh::Cancel;
 
+use self::layout::Layout;
+use self::waiting_saves::WaitingSaves;
 use super::bars::recent_menu::RecentPictures;
 use super::bars::toast::Toast;
-use super::dialogs::about::About;
-use super::dialogs::keys_window::KeysWindow;
-use super::dialogs::log::Log;
-use super::dialogs::memory_window::MemoryWindow;
-use super::dialogs::palette::Palette;
-use super::dialogs::question::{Question, Then};
+use super::dialogs::Dialogs;
+use super::dialogs::question::Question;
 use super::files::app_directories::AppDirectories;
 use super::files::desktop::Desktop;
 use super::files::recovery::Recovery;
 use super::files::recovery::left::{left_in, remove};
 use super::files::rest_mesh::MeshSource;
-use super::files::save_request::SaveRequest;
-use super::files::save_wish::SaveWish;
 use super::files::settings::SettingsFile;
 use super::input::Input;
 use super::input::event_queue::EventQueue;
@@ -43,8 +41,8 @@ use super::threads::interface_pool;
 use super::threads::message::Message;
 use super::threads::workers::Workers;
 use super::viewport::Viewport;
-use super::viewport::before::{OriginalView, Split};
-use super::viewport::method_views::MethodViews;
+use super::viewport::before::OriginalView;
+use super::viewport::beside::ViewsBeside;
 use super::widgets::{icon, theme};
 use crate::files::names::file_name;
 use crate::window::session::{Session, Source};
@@ -54,15 +52,11 @@ use pliant_engine::EngineError;
 /// The time that the view must rest before a software device draws it with smooth borders.
 pub(super) const REST: Duration = Duration::from_millis(300);
 
-/// The window's state beside the editor's: files, threads, the GPU, questions and notes.
+/// The window's state beside the editor's: files, threads, the GPU, dialogs and notes.
 pub struct Application {
     pub(super) editor: Editor,
     pub(super) viewport: Viewport,
-    /// The shape of the file, while it is shown along with the present one, and the position of the line between both.
-    pub(super) original: Option<OriginalView>,
-    pub(super) split: Split,
-    /// The small views of each method's result, while methods are compared.
-    pub(super) method_views: MethodViews,
+    pub(super) beside: ViewsBeside,
     pub(super) workers: Workers,
     pub(super) messages: Receiver<Message>,
     pub(super) session: Session,
@@ -70,25 +64,11 @@ pub struct Application {
     pub(super) input: Input,
     pub(super) settings: SettingsFile,
     pub(super) recovery: Option<Recovery>,
-    pub(super) palette: Option<Palette>,
-    /// True if this is a person's window, which shows the first steps.
-    pub(super) shows_hints: bool,
-    /// True if the panel beside the view is hidden.
-    pub(super) is_panel_hidden: bool,
-    pub(super) log: Log,
-    pub(super) keys: KeysWindow,
-    pub(super) memory: MemoryWindow,
-    pub(super) about: About,
     /// The file manager and the browser.
     pub(super) desktop: Desktop,
     pub(super) recent_pictures: RecentPictures,
-    pub(super) question: Option<Question>,
-    /// The action after the end of the save that comes first.
-    pub(super) after_saving: Option<Then>,
-    /// The saves that wait until the shape has settled.
-    pub(super) wishes: Vec<SaveWish>,
-    /// The save that was held back because another program has changed the file, until the person decides.
-    pub(super) unwritten: Option<Box<SaveRequest>>,
+    pub(super) dialogs: Dialogs,
+    pub(super) waiting: WaitingSaves,
     pub(super) notes: Notes,
     pub(super) toast: Toast,
     pub(super) last_change: Instant,
@@ -96,16 +76,11 @@ pub struct Application {
     /// The recovered session that is open now, until this one keeps or saves its work.
     pub(super) recovered_from: Option<PathBuf>,
     pub(super) longest_frame: Duration,
-    /// True if the window is still to fill the screen, as it did last time.
-    pub(super) is_to_fill_screen: bool,
-    /// The places of the window's content, its bars and its panel in the last frame.
-    pub(super) layout: [egui::Rect; 6],
+    pub(super) layout: Layout,
     /// The parts that are turned inside out in the drawing that is being made.
     pub(super) redrawing: Option<Arc<BTreeSet<u32>>>,
     /// Stops the decoding of the open file's images, if it has begun.
     pub(super) images: Option<Cancel>,
-    pub(super) view_rect: egui::Rect,
-    pub(super) title: String,
 }
 
 impl Application {
@@ -158,41 +133,30 @@ impl Application {
         let mut application = Self {
             editor: Editor::new(Box::new(workers.clone())),
             viewport,
-            original: None,
-            split: Split::default(),
-            method_views: MethodViews::default(),
+            beside: ViewsBeside::default(),
             workers,
             messages,
             session,
             poses: PoseQueue::default(),
             input: Input::default(),
             settings,
-            palette: None,
-            shows_hints: places.settings.is_some(),
-            is_panel_hidden: false,
-            log: Log::default(),
-            keys: KeysWindow::default(),
-            memory: MemoryWindow::default(),
-            about: About::default(),
             desktop: Desktop::default(),
             recent_pictures: RecentPictures::in_folder(places.pictures.clone()),
             recovery,
-            question: (!left.is_empty()).then_some(Question::Recover(left)),
-            after_saving: None,
-            wishes: Vec::new(),
-            unwritten: None,
+            dialogs: Dialogs {
+                question: (!left.is_empty()).then_some(Question::Recover(left)),
+                ..Dialogs::default()
+            },
+            waiting: WaitingSaves::default(),
             notes,
             toast: Toast::default(),
             last_change: Instant::now(),
             closing: false,
             recovered_from: None,
             longest_frame: Duration::ZERO,
-            is_to_fill_screen,
-            layout: [egui::Rect::NOTHING; 6],
+            layout: Layout::new(places.settings.is_some(), is_to_fill_screen),
             redrawing: None,
             images: None,
-            view_rect: egui::Rect::ZERO,
-            title: String::new(),
         };
         application.take_keys();
         application.take_memory();
@@ -216,13 +180,12 @@ impl Application {
         };
         let system = |error: pliant_render::RenderError| EngineError::System(error.to_string());
         self.viewport = Viewport::new(state).map_err(system)?;
-        self.original = None;
-        self.method_views = MethodViews::default();
+        self.beside.let_go();
         self.recent_pictures.forget_textures();
         self.workers.wake(context.egui_ctx.clone());
         self.input = Input::default();
         self.stop_images();
-        self.title.clear();
+        self.layout.title.clear();
         if let Some(open) = &self.session.open {
             let (drawing, model) = (Arc::clone(&open.drawing), &open.loaded.model);
             let displacements = Arc::clone(self.editor.view().drawn);
@@ -281,8 +244,12 @@ impl Application {
             .displacements()
             .is_some_and(|shown| Arc::ptr_eq(shown, view.drawn));
         let comparison = self.editor.comparison();
-        let compared = comparison.is_none_or(|comparison| self.method_views.are_settled(comparison));
-        let original = self.original.as_ref().is_none_or(|original| original.is_settled(&view));
+        let compared = comparison.is_none_or(|comparison| self.beside.methods.are_settled(comparison));
+        let original = self
+            .beside
+            .original
+            .as_ref()
+            .is_none_or(|original| original.is_settled(&view));
         let drawn = self.redrawing.is_none() && self.shows_what_is_turned();
         let is_idle = self.session.doing().is_none() && !self.is_saving() && !self.is_loading_textures();
         view.settled && shown && compared && original && drawn && is_idle
@@ -295,7 +262,7 @@ impl Application {
 
     /// The place of the 3D view in the window, in points.
     pub fn view_rect(&self) -> egui::Rect {
-        self.view_rect
+        self.layout.view_rect
     }
 
     /// The number of times that the 3D view was drawn.
@@ -317,9 +284,9 @@ impl Application {
 
     /// The time that drawing has kept the window's thread busy so far.
     pub fn drawing_time(&self) -> Duration {
-        let original = self.original.as_ref();
+        let original = self.beside.original.as_ref();
         let original = original.map_or(Duration::ZERO, OriginalView::drawing_time);
-        self.viewport.drawing_time() + original + self.method_views.drawing_time()
+        self.viewport.drawing_time() + original + self.beside.methods.drawing_time()
     }
 
     /// Gives the editor a command, like a menu.

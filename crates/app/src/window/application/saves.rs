@@ -40,11 +40,11 @@ impl Application {
     fn wish(&mut self, wish: SaveWish) {
         // A stretch of play that has not ended is in no file.
         self.editor.handle(Event::Command(Command::PauseFlow));
-        let (same, others) = std::mem::take(&mut self.wishes)
+        let (same, others) = std::mem::take(&mut self.waiting.wishes)
             .into_iter()
             .partition(|other| other.path() == wish.path());
-        self.wishes = others;
-        self.wishes.push(wish.in_place_of(same));
+        self.waiting.wishes = others;
+        self.waiting.wishes.push(wish.in_place_of(same));
         self.save_what_has_settled();
         if let Some(waiting) = self.waiting_save() {
             self.notes.headline = Some(Note::Done(format!("{waiting}.")));
@@ -61,14 +61,14 @@ impl Application {
 
     /// Begins the waiting saves, once no other shape can follow.
     pub(in crate::window) fn save_what_has_settled(&mut self) {
-        if !self.wishes.is_empty() && self.editor.is_settled() {
+        if !self.waiting.wishes.is_empty() && self.editor.is_settled() {
             self.save_as_it_is();
         }
     }
 
     /// Begins the waiting saves, with the present shape.
     pub fn save_as_it_is(&mut self) {
-        let wishes = std::mem::take(&mut self.wishes);
+        let wishes = std::mem::take(&mut self.waiting.wishes);
         let Some(open) = &self.session.open else { return };
         let mesh = open.mesh.clone();
         let mark = self.editor.save_mark();
@@ -103,7 +103,7 @@ impl Application {
 
     /// The waiting saves and their reason, in a sentence; `None` if none waits.
     pub fn waiting_save(&self) -> Option<String> {
-        let names: Vec<String> = self.wishes.iter().map(|wish| file_name(wish.path())).collect();
+        let names: Vec<String> = self.waiting.wishes.iter().map(|wish| file_name(wish.path())).collect();
         let verb = if names.len() > 1 { "are" } else { "is" };
         let end = match self.editor.is_acting() {
             true => "the current action has ended and the shape has settled",
@@ -114,15 +114,15 @@ impl Application {
 
     /// Gives up the waiting saves, and stops the running work on files.
     pub(in crate::window) fn stop_file_work(&mut self) {
-        self.wishes.clear();
-        self.after_saving = None;
+        self.waiting.wishes.clear();
+        self.waiting.then = None;
         self.session.stop();
         self.session.ask_again();
     }
 
     /// Returns true if a save is under way or waits.
     pub(in crate::window) fn is_saving(&self) -> bool {
-        self.session.is_saving() || !self.wishes.is_empty()
+        self.session.is_saving() || !self.waiting.wishes.is_empty()
     }
 
     /// Saves the open project, or else the model.
@@ -139,7 +139,7 @@ impl Application {
             Some(path) if self.may_write_over() => self.save_to(path, KeepOriginal::No),
             Some(path) => {
                 self.session.look_for_original(&path, &self.workers);
-                self.question = Some(Question::WriteOver(path, None));
+                self.dialogs.question = Some(Question::WriteOver(path, None));
             }
             None => self.choose(Purpose::SaveAs),
         }
@@ -166,12 +166,12 @@ impl Application {
                     Some(_) => ChangedOffer::Reload,
                     None => ChangedOffer::Others,
                 };
-                self.question = Some(Question::Changed(path, offers));
-                self.unwritten = Some(request);
+                self.dialogs.question = Some(Question::Changed(path, offers));
+                self.waiting.unwritten = Some(request);
             }
             Err(Unwritten::Refused(sentence)) => {
                 self.session.ask_again();
-                self.after_saving = None;
+                self.waiting.then = None;
                 self.fail(sentence);
             }
         }
@@ -205,11 +205,11 @@ impl Application {
 
     /// Performs the action that was to follow the saves, once all of them have ended and nothing is unsaved.
     fn go_on_after_saving(&mut self) {
-        if self.is_saving() || self.question.is_some() {
+        if self.is_saving() || self.dialogs.question.is_some() {
             return;
         }
-        match self.after_saving.take() {
-            Some(then) if self.editor.view().unsaved => self.question = Some(self.about_unsaved(then)),
+        match self.waiting.then.take() {
+            Some(then) if self.editor.view().unsaved => self.dialogs.question = Some(self.about_unsaved(then)),
             Some(then) => self.go_on(then),
             None => {}
         }
@@ -225,7 +225,7 @@ impl Application {
 
     /// Replaces the file that another program has changed.
     pub(in crate::window) fn overwrite(&mut self) {
-        let Some(mut request) = self.unwritten.take() else {
+        let Some(mut request) = self.waiting.unwritten.take() else {
             return;
         };
         request.changed = Changed::Replace;
@@ -238,9 +238,13 @@ impl Application {
 
     /// Opens the changed file with the former one's edit.
     pub(in crate::window) fn reload_changed(&mut self) {
-        let reload = self.unwritten.take().and_then(|request| self.reload(&request.content));
+        let reload = self
+            .waiting
+            .unwritten
+            .take()
+            .and_then(|request| self.reload(&request.content));
         if let Some(reload) = reload {
-            self.after_saving = None;
+            self.waiting.then = None;
             let source = Source::Reloaded(Box::new(reload));
             self.session.load(source, &self.viewport.gpu(), &self.workers);
         }
@@ -300,7 +304,9 @@ impl Application {
 
     /// Asks for another name than that of the file that another program has changed.
     pub(in crate::window) fn save_beside(&mut self) {
-        let Some(request) = self.unwritten.take() else { return };
+        let Some(request) = self.waiting.unwritten.take() else {
+            return;
+        };
         file_dialog::choose(purpose(&request.content), &free_name(&request.path), &self.workers);
     }
 

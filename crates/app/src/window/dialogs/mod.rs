@@ -10,3 +10,21 @@ pub(in crate::window) mod memory_window;
 pub(in crate::window) mod palette;
 pub(in crate::window) mod question;
 mod system_dialog;
+
+use self::about::About;
+use self::keys_window::KeysWindow;
+use self::log::Log;
+use self::memory_window::MemoryWindow;
+use self::palette::Palette;
+use self::question::Question;
+
+/// The layers, open or not.
+#[derive(Default)]
+pub(in crate::window) struct Dialogs {
+    pub palette: Option<Palette>,
+    pub log: Log,
+    pub keys: KeysWindow,
+    pub memory: MemoryWindow,
+    pub about: About,
+    pub question: Option<Question>,
+}

@@ -7,6 +7,7 @@
 pub(in crate::window) mod axis_ball;
 pub(in crate::window) mod backdrop;
 pub(in crate::window) mod before;
+pub(in crate::window) mod beside;
 pub(in crate::window) mod coarseness;
 pub(in crate::window) mod context_menu;
 pub(in crate::window) mod drawn_key;
