@@ -21,8 +21,8 @@ use crate::version::VERSION;
 #[command(
     name = "pliant",
     version = VERSION,
-    about = "Bends scanned meshes: opens glb, gltf, obj, ply, stl and off files and saves them back, changing only \
-             the shape",
+    about = "Bends scanned meshes: opens glb, gltf, obj, ply, stl, off and 3mf files and saves them back, changing \
+             only the shape",
     args_conflicts_with_subcommands = true,
     disable_help_subcommand = true
 )]
@@ -78,7 +78,7 @@ pub(crate) struct GenerateArguments {
 
 #[derive(Args, Debug)]
 pub(crate) struct InfoArguments {
-    /// The file: glb, gltf, obj, ply, stl or off
+    /// The file: glb, gltf, obj, ply, stl, off or 3mf
     pub file: PathBuf,
     /// Print JSON instead of text
     #[arg(long)]
@@ -90,7 +90,7 @@ pub(crate) struct InfoArguments {
 
 #[derive(Args, Debug)]
 pub(crate) struct DiffArguments {
-    /// The first file: glb, gltf, obj, ply, stl or off
+    /// The first file: glb, gltf, obj, ply, stl, off or 3mf
     pub first: PathBuf,
     /// The second file
     pub second: PathBuf,
@@ -101,7 +101,7 @@ pub(crate) struct DiffArguments {
 
 #[derive(Args, Debug)]
 pub(crate) struct ApplyArguments {
-    /// The file to bend: glb, gltf, obj, ply, stl or off
+    /// The file to bend: glb, gltf, obj, ply, stl, off or 3mf
     pub file: PathBuf,
     /// The edit: regions, handles with transforms, curves or sketches, and a method; or a .pliant project
     #[arg(long, value_name = "EDIT.json")]
@@ -170,7 +170,7 @@ impl MorphArguments {
 
 #[derive(Args, Debug)]
 pub(crate) struct TransferArguments {
-    /// The mesh that has the pose, at rest: glb, gltf, obj, ply, stl or off
+    /// The mesh that has the pose, at rest: glb, gltf, obj, ply, stl, off or 3mf
     pub source: PathBuf,
     /// The same vertices and triangles in the pose
     pub pose: PathBuf,
@@ -196,7 +196,7 @@ pub(crate) struct TransferArguments {
 
 #[derive(Args, Debug)]
 pub(crate) struct MergeArguments {
-    /// The file that stays where it is: glb, gltf, obj, ply, stl or off
+    /// The file that stays where it is: glb, gltf, obj, ply, stl, off or 3mf
     pub first: PathBuf,
     /// The file that is joined to it
     pub second: PathBuf,
@@ -216,7 +216,7 @@ pub(crate) struct MergeArguments {
 
 #[derive(Args, Debug)]
 pub(crate) struct FillArguments {
-    /// The file with holes: glb, gltf, obj, ply, stl or off
+    /// The file with holes: glb, gltf, obj, ply, stl, off or 3mf
     pub file: PathBuf,
     /// Fill only the N longest borders; without it and --at, fill every hole except the outer border of an open sheet
     #[arg(long, value_name = "N", conflicts_with = "at", value_parser = RangedU64ValueParser::<usize>::new().range(1..=100_000_000))]
@@ -237,7 +237,7 @@ pub(crate) struct FillArguments {
 
 #[derive(Args, Debug)]
 pub(crate) struct BridgeArguments {
-    /// The file with the borders: glb, gltf, obj, ply, stl or off
+    /// The file with the borders: glb, gltf, obj, ply, stl, off or 3mf
     pub file: PathBuf,
     /// A vertex of each of the two borders to join, by their numbers in the file
     #[arg(long, num_args = 2, value_names = ["VERTEX", "VERTEX"], required = true)]
@@ -255,7 +255,7 @@ pub(crate) struct BridgeArguments {
 
 #[derive(Args, Debug)]
 pub(crate) struct CutArguments {
-    /// The file to cut: glb, gltf, obj, ply, stl or off
+    /// The file to cut: glb, gltf, obj, ply, stl, off or 3mf
     pub file: PathBuf,
     /// The vertices to delete, as a selector of the edit format
     #[arg(
@@ -286,7 +286,7 @@ pub(crate) struct CutArguments {
 
 #[derive(Args, Debug)]
 pub(crate) struct FlowArguments {
-    /// The file along whose surface dye flows: glb, gltf, obj, ply, stl or off
+    /// The file along whose surface dye flows: glb, gltf, obj, ply, stl, off or 3mf
     pub file: PathBuf,
     /// The dye, the velocities and the forces
     #[arg(long, value_name = "FLOW.json")]
@@ -336,7 +336,7 @@ impl NewShapeArguments {
 
 #[derive(Args, Debug)]
 pub(crate) struct CompareArguments {
-    /// The file to bend: glb, gltf, obj, ply, stl or off
+    /// The file to bend: glb, gltf, obj, ply, stl, off or 3mf
     pub file: PathBuf,
     /// The edit
     #[arg(long, value_name = "EDIT.json")]
@@ -393,7 +393,7 @@ impl LookArguments {
 /// The arguments of `pliant render`.
 #[derive(Args, Clone, PartialEq, Debug)]
 pub struct RenderArguments {
-    /// The file to draw: glb, gltf, obj, ply, stl or off
+    /// The file to draw: glb, gltf, obj, ply, stl, off or 3mf
     pub file: PathBuf,
     /// The picture to write
     #[arg(long, value_name = "OUT.png")]
