@@ -4,7 +4,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-#[path = "../../crates/editor/tests/rig/mod.rs"]
+#[path = "../../crates/editor/tests/editor/rig/mod.rs"]
 mod rig;
 
 use std::ffi::OsString;

@@ -118,6 +118,7 @@ fn open(folder: &Path) -> Walk {
     let places = AppDirectories {
         settings: Some(own.path().join("settings.json")),
         recovery: None,
+        pictures: None,
     };
     let harness = Harness::builder()
         .with_size(vec2(1280.0, 800.0))

@@ -74,16 +74,16 @@ impl Budget {
 
 /// An empty vector with capacity for this many entries, if the machine has the memory.
 pub(crate) fn reserved<T>(entries: usize) -> Result<Vec<T>, TryReserveError> {
-    let mut room = Vec::new();
-    room.try_reserve_exact(entries)?;
-    Ok(room)
+    let mut scratch = Vec::new();
+    scratch.try_reserve_exact(entries)?;
+    Ok(scratch)
 }
 
 /// This many copies of a value, if the machine has the memory.
 pub(crate) fn filled<T: Clone>(value: T, entries: usize) -> Result<Vec<T>, TryReserveError> {
-    let mut room = reserved(entries)?;
-    room.resize(entries, value);
-    Ok(room)
+    let mut scratch = reserved(entries)?;
+    scratch.resize(entries, value);
+    Ok(scratch)
 }
 
 /// The bytes of this many entries of this size.

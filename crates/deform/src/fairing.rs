@@ -7,15 +7,16 @@
 
 use pliant_mesh::{Cancel, Progress, Surface, SurfaceVertex, Topology, bounding_box};
 
-use crate::bilaplacian::factored::BilaplacianSystem;
-use crate::bilaplacian::operator::BilaplacianOperator;
-use crate::bilaplacian::refine::TOLERANCE;
-use crate::bilaplacian::setup::bent_rows;
 use crate::operators::triangulation::Triangulation;
 use crate::region::slender;
 use crate::sparse::refactorisation::Refactorisation;
 use crate::sparse::system_error::SystemError;
-use crate::{Bilaplacian, BilaplacianOrder, BindError, Budget, Discretisation, Laplacian, Ordering};
+use crate::systems::factored::BilaplacianSystem;
+use crate::systems::operator::BilaplacianOperator;
+use crate::systems::plate_energy::PlateEnergy;
+use crate::systems::refine::TOLERANCE;
+use crate::systems::setup::bent_rows;
+use crate::{BilaplacianOrder, BindError, Budget, Discretisation, Laplacian, Ordering};
 
 /// Replaces the values of the vertices `free` (ascending) by the smoothest ones of the given order that fit the other
 /// vertices' values. `values` has a row of three numbers for each vertex of the surface; sums are best conditioned if
@@ -58,12 +59,8 @@ pub fn fair(
         .map(|&vertex| f64::from(u8::from(!topology.is_boundary_vertex(SurfaceVertex(vertex)))))
         .collect();
     laplacian.scale_inverse_areas(|local| factors[local]);
-    let options = Bilaplacian {
-        order,
-        ..Bilaplacian::default()
-    };
     let diagonal = bounding_box(&surface.positions).map_or(1.0, |bounds| bounds.diagonal());
-    let operator = BilaplacianOperator::new(laplacian, &options, diagonal);
+    let operator = BilaplacianOperator::new(laplacian, PlateEnergy::of_power(power), diagonal);
     let ordering = Ordering::of(topology, power, &Progress::new(), cancel)?;
     let refuse = |error: SystemError| error.into_bind_error(topology, free.len());
     let elimination = ordering.elimination(free);

@@ -50,88 +50,75 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod arap;
 mod attachment;
 mod attachment_refused;
-mod bilaplacian;
 mod bound;
 mod budget;
-mod cage;
 mod coarse;
 mod descent;
-mod embedded;
 mod error;
 mod fairing;
-mod frames;
 mod handles;
-#[cfg(feature = "identity-method")]
-mod identity;
 mod iteration;
-mod laplacian;
-mod lattice;
 mod method;
-mod mls;
+mod methods;
 mod needs;
 mod numerical;
 mod operators;
 mod option;
 mod picture;
-mod poisson;
-mod primo;
 mod problem;
-mod rbf;
 mod region;
 mod registry;
 mod remedy;
 mod rigid;
 mod role;
-mod shells;
 mod space;
-mod space_primo;
 mod sparse;
 #[doc(hidden)]
 pub mod stages;
+mod systems;
 mod transfer;
 mod warning;
-mod wrinkles;
 
-pub use arap::{Arap, ArapEnergy};
 pub use attachment::{
     Attachment, AttachmentDeclaration, AttachmentKind, ControlLattice, ControlMesh, ExampleShape, Examples,
     LARGEST_WEIGHT,
 };
 pub use attachment_refused::AttachmentRefused;
-pub use bilaplacian::{Bilaplacian, BilaplacianOrder, Detail};
 pub use bound::{Bound, Step, Target};
 pub use budget::{Budget, Limit};
-pub use cage::{Cage, CageCoordinates};
-pub use embedded::Embedded;
 pub use error::{BindError, Crowded, SolveError};
 pub use fairing::fair;
-pub use frames::Frames;
 pub use handles::bases::HandleBases;
-pub use laplacian::{LaplacianEditing, LocalScale, Transforms};
-pub use lattice::{Lattice, LatticeBasis, LatticeNorm};
 pub use method::{Method, MethodDeclaration};
-pub use mls::{Mls, MlsTransforms};
+pub use methods::arap::{Arap, ArapEnergy};
+pub use methods::bilaplacian::{Bilaplacian, BilaplacianOrder, Detail};
+pub use methods::cage::{Cage, CageCoordinates};
+pub use methods::embedded::Embedded;
+pub use methods::frames::Frames;
+pub use methods::laplacian::{LaplacianEditing, LocalScale, Transforms};
+pub use methods::lattice::{Lattice, LatticeBasis, LatticeNorm};
+pub use methods::mls::{Mls, MlsTransforms};
+pub use methods::poisson::{Poisson, Propagation};
+pub use methods::primo::Primo;
+pub use methods::rbf::Rbf;
+pub use methods::shells::Shells;
+pub use methods::space_primo::SpacePrimo;
+pub use methods::wrinkles::Wrinkles;
 pub use needs::{ConstraintKind, HandleFit, Needs, Solve};
 pub use numerical::rigid_fit::RigidMotion;
 pub use operators::discretisation::{Discretisation, TriangulationKind};
 pub use operators::{Laplacian, mollified_lengths};
 pub use option::{OptionDeclaration, OptionKind, OptionRefused, OptionSlider, OptionValue};
 pub use picture::Picture;
-pub use poisson::{Poisson, PoissonEquation, Propagation};
-pub use primo::Primo;
 pub use problem::Problem;
-pub use rbf::Rbf;
 pub use region::constraints::{CONTINUITY_RANGE, Constraints};
 pub use registry::METHODS;
 pub use remedy::Remedy;
 pub use role::{Loose, Role};
-pub use shells::Shells;
-pub use space_primo::SpacePrimo;
 pub use sparse::Ordering;
 pub use sparse::refactorisation::ReusableFactor;
+pub use systems::poisson_equation::PoissonEquation;
 pub use transfer::{DeformationTransfer, PosedShape};
 pub use warning::Warning;
-pub use wrinkles::Wrinkles;

@@ -7,22 +7,22 @@ use crate::{Method, MethodDeclaration, Needs, Remedy};
 
 /// Every method, in the order of the window. A new method adds its line here.
 pub const METHODS: &[&MethodDeclaration] = &[
-    &crate::bilaplacian::DECLARATION,
-    &crate::arap::DECLARATION,
-    &crate::primo::DECLARATION,
-    &crate::shells::DECLARATION,
-    &crate::wrinkles::DECLARATION,
-    &crate::poisson::DECLARATION,
-    &crate::laplacian::DECLARATION,
-    &crate::frames::DECLARATION,
-    &crate::rbf::DECLARATION,
-    &crate::mls::DECLARATION,
-    &crate::embedded::DECLARATION,
-    &crate::lattice::DECLARATION,
-    &crate::cage::DECLARATION,
-    &crate::space_primo::DECLARATION,
+    &crate::methods::bilaplacian::DECLARATION,
+    &crate::methods::arap::DECLARATION,
+    &crate::methods::primo::DECLARATION,
+    &crate::methods::shells::DECLARATION,
+    &crate::methods::wrinkles::DECLARATION,
+    &crate::methods::poisson::DECLARATION,
+    &crate::methods::laplacian::DECLARATION,
+    &crate::methods::frames::DECLARATION,
+    &crate::methods::rbf::DECLARATION,
+    &crate::methods::mls::DECLARATION,
+    &crate::methods::embedded::DECLARATION,
+    &crate::methods::lattice::DECLARATION,
+    &crate::methods::cage::DECLARATION,
+    &crate::methods::space_primo::DECLARATION,
     #[cfg(feature = "identity-method")]
-    &crate::identity::DECLARATION,
+    &crate::methods::identity::DECLARATION,
 ];
 
 impl Method {
@@ -34,12 +34,12 @@ impl Method {
 
     /// The method of a new document.
     pub fn of_new_documents() -> Self {
-        (crate::arap::DECLARATION.first_choice)()
+        (crate::methods::arap::DECLARATION.first_choice)()
     }
 
     /// The method of a merge that names none.
     pub fn of_merges() -> Self {
-        (crate::poisson::DECLARATION.default)()
+        (crate::methods::poisson::DECLARATION.default)()
     }
 }
 

@@ -2,16 +2,16 @@
 
 use pliant_mesh::Cancel;
 
-pub use crate::cage::parts as cage;
+pub use crate::methods::cage::parts as cage;
 
-use crate::bilaplacian::assembly::assemble_bilaplacian;
-use crate::bilaplacian::hubs::Hubs;
-use crate::bilaplacian::operator::BilaplacianOperator;
-use crate::bilaplacian::setup::{Boundaries, operator};
 use crate::handles::Handle;
 use crate::sparse::Elimination;
 use crate::sparse::cholesky::Factor;
 use crate::sparse::matrix::{CONSTRAINED, ScaledMatrix};
+use crate::systems::assembly::assemble_bilaplacian;
+use crate::systems::hubs::Hubs;
+use crate::systems::operator::BilaplacianOperator;
+use crate::systems::setup::{Boundaries, operator};
 use crate::{Bilaplacian, Budget, Ordering, Problem};
 
 /// The operator of a bi-Laplacian, and the order in which its vertices are eliminated.
@@ -38,7 +38,7 @@ impl Operator {
         let handle = |vertices: &Vec<u32>| Handle::new(vertices.clone(), positions);
         let handles: Vec<Handle> = partition.handles.iter().map(handle).collect();
         Some(Self {
-            operator: operator(&boundary, options, &partition, &handles, Boundaries::Natural).0,
+            operator: operator(&boundary, options.energy(), &partition, &handles, Boundaries::Natural).0,
             elimination: ordering.elimination(&partition.solved),
         })
     }

@@ -10,9 +10,9 @@ use std::collections::VecDeque;
 use glam::{DMat3, DVec3};
 use pliant_mesh::{Cancel, Surface, Topology, bounding_box, face_gradient, is_without_area};
 
-use crate::bilaplacian::loaded::{settled, write_field};
 use crate::operators::gradients::{Face, Gradients};
-use crate::poisson::equation::{PoissonEquation, diagonal_of};
+use crate::systems::poisson_equation::{PoissonEquation, diagonal_of};
+use crate::systems::poisson_system::{settled, write_field};
 use crate::{BindError, Budget, Ordering, SolveError};
 
 /// A surface at rest and in a pose, as in its file.

@@ -44,6 +44,8 @@ pub struct SceneView<'a> {
     pub overlay_revision: u64,
     /// Grows when the camera changed.
     pub camera_revision: u64,
+    /// True while a drag moves the surface: the regions' colours fade, so that its form is seen.
+    pub is_dragging: bool,
     /// The ring of the brush on the surface under the pointer, a closed line in world space; empty if none is shown.
     pub brush_ring: &'a [DVec3],
     /// The selected handle's gizmo, in world space; empty if none is shown.

@@ -11,12 +11,13 @@ use glam::DVec3;
 use pliant_deform::{BindError, Bound, Budget, ExampleShape, Method, Ordering, SolveError, Step};
 use pliant_editor::{Beginning, Intersections, Setup, Start, Until, refuse_keys, sum_of_shapes};
 use pliant_io::{MorphDeltas, MorphTarget};
-use pliant_mesh::{Bvh, Cancel, Damage, Model, Progress, SurfaceVertex, WeldOptions, vertex_normals};
+use pliant_mesh::{Bvh, Cancel, Damage, Model, Progress, SurfaceVertex, vertex_normals};
+use tracing::info_span;
 
 use crate::EngineError;
-use crate::examples;
+use crate::edit_job::EditJob;
 use crate::files::{Destination, NewFile, Staging};
-use crate::loading::{Loaded, load};
+use crate::loading::Loaded;
 use crate::memory;
 use crate::report::{Distortion, Energy, ExampleWeight, FrameTimes, Report, finite_or, ms_since};
 use crate::saving::{self, SaveAs};
@@ -34,6 +35,7 @@ pub fn order(
     progress: &Progress,
     cancel: &Cancel,
 ) -> Result<Option<Ordering>, EngineError> {
+    let _span = info_span!("order").entered();
     let power = setup.problem(model).ordering_power_within(budget);
     let ordering = power.map(|power| Ordering::of(&model.topology, power, progress, cancel));
     ordering.transpose().map_err(|_| EngineError::Interrupted)
@@ -51,6 +53,7 @@ pub fn bind(
     budget: Budget,
     (progress, cancel): (&Progress, &Cancel),
 ) -> Result<Bound, EngineError> {
+    let _span = info_span!("bind", method = setup.method.name()).entered();
     let bound = setup.problem(model).bind_within(ordering, budget, progress, cancel);
     bound.map_err(|error| refused(file, model, error))
 }
@@ -72,36 +75,13 @@ pub fn check_bends(file: &Path, model: &Model, method: &Method) -> Result<(), En
     checked.map_err(|error| refused(file, model, error))
 }
 
-/// Refuses a file without triangles and points.
-///
-/// # Errors
-/// [`EngineError::Empty`].
-pub fn check_not_empty(file: &Path, model: &Model) -> Result<(), EngineError> {
-    if model.surface.positions.is_empty() {
-        return Err(EngineError::Empty(file.to_owned()));
-    }
-    Ok(())
-}
-
 /// The input of [`apply`].
 #[derive(Clone, Debug)]
 pub struct Apply<'a> {
-    /// The file to bend.
-    pub file: &'a Path,
-    /// The edit.
-    pub edit: &'a Beginning,
-    /// The place that the edit was read from, for messages.
-    pub edit_path: &'a Path,
-    /// The file to write.
-    pub output: &'a Path,
-    /// The file for the report, if one is wanted.
-    pub report: Option<&'a Path>,
+    /// The edit and its files; the output is a file.
+    pub job: EditJob<'a>,
     /// Replays the edit as a drag of this many frames; `None` is one solve to the target.
     pub frames: Option<usize>,
-    /// The distance within which vertices of the file are joined, in world units; `None` is the edit's own.
-    pub weld: Option<f64>,
-    /// The memory that binding may use.
-    pub budget: Budget,
     /// Whether the deltas of the file's own morph targets turn with the surface.
     pub deltas: MorphDeltas,
     /// Saves the edit as a morph target beside the unchanged shape.
@@ -113,37 +93,25 @@ pub struct Apply<'a> {
 /// # Errors
 /// Any refusal of the file, the edit or the result. OUT is then unchanged.
 pub fn apply(apply: &Apply<'_>, watch: &Watch, staging: &Staging) -> Result<Report, EngineError> {
+    let job = &apply.job;
     // A path that is not a file is refused before anything is read.
-    Destination::of(apply.output)?;
-    let report_to = apply.report.map(Destination::of).transpose()?;
-    let start = Instant::now();
-    let weld = match apply.weld {
-        None => apply.edit.weld_options(),
-        distance => WeldOptions { distance },
-    };
-    let loaded = load(apply.file, &weld, watch)?;
-    let load_ms = ms_since(start);
+    Destination::of(job.output)?;
+    let report_to = job.report_to()?;
+    let (loaded, load_ms) = job.load(job.file, watch)?;
     let model = &loaded.model;
-    check_not_empty(apply.file, model)?;
-    let mut edit = apply.edit.clone();
-    examples::bring(&mut edit, apply.edit_path, &loaded, watch)?;
-    let report_at = apply.report.map(|report| ("--report", report));
-    let outputs: Vec<(&str, &Path)> = [("--output", apply.output)].into_iter().chain(report_at).collect();
-    watch.refuse_outputs(&outputs, Some(apply.file))?;
-    let in_edit = |source| EngineError::Edit {
-        edit: apply.edit_path.to_owned(),
-        source,
-    };
+    let edit = job.edit_with_examples(&loaded, watch)?;
+    job.refuse_outputs(job.output, Some(job.file), watch)?;
+    let in_edit = |source| job.refused(source);
     if let Beginning::Edit(edit) = &edit {
         refuse_keys(edit, "use `pliant animate` or `pliant sequence`, or remove them").map_err(in_edit)?;
     }
     let setup = edit.resolve(model).map_err(in_edit)?;
-    check_bends(apply.file, model, &setup.method)?;
+    check_bends(job.file, model, &setup.method)?;
 
     let solution = if edit.changes_nothing() {
         Solution::at_rest(model, &setup)
     } else {
-        solve(apply.file, apply.frames, model, &setup, apply.budget, watch)?
+        solve(job.file, apply.frames, model, &setup, job.budget, watch)?
     };
     if watch.cancel.is_cancelled() {
         return Err(EngineError::Interrupted);
@@ -156,7 +124,7 @@ pub fn apply(apply: &Apply<'_>, watch: &Watch, staging: &Staging) -> Result<Repo
         deltas: apply.deltas,
         morph: apply.morph.as_ref(),
         beside: report_to.as_ref().map(|report| ("--report", report)),
-        ..SaveAs::shape(&solution.positions, apply.output)
+        ..SaveAs::shape(&solution.positions, job.output)
     };
     let saved = saving::stage(&loaded, &save, staging, &progress, &watch.cancel)?;
     let save_ms = ms_since(start);
@@ -417,7 +385,8 @@ fn solve(
         order_ms,
         bind_ms,
     } = prepare(file, model, setup, budget, watch)?;
-    let bent = bend(file, frames.unwrap_or(1), model, setup, &mut bound, watch)?;
+    let frames = frames.unwrap_or(1);
+    let bent = info_span!("solve", frames).in_scope(|| bend(file, frames, model, setup, &mut bound, watch))?;
     Ok(Solution {
         positions: bent.positions,
         surface_positions: bent.surface_positions,

@@ -9,7 +9,7 @@
 //!
 //! ```
 //! use pliant_editor::Beginning;
-//! use pliant_engine::{Apply, apply, files::Staging, load, memory, watch::Watch};
+//! use pliant_engine::{Apply, EditJob, apply, files::Staging, load, memory, watch::Watch};
 //! use pliant_mesh::WeldOptions;
 //!
 //! let folder = tempfile::tempdir()?;
@@ -25,15 +25,18 @@
 //!         { "name": "edge", "select": { "vertices": [4, 5] }, "transform": { "translation": [0, 0, 1] } }
 //!     ]
 //! }"#;
-//! let job = Apply {
+//! let job = EditJob {
 //!     file: &file,
 //!     edit: &Beginning::parse(edit)?,
 //!     edit_path: "edit.json".as_ref(),
 //!     output: &output,
 //!     report: None,
-//!     frames: None,
 //!     weld: None,
 //!     budget: memory::budget(),
+//! };
+//! let job = Apply {
+//!     job,
+//!     frames: None,
 //!     deltas: pliant_io::MorphDeltas::WhereFarOff,
 //!     morph: None,
 //! };
@@ -52,6 +55,7 @@ mod coloured;
 pub mod control_mesh;
 mod difference;
 mod edit;
+mod edit_job;
 mod error;
 pub mod examples;
 mod file_error;
@@ -71,14 +75,15 @@ mod transfer;
 pub mod watch;
 
 pub use animate::{Animate, AnimationReport, MorphReport, animate};
-pub use apply::{Apply, Prepared, Solved, apply, bind, check_bends, check_not_empty, order, prepare, solved};
+pub use apply::{Apply, Prepared, Solved, apply, bind, check_bends, order, prepare, solved};
 pub use difference::{Compared, differences};
 pub use edit::read_edit;
+pub use edit_job::EditJob;
 pub use error::EngineError;
 pub use flow::{FlowJob, FlowReport, Flowing, FromTo, flow, read_flow};
 pub use given::Given;
 pub use inspected::{Inspected, inspect};
-pub use loading::{Loaded, is_project, load, load_bytes, open};
+pub use loading::{Loaded, check_not_empty, is_project, load, load_bytes, open};
 pub use sequence::{Sequence, SequenceReport, sequence};
 pub use transfer::{Transfer, transfer, transferred};
 

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use pliant_io::{Format, Scene, SceneAndDrawn};
 use pliant_mesh::{Model, WeldOptions};
+use tracing::info_span;
 
 use crate::EngineError;
 use crate::files::{self, Neighbours, Staged, Stamp};
@@ -61,6 +62,7 @@ impl Loaded {
 /// A file that can't be read; [`EngineError::Interrupted`] soon after `cancel` is raised.
 pub fn load(path: &Path, weld: &WeldOptions, watch: &Watch) -> Result<Loaded, EngineError> {
     check_mesh(path)?;
+    let _span = info_span!("load", file = %path.display()).entered();
     watch.begin("reading");
     let (bytes, stamp) = files::read_stamped(path)?;
     Ok(Loaded {
@@ -139,4 +141,15 @@ fn welded(opened: SceneAndDrawn, path: &Path, weld: &WeldOptions, watch: &Watch)
 pub fn is_project(path: &Path) -> bool {
     path.extension()
         .is_some_and(|extension| extension.eq_ignore_ascii_case("pliant"))
+}
+
+/// Refuses a file without triangles and points.
+///
+/// # Errors
+/// [`EngineError::Empty`].
+pub fn check_not_empty(file: &Path, model: &Model) -> Result<(), EngineError> {
+    if model.surface.positions.is_empty() {
+        return Err(EngineError::Empty(file.to_owned()));
+    }
+    Ok(())
 }

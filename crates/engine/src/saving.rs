@@ -10,6 +10,7 @@ use pliant_io::{
     quoted, with_neighbours_renamed,
 };
 use pliant_mesh::{Cancel, Drawn, Progress};
+use tracing::info_span;
 
 use crate::EngineError;
 use crate::coloured::save_with_colours;
@@ -89,6 +90,7 @@ pub fn stage(
     progress: &Progress,
     cancel: &Cancel,
 ) -> Result<StagedSave, EngineError> {
+    let _span = info_span!("save", file = %what.output.display()).entered();
     check_names(loaded, what)?;
     let original = Original {
         path: &loaded.path,

@@ -8,10 +8,10 @@ use pliant_io::{MorphDeltas, MorphTarget};
 use pliant_mesh::{Drawn, Model, SurfaceVertex, WeldOptions};
 use serde_json::Value;
 
-use crate::apply::{check_not_empty, refused};
+use crate::apply::refused;
 use crate::examples::positions_in_pose;
 use crate::files::{self, Destination, Staging, shown};
-use crate::loading::{Loaded, load, open};
+use crate::loading::{Loaded, check_not_empty, load, open};
 use crate::saving::{self, SaveAs};
 use crate::watch::Watch;
 use crate::{EngineError, memory};

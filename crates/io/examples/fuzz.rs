@@ -10,7 +10,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "it measures, and fails loudly")]
 
 mod counting;
-#[path = "../tests/fuzzing/mod.rs"]
+#[path = "../tests/io/fuzzing/mod.rs"]
 mod fuzzing;
 
 use std::collections::BTreeMap;

@@ -2,6 +2,7 @@
 
 use std::io::Cursor;
 
+use egui::ecolor::{gamma_from_linear, linear_from_gamma};
 use pliant_render::Image;
 
 use pliant_engine::EngineError;
@@ -35,18 +36,8 @@ fn straighten(pixel: &mut [u8]) {
         return;
     }
     for channel in &mut pixel[..3] {
-        let encoded = f32::from(*channel) / 255.0;
-        let linear = if encoded <= 0.040_45 {
-            encoded / 12.92
-        } else {
-            ((encoded + 0.055) / 1.055).powf(2.4)
-        };
-        let straight = (linear / alpha).min(1.0);
-        let encoded = if straight <= 0.003_130_8 {
-            12.92 * straight
-        } else {
-            1.055 * straight.powf(1.0 / 2.4) - 0.055
-        };
+        let light = linear_from_gamma(f32::from(*channel) / 255.0);
+        let encoded = gamma_from_linear((light / alpha).min(1.0));
         *channel = (255.0 * encoded).round() as u8;
     }
 }

@@ -6,7 +6,7 @@ use pliant_deform::{Budget, Method};
 use pliant_editor::Beginning;
 use pliant_engine::files::{Staging, refuse_shared};
 use pliant_engine::watch::Watch;
-use pliant_engine::{Animate, Apply, EngineError, Given, MorphDeltas, MorphTarget, Sequence};
+use pliant_engine::{Animate, Apply, EditJob, EngineError, Given, MorphDeltas, MorphTarget, Sequence};
 use pyo3::prelude::*;
 use pyo3::types::PyBool;
 
@@ -54,14 +54,16 @@ pub fn apply<'py>(
     bending.run(py, |watch, edit| {
         bending.refuse_shared(&output, report.as_deref(), Some(&file))?;
         let job = Apply {
-            file: &file,
-            edit,
-            edit_path: bending.edit.place(),
-            output: &output,
-            report: report.as_deref(),
+            job: EditJob {
+                file: &file,
+                edit,
+                edit_path: bending.edit.place(),
+                output: &output,
+                report: report.as_deref(),
+                weld,
+                budget: bending.budget,
+            },
             frames,
-            weld,
-            budget: bending.budget,
             deltas,
             morph: morph.as_deref().map(|name| MorphTarget {
                 name,
@@ -116,16 +118,18 @@ pub fn animate<'py>(
     bending.run(py, |watch, edit| {
         bending.refuse_shared(&output, report.as_deref(), Some(&file))?;
         let job = Animate {
-            file: &file,
-            edit,
-            edit_path: bending.edit.place(),
-            output: &output,
-            report: report.as_deref(),
+            job: EditJob {
+                file: &file,
+                edit,
+                edit_path: bending.edit.place(),
+                output: &output,
+                report: report.as_deref(),
+                weld,
+                budget: bending.budget,
+            },
             name: &name,
             tolerance,
             fps,
-            weld,
-            budget: bending.budget,
         };
         let told = pliant_engine::animate(&job, watch, &Staging::default())?;
         Ok((told.to_json(), told.warnings))
@@ -151,14 +155,16 @@ pub fn sequence<'py>(
     bending.run(py, |watch, edit| {
         bending.refuse_shared(&output, report.as_deref(), None)?;
         let job = Sequence {
-            frames: &frames,
             mesh: mesh.as_deref(),
-            edit,
-            edit_path: bending.edit.place(),
-            output: &output,
-            report: report.as_deref(),
-            weld,
-            budget: bending.budget,
+            job: EditJob {
+                file: &frames,
+                edit,
+                edit_path: bending.edit.place(),
+                output: &output,
+                report: report.as_deref(),
+                weld,
+                budget: bending.budget,
+            },
         };
         let told = pliant_engine::sequence(&job, watch, &Staging::default())?;
         Ok((told.to_json(), told.warnings))

@@ -1,6 +1,6 @@
 //! `pliant animate`: an edit with keys over time.
 
-use pliant_engine::{Animate, EngineError, animate, files};
+use pliant_engine::{Animate, EditJob, EngineError, animate, files};
 
 use super::apply::own_name;
 use super::motion_arguments::AnimateArguments;
@@ -25,16 +25,18 @@ pub(super) fn run(arguments: &AnimateArguments, console: &mut Console<'_>) -> Re
     let edit = bending.edit(edit_path, &console.watch)?;
     let name = own_name(edit_path);
     let job = Animate {
-        file,
-        edit: &edit,
-        edit_path,
-        output,
-        report: report.as_deref(),
+        job: EditJob {
+            file,
+            edit: &edit,
+            edit_path,
+            output,
+            report: report.as_deref(),
+            weld: bending.weld.weld,
+            budget: bending.budget(),
+        },
         name: &name,
         tolerance: *tolerance,
         fps: *fps,
-        weld: bending.weld.weld,
-        budget: bending.budget(),
     };
     let (watch, staging) = (&console.watch, &console.staging);
     let report = on_threads(bending.compute, || animate(&job, watch, staging))??;

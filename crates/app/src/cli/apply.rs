@@ -7,7 +7,7 @@ use pliant_io::Format;
 use super::arguments::ApplyArguments;
 use crate::cli::console::{Console, warn};
 use crate::cli::threads::on_threads;
-use pliant_engine::{EngineError, files};
+use pliant_engine::{EditJob, EngineError, files};
 
 pub(super) fn run(arguments: &ApplyArguments, console: &mut Console<'_>) -> Result<(), EngineError> {
     let ApplyArguments {
@@ -30,14 +30,16 @@ pub(super) fn run(arguments: &ApplyArguments, console: &mut Console<'_>) -> Resu
     let own_name = own_name(edit_path);
     let (deltas, morph) = (morph.deltas(), morph.target(&own_name));
     let job = pliant_engine::Apply {
-        file,
-        edit: &edit,
-        edit_path,
-        output,
-        report: report.as_deref(),
+        job: EditJob {
+            file,
+            edit: &edit,
+            edit_path,
+            output,
+            report: report.as_deref(),
+            weld: bending.weld.weld,
+            budget: bending.budget(),
+        },
         frames: *frames,
-        weld: bending.weld.weld,
-        budget: bending.budget(),
         deltas,
         morph,
     };

@@ -6,8 +6,8 @@ use pliant_deform::METHODS;
 use pliant_io::quoted;
 use pliant_picture::{Asked, Compared, Comparison, check_png, with_edit};
 
-use super::arguments::CompareArguments;
 use super::method_argument::method_argument;
+use super::picture_arguments::CompareArguments;
 use crate::cli::console::{Console, print, warn};
 use crate::cli::threads::on_threads;
 use pliant_engine::files::Destination;

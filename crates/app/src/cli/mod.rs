@@ -14,13 +14,16 @@ mod interrupt;
 mod mcp;
 mod method_argument;
 mod motion_arguments;
+mod picture_arguments;
 mod progress_line;
 mod render;
 mod replaced;
 mod sequence;
 mod shared_arguments;
 mod stitch;
+mod stitch_arguments;
 mod threads;
+mod tracing_output;
 mod transfer;
 
 use std::ffi::OsString;
@@ -49,7 +52,11 @@ pub fn main() -> ExitCode {
         watch,
         staging,
     };
-    ExitCode::from(run(std::env::args_os().collect(), &mut console))
+    let status = match tracing_output::begin() {
+        Ok(()) => run(std::env::args_os().collect(), &mut console),
+        Err(error) => refuse(&error, &mut console),
+    };
+    ExitCode::from(status)
 }
 
 /// Executes the arguments' request (the program's name comes first) and gives the exit status: 0 done, 1 refused, 2
@@ -83,6 +90,11 @@ pub fn run(arguments: Vec<OsString>, console: &mut Console<'_>) -> u8 {
         Err(_) if console.watch.cancel.is_cancelled() => EngineError::Interrupted,
         Err(error) => error,
     };
+    refuse(&error, console)
+}
+
+/// Writes a refusal as one line and gives its exit status.
+fn refuse(error: &EngineError, console: &mut Console<'_>) -> u8 {
     let line = plain(&error.to_string().replace(['\n', '\r'], " "));
     // If not even the error can be written, the exit status still reports it.
     let _ = writeln!(console.err, "pliant: {line}");

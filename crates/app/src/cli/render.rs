@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use pliant_picture::{OfFile, draw_file, outputs, picture_file};
 
-use super::arguments::RenderArguments;
+use super::picture_arguments::RenderArguments;
 use super::shared_arguments::ComputeArguments;
 use crate::cli::console::{Console, print};
 use crate::cli::threads::on_threads;

@@ -1,6 +1,6 @@
 //! `pliant sequence`: an edit of a sequence of shapes.
 
-use pliant_engine::{EngineError, Sequence, files, sequence};
+use pliant_engine::{EditJob, EngineError, Sequence, files, sequence};
 
 use super::motion_arguments::SequenceArguments;
 use crate::cli::console::{Console, warn};
@@ -20,14 +20,16 @@ pub(super) fn run(arguments: &SequenceArguments, console: &mut Console<'_>) -> R
     }
     let edit = bending.edit(edit_path, &console.watch)?;
     let job = Sequence {
-        frames,
         mesh: mesh.as_deref(),
-        edit: &edit,
-        edit_path,
-        output,
-        report: report.as_deref(),
-        weld: bending.weld.weld,
-        budget: bending.budget(),
+        job: EditJob {
+            file: frames,
+            edit: &edit,
+            edit_path,
+            output,
+            report: report.as_deref(),
+            weld: bending.weld.weld,
+            budget: bending.budget(),
+        },
     };
     let (watch, staging) = (&console.watch, &console.staging);
     let report = on_threads(bending.compute, || sequence(&job, watch, staging))??;

@@ -7,9 +7,9 @@ use pliant_engine::files;
 use pliant_engine::stitching::{self, Cut, CutAlong, Fill, Holes, Merge, Remaking, Stitched};
 use pliant_io::Format;
 
-use super::arguments::{BridgeArguments, CutArguments, FillArguments, MergeArguments, NewShapeArguments};
 use super::replaced::keep_replaced;
 use super::shared_arguments::{ComputeArguments, WeldArguments};
+use super::stitch_arguments::{BridgeArguments, CutArguments, FillArguments, MergeArguments, NewShapeArguments};
 use crate::cli::console::{Console, print, warn};
 use crate::cli::threads::on_threads;
 

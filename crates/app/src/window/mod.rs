@@ -29,6 +29,7 @@ use winit::platform::run_on_demand::EventLoopExtRunOnDemand;
 pub use crate::files::names::original_name;
 pub use application::Application;
 pub use files::app_directories::AppDirectories;
+pub use files::desktop::{Desktop, Elsewhere};
 pub use session::{KeepOriginal, Source};
 
 /// Saves and projects without the window, for programs that drive them.

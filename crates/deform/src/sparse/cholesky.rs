@@ -156,12 +156,13 @@ impl Factor {
 #[allow(clippy::unwrap_used, reason = "tests")]
 pub(crate) mod tests {
     use super::Factor;
-    use crate::bilaplacian::assembly::assemble_bilaplacian;
-    use crate::bilaplacian::hubs::Hubs;
-    use crate::bilaplacian::operator::BilaplacianOperator;
     use crate::sparse::Elimination;
     use crate::sparse::matrix::{CONSTRAINED, ScaledMatrix};
-    use crate::{Bilaplacian, Budget, Laplacian, Ordering};
+    use crate::systems::assembly::assemble_bilaplacian;
+    use crate::systems::hubs::Hubs;
+    use crate::systems::operator::BilaplacianOperator;
+    use crate::systems::plate_energy::PlateEnergy;
+    use crate::{Budget, Laplacian, Ordering};
     use pliant_mesh::{Cancel, Drawn, Progress, shapes};
 
     /// The factor with every ninth vertex constrained, in the order that binding uses.
@@ -185,7 +186,7 @@ pub(crate) mod tests {
         for (column, &vertex) in columns.iter().enumerate() {
             column_of[vertex as usize] = column as u32;
         }
-        let operator = BilaplacianOperator::new(laplacian, &Bilaplacian::default(), 1.0);
+        let operator = BilaplacianOperator::new(laplacian, PlateEnergy::of_power(2), 1.0);
         let matrix = assemble_bilaplacian(&operator, &columns, &column_of, &Hubs::default(), Budget::default());
         (matrix.unwrap(), ends)
     }

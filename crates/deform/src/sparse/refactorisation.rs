@@ -143,13 +143,14 @@ impl ReusableFactor {
 #[allow(clippy::unwrap_used, reason = "tests")]
 mod tests {
     use super::{Refactorisation, RenewableFactor};
-    use crate::bilaplacian::assembly::assemble_bilaplacian;
-    use crate::bilaplacian::hubs::Hubs;
-    use crate::bilaplacian::operator::BilaplacianOperator;
     use crate::sparse::Elimination;
     use crate::sparse::cholesky::Factor;
     use crate::sparse::matrix::{CONSTRAINED, ScaledMatrix};
-    use crate::{Bilaplacian, Budget, Laplacian};
+    use crate::systems::assembly::assemble_bilaplacian;
+    use crate::systems::hubs::Hubs;
+    use crate::systems::operator::BilaplacianOperator;
+    use crate::systems::plate_energy::PlateEnergy;
+    use crate::{Budget, Laplacian};
     use pliant_mesh::{Cancel, shapes};
 
     /// A matrix in a bad order, so that contributions are much larger than the parts themselves.
@@ -166,7 +167,7 @@ mod tests {
         for (column, &vertex) in order.iter().enumerate() {
             column_of[vertex as usize] = column as u32;
         }
-        let operator = BilaplacianOperator::new(laplacian, &Bilaplacian::default(), 1.0);
+        let operator = BilaplacianOperator::new(laplacian, PlateEnergy::of_power(2), 1.0);
         let mut matrix =
             assemble_bilaplacian(&operator, &order, &column_of, &Hubs::default(), Budget::default()).unwrap();
         // No vertex is constrained, so the matrix is singular: shift its diagonal.

@@ -159,15 +159,15 @@ fn handles_are_nearly_met() {
 #[test]
 fn green_coordinates_meet_handles_as_mean_values_do_and_never_raise_the_energy() {
     for (name, drawn) in [
-        ("sphere", shapes::icosphere(3)),
-        ("torus", shapes::torus(32, 16)),
-        ("bar", shapes::bar(24, 4, 4)),
-        ("sheet", shapes::grid(16, 16)),
-        ("tube", shapes::tube(16, 12, 5.0)),
+        ("sphere", shapes::icosphere(2)),
+        ("torus", shapes::torus(24, 12)),
+        ("bar", shapes::bar(16, 3, 3)),
+        ("sheet", shapes::grid(11, 11)),
+        ("tube", shapes::tube(12, 9, 5.0)),
     ] {
         let ends = |coordinates: CageCoordinates| {
             let mut scene = Scene::new(drawn.clone());
-            scene.method = cage(coordinates);
+            scene.method = cage(coordinates).with([("detail", OptionValue::Whole(4))]).unwrap();
             let bounds = scene.model.bounds().unwrap();
             let axis = (0..3)
                 .max_by(|&a, &b| bounds.extent()[a].total_cmp(&bounds.extent()[b]))

@@ -160,8 +160,8 @@ fn extreme_targets_give_finite_shapes_and_do_not_spoil_the_next() {
         for (name, drawn) in shapes::classes() {
             let mut scene = scene(drawn, method).with_ends(true);
             scene.method = method.ending_at(match method {
-                Iterative::Arap(_) | Iterative::Led(_) => 1e-6,
-                Iterative::Primo | Iterative::Shells | Iterative::LedShells => 1e-5,
+                Iterative::Arap(_) | Iterative::Led(_) => 1e-4,
+                Iterative::Primo | Iterative::Shells | Iterative::LedShells => 1e-3,
             });
             let bound = &mut scene.bind();
             for target in shared::extreme(&scene) {

@@ -59,7 +59,7 @@ pub(super) const APPLY: Entry<()> = Entry {
     scope: Scope::Document,
     unavailable: |state, ()| {
         let is_bent = state.workspace.document.is_displaced();
-        unless(is_bent, "Nothing is bent yet: move a handle first.")
+        unless(is_bent, "Nothing is bent yet: move a handle first.").or_else(|| state.in_work_pose())
     },
     action: Action::Do(|context, ()| apply_shape(context.workspace)),
 };
@@ -77,7 +77,7 @@ pub(super) const RESET_SHAPE: Entry<()> = Entry {
     unavailable: |state, ()| {
         let document = &state.workspace.document;
         let is_other = document.is_displaced() || document.is_applied();
-        unless(is_other, "The shape is already the file's shape.")
+        unless(is_other, "The shape is already the file's shape.").or_else(|| state.in_work_pose())
     },
     action: Action::Do(|context, ()| reset_shape(context.workspace)),
 };
@@ -112,7 +112,10 @@ pub(super) const SET_STRENGTH: Entry<f64> = Entry {
         let document = &state.workspace.document;
         let is_moved = document.is_moved() || document.strength() < 1.0;
         let nothing = "Nothing is bent yet: move a handle first.";
-        state.unopened().or(unless(is_moved, nothing))
+        state
+            .unopened()
+            .or(unless(is_moved, nothing))
+            .or_else(|| state.in_work_pose())
     },
     action: Action::Do(|context, share| set_strength(context.workspace, share)),
 };
@@ -127,7 +130,9 @@ pub(super) const CLEAR_REGIONS: Entry<()> = Entry {
         &[],
     )],
     scope: Scope::Document,
-    unavailable: |state, ()| unless(state.workspace.is_painted(), "Nothing is painted."),
+    unavailable: |state, ()| {
+        unless(state.workspace.is_painted(), "Nothing is painted.").or_else(|| state.in_work_pose())
+    },
     action: Action::Do(|context, ()| clear_regions(context.workspace)),
 };
 

@@ -74,6 +74,15 @@ impl State<'_> {
         unless(self.workspace.model().is_some(), "Nothing is open: open a file first.")
     }
 
+    /// The reason if the document is in a work pose, from which it must be able to return exactly.
+    pub(super) fn in_work_pose(&self) -> Option<Reason> {
+        let is_outside = self.workspace.document.work_pose().is_none();
+        unless(
+            is_outside,
+            "This would change the shape to return to: leave the work pose first.",
+        )
+    }
+
     /// The selected handle.
     pub(super) fn selected(&self) -> Result<&Handle, Reason> {
         let none = "No handle is selected: select one in the list, or paint one.";

@@ -110,7 +110,7 @@ pub(super) const RESET_REGION: Entry<()> = Entry {
         &[],
     )],
     scope: Scope::Document,
-    unavailable: with_unlocked,
+    unavailable: |state, ()| state.unlocked().err().or_else(|| state.in_work_pose()),
     action: Action::Do(|context, ()| reset_region(context.workspace)),
 };
 

@@ -252,7 +252,7 @@ pub(super) const TOGGLE_OUTLINES: Entry<()> = Entry {
     listed: &[item(
         (),
         "Outlines",
-        "Shows or hides the outlines of the handles and of the fixed region.",
+        "Shows or hides the outlines of the handles and of the fixed region, while regions are shown.",
         "contours",
         &[],
     )],
@@ -289,12 +289,12 @@ pub(super) const TOGGLE_SHADOW: Entry<()> = Entry {
     action: Action::Do(|context, ()| context.view.look.shadow = !context.view.look.shadow),
 };
 
-/// Shows or hides the regions' colours over clay and material.
+/// Shows or hides the regions: their colours over clay and material, and their outlines.
 pub(super) const TOGGLE_REGIONS: Entry<()> = Entry {
     listed: &[item(
         (),
         "Show regions",
-        "Shows or hides the regions' colours.",
+        "Shows or hides the regions: their colours and their outlines.",
         "colours colors overlay",
         &[],
     )],

@@ -1,7 +1,7 @@
 //! Commands on kept poses.
 
 use super::entry::{Action, Entry, Reason, Scope, State, item, unless};
-use crate::workspace::{keep_pose, remove_pose, rename_pose, renew_pose, take_pose};
+use crate::workspace::{keep_pose, remove_pose, rename_pose, renew_pose, take_pose, toggle_work_pose};
 
 /// Keeps the shown state as a pose.
 pub(super) const KEEP_POSE: Entry<()> = Entry {
@@ -52,6 +52,26 @@ pub(super) const REMOVE_POSE: Entry<usize> = Entry {
     scope: Scope::Document,
     unavailable: |state, place| gone(state, *place),
     action: Action::Do(|context, place| remove_pose(context.workspace, place)),
+};
+
+/// Begins a temporary pose, or returns from it.
+pub(super) const WORK_POSE: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Work pose",
+        "Begins a temporary pose: move limbs apart, paint and correct hidden places. The second time everything returns \
+         exactly, with your paint and corrections.",
+        "temporary spread legs arms reach hidden clothes unpose return",
+        &[],
+    )],
+    scope: Scope::Document,
+    unavailable: |state, ()| {
+        let document = &state.workspace.document;
+        let may_begin = document.is_settled() || document.work_pose().is_some();
+        let busy = "The shape is still being solved: wait a moment.";
+        state.unopened().or(unless(may_begin, busy))
+    },
+    action: Action::Do(|context, ()| toggle_work_pose(context.workspace)),
 };
 
 fn gone(state: &State<'_>, place: usize) -> Option<Reason> {

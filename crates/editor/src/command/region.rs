@@ -75,6 +75,13 @@ pub(super) const REGION: Entry<RegionAction> = Entry {
             &[],
         ),
         item(
+            RegionAction::Clear,
+            "Clear this region",
+            "Removes the paint of the selected region alone. The shape stays.",
+            "remove delete unpaint bare",
+            &[],
+        ),
+        item(
             RegionAction::ToFree,
             "Make region",
             "Frees the selected region, so that it bends.",
@@ -111,6 +118,14 @@ pub(super) const REGION: Entry<RegionAction> = Entry {
             act_on_region(context.workspace, role, action);
         }
     }),
+};
+
+/// Changes the region of a role as a whole, whichever is selected.
+pub(super) const REGION_OF: Entry<(Paint, RegionAction)> = Entry {
+    listed: &[],
+    scope: Scope::Document,
+    unavailable: when_open,
+    action: Action::Do(|context, (role, action)| act_on_region(context.workspace, role, action)),
 };
 
 /// Chooses whether the parts that a reach cuts off from the body are free or fixed.

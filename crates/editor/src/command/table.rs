@@ -9,7 +9,9 @@ use pliant_deform::{Attachment, ExampleShape, Loose, Method};
 use super::entry::{Action, Entry, Reason, Scope, State};
 use super::shortcut::Shortcut;
 use super::{controls, curves, document, examples, flow, handle, look, object, paint, pose, region, transform, view};
-use crate::document::{FlowOptions, HandleId, HandleTransform, ObjectAction, PivotPlace, Reach, SmallParts, Tips};
+use crate::document::{
+    FlowOptions, HandleId, HandleTransform, ObjectAction, Paint, PivotPlace, Reach, SmallParts, Tips,
+};
 use crate::jobs::Symmetry;
 use crate::tool::{
     BrushMetric, Context, CorrectionBrush, Depth, FlowBrush, Gesture, StiffnessBrush, StrokeShape, ToolMode,
@@ -30,6 +32,29 @@ pub struct Listed {
     pub keywords: &'static str,
     /// Keys that send it; the first is shown.
     pub shortcuts: &'static [Shortcut],
+    /// The name of its group.
+    pub group: &'static str,
+}
+
+/// The name of the group whose entries are in the module of this path.
+fn group_of(entry: &str) -> &'static str {
+    let module = entry.split("::").next().unwrap_or(entry).trim();
+    match module {
+        "document" => "Edit",
+        "controls" => "Cage and lattice",
+        "examples" => "Examples",
+        "pose" => "Poses",
+        "paint" => "Tools and brush",
+        "flow" => "Flow",
+        "curves" => "Curves",
+        "handle" => "Handles",
+        "transform" => "Move, turn and scale",
+        "region" => "Regions and stiffness",
+        "object" => "Objects and parts",
+        "view" => "View",
+        "look" => "Look",
+        _ => "Others",
+    }
 }
 
 /// A question to the entry of any command, with the command's values.
@@ -74,6 +99,7 @@ macro_rules! commands {
                         tooltip: item.tooltip,
                         keywords: item.keywords,
                         shortcuts: item.shortcuts,
+                        group: group_of(stringify!($entry)),
                     });
                 })+
                 list
@@ -134,6 +160,8 @@ commands! {
     RenamePose(place: usize, name: String) = pose::RENAME_POSE;
     /// Removes a pose.
     RemovePose(place: usize) = pose::REMOVE_POSE;
+    /// Begins a temporary pose for work on hidden places, or returns from it.
+    WorkPose = pose::WORK_POSE;
     /// Begins or ends a comparison of the methods on the edit.
     CompareMethods = document::COMPARE_METHODS;
     /// Shows a method large during a comparison, by its number; with `None` all are small.
@@ -251,6 +279,8 @@ commands! {
     SetParent(id: HandleId, parent: Option<HandleId>) = handle::SET_PARENT;
     /// Changes the selected region as a whole.
     Region(action: RegionAction) = region::REGION;
+    /// Changes the region of a role as a whole, whichever is selected.
+    RegionOf(role: Paint, action: RegionAction) = region::REGION_OF;
     /// Chooses whether the parts that a reach cuts off from the body are free.
     SetTips(tips: Tips) = region::SET_TIPS;
     /// Blurs, sharpens, grows or shrinks the painted stiffness.
@@ -281,6 +311,8 @@ commands! {
     FrameSelected = view::FRAME_SELECTED;
     /// Frames a connected part, by its component's number.
     FramePart(part: u32) = view::FRAME_PART;
+    /// Frames the connected part under the pointer.
+    FramePartHere = view::FRAME_PART_HERE;
     /// Highlights a connected part, by its component's number, or none.
     LightPart(part: Option<u32>) = view::LIGHT_PART;
     /// Frames a place where the shape passes through itself, by its number in

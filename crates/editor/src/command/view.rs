@@ -6,7 +6,7 @@ use pliant_mesh::DrawnVertex;
 use super::entry::{Action, Entry, Scope, alt, always, character, ctrl_numpad, item, numpad, plain, unless, when_open};
 use crate::input::Key;
 use crate::view::{Camera, CameraStep, NamedView, Orbit, Projection, UpAxis, View};
-use crate::workspace::{Workspace, light_part, members};
+use crate::workspace::{NOTHING_HERE, Workspace, light_part, members};
 
 /// The angle by which a key turns the view: 15 degrees.
 const VIEW_STEP_RAD: f64 = std::f64::consts::PI / 12.0;
@@ -45,6 +45,29 @@ pub(super) const FRAME_PART: Entry<u32> = Entry {
     scope: Scope::View,
     unavailable: when_open,
     action: Action::Do(|context, part| frame_part(context.workspace, context.view, part)),
+};
+
+/// Frames the connected part under the pointer.
+pub(super) const FRAME_PART_HERE: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Frame part",
+        "Frames the connected part under the pointer.",
+        "zoom to component piece focus",
+        &[],
+    )],
+    scope: Scope::View,
+    unavailable: when_open,
+    action: Action::Do(|context, ()| {
+        let part = context
+            .pointed_at()
+            .map(|pick| pick.vertex)
+            .zip(context.workspace.model());
+        match part.map(|(vertex, model)| model.topology.component(vertex)) {
+            Some(part) => frame_part(context.workspace, context.view, part),
+            None => context.workspace.refuse(NOTHING_HERE),
+        }
+    }),
 };
 
 /// Highlights a connected part, by its component's number, or none.

@@ -12,6 +12,7 @@ use super::handle::{Handle, HandleId};
 use super::kept_shape::KeptShape;
 use super::pose::Pose;
 use super::strength::Strength;
+use super::version::Versions;
 
 /// The paint of a vertex.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug, Default, Hash)]
@@ -79,10 +80,28 @@ pub struct Content {
     pub(crate) strength: Option<Arc<Strength>>,
     /// The kept poses.
     pub(crate) poses: Arc<Vec<Pose>>,
+    /// The state to which the document returns from a work pose; `None` outside one.
+    pub(crate) work_pose: Option<Arc<WorkPose>>,
     /// The fluid on the surface, which bends nothing.
     pub(crate) fluid: Fluid,
     /// The forces in its flow.
     pub(crate) flow_options: FlowOptions,
+}
+
+/// The state to which a document returns from its work pose: a temporary pose, in which hidden places can be reached.
+/// Legs are spread, the inside is painted and corrected, and everything then returns to its place to the bit.
+///
+/// Paint and stiffness belong to vertices, so they stay when the pose is left. A correction is a displacement in the
+/// posed surface: it turns back with the surface around its vertex.
+#[derive(Clone, Debug)]
+pub(crate) struct WorkPose {
+    /// The document at the beginning, without a work pose.
+    pub(crate) before: Content,
+    /// Its versions.
+    pub(crate) versions: Versions,
+    /// The corrections made since then, per surface vertex, as displacements of the shape at the beginning; `None`
+    /// without any.
+    pub(crate) corrected: Option<Arc<Vec<DVec3>>>,
 }
 
 impl Content {
@@ -111,6 +130,7 @@ impl Content {
             settled: true,
             strength: None,
             poses: Arc::default(),
+            work_pose: None,
             fluid: Fluid::default(),
             flow_options: FlowOptions::default(),
         }

@@ -14,7 +14,7 @@ use glam::DVec3;
 use pliant_deform::{Attachment, ExampleShape, Loose, Method};
 
 use super::access::Access;
-use super::content::{Paint, Tips};
+use super::content::{Paint, Tips, WorkPose};
 use super::fluid::{FlowOptions, Fluid};
 use super::handle::{Handle, HandleId};
 use super::kept_shape::KeptShape;
@@ -59,6 +59,8 @@ pub(crate) enum Change {
     Strength(Option<Arc<Strength>>),
     /// The kept poses.
     Poses(Arc<Vec<Pose>>),
+    /// The state to which a work pose returns.
+    WorkPose(Option<Arc<WorkPose>>),
     /// The fluid on the surface.
     Fluid(Fluid),
     /// The forces in its flow.
@@ -107,9 +109,15 @@ impl Step {
                     let of_pose = |pose| size_of::<Pose>() + of_handles(pose) + of_points(pose) * size_of::<DVec3>();
                     poses.iter().map(of_pose).sum()
                 }
+                Change::WorkPose(Some(work)) => {
+                    // Its content shares the long vectors with the document until these change.
+                    let corrected = work.corrected.as_ref().map_or(0, |corrected| corrected.len());
+                    size_of::<WorkPose>() + (work.before.from_rest.len() + corrected) * size_of::<DVec3>()
+                }
                 Change::Fluid(fluid) => fluid.bytes(),
                 Change::Kept(None)
                 | Change::Strength(None)
+                | Change::WorkPose(None)
                 | Change::Continuity(None)
                 | Change::Options(..)
                 | Change::Tips(_)
@@ -336,6 +344,7 @@ fn swap(change: &mut Change, document: &mut Document, strength: &mut Option<Arc<
         Change::Kept(kept) => document.swap_kept(kept),
         Change::Settled(settled) => document.swap_settled(settled),
         Change::Poses(poses) => document.swap_poses(poses),
+        Change::WorkPose(work) => document.swap_work_pose(work),
         Change::Fluid(fluid) => document.swap_fluid(fluid),
         Change::FlowOptions(options) => document.swap_flow_options(options),
         Change::Strength(other) => std::mem::swap(other, strength),

@@ -45,6 +45,7 @@ pub use kept_shape::{Carries, KeptShape};
 pub(crate) use matching::Matching;
 pub(crate) use mirror_plane::mirrored_transform;
 pub(crate) use parents::{find_parents_anew, is_within};
+pub(crate) use polar::polar_decomposition;
 pub(crate) use pose::Placed;
 pub use pose::Pose;
 pub use saved::{SaveMark, SavedAs};

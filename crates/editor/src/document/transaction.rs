@@ -123,6 +123,14 @@ fn differences(before: &Document, after: &Document) -> Vec<Change> {
     if !Arc::ptr_eq(&before.poses, &after.poses) && before.poses != after.poses {
         changes.push(Change::Poses(Arc::clone(&before.poses)));
     }
+    let same_work_pose = match (&before.work_pose, &after.work_pose) {
+        (Some(before), Some(after)) => Arc::ptr_eq(before, after),
+        (None, None) => true,
+        _ => false,
+    };
+    if !same_work_pose {
+        changes.push(Change::WorkPose(before.work_pose.clone()));
+    }
     if differ(Aspect::Fluid) && before.fluid != after.fluid {
         changes.push(Change::Fluid(before.fluid.clone()));
     }

@@ -33,6 +33,8 @@ pub struct Editor {
     /// The state of the pointer.
     gesture: Option<Box<dyn Gesture>>,
     pointer: Option<Pointer>,
+    /// The place at which the pointer left the view.
+    left_at: Option<Pointer>,
     /// The notches of the wheel, below one, that have not chosen another joint yet.
     joint_lines: f64,
     key_map: KeyMap,
@@ -53,6 +55,7 @@ impl Editor {
             overlay: Overlay::default(),
             gesture: None,
             pointer: None,
+            left_at: None,
             joint_lines: 0.0,
             key_map: KeyMap::default(),
             showing_original: None,
@@ -101,7 +104,7 @@ impl Editor {
             }
             Event::PointerLeft => {
                 if self.gesture.is_none() {
-                    self.pointer = None;
+                    self.left_at = self.pointer.take().or(self.left_at);
                 }
             }
             Event::PointerPressed(pointer, button) => self.press(pointer, button),
@@ -186,6 +189,7 @@ impl Editor {
             brush: &mut self.brush,
             overlay: &self.overlay,
             pointer: self.pointer,
+            left_at: self.left_at,
         };
         (&mut self.gesture, context)
     }

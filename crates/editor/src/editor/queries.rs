@@ -11,7 +11,7 @@ use super::Editor;
 use crate::command::{Command, Shortcut, State};
 use crate::document::{Document, HandleId, History, SaveMark};
 use crate::format::{ExportError, export};
-use crate::jobs::{Comparison, Intersections, JobKind};
+use crate::jobs::{Activity, Comparison, Intersections, JobKind};
 use crate::region::Rim;
 use crate::revision::Revision;
 use crate::scene_view::{ControlPoints, SceneView};
@@ -20,7 +20,7 @@ use crate::status::status;
 use crate::tool::{Gesture, ToolMode};
 use crate::view::{Cursor, Look, Pick};
 use crate::warning::in_window_words;
-use crate::workspace::{ControlSource, SnapshotKey, Workspace, region_colour, rims};
+use crate::workspace::{ControlSource, SnapshotKey, Workspace, lasting, region_colour, rims};
 use crate::{EditFile, MeshReference, geometry_hash};
 
 impl Editor {
@@ -47,6 +47,7 @@ impl Editor {
             rims_revision: workspace.colours().rims_revision(),
             overlay_revision: self.overlay.revision,
             camera_revision: view.revision(),
+            is_dragging: gesture.is_some_and(|gesture| gesture.activity() == Activity::Dragging),
             brush_ring: &self.overlay.ring,
             gizmo: &self.overlay.gizmo,
             controls: &self.overlay.controls,
@@ -226,10 +227,27 @@ impl Editor {
     /// The present document, with an active drag; `None` before the first file.
     pub fn snapshot(&self) -> Option<Snapshot> {
         Some(Snapshot {
-            document: self.document().clone(),
+            document: self.lasting_document()?,
             model: Arc::clone(self.workspace.model()?),
             camera: *self.view.camera(),
         })
+    }
+
+    /// The document outside its work pose, which files get.
+    fn lasting_document(&self) -> Option<Document> {
+        let model = self.workspace.model()?;
+        Some(match self.document().work_pose() {
+            None => self.document().clone(),
+            Some(_) => lasting(self.document(), model),
+        })
+    }
+
+    /// The shape outside the work pose, per surface vertex, as displacements from the file's shape.
+    pub fn lasting_shape(&self) -> Arc<Vec<glam::DVec3>> {
+        match self.lasting_document() {
+            Some(document) => Arc::clone(document.from_file()),
+            None => Arc::clone(self.document().from_file()),
+        }
     }
 
     /// The state that a save beginning now writes.
@@ -264,7 +282,8 @@ impl Editor {
     /// No file is open, a shape was applied, or a vertex that two nodes show has two roles.
     pub fn edit_file(&self) -> Result<EditFile, ExportError> {
         let model = self.workspace.model().ok_or(ExportError::NoFile)?;
-        export(self.document(), model)
+        let document = self.lasting_document().ok_or(ExportError::NoFile)?;
+        export(&document, model)
     }
 
     /// The keys that send a listed command; the first is shown.

@@ -8,13 +8,13 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use pliant_deform::{Loose, Role};
-use pliant_mesh::{Cancel, DistanceSearch, Joint, Model, Shape, SurfaceVertex, joint_of};
+use pliant_mesh::{Cancel, DistanceSearch, Joint, Model, Shape, SurfaceVertex};
 use serde::{Deserialize, Serialize};
 
 use super::edit_error::EditError;
 use super::transform::vector;
 use crate::document::{HandleId, Paint, Reach, Tips};
-use crate::region::{FileContacts, Region, RegionInput};
+use crate::region::{FileContacts, Region, RegionInput, limb_joint};
 
 /// A limb by a point on it.
 #[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize)]
@@ -61,9 +61,11 @@ impl Limbs {
             topology: &model.topology,
             positions: &model.surface.positions,
         };
+        let contacts = FileContacts::default();
         let mut limbs = Vec::new();
         for (index, pose) in poses {
-            let joint = joint(&shape, pose).map_err(|error| error.under(&format!("handles[{index}].pose")))?;
+            let joint = joint(model, &shape, &contacts, pose)
+                .map_err(|error| error.under(&format!("handles[{index}].pose")))?;
             let own = joint.far_side.clone();
             limbs.push((index, Limb { joint, own }));
         }
@@ -149,10 +151,10 @@ fn other(sentence: &str) -> EditError {
 }
 
 /// The joint of a limb.
-fn joint(shape: &Shape<'_>, pose: &PoseEntry) -> Result<Joint, EditError> {
+fn joint(model: &Model, shape: &Shape<'_>, contacts: &FileContacts, pose: &PoseEntry) -> Result<Joint, EditError> {
     const NO_JOINT: &str = "has no joint: give a point on a limb that is narrower than the body, or use `select`";
     let (triangle, point) = shape.nearest(pose.at).ok_or_else(|| other(NO_JOINT))?;
-    let found = joint_of(shape, triangle, point, pose.up, &Cancel::new());
+    let found = limb_joint(model, shape, contacts, (triangle, point), pose.up, &Cancel::new());
     let joint = found.ok().flatten().ok_or_else(|| other(NO_JOINT))?;
     if joint.up == pose.up {
         return Ok(joint);

@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::DVec3;
 use pliant_deform::Method;
-use pliant_mesh::{Distortion, Model, SurfaceVertex, bounding_box};
+use pliant_mesh::{Bounds, Distortion, Model, SurfaceVertex, bounding_box};
 
 use super::allowance::Allowance;
 use super::compared::{Binding, Compared, Edit, Figures};
@@ -17,6 +17,9 @@ use crate::document::Document;
 use crate::warning::in_window_words;
 
 /// The message about a method whose job a person has stopped.
+/// The least visible displacement, as a share of the model's size.
+const SEEN: f64 = 1e-3;
+
 const STOPPED: &str = "it was stopped: compare again";
 
 /// One method's result for the present edit.
@@ -186,6 +189,7 @@ fn after(binding: Binding, solved: Solved, frame_ms: f64, model: &Model) -> Comp
             edge_stretch_mean: distortion.edge_stretch_mean,
             edge_stretch_max: distortion.edge_stretch_max,
             bounds: bounding_box(model.topology.main_positions(&moved)),
+            moved: box_of_moved(model, &moved),
         }
     });
     Compared {
@@ -198,4 +202,12 @@ fn after(binding: Binding, solved: Solved, frame_ms: f64, model: &Model) -> Comp
         shape: Ok(solved.from_file),
         figures,
     }
+}
+
+/// The box around the vertices that differ visibly from the file's shape, there and now.
+fn box_of_moved(model: &Model, now: &[DVec3]) -> Option<Bounds> {
+    let least = SEEN * model.bounds()?.diagonal();
+    let pairs = model.surface.positions.iter().zip(now);
+    let moved = pairs.filter(|(rest, now)| rest.distance(**now) > least);
+    Bounds::around(moved.flat_map(|(rest, now)| [*rest, *now]))
 }

@@ -34,6 +34,8 @@ pub struct Figures {
     pub edge_stretch_max: f64,
     /// The box around the shape; `None` for an empty surface.
     pub bounds: Option<Bounds>,
+    /// The box around everything that has visibly moved, at rest and now; `None` if nothing has.
+    pub moved: Option<Bounds>,
 }
 
 /// A bound method and the state of its steps.

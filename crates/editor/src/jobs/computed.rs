@@ -27,7 +27,7 @@ pub(crate) struct Computed {
     /// The region, from the beginning on.
     pub(crate) region: Region,
     /// The contacts of the model's components.
-    pub(super) contacts: FileContacts,
+    pub(crate) contacts: FileContacts,
     /// The targets for which the binding's control points have their positions.
     pub(super) controls_revision: Revision,
     /// Raised when newer targets wait, so that a solve for the older ones takes no long steps.

@@ -27,7 +27,12 @@ pub(super) struct Touching {
     order: Vec<u32>,
     /// The places of contact, by component.
     contacts: Vec<Vec<Contact>>,
+    /// The area of each component, in square world units.
+    areas: Vec<f64>,
 }
+
+/// A part with less than this share of the area of one that it touches has no limbs of its own.
+const OWN_LIMBS: f64 = 0.1;
 
 impl FileContacts {
     /// The contacts of this file's components, in its own shape.
@@ -52,7 +57,7 @@ fn touching(surface: &Surface, topology: &Topology, cancel: &Cancel) -> Result<T
     let is_larger = |part: u32, other: u32| rank[other as usize] < rank[part as usize];
     let tree = Bvh::build(&surface.positions, &surface.triangles);
     let contacts = contacts(surface, topology, &tree, &all, is_larger, cancel)?;
-    Ok(Touching { order, contacts })
+    Ok(Touching { order, contacts, areas })
 }
 
 impl Touching {
@@ -84,6 +89,42 @@ impl Touching {
             };
         }
         goes
+    }
+}
+
+impl Touching {
+    /// The place on the part that carries the one of this vertex, nearest to a point, by the present positions; `None`
+    /// if the part has limbs of its own.
+    pub(super) fn carrier(
+        &self,
+        topology: &Topology,
+        positions: &[DVec3],
+        vertex: SurfaceVertex,
+        point: DVec3,
+    ) -> Option<SurfaceVertex> {
+        let mut carrier = None;
+        let mut part = topology.component(vertex) as usize;
+        loop {
+            let away = |contact: &&Contact| positions[contact.place.index()].distance_squared(point);
+            let places = self.contacts[part].iter();
+            let nearest = places.min_by(|a, b| away(a).total_cmp(&away(b)).then(a.place.cmp(&b.place)));
+            let Some(contact) = nearest else { return carrier };
+            let larger = topology.component(contact.place) as usize;
+            if self.areas[part] >= OWN_LIMBS * self.areas[larger] {
+                return carrier;
+            }
+            (carrier, part) = (Some(contact.place), larger);
+        }
+    }
+
+    /// The parts that rest on these vertices of the part `body`.
+    pub(super) fn riders(&self, topology: &Topology, body: u32, vertices: &[SurfaceVertex]) -> Vec<u32> {
+        let mut roles = vec![Role::Fixed; topology.vertex_count()];
+        vertices.iter().for_each(|vertex| roles[vertex.index()] = Role::Free);
+        let count = self.areas.len();
+        let is_body: Vec<bool> = (0..count as u32).map(|part| part == body).collect();
+        let goes = self.going_along(topology, &roles, &is_body, &vec![false; count], |_| None);
+        (0..count as u32).filter(|part| goes[*part as usize]).collect()
     }
 }
 

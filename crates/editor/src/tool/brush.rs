@@ -41,6 +41,16 @@ pub(crate) struct BrushSize {
     pub(crate) metric: BrushMetric,
 }
 
+impl BrushSize {
+    /// The same with this share of the radius.
+    pub(crate) fn scaled(self, share: f64) -> Self {
+        Self {
+            radius_px: self.radius_px * share,
+            ..self
+        }
+    }
+}
+
 /// Finds the vertices under the brush; keeps its memory between dabs.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Brush {

@@ -22,11 +22,14 @@ pub(crate) struct Context<'a> {
     pub(crate) overlay: &'a Overlay,
     /// The position of the pointer, if it is over the view.
     pub(crate) pointer: Option<Pointer>,
+    /// The position at which it left the view, or was covered by a menu or a list of commands.
+    pub(crate) left_at: Option<Pointer>,
 }
 
 impl Context<'_> {
-    /// The hit under the pointer.
+    /// The hit under the pointer, or under its last place over the view: a command may come from a menu over it.
     pub(crate) fn pointed_at(&self) -> Option<Pick> {
-        self.workspace.pick(self.view, self.pointer?.position_px)
+        self.workspace
+            .pick(self.view, self.pointer.or(self.left_at)?.position_px)
     }
 }

@@ -7,10 +7,11 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use pliant_deform::Role;
-use pliant_mesh::{DistanceSearch, Joint, Shape, SurfaceVertex, joint_of};
+use pliant_mesh::{DistanceSearch, Joint, Shape, SurfaceVertex};
 
 use crate::document::{Document, Handle, HandleId, Paint};
 use crate::jobs::JobKind;
+use crate::region::limb_joint;
 use crate::view::{Pick, View};
 use crate::workspace::{Workspace, members, tint_limb};
 
@@ -84,6 +85,7 @@ pub(crate) fn hover(workspace: &mut Workspace, view: &View, pointer_px: Option<g
         return;
     };
     let displacements = Arc::clone(workspace.document.from_file());
+    let contacts = workspace.computed().contacts.clone();
     workspace.jobs.look_for_joint(
         pick.triangle,
         Box::new(move |_, cancel| {
@@ -94,7 +96,8 @@ pub(crate) fn hover(workspace: &mut Workspace, view: &View, pointer_px: Option<g
                 topology: &model.topology,
                 positions: &positions,
             };
-            Ok(joint_of(&shape, pick.triangle, pick.point, up, cancel)?.map(Arc::new))
+            let at = (pick.triangle, pick.point);
+            Ok(limb_joint(&model, &shape, &contacts, at, up, cancel)?.map(Arc::new))
         }),
     );
 }

@@ -11,7 +11,7 @@ use super::intersections::intersection_shapes;
 use super::mode::{StrokeShape, ToolMode};
 use super::pose::{Limb, joint_shapes, limb_under};
 use super::settings::ToolSettings;
-use super::symmetry::symmetry_shapes;
+use super::symmetry::{closed, symmetry_shapes};
 use super::taken_handle::is_taken_along;
 use crate::document::HandleTransform;
 use crate::input::Pointer;
@@ -57,6 +57,9 @@ pub(crate) struct Overlay {
     /// The part under a resting pointer.
     rested: Option<GizmoPart>,
 }
+
+/// The colour of the ring at which a soft brush has half of its strength.
+const INNER_RING: [u8; 4] = [255, 255, 255, 130];
 
 /// The share of its colour that the gizmo keeps while a brush is active.
 const FADED: f64 = 0.4;
@@ -119,6 +122,11 @@ impl Overlay {
                 && settings.stroke_shape == StrokeShape::Brush;
             if has_ring && !settings.wants_pivot && !takes_handle {
                 line = ring(&picking, pointer.position_px, &pick, &settings.brush());
+                if let Some(share) = settings.soft_share() {
+                    let inner = settings.brush().scaled(share);
+                    let inner = ring(&picking, pointer.position_px, &pick, &inner);
+                    shapes.push(ControlShape::lines(INNER_RING, closed(&inner)));
+                }
             }
         }
         self.hovered = highlighted.filter(|_| lit == Lit::Pointed);

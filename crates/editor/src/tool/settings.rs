@@ -1,10 +1,10 @@
 //! The settings of tools: the chosen one, its selection of vertices, the gizmo's orientation.
 
 use super::brush::{BRUSH_RADIUS_PX, BrushMetric, BrushSize};
-use super::correction_brush::CorrectionBrush;
+use super::correction_brush::{Correction, CorrectionBrush};
 use super::flow_brush::FlowBrush;
 use super::mode::{Depth, StrokeShape, ToolMode};
-use super::stiffness_brush::StiffnessBrush;
+use super::stiffness_brush::{StiffnessAction, StiffnessBrush};
 use crate::document::{HandleId, Paint};
 use crate::view::{GizmoMode, GizmoOrientation};
 
@@ -64,6 +64,21 @@ impl ToolSettings {
             } else {
                 self.other_metric
             },
+        }
+    }
+
+    /// The share of the radius at which the chosen tool's brush has half of its strength; `None` for a hard rim.
+    pub(crate) fn soft_share(&self) -> Option<f64> {
+        let soft = |falloff: f64| (falloff > 0.0).then_some(1.0 - falloff / 2.0);
+        match self.mode {
+            ToolMode::PaintStiffness if self.stiffness_brush.action == StiffnessAction::Rigid => None,
+            ToolMode::PaintStiffness => soft(self.stiffness_brush.falloff),
+            ToolMode::Flow => soft(self.flow_brush.falloff),
+            // Where (1 - s²)² is a half.
+            ToolMode::Correct if self.correction_brush.correction != Correction::Grab => {
+                Some((1.0 - 0.5_f64.sqrt()).sqrt())
+            }
+            _ => None,
         }
     }
 

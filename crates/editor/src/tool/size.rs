@@ -9,7 +9,7 @@ use super::gesture::{Gesture, Next};
 use super::overlay::Lit;
 use super::settings::ToolSettings;
 use crate::input::{Button, Key, Modifiers, Pointer};
-use crate::view::{Cursor, View};
+use crate::view::{Cursor, Readout, View};
 use crate::workspace::Workspace;
 
 const RIM_SEGMENTS: usize = 64;
@@ -46,6 +46,16 @@ impl Gesture for SizeBrush {
     fn status(&self, _: &Workspace, _: &View) -> Option<String> {
         let radius = self.radius_px;
         Some(format!("Brush of {radius:.0} px: click to keep it, Esc to cancel"))
+    }
+
+    fn readout(&self, _: &Workspace, view: &View) -> Option<Readout> {
+        let (camera, rim_px) = (view.camera(), self.centre_px + DVec2::X * self.radius_px);
+        let ray = camera.ray(rim_px, view.viewport_px());
+        let depth = camera.distance / ray.direction.dot(camera.forward());
+        Some(Readout {
+            at: ray.origin + ray.direction * depth,
+            text: format!("{:.0} px", self.radius_px),
+        })
     }
 
     fn outline_px(&self) -> Vec<DVec2> {

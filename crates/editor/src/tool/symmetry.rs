@@ -23,10 +23,6 @@ pub(super) fn symmetry_shapes(workspace: &Workspace, ring: &[DVec3]) -> Vec<Cont
         return Vec::new();
     };
     let outline = section(&bounds, &sides.plane);
-    let closed = |points: &[DVec3]| {
-        let next = points.iter().cycle().skip(1);
-        points.iter().zip(next).map(|(from, to)| [*from, *to]).collect()
-    };
     let mut shapes = vec![ControlShape::lines(EDGE, closed(&outline))];
     // The other side of a bent shape is at another place.
     let is_at_rest = !workspace.document.is_displaced() && !workspace.document.is_applied();
@@ -35,6 +31,12 @@ pub(super) fn symmetry_shapes(workspace: &Workspace, ring: &[DVec3]) -> Vec<Cont
         shapes.push(ControlShape::lines(RING, closed(&image)));
     }
     shapes
+}
+
+/// The segments of a closed line through these points.
+pub(super) fn closed(points: &[DVec3]) -> Vec<[DVec3; 2]> {
+    let next = points.iter().cycle().skip(1);
+    points.iter().zip(next).map(|(from, to)| [*from, *to]).collect()
 }
 
 /// The polygon of a plane's intersection with a box a little larger than the bounds, in order.

@@ -287,8 +287,7 @@ impl Gesture for TransformDrag {
 
     fn moved(&mut self, context: &mut Context<'_>, pointer: Pointer) -> Next {
         self.is_armed |= pointer.position_px.distance(self.measure.start_px) >= THRESHOLD_PX;
-        let snaps = pointer.modifiers.ctrl;
-        self.measure.move_to(context.view, pointer.position_px, snaps);
+        self.measure.move_to(context.view, pointer);
         self.preview(context.workspace, context.view);
         Next::Stay
     }

@@ -5,10 +5,13 @@ use glam::{DQuat, DVec2, DVec3};
 use super::constraint::{Constraint, along_axis, angle_about_axis_rad, on_plane, screen_angle_rad, short_turn_rad};
 use super::number_entry::NumberEntry;
 use crate::document::HandleTransform;
+use crate::input::Pointer;
 use crate::view::{ControlShape, GizmoPart, View, arc_shapes, axis_vector};
 
 /// The smallest factor of scaling by the pointer.
 const MIN_FACTOR: f64 = 1e-3;
+/// The share of the pointer's movement that counts while Shift is held.
+const DAMPED: f64 = 0.1;
 /// Ctrl snaps turns to this: 15 degrees.
 const SNAP_RAD: f64 = std::f64::consts::PI / 12.0;
 /// Ctrl snaps factors to this.
@@ -39,6 +42,8 @@ pub(super) struct Measure {
     pub(super) centre: DVec3,
     pub(super) start_px: DVec2,
     pub(super) last_px: DVec2,
+    /// The pointer's way that Shift has held back so far.
+    held_back_px: DVec2,
     /// The turn so far, which may exceed a full circle.
     turned_rad: f64,
     pub(super) number: NumberEntry,
@@ -67,6 +72,7 @@ impl Measure {
             centre,
             start_px,
             last_px: start_px,
+            held_back_px: DVec2::ZERO,
             turned_rad: 0.0,
             number: NumberEntry::default(),
             snaps: false,
@@ -81,9 +87,14 @@ impl Measure {
         self
     }
 
-    /// The pointer moved; `snaps` says whether Ctrl is held.
-    pub(super) fn move_to(&mut self, view: &View, position_px: DVec2, snaps: bool) {
-        self.snaps = snaps;
+    /// The pointer moved; Ctrl snaps, and Shift damps the movement.
+    pub(super) fn move_to(&mut self, view: &View, pointer: Pointer) {
+        self.snaps = pointer.modifiers.ctrl;
+        if pointer.modifiers.shift {
+            let way_px = pointer.position_px - self.held_back_px - self.last_px;
+            self.held_back_px += way_px * (1.0 - DAMPED);
+        }
+        let position_px = pointer.position_px - self.held_back_px;
         if self.kind == TransformKind::Turn {
             self.turned_rad += self.turn_rad(view, self.last_px, position_px);
         }

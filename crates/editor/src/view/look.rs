@@ -13,7 +13,7 @@ pub struct Look {
     pub wireframe: bool,
     /// True if edges that a closed surface does not have are marked.
     pub borders: bool,
-    /// True if the regions' colours are shown.
+    /// True if the regions are shown.
     pub regions: bool,
     /// True if handles are outlined, and the line between the free region and the fixed part is drawn.
     pub outlines: bool,

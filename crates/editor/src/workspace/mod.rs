@@ -25,6 +25,7 @@ mod snapshot;
 mod state;
 mod stiffness;
 mod symmetry;
+mod work_pose;
 
 pub(crate) use colour_revisions::ColouredBy;
 pub use colours::stiffness_colour;
@@ -44,7 +45,7 @@ pub(crate) use handles::{
 pub(crate) use mirror::{mirror, take_mirrored};
 pub(crate) use mirror_request::Purpose;
 pub(crate) use objects::{
-    act_on_object_here, act_on_objects, isolate, set_small_parts, show_everything, turn_inside_out,
+    NOTHING_HERE, act_on_object_here, act_on_objects, isolate, set_small_parts, show_everything, turn_inside_out,
 };
 pub(crate) use options::{
     apply_shape, clear_regions, reset_shape, set_loose, set_loose_part, set_method, set_strength, set_tips,
@@ -59,3 +60,4 @@ pub(crate) use state::Workspace;
 pub use stiffness::StiffnessChange;
 pub(crate) use stiffness::{change_stiffness, clear_stiffness, set_stiffness};
 pub(crate) use symmetry::{set_symmetry, twin_across};
+pub(crate) use work_pose::{carry_corrections, lasting, toggle_work_pose};

@@ -134,4 +134,6 @@ fn set_access(workspace: &mut Workspace, name: String, access: Access) {
     });
 }
 
-const NOTHING_HERE: &str = "There is nothing under the pointer: point at a part of the surface and press the key.";
+/// The refusal of commands for the place under the pointer.
+pub(crate) const NOTHING_HERE: &str =
+    "There is nothing under the pointer: point at a part of the surface, and give the command there.";

@@ -201,21 +201,38 @@ fn put_new_handles_where_they_are_seen(document: &mut Document, before: &Documen
             });
             continue;
         }
-        let rest = members
-            .iter()
-            .map(|vertex| model.surface.positions[vertex.index()] + document.rest[vertex.index()]);
-        let moved = members.iter().map(|vertex| document.from_rest[vertex.index()]);
-        let fit = RigidMotion::fit(&rest.collect::<Vec<_>>(), &moved.collect::<Vec<_>>());
-        if let Some(motion) = fit {
-            let transform = HandleTransform::Trs {
-                translation: motion.displace(pivot),
-                rotation: motion.rotation(),
-                scale: DVec3::ONE,
-                pivot: None,
-            };
+        if let Some(transform) = transform_as_seen(document, model, id, pivot) {
             document.change_handle(id, |handle| handle.put(transform));
         }
     }
+}
+
+/// The rigid motion that fits the visible positions of a handle's vertices best, about its pivot; `None` if it has no
+/// vertices.
+pub(super) fn transform_as_seen(
+    document: &Document,
+    model: &Model,
+    id: HandleId,
+    pivot: DVec3,
+) -> Option<HandleTransform> {
+    let members = members(document, id);
+    let moved: Vec<DVec3> = members
+        .iter()
+        .map(|vertex| document.from_rest[vertex.index()])
+        .collect();
+    if moved.iter().all(|moved| *moved == DVec3::ZERO) {
+        return Some(HandleTransform::IDENTITY);
+    }
+    let rest = members
+        .iter()
+        .map(|vertex| model.surface.positions[vertex.index()] + document.rest[vertex.index()]);
+    let motion = RigidMotion::fit(&rest.collect::<Vec<_>>(), &moved)?;
+    Some(HandleTransform::Trs {
+        translation: motion.displace(pivot),
+        rotation: motion.rotation(),
+        scale: DVec3::ONE,
+        pivot: None,
+    })
 }
 
 /// The mean of a handle's vertices that are beside others; `None` if it covers whole parts.

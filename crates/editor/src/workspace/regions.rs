@@ -29,6 +29,8 @@ pub enum RegionAction {
     FillParts,
     /// Adds its mirror image across the plane through the model's middle, across axis 0, 1, 2 for x, y, z.
     Mirror(usize),
+    /// Removes its paint.
+    Clear,
     /// Makes it free to bend.
     ToFree,
     /// Fixes it.
@@ -49,6 +51,7 @@ impl RegionAction {
             Self::SmoothBorder => "Smooth border of",
             Self::FillParts => "Fill parts of",
             Self::Mirror(_) => "Mirror",
+            Self::Clear => "Clear",
             Self::ToFree => "Make region of",
             Self::ToFixed => "Make fixed",
             Self::ToHandle => "Make handle of",
@@ -116,8 +119,9 @@ pub(crate) fn act_on_region(workspace: &mut Workspace, role: Paint, action: Regi
             role
         }
         RegionAction::Mirror(axis) => return mirror(workspace, Purpose::Region(role), axis),
-        RegionAction::ToFree | RegionAction::ToFixed | RegionAction::ToHandle => {
+        RegionAction::Clear | RegionAction::ToFree | RegionAction::ToFixed | RegionAction::ToHandle => {
             let target = match action {
+                RegionAction::Clear => Paint::Bare,
                 RegionAction::ToFree => Paint::Free,
                 RegionAction::ToFixed => Paint::Fixed,
                 _ => Paint::Handle(HandleId(workspace.document.next_handle)),

@@ -9,18 +9,18 @@ use std::path::Path;
 use std::time::Instant;
 
 use glam::DVec3;
-use pliant_deform::{Bound, Budget};
-use pliant_editor::{Beginning, EditFile, Setup, Start, Timeline, Until, sum_of_shapes};
+use pliant_deform::Bound;
+use pliant_editor::{EditFile, Setup, Start, Timeline, Until, sum_of_shapes};
 use pliant_io::{FewTargets, Format, MorphAnimation, PointCache, PointCacheFormat, ShapeDirections};
-use pliant_mesh::{DrawnVertex, Model, Progress, SurfaceVertex, WeldOptions};
+use pliant_mesh::{DrawnVertex, Model, Progress, SurfaceVertex};
 
 pub use self::report::{AnimationReport, MorphReport};
 use crate::EngineError;
-use crate::apply::{Prepared, check_bends, check_not_empty, prepare};
-use crate::examples;
+use crate::apply::{Prepared, check_bends, prepare};
+use crate::edit_job::{EditJob, with_keys};
 use crate::files::{Destination, NewFile, Staged, Staging};
 use crate::frames::Frames;
-use crate::loading::{Loaded, load};
+use crate::loading::Loaded;
 use crate::report::{FrameTimes, ms_since};
 use crate::saving::{self, SaveAs};
 use crate::watch::Watch;
@@ -34,17 +34,9 @@ const ROUNDING: f64 = 1e-6;
 /// The input of [`animate`].
 #[derive(Clone, Copy, Debug)]
 pub struct Animate<'a> {
-    /// The file to bend.
-    pub file: &'a Path,
-    /// The edit, with keys.
-    pub edit: &'a Beginning,
-    /// The place that the edit was read from, for messages.
-    pub edit_path: &'a Path,
-    /// The files to write: a point cache (pc2, mdd), a glTF (glb, gltf), or a name that ends in `-####` before its
-    /// extension, with the frame's number in place of the `#`s.
-    pub output: &'a Path,
-    /// The file for the report, if one is wanted.
-    pub report: Option<&'a Path>,
+    /// The edit, which has keys, and its files. The output is a point cache (pc2, mdd), a glTF (glb, gltf), or a name
+    /// that ends in `-####` before its extension, with the frame's number in place of the `#`s.
+    pub job: EditJob<'a>,
     /// The name of the animation in a glTF; its morph targets have numbers after it.
     pub name: &'a str,
     /// The largest distance of a vertex from its place in a frame of a glTF, as a share of the diagonal of the shape's
@@ -52,51 +44,31 @@ pub struct Animate<'a> {
     pub tolerance: f64,
     /// The frames a second.
     pub fps: f64,
-    /// The distance within which vertices of the file are joined, in world units; `None` is the edit's own.
-    pub weld: Option<f64>,
-    /// The memory that binding may use.
-    pub budget: Budget,
 }
 
 /// Solves every frame of an animation and writes it and the report, or nothing at all.
 ///
 /// # Errors
 /// Any refusal of the file, of the edit or of a frame. Nothing is written then.
-pub fn animate(job: &Animate<'_>, watch: &Watch, staging: &Staging) -> Result<AnimationReport, EngineError> {
+pub fn animate(animation: &Animate<'_>, watch: &Watch, staging: &Staging) -> Result<AnimationReport, EngineError> {
+    let job = &animation.job;
     let kind = Kind::of(job.output)?;
-    let report_to = job.report.map(Destination::of).transpose()?;
-    let weld = match job.weld {
-        None => job.edit.weld_options(),
-        distance => WeldOptions { distance },
-    };
-    let start = Instant::now();
-    let loaded = load(job.file, &weld, watch)?;
-    let load_ms = ms_since(start);
+    let report_to = job.report_to()?;
+    let (loaded, load_ms) = job.load(job.file, watch)?;
     let model = &loaded.model;
-    check_not_empty(job.file, model)?;
-    let mut edit = job.edit.clone();
-    examples::bring(&mut edit, job.edit_path, &loaded, watch)?;
-    let in_edit = |source| EngineError::Edit {
-        edit: job.edit_path.to_owned(),
-        source,
-    };
-    let Beginning::Edit(edit) = &edit else {
-        return Err(EngineError::Arguments(
-            "--edit: a project has no keys: save it as an edit and give that keys".to_owned(),
-        ));
-    };
+    let edit = job.edit_with_examples(&loaded, watch)?;
+    let edit = with_keys(&edit)?;
+    let in_edit = |source| job.refused(source);
     let setup = edit.resolve(model).map_err(in_edit)?;
     let timeline = edit.timeline(&setup).map_err(in_edit)?;
     check_bends(job.file, model, &setup.method)?;
-    let count = frame_count(timeline.duration(), job.fps)?;
+    let count = frame_count(timeline.duration(), animation.fps)?;
     let frames = Frames::of(job.output, count - 1);
     for place in frames.all() {
         Destination::of(&place)?;
-        let report = job.report.map(|report| ("--report", report));
-        let outputs: Vec<(&str, &Path)> = [("--output", &*place)].into_iter().chain(report).collect();
         // Only a glTF comes back whole with the animation, so only that may replace FILE.
         let edited = matches!(kind, Kind::Morphs).then_some(job.file);
-        watch.refuse_outputs(&outputs, edited)?;
+        job.refuse_outputs(&place, edited, watch)?;
     }
     let start = Instant::now();
     let moving = match is_at_rest(edit) {
@@ -104,7 +76,7 @@ pub fn animate(job: &Animate<'_>, watch: &Watch, staging: &Staging) -> Result<An
         false => Some(prepare(job.file, model, &setup, job.budget, watch)?),
     };
     let mut run = Run {
-        job,
+        animation,
         loaded: &loaded,
         setup: &setup,
         timeline: &timeline,
@@ -114,7 +86,7 @@ pub fn animate(job: &Animate<'_>, watch: &Watch, staging: &Staging) -> Result<An
         report: AnimationReport {
             load_ms,
             bind_ms: ms_since(start),
-            ..AnimationReport::at_start(&loaded, setup.method.name(), job.fps)
+            ..AnimationReport::at_start(&loaded, setup.method.name(), animation.fps)
         },
     };
     let beside = report_to.as_ref();
@@ -185,7 +157,7 @@ fn is_at_rest(edit: &EditFile) -> bool {
 
 /// An animation that is being written.
 struct Run<'a> {
-    job: &'a Animate<'a>,
+    animation: &'a Animate<'a>,
     loaded: &'a Loaded,
     setup: &'a Setup,
     timeline: &'a Timeline,
@@ -240,7 +212,7 @@ impl Run<'_> {
         staging: &Staging,
     ) -> Result<Staged, EngineError> {
         let diagonal = self.model().bounds().map_or(0.0, |bounds| bounds.diagonal());
-        let bound = self.job.tolerance * diagonal;
+        let bound = self.animation.tolerance * diagonal;
         let mut directions = ShapeDirections::within(bound);
         let progress = self.watch.begin("animating");
         for frame in 0..self.count {
@@ -256,9 +228,9 @@ impl Run<'_> {
             error,
         } = directions.targets();
         let targets: Vec<Vec<DVec3>> = targets.iter().map(|target| self.of_drawn(target)).collect();
-        let times: Vec<f64> = (0..self.count).map(|frame| frame as f64 / self.job.fps).collect();
+        let times: Vec<f64> = (0..self.count).map(|frame| frame as f64 / self.animation.fps).collect();
         let animation = MorphAnimation {
-            name: self.job.name,
+            name: self.animation.name,
             times: &times,
             weights: &weights,
             targets: &targets,
@@ -274,7 +246,7 @@ impl Run<'_> {
             inside_out: &self.setup.inside_out,
             animation: Some(&animation),
             beside: beside.map(|report| ("--report", report)),
-            ..SaveAs::shape(&rest, self.job.output)
+            ..SaveAs::shape(&rest, self.animation.job.output)
         };
         let progress = self.watch.begin("saving");
         let staged = self.saved(&save, staging);
@@ -318,7 +290,7 @@ impl Run<'_> {
             shown_at[file_vertex.index()].get_or_insert(DrawnVertex(vertex));
         }
         let points = u32::try_from(shown_at.len()).unwrap_or(u32::MAX);
-        let mut cache = PointCache::new(format, self.count as u32, points, self.job.fps);
+        let mut cache = PointCache::new(format, self.count as u32, points, self.animation.fps);
         let progress = self.watch.begin("animating");
         let mut positions = Vec::new();
         for frame in 0..self.count {
@@ -331,7 +303,7 @@ impl Run<'_> {
         self.warn_of(moving.as_ref());
         let start = Instant::now();
         let file = NewFile {
-            to: Destination::of(self.job.output)?,
+            to: Destination::of(self.animation.job.output)?,
             bytes: &cache.into_bytes(),
         };
         let staged = staging.stage_watched(&[file], None, &Progress::new(), &self.watch.cancel);
@@ -348,7 +320,7 @@ impl Run<'_> {
             return Ok(vec![DVec3::ZERO; self.model().surface.positions.len()]);
         };
         let start = Instant::now();
-        let solved = self.solved(bound, frame as f64 / self.job.fps);
+        let solved = self.solved(bound, frame as f64 / self.animation.fps);
         self.solve_ms.push(ms_since(start));
         solved
     }
@@ -364,7 +336,7 @@ impl Run<'_> {
         let targets = self.setup.targets_during(self.timeline, time);
         let bent = start.bend(bound, &targets, Until::End, cancel);
         let bent = bent.map_err(|error| EngineError::Solve {
-            file: self.job.file.to_owned(),
+            file: self.animation.job.file.to_owned(),
             source: error.renumbered(|vertex| self.loaded.model.first_file_vertex(SurfaceVertex(vertex)).0),
         })?;
         if cancel.is_cancelled() {

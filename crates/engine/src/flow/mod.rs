@@ -14,10 +14,9 @@ use pliant_io::{Format, SaveError};
 use pliant_mesh::{Progress, WeldOptions};
 
 use crate::EngineError;
-use crate::apply::check_not_empty;
 use crate::files::{self, Destination, NewFile, Staged, Staging};
 use crate::frames::Frames;
-use crate::loading::{Loaded, load};
+use crate::loading::{Loaded, check_not_empty, load};
 use crate::report::{FrameTimes, ms_since};
 use crate::saving::{self, SaveAs};
 use crate::watch::Watch;

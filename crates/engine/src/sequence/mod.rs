@@ -16,10 +16,7 @@ mod run;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use pliant_deform::Budget;
-use pliant_editor::Beginning;
 use pliant_io::PointCacheFormat;
-use pliant_mesh::WeldOptions;
 
 use self::bend::{Bending, vertices_of_handles};
 use self::cache::Cache;
@@ -28,66 +25,39 @@ use self::followed::Followed;
 pub use self::report::SequenceReport;
 use self::run::{Run, Source, To};
 use crate::EngineError;
-use crate::apply::{check_bends, check_not_empty, order};
+use crate::apply::{check_bends, order};
+use crate::edit_job::{EditJob, with_keys};
 use crate::files::{Destination, OutputFolder, Staging, refuse_shared};
-use crate::loading::load;
 use crate::path_text::shown;
 use crate::watch::Watch;
 
 /// The input of [`sequence`].
 #[derive(Clone, Copy, Debug)]
 pub struct Sequence<'a> {
-    /// The folder of the frames, or a point cache (pc2, mdd).
-    pub frames: &'a Path,
+    /// The edit, which has keys at frames, and its files. The output is the folder to write, in which frames keep their
+    /// names; it is made if it is missing. For a point cache it is the cache to write, of the same kind.
+    pub job: EditJob<'a>,
     /// The mesh whose vertices a point cache moves.
     pub mesh: Option<&'a Path>,
-    /// The edit, with keys at frames.
-    pub edit: &'a Beginning,
-    /// The place that the edit was read from, for messages.
-    pub edit_path: &'a Path,
-    /// The folder to write, in which frames keep their names; it is made if it is missing. For a point cache the cache to
-    /// write, of the same kind.
-    pub output: &'a Path,
-    /// The file for the report, if one is wanted.
-    pub report: Option<&'a Path>,
-    /// The distance within which vertices of the first frame are joined, in world units; `None` is the edit's own.
-    pub weld: Option<f64>,
-    /// The memory that the binding of a frame may use.
-    pub budget: Budget,
 }
 
 /// Bends the frames of a sequence and writes all of them and the report, or nothing at all.
 ///
 /// # Errors
 /// Any refusal of a frame, of the edit or of a result. Nothing is written then.
-pub fn sequence(job: &Sequence<'_>, watch: &Watch, staging: &Staging) -> Result<SequenceReport, EngineError> {
+pub fn sequence(sequence: &Sequence<'_>, watch: &Watch, staging: &Staging) -> Result<SequenceReport, EngineError> {
     let begun = Instant::now();
-    let report_to = job.report.map(Destination::of).transpose()?;
-    let Beginning::Edit(edit) = job.edit else {
-        return Err(EngineError::Arguments(
-            "--edit: a project has no keys: save it as an edit and give that keys".to_owned(),
-        ));
-    };
-    let kind = Kind::of(job)?;
-    let weld = match job.weld {
-        None => job.edit.weld_options(),
-        distance => WeldOptions { distance },
-    };
-    let first = load(kind.mesh(), &weld, watch)?;
-    check_not_empty(&first.path, &first.model)?;
+    let job = &sequence.job;
+    let report_to = job.report_to()?;
+    let edit = with_keys(job.edit)?;
+    let kind = Kind::of(sequence)?;
+    let (first, _) = job.load(kind.mesh(), watch)?;
     let rest = first.model.rest();
     let (source, to, gap) = match kind {
         Kind::Folder { folder, output, .. } => (Source::Folder(folder.frames), To::Folder(output), folder.gap),
-        Kind::Cache { format, to, .. } => (
-            Source::Cache(Cache::of(job.frames, format, &first)?),
-            To::File(to),
-            None,
-        ),
+        Kind::Cache { format, to, .. } => (Source::Cache(Cache::of(job.file, format, &first)?), To::File(to), None),
     };
-    let in_edit = |source| EngineError::Edit {
-        edit: job.edit_path.to_owned(),
-        source,
-    };
+    let in_edit = |source| job.refused(source);
     let needed = edit.frames_with_places(source.count()).map_err(in_edit)?;
     let setup = edit.resolve(&first.model).map_err(in_edit)?;
     check_bends(&first.path, &first.model, &setup.method)?;
@@ -149,38 +119,39 @@ enum Kind {
 }
 
 impl Kind {
-    fn of(job: &Sequence<'_>) -> Result<Self, EngineError> {
+    fn of(sequence: &Sequence<'_>) -> Result<Self, EngineError> {
+        let job = &sequence.job;
         let format = |path: &Path| PointCacheFormat::of_name(&path.to_string_lossy()).filter(|_| !path.is_dir());
-        let Some(own) = format(job.frames) else {
-            if job.mesh.is_some() {
+        let Some(own) = format(job.file) else {
+            if sequence.mesh.is_some() {
                 return Err(EngineError::Arguments(
                     "--mesh is for a point cache (.pc2 or .mdd), and frames in a folder need none: leave it out"
                         .to_owned(),
                 ));
             }
-            let folder = Folder::of(job.frames)?;
+            let folder = Folder::of(job.file)?;
             return Ok(Self::Folder {
                 mesh: folder.frames[0].clone(),
                 folder,
-                output: OutputFolder::of(job.output, ("FOLDER", job.frames))?,
+                output: OutputFolder::of(job.output, ("FOLDER", job.file))?,
             });
         };
         if format(job.output) != Some(own) {
             return Err(EngineError::Arguments(format!(
                 "--output {} must be a point cache of the same kind as {}: give it the same extension",
                 shown(job.output),
-                shown(job.frames)
+                shown(job.file)
             )));
         }
-        let Some(mesh) = job.mesh else {
+        let Some(mesh) = sequence.mesh else {
             return Err(EngineError::Arguments(format!(
                 "{} holds only positions: give the mesh that it was made of as --mesh",
-                shown(job.frames)
+                shown(job.file)
             )));
         };
         refuse_shared(
             ("--output", job.output),
-            [("FOLDER_OR_FILE", job.frames), ("--mesh", mesh)],
+            [("FOLDER_OR_FILE", job.file), ("--mesh", mesh)],
         )?;
         Ok(Self::Cache {
             format: own,

@@ -15,9 +15,8 @@ use pliant_stitch::NewShape;
 use serde_json::Value;
 
 use crate::EngineError;
-use crate::apply::check_not_empty;
 use crate::files::{self, Destination, NewFile, Staged, Staging};
-use crate::loading::{Loaded, load};
+use crate::loading::{Loaded, check_not_empty, load};
 use crate::saving;
 use crate::watch::Watch;
 use look::Dressed;

@@ -12,7 +12,7 @@ mod normals;
 mod outlines;
 mod pose;
 mod relative;
-mod stage;
+mod scene_view;
 mod wires;
 
 use std::collections::BTreeSet;
@@ -29,7 +29,7 @@ pub use ground::ground;
 pub use materials::{DecodedMaterials, EncodedMaterials};
 pub use outlines::outlines;
 pub use pose::Pose;
-pub use stage::{field, overlays, style, view};
+pub use scene_view::{faded_style, field, overlays, style, view};
 pub use wires::wires;
 
 use normals::NormalGroups;

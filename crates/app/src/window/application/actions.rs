@@ -11,6 +11,7 @@ use pliant_editor::Command;
 
 use crate::window::application::Application;
 use crate::window::application::saves::project_path;
+use crate::window::dialogs::about::{MANUAL, REPORTS};
 use crate::window::dialogs::file_dialog;
 use crate::window::dialogs::palette::Palette;
 use crate::window::dialogs::question::{Answer, Question, Then};
@@ -168,6 +169,11 @@ impl Application {
         match command {
             FileCommand::Open => self.unless_unsaved(Then::Open(None)),
             FileCommand::OpenPath(path) => self.ask_to_open(path),
+            FileCommand::NewFromSample => self.unless_unsaved(Then::Sample),
+            FileCommand::ShowInFolder => self.show_in_folder(),
+            FileCommand::Manual => self.show_page(MANUAL),
+            FileCommand::Report => self.show_page(REPORTS),
+            FileCommand::About => self.about.open = true,
             FileCommand::Save => self.save(),
             FileCommand::SaveAs => self.choose(Purpose::SaveAs),
             FileCommand::SaveMorph => self.choose(Purpose::SaveMorph),
@@ -304,6 +310,7 @@ impl Application {
         match then {
             Then::Open(Some(path)) => self.open(path),
             Then::Open(None) => self.choose(Purpose::Open),
+            Then::Sample => self.session.load(Source::Sample, &self.viewport.gpu(), &self.workers),
             Then::Close => self.closing = true,
         }
     }

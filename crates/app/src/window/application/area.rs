@@ -9,10 +9,13 @@ use pliant_editor::{Before, Cursor, Event, ToolMode};
 
 use crate::files::names::file_name;
 use crate::window::application::{Application, REST};
-use crate::window::bars::hints;
+use crate::window::bars::{hints, work_pose};
+use crate::window::files::desktop::Elsewhere;
+use crate::window::files::settings::PanelPage;
 use crate::window::input::Attention;
 use crate::window::input::event_queue::EventQueue;
 use crate::window::input::file_command::FileCommand;
+use crate::window::panels::handles;
 use crate::window::panels::notes::Note;
 use crate::window::viewport::before::OriginalView;
 use crate::window::viewport::method_views::MethodViews;
@@ -56,7 +59,14 @@ impl Application {
         }
         self.hear(ui, rect, &response);
         let mut commands = Outbox::default();
-        context_menu::show(&response, &self.editor, &mut commands);
+        work_pose::show(ui.ctx(), rect, &self.editor, &mut commands);
+        let renamed = context_menu::show(&response, &self.editor, &mut commands);
+        if let Some(handle) = renamed.and_then(|id| self.editor.document().handle(id)) {
+            handles::rename(ui.ctx(), handle);
+            self.is_panel_hidden = false;
+            self.settings.change(|settings| settings.page = PanelPage::Handles);
+            ui.ctx().request_repaint();
+        }
         for event in commands.take() {
             self.editor.handle(event);
             ui.ctx().request_repaint();
@@ -127,13 +137,14 @@ impl Application {
 
     /// Draws the views of the methods into `place` while they are compared.
     fn method_views(&mut self, ui: &mut egui::Ui, place: Option<egui::Rect>) -> Result<(), pliant_render::RenderError> {
-        let (Some(place), Some(comparison), Some(stage)) = (place, self.editor.comparison(), self.workers.stage())
+        let (Some(place), Some(comparison), Some(source)) =
+            (place, self.editor.comparison(), self.workers.pose_source())
         else {
             // Their data on the device is dropped with them.
             self.method_views = MethodViews::default();
             return Ok(());
         };
-        self.method_views.follow(ui.ctx(), comparison, &self.viewport, &stage);
+        self.method_views.follow(ui.ctx(), comparison, &self.viewport, &source);
         let are_settled = self.method_views.are_settled(comparison);
         let smooth = if are_settled {
             self.smoothness()
@@ -172,14 +183,14 @@ impl Application {
         smooth: Smoothness,
     ) -> Result<(), pliant_render::RenderError> {
         let before = self.editor.view().look.before;
-        let (Some(stage), true) = (self.workers.stage(), before != Before::Off) else {
+        let (Some(source), true) = (self.workers.pose_source(), before != Before::Off) else {
             // Its data on the device is dropped with it.
             self.original = None;
             return Ok(());
         };
         let new = || OriginalView::beside(ui.ctx(), &self.viewport);
         let original = self.original.get_or_insert_with(new);
-        original.follow(&self.editor, &self.viewport, &stage);
+        original.follow(&self.editor, &self.viewport, &source);
         if original.show(ui, rect, &self.editor, self.split, smooth)? {
             ui.ctx().request_repaint_after(REST);
         }
@@ -250,6 +261,9 @@ impl Application {
         }
         let problem = self.editor.view().problem;
         let toast = self.toast.show(ui.ctx(), rect, problem, &mut self.notes.headline);
+        if let Some(saved) = self.toast.take_to_show() {
+            self.show_elsewhere(Elsewhere::File(saved));
+        }
         if self.shows_hints && !self.settings.get().hints_seen && hints::show(ui, rect, toast, &self.editor) {
             self.settings.change(|settings| settings.hints_seen = true);
         }

@@ -11,7 +11,7 @@ use crate::window::dialogs::question::Question;
 use crate::window::panels::notes::Notes;
 use crate::window::session::OpenFile;
 use crate::window::threads::message::{ImagesOf, LoadedMaterials, Message, ModelToShow, Posed};
-use crate::window::threads::workers::Stage;
+use crate::window::threads::workers::PoseSource;
 use pliant_picture::drawing::{self, Field};
 
 impl Application {
@@ -80,6 +80,12 @@ impl Application {
                         browser.set_contents(&folder, contents);
                     }
                 }
+                Message::Shown(result) => {
+                    if let Err(sentence) = result {
+                        self.fail(sentence);
+                    }
+                }
+                Message::RecentPictures(pictures) => self.recent_pictures.take(pictures),
                 Message::Chosen(purpose, path) => self.chosen(purpose, path),
                 Message::NoDialog(purpose, suggested) => self.browse(purpose, &suggested),
             }
@@ -112,9 +118,10 @@ impl Application {
         } = opened;
         if let Some(path) = project.or(path).filter(|_| recovered.is_none()) {
             self.settings.change(|settings| settings.remember(&path));
+            self.recent_pictures.want(&path);
         }
         let name = self.session.open.as_ref().map(OpenFile::name).unwrap_or_default();
-        self.workers.set_stage(Stage {
+        self.workers.set_pose_source(PoseSource {
             loaded: Arc::clone(&loaded),
             drawing: Arc::clone(&drawing),
             field: self.wanted_field(),
@@ -213,12 +220,14 @@ impl Application {
     /// its binding is ready).
     pub(in crate::window) fn request_pose(&mut self) {
         let field = self.wanted_field();
-        let Some(mut stage) = self.workers.stage() else { return };
-        if stage.field != field {
-            stage.field = field;
-            self.workers.set_stage(stage.clone());
+        let Some(mut source) = self.workers.pose_source() else {
+            return;
+        };
+        if source.field != field {
+            source.field = field;
+            self.workers.set_pose_source(source.clone());
         }
         self.poses
-            .follow(self.editor.view().drawn, &self.viewport, &stage, &self.workers);
+            .follow(self.editor.view().drawn, &self.viewport, &source, &self.workers);
     }
 }

@@ -5,10 +5,11 @@ use std::time::{Duration, Instant};
 use eframe::egui::{self, CentralPanel, Panel};
 
 use crate::window::application::Application;
+use crate::window::bars::recent_menu::Recent;
 use crate::window::bars::status::{FileWork, FileWorkAnswer};
 use crate::window::bars::{status, tool_column, tool_settings, top_bar, view_bar};
 use crate::window::dialogs::palette::{Found, Outcome};
-use crate::window::dialogs::{keys_window, log, memory_window, question};
+use crate::window::dialogs::{about, keys_window, log, memory_window, question};
 use crate::window::input::event_queue::EventQueue;
 use crate::window::input::file_command::FileCommand;
 use crate::window::panels::{self, PanelChange};
@@ -22,6 +23,7 @@ impl eframe::App for Application {
             interface_pool::is_installed(),
             "the window's loops would wait behind jobs' on this thread"
         );
+        let _span = tracing::trace_span!("frame").entered();
         let (start, drawn_before) = (Instant::now(), self.drawing_time());
         let context = ui.ctx().clone();
         let has_heard = self.take_messages() || context.input(|input| input.events.iter().any(may_change_layout));
@@ -52,6 +54,7 @@ impl eframe::App for Application {
             self.file_command(&context, command);
         }
         self.save_what_has_settled();
+        self.take_recent_picture(&context);
         self.dialogs(&context);
         self.fill_screen(&context);
         self.remember_size(&context);
@@ -78,7 +81,15 @@ impl Application {
         let context = ui.ctx().clone();
         let title = self.session.open.as_ref().map(OpenFile::name).unwrap_or_default();
         let top = Panel::top("top").show(ui, |ui| {
-            top_bar::show(ui, &self.editor, &title, &self.settings.get().recent, commands)
+            let takes_keys = self.question.is_none()
+                && self.palette.is_none()
+                && !self.keys.takes_keys()
+                && !self.editor.is_acting();
+            let recent = Recent {
+                files: &self.settings.get().recent,
+                pictures: &self.recent_pictures,
+            };
+            top_bar::show(ui, &self.editor, takes_keys, &title, &recent, commands)
         });
         let device = self.viewport.software_device().map(str::to_owned);
         let file_work = FileWork {
@@ -168,6 +179,11 @@ impl Application {
         if self.memory.show(context, &mut self.settings) {
             self.take_memory();
         }
+        if self.about.open
+            && let Some(command) = self.about.show(context, &self.viewport.device())
+        {
+            self.file_command(context, command);
+        }
         let question = self.question.as_mut();
         if let Some(answer) = question.and_then(|question| question::ask(context, question)) {
             self.answer(answer);
@@ -190,8 +206,8 @@ impl Application {
     }
 
     /// Esc applies to the nearest thing. First come a question, the palette, an open menu, a field with the focus and
-    /// the gesture of a tool; then it closes the topmost window of the list of keys, the choice of memory and the log;
-    /// only if none is open does the editor get it.
+    /// the gesture of a tool; then it closes the topmost window of the list of keys, the choice of memory, the log and
+    /// the version; only if none is open does the editor get it.
     fn close_by_escape(&mut self, context: &egui::Context) {
         let is_taken = self.question.is_some()
             || self.palette.is_some()
@@ -204,6 +220,7 @@ impl Application {
             (keys_window::ID, &mut self.keys.open),
             (memory_window::ID, &mut self.memory.open),
             (log::ID, &mut self.log.open),
+            (about::ID, &mut self.about.open),
         ];
         let mut open: Vec<_> = windows.into_iter().filter(|(_, open)| **open).collect();
         if is_taken || open.is_empty() {

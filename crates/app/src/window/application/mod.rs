@@ -3,6 +3,7 @@
 pub(in crate::window) mod actions;
 pub(in crate::window) mod area;
 pub(in crate::window) mod arrivals;
+mod elsewhere;
 pub(in crate::window) mod frame;
 pub(in crate::window) mod redrawing;
 pub(in crate::window) mod saves;
@@ -18,13 +19,16 @@ use glam::DVec3;
 use pliant_editor::{Command, Editor, Event, KeyMap, Shading};
 use pliant_mesh::Cancel;
 
+use super::bars::recent_menu::RecentPictures;
 use super::bars::toast::Toast;
+use super::dialogs::about::About;
 use super::dialogs::keys_window::KeysWindow;
 use super::dialogs::log::Log;
 use super::dialogs::memory_window::MemoryWindow;
 use super::dialogs::palette::Palette;
 use super::dialogs::question::{Question, Then};
 use super::files::app_directories::AppDirectories;
+use super::files::desktop::Desktop;
 use super::files::recovery::Recovery;
 use super::files::recovery::left::{left_in, remove};
 use super::files::rest_mesh::MeshSource;
@@ -74,6 +78,10 @@ pub struct Application {
     pub(super) log: Log,
     pub(super) keys: KeysWindow,
     pub(super) memory: MemoryWindow,
+    pub(super) about: About,
+    /// The file manager and the browser.
+    pub(super) desktop: Desktop,
+    pub(super) recent_pictures: RecentPictures,
     pub(super) question: Option<Question>,
     /// The action after the end of the save that comes first.
     pub(super) after_saving: Option<Then>,
@@ -165,6 +173,9 @@ impl Application {
             log: Log::default(),
             keys: KeysWindow::default(),
             memory: MemoryWindow::default(),
+            about: About::default(),
+            desktop: Desktop::default(),
+            recent_pictures: RecentPictures::in_folder(places.pictures.clone()),
             recovery,
             question: (!left.is_empty()).then_some(Question::Recover(left)),
             after_saving: None,
@@ -185,6 +196,7 @@ impl Application {
         };
         application.take_keys();
         application.take_memory();
+        application.read_recent_pictures();
         Ok(application)
     }
 
@@ -206,6 +218,7 @@ impl Application {
         self.viewport = Viewport::new(state).map_err(system)?;
         self.original = None;
         self.method_views = MethodViews::default();
+        self.recent_pictures.forget_textures();
         self.workers.wake(context.egui_ctx.clone());
         self.input = Input::default();
         self.stop_images();
@@ -222,6 +235,11 @@ impl Application {
             "The graphics device was lost and opened again; the document is unchanged.".to_owned(),
         ));
         Ok(())
+    }
+
+    /// From now on the file manager and the browser are replaced by `desktop`, for programs that drive the window.
+    pub fn set_desktop(&mut self, desktop: Desktop) {
+        self.desktop = desktop;
     }
 
     /// Digits of the numeric pad that went down since the last frame, in order.
@@ -288,7 +306,7 @@ impl Application {
     /// The newest sentence about a file that was saved or could not be opened or saved.
     pub fn headline(&self) -> Option<&str> {
         match self.notes.headline.as_ref()? {
-            Note::Done(sentence) | Note::Failed(sentence) => Some(sentence),
+            Note::Done(sentence) | Note::Saved(sentence, _) | Note::Failed(sentence) => Some(sentence),
         }
     }
 

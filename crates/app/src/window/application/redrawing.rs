@@ -61,15 +61,15 @@ impl Application {
             surface,
             displacements,
         } = *redrawn;
-        let (Some(open), Some(mut stage)) = (&mut self.session.open, self.workers.stage()) else {
+        let (Some(open), Some(mut source)) = (&mut self.session.open, self.workers.pose_source()) else {
             return;
         };
         if !Arc::ptr_eq(&open.loaded, &loaded) {
             return;
         }
         open.drawing = Arc::clone(&drawing);
-        stage.drawing = Arc::clone(&drawing);
-        self.workers.set_stage(stage);
+        source.drawing = Arc::clone(&drawing);
+        self.workers.set_pose_source(source);
         self.poses.cancel();
         self.stop_images();
         let lowest = loaded.model.bounds().map_or(DVec3::ZERO, |bounds| bounds.min);

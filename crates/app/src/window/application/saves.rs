@@ -95,7 +95,7 @@ impl Application {
 
     fn shape(&self) -> Shape {
         Shape {
-            displacements: Arc::clone(self.editor.view().displacements),
+            displacements: self.editor.lasting_shape(),
             inside_out: Arc::clone(self.editor.document().inside_out()),
             dye: self.editor.document().fluid().kept.clone(),
         }
@@ -185,6 +185,7 @@ impl Application {
         };
         if let Some(saved) = saved {
             self.settings.change(|settings| settings.remember(&written.path));
+            self.recent_pictures.want(&written.path);
             if self.session.is_of_open(written) {
                 self.editor.handle(Event::Saved(saved, written.mark));
             }
@@ -198,7 +199,7 @@ impl Application {
             sentence.push(' ');
             sentence.push_str(note);
         }
-        self.notes.headline = Some(Note::Done(sentence));
+        self.notes.headline = Some(Note::Saved(sentence, written.path.clone()));
         self.go_on_after_saving();
     }
 

@@ -3,6 +3,8 @@
 
 mod flow_settings;
 pub(in crate::window) mod hints;
+mod menu_keys;
+pub(in crate::window) mod recent_menu;
 mod share_slider;
 pub(in crate::window) mod status;
 pub(in crate::window) mod toast;
@@ -10,3 +12,4 @@ pub(in crate::window) mod tool_column;
 pub(in crate::window) mod tool_settings;
 pub(in crate::window) mod top_bar;
 pub(in crate::window) mod view_bar;
+pub(in crate::window) mod work_pose;

@@ -1,6 +1,6 @@
 //! The line below the view: the program's activity, and the next possible step.
 
-use eframe::egui::{self, Color32, ProgressBar, RichText, Spinner};
+use eframe::egui::{self, Align, Color32, Label, Layout, ProgressBar, RichText, Spinner};
 use pliant_editor::{Command, Editor};
 
 use crate::window::widgets::outbox::Outbox;
@@ -22,6 +22,9 @@ pub fn done(ui: &egui::Ui) -> Color32 {
         Color32::from_rgb(30, 108, 36)
     }
 }
+
+/// The share of the line that a waiting save's sentence may take.
+const WAITING_SHARE: f32 = 0.5;
 
 /// The activity on files.
 pub struct FileWork {
@@ -53,34 +56,8 @@ pub fn show(
     let view = editor.view();
     let mut answer = None;
     ui.horizontal(|ui| {
-        if let Some(waiting) = &file_work.waiting {
-            ui.add(Spinner::new().size(14.0));
-            ui.label(waiting);
-            if ui.small_button("Save now").clicked() {
-                answer = Some(FileWorkAnswer::SaveAsItIs);
-            }
-            if ui.small_button("Don't save").clicked() {
-                answer = Some(FileWorkAnswer::Stop);
-            }
-        }
-        if let Some((doing, share)) = file_work.doing {
-            progress(ui, doing, share);
-            if ui.small_button("Stop").clicked() {
-                answer = Some(FileWorkAnswer::Stop);
-            }
-        }
-        for (kind, share) in &view.jobs {
-            // A job too short to notice needs no bar.
-            if *share > 0.0 {
-                progress(ui, kind.doing(), *share);
-            }
-        }
-        if file_work.is_loading_textures {
-            ui.add(Spinner::new().size(14.0));
-            ui.label(RichText::new("loading textures…").weak());
-        }
-        ui.label(&view.status);
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+        // The right end first: the sentences have the room that it leaves.
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             if let Some(name) = software_device {
                 ui.label(RichText::new("software drawing").weak())
                     .on_hover_text(format!(
@@ -90,13 +67,53 @@ pub fn show(
             if !view.jobs.is_empty() && ui.small_button("Stop").clicked() {
                 commands.push(Command::CancelJobs);
             }
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                answer = file_line(ui, file_work);
+                for (kind, share) in &view.jobs {
+                    // A job too short to notice needs no bar.
+                    if *share > 0.0 {
+                        progress(ui, kind.doing(), *share);
+                    }
+                }
+                if file_work.is_loading_textures {
+                    ui.add(Spinner::new().size(14.0));
+                    ui.add(Label::new(RichText::new("loading textures…").weak()).truncate());
+                }
+                ui.add(Label::new(&view.status).truncate());
+            });
         });
     });
+    answer
+}
+
+/// The activity on files, and the ways to end it.
+fn file_line(ui: &mut egui::Ui, file_work: &FileWork) -> Option<FileWorkAnswer> {
+    let mut answer = None;
+    if let Some(waiting) = &file_work.waiting {
+        ui.add(Spinner::new().size(14.0));
+        let width = WAITING_SHARE * ui.available_width();
+        ui.scope(|ui| {
+            ui.set_max_width(width);
+            ui.add(Label::new(waiting).truncate());
+        });
+        if ui.small_button("Save now").clicked() {
+            answer = Some(FileWorkAnswer::SaveAsItIs);
+        }
+        if ui.small_button("Don't save").clicked() {
+            answer = Some(FileWorkAnswer::Stop);
+        }
+    }
+    if let Some((doing, share)) = file_work.doing {
+        progress(ui, doing, share);
+        if ui.small_button("Stop").clicked() {
+            answer = Some(FileWorkAnswer::Stop);
+        }
+    }
     answer
 }
 
 fn progress(ui: &mut egui::Ui, doing: &str, share: f32) {
     ui.add(ProgressBar::new(share).desired_width(110.0).desired_height(14.0))
         .on_hover_text(doing);
-    ui.label(RichText::new(format!("{doing}…")).weak());
+    ui.add(Label::new(RichText::new(format!("{doing}…")).weak()).truncate());
 }

@@ -1,10 +1,12 @@
 //! The result of a person's request, over the view's lower right corner, where it moves nothing else.
 
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use eframe::egui::{self, Align2, Id, Rect, RichText, Role, WidgetInfo, vec2};
 
 use super::status::{done, failed};
+use crate::window::input::file_command::FileCommand;
 use crate::window::panels::notes::Note;
 
 /// The time that good news stays. The log keeps it afterwards.
@@ -18,9 +20,16 @@ const WIDTH: f32 = 460.0;
 #[derive(Debug, Default)]
 pub struct Toast {
     shown: Option<(Note, Instant)>,
+    /// The saved file to show in its folder.
+    to_show: Option<PathBuf>,
 }
 
 impl Toast {
+    /// The saved file that the person wants to see in its folder, once.
+    pub fn take_to_show(&mut self) -> Option<PathBuf> {
+        self.to_show.take()
+    }
+
     /// Shows the document's problem (`problem`), and the newest success or failure with a file (`headline`), until the
     /// person closes it. Returns its place, if anything is shown.
     pub fn show(
@@ -38,9 +47,9 @@ impl Toast {
         let left = GOOD_NEWS.saturating_sub(since.elapsed());
         let note = headline.clone().filter(|note| match note {
             Note::Failed(_) => true,
-            Note::Done(_) => !left.is_zero(),
+            Note::Done(_) | Note::Saved(..) => !left.is_zero(),
         });
-        if let Some(Note::Done(_)) = note {
+        if let Some(Note::Done(_) | Note::Saved(..)) = note {
             context.request_repaint_after(left);
         }
         if problem.is_none() && note.is_none() {
@@ -59,9 +68,10 @@ impl Toast {
                         ui.add(egui::Label::new(RichText::new(problem).color(failed(ui))).wrap());
                     }
                     let Some(note) = note else { return };
-                    let (sentence, colour) = match note {
-                        Note::Done(sentence) => (sentence, done(ui)),
-                        Note::Failed(sentence) => (sentence, failed(ui)),
+                    let (sentence, colour, saved) = match note {
+                        Note::Done(sentence) => (sentence, done(ui), None),
+                        Note::Saved(sentence, path) => (sentence, done(ui), Some(path)),
+                        Note::Failed(sentence) => (sentence, failed(ui), None),
                     };
                     ui.horizontal_top(|ui| {
                         let dismiss = ui.small_button("×").on_hover_text("Dismiss");
@@ -71,7 +81,12 @@ impl Toast {
                         if dismiss.clicked() {
                             *headline = None;
                         }
-                        ui.add(egui::Label::new(RichText::new(sentence).color(colour)).wrap());
+                        ui.vertical(|ui| {
+                            ui.add(egui::Label::new(RichText::new(sentence).color(colour)).wrap());
+                            if saved.is_some() && ui.small_button(FileCommand::ShowInFolder.name()).clicked() {
+                                self.to_show = saved;
+                            }
+                        });
                     });
                 });
             });

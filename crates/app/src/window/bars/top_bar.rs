@@ -1,33 +1,47 @@
 //! The bar above everything: the menus, and the open file.
 
-use std::path::PathBuf;
-
 use eframe::egui::{self, MenuBar, RichText};
 use pliant_editor::{
     Before, Clay, Command, Editor, NamedView, Orbit, Projection, RegionAction, Shading, StiffnessChange, Tips, UpAxis,
 };
 
+use super::menu_keys;
+use super::recent_menu::{self, Recent};
 use crate::window::input::file_command::FileCommand;
+use crate::window::input::own_keys::{MENUS, menu_key};
 use crate::window::threads::message::{Ground, PictureKind};
 use crate::window::widgets::command_button::{command_button, menu_choice};
 use crate::window::widgets::outbox::Outbox;
 
-/// Shows the bar. Commands for the editor are added to `commands`; one for files is returned.
+/// Shows the bar, whose menus open by keys if it `takes_keys`. Commands for the editor are added to `commands`; one for
+/// files is returned.
 pub fn show(
     ui: &mut egui::Ui,
     editor: &Editor,
+    takes_keys: bool,
     file_name: &str,
-    recent: &[PathBuf],
+    recent: &Recent<'_>,
     commands: &mut Outbox,
 ) -> Option<FileCommand> {
     let mut chosen = None;
     MenuBar::new().ui(ui, |ui| {
-        ui.menu_button("File", |ui| chosen = file_menu(ui, editor, recent));
-        ui.menu_button("Edit", |ui| edit_menu(ui, editor, commands));
-        ui.menu_button("Region", |ui| region_menu(ui, editor, commands));
-        ui.menu_button("View", |ui| view_menu(ui, editor, commands));
-        ui.menu_button("Window", |ui| file_commands(ui, &WINDOW_MENU, &mut chosen));
-        ui.menu_button("Help", |ui| file_commands(ui, &HELP_MENU, &mut chosen));
+        let [file, edit, region, view, window, help] = MENUS.map(|(name, _)| name);
+        let buttons = [
+            ui.menu_button(file, |ui| chosen = file_menu(ui, editor, recent)),
+            ui.menu_button(edit, |ui| edit_menu(ui, editor, commands)),
+            ui.menu_button(region, |ui| region_menu(ui, editor, commands)),
+            ui.menu_button(view, |ui| view_menu(ui, editor, commands)),
+            ui.menu_button(window, |ui| file_commands(ui, &WINDOW_MENU, &mut chosen)),
+            ui.menu_button(help, |ui| file_commands(ui, &HELP_MENU, &mut chosen)),
+        ];
+        let with_letters = buttons.into_iter().zip(MENUS).map(|(button, (_, letter))| {
+            let key = ui.ctx().format_shortcut(&menu_key(letter));
+            (button.response.on_hover_text(key), letter)
+        });
+        let buttons: Vec<_> = with_letters.collect();
+        if takes_keys {
+            menu_keys::follow(ui.ctx(), &buttons);
+        }
         let unsaved = if editor.view().unsaved { " •" } else { "" };
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             ui.label(RichText::new(format!("{file_name}{unsaved}")).weak());
@@ -36,14 +50,16 @@ pub fn show(
     chosen
 }
 
-fn file_menu(ui: &mut egui::Ui, editor: &Editor, recent: &[PathBuf]) -> Option<FileCommand> {
+fn file_menu(ui: &mut egui::Ui, editor: &Editor, recent: &Recent<'_>) -> Option<FileCommand> {
     let mut chosen = None;
     let is_open = editor.view().model.is_some();
     for command in [
         FileCommand::Open,
+        FileCommand::NewFromSample,
         FileCommand::Save,
         FileCommand::SaveAs,
         FileCommand::SaveMorph,
+        FileCommand::ShowInFolder,
         FileCommand::SaveProject,
         FileCommand::SaveProjectAs,
         FileCommand::ExportEdit,
@@ -61,7 +77,10 @@ fn file_menu(ui: &mut egui::Ui, editor: &Editor, recent: &[PathBuf]) -> Option<F
         ) {
             ui.separator();
         }
-        let always = matches!(command, FileCommand::Open | FileCommand::Quit);
+        let always = matches!(
+            command,
+            FileCommand::Open | FileCommand::NewFromSample | FileCommand::Quit
+        );
         let mut button = egui::Button::new(command.name());
         if let Some(shortcut) = command.shortcut() {
             button = button.shortcut_text(ui.ctx().format_shortcut(&shortcut));
@@ -71,17 +90,7 @@ fn file_menu(ui: &mut egui::Ui, editor: &Editor, recent: &[PathBuf]) -> Option<F
             ui.close();
         }
         if command == FileCommand::Open {
-            ui.add_enabled_ui(!recent.is_empty(), |ui| {
-                ui.menu_button("Open recent", |ui| {
-                    for path in recent {
-                        let shown = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
-                        if ui.button(shown).on_hover_text(path.display().to_string()).clicked() {
-                            chosen = Some(FileCommand::OpenPath(path.clone()));
-                            ui.close();
-                        }
-                    }
-                });
-            });
+            chosen = chosen.take().or(recent_menu::show(ui, recent));
         }
     }
     chosen
@@ -127,6 +136,11 @@ fn edit_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
                 ui.close();
             }
         }
+    }
+    ui.separator();
+    if menu_choice(ui, editor, &Command::WorkPose, editor.document().is_in_work_pose()) {
+        commands.push(Command::WorkPose);
+        ui.close();
     }
 }
 
@@ -195,13 +209,15 @@ const WINDOW_MENU: [&[(FileCommand, Option<&str>)]; 3] = [
 ];
 
 /// The window's information.
-const HELP_MENU: [&[(FileCommand, Option<&str>)]; 2] = [
+const HELP_MENU: [&[(FileCommand, Option<&str>)]; 3] = [
     &[
+        (FileCommand::Manual, None),
         (FileCommand::Palette, None),
         (FileCommand::Keys, None),
         (FileCommand::Hints, None),
     ],
-    &[(FileCommand::Log, None)],
+    &[(FileCommand::Log, None), (FileCommand::Report, None)],
+    &[(FileCommand::About, None)],
 ];
 
 fn file_commands(ui: &mut egui::Ui, groups: &Groups<'_>, chosen: &mut Option<FileCommand>) {

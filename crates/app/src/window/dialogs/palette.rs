@@ -182,6 +182,14 @@ fn entries(context: &egui::Context, editor: &Editor, typed: &str) -> Vec<Entry> 
     found.into_iter().map(|(_, entry)| entry).collect()
 }
 
+/// Returns true if a command's name or its keywords contain the typed text, in lower case.
+pub fn is_named(name: &str, keywords: &str, typed: &str) -> bool {
+    rank(name, keywords, typed).is_some_and(|rank| rank < LETTERS)
+}
+
+/// The rank of names that only have the typed letters in order.
+const LETTERS: u8 = 3;
+
 fn rank(name: &str, keywords: &str, typed: &str) -> Option<u8> {
     if name.starts_with(typed) {
         return Some(0);
@@ -196,7 +204,7 @@ fn rank(name: &str, keywords: &str, typed: &str) -> Option<u8> {
     typed
         .chars()
         .all(|letter| letters.any(|other| other == letter))
-        .then_some(3)
+        .then_some(LETTERS)
 }
 
 #[cfg(test)]

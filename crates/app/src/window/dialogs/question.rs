@@ -60,6 +60,8 @@ pub enum ChangedOffer {
 pub enum Then {
     /// Open this file, or ask for one.
     Open(Option<PathBuf>),
+    /// Open the built-in sample.
+    Sample,
     /// Close the window.
     Close,
 }
@@ -245,7 +247,7 @@ fn ago(written: SystemTime) -> String {
 fn discard(ui: &mut egui::Ui, then: &Then, name: &str, answer: &mut Option<Answer>) {
     ui.heading("There is unsaved work");
     let end = match then {
-        Then::Open(_) => "Opening another file discards them.",
+        Then::Open(_) | Then::Sample => "Opening another file discards them.",
         Then::Close => "Closing the window discards them.",
     };
     ui.label(format!("{} does not have your last changes. {end}", quoted(name)));

@@ -1,4 +1,5 @@
-//! The program's own directories: for settings, and for the work of a session that ends without saving.
+//! The program's own directories: for settings, for the work of a session that ends without saving, and for pictures of
+//! recent files.
 
 use std::path::PathBuf;
 
@@ -9,6 +10,8 @@ pub struct AppDirectories {
     pub settings: Option<PathBuf>,
     /// The folder of sessions that may need recovery, and of reports of faults.
     pub recovery: Option<PathBuf>,
+    /// The folder of the small pictures of recent files.
+    pub pictures: Option<PathBuf>,
 }
 
 impl AppDirectories {
@@ -19,6 +22,7 @@ impl AppDirectories {
             recovery: dirs::state_dir()
                 .or_else(dirs::data_local_dir)
                 .map(|folder| folder.join("pliant").join("recovery")),
+            pictures: dirs::cache_dir().map(|folder| folder.join("pliant").join("pictures")),
         }
     }
 }

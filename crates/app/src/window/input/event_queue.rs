@@ -6,7 +6,7 @@
 
 use std::collections::VecDeque;
 
-use eframe::egui::{Context, Event, Key, Plugin, RawInput};
+use eframe::egui::{Context, Event, Key, Plugin, PointerButton, RawInput};
 
 /// Two clicks within so many seconds are a double click, as on most systems. Events within one frame have one time, so
 /// this is also the slowest frame with which double clicks work.
@@ -26,6 +26,8 @@ pub struct EventQueue {
     heard: f64,
     /// Keys that are down: if the system reports one again it is a repeat, which otherwise only egui itself marks.
     held: Vec<Key>,
+    /// The pointer's buttons that are down, each with the event of its release at the pointer's last place.
+    held_buttons: Vec<(PointerButton, Event)>,
     typing: bool,
     /// Frames, this one included, in which the text typed before Escape is still undone.
     escaped: u8,
@@ -75,12 +77,52 @@ impl EventQueue {
         }
     }
 
+    /// The releases of the buttons that are down when the window loses the focus: the system does not say when a button
+    /// goes up over a window that was minimised, so that its drag would go on without the button.
+    fn releases_before(&mut self, event: &Event) -> Vec<Event> {
+        match event {
+            Event::PointerButton {
+                pos,
+                button,
+                pressed,
+                modifiers,
+            } => {
+                self.held_buttons.retain(|(held, _)| held != button);
+                if *pressed {
+                    let release = Event::PointerButton {
+                        pos: *pos,
+                        button: *button,
+                        pressed: false,
+                        modifiers: *modifiers,
+                    };
+                    self.held_buttons.push((*button, release));
+                }
+            }
+            Event::PointerMoved(now) => {
+                for (_, release) in &mut self.held_buttons {
+                    if let Event::PointerButton { pos, .. } = release {
+                        *pos = *now;
+                    }
+                }
+            }
+            Event::WindowFocused(false) => {
+                let held = std::mem::take(&mut self.held_buttons);
+                return held.into_iter().map(|(_, release)| release).collect();
+            }
+            _ => {}
+        }
+        Vec::new()
+    }
+
     /// Takes the events since the last frame and leaves those for this frame. `typing` says whether a field has the
     /// keyboard: letters for it come together.
     fn portion(&mut self, events: &mut Vec<Event>, typing: bool) {
         self.typing = typing;
         for mut event in events.drain(..) {
             self.tell_repeat(&mut event);
+            for release in self.releases_before(&event) {
+                self.waiting.push_back((release, self.now));
+            }
             self.waiting.push_back((event, self.now));
         }
         let (mut is_decided, mut is_button) = (false, false);
@@ -160,7 +202,7 @@ impl Plugin for EventQueue {
 
 #[cfg(test)]
 mod tests {
-    use eframe::egui::{InputState, Modifiers, PointerButton, pos2};
+    use eframe::egui::{InputState, Modifiers, pos2};
 
     use super::*;
 
@@ -229,6 +271,32 @@ mod tests {
         }
         assert_eq!(counts, [false, true]);
         assert!(times.windows(2).all(|pair| pair[0] < pair[1]), "{times:?}");
+    }
+
+    #[test]
+    fn a_button_that_is_down_when_the_window_loses_the_focus_is_released_where_the_pointer_is() {
+        let place = pos2(7.0, 8.0);
+        let left = Event::WindowFocused(false);
+        let events = vec![button(true), Event::PointerMoved(place), left.clone(), left.clone()];
+        let all = portions(events, false).concat();
+        let released = Event::PointerButton {
+            pos: place,
+            button: PointerButton::Primary,
+            pressed: false,
+            modifiers: Modifiers::NONE,
+        };
+        assert_eq!(
+            all,
+            [
+                button(true),
+                Event::PointerMoved(place),
+                released,
+                left.clone(),
+                left.clone()
+            ]
+        );
+        let unheld = vec![button(true), button(false), left];
+        assert_eq!(portions(unheld.clone(), false).concat(), unheld);
     }
 
     #[test]

@@ -16,12 +16,16 @@ pub enum FileCommand {
     Open,
     /// Open this file.
     OpenPath(PathBuf),
+    /// Open the built-in sample.
+    NewFromSample,
     /// Save.
     Save,
     /// Save under another name.
     SaveAs,
     /// Save a copy with its mesh at rest and the present shape as a morph target.
     SaveMorph,
+    /// Show the open file in its folder, in the system's file manager.
+    ShowInFolder,
     /// Save the project.
     SaveProject,
     /// Save the project under another name.
@@ -54,6 +58,12 @@ pub enum FileCommand {
     Scale(i8),
     /// Show the first steps again.
     Hints,
+    /// Open the manual.
+    Manual,
+    /// Open the page to which faults are reported.
+    Report,
+    /// Show the version, the licence and the graphics device.
+    About,
     /// Save a picture of the view.
     SavePicture(PictureKind),
     /// Close the window.
@@ -115,17 +125,24 @@ impl FileCommand {
             | Self::Memory
             | Self::NextTheme
             | Self::Hints
+            | Self::Manual
+            | Self::Report
+            | Self::About
+            | Self::NewFromSample
+            | Self::ShowInFolder
             | Self::OpenPath(_)
             | Self::SavePicture(_) => None,
         }
     }
 
     /// All commands that need no path, in the order of the menu.
-    pub const LISTED: [Self; 19] = [
+    pub const LISTED: [Self; 24] = [
         Self::Open,
+        Self::NewFromSample,
         Self::Save,
         Self::SaveAs,
         Self::SaveMorph,
+        Self::ShowInFolder,
         Self::SaveProject,
         Self::SaveProjectAs,
         Self::ExportEdit,
@@ -143,6 +160,9 @@ impl FileCommand {
         Self::Memory,
         Self::NextTheme,
         Self::Hints,
+        Self::Manual,
+        Self::Report,
+        Self::About,
         Self::Quit,
     ];
 
@@ -150,6 +170,11 @@ impl FileCommand {
     pub fn name(&self) -> &'static str {
         match self {
             Self::Open | Self::OpenPath(_) => "Open…",
+            Self::NewFromSample => "New from sample",
+            Self::ShowInFolder => "Show in folder",
+            Self::Manual => "Manual",
+            Self::Report => "Report a fault",
+            Self::About => "About Pliant",
             Self::Save => "Save model",
             Self::SaveAs => "Save model as…",
             Self::SaveMorph => "Save as morph target…",
@@ -178,6 +203,11 @@ impl FileCommand {
     pub fn keywords(&self) -> &'static str {
         match self {
             Self::Open | Self::OpenPath(_) => "load import file",
+            Self::NewFromSample => "open example creature try",
+            Self::ShowInFolder => "file manager explorer finder reveal directory",
+            Self::Manual => "help documentation guide",
+            Self::Report => "bug issue feedback",
+            Self::About => "version licence license graphics device card help",
             Self::Save | Self::SaveAs => "write file",
             Self::SaveMorph => "blend shape key gltf glb write file",
             Self::SaveProject | Self::SaveProjectAs => "pliant file document",

@@ -9,6 +9,21 @@ use pliant_editor::{Key, Modifiers, Shortcut};
 use super::{held_modifiers, key_of, pressed_key};
 use crate::window::input::file_command::FileCommand;
 
+/// The menus of the bar, each with the letter that opens it together with Alt. Alt and H shows everything that is hidden.
+pub const MENUS: [(&str, egui::Key); 6] = [
+    ("File", egui::Key::F),
+    ("Edit", egui::Key::E),
+    ("Region", egui::Key::R),
+    ("View", egui::Key::V),
+    ("Window", egui::Key::W),
+    ("Help", egui::Key::P),
+];
+
+/// The key that opens a menu with this letter.
+pub fn menu_key(letter: egui::Key) -> egui::KeyboardShortcut {
+    egui::KeyboardShortcut::new(egui::Modifiers::ALT, letter)
+}
+
 /// The key that went down in this frame, even if the window system has turned it into "copy", "cut" or "paste"; a
 /// sentence if a command can't have it.
 pub fn pressed(input: &egui::InputState) -> Option<Result<Shortcut, String>> {
@@ -65,6 +80,10 @@ fn holder(key: Shortcut) -> Option<String> {
         .find(|command| command.shortcut().and_then(editors) == Some(key));
     if let Some(command) = of_files {
         return Some(format!("“{}”", command.name().trim_end_matches('…')));
+    }
+    let menu = MENUS.iter().find(|(_, letter)| editors(menu_key(*letter)) == Some(key));
+    if let Some((name, _)) = menu {
+        return Some(format!("the menu “{name}”"));
     }
     let of_text = [('c', "copying text"), ('x', "cutting text"), ('v', "pasting text")];
     let is_of_text = |letter: char| key.modifiers == Modifiers::CTRL && key.key == Key::Character(letter);

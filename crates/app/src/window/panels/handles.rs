@@ -103,9 +103,20 @@ fn swatch(ui: &mut egui::Ui, handle: &Handle, commands: &mut Outbox) {
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &label));
 }
 
+/// egui's id of the name that is being edited.
+fn renamed_id() -> egui::Id {
+    egui::Id::unique("renamed handle")
+}
+
+/// Turns the handle's name in the list into a field.
+pub fn rename(context: &egui::Context, handle: &Handle) {
+    let edited = (handle.id, handle.name.clone());
+    context.data_mut(|data| data.insert_temp(renamed_id(), edited));
+}
+
 /// The name: a click selects it, with Ctrl in addition to others; a double click renames.
 fn name(ui: &mut egui::Ui, handle: &Handle, is_selected: bool, commands: &mut Outbox) {
-    let editing = egui::Id::unique("renamed handle");
+    let editing = renamed_id();
     let typed: Option<(HandleId, String)> = ui.data(|data| data.get_temp(editing));
     if let Some((id, mut text)) = typed
         && id == handle.id
@@ -128,7 +139,7 @@ fn name(ui: &mut egui::Ui, handle: &Handle, is_selected: bool, commands: &mut Ou
         .selectable_label(is_selected, &handle.name)
         .on_hover_text("Click selects the handle, Ctrl-click selects several, double-click renames it.");
     if label.double_clicked() {
-        ui.data_mut(|data| data.insert_temp(editing, (handle.id, handle.name.clone())));
+        rename(ui.ctx(), handle);
     } else if label.clicked() {
         commands.push(if ui.input(|input| input.modifiers.command) {
             Command::ToggleSelected(handle.id)
@@ -189,14 +200,17 @@ fn triple(
     set: impl Fn(DVec3) -> Command,
 ) {
     let name = row_label(ui, label);
-    let suffix = if units == DEGREES { "°" } else { "" };
+    let (suffix, decimals) = if units == DEGREES { ("°", 1) } else { ("", 3) };
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
         ui.spacing_mut().interact_size.x = 54.0;
         for axis in 0..3 {
             let mut changed = value;
             let field = number_field(ui, &mut changed[axis], |ui, value| {
-                let field = dragged(ui, value, units).speed(speed).max_decimals(3).suffix(suffix);
+                let field = dragged(ui, value, units)
+                    .speed(speed)
+                    .max_decimals(decimals)
+                    .suffix(suffix);
                 let field = field.custom_formatter(without_minus_zero);
                 ui.add(field)
             });
@@ -279,11 +293,7 @@ fn reach(ui: &mut egui::Ui, editor: &Editor, handle: &Handle, commands: &mut Out
 /// The handle with which this one rides along, if there are others.
 fn parent(ui: &mut egui::Ui, editor: &Editor, handle: &Handle, commands: &mut Outbox) {
     let document = editor.document();
-    let others = document
-        .handles()
-        .iter()
-        .filter(|other| other.id != handle.id && !other.is_pin);
-    let others: Vec<&Handle> = others.collect();
+    let others: Vec<&Handle> = document.possible_parents(handle.id).collect();
     if others.is_empty() {
         return;
     }

@@ -1,5 +1,7 @@
 //! Sentences for the person that are not part of the editor's status: about files and the results of requests.
 
+use std::path::PathBuf;
+
 /// The person's information beside the status line.
 #[derive(Debug, Default)]
 pub struct Notes {
@@ -14,6 +16,8 @@ pub struct Notes {
 pub enum Note {
     /// A success.
     Done(String),
+    /// A file was saved under this path.
+    Saved(String, PathBuf),
     /// A failure.
     Failed(String),
 }

@@ -3,7 +3,7 @@
 use eframe::egui;
 use pliant_editor::{Command, Editor};
 
-use crate::window::widgets::command_button::command_button;
+use crate::window::widgets::command_button::{command_button, command_choice};
 use crate::window::widgets::name_label::name_label;
 use crate::window::widgets::outbox::Outbox;
 
@@ -26,11 +26,6 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
         ui.push_id(("pose", place), |ui| {
             ui.horizontal(|ui| {
                 let is_shown = editor.document().is_in_pose(pose);
-                let (label, renamed) = name_label(ui, "the pose", place, &pose.name, is_shown);
-                label.on_hover_text("Double-click to rename.");
-                if let Some(name) = renamed {
-                    commands.push(Command::RenamePose(place, name));
-                }
                 ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                     let mut button = |verb: &str, says: &str, is_enabled: bool, command: Command| {
                         let button = ui.add_enabled(is_enabled, egui::Button::new(verb).small());
@@ -50,6 +45,14 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
                     button("Update", says, !is_shown, Command::RenewPose(place));
                     let says = "Moves everything back to this pose. Locked handles and pins stay.";
                     button("Apply", says, !is_shown, Command::TakePose(place));
+                    // The name has the room that the buttons leave.
+                    ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+                        let (label, renamed) = name_label(ui, "the pose", place, &pose.name, is_shown);
+                        label.on_hover_text(format!("{}: double-click to rename.", pose.name));
+                        if let Some(name) = renamed {
+                            commands.push(Command::RenamePose(place, name));
+                        }
+                    });
                 });
             });
         });
@@ -58,7 +61,12 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
 }
 
 fn keep(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
-    if command_button(ui, editor, &Command::KeepPose) {
-        commands.push(Command::KeepPose);
-    }
+    ui.horizontal(|ui| {
+        if command_button(ui, editor, &Command::KeepPose) {
+            commands.push(Command::KeepPose);
+        }
+        if command_choice(ui, editor, &Command::WorkPose, editor.document().is_in_work_pose()) {
+            commands.push(Command::WorkPose);
+        }
+    });
 }

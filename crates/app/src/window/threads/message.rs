@@ -7,7 +7,7 @@ use glam::DVec3;
 use pliant_deform::ExampleShape;
 use pliant_editor::{Beginning, JobDone, Revision, SavedAs, SnapshotKey};
 use pliant_mesh::Cancel;
-use pliant_render::{Materials, Surface};
+use pliant_render::{Image, Materials, Surface};
 
 use crate::files::original::Kept;
 use crate::window::files::listing::Entry;
@@ -43,6 +43,10 @@ pub enum Message {
     Example(Arc<Loaded>, Result<ExampleShape, String>),
     /// The contents of a folder, or the reason why it can't be read.
     Folder(PathBuf, Result<Vec<Entry>, String>),
+    /// Another program shows a file or a page, or the reason why none does.
+    Shown(Result<(), String>),
+    /// The small pictures of recent files were read.
+    RecentPictures(Vec<(PathBuf, Image)>),
     /// A person chose a path in a dialog; `None` if they chose none.
     Chosen(Purpose, Option<PathBuf>),
     /// The system has no dialog to ask for a path; it was to begin at this one.

@@ -15,6 +15,8 @@ use pliant_deform::Budget;
 use pliant_editor::{Executor, Job, JobDone, JobResult, SolveResult, Unfinished};
 
 use super::message::{Message, Painted, Posed};
+use tracing::debug_span;
+
 use pliant_engine::report::ms_since;
 use pliant_engine::{Loaded, memory};
 use pliant_picture::drawing::{self, Drawing, Field, Scale};
@@ -25,12 +27,12 @@ pub struct Workers {
     /// Another channel after the graphics device was lost.
     context: Arc<Mutex<egui::Context>>,
     sender: Sender<Message>,
-    stage: Arc<Mutex<Option<Stage>>>,
+    pose_source: Arc<Mutex<Option<PoseSource>>>,
 }
 
 /// The input of poses.
 #[derive(Clone)]
-pub struct Stage {
+pub struct PoseSource {
     /// The open file.
     pub loaded: Arc<Loaded>,
     /// Its data for the renderer.
@@ -41,7 +43,7 @@ pub struct Stage {
     pub scales: Arc<Mutex<HashMap<Field, Arc<Scale>>>>,
 }
 
-impl Stage {
+impl PoseSource {
     /// A shape, prepared for the renderer; its normals are turned by `jacobians` if these are known.
     pub fn pose(&self, displacements: Arc<Vec<DVec3>>, jacobians: Option<&[Mat3]>) -> Posed {
         let model = &self.loaded.model;
@@ -76,7 +78,7 @@ impl Workers {
         Self {
             context: Arc::new(Mutex::new(context)),
             sender,
-            stage: Arc::default(),
+            pose_source: Arc::default(),
         }
     }
 
@@ -87,13 +89,13 @@ impl Workers {
 
     /// Shapes that are solved from now on are posed for this file on the job's own thread, which saves a step between
     /// the pointer and the picture.
-    pub fn set_stage(&self, stage: Stage) {
-        *self.stage.lock().unwrap_or_else(PoisonError::into_inner) = Some(stage);
+    pub fn set_pose_source(&self, source: PoseSource) {
+        *self.pose_source.lock().unwrap_or_else(PoisonError::into_inner) = Some(source);
     }
 
     /// The input for posing shapes.
-    pub fn stage(&self) -> Option<Stage> {
-        self.stage.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    pub fn pose_source(&self) -> Option<PoseSource> {
+        self.pose_source.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
     /// Does `work` on a thread of its own and sends its message. If it panics or the system gives no thread, the
@@ -140,14 +142,14 @@ impl Executor for Workers {
 
     fn start(&mut self, job: Job) {
         let (kind, stamp) = (job.kind, job.stamp);
-        let stage = self.stage.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let source = self.pose_source.lock().unwrap_or_else(PoisonError::into_inner).clone();
         self.spawn(
             kind.doing(),
             move || {
-                let done = job.run();
-                let posed = match (&done.outcome, stage) {
-                    (Ok(JobResult::Solve(SolveResult::Shape(solved))), Some(stage)) => {
-                        Some(stage.pose(Arc::clone(&solved.from_file), solved.jacobians.as_deref()))
+                let done = debug_span!("job", kind = kind.doing()).in_scope(|| job.run());
+                let posed = match (&done.outcome, source) {
+                    (Ok(JobResult::Solve(SolveResult::Shape(solved))), Some(source)) => {
+                        Some(source.pose(Arc::clone(&solved.from_file), solved.jacobians.as_deref()))
                     }
                     _ => None,
                 };

@@ -12,7 +12,7 @@ use pliant_render::RenderError;
 use super::axis_ball::readout;
 use super::side_view::SideView;
 use super::{Smoothness, Viewport};
-use crate::window::threads::workers::Stage;
+use crate::window::threads::workers::PoseSource;
 
 /// The opacity of a ghost.
 const GHOST: f32 = 0.45;
@@ -89,13 +89,13 @@ impl OriginalView {
     }
 
     /// Takes over the first view's state, and the results of other threads.
-    pub fn follow(&mut self, editor: &Editor, first: &Viewport, stage: &Stage) {
+    pub fn follow(&mut self, editor: &Editor, first: &Viewport, source: &PoseSource) {
         let view = editor.view();
-        self.0.workers.set_stage(stage.clone());
+        self.0.workers.set_pose_source(source.clone());
         while let Some(message) = self.0.receive() {
-            self.0.take(message, view.original, stage);
+            self.0.take(message, view.original, source);
         }
-        self.0.follow(view.original, first, stage);
+        self.0.follow(view.original, first, source);
     }
 
     /// Draws it over the first view's picture in `rect`. Returns whether it is worth a second drawing when nothing has

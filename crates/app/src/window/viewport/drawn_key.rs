@@ -19,6 +19,8 @@ pub struct DrawnKey {
     pub overlay: u64,
     pub camera: u64,
     pub look: Look,
+    /// True if the regions' colours are faded.
+    pub is_faded: bool,
     pub size_px: [u32; 2],
     pub samples: Samples,
     pub detail: Detail,

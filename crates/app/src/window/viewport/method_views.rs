@@ -1,6 +1,7 @@
 //! Live views of each method's result for the present edit, all small or one large, from the main view's camera, with
 //! names and figures beneath. A click takes a method.
 
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::time::Duration;
 
 use eframe::egui::text::{LayoutJob, TextWrapping};
@@ -12,14 +13,14 @@ use pliant_render::RenderError;
 
 use super::side_view::SideView;
 use super::{Smoothness, Viewport};
-use crate::window::threads::workers::Stage;
+use crate::window::threads::workers::PoseSource;
 use crate::window::widgets::icon::{Icon, toggle};
 use crate::window::widgets::theme;
 use pliant_engine::report::finite_or;
 use pliant_picture::sheet;
 
-/// The height of a caption in points.
-const CAPTION: f32 = 52.0;
+/// The height of a caption of two lines, in points.
+const CAPTION: f32 = 36.0;
 /// The margin around a picture, in points.
 const GAP: f32 = 3.0;
 
@@ -54,7 +55,7 @@ impl MethodViews {
 
     /// Takes over the shapes of the comparison, and the results of other threads. The file is uploaded for one view
     /// after the other.
-    pub fn follow(&mut self, context: &egui::Context, comparison: &Comparison, first: &Viewport, stage: &Stage) {
+    pub fn follow(&mut self, context: &egui::Context, comparison: &Comparison, first: &Viewport, source: &PoseSource) {
         let alternatives = comparison.alternatives();
         self.views.truncate(alternatives.len());
         while self.views.len() < alternatives.len() {
@@ -62,13 +63,13 @@ impl MethodViews {
         }
         for (view, alternative) in self.views.iter_mut().zip(alternatives) {
             while let Some(message) = view.receive() {
-                view.take(message, &alternative.shape, stage);
+                view.take(message, &alternative.shape, source);
             }
         }
         let mut is_uploading = false;
         for (view, alternative) in self.views.iter_mut().zip(alternatives) {
-            if !is_uploading || view.viewport.shows(&stage.drawing) {
-                view.follow(&alternative.shape, first, stage);
+            if !is_uploading || view.viewport.shows(&source.drawing) {
+                view.follow(&alternative.shape, first, source);
             }
             is_uploading |= view.is_uploading();
         }
@@ -99,6 +100,7 @@ impl MethodViews {
         let size = vec2(rect.width() / columns as f32, rect.height() / rows as f32);
         let main = editor.view();
         let share = share_in_sight(&main, comparison);
+        let moving = box_of_moving(comparison);
         let pairs = self.views.iter_mut().zip(comparison.alternatives()).enumerate();
         let is_shown = |number: usize| comparison.large().is_none_or(|large| large == number);
         for (place, (number, (view, alternative))) in pairs.filter(|(number, _)| is_shown(*number)).enumerate() {
@@ -109,11 +111,11 @@ impl MethodViews {
                 continue;
             }
             if alternative.refusal.is_none() {
-                shown.again |= draw(ui, picture, view, share, editor, smooth)?;
+                shown.again |= draw(ui, picture, view, (share, moving), editor, smooth)?;
             }
             let is_own = *editor.document().method() == alternative.method;
             caption(ui, cell, picture, alternative, view.problem.as_deref(), is_own);
-            if button(ui, cell, number, alternative, is_own) && !is_own {
+            if button(ui, cell, number, (alternative, view.problem.as_deref()), is_own) && !is_own {
                 shown.command = Some(Command::SetMethod(alternative.method.clone()));
             }
             let is_large = comparison.large() == Some(number);
@@ -125,13 +127,13 @@ impl MethodViews {
     }
 }
 
-/// Draws a method's shape as in the main view, with this share of its width and height, and without the marks of the
-/// pointer there.
+/// Draws a method's shape from the main view's direction, without the marks of the pointer there: near enough to fill
+/// the picture with what moves, or with this share of the main view's width and height if the person is nearer.
 fn draw(
     ui: &Ui,
     rect: Rect,
     view: &mut SideView,
-    share: DVec2,
+    (share, moving): (DVec2, Option<Bounds>),
     editor: &Editor,
     smooth: Smoothness,
 ) -> Result<bool, RenderError> {
@@ -149,8 +151,11 @@ fn draw(
         ..main.look
     };
     let viewport_px = DVec2::new(f64::from(rect.width()), f64::from(rect.height()));
-    let camera = as_wide(main.camera, main.viewport_px, share, viewport_px);
+    let near = moving.map(|moving| framing(main.camera, moving, viewport_px));
+    let near = near.filter(|near| near.distance < main.camera.distance);
+    let camera = near.unwrap_or_else(|| as_wide(main.camera, main.viewport_px, share, viewport_px));
     let scene = SceneView {
+        camera_revision: revision_of(&camera, main.camera_revision),
         camera: &camera,
         viewport_px,
         look,
@@ -162,6 +167,46 @@ fn draw(
         ..main
     };
     view.viewport.paint(ui, rect, &scene, editor, smooth)
+}
+
+/// A number that differs for other cameras.
+fn revision_of(camera: &Camera, main: u64) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    let numbers = [
+        camera.target.x,
+        camera.target.y,
+        camera.target.z,
+        camera.distance,
+        camera.fov_y_rad,
+    ];
+    (main, numbers.map(f64::to_bits)).hash(&mut hasher);
+    hasher.finish()
+}
+
+/// The box around everything that some method moves. Methods that have thrown it far away do not count.
+fn box_of_moving(comparison: &Comparison) -> Option<Bounds> {
+    let figures = comparison.alternatives().iter();
+    let boxes: Vec<Bounds> = figures.filter_map(|alternative| alternative.figures?.moved).collect();
+    let sizes = boxes.iter().map(Bounds::diagonal);
+    let least = sizes.fold(f64::INFINITY, f64::min);
+    let near = boxes.iter().filter(|moved| moved.diagonal() <= FARTHEST * least);
+    near.copied().reduce(|a, b| a.union(&b))
+}
+
+/// The camera in the same direction that shows a box with some room around it.
+fn framing(camera: &Camera, shown: Bounds, size_px: DVec2) -> Camera {
+    let mut near = *camera;
+    near.frame(&corners(shown).collect::<Vec<_>>(), size_px);
+    near.distance *= ROOM;
+    near
+}
+
+/// The corners of a box.
+fn corners(bounds: Bounds) -> impl Iterator<Item = DVec3> {
+    (0..8).map(move |number: u32| {
+        let is_high = [0, 1, 2].map(|axis| number >> axis & 1 == 1);
+        DVec3::select(BVec3::from_array(is_high), bounds.max, bounds.min)
+    })
 }
 
 /// The camera that shows in `to` at least the middle `share` of the width and height of `camera`'s picture in `from`,
@@ -201,55 +246,81 @@ const FARTHEST: f64 = 3.0;
 
 /// The extent of boxes from the middle of a view towards its edges, which are at 1; 1 if a corner is behind the eye.
 fn reach(camera: &Camera, size_px: DVec2, boxes: impl IntoIterator<Item = Bounds>) -> DVec2 {
-    let corners = boxes.into_iter().flat_map(|bounds| {
-        (0..8).map(move |number: u32| {
-            let is_high = [0, 1, 2].map(|axis| number >> axis & 1 == 1);
-            DVec3::select(BVec3::from_array(is_high), bounds.max, bounds.min)
-        })
-    });
-    let reached = corners.map(|corner| {
+    let reached = boxes.into_iter().flat_map(corners).map(|corner| {
         let seen = camera.project(corner, size_px);
         seen.map_or(DVec2::ONE, |at_px| (2.0 * at_px / size_px - DVec2::ONE).abs())
     });
     reached.fold(DVec2::ZERO, DVec2::max)
 }
 
-/// Writes a method's name and figures beneath its picture, or the reason why there is none in the picture's place.
+/// Writes a method's name and a figure beneath its picture, or the reason why there is none in the picture's place.
 fn caption(ui: &Ui, cell: Rect, picture: Rect, alternative: &Alternative, problem: Option<&str>, is_own: bool) {
     let painter = ui.painter().with_clip_rect(cell);
     let visuals = ui.visuals();
     let (strong, weak) = (visuals.strong_text_color(), visuals.weak_text_color());
-    let write = |at: Pos2, text: &str, size: f32, colour: Color32| {
-        let mut line = LayoutJob::simple_singleline(text.to_owned(), FontId::proportional(size), colour);
-        line.wrap = TextWrapping::truncate_at_width(picture.width() - 4.0);
-        painter.galley(at, painter.layout_job(line), colour);
+    let write = |at: Pos2, text: &str, (size, rows): (f32, usize), colour: Color32| {
+        let mut lines = LayoutJob::simple(text.to_owned(), FontId::proportional(size), colour, 0.0);
+        lines.wrap = TextWrapping {
+            max_width: picture.width() - 8.0,
+            max_rows: rows,
+            ..TextWrapping::default()
+        };
+        painter.galley(at, painter.layout_job(lines), colour);
     };
-    let at = picture.left_bottom() + vec2(4.0, 2.0);
+    let at = picture.left_bottom() + vec2(4.0, 1.0);
     let title = alternative.method.declaration().title;
     let title_colour = if is_own { theme::ACCENT } else { strong };
-    write(at, title, 13.0, title_colour);
-    let refusal = alternative.refusal.as_deref().or(problem);
-    if let Some(sentence) = refusal {
-        let width = cell.width() - 12.0;
-        let text = painter.layout(sentence.to_owned(), FontId::proportional(12.0), strong, width);
-        painter.galley(pos2(cell.left() + 6.0, cell.top() + 8.0), text, strong);
+    write(at, title, (13.0, 1), title_colour);
+    let below = at + vec2(0.0, 17.0);
+    if let Some(sentence) = alternative.refusal.as_deref().or(problem) {
+        let rows = ((picture.height() - 12.0) / REFUSAL_LINE) as usize;
+        write(
+            picture.left_top() + vec2(4.0, 8.0),
+            sentence,
+            (12.0, rows.max(1)),
+            strong,
+        );
     } else if let Some(figures) = &alternative.figures {
         let colour = if alternative.is_current { strong } else { weak };
-        let stretch = [figures.edge_stretch_mean, figures.edge_stretch_max].map(|ratio| finite_or(ratio, f64::MAX));
-        write(
-            at + vec2(0.0, 17.0),
-            &sheet::times(figures.bind_ms, figures.frame_ms),
-            11.0,
-            colour,
-        );
-        write(at + vec2(0.0, 32.0), &sheet::stretch(stretch), 11.0, colour);
+        write(below, &stretch(figures.edge_stretch_mean), (11.0, 1), colour);
     } else {
-        write(at + vec2(0.0, 17.0), "binding …", 11.0, weak);
+        write(below, "binding …", (11.0, 1), weak);
     }
 }
 
+/// The height of a line of a refusal, in points.
+const REFUSAL_LINE: f32 = 15.0;
+
+/// The mean stretch of the edges in percent.
+fn stretch(mean: f64) -> String {
+    match 100.0 * (finite_or(mean, f64::MAX) - 1.0) {
+        percent @ ..1000.0 => format!("stretch {percent:.1}%"),
+        _ => "stretch above 1000%".to_owned(),
+    }
+}
+
+/// Everything about a method's result, for the pointer that rests on its cell.
+fn details(alternative: &Alternative, problem: Option<&str>) -> String {
+    let declaration = alternative.method.declaration();
+    let mut text = format!("{}: {}", declaration.title, declaration.when_to_use);
+    if let Some(sentence) = alternative.refusal.as_deref().or(problem) {
+        text = format!("{text}\n{sentence}");
+    } else if let Some(figures) = &alternative.figures {
+        let ratios = [figures.edge_stretch_mean, figures.edge_stretch_max].map(|ratio| finite_or(ratio, f64::MAX));
+        let times = sheet::times(figures.bind_ms, figures.frame_ms);
+        text = format!("{text}\n{times}\n{}", sheet::stretch(ratios));
+    }
+    text
+}
+
 /// The cell as a button; whether it was clicked.
-fn button(ui: &Ui, cell: Rect, number: usize, alternative: &Alternative, is_own: bool) -> bool {
+fn button(
+    ui: &Ui,
+    cell: Rect,
+    number: usize,
+    (alternative, problem): (&Alternative, Option<&str>),
+    is_own: bool,
+) -> bool {
     let declaration = alternative.method.declaration();
     let response = ui.interact(cell, ui.scope_id().with(("method view", number)), Sense::click());
     response.widget_info(|| {
@@ -262,8 +333,7 @@ fn button(ui: &Ui, cell: Rect, number: usize, alternative: &Alternative, is_own:
         (false, false) => Stroke::NONE,
     };
     ui.painter().rect_stroke(cell, 4.0, stroke, StrokeKind::Inside);
-    let says = format!("{}: {}", declaration.title, declaration.when_to_use);
-    response.on_hover_text(says).clicked()
+    response.on_hover_text(details(alternative, problem)).clicked()
 }
 
 /// The toggle in the cell's corner that shows the method large; whether it was clicked.
@@ -298,6 +368,24 @@ mod tests {
             let narrow = as_wide(&camera, main, share, cell);
             assert!((width(&narrow, cell) - share.x * width(&camera, main)).abs() < 1e-12);
             assert_eq!(as_wide(&camera, cell, share, main).fov_y_rad, camera.fov_y_rad);
+        }
+    }
+
+    #[test]
+    fn what_moves_fills_its_picture_and_nothing_of_it_is_cut() {
+        let camera = Camera::default();
+        let middle = camera.target + DVec3::new(0.3, 0.1, 0.0);
+        let half = DVec3::new(0.02, 0.05, 0.03) * camera.distance;
+        let moving = Bounds {
+            min: middle - half,
+            max: middle + half,
+        };
+        for cell in [DVec2::new(150.0, 200.0), DVec2::new(400.0, 120.0)] {
+            let near = framing(&camera, moving, cell);
+            let extent = reach(&near, cell, [moving]).max_element();
+            assert!((0.4..=1.0).contains(&extent), "{extent}");
+            assert_eq!((near.yaw_rad, near.pitch_rad), (camera.yaw_rad, camera.pitch_rad));
+            assert_ne!(revision_of(&near, 1), revision_of(&camera, 1));
         }
     }
 

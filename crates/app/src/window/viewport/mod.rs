@@ -23,7 +23,7 @@ use std::time::{Duration, Instant};
 
 use eframe::egui::{self, TextureId};
 use eframe::egui_wgpu::RenderState;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use pliant_editor::{Editor, Look, SceneView, Shading};
 use pliant_render::{
     Background, Detail, Frame, Image, Materials, RenderError, Renderer, Samples, Shadows, Style, Surface, Target,
@@ -129,6 +129,16 @@ impl Viewport {
     /// The device's name if it is the processor itself.
     pub fn software_device(&self) -> Option<&str> {
         self.software.as_deref()
+    }
+
+    /// The graphics device in use: its name, interface and driver.
+    pub fn device(&self) -> String {
+        let info = self.state.adapter.get_info();
+        let driver = format!("{} {}", info.driver, info.driver_info);
+        match driver.trim() {
+            "" => format!("{} ({})", info.name, info.backend),
+            driver => format!("{} ({}, {driver})", info.name, info.backend),
+        }
     }
 
     /// The means to upload files' surfaces, from any thread.
@@ -358,6 +368,7 @@ impl Viewport {
             overlay: view.overlay_revision,
             camera: view.camera_revision,
             look: view.look,
+            is_faded: view.is_dragging,
             size_px,
             samples,
             detail: Detail::Full,
@@ -402,7 +413,10 @@ impl Viewport {
                     Some(_) if !is_alone => Shadows::On,
                     _ => Shadows::Off,
                 },
-                ..drawing::style(&self.present_look(key.look), pixels_per_point)
+                ..match key.is_faded {
+                    true => drawing::faded_style(&self.present_look(key.look), pixels_per_point),
+                    false => drawing::style(&self.present_look(key.look), pixels_per_point),
+                }
             },
             surfaces: &surfaces,
             grid: ground.as_ref().filter(|_| has_ground),
@@ -419,35 +433,72 @@ impl Viewport {
     /// # Errors
     /// As [`Renderer::draw_to_image`].
     pub fn picture(&mut self, editor: &Editor, kind: PictureKind) -> Result<Option<Image>, RenderError> {
-        let (view, gpu) = (editor.view(), self.gpu.clone());
-        let (Some(shown), Some(key), Some(mut renderer)) = (&self.surface, &self.drawn, gpu.try_write()) else {
-            return Ok(None);
-        };
+        let Some(key) = &self.drawn else { return Ok(None) };
         // As large as the view, even if that is being drawn with fewer pixels.
-        let [width, height] = view.viewport_px.as_vec2().to_array();
+        let viewport_px = editor.view().viewport_px;
+        let [width, height] = viewport_px.as_vec2().to_array();
+        let pixels_per_point = key.pixels_per_point * kind.scale.max(1) as f32;
         let size_px =
             pixels(egui::vec2(width, height) * key.pixels_per_point).map(|side| side.max(1) * kind.scale.max(1));
-        let pixels_per_point = key.pixels_per_point * kind.scale.max(1) as f32;
-        let mut style = drawing::style(&self.present_look(view.look), pixels_per_point);
-        style.background = key.backdrop.background();
-        let mut ground = view.look.grid.then(|| key.backdrop.grid(shown.ground(&view)));
-        if kind.ground == Ground::Transparent {
-            (style.background, ground) = (Background::Transparent, None);
-            style.shadows = Shadows::Off;
-        }
-        let frame = Frame {
-            view: &drawing::view(view.camera, view.viewport_px, shown.drawing.centre()),
-            style: &style,
-            surfaces: &[&shown.surface],
-            grid: ground.as_ref(),
-            overlays: &[],
+        let drawn = self.draw_apart(
+            editor,
+            viewport_px,
+            size_px,
+            pixels_per_point,
+            (kind.ground, Detail::Full),
+        )?;
+        let (Some(mut image), Some(renderer)) = (drawn, self.gpu.try_read()) else {
+            return Ok(None);
         };
-        let mut image = renderer.draw_to_image(size_px, Samples::Four, &frame)?;
         if let Some(scale) = self.scale() {
             let legend = legend::picture(&renderer, scale, pixels_per_point)?;
             painting::composite(&mut image, &legend, [(14.0 * pixels_per_point) as u32; 2]);
         }
         Ok(Some(image))
+    }
+
+    /// A picture of the same scene with so many pixels, drawn with fewer triangles where the processor draws; `None` as
+    /// for [`Self::picture`].
+    ///
+    /// # Errors
+    /// As [`Renderer::draw_to_image`].
+    pub fn small_picture(&mut self, editor: &Editor, size_px: [u32; 2]) -> Result<Option<Image>, RenderError> {
+        let detail = match self.software {
+            Some(_) => Detail::Reduced,
+            None => Detail::Full,
+        };
+        let viewport_px = DVec2::from(size_px.map(f64::from));
+        self.draw_apart(editor, viewport_px, size_px, 1.0, (Ground::AsShown, detail))
+    }
+
+    fn draw_apart(
+        &mut self,
+        editor: &Editor,
+        viewport_px: DVec2,
+        size_px: [u32; 2],
+        pixels_per_point: f32,
+        (surroundings, detail): (Ground, Detail),
+    ) -> Result<Option<Image>, RenderError> {
+        let (view, gpu) = (editor.view(), self.gpu.clone());
+        let (Some(shown), Some(key), Some(mut renderer)) = (&self.surface, &self.drawn, gpu.try_write()) else {
+            return Ok(None);
+        };
+        let mut style = drawing::style(&self.present_look(view.look), pixels_per_point);
+        style.detail = detail;
+        style.background = key.backdrop.background();
+        let mut ground = view.look.grid.then(|| key.backdrop.grid(shown.ground(&view)));
+        if surroundings == Ground::Transparent {
+            (style.background, ground) = (Background::Transparent, None);
+            style.shadows = Shadows::Off;
+        }
+        let frame = Frame {
+            view: &drawing::view(view.camera, viewport_px, shown.drawing.centre()),
+            style: &style,
+            surfaces: &[&shown.surface],
+            grid: ground.as_ref(),
+            overlays: &[],
+        };
+        renderer.draw_to_image(size_px, Samples::Four, &frame).map(Some)
     }
 
     /// Registers a new texture with egui.

@@ -6,7 +6,7 @@ use glam::DVec3;
 use pliant_editor::{JobQueue, Revision};
 
 use crate::window::threads::message::Message;
-use crate::window::threads::workers::{Stage, Workers};
+use crate::window::threads::workers::{PoseSource, Workers};
 use crate::window::viewport::Viewport;
 
 /// The poses that one view has requested.
@@ -18,9 +18,9 @@ pub struct PoseQueue {
 
 impl PoseQueue {
     /// Requests the pose of `wanted` if the view shows another shape, or other numbers as colours.
-    pub fn follow(&mut self, wanted: &Arc<Vec<DVec3>>, viewport: &Viewport, stage: &Stage, workers: &Workers) {
+    pub fn follow(&mut self, wanted: &Arc<Vec<DVec3>>, viewport: &Viewport, source: &PoseSource, workers: &Workers) {
         let is_stale = viewport.displacements().is_some_and(|shown| {
-            !Arc::ptr_eq(shown, wanted) || (stage.field.is_some() && viewport.field() != stage.field)
+            !Arc::ptr_eq(shown, wanted) || (source.field.is_some() && viewport.field() != source.field)
         });
         if is_stale && !self.jobs.is_busy() {
             self.last += 1;
@@ -29,10 +29,10 @@ impl PoseQueue {
         let Some((running, displacements)) = self.jobs.start_next() else {
             return;
         };
-        let (stamp, stage) = (running.stamp, stage.clone());
+        let (stamp, source) = (running.stamp, source.clone());
         workers.spawn(
             "posing",
-            move || Message::Posed(stamp, Ok(stage.pose(displacements, None))),
+            move || Message::Posed(stamp, Ok(source.pose(displacements, None))),
             move |sentence| Message::Posed(stamp, Err(sentence)),
         );
     }

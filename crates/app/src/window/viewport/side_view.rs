@@ -8,7 +8,7 @@ use glam::DVec3;
 
 use super::Viewport;
 use crate::window::threads::message::{Message, Posed};
-use crate::window::threads::workers::{Stage, Workers};
+use crate::window::threads::workers::{PoseSource, Workers};
 use crate::window::viewport::pose_queue::PoseQueue;
 use pliant_picture::drawing::Drawing;
 
@@ -56,7 +56,7 @@ impl SideView {
     }
 
     /// Takes the results of its threads; `wanted` is the shape to show.
-    pub fn take(&mut self, message: Message, wanted: &Arc<Vec<DVec3>>, stage: &Stage) {
+    pub fn take(&mut self, message: Message, wanted: &Arc<Vec<DVec3>>, source: &PoseSource) {
         match message {
             Message::Posed(stamp, result) => {
                 self.poses.finish(stamp);
@@ -69,7 +69,7 @@ impl SideView {
                 self.uploading = None;
                 match result {
                     Ok(surface) => {
-                        let model = &stage.loaded.model;
+                        let model = &source.loaded.model;
                         let lowest = model.bounds().map_or(DVec3::ZERO, |bounds| bounds.min);
                         let rest = Arc::new(vec![DVec3::ZERO; model.surface.positions.len()]);
                         self.viewport.show(drawing, surface, rest, lowest);
@@ -94,35 +94,35 @@ impl SideView {
     }
 
     /// Requests everything that it lacks to show the shape `wanted` of the open file in the first view's style.
-    pub fn follow(&mut self, wanted: &Arc<Vec<DVec3>>, first: &Viewport, stage: &Stage) {
-        self.upload(stage);
-        self.set_materials(first, stage);
-        if self.viewport.shows(&stage.drawing) {
-            self.poses.follow(wanted, &self.viewport, stage, &self.workers);
+    pub fn follow(&mut self, wanted: &Arc<Vec<DVec3>>, first: &Viewport, source: &PoseSource) {
+        self.upload(source);
+        self.set_materials(first, source);
+        if self.viewport.shows(&source.drawing) {
+            self.poses.follow(wanted, &self.viewport, source, &self.workers);
         }
     }
 
     /// Shows the same images as the first view.
-    fn set_materials(&mut self, first: &Viewport, stage: &Stage) {
-        let lacks_what_is_there = self.viewport.shows(&stage.drawing)
+    fn set_materials(&mut self, first: &Viewport, source: &PoseSource) {
+        let lacks_what_is_there = self.viewport.shows(&source.drawing)
             && self.viewport.awaits_images()
-            && first.shows(&stage.drawing)
+            && first.shows(&source.drawing)
             && !first.awaits_images();
         if !lacks_what_is_there {
             return;
         }
         let Some(materials) = first.materials() else {
-            self.viewport.give_up_images(&stage.drawing);
+            self.viewport.give_up_images(&source.drawing);
             return;
         };
-        if let Err(error) = self.viewport.set_materials(&stage.drawing, materials.clone()) {
+        if let Err(error) = self.viewport.set_materials(&source.drawing, materials.clone()) {
             self.problem = Some(error.to_string());
         }
     }
 
     /// Uploads the open file's surface again.
-    fn upload(&mut self, stage: &Stage) {
-        let drawing = &stage.drawing;
+    fn upload(&mut self, source: &PoseSource) {
+        let drawing = &source.drawing;
         let is_under_way = self
             .uploading
             .as_ref()
@@ -131,13 +131,13 @@ impl SideView {
             return;
         }
         self.uploading = Some(Arc::clone(drawing));
-        let (gpu, stage) = (self.viewport.gpu(), stage.clone());
+        let (gpu, source) = (self.viewport.gpu(), source.clone());
         let (drawing, failed) = (Arc::clone(drawing), Arc::clone(drawing));
         self.workers.spawn(
             "uploading",
             move || {
-                let rest = vec![DVec3::ZERO; stage.loaded.model.surface.positions.len()];
-                let pose = drawing.pose(&stage.loaded.model, &rest);
+                let rest = vec![DVec3::ZERO; source.loaded.model.surface.positions.len()];
+                let pose = drawing.pose(&source.loaded.model, &rest);
                 let surface = gpu.upload(&drawing, &pose).map_err(|error| error.to_string());
                 Message::Uploaded(drawing, surface)
             },

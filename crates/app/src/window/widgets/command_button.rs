@@ -9,7 +9,12 @@ use super::icon::{self, Glyph};
 
 /// A button for a listed command, disabled when it is unavailable; true when it is clicked.
 pub fn command_button(ui: &mut egui::Ui, editor: &Editor, command: &Command) -> bool {
-    let Some(listed) = command.listed() else { return false };
+    named_button(ui, editor, command, command)
+}
+
+/// A button for a command with the name and the tooltip of a listed one.
+pub fn named_button(ui: &mut egui::Ui, editor: &Editor, command: &Command, like: &Command) -> bool {
+    let Some(listed) = like.listed() else { return false };
     let mut button = Button::new(listed.name);
     if let Some(shortcut) = editor.shortcuts(command).first() {
         button = button.shortcut_text(shortcut.label());

@@ -22,7 +22,7 @@ pub fn name_label(ui: &mut Ui, what: &str, place: usize, name: &str, is_chosen: 
         ui.data_mut(|data| data.remove::<(usize, String)>(editing));
         return (field, renamed);
     }
-    let label = ui.selectable_label(is_chosen, name);
+    let label = ui.add(egui::Button::selectable(is_chosen, name).truncate());
     if label.double_clicked() {
         ui.data_mut(|data| data.insert_temp(editing, (place, name.to_owned())));
     }

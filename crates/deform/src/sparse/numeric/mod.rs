@@ -50,7 +50,7 @@ struct Job<'a> {
     contributions: Vec<Mutex<Option<Arc<Vec<Line>>>>>,
     /// True if each part's contribution is kept for the next factorisation; none if empty.
     kept: &'a [bool],
-    rooms: Mutex<Vec<Room>>,
+    pool: Mutex<Vec<Scratch>>,
 }
 
 /// Factors the matrix with `shift` added to its unit diagonal. Reuses the parts that are `known`, one entry per part,
@@ -86,7 +86,7 @@ pub(crate) fn factor(
             .map(|part| Mutex::new(known(part).and_then(|numbers| numbers.contribution.clone())))
             .collect(),
         kept,
-        rooms: Mutex::default(),
+        pool: Mutex::default(),
     };
     let failures = Mutex::new(Vec::new());
     assembly_tree.upwards(|part| {
@@ -126,7 +126,7 @@ pub(crate) fn factor(
 
 /// Scratch memory for one supernode after the other.
 #[derive(Default)]
-struct Room {
+struct Scratch {
     /// A row's place in the present supernode.
     place: Vec<u32>,
     /// Contributions of supernodes of this part, each with its supernode: the last ones are the next supernode's.
@@ -135,7 +135,7 @@ struct Room {
     places: Vec<u32>,
 }
 
-impl Room {
+impl Scratch {
     /// This many lines with any content, from the smallest spare matrix that is large enough. Sizes are powers of two,
     /// so that allocations are rare.
     fn take(&mut self, lines: usize) -> Result<Vec<Line>, FactorError> {
@@ -185,23 +185,23 @@ impl Job<'_> {
                 )
             })
             .collect();
-        let pooled = self.rooms.lock().unwrap_or_else(PoisonError::into_inner).pop();
-        let mut room = pooled.unwrap_or_default();
-        room.place.resize(self.matrix.scale.len(), 0);
+        let pooled = self.pool.lock().unwrap_or_else(PoisonError::into_inner).pop();
+        let mut scratch = pooled.unwrap_or_default();
+        scratch.place.resize(self.matrix.scale.len(), 0);
         let supernodes = self.assembly_tree.parts[part].supernodes.clone();
         let lines = supernodes.clone().map(|s| self.symbolic.shape(s).lines()).sum();
         let mut panels = reserved(lines)?;
         for s in supernodes.clone() {
             // A part with children is one supernode.
-            let contribution = self.supernode(s, &mut panels, &given, &mut room)?;
+            let contribution = self.supernode(s, &mut panels, &given, &mut scratch)?;
             if s + 1 < supernodes.end {
-                room.pending.push((s, contribution));
+                scratch.pending.push((s, contribution));
             } else if !contribution.is_empty() {
                 // The allocation is larger than its contents.
                 let contribution = if self.keeps(part) {
                     let mut exact = reserved(contribution.len())?;
                     exact.extend_from_slice(&contribution);
-                    room.spare.push(contribution);
+                    scratch.spare.push(contribution);
                     exact
                 } else {
                     contribution
@@ -210,7 +210,7 @@ impl Job<'_> {
             }
         }
         let _ = self.done[part].set(Arc::new(panels));
-        self.rooms.lock().unwrap_or_else(PoisonError::into_inner).push(room);
+        self.pool.lock().unwrap_or_else(PoisonError::into_inner).push(scratch);
         Ok(())
     }
 
@@ -221,7 +221,7 @@ impl Job<'_> {
         s: usize,
         panels: &mut Vec<Line>,
         given: &[(usize, &[Line])],
-        room: &mut Room,
+        scratch: &mut Scratch,
     ) -> Result<Vec<Line>, FactorError> {
         if self.cancel.is_cancelled() {
             return Err(FactorError::Cancelled);
@@ -230,10 +230,10 @@ impl Job<'_> {
         let below = self.symbolic.pattern(s);
         let shape = self.symbolic.shape(s);
         for (i, column) in own.clone().enumerate() {
-            room.place[column] = i as u32;
+            scratch.place[column] = i as u32;
         }
         for (i, &row) in below.iter().enumerate() {
-            room.place[row as usize] = (own.len() + i) as u32;
+            scratch.place[row as usize] = (own.len() + i) as u32;
         }
         let start = panels.len();
         panels.resize(start + shape.lines(), Line::ZERO);
@@ -241,7 +241,7 @@ impl Job<'_> {
         for (c, column) in own.clone().enumerate() {
             let (rows, values) = self.matrix.column(column);
             for (&row, &value) in rows.iter().zip(values) {
-                let place = room.place[row as usize] as usize;
+                let place = scratch.place[row as usize] as usize;
                 let (strip, lane) = shape.row(place);
                 panel[strip + c].0[lane] += value;
             }
@@ -251,12 +251,12 @@ impl Job<'_> {
         // In postorder the children are the last ones; in any other order they may be anywhere.
         let mut children = Vec::new();
         let count = self.symbolic.child_counts[s] as usize - given.len();
-        for pending in (0..room.pending.len()).rev() {
+        for pending in (0..scratch.pending.len()).rev() {
             if children.len() == count {
                 break;
             }
-            if self.symbolic.parent[room.pending[pending].0] as usize == s {
-                children.push(room.pending.remove(pending));
+            if self.symbolic.parent[scratch.pending[pending].0] as usize == s {
+                children.push(scratch.pending.remove(pending));
             }
         }
         let all = given
@@ -264,24 +264,24 @@ impl Job<'_> {
             .copied()
             .chain(children.iter().map(|(child, update)| (*child, update.as_slice())));
         for (child, update) in all.clone() {
-            places_of(self.symbolic.pattern(child), &room.place, &mut room.places);
-            extend_add_to_panel(&room.places, update, shape, panel);
+            places_of(self.symbolic.pattern(child), &scratch.place, &mut scratch.places);
+            extend_add_to_panel(&scratch.places, update, shape, panel);
         }
         factor_panel(shape, panel, self.cancel).map_err(|error| match error {
             FactorError::Pivot(place) => FactorError::Pivot(own.start + place),
             other => other,
         })?;
         let mut contribution = if shape.below > 0 {
-            room.take(triangle(strips(shape.below)))?
+            scratch.take(triangle(strips(shape.below)))?
         } else {
             Vec::new()
         };
         update_matrix(shape, panel, &mut contribution, self.cancel);
         for (child, update) in all {
-            places_of(self.symbolic.pattern(child), &room.place, &mut room.places);
-            extend_add_to_contribution(&room.places, update, shape.width, &mut contribution);
+            places_of(self.symbolic.pattern(child), &scratch.place, &mut scratch.places);
+            extend_add_to_contribution(&scratch.places, update, shape.width, &mut contribution);
         }
-        room.spare.extend(children.into_iter().map(|(_, update)| update));
+        scratch.spare.extend(children.into_iter().map(|(_, update)| update));
         Ok(contribution)
     }
 }

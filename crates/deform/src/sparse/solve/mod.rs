@@ -23,13 +23,13 @@ use crate::sparse::symbolic::assembly_tree::AssemblyTree;
 
 /// Scratch memory for one supernode's rows.
 #[derive(Default)]
-struct Room<const K: usize> {
+struct Scratch<const K: usize> {
     x: Vec<Strip<K>>,
     rows: Vec<[f64; K]>,
     sums: Vec<Strip<K>>,
 }
 
-impl<const K: usize> Room<K> {
+impl<const K: usize> Scratch<K> {
     /// Lays the supernode's own rows out in strips; those below are zero.
     fn begin(&mut self, shape: Shape, own: &[[f64; K]]) {
         self.x.clear();
@@ -55,12 +55,12 @@ pub(crate) fn solve_in_place<const K: usize>(
     part_rows: &mut PartRows<K>,
     is_wanted: impl Fn(usize) -> bool + Sync,
 ) {
-    let rooms = Mutex::new(Vec::<Room<K>>::new());
-    let with_room = |run: &mut dyn FnMut(&mut Room<K>)| {
-        let pooled = rooms.lock().unwrap_or_else(PoisonError::into_inner).pop();
-        let mut room = pooled.unwrap_or_default();
-        run(&mut room);
-        rooms.lock().unwrap_or_else(PoisonError::into_inner).push(room);
+    let pool = Mutex::new(Vec::<Scratch<K>>::new());
+    let with_scratch = |run: &mut dyn FnMut(&mut Scratch<K>)| {
+        let pooled = pool.lock().unwrap_or_else(PoisonError::into_inner).pop();
+        let mut scratch = pooled.unwrap_or_default();
+        run(&mut scratch);
+        pool.lock().unwrap_or_else(PoisonError::into_inner).push(scratch);
     };
     let supernode = |part: usize, s: usize| {
         let first = symbolic.columns(s).start - assembly_tree.parts[part].columns.start;
@@ -71,13 +71,13 @@ pub(crate) fn solve_in_place<const K: usize>(
         )
     };
     let forward_part = |part: usize, rows: &mut [[f64; K]]| {
-        with_room(&mut |room| {
+        with_scratch(&mut |scratch| {
             let mut panels = numbers[part].panels.as_slice();
             for s in assembly_tree.parts[part].supernodes.clone() {
                 let (shape, first, places) = supernode(part, s);
                 let (panel, tail) = panels.split_at(shape.lines());
                 panels = tail;
-                forward(shape, panel, first, places, rows, room);
+                forward(shape, panel, first, places, rows, scratch);
             }
         });
     };
@@ -85,13 +85,13 @@ pub(crate) fn solve_in_place<const K: usize>(
         if !is_wanted(part) {
             return;
         }
-        with_room(&mut |room| {
+        with_scratch(&mut |scratch| {
             let mut panels = numbers[part].panels.as_slice();
             for s in assembly_tree.parts[part].supernodes.clone().rev() {
                 let (shape, first, places) = supernode(part, s);
                 let (tail, panel) = panels.split_at(panels.len() - shape.lines());
                 panels = tail;
-                backward(shape, panel, first, places, rows, room);
+                backward(shape, panel, first, places, rows, scratch);
             }
         });
     };
@@ -110,22 +110,22 @@ fn forward<const K: usize>(
     first: usize,
     places: &[u32],
     x: &mut [[f64; K]],
-    room: &mut Room<K>,
+    scratch: &mut Scratch<K>,
 ) {
     let own = first..first + shape.width;
     // Most rows of a handle's right-hand side are zero, and zero rows do not change the rows below.
     if x[own.clone()].iter().all(|row| *row == [0.0; K]) {
         return;
     }
-    room.begin(shape, &x[own.clone()]);
+    scratch.begin(shape, &x[own.clone()]);
     vectors().dispatch(Forward {
         shape,
         panel,
-        x: &mut room.x,
-        rows: &mut room.rows,
+        x: &mut scratch.x,
+        rows: &mut scratch.rows,
     });
-    x[own].copy_from_slice(&room.rows);
-    for (places, strip) in places.chunks(LANES).zip(&room.x[shape.own()..]) {
+    x[own].copy_from_slice(&scratch.rows);
+    for (places, strip) in places.chunks(LANES).zip(&scratch.x[shape.own()..]) {
         for (lane, &place) in places.iter().enumerate() {
             let row = &mut x[place as usize];
             for k in 0..K {
@@ -142,11 +142,11 @@ fn backward<const K: usize>(
     first: usize,
     places: &[u32],
     x: &mut [[f64; K]],
-    room: &mut Room<K>,
+    scratch: &mut Scratch<K>,
 ) {
     let own = first..first + shape.width;
-    room.begin(shape, &x[own.clone()]);
-    for (places, strip) in places.chunks(LANES).zip(&mut room.x[shape.own()..]) {
+    scratch.begin(shape, &x[own.clone()]);
+    for (places, strip) in places.chunks(LANES).zip(&mut scratch.x[shape.own()..]) {
         for (lane, &place) in places.iter().enumerate() {
             let row = &x[place as usize];
             for k in 0..K {
@@ -157,12 +157,12 @@ fn backward<const K: usize>(
     vectors().dispatch(Backward {
         shape,
         panel,
-        x: &mut room.x,
-        sums: &mut room.sums,
+        x: &mut scratch.x,
+        sums: &mut scratch.sums,
     });
     for (i, row) in x[own].iter_mut().enumerate() {
         for k in 0..K {
-            row[k] = room.x[i / LANES][k].0[i % LANES];
+            row[k] = scratch.x[i / LANES][k].0[i % LANES];
         }
     }
 }

@@ -38,7 +38,7 @@ struct Node {
 
 /// Scratch memory for a solve, kept from one to the next.
 #[derive(Debug, Default)]
-pub(crate) struct Room<T> {
+pub(crate) struct Scratch<T> {
     part_rows: Vec<Rows<T>>,
     below: Mutex<Vec<Rows<T>>>,
 }
@@ -82,9 +82,9 @@ impl<T: Real> Substitution<T> {
     }
 
     /// Solves L Lᵀ x = b in place, with one row per column of the factor.
-    pub fn solve(&self, x: &mut [Rhs<T>], room: &mut Room<T>) {
+    pub fn solve(&self, x: &mut [Rhs<T>], scratch: &mut Scratch<T>) {
         let arch = vectors();
-        let Room { part_rows, below } = room;
+        let Scratch { part_rows, below } = scratch;
         let spare = &*below;
         let pass = |part: usize, way: Way, x: &mut [Rhs<T>]| {
             let mut below = spare
@@ -212,7 +212,7 @@ impl<T: Real> WithSimd for Pass<'_, T> {
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "tests")]
 mod tests {
-    use super::{Real, Rhs, Room};
+    use super::{Real, Rhs, Scratch};
     use crate::sparse::cholesky::tests::factor_of;
     use pliant_mesh::shapes;
 
@@ -228,9 +228,9 @@ mod tests {
                 .map(|row| [T::of(row[0]), T::of(row[1]), T::of(row[2]), T::default()])
                 .collect();
             factor.solve(&mut expected);
-            let room = &mut Room::default();
+            let scratch = &mut Scratch::default();
             let input = found.clone();
-            laid_out.solve(&mut found, room);
+            laid_out.solve(&mut found, scratch);
             let largest = expected.iter().flatten().fold(0.0, |a: f64, b| a.max(b.abs()));
             for (expected, found) in expected.iter().zip(&found) {
                 for k in 0..3 {
@@ -240,7 +240,7 @@ mod tests {
             }
             // Scratch memory that was used before changes nothing.
             let mut again = input;
-            laid_out.solve(&mut again, room);
+            laid_out.solve(&mut again, scratch);
             assert!(
                 again
                     .iter()

@@ -12,6 +12,7 @@ mod poses;
 mod reloaded;
 mod shapes;
 mod strength;
+mod work_pose;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Deref;
@@ -26,7 +27,7 @@ use super::access::Access;
 use super::content::{Content, Paint, Tips};
 use super::handle::{Handle, HandleId};
 use super::kept_shape::KeptShape;
-use super::parents::find_parents_anew;
+use super::parents::{find_parents_anew, is_within};
 use super::version::{Aspect, Marks, Versions};
 
 /// The edited state of one mesh.
@@ -120,6 +121,14 @@ impl Document {
     /// The handle with this number.
     pub fn handle(&self, id: HandleId) -> Option<&Handle> {
         self.content.handles.iter().find(|handle| handle.id == id)
+    }
+
+    /// The handles with which this one can ride along: neither itself nor its descendants, and no pins.
+    pub fn possible_parents(&self, id: HandleId) -> impl Iterator<Item = &Handle> {
+        let handles = &self.content.handles;
+        handles
+            .iter()
+            .filter(move |other| !other.is_pin && !is_within(handles, other.id, id))
     }
 
     /// Painted stiffness per surface vertex; `None` is 1 everywhere.

@@ -55,7 +55,7 @@ impl Document {
     }
 
     /// The visible shape, with the positions of handles, control points and examples.
-    fn seen(&self) -> KeptShape {
+    pub(super) fn seen(&self) -> KeptShape {
         let controls = self.moved_controls().cloned();
         let content = &self.content;
         KeptShape::of(

@@ -14,7 +14,7 @@ use crate::tool::constraint::on_plane;
 use crate::tool::context::Context;
 use crate::tool::stroke::{Stroke, StrokeGesture};
 use crate::view::{Cursor, Pick};
-use crate::workspace::Workspace;
+use crate::workspace::{Workspace, carry_corrections};
 
 /// The longest step of the flow in radii of the brush: a step of one radius would fold.
 const STEP: f64 = 0.4;
@@ -111,6 +111,10 @@ impl GrabShape {
 impl Stroke for GrabShape {
     fn doing(&self, _: &Workspace) -> String {
         "Grabbing the shape".to_owned()
+    }
+
+    fn finish(&mut self, workspace: &mut Workspace, before: &Document) {
+        carry_corrections(workspace, before);
     }
 
     fn cursor(&self) -> Cursor {

@@ -13,7 +13,7 @@ use crate::input::Pointer;
 use crate::tool::context::Context;
 use crate::tool::correction_brush::{Correction, CorrectionBrush};
 use crate::tool::stroke::{Stroke, StrokeGesture, firmest};
-use crate::workspace::Workspace;
+use crate::workspace::{Workspace, carry_corrections};
 
 /// The excess of the step back over the step forth: shapes smoother than the filter's pass band neither shrink nor
 /// grow.
@@ -42,6 +42,10 @@ impl Stroke for SmoothShape {
             Correction::Relax => "Relaxing the shape".to_owned(),
             Correction::Smooth | Correction::Grab => "Smoothing the shape".to_owned(),
         }
+    }
+
+    fn finish(&mut self, workspace: &mut Workspace, before: &Document) {
+        carry_corrections(workspace, before);
     }
 
     fn dab(&mut self, context: &mut Context<'_>, _: &Document, way_px: [DVec2; 2]) {

@@ -149,6 +149,24 @@ mod tests {
     }
 
     #[test]
+    fn the_square_in_the_middle_is_hit_over_twelve_points_from_every_side() {
+        for (yaw_rad, pitch_rad) in [(0.0, 0.0), (0.4, 0.3), (1.2, -0.7), (2.5, 1.4)] {
+            let camera = Camera {
+                yaw_rad,
+                pitch_rad,
+                ..camera(4.0)
+            };
+            let centre = camera.target;
+            let shapes = gizmo_shapes(GizmoMode::All, centre, GizmoAxes::WORLD, &camera, VIEWPORT_PX, None);
+            let middle_px = camera.project(centre, VIEWPORT_PX).unwrap();
+            for corner in [[-6.0, -6.0], [6.0, -6.0], [-6.0, 6.0], [6.0, 6.0], [0.0, 0.0]] {
+                let hit = hit_gizmo(&shapes, middle_px + DVec2::from(corner), &camera, VIEWPORT_PX);
+                assert_eq!(hit, Some(GizmoPart::Centre), "{yaw_rad} {pitch_rad} {corner:?}");
+            }
+        }
+    }
+
+    #[test]
     fn every_part_is_grabbed_where_it_is_drawn() {
         let camera = camera(4.0);
         for mode in [GizmoMode::Move, GizmoMode::Turn, GizmoMode::Scale] {

@@ -15,6 +15,7 @@ const BOX_HALF_PX: f64 = 5.0;
 const RING_PX: f64 = 72.0;
 const SQUARE_FROM_PX: f64 = 26.0;
 const SQUARE_TO_PX: f64 = 42.0;
+/// Half a side of the square in the middle, which moves in the plane of the screen.
 const CENTRE_PX: f64 = 7.0;
 const RING_SEGMENTS: usize = 64;
 const HEAD_SEGMENTS: usize = 12;
@@ -72,7 +73,8 @@ pub fn gizmo_shapes(
                 axes.basis * axis_vector((axis + 1) % 3),
                 axes.basis * axis_vector((axis + 2) % 3),
             );
-            add(GizmoPart::Square(axis), Vec::new(), square(centre, u, v, px));
+            let ends = [SQUARE_FROM_PX * px, SQUARE_TO_PX * px];
+            add(GizmoPart::Square(axis), Vec::new(), square(centre, u, v, ends));
         }
         if shows(GizmoMode::Scale) {
             let direction = axes.own * axis_vector(axis);
@@ -90,7 +92,13 @@ pub fn gizmo_shapes(
         }
     }
     if shows(GizmoMode::Move) {
-        add(GizmoPart::Centre, Vec::new(), disc(centre, to_eye, CENTRE_PX * px));
+        let axes = camera.axes();
+        let half = CENTRE_PX * px;
+        add(
+            GizmoPart::Centre,
+            Vec::new(),
+            square(centre, axes.x_axis, axes.y_axis, [-half, half]),
+        );
     }
     shapes
 }
@@ -139,25 +147,10 @@ fn cone(base: DVec3, tip: DVec3, radius: f64) -> Vec<[DVec3; 3]> {
         .collect()
 }
 
-fn disc(centre: DVec3, normal: DVec3, radius: f64) -> Vec<[DVec3; 3]> {
-    let (u, v) = normal.any_orthonormal_pair();
-    let rim = |step: usize| {
-        let angle_rad = TAU * step as f64 / HEAD_SEGMENTS as f64;
-        centre + (u * angle_rad.cos() + v * angle_rad.sin()) * radius
-    };
-    (0..HEAD_SEGMENTS)
-        .map(|step| [centre, rim(step), rim(step + 1)])
-        .collect()
-}
-
-fn square(centre: DVec3, u: DVec3, v: DVec3, px: f64) -> Vec<[DVec3; 3]> {
-    let corner = |a: f64, b: f64| centre + u * (a * px) + v * (b * px);
-    let corners = [
-        corner(SQUARE_FROM_PX, SQUARE_FROM_PX),
-        corner(SQUARE_TO_PX, SQUARE_FROM_PX),
-        corner(SQUARE_TO_PX, SQUARE_TO_PX),
-        corner(SQUARE_FROM_PX, SQUARE_TO_PX),
-    ];
+/// A square between two lengths along both axes.
+fn square(centre: DVec3, u: DVec3, v: DVec3, [from, to]: [f64; 2]) -> Vec<[DVec3; 3]> {
+    let corner = |a: f64, b: f64| centre + u * a + v * b;
+    let corners = [corner(from, from), corner(to, from), corner(to, to), corner(from, to)];
     vec![
         [corners[0], corners[1], corners[2]],
         [corners[0], corners[2], corners[3]],

@@ -284,6 +284,33 @@ impl FolderBrowser {
         self.is_entered = false;
     }
 
+    /// The extension that decides the format of the saved file, one of [`Self::endings`]; `None` if the name has another
+    /// one.
+    pub fn format(&self) -> Option<&'static str> {
+        let own = Path::new(self.name.trim()).extension();
+        let own = own
+            .map(|ending| ending.to_string_lossy().into_owned())
+            .or(self.ending.clone())?;
+        self.endings
+            .iter()
+            .copied()
+            .find(|ending| ending.eq_ignore_ascii_case(&own))
+    }
+
+    /// Chooses the format by its extension, which replaces that of another format in the name.
+    pub fn set_format(&mut self, ending: &str) {
+        let name = self.name.trim();
+        let has_format = Path::new(name).extension().is_some() && self.format().is_some();
+        let stem = match name.rsplit_once('.') {
+            Some((stem, _)) if has_format => stem,
+            _ => name,
+        };
+        if !stem.is_empty() {
+            self.set_name(format!("{stem}.{ending}"));
+        }
+        self.ending = Some(ending.to_owned());
+    }
+
     /// Sorts by a column, or reverses the order.
     pub fn sort(&mut self, column: Column) {
         self.order = self.order.after_click(column);

@@ -285,3 +285,34 @@ fn sizes_have_three_digits_at_most() {
         ]
     );
 }
+
+#[test]
+fn a_chosen_format_replaces_the_ending_of_another_one_and_nothing_else() {
+    let endings = &["glb", "obj", "ply"];
+    let saving = |name: &str| FolderBrowser::new(Asked::ToSave, endings, &Path::new("/a").join(name), Vec::new(), None);
+    for (name, chosen, wanted) in [
+        ("cat.glb", "obj", "cat.obj"),
+        ("cat.GLB", "ply", "cat.ply"),
+        ("cat.v2.obj", "glb", "cat.v2.glb"),
+        ("cat.v2", "ply", "cat.v2.ply"),
+        ("cat", "ply", "cat.ply"),
+    ] {
+        let mut browser = saving(name);
+        browser.set_format(chosen);
+        assert_eq!((browser.name(), browser.format()), (wanted, Some(chosen)), "{name}");
+    }
+    let mut browser = saving("cat.glb");
+    assert_eq!(browser.format(), Some("glb"));
+    browser.set_name("dog".to_owned());
+    assert_eq!(
+        browser.format(),
+        Some("glb"),
+        "a name without an ending gets the first one's"
+    );
+    browser.set_name("dog.txt".to_owned());
+    assert_eq!(browser.format(), None);
+    browser.set_name(String::new());
+    browser.set_format("obj");
+    browser.set_name("dog".to_owned());
+    assert_eq!(browser.format(), Some("obj"));
+}

@@ -8,6 +8,7 @@ use eframe::egui::{
 };
 use pliant_editor::thousands;
 use pliant_engine::files::shown;
+use pliant_io::Format;
 
 use super::browser::{Asked, Contents, FolderBrowser};
 use super::row::{self, DATE_WIDTH, ICON_WIDTH, MARGIN, SIZE_WIDTH};
@@ -329,12 +330,49 @@ fn name(ui: &mut egui::Ui, browser: &mut FolderBrowser, id: Id, is_new: bool) {
             let stem = browser.name().rsplit_once('.').map_or(browser.name(), |(stem, _)| stem);
             0..stem.chars().count()
         });
-        let (field, typed) = field(ui, id, "Name", browser.name(), selected, false);
-        if field.changed() {
-            browser.set_name(typed);
-        }
-        field.labelled_by(label.id);
+        let (layout, size) = (
+            egui::Layout::right_to_left(egui::Align::Center),
+            vec2(ui.available_width(), ui.spacing().interact_size.y),
+        );
+        ui.allocate_ui_with_layout(size, layout, |ui| {
+            format(ui, browser);
+            let (field, typed) = field(ui, id, "Name", browser.name(), selected, false);
+            if field.changed() {
+                browser.set_name(typed);
+            }
+            field.labelled_by(label.id);
+        });
     });
+}
+
+/// The formats of the saved file, if there are several.
+fn format(ui: &mut egui::Ui, browser: &mut FolderBrowser) {
+    if browser.endings().len() < 2 {
+        return;
+    }
+    let present = browser.format();
+    let mut chosen = present;
+    let list = egui::ComboBox::from_id_salt("format")
+        .width(96.0)
+        .selected_text(present.map_or_else(|| "unknown".to_owned(), format_name))
+        .show_ui(ui, |ui| {
+            for &ending in browser.endings() {
+                ui.selectable_value(&mut chosen, Some(ending), format_name(ending));
+            }
+        });
+    list.response
+        .widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, "Format"));
+    if let Some(ending) = chosen.filter(|_| chosen != present) {
+        browser.set_format(ending);
+    }
+}
+
+/// The name of the format with this extension.
+fn format_name(ending: &str) -> String {
+    match Format::of_name(&format!("model.{ending}")) {
+        Ok(format) => format!("{format} (.{ending})"),
+        Err(_) => format!(".{ending}"),
+    }
 }
 
 /// True when the person cancels.

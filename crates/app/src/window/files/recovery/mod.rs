@@ -187,8 +187,8 @@ pub fn write_latest() -> Option<PathBuf> {
     work.write().ok().map(|()| work.project)
 }
 
-/// Makes the folder of a user's unsaved work, which is private.
-fn make_private_folder(folder: &Path) -> std::io::Result<()> {
+/// Makes a folder that only its owner may read.
+pub fn make_private_folder(folder: &Path) -> std::io::Result<()> {
     #[cfg(unix)]
     {
         use std::os::unix::fs::{DirBuilderExt, PermissionsExt};

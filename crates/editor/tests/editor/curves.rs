@@ -1,0 +1,133 @@
+//! Handles that follow curves, in the document: opened, moved, undone, saved and applied.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use std::sync::Arc;
+
+use crate::rig::Rig;
+use glam::{DQuat, DVec3};
+use pliant_editor::{Beginning, Command, Event, HandleLine, MeshReference, Project, geometry_hash};
+use pliant_mesh::shapes;
+use serde_json::json;
+
+const LENGTH: f64 = 24.0;
+
+/// A bar of which every third ring follows its middle line, which bends by 200 degrees and twists.
+fn edit(method: &str) -> String {
+    let points: Vec<[f64; 3]> = (0..13).map(|i| [2.0 * f64::from(i), 1.0, 1.0]).collect();
+    let moved: Vec<[f64; 3]> = points.iter().map(|point| on_arc(point[0]).0.to_array()).collect();
+    let drawn = shapes::bar(LENGTH as usize, 2, 2);
+    let rings: Vec<usize> = (0..drawn.positions.len())
+        .filter(|v| drawn.positions[*v].x % 3.0 == 0.0)
+        .collect();
+    let curve = json!({ "points": points, "moved": moved, "twist": (0..13).map(|i| 10 * i).collect::<Vec<i32>>() });
+    json!({
+        "version": 1, "method": { "name": method },
+        "handles": [{ "name": "spine", "select": { "vertices": rings }, "curve": curve }],
+    })
+    .to_string()
+}
+
+fn on_arc(x: f64) -> (DVec3, f64) {
+    let angle = 200.0_f64.to_radians() * x / LENGTH;
+    let radius = LENGTH / 200.0_f64.to_radians();
+    (
+        DVec3::new(radius * angle.sin(), 1.0 + radius * (1.0 - angle.cos()), 1.0),
+        angle,
+    )
+}
+
+/// The largest distance of a vertex of the handle from where the curve takes it, moved further by `then`.
+fn missed(rig: &Rig, then: DVec3) -> f64 {
+    let shape = rig.editor.document().from_file();
+    let rest = &rig.model.surface.positions;
+    let held = rest.iter().zip(shape.iter()).filter(|(rest, _)| rest.x % 3.0 == 0.0);
+    let misses = held.map(|(rest, way)| {
+        let (place, angle) = on_arc(rest.x);
+        let twist = DQuat::from_rotation_x((60.0 * rest.x / LENGTH * 2.0).to_radians());
+        let arm = DQuat::from_rotation_z(angle) * (twist * DVec3::new(0.0, rest.y - 1.0, rest.z - 1.0));
+        (*rest + *way).distance(place + arm + then)
+    });
+    misses.fold(0.0, f64::max)
+}
+
+fn opened(method: &str) -> Rig {
+    let mut rig = Rig::open(shapes::bar(LENGTH as usize, 2, 2));
+    open(&mut rig, &edit(method));
+    rig
+}
+
+fn open(rig: &mut Rig, text: &str) {
+    rig.editor.handle(Event::Opened {
+        model: Arc::clone(&rig.model),
+        name: "a bar".to_owned(),
+        beginning: Some(Beginning::parse(text).unwrap()),
+    });
+    rig.drain();
+}
+
+#[test]
+fn an_opened_edit_bends_along_its_curve_and_the_handle_moves_further_as_a_whole() {
+    for method in ["arap", "bilaplacian", "primo", "shells"] {
+        let mut rig = opened(method);
+        assert!(rig.editor.document().is_displaced());
+        assert!(
+            missed(&rig, DVec3::ZERO) < 5e-3,
+            "{method}: {:e}",
+            missed(&rig, DVec3::ZERO)
+        );
+        let before = rig.editor.document().handles().to_vec();
+        let id = rig.editor.document().handles()[0].id;
+        rig.command(Command::SelectHandle(id));
+        rig.move_by('z', "2");
+        rig.drain();
+        assert!(missed(&rig, 2.0 * DVec3::Z) < 5e-3, "{method}");
+        rig.undo();
+        rig.drain();
+        assert!(missed(&rig, DVec3::ZERO) < 5e-3);
+        assert_eq!(before, rig.editor.document().handles());
+    }
+}
+
+#[test]
+fn projects_and_exported_edits_keep_the_curve() {
+    let mut rig = opened("arap");
+    let mesh = MeshReference {
+        name: None,
+        path: Some("bar.off".to_owned()),
+        geometry: geometry_hash(&rig.model),
+    };
+    let text = rig.editor.snapshot().unwrap().project(mesh).to_json();
+    let project = Project::parse(&text).unwrap();
+    assert_eq!(project.to_json(), text);
+    let curve = rig.editor.document().handles()[0]
+        .line
+        .as_ref()
+        .and_then(HandleLine::curve)
+        .cloned();
+    assert!(curve.is_some());
+    let first = rig.fingerprint();
+    let exported = rig.editor.edit_file().unwrap();
+    assert_eq!(exported.handles[0].curve, curve);
+    open(&mut rig, &text);
+    assert_eq!(first, rig.fingerprint());
+    open(&mut rig, &exported.to_json());
+    assert!(missed(&rig, DVec3::ZERO) < 5e-3);
+    // A project bends by the command line as it does in the window.
+    let setup = Beginning::from(project).resolve(&rig.model).unwrap();
+    assert!(!setup.lines.is_empty());
+}
+
+#[test]
+fn an_applied_shape_has_its_curve_at_rest_and_a_reset_one_too() {
+    let mut rig = opened("arap");
+    rig.command(Command::Apply);
+    rig.drain();
+    let applied = rig.editor.document().handles()[0].clone();
+    assert!(!applied.is_displaced() && missed(&rig, DVec3::ZERO) < 5e-3);
+    assert!(applied.line.unwrap().curve().unwrap().rest().points()[12].distance(on_arc(LENGTH).0) < 1e-12);
+    rig.command(Command::ResetShape);
+    rig.drain();
+    assert!(!rig.editor.document().handles()[0].is_displaced());
+    assert_eq!(rig.largest_displacement(), 0.0);
+}

@@ -1,0 +1,126 @@
+//! The flow tool in the whole window: poured, played, kept as colours, saved with the bent shape; skipped by name if
+//! there is no graphics device at all.
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::print_stderr,
+    reason = "tests fail by panicking and say what they skip"
+)]
+
+use crate::window_rig::Session;
+use egui::{Key, Modifiers, Pos2, vec2};
+use glam::DVec3;
+use pliant_app::window::KeepOriginal;
+use pliant_editor::{Command, NamedView, ToolMode};
+use pliant_mesh::DrawnVertex;
+use pliant_tests::{Folder, assets, open};
+
+/// A place on the sample's flank.
+fn flank(session: &Session) -> Pos2 {
+    session.point_of(|positions| {
+        let middle = positions.iter().sum::<DVec3>() / positions.len() as f64;
+        let off_px = |p: &DVec3| (p.y - middle.y).hypot(p.z - middle.z) - p.x;
+        *positions.iter().min_by(|a, b| off_px(a).total_cmp(&off_px(b))).unwrap()
+    })
+}
+
+fn from_the_right(session: &mut Session) {
+    for command in [Command::View(NamedView::Right), Command::FrameAll] {
+        session.harness.state_mut().command(command);
+        session.settle();
+    }
+}
+
+#[test]
+fn colour_is_poured_played_kept_and_saved_with_the_bent_shape() {
+    let Some(mut session) = Session::begin() else { return };
+    from_the_right(&mut session);
+    session.key(Key::Num9, Modifiers::NONE);
+    assert_eq!(session.harness.state().editor().view().tool, ToolMode::Flow);
+    let from = flank(&session);
+    session.stroke(from, from + vec2(60.0, 0.0));
+    assert!(session.harness.state().editor().document().fluid().has_dye());
+
+    session.key(Key::Space, Modifiers::NONE);
+    assert!(session.harness.state().editor().view().is_playing);
+    let before = session.harness.state().editor().view().regions_revision;
+    for _ in 0..200 {
+        session.harness.step();
+        if session.harness.state().editor().view().regions_revision > before + 3 {
+            break;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    assert!(
+        session.harness.state().editor().view().regions_revision > before + 3,
+        "it plays"
+    );
+    session.key(Key::Space, Modifiers::NONE);
+    session.settle();
+    assert_eq!(session.harness.state().editor().history().undo_name(), Some("Flow"));
+
+    // At rest nothing is drawn.
+    std::thread::sleep(std::time::Duration::from_millis(400));
+    session.harness.run_steps(8);
+    let drawings = session.harness.state().drawings();
+    session.harness.run_steps(20);
+    assert_eq!(session.harness.state().drawings(), drawings);
+
+    session.harness.state_mut().command(Command::KeepDye);
+    session
+        .harness
+        .state_mut()
+        .command(Command::SetTool(ToolMode::PaintHandle));
+    let pressed = flank(&session);
+    session.stroke(pressed, pressed + vec2(4.0, 0.0));
+    for key in [Key::G, Key::Y, Key::Num1, Key::Enter] {
+        session.key(key, Modifiers::NONE);
+    }
+    session.settle();
+    let application = session.harness.state();
+    let model = std::sync::Arc::clone(application.editor().view().model.unwrap());
+    let kept = application.editor().document().fluid().kept.clone().unwrap();
+    let mut bent = Vec::new();
+    model.drawn_positions(&session.shape(), &mut bent);
+    assert!(session.shape().iter().any(|d| d.length() > 0.1), "it is bent");
+
+    let folder = Folder::new();
+    let own = open(&assets().join("creature.glb")).scene.appearance().colours;
+    let own = own.unwrap_or_else(|| vec![[u16::MAX; 4]; bent.len()]);
+    for name in ["flowed.glb"] {
+        let path = folder.path().join(name);
+        session.harness.state_mut().save_to(path.clone(), KeepOriginal::No);
+        session.settle();
+        let saved = open(&path);
+        let colours = saved.scene.appearance().colours.unwrap();
+        let positions = saved.model.rest_positions();
+        // Formats without the file's own order are compared by position.
+        let place = |p: DVec3| p.to_array().map(|value| (value * 1e4).round() as i64);
+        let coloured: std::collections::HashMap<_, _> = positions.iter().map(|p| place(*p)).zip(&colours).collect();
+        let mut dyed = 0;
+        for (vertex, position) in bent.iter().enumerate() {
+            let Some(colour) = coloured.get(&place(*position)) else {
+                continue;
+            };
+            let surface = model.drawn.surface_vertex(DrawnVertex(vertex as u32));
+            let dye = surface.map_or([0.0; 4], |v| kept[v.index()]);
+            dyed += usize::from(dye[3] > 0.9);
+            for channel in 0..3 {
+                let clear = f64::from(1.0 - dye[3]) * f64::from(own[vertex][channel]);
+                let wanted = f64::from(dye[channel]) * f64::from(u16::MAX) + clear;
+                // Text formats have 8 bits a channel.
+                let off = (wanted - f64::from(colour[channel])).abs();
+                assert!(off < 700.0, "{name}: {off} of 65535 at vertex {vertex}");
+            }
+        }
+        assert!(dyed > 10, "{name}: {dyed} dyed vertices at their bent places");
+    }
+    let stl = folder.path().join("flowed.stl");
+    session.harness.state_mut().save_to(stl, KeepOriginal::No);
+    session.settle();
+    let said = session.harness.state().headline().unwrap().to_owned();
+    assert!(
+        said.contains("Saved") && said.contains("takes no new vertex colours"),
+        "{said}"
+    );
+}

@@ -1,0 +1,332 @@
+//! The surroundings of the model in the window: toolbars that are laid out again, messages that shift nothing, hints
+//! that end, remembered settings, recovery, and materials whose images are still loading. Skipped by name if there is
+//! no graphics device at all.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    reason = "tests fail by panicking and say what they skip"
+)]
+
+use std::fs;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use crate::window_rig::Session;
+use egui::{Key, Modifiers, Rect, vec2};
+use egui_kittest::kittest::Queryable;
+use glam::DVec2;
+use image::Rgba;
+use pliant_app::window::{AppDirectories, KeepOriginal, Source};
+use pliant_editor::{Command, HandleTransform, Shading, UpAxis};
+use pliant_tests::Folder;
+
+fn places(folder: &Folder) -> AppDirectories {
+    AppDirectories {
+        settings: Some(folder.at("settings.json")),
+        recovery: Some(folder.at("recovery")),
+        pictures: Some(folder.at("pictures")),
+    }
+}
+
+/// Runs frames until `is_done`.
+#[track_caller]
+fn wait_until(session: &mut Session, is_done: impl Fn(&mut Session) -> bool) {
+    let start = Instant::now();
+    while !is_done(session) {
+        assert!(start.elapsed() < Duration::from_secs(60), "it never came about");
+        std::thread::sleep(Duration::from_millis(10));
+        session.harness.step();
+    }
+}
+
+/// Moves the selected handle.
+fn bend(session: &mut Session) {
+    let id = session.harness.state().editor().view().selected.unwrap();
+    let transform = HandleTransform::Trs {
+        translation: glam::DVec3::new(0.05, 0.0, 0.0),
+        rotation: glam::DQuat::IDENTITY,
+        scale: glam::DVec3::ONE,
+        pivot: None,
+    };
+    session
+        .harness
+        .state_mut()
+        .command(Command::SetHandleTransform(id, transform));
+    session.settle();
+}
+
+/// The place of the button with this name.
+fn place_of(session: &Session, label: &str) -> Rect {
+    session
+        .harness
+        .query_by_label(label)
+        .unwrap_or_else(|| panic!("{label} is not to be seen"))
+        .rect()
+}
+
+/// After the window narrows and lowers, so that tools and choices show their icons alone, and grows again, the tools are
+/// beside the view and the choices above it as soon as the frames that the window itself requests have run.
+#[test]
+fn bars_are_laid_out_anew_after_a_resize_without_any_input() {
+    let Some(mut session) = Session::begin() else { return };
+    for size in [vec2(700.0, 600.0), vec2(1200.0, 700.0), vec2(640.0, 400.0)] {
+        session.harness.set_size(size);
+        session.harness.run();
+        let view = session.harness.state().view_rect();
+        let tools = ["Paint handle", "Select", "Pose", "Scale"].map(|label| place_of(&session, label));
+        for tool in tools {
+            assert!(
+                tool.right() <= view.left() && view.left() - tool.right() < 12.0 && tool.bottom() <= size.y,
+                "{tool:?} in a window of {size:?} whose view is at {view:?}"
+            );
+        }
+        // The tool's settings are in rows between them.
+        let settings = place_of(&session, "Symmetry");
+        assert!(
+            settings.bottom() <= view.top() && view.top() - settings.bottom() < 12.0,
+            "{settings:?} in a window of {size:?} whose view is at {view:?}"
+        );
+        let choices = ["Undo", "Clay", "Wireframe"].map(|label| place_of(&session, label));
+        for choice in choices {
+            assert!(
+                choice.bottom() <= view.top() && view.x_range().contains(choice.right()),
+                "{choice:?} in a window of {size:?} whose view is at {view:?}"
+            );
+        }
+    }
+}
+
+/// A message about a file appears over the view, and the view does not move.
+#[test]
+fn a_message_does_not_move_the_view() {
+    let Some(mut session) = Session::begin() else { return };
+    let before = session.harness.state().view_rect();
+    session
+        .harness
+        .state_mut()
+        .open(PathBuf::from("/no/such/folder/scan.ply"));
+    session.settle();
+    session.harness.run_steps(3);
+    let sentence = session.harness.state().headline().unwrap().to_owned();
+    let message = place_of(&session, &sentence);
+    assert_eq!(session.harness.state().view_rect(), before);
+    assert!(before.contains_rect(message), "{message:?} in {before:?}");
+    session.harness.get_by_label(&format!("Dismiss: {sentence}")).click();
+    session.harness.run_steps(3);
+    assert_eq!(session.harness.state().headline(), None);
+}
+
+/// The third hint says to save. It goes away once that is done, and stays away in the next session.
+#[test]
+fn the_last_hint_goes_once_the_bent_model_was_saved() {
+    let folder = Folder::new();
+    let Some(mut session) = Session::begin_in(Source::Sample, places(&folder)) else {
+        return;
+    };
+    let top = session.point_of(|positions| *positions.iter().max_by(|a, b| a.y.total_cmp(&b.y)).unwrap());
+    session.stroke(top + vec2(0.0, 6.0), top + vec2(0.0, 16.0));
+    bend(&mut session);
+    place_of(&session, "3 of 3");
+    let out = folder.at("bent.glb");
+    session.harness.state_mut().save_to(out.clone(), KeepOriginal::No);
+    session.settle();
+    session.harness.run_steps(2);
+    assert!(out.is_file());
+    assert!(session.harness.query_by_label("3 of 3").is_none());
+    drop(session);
+    let again = Session::begin_in(Source::Sample, places(&folder)).unwrap();
+    assert!(again.harness.query_by_label("1 of 3").is_none());
+}
+
+/// A window that filled the screen does so again the next time.
+#[test]
+fn a_maximised_window_is_remembered() {
+    let folder = Folder::new();
+    let Some(mut session) = Session::begin_in(Source::Sample, places(&folder)) else {
+        return;
+    };
+    let remembered = || {
+        let text = fs::read_to_string(folder.at("settings.json")).unwrap_or_default();
+        let settings: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
+        settings["maximised"].as_bool()
+    };
+    for is_maximised in [true, false, true] {
+        let input = session.harness.input_mut();
+        let window = input.viewports.entry(egui::ViewportId::ROOT).or_default();
+        window.maximized = Some(is_maximised);
+        wait_until(&mut session, |_| remembered() == Some(is_maximised));
+    }
+}
+
+/// The memory limit of binding is chosen by pointer and keyboard, reaches the editor and is kept for the next time.
+#[test]
+fn the_memory_that_binding_may_take_is_remembered() {
+    let folder = Folder::new();
+    let Some(mut session) = Session::begin_in(Source::Sample, places(&folder)) else {
+        return;
+    };
+    let most = |session: &Session| session.harness.state().editor().most_memory();
+    let kept = || {
+        let text = fs::read_to_string(folder.at("settings.json")).unwrap_or_default();
+        let settings: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
+        settings["memory"].clone()
+    };
+    assert_eq!(most(&session), None, "what the machine leaves");
+    session.palette("memory");
+    session.key(Key::Enter, Modifiers::NONE);
+    session.harness.get_by_label("At most").click();
+    session.harness.run_steps(2);
+    assert_eq!(most(&session), Some(8_000_000_000));
+    session.click_into("Most memory in GB");
+    session.harness.event(egui::Event::Text("1.5".to_owned()));
+    session.harness.run_steps(2);
+    session.key(Key::Enter, Modifiers::NONE);
+    session.settle();
+    assert_eq!((most(&session), kept()), (Some(1_500_000_000), "1.5GB".into()));
+    drop(session);
+
+    let mut session = Session::begin_in(Source::Sample, places(&folder)).unwrap();
+    assert_eq!(most(&session), Some(1_500_000_000));
+    session.palette("memory");
+    session.key(Key::Enter, Modifiers::NONE);
+    session.harness.get_by_label("All free memory").click();
+    session.harness.run_steps(2);
+    assert_eq!((most(&session), kept()), (None, serde_json::Value::Null));
+    session.key(Key::Escape, Modifiers::NONE);
+    assert!(session.harness.query_by_label("At most").is_none());
+}
+
+/// The leftovers of a session are listed by the model's name, and messages about it use that name.
+#[test]
+fn a_recovery_names_its_file() {
+    let folder = Folder::new();
+    let scan = folder.write_mesh("ball of clay.off", &pliant_mesh::shapes::icosphere(4));
+    let Some(mut session) = Session::begin_in(Source::File(scan), places(&folder)) else {
+        return;
+    };
+    let middle = session.harness.state().view_rect().center();
+    session.stroke(middle, middle + vec2(12.0, 0.0));
+    bend(&mut session);
+    let kept = || {
+        let entries = fs::read_dir(folder.at("recovery")).into_iter().flatten().flatten();
+        entries
+            .map(|entry| entry.path())
+            .find(|path| path.extension().is_some_and(|extension| extension == "pliant"))
+    };
+    wait_until(&mut session, |_| kept().is_some());
+    // It is like the leftovers of a killed session: nothing holds its lock.
+    fs::copy(kept().unwrap(), folder.at("recovery/session-0-0.pliant")).unwrap();
+    drop(session);
+    let mut session = Session::begin_in(Source::Sample, places(&folder)).unwrap();
+    place_of(&session, "ball of clay.off");
+    session.harness.get_by_label("Delete").click();
+    session.harness.run_steps(3);
+    assert_eq!(kept(), None);
+    assert!(session.harness.query_by_label("ball of clay.off").is_none());
+}
+
+/// The up axis belongs to the file; changing it frames the whole model again.
+#[test]
+fn z_up_frames_the_model_and_ends_with_the_file() {
+    let Some(mut session) = Session::begin() else { return };
+    let folder = Folder::new();
+    let scan = folder.write_mesh("ball.off", &pliant_mesh::shapes::icosphere(3));
+    let command = |session: &mut Session, command| {
+        session.harness.state_mut().command(command);
+        session.settle();
+    };
+    let is_all_in_view = |session: &Session| {
+        let view = session.harness.state().editor().view();
+        let (camera, size_px) = (view.camera, view.viewport_px);
+        let mut positions = view.model.unwrap().surface.positions.iter();
+        positions.all(|&position| {
+            let seen = camera.project(position, size_px);
+            seen.is_some_and(|px| px.cmpge(DVec2::ZERO).all() && px.cmple(size_px).all())
+        })
+    };
+    for _ in 0..3 {
+        session.key(Key::Home, Modifiers::NONE);
+    }
+    command(&mut session, Command::SetUp(UpAxis::Z));
+    assert!(is_all_in_view(&session), "turned to Z");
+    session.harness.state_mut().open(scan);
+    session.settle();
+    assert_eq!(session.harness.state().editor().view().camera.up, UpAxis::Y);
+    assert!(is_all_in_view(&session));
+}
+
+/// While a file's images are loading, the view shows clay, not the materials without their images.
+#[test]
+fn clay_is_seen_until_the_textures_are_there() {
+    let folder = Folder::new();
+    let red = image::RgbaImage::from_pixel(64, 64, Rgba([200, 20, 20, 255]));
+    red.save(folder.at("skin.png")).unwrap();
+    folder.write("ball.mtl", "newmtl skin\nKd 1 1 1\nmap_Kd skin.png\n");
+    let ball = pliant_mesh::shapes::icosphere(3);
+    let mut text = "mtllib ball.mtl\nusemtl skin\nvt 0.5 0.5\n".to_owned();
+    for p in &ball.positions {
+        text += &format!("v {} {} {}\n", p.x, p.y, p.z);
+    }
+    for t in &ball.triangles {
+        let [a, b, c] = t.map(|vertex| vertex.0 + 1);
+        text += &format!("f {a}/1 {b}/1 {c}/1\n");
+    }
+    let file = folder.write("ball.obj", text);
+    let Some(mut session) = Session::begin_in(Source::File(file), AppDirectories::default()) else {
+        return;
+    };
+    let middle = |session: &mut Session| {
+        let at = session.harness.state().view_rect().center();
+        let picture = session.harness.render().unwrap();
+        *picture.get_pixel(at.x as u32, at.y as u32)
+    };
+    let clay = middle(&mut session);
+    session
+        .harness
+        .state_mut()
+        .command(Command::SetShading(Shading::Material));
+    session.harness.step();
+    assert!(session.harness.state().is_loading_textures());
+    assert!(session.harness.query_by_label("loading textures…").is_some());
+    assert_eq!(middle(&mut session), clay);
+    session.settle();
+    session.harness.run_steps(2);
+    assert!(!session.harness.state().is_loading_textures());
+    let Rgba([red, green, blue, _]) = middle(&mut session);
+    assert!(red > 2 * green && red > 2 * blue, "{red} {green} {blue}");
+}
+
+/// A file without colours is grey in the material view: its brightest places keep their shading.
+#[test]
+fn what_has_no_material_is_not_overexposed() {
+    let folder = Folder::new();
+    let file = folder.write_mesh("ball.off", &pliant_mesh::shapes::icosphere(4));
+    let Some(mut session) = Session::begin_in(Source::File(file), AppDirectories::default()) else {
+        return;
+    };
+    session
+        .harness
+        .state_mut()
+        .command(Command::SetShading(Shading::Material));
+    session.settle();
+    session.harness.run_steps(2);
+    let view = session.harness.state().view_rect().shrink(20.0);
+    let picture = session.harness.render().unwrap();
+    let of_ball = (view.left() as u32..view.right() as u32)
+        .flat_map(|x| (view.top() as u32..view.bottom() as u32).map(move |y| (x, y)))
+        .filter(|&(x, y)| (vec2(x as f32, y as f32) - view.center().to_vec2()).length() < 0.2 * view.height());
+    let mut brightness: Vec<u8> = of_ball
+        .map(|(x, y)| {
+            let Rgba([red, green, blue, _]) = *picture.get_pixel(x, y);
+            red.max(green).max(blue)
+        })
+        .collect();
+    brightness.sort_unstable();
+    let [middle, high] = [brightness.len() / 2, brightness.len() * 9 / 10].map(|place| brightness[place]);
+    // In white, the same ball has 239 and 245.
+    assert!(
+        middle < 220 && high < 235,
+        "{middle} in the middle, {high} in the brightest tenth"
+    );
+}

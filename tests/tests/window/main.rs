@@ -1,0 +1,16 @@
+//! The whole window, headless: pointer and keys go in, and the document and the picture come out.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
+
+mod access;
+mod bending;
+mod cage;
+mod desktop;
+mod disk;
+mod examples;
+mod files;
+mod flow;
+mod frame;
+mod pose;
+mod session;
+mod slow_frames;
+mod window_rig;

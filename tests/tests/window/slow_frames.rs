@@ -1,0 +1,100 @@
+//! Input that arrives within one slow frame goes to the widget that had the pointer and the keyboard at that moment,
+//! and Escape in a field reverts the typed text. Skipped by name if there is no graphics device at all.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    reason = "tests fail by panicking and say what they skip"
+)]
+
+use crate::window_rig::Session;
+use egui::{Event, Key, Modifiers, PointerButton};
+use egui_kittest::kittest::Queryable;
+use glam::DVec3;
+use pliant_editor::ToolMode;
+
+/// Presses and releases a key that types a text.
+fn typed(key: Key, text: &str) -> Vec<Event> {
+    let stroke = |pressed| Event::Key {
+        key,
+        physical_key: None,
+        pressed,
+        repeat: false,
+        modifiers: Modifiers::NONE,
+    };
+    let text = (!text.is_empty()).then(|| Event::Text(text.to_owned()));
+    [stroke(true)].into_iter().chain(text).chain([stroke(false)]).collect()
+}
+
+#[test]
+fn what_a_field_takes_is_no_shortcut_however_slow_the_frames_are() {
+    let Some(mut session) = Session::with_handle() else {
+        return;
+    };
+    let before = {
+        let view = session.harness.state().editor().view();
+        (view.tool, view.camera_revision)
+    };
+    session.click_into("Move");
+    let keys = [typed(Key::Period, "."), typed(Key::Num2, "2"), typed(Key::Enter, "")].concat();
+    session.in_one_frame(keys);
+    assert_eq!(session.translation().x, 0.2, "the field took what was typed");
+    let view = session.harness.state().editor().view();
+    assert_eq!((view.tool, view.camera_revision), before, "and nobody else did");
+
+    // A key after Enter is a shortcut again, even within the same slow frame.
+    session.click_into("Move");
+    session.in_one_frame([typed(Key::Num0, "0"), typed(Key::Enter, ""), typed(Key::Num2, "2")].concat());
+    assert_eq!(session.translation().x, 0.0);
+    assert_eq!(session.harness.state().editor().view().tool, ToolMode::PaintFree);
+}
+
+#[test]
+fn escape_in_a_number_field_takes_the_typed_number_back() {
+    let Some(mut session) = Session::with_handle() else {
+        return;
+    };
+    for is_slow in [false, true] {
+        session.click_into("Move");
+        if is_slow {
+            session.in_one_frame([typed(Key::Num5, "5"), typed(Key::Escape, "")].concat());
+        } else {
+            for event in [typed(Key::Num5, "5"), typed(Key::Escape, "")].concat() {
+                session.in_one_frame([event]);
+            }
+        }
+        assert_eq!(session.translation(), DVec3::ZERO);
+        // Nor does it later: focusing the field and leaving it again types nothing.
+        session.click_into("Move");
+        session.in_one_frame(typed(Key::Enter, ""));
+        assert_eq!(session.translation(), DVec3::ZERO);
+        assert_eq!(session.harness.state().editor().document().handles().len(), 1);
+    }
+}
+
+#[test]
+fn a_click_and_what_is_typed_into_the_palette_after_it_may_come_in_one_frame() {
+    let Some(mut session) = Session::with_handle() else {
+        return;
+    };
+    // Resizing the region follows the pointer; the click confirms it, and only then does the palette open.
+    session.key(Key::E, Modifiers::NONE);
+    let at = session.harness.state().view_rect().center();
+    session.pointer(at, None);
+    assert!(session.harness.state().editor().is_acting());
+    let button = |pressed| Event::PointerButton {
+        pos: at,
+        button: PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    };
+    let click = [button(true), button(false)];
+    let palette = [typed(Key::F1, ""), typed(Key::W, "w"), typed(Key::I, "i")].concat();
+    session.in_one_frame(click.into_iter().chain(palette));
+    assert!(
+        !session.harness.state().editor().is_acting(),
+        "the click was for the view"
+    );
+    let field = session.harness.get_by_label("Command");
+    assert_eq!(field.value().as_deref(), Some("wi"), "and the letters for the palette");
+}
