@@ -231,7 +231,7 @@ fn pictures_come_as_png_and_an_edit_changes_them() {
         return client.close();
     }
     let look = json!({ "size": "120x90", "view": "front" });
-    let mut picture = |client: &mut Client, original: bool| {
+    let picture = |client: &mut Client, original: bool| {
         let arguments = json!({ "model": model, "look": look, "original": original });
         let content = client.call("render", arguments).unwrap();
         assert_eq!(
