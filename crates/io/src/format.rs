@@ -6,7 +6,7 @@ use crate::quote::quoted;
 
 /// A name whose extension is that of no known format.
 #[derive(Clone, PartialEq, Eq, Debug, thiserror::Error)]
-#[error("\"{}\" has no extension of a known kind: name it .glb, .gltf, .obj, .ply, .stl or .off", quoted(.name))]
+#[error("\"{}\" has no extension of a known kind: name it .glb, .gltf, .obj, .ply, .stl, .off or .3mf", quoted(.name))]
 pub struct UnknownFormat {
     /// The file's name.
     pub name: String,
@@ -27,11 +27,32 @@ pub enum Format {
     Stl,
     /// OFF with its COFF and NOFF variants.
     Off,
+    /// 3D Manufacturing Format, objects in a zip archive.
+    Threemf,
 }
 
 impl Format {
     /// Every format, in the order in which they are listed for a person.
-    pub const ALL: [Self; 6] = [Self::Glb, Self::Gltf, Self::Obj, Self::Ply, Self::Stl, Self::Off];
+    pub const ALL: [Self; 7] = [
+        Self::Glb,
+        Self::Gltf,
+        Self::Obj,
+        Self::Ply,
+        Self::Stl,
+        Self::Off,
+        Self::Threemf,
+    ];
+
+    /// Their extensions, in the same order.
+    pub const EXTENSIONS: [&'static str; Self::ALL.len()] = {
+        let mut extensions = [""; Self::ALL.len()];
+        let mut place = 0;
+        while place < extensions.len() {
+            extensions[place] = Self::ALL[place].extension();
+            place += 1;
+        }
+        extensions
+    };
 
     /// The format for the extension of a file's name or path, in any case.
     pub fn of_name(name: &str) -> Result<Self, UnknownFormat> {
@@ -52,6 +73,7 @@ impl Format {
             Self::Ply => "ply",
             Self::Stl => "stl",
             Self::Off => "off",
+            Self::Threemf => "3mf",
         }
     }
 }
@@ -65,6 +87,7 @@ impl fmt::Display for Format {
             Self::Ply => "PLY",
             Self::Stl => "STL",
             Self::Off => "OFF",
+            Self::Threemf => "3MF",
         })
     }
 }

@@ -64,6 +64,7 @@ mod source;
 mod stl;
 mod summary;
 mod text;
+mod threemf;
 
 pub use appearance::{
     AlphaMode, Appearance, Group, Image, Lighting, Map, Material, Origin, OriginalMaterial, UvSet, Wrap,

@@ -120,7 +120,7 @@ fn colour_is_poured_played_kept_and_saved_with_the_bent_shape() {
     session.settle();
     let said = session.harness.state().headline().unwrap().to_owned();
     assert!(
-        said.contains("Saved") && said.contains("STL has no vertex colours"),
+        said.contains("Saved") && said.contains("takes no new vertex colours"),
         "{said}"
     );
 }

@@ -45,7 +45,7 @@ impl Scene {
             false => triangle,
         };
         match (self.stored(), save.format) {
-            (Stored::Gltf(_), Format::Glb | Format::Gltf) => {
+            (Stored::Gltf(_), Format::Glb | Format::Gltf) | (Stored::Threemf(_), Format::Threemf) => {
                 same_count("vertices", back.drawn.positions.len(), save.drawn.positions.len())?;
                 let vertices = 0..save.drawn.positions.len();
                 each(vertices.map(|vertex| (vertex, wanted(vertex))), back, &stored)?;
@@ -70,7 +70,7 @@ impl Scene {
                 each(of_file.map(|(v, file)| (v, wanted[file.index()])), back, &stored)?;
                 same_windings(self, save, back, is_turned)
             }
-            (_, Format::Glb | Format::Gltf | Format::Stl) => {
+            (_, Format::Glb | Format::Gltf | Format::Stl | Format::Threemf) => {
                 let count = triangles.map_or(save.drawn.triangles.len(), <[u32]>::len);
                 same_count("triangles", back.drawn.triangles.len(), count)?;
                 let source = |place: usize| triangles.map_or(place, |triangles| triangles[place] as usize);
@@ -140,7 +140,7 @@ impl UnsavedShape<'_> {
         back: &SceneAndDrawn,
     ) -> Result<(), String> {
         let stored = Precision::of(back);
-        if matches!(format, Format::Glb | Format::Gltf | Format::Stl) {
+        if matches!(format, Format::Glb | Format::Gltf | Format::Stl | Format::Threemf) {
             let count = triangles.map_or(self.triangles.len(), <[u32]>::len);
             same_count("triangles", back.drawn.triangles.len(), count)?;
             let source = |place: usize| triangles.map_or(place, |triangles| triangles[place] as usize);
@@ -180,6 +180,7 @@ impl<'a> Precision<'a> {
     fn of(back: &'a SceneAndDrawn) -> Self {
         match back.scene.stored() {
             Stored::Gltf(stored) => Self::Within(stored.roundings(&back.drawn)),
+            Stored::Threemf(stored) => Self::Within(stored.roundings(&back.drawn)),
             _ => Self::Nearest(&back.scene),
         }
     }

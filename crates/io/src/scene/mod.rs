@@ -26,7 +26,7 @@ use crate::save::moved::Moved;
 use crate::save::{MorphAnimation, MorphTarget, OutputFile, Placement, Save, Saved};
 use crate::source::{Resolver, Source};
 use crate::summary::Summary;
-use crate::{Appearance, Bytes, Format, ReadError, SaveError, gltf, obj, off, ply, stl};
+use crate::{Appearance, Bytes, Format, ReadError, SaveError, gltf, obj, off, ply, stl, threemf};
 
 /// The result of [`read`].
 #[derive(Debug)]
@@ -52,6 +52,7 @@ pub(crate) enum Stored {
     Ply(ply::Stored),
     Stl(stl::Stored),
     Off(off::Stored),
+    Threemf(threemf::Stored),
 }
 
 /// Reads a file of the given format. `name` is used in messages only; `resolver` reads the neighbours.
@@ -92,6 +93,10 @@ pub fn read(
         Format::Off => {
             let (stored, drawn) = off::read(&source)?;
             (Stored::Off(stored), drawn)
+        }
+        Format::Threemf => {
+            let (stored, drawn) = threemf::read(&source)?;
+            (Stored::Threemf(stored), drawn)
         }
     };
     cancel.check()?;
@@ -156,6 +161,7 @@ pub(crate) fn write_new(mesh: &NewMesh<'_>, format: Format, course: &Course<'_>)
         Format::Ply => ply::write_new(mesh, course),
         Format::Stl => stl::write_new(mesh, course),
         Format::Off => off::write_new(mesh, course),
+        Format::Threemf => threemf::write_new(mesh, course),
     }
 }
 
@@ -173,6 +179,7 @@ impl Scene {
             Stored::Ply(stored) => stored.notes(),
             Stored::Stl(stored) => stored.notes(),
             Stored::Off(stored) => stored.notes(),
+            Stored::Threemf(stored) => stored.notes(),
         }
     }
 
@@ -184,6 +191,7 @@ impl Scene {
             Stored::Ply(stored) => stored.summary(),
             Stored::Stl(stored) => stored.summary(),
             Stored::Off(stored) => stored.summary(),
+            Stored::Threemf(stored) => stored.summary(),
         }
     }
 
@@ -193,6 +201,7 @@ impl Scene {
         match &self.stored {
             Stored::Gltf(stored) => stored.objects(),
             Stored::Obj(stored) => stored.objects(),
+            Stored::Threemf(stored) => stored.objects(),
             Stored::Ply(_) | Stored::Stl(_) | Stored::Off(_) => Vec::new(),
         }
     }
@@ -202,7 +211,7 @@ impl Scene {
     pub fn morph_targets(&self) -> Vec<String> {
         match &self.stored {
             Stored::Gltf(stored) => stored.morph_targets(),
-            Stored::Obj(_) | Stored::Ply(_) | Stored::Stl(_) | Stored::Off(_) => Vec::new(),
+            Stored::Obj(_) | Stored::Ply(_) | Stored::Stl(_) | Stored::Off(_) | Stored::Threemf(_) => Vec::new(),
         }
     }
 
@@ -220,7 +229,7 @@ impl Scene {
     ) -> Result<Option<Vec<DVec3>>, ReadError> {
         match &self.stored {
             Stored::Gltf(stored) => stored.morph_target(file, target, vertex_count, cancel),
-            Stored::Obj(_) | Stored::Ply(_) | Stored::Stl(_) | Stored::Off(_) => Ok(None),
+            Stored::Obj(_) | Stored::Ply(_) | Stored::Stl(_) | Stored::Off(_) | Stored::Threemf(_) => Ok(None),
         }
     }
 
@@ -232,6 +241,7 @@ impl Scene {
             Stored::Ply(stored) => stored.appearance(),
             Stored::Stl(stored) => stored.appearance(),
             Stored::Off(stored) => stored.appearance(),
+            Stored::Threemf(stored) => stored.appearance(),
         }
     }
 
@@ -275,6 +285,7 @@ impl Scene {
             (Stored::Ply(stored), Format::Ply) => stored.write(&moved, course).map(own),
             (Stored::Stl(stored), Format::Stl) => stored.write(&moved, course).map(own),
             (Stored::Off(stored), Format::Off) => stored.write(&moved, course).map(own),
+            (Stored::Threemf(stored), Format::Threemf) => stored.write(&moved, course).map(own),
             (_, format) => self.converted(&moved, self.appearance(), save, (format, parting), course),
         }
     }
@@ -283,6 +294,12 @@ impl Scene {
     pub fn is_of_kind(&self, format: Format) -> bool {
         let is_gltf = |format| matches!(format, Format::Glb | Format::Gltf);
         self.format() == format || (is_gltf(self.format()) && is_gltf(format))
+    }
+
+    /// Returns true if a save in this format can have other colours of vertices: not STL, and not the file's own 3MF,
+    /// whose triangles name groups of colours that its other data may name, too.
+    pub fn takes_colours(&self, format: Format) -> bool {
+        format != Format::Stl && (format != Format::Threemf || !self.is_of_kind(format))
     }
 
     /// The file with other vertex colours: linear, from 0 to 65535, one for each drawn vertex. In the file's own format
@@ -321,6 +338,7 @@ impl Scene {
                 return stored.save_with_colours(save, colours, course);
             }
             (_, Format::Stl) => return Err(SaveError::without_colours()),
+            (Stored::Threemf(_), Format::Threemf) => return Err(threemf::without_new_colours()),
             (Stored::Obj(stored), Format::Obj) => (stored.write_coloured(&of_file()), stored.neighbours()),
             (Stored::Ply(stored), Format::Ply) => (stored.write_coloured(&of_file())?, stored.neighbours()),
             (Stored::Off(stored), Format::Off) => (stored.write_coloured(&of_file()), (Vec::new(), Vec::new())),
@@ -545,7 +563,7 @@ impl Scene {
             Stored::Ply(stored) => stored.unread(),
             Stored::Stl(stored) => stored.unread(),
             Stored::Off(stored) => stored.unread(),
-            Stored::Gltf(_) | Stored::Obj(_) => Vec::new(),
+            Stored::Gltf(_) | Stored::Obj(_) | Stored::Threemf(_) => Vec::new(),
         };
         let own = self.format.extension();
         (!unread.is_empty()).then(|| {
@@ -578,14 +596,14 @@ impl Scene {
         match &self.stored {
             Stored::Ply(stored) => stored.nearest(axis, value),
             Stored::Stl(stored) => stored.nearest(value),
-            Stored::Gltf(_) | Stored::Obj(_) | Stored::Off(_) => value,
+            Stored::Gltf(_) | Stored::Obj(_) | Stored::Off(_) | Stored::Threemf(_) => value,
         }
     }
 
     /// The file's own polygons over drawn vertices, if any of them is not a triangle.
     pub fn polygons(&self) -> Option<Polygons> {
         match &self.stored {
-            Stored::Gltf(_) | Stored::Stl(_) => None,
+            Stored::Gltf(_) | Stored::Stl(_) | Stored::Threemf(_) => None,
             Stored::Obj(stored) => stored.polygons(),
             Stored::Ply(stored) => stored.polygons(),
             Stored::Off(stored) => stored.polygons(),

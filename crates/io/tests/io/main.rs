@@ -29,5 +29,6 @@ mod single_precision;
 mod stl;
 mod stopping;
 mod text;
+mod threemf;
 mod turned;
 mod vertex_colours;

@@ -4,6 +4,8 @@
 //! impossible ones, flip bytes, cut and stretch. The seeds are fixed, so a failure repeats.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test fails by panicking")]
 
+use std::io::Write;
+
 use crate::text::{folder, moved, open_in, same_bits, save};
 use glam::DVec3;
 use pliant_io::{Format, Placement, Save};
@@ -105,12 +107,18 @@ fn mutate(bytes: &mut Vec<u8>, chance: &mut Chance) {
 
 /// Mutates `seeds` `runs` times and puts every file that is still read through every kind of saving.
 fn survive(format: Format, seeds: &[&[u8]], runs: usize) {
+    survive_packed(format, seeds, runs, |bytes| bytes);
+}
+
+/// The same for the text in a file that `packed` makes of it.
+fn survive_packed(format: Format, seeds: &[&[u8]], runs: usize, packed: impl Fn(Vec<u8>) -> Vec<u8>) {
     let library = "newmtl red\nKd 1 0 0\nmap_Kd -s 1 1 tex.png\nnewmtl b\nd 0.5\nTr 1\n";
     let mut chance = Chance(0x0001_5eed ^ format.extension().len() as u64);
     let mut read_count = 0;
     for run in 0..runs {
         let mut bytes = seeds[run % seeds.len()].to_vec();
         (0..=chance.below(3)).for_each(|_| mutate(&mut bytes, &mut chance));
+        let bytes = packed(bytes);
         let mut mtl = library.as_bytes().to_vec();
         mutate(&mut mtl, &mut chance);
         let mut files = folder(&[("tex.png", "png")]);
@@ -260,6 +268,37 @@ fn stl_survives() {
 #[test]
 fn off_survives() {
     survive(Format::Off, &[OFF, NOFF], 6000);
+}
+
+const MODEL: &[u8] = b"<model xmlns:m=\"m\">\n<resources>\n<m:colorgroup id=\"2\">\n<m:color color=\"#00FF00\"/>\n\
+<m:color color=\"#0000FF80\"/>\n</m:colorgroup>\n<object id=\"1\" name=\"one\" pid=\"2\" pindex=\"0\">\n<mesh>\n<vertices>\n\
+<vertex x=\"0\" y=\"0\" z=\"0\"/>\n<vertex x=\"1\" y=\"0\" z=\"0\"/>\n<vertex x=\"1\" y=\"1\" z=\"0.5\"/>\n\
+<vertex x=\"0\" y=\"1\" z=\"0\"/>\n</vertices>\n<triangles>\n<triangle v1=\"0\" v2=\"1\" v3=\"2\"/>\n\
+<triangle v1=\"0\" v2=\"2\" v3=\"3\" pid=\"2\" p1=\"0\" p2=\"1\" p3=\"1\"/>\n</triangles>\n</mesh>\n</object>\n\
+<object id=\"3\">\n<components>\n<component objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 1 2 0 0\"/>\n</components>\n\
+</object>\n</resources>\n<build>\n<item objectid=\"3\"/>\n</build>\n</model>\n";
+
+/// An archive with this model part.
+fn threemf(model: &[u8]) -> Vec<u8> {
+    let mut zip = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
+    zip.start_file("3D/3dmodel.model", zip::write::SimpleFileOptions::default())
+        .unwrap();
+    zip.write_all(model).unwrap();
+    zip.finish().unwrap().into_inner()
+}
+
+#[test]
+fn threemf_survives_in_its_model_and_in_its_archive() {
+    survive_packed(Format::Threemf, &[MODEL], 4000, |model| threemf(&model));
+    let whole = threemf(MODEL);
+    let mut chance = Chance(11);
+    for _ in 0..4000 {
+        let mut bytes = whole.clone();
+        (0..=chance.below(3)).for_each(|_| mutate(&mut bytes, &mut chance));
+        if let Ok(opened) = open_in(&bytes, Format::Threemf, &folder(&[])) {
+            assert_eq!(save(&opened, &opened.drawn.positions), bytes);
+        }
+    }
 }
 
 #[test]

@@ -11,9 +11,21 @@ use crate::files::names::file_name;
 use crate::window::threads::message::{Message, Purpose};
 use crate::window::threads::workers::Workers;
 use pliant_engine::files::folder_of;
+use pliant_io::Format;
 
 /// The kinds of mesh file.
-const MODELS: &[&str] = &["glb", "gltf", "obj", "ply", "stl", "off"];
+const MODELS: &[&str] = &Format::EXTENSIONS;
+
+/// The kinds of mesh file, and projects.
+const MODELS_AND_PROJECTS: &[&str] = &{
+    let mut endings = ["pliant"; Format::EXTENSIONS.len() + 1];
+    let mut place = 0;
+    while place < Format::EXTENSIONS.len() {
+        endings[place] = Format::EXTENSIONS[place];
+        place += 1;
+    }
+    endings
+};
 
 /// The purpose of a dialog.
 struct Request {
@@ -30,7 +42,7 @@ fn request(purpose: Purpose) -> Request {
             "Open a model or a project",
             Asked::ToOpen,
             "Models and projects",
-            &["glb", "gltf", "obj", "ply", "stl", "off", "pliant"],
+            MODELS_AND_PROJECTS,
         ),
         Purpose::ApplyEdit => ("Apply an edit", Asked::ToOpen, "Edits", &["json"]),
         Purpose::LoadCage => ("Load a cage", Asked::ToOpen, "Models", MODELS),

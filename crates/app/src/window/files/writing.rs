@@ -163,7 +163,7 @@ fn ready(request: &SaveRequest, staging: &Staging, progress: &Progress, cancel: 
 
 /// The note about colours that are not saved.
 const WITHOUT_COLOURS: &str =
-    "STL has no vertex colours, so the kept dye is not in the file: save as GLB, PLY or OBJ, too.";
+    "This kind of file takes no new vertex colours, so the kept dye is not in it: save as GLB, PLY or OBJ, too.";
 
 /// The model, together with the original of the file that it replaces.
 fn ready_model(
@@ -182,7 +182,7 @@ fn ready_model(
     let keeps = model.keep_original == KeepOriginal::Yes || is_source;
     let split = if keeps { 0.5 } else { 1.0 };
     let (of_save, of_original) = (progress.part(0.0, split), progress.part(split, 1.0));
-    let holds_colours = Format::of_name(&path.to_string_lossy()).is_ok_and(|format| format != Format::Stl);
+    let holds_colours = Format::of_name(&path.to_string_lossy()).is_ok_and(|format| loaded.scene.takes_colours(format));
     let colours = shape.dye.as_ref().and_then(|dye| dyed(loaded, dye));
     let lost = (colours.is_some() && !holds_colours).then(|| WITHOUT_COLOURS.to_owned());
     let colours = colours.filter(|_| holds_colours);
