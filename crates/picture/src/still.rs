@@ -118,3 +118,30 @@ fn look(options: &StillOptions) -> Look {
         before: Before::Off,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use pliant_render::Outlines;
+
+    use super::*;
+
+    #[test]
+    fn outlines_are_drawn_where_they_are_asked_for_whatever_the_shading() {
+        for (outlines, shading, expected) in [
+            (false, Shading::Clay, Outlines::Off),
+            (true, Shading::Clay, Outlines::On),
+            (false, Shading::Regions, Outlines::On),
+        ] {
+            let mut options = StillOptions {
+                outlines,
+                ..StillOptions::default()
+            };
+            options.look.shading = shading;
+            assert_eq!(
+                drawing::style(&look(&options), 1.0).outlines,
+                expected,
+                "{outlines} {shading:?}"
+            );
+        }
+    }
+}

@@ -65,7 +65,7 @@ pub fn style(look: &Look, pixels_per_point: f32) -> Style {
         faces: if look.flat { Faces::Flat } else { Faces::Smooth },
         wireframe: if look.wireframe { Wireframe::On } else { Wireframe::Off },
         borders: if look.borders { Borders::On } else { Borders::Off },
-        outlines: match look.outlines && look.regions {
+        outlines: match look.outlines {
             true => Outlines::On,
             false => Outlines::Off,
         },
@@ -170,7 +170,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn one_switch_hides_regions_and_a_drag_fades_them_but_no_numbers() {
+    fn a_look_without_regions_may_have_outlines_and_a_drag_fades_regions_but_no_numbers() {
         let shown = style(&Look::default(), 1.0);
         assert!(shown.region_share > 0.0 && shown.outlines == Outlines::On);
         let faded = faded_style(&Look::default(), 1.0);
@@ -181,7 +181,7 @@ mod tests {
         };
         assert_eq!(
             (style(&off, 1.0).region_share, style(&off, 1.0).outlines),
-            (0.0, Outlines::Off)
+            (0.0, Outlines::On)
         );
         let numbers = Look {
             shading: Shading::Stretch,

@@ -218,7 +218,12 @@ impl Viewport {
             Shading::Weights if self.field() != Some(Field::Weight) => Shading::Clay,
             shading => shading,
         };
-        Look { shading, ..look }
+        Look {
+            shading,
+            // One switch shows and hides regions with their outlines.
+            outlines: look.outlines && look.regions,
+            ..look
+        }
     }
 
     /// The materials with their images of the shown file, if it has them.
