@@ -74,16 +74,16 @@ impl Budget {
 
 /// An empty vector with capacity for this many entries, if the machine has the memory.
 pub(crate) fn reserved<T>(entries: usize) -> Result<Vec<T>, TryReserveError> {
-    let mut scratch = Vec::new();
-    scratch.try_reserve_exact(entries)?;
-    Ok(scratch)
+    let mut list = Vec::new();
+    list.try_reserve_exact(entries)?;
+    Ok(list)
 }
 
 /// This many copies of a value, if the machine has the memory.
 pub(crate) fn filled<T: Clone>(value: T, entries: usize) -> Result<Vec<T>, TryReserveError> {
-    let mut scratch = reserved(entries)?;
-    scratch.resize(entries, value);
-    Ok(scratch)
+    let mut list = reserved(entries)?;
+    list.resize(entries, value);
+    Ok(list)
 }
 
 /// The bytes of this many entries of this size.

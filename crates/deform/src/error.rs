@@ -365,7 +365,7 @@ pub enum SolveError {
     #[error("the binding has no control points to move: bind with a cage or a lattice")]
     NoControls,
     /// The output's length differs from the surface's.
-    #[error("scratch for {found} displacements was given for {expected} surface vertices: give one for each")]
+    #[error("room for {found} displacements was given for {expected} surface vertices: give one for each")]
     OutputLength {
         /// The output's length.
         found: usize,

@@ -8,46 +8,33 @@ use pliant_engine::stitching::{self, Cut, CutAlong, Fill, Holes, Merge, Remaking
 use pliant_io::Format;
 
 use super::replaced::keep_replaced;
-use super::shared_arguments::{ComputeArguments, WeldArguments};
 use super::stitch_arguments::{BridgeArguments, CutArguments, FillArguments, MergeArguments, NewShapeArguments};
 use crate::cli::console::{Console, print, warn};
 use crate::cli::threads::on_threads;
 
 pub(super) fn fill(arguments: &FillArguments, console: &mut Console<'_>) -> Result<(), EngineError> {
-    let remaking = remaking(&arguments.file, &arguments.output, &arguments.weld)?;
+    let remaking = remaking(&arguments.file, &arguments.output)?;
     let holes = match (arguments.largest, arguments.at) {
         (_, Some(vertex)) => Holes::At(vertex),
         (Some(count), None) => Holes::Largest(count),
         (None, None) => Holes::Every,
     };
-    filled(
-        &Fill { remaking, holes },
-        (&arguments.output, arguments.compute),
-        console,
-    )
+    filled(&Fill { remaking, holes }, &arguments.output, console)
 }
 
 pub(super) fn bridge(arguments: &BridgeArguments, console: &mut Console<'_>) -> Result<(), EngineError> {
-    let remaking = remaking(&arguments.file, &arguments.output, &arguments.weld)?;
+    let remaking = remaking(&arguments.file, &arguments.output)?;
     let [first, second] = arguments.borders[..] else {
         return Err(EngineError::Arguments("--borders takes two vertices".to_owned()));
     };
     let holes = Holes::Between([first, second]);
-    filled(
-        &Fill { remaking, holes },
-        (&arguments.output, arguments.compute),
-        console,
-    )
+    filled(&Fill { remaking, holes }, &arguments.output, console)
 }
 
-fn filled(
-    job: &Fill<'_>,
-    (output, compute): (&NewShapeArguments, ComputeArguments),
-    console: &mut Console<'_>,
-) -> Result<(), EngineError> {
+fn filled(job: &Fill<'_>, to: &NewShapeArguments, console: &mut Console<'_>) -> Result<(), EngineError> {
     let (watch, staging) = (&console.watch, &console.staging);
-    let stitched = on_threads(compute, || stitching::fill(job, watch, staging))??;
-    conclude(stitched, output, console)
+    let stitched = on_threads(to.compute, || stitching::fill(job, watch, staging))??;
+    conclude(stitched, to, console)
 }
 
 pub(super) fn cut(arguments: &CutArguments, console: &mut Console<'_>) -> Result<(), EngineError> {
@@ -55,7 +42,7 @@ pub(super) fn cut(arguments: &CutArguments, console: &mut Console<'_>) -> Result
     let delete = arguments.delete.as_deref();
     let selector = delete.map(|path| stitching::read_selector(path, watch)).transpose()?;
     let job = Cut {
-        remaking: remaking(&arguments.file, &arguments.output, &arguments.weld)?,
+        remaking: remaking(&arguments.file, &arguments.output)?,
         along: match (&arguments.plane, selector.as_ref().zip(delete)) {
             (Some(plane), _) => CutAlong::Plane(plane.0, arguments.keep.into()),
             (None, Some((selector, path))) => CutAlong::Selector(selector, path),
@@ -63,24 +50,24 @@ pub(super) fn cut(arguments: &CutArguments, console: &mut Console<'_>) -> Result
         },
     };
     let (watch, staging) = (&console.watch, &console.staging);
-    let stitched = on_threads(arguments.compute, || stitching::cut(&job, watch, staging))??;
+    let stitched = on_threads(arguments.output.compute, || stitching::cut(&job, watch, staging))??;
     conclude(stitched, &arguments.output, console)
 }
 
 pub(super) fn merge(arguments: &MergeArguments, console: &mut Console<'_>) -> Result<(), EngineError> {
     let job = Merge {
-        remaking: remaking(&arguments.first, &arguments.output, &arguments.weld)?,
+        remaking: remaking(&arguments.first, &arguments.output)?,
         second: &arguments.second,
         joins: &stitching::read_joins(&arguments.joins, &console.watch)?,
         joins_path: &arguments.joins,
     };
     let (watch, staging) = (&console.watch, &console.staging);
-    let stitched = on_threads(arguments.compute, || stitching::merge(&job, watch, staging))??;
+    let stitched = on_threads(arguments.output.compute, || stitching::merge(&job, watch, staging))??;
     conclude(stitched, &arguments.output, console)
 }
 
 /// The file to read and the files to write. Refuses an OUT of no known format as a wrong argument.
-fn remaking<'a>(file: &'a Path, to: &'a NewShapeArguments, weld: &WeldArguments) -> Result<Remaking<'a>, EngineError> {
+fn remaking<'a>(file: &'a Path, to: &'a NewShapeArguments) -> Result<Remaking<'a>, EngineError> {
     let format = Format::of_name(&to.output.to_string_lossy());
     format.map_err(|error| EngineError::Arguments(format!("--output: {error}")))?;
     Ok(Remaking {
@@ -88,7 +75,7 @@ fn remaking<'a>(file: &'a Path, to: &'a NewShapeArguments, weld: &WeldArguments)
         output: &to.output,
         report: to.report.as_deref().into(),
         replace: to.replace(),
-        weld: weld.options(),
+        weld: to.weld.options(),
     })
 }
 

@@ -18,15 +18,9 @@ pub(crate) struct MergeArguments {
     /// The parts to delete and the places to join
     #[arg(long, value_name = "JOINS.json")]
     pub joins: PathBuf,
-    /// The output file and report.
+    /// The output file and report, and the computation.
     #[command(flatten)]
     pub output: NewShapeArguments,
-    /// The welding of vertices.
-    #[command(flatten)]
-    pub weld: WeldArguments,
-    /// The threads and vectors.
-    #[command(flatten)]
-    pub compute: ComputeArguments,
 }
 
 #[derive(Args, Debug)]
@@ -39,15 +33,9 @@ pub(crate) struct FillArguments {
     /// Fill only the border that passes this vertex of the file
     #[arg(long, value_name = "VERTEX")]
     pub at: Option<u32>,
-    /// The output file and report.
+    /// The output file and report, and the computation.
     #[command(flatten)]
     pub output: NewShapeArguments,
-    /// The welding of vertices.
-    #[command(flatten)]
-    pub weld: WeldArguments,
-    /// The threads and vectors.
-    #[command(flatten)]
-    pub compute: ComputeArguments,
 }
 
 #[derive(Args, Debug)]
@@ -57,15 +45,9 @@ pub(crate) struct BridgeArguments {
     /// A vertex of each of the two borders to join, by their numbers in the file
     #[arg(long, num_args = 2, value_names = ["VERTEX", "VERTEX"], required = true)]
     pub borders: Vec<u32>,
-    /// The output file and report.
+    /// The output file and report, and the computation.
     #[command(flatten)]
     pub output: NewShapeArguments,
-    /// The welding of vertices.
-    #[command(flatten)]
-    pub weld: WeldArguments,
-    /// The threads and vectors.
-    #[command(flatten)]
-    pub compute: ComputeArguments,
 }
 
 #[derive(Args, Debug)]
@@ -88,18 +70,12 @@ pub(crate) struct CutArguments {
     /// split
     #[arg(long, value_enum, default_value_t = KeepArgument::Positive, requires = "plane")]
     pub keep: KeepArgument,
-    /// The output file and report.
+    /// The output file and report, and the computation.
     #[command(flatten)]
     pub output: NewShapeArguments,
-    /// The welding of vertices.
-    #[command(flatten)]
-    pub weld: WeldArguments,
-    /// The threads and vectors.
-    #[command(flatten)]
-    pub compute: ComputeArguments,
 }
 
-/// The output of a new shape.
+/// The output of a new shape, and its computation.
 #[derive(Args, Debug)]
 pub(crate) struct NewShapeArguments {
     /// The file to write; its extension tells its format
@@ -111,6 +87,12 @@ pub(crate) struct NewShapeArguments {
     /// Allow OUT to be an input file; the original is kept beside it
     #[arg(long)]
     pub replace: bool,
+    /// The welding of vertices.
+    #[command(flatten)]
+    pub weld: WeldArguments,
+    /// The threads and vectors.
+    #[command(flatten)]
+    pub compute: ComputeArguments,
 }
 
 impl NewShapeArguments {

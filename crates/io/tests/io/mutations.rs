@@ -6,26 +6,11 @@
 
 use std::io::Write;
 
+use crate::fuzzing::{Chance, change_lines};
 use crate::text::{folder, moved, open_in, same_bits, save};
 use glam::DVec3;
 use pliant_io::{Format, Placement, Save};
 use pliant_mesh::{Cancel, Progress};
-
-/// A small generator of even quality (SplitMix64); tests need no more.
-struct Chance(u64);
-
-impl Chance {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mixed = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        mixed ^ (mixed >> 31)
-    }
-
-    fn below(&mut self, limit: usize) -> usize {
-        (self.next() % limit.max(1) as u64) as usize
-    }
-}
 
 const STRANGE: [&str; 16] = [
     "0",
@@ -66,19 +51,7 @@ fn mutate(bytes: &mut Vec<u8>, chance: &mut Chance) {
             let target = chance.below(bytes.len());
             bytes.splice(target..target, copy);
         }
-        5 => {
-            let mut lines: Vec<Vec<u8>> = bytes
-                .split_inclusive(|&byte| byte == b'\n')
-                .map(<[u8]>::to_vec)
-                .collect();
-            let (a, b) = (chance.below(lines.len()), chance.below(lines.len()));
-            match chance.below(3) {
-                0 => drop(lines.remove(a)),
-                1 => lines.swap(a, b),
-                _ => lines.insert(b, lines[a].clone()),
-            }
-            *bytes = lines.concat();
-        }
+        5 => change_lines(bytes, chance),
         6 => {
             // The number (or word) around a place becomes a strange one.
             let is_word = |byte: &u8| !byte.is_ascii_whitespace();

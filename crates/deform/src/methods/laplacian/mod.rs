@@ -146,11 +146,11 @@ impl LaplacianSolver {
             scratch: Scratch::default(),
             system,
         };
-        solver.scratch = solver.new_room();
+        solver.scratch = solver.new_scratch();
         Ok(solver)
     }
 
-    fn new_room(&self) -> Scratch {
+    fn new_scratch(&self) -> Scratch {
         Scratch {
             field: self.system.field(),
             changes: vec![DVec3::ZERO; self.rest.len()],
@@ -197,7 +197,7 @@ impl LaplacianSolver {
     /// Like [`LaplacianSolver::energy`], for any displacements and these motions; `None` if they can't be solved.
     fn energy_of(&self, motions: &[Motion], displacements: &[DVec3]) -> Option<f64> {
         let field = self.system.read(motions, displacements);
-        let mut scratch = self.new_room();
+        let mut scratch = self.new_scratch();
         match &self.implicit {
             // The transformations are the shape's own.
             Some(implicit) if self.is_settled_by_bases() => {

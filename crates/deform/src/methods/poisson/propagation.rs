@@ -49,7 +49,7 @@ pub(crate) fn weights(
 /// L w = 0 with w = 1 on the handle, or pulled there by its springs, and 0 on all other constrained vertices.
 fn harmonic(system: &PoissonSystem, input: &BindInput<'_>) -> Result<Vec<f64>, BindError> {
     let count = input.handles.len();
-    let mut weights = scratch(system, input)?;
+    let mut weights = zero_weights(system, input)?;
     for first in (0..count).step_by(AT_ONCE) {
         let mut field = system.field::<AT_ONCE>();
         let own = first..count.min(first + AT_ONCE);
@@ -76,7 +76,7 @@ fn by_distance(system: &PoissonSystem, input: &BindInput<'_>) -> Result<Vec<f64>
         .map(|handle| handle.vertices.iter().map(|&vertex| SurfaceVertex(vertex)).collect())
         .collect();
     sources.push(fixed.map(|(vertex, _)| SurfaceVertex(vertex)).collect());
-    let mut weights = scratch(system, input)?;
+    let mut weights = zero_weights(system, input)?;
     let mut sums = vec![0.0; system.vertices().len()];
     // There are few at a time: a handle has one distance per vertex of the surface.
     for (group, own) in sources.chunks(AT_ONCE).enumerate() {
@@ -110,7 +110,7 @@ fn by_distance(system: &PoissonSystem, input: &BindInput<'_>) -> Result<Vec<f64>
     Ok(weights)
 }
 
-fn scratch(system: &PoissonSystem, input: &BindInput<'_>) -> Result<Vec<f64>, BindError> {
+fn zero_weights(system: &PoissonSystem, input: &BindInput<'_>) -> Result<Vec<f64>, BindError> {
     let entries = system.vertices().len() * input.handles.len();
     filled(0.0, entries).map_err(|_| BindError::OutOfMemory {
         free_count: input.partition.solved.len(),

@@ -286,21 +286,25 @@ fn crc(bytes: &[u8]) -> u32 {
     })
 }
 
+/// A line is dropped or repeated, or two change places.
+pub fn change_lines(bytes: &mut Vec<u8>, chance: &mut Chance) {
+    let mut lines: Vec<Vec<u8>> = bytes
+        .split_inclusive(|&byte| byte == b'\n')
+        .map(<[u8]>::to_vec)
+        .collect();
+    let (a, b) = (chance.below(lines.len()), chance.below(lines.len()));
+    match chance.below(3) {
+        0 => drop(lines.remove(a)),
+        1 => lines.swap(a, b),
+        _ => lines.insert(b, lines[a].clone()),
+    }
+    *bytes = lines.concat();
+}
+
 fn of_text(bytes: &mut Vec<u8>, chance: &mut Chance) {
     let at = chance.below(bytes.len());
     if chance.below(2) == 0 {
-        let mut lines: Vec<Vec<u8>> = bytes
-            .split_inclusive(|&byte| byte == b'\n')
-            .map(<[u8]>::to_vec)
-            .collect();
-        let (a, b) = (chance.below(lines.len()), chance.below(lines.len()));
-        match chance.below(3) {
-            0 => drop(lines.remove(a)),
-            1 => lines.swap(a, b),
-            _ => lines.insert(b, lines[a].clone()),
-        }
-        *bytes = lines.concat();
-        return;
+        return change_lines(bytes, chance);
     }
     let is_word = |byte: &u8| !byte.is_ascii_whitespace();
     let start = bytes[..at]
