@@ -4,6 +4,7 @@ use super::brush::{BRUSH_RADIUS_PX, BrushMetric, BrushSize};
 use super::correction_brush::{Correction, CorrectionBrush};
 use super::flow_brush::FlowBrush;
 use super::mode::{Depth, StrokeShape, ToolMode};
+use super::rim::RimUse;
 use super::stiffness_brush::{StiffnessAction, StiffnessBrush};
 use crate::document::{HandleId, Paint};
 use crate::view::{GizmoMode, GizmoOrientation};
@@ -30,6 +31,8 @@ pub(crate) struct ToolSettings {
     pub(crate) chain: bool,
     /// True if the next click moves the selected handle's pivot.
     pub(crate) wants_pivot: bool,
+    /// The use of the rim that the next click takes.
+    pub(crate) wants_rim: Option<RimUse>,
 }
 
 impl Default for ToolSettings {
@@ -49,6 +52,7 @@ impl Default for ToolSettings {
             orientation: GizmoOrientation::default(),
             chain: false,
             wants_pivot: false,
+            wants_rim: None,
         }
     }
 }
