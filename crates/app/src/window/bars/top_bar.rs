@@ -25,11 +25,12 @@ pub fn show(
 ) -> Option<FileCommand> {
     let mut chosen = None;
     MenuBar::new().ui(ui, |ui| {
-        let [file, edit, region, view, window, help] = MENUS.map(|(name, _)| name);
+        let [file, edit, region, mesh, view, window, help] = MENUS.map(|(name, _)| name);
         let buttons = [
             ui.menu_button(file, |ui| chosen = file_menu(ui, editor, recent)),
             ui.menu_button(edit, |ui| edit_menu(ui, editor, commands)),
             ui.menu_button(region, |ui| region_menu(ui, editor, commands)),
+            ui.menu_button(mesh, |ui| mesh_menu(ui, editor, commands)),
             ui.menu_button(view, |ui| view_menu(ui, editor, commands)),
             ui.menu_button(window, |ui| file_commands(ui, &WINDOW_MENU, &mut chosen)),
             ui.menu_button(help, |ui| file_commands(ui, &HELP_MENU, &mut chosen)),
@@ -187,6 +188,15 @@ fn region_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     });
     ui.separator();
     for command in [Tips::Held, Tips::ComeAlong].map(Command::SetTips) {
+        if command_button(ui, editor, &command) {
+            commands.push(command);
+            ui.close();
+        }
+    }
+}
+
+fn mesh_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
+    for command in [Command::FillHoles, Command::FillHole] {
         if command_button(ui, editor, &command) {
             commands.push(command);
             ui.close();
