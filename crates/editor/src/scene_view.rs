@@ -10,6 +10,7 @@ use pliant_mesh::Model;
 use crate::document::{Handle, HandleId};
 use crate::jobs::{Descent, JobKind, Symmetry};
 use crate::region::Counts;
+use crate::stitching::KeptSide;
 use crate::tool::{
     BrushMetric, CorrectionBrush, Depth, FlowBrush, PointedRim, RimUse, StiffnessBrush, StrokeShape, ToolMode,
 };
@@ -101,6 +102,8 @@ pub struct SceneView<'a> {
     pub wants_rim: Option<RimUse>,
     /// The rim under the pointer that the next click takes.
     pub rim: Option<&'a PointedRim>,
+    /// The side that is kept by the cut along the line that the next drag draws; `None` if it draws none.
+    pub wants_cut: Option<KeptSide>,
     /// The change of the mesh that is under way, by the name of its step.
     pub stitching: Option<&'static str>,
     /// The brush's radius in points.

@@ -2,7 +2,7 @@
 
 use crate::jobs::{Activity, JobKind};
 use crate::region::Counts;
-use crate::tool::{Gesture, PointedRim, RimUse, StrokeShape, ToolMode, ToolSettings};
+use crate::tool::{Gesture, PointedRim, RimUse, StrokeShape, ToolMode, ToolSettings, cut_effect};
 use crate::view::View;
 use crate::workspace::{Workspace, selected_curve};
 
@@ -25,6 +25,10 @@ pub(crate) fn status(
     }
     let now = gesture.and_then(|gesture| gesture.status(workspace, view));
     let now = now.or_else(|| settings.wants_rim.map(|wanted| rim_hint(wanted, rim)));
+    let now = now.or_else(|| {
+        let effect = cut_effect(settings.wants_cut?);
+        Some(format!("Drag a line across the shape. {effect}"))
+    });
     let now = now.unwrap_or_else(|| hint(workspace, settings));
     let is_dragging = gesture.is_some_and(|gesture| gesture.activity() == Activity::Dragging);
     let parts = [

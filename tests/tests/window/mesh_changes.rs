@@ -7,16 +7,18 @@
     reason = "tests fail by panicking and say what they skip"
 )]
 
-use std::ffi::OsStr;
+use std::f64::consts::PI;
+use std::ffi::{OsStr, OsString};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::window_rig::Session;
 use egui::{Key, Modifiers, vec2};
+use glam::{DAffine3, DVec3};
 use pliant_app::window::{AppDirectories, KeepOriginal, Source, original_name};
-use pliant_editor::Command;
-use pliant_mesh::{Drawn, Model, shapes};
+use pliant_editor::{Command, CutPlane, KeptSide, MeshChange};
+use pliant_mesh::{Drawn, Model, SurfaceVertex, shapes};
 use pliant_tests::{Folder, bare_edit, open, run};
 
 /// A ball with a hole at its side.
@@ -183,4 +185,92 @@ fn a_shape_without_a_hole_is_refused_in_the_engines_words() {
         refused.err
     );
     assert!(Arc::ptr_eq(&model(&session), &before));
+}
+
+#[test]
+fn cuts_and_bridges_are_the_command_lines_to_the_byte() {
+    let folder = Folder::new();
+    let lid = shapes::moved(&bowl(), DAffine3::from_axis_angle(DVec3::Y, PI));
+    let lid = shapes::moved(&lid, DAffine3::from_translation(DVec3::X * 3.0));
+    let file = folder.write_mesh("two.off", &shapes::together(&[bowl(), lid]));
+    let Some(mut session) = begin(&file) else { return };
+    let model = model(&session);
+    let rims = model.topology.boundary_loops();
+    let number = |vertex| model.first_file_vertex(vertex).0.to_string();
+    let ends = [rims[0][0], rims[1][0]];
+    let deleted = [3, 40, 41, 500].map(SurfaceVertex);
+    let selector = folder.write(
+        "delete.json",
+        format!("{{\"vertices\": [{}]}}", deleted.map(number).join(", ")),
+    );
+    let plane = CutPlane {
+        normal: DVec3::new(0.3, 1.0, -0.2),
+        distance: 0.25,
+    };
+    let words = |words: &[&str]| words.iter().map(|word| OsString::from(*word)).collect::<Vec<_>>();
+    let cut = |side, keep| {
+        let command = words(&["cut", "--plane", "0.3,1,-0.2,0.25", "--keep", keep]);
+        (MeshChange::Cut(plane, side), command)
+    };
+    let cases = [
+        cut(KeptSide::Positive, "positive"),
+        cut(KeptSide::Negative, "negative"),
+        cut(KeptSide::Both, "both"),
+        (
+            MeshChange::Bridge(ends),
+            words(&["bridge", "--borders", &number(ends[0]), &number(ends[1])]),
+        ),
+        (
+            MeshChange::Delete(deleted.to_vec()),
+            vec!["cut".into(), "--delete".into(), selector.into_os_string()],
+        ),
+    ];
+    for (number, (change, mut arguments)) in cases.into_iter().enumerate() {
+        let case = format!("{change:?}");
+        let (saved, by_command) = (
+            folder.at(&format!("saved-{number}.off")),
+            folder.at(&format!("cli-{number}.off")),
+        );
+        command(&mut session, Command::ChangeMesh(change));
+        let problem = session.harness.state().editor().view().problem;
+        assert_eq!(problem, None, "{case}");
+        session.harness.state_mut().save_to(saved.clone(), KeepOriginal::No);
+        session.settle();
+        arguments.splice(1..1, [file.clone().into_os_string()]);
+        arguments.extend(["--output".into(), by_command.clone().into_os_string()]);
+        run(arguments).done();
+        assert_eq!(fs::read(&saved).unwrap(), fs::read(&by_command).unwrap(), "{case}");
+        command(&mut session, Command::Undo);
+    }
+    // A plane that misses is refused in the engine's words.
+    let beside = CutPlane {
+        normal: DVec3::Y,
+        distance: 9.0,
+    };
+    command(
+        &mut session,
+        Command::ChangeMesh(MeshChange::Cut(beside, KeptSide::Both)),
+    );
+    let problem = session
+        .harness
+        .state()
+        .editor()
+        .view()
+        .problem
+        .unwrap_or_default()
+        .to_owned();
+    let out = folder.at("none.off");
+    let arguments = words(&[
+        "cut",
+        &file.to_string_lossy(),
+        "--plane",
+        "0,1,0,9",
+        "--output",
+        &out.to_string_lossy(),
+    ]);
+    let refused = run(arguments).err;
+    assert!(
+        !problem.is_empty() && refused.contains(&problem),
+        "{problem} / {refused}"
+    );
 }

@@ -15,7 +15,7 @@ use crate::document::{
     FlowOptions, HandleId, HandleTransform, ObjectAction, Paint, PivotPlace, Reach, SmallParts, Tips,
 };
 use crate::jobs::Symmetry;
-use crate::stitching::MeshChange;
+use crate::stitching::{KeptSide, MeshChange};
 use crate::tool::{
     BrushMetric, Context, CorrectionBrush, Depth, FlowBrush, Gesture, StiffnessBrush, StrokeShape, ToolMode,
 };
@@ -313,6 +313,12 @@ commands! {
     FillHoles = mesh::FILL_HOLES;
     /// Fills the hole whose rim the next click takes.
     FillHole = mesh::FILL_HOLE;
+    /// Joins the two borders that the next clicks take by a tube.
+    BridgeBorders = mesh::BRIDGE;
+    /// Deletes the vertices with the paint of the selected handle or region.
+    DeleteRegion = mesh::DELETE_REGION;
+    /// Cuts along the line that the next drag draws; the positive side is to its left, seen along it.
+    CutAlongLine(kept: KeptSide) = mesh::CUT;
     /// Changes the mesh.
     ChangeMesh(change: MeshChange) = mesh::CHANGE_MESH;
     /// Frames everything.

@@ -203,8 +203,7 @@ impl Editor {
         self.waiting.clear();
         self.showing_original = None;
         self.view.look.original = false;
-        self.settings.wants_pivot = false;
-        self.settings.wants_rim = None;
+        self.settings.want_nothing();
         self.brush = Brush::default();
     }
 
@@ -261,17 +260,14 @@ impl Editor {
         }
         if key == Key::Escape {
             // The most recent mode ends first: one that waits for a click, then the comparison.
-            let waits = self.settings.wants_pivot
-                || self.settings.wants_rim.is_some()
-                || self.workspace.selection.wants_new_handle;
+            let waits = self.settings.waits_for_press() || self.workspace.selection.wants_new_handle;
             if !waits {
                 self.workspace.jobs.end_comparing();
             }
             self.workspace.refusal = None;
             self.workspace.selection.wants_new_handle = false;
             self.workspace.controls.put([]);
-            self.settings.wants_pivot = false;
-            self.settings.wants_rim = None;
+            self.settings.want_nothing();
         } else if let Some(command) = self.key_map.command(key, modifiers) {
             // A held key repeats: its display stays until it goes up.
             let is_held = command == Command::ToggleOriginal && self.showing_original == Some(key);

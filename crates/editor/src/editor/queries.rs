@@ -75,6 +75,7 @@ impl Editor {
             wants_pivot: settings.wants_pivot,
             wants_rim: settings.wants_rim,
             rim: self.overlay.rim.as_ref(),
+            wants_cut: settings.wants_cut,
             stitching: workspace.stitching.as_ref().map(|stitching| stitching.change.name()),
             brush_radius_px: settings.brush().radius_px,
             handles: document.handles(),
@@ -324,7 +325,7 @@ impl Editor {
 
     /// Returns true if a gesture is active that Esc ends: a stroke, a drag, picking a pivot.
     pub fn is_acting(&self) -> bool {
-        self.gesture.is_some() || self.settings.wants_pivot || self.settings.wants_rim.is_some()
+        self.gesture.is_some() || self.settings.waits_for_press()
     }
 
     /// Returns true if shape and regions are final: no drag or stroke is active, and no job runs except those that

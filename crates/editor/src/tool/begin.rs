@@ -6,6 +6,7 @@ use super::context::Context;
 use super::control_box::ControlBox;
 use super::correct;
 use super::curve_stroke::CurveStroke;
+use super::cut_line::CutLine;
 use super::flow_stroke::FlowStroke;
 use super::gesture::Gesture;
 use super::mode::{StrokeShape, ToolMode};
@@ -36,6 +37,13 @@ pub(crate) fn begin(context: &mut Context<'_>, pointer: Pointer, button: Button)
         Button::Secondary | Button::Middle => return navigate(context, pointer, button),
         Button::Primary if !modifiers.alt && context.settings.wants_rim.is_some() => {
             return take_rim(context, pointer);
+        }
+        Button::Primary
+            if !modifiers.alt
+                && let Some(kept) = context.settings.wants_cut =>
+        {
+            context.workspace.refusal = None;
+            return Some(Box::new(CutLine::begin(pointer, kept)));
         }
         Button::Primary
             if !modifiers.alt

@@ -124,7 +124,7 @@ impl Overlay {
             takes_handle = lit == Lit::Pointed && is_taken_along(workspace, settings, &pick, pointer.modifiers);
             let has_ring = !matches!(settings.mode, ToolMode::Select | ToolMode::Pose)
                 && settings.stroke_shape == StrokeShape::Brush;
-            if has_ring && !settings.wants_pivot && settings.wants_rim.is_none() && !takes_handle {
+            if has_ring && !settings.waits_for_press() && !takes_handle {
                 line = ring(&picking, pointer.position_px, &pick, &settings.brush());
                 if let Some(share) = settings.soft_share() {
                     let inner = settings.brush().scaled(share);

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
-use pliant_editor::{Command, Event, Key, MeshChange, Paint, RimUse, StitchRequest, ToolMode};
+use pliant_editor::{Command, Event, HandleId, KeptSide, Key, MeshChange, Paint, RimUse, StitchRequest, ToolMode};
 use pliant_mesh::{Drawn, DrawnVertex, FileVertex, Model, SurfaceVertex, shapes};
 
 use crate::rig::{CENTRE_PX, Fingerprint, Rig, VIEWPORT_PX, weld};
@@ -203,10 +203,12 @@ fn paint_stiffness_and_handles_stay_where_vertices_do_and_a_new_one_is_bare() {
         rig.command(Command::ChangeMesh(MeshChange::Delete(gone)));
         answer(&mut rig);
         assert!(rig.editor.document().handles().is_empty(), "{case}");
-        assert!(
-            rig.editor.document().paint().iter().any(|paint| *paint == Paint::Fixed),
-            "{case}"
-        );
+        // The fixed vertices that still have a triangle are as many as before.
+        let fixed = |rig: &Rig| rig.count(Paint::Fixed);
+        let left = fixed(&rig);
+        rig.undo();
+        follow(&mut rig);
+        assert!(left <= fixed(&rig) && (left > 0) == (fixed(&rig) > 0), "{case}: {left}");
     }
 }
 
@@ -332,5 +334,137 @@ fn the_rim_near_the_pointer_is_shown_with_its_length_and_a_click_takes_it() {
             rig.editor.view().shapes.is_empty(),
             "{case}: the rims are no longer shown"
         );
+    }
+}
+
+#[test]
+fn a_line_cuts_by_the_plane_through_it_and_the_eye_and_keeps_the_side_that_is_asked_for() {
+    let ways = [
+        [300.0, 320.0, 520.0, 250.0],
+        [500.0, 200.0, 380.0, 410.0],
+        [420.0, 100.0, 380.0, 500.0],
+    ];
+    for is_parallel in [false, true] {
+        for [fx, fy, tx, ty] in ways {
+            for kept in [KeptSide::Positive, KeptSide::Negative, KeptSide::Both] {
+                let mut rig = Rig::open(bowl());
+                if is_parallel {
+                    rig.command(Command::ToggleProjection);
+                }
+                let (from, to) = (DVec2::new(fx, fy), DVec2::new(tx, ty));
+                rig.command(Command::CutAlongLine(kept));
+                assert!(
+                    rig.editor.view().status.contains("Drag a line"),
+                    "{}",
+                    rig.editor.view().status
+                );
+                rig.press(from);
+                rig.move_to(0.5 * (from + to));
+                assert!(rig.editor.view().outline_px.len() > 2);
+                rig.move_to(to);
+                rig.release(to);
+                let request = rig.editor.take_stitch().unwrap();
+                let MeshChange::Cut(plane, side) = request.change else {
+                    panic!("{:?}", request.change)
+                };
+                assert_eq!(side, kept);
+                assert!(rig.editor.view().wants_cut.is_none(), "one drag, one cut");
+                let camera = *rig.editor.view().camera;
+                for point in &rig.model.surface.positions {
+                    let px = camera.project(*point, VIEWPORT_PX).unwrap();
+                    // y points down, so the left of the line is where this is negative.
+                    let to_right = (to - from).perp_dot(px - from) / (to - from).length();
+                    let level = plane.normal.dot(*point) - plane.distance;
+                    if to_right.abs() > 1e-6 {
+                        assert_eq!(level > 0.0, to_right < 0.0, "{to_right} px to the right of the line");
+                    }
+                }
+            }
+        }
+    }
+    // A click draws no line.
+    let mut rig = Rig::open(bowl());
+    rig.command(Command::CutAlongLine(KeptSide::Positive));
+    rig.press(CENTRE_PX);
+    rig.release(CENTRE_PX);
+    assert!(rig.editor.take_stitch().is_none() && rig.editor.view().wants_cut.is_some());
+    rig.key(Key::Escape);
+    assert!(rig.editor.view().wants_cut.is_none());
+}
+
+#[test]
+fn the_paint_of_the_handle_or_region_is_deleted_and_a_locked_handle_refuses() {
+    let mut rig = Rig::open(bowl());
+    let why = rig.editor.unavailable_because(&Command::DeleteRegion);
+    assert!(why.is_some_and(|why| why.contains("region")), "nothing is selected");
+    rig.paint_handle();
+    rig.paint(ToolMode::PaintFixed, &[CENTRE_PX + DVec2::new(80.0, 0.0)]);
+    rig.drain();
+    for (mode, role) in [
+        (ToolMode::PaintFixed, Paint::Fixed),
+        (ToolMode::Select, Paint::Handle(HandleId(0))),
+    ] {
+        rig.command(Command::SetTool(mode));
+        rig.command(Command::SelectHandle(HandleId(0)));
+        rig.command(Command::SetTool(mode));
+        rig.command(Command::DeleteRegion);
+        let request = rig.editor.take_stitch().unwrap();
+        let MeshChange::Delete(vertices) = &request.change else {
+            panic!("{:?}", request.change)
+        };
+        assert!(!vertices.is_empty() && vertices.len() == rig.count(role));
+        let paint = rig.editor.document().paint();
+        assert!(vertices.iter().all(|vertex| paint[vertex.index()] == role));
+        rig.send(Event::Stitched(Err("not now".to_owned())));
+    }
+    rig.command(Command::ToggleHandleLocked(HandleId(0)));
+    let why = rig
+        .editor
+        .unavailable_because(&Command::DeleteRegion)
+        .unwrap_or_default();
+    assert!(why.contains("locked"), "{why}");
+}
+
+#[test]
+fn a_bridge_takes_two_rims_and_esc_gives_the_first_one_up() {
+    let mut rig = Rig::open(used(shapes::tube(16, 12, 2.0)));
+    let rims = rig.model.topology.boundary_loops();
+    let model = Arc::clone(&rig.model);
+    let place = |rig: &Rig, rim: &[SurfaceVertex]| {
+        let camera = *rig.editor.view().camera;
+        let px = |vertex: &SurfaceVertex| {
+            let position = model.surface.positions[vertex.index()];
+            camera.project(position, VIEWPORT_PX).unwrap()
+        };
+        // The vertex furthest from the middle of the view.
+        let places = rim.iter().map(px);
+        places
+            .max_by(|a, b| a.distance(CENTRE_PX).total_cmp(&b.distance(CENTRE_PX)))
+            .unwrap()
+    };
+    for is_given_up in [true, false] {
+        rig.command(Command::BridgeBorders);
+        let first = place(&rig, &rims[0]);
+        rig.press(first);
+        rig.release(first);
+        assert!(rig.editor.take_stitch().is_none());
+        let wanted = rig.editor.view().wants_rim;
+        let Some(RimUse::Bridge { first: Some(first) }) = wanted else {
+            panic!("{wanted:?}")
+        };
+        assert!(rims[0].contains(&first));
+        if is_given_up {
+            rig.key(Key::Escape);
+            assert!(rig.editor.view().wants_rim.is_none());
+            continue;
+        }
+        let second = place(&rig, &rims[1]);
+        rig.press(second);
+        rig.release(second);
+        let request = rig.editor.take_stitch().unwrap();
+        let MeshChange::Bridge([a, b]) = request.change else {
+            panic!("{:?}", request.change)
+        };
+        assert!(rims[0].contains(&a) && rims[1].contains(&b));
     }
 }

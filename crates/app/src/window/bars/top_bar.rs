@@ -2,7 +2,8 @@
 
 use eframe::egui::{self, MenuBar, RichText};
 use pliant_editor::{
-    Before, Clay, Command, Editor, NamedView, Orbit, Projection, RegionAction, Shading, StiffnessChange, Tips, UpAxis,
+    Before, Clay, Command, Editor, KeptSide, NamedView, Orbit, Projection, RegionAction, Shading, StiffnessChange,
+    Tips, UpAxis,
 };
 
 use super::menu_keys;
@@ -127,17 +128,7 @@ fn edit_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
             Command::TurnInsideOut,
         ],
     ];
-    for (number, group) in groups.into_iter().enumerate() {
-        if number > 0 {
-            ui.separator();
-        }
-        for command in group {
-            if command_button(ui, editor, command) {
-                commands.push(command.clone());
-                ui.close();
-            }
-        }
-    }
+    command_groups(ui, editor, &groups, commands);
     ui.separator();
     if menu_choice(ui, editor, &Command::WorkPose, editor.document().is_in_work_pose()) {
         commands.push(Command::WorkPose);
@@ -196,10 +187,30 @@ fn region_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
 }
 
 fn mesh_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
-    for command in [Command::FillHoles, Command::FillHole] {
-        if command_button(ui, editor, &command) {
-            commands.push(command);
-            ui.close();
+    let groups: [&[Command]; 3] = [
+        &[Command::FillHoles, Command::FillHole],
+        &[Command::BridgeBorders],
+        &[
+            Command::DeleteRegion,
+            Command::CutAlongLine(KeptSide::Positive),
+            Command::CutAlongLine(KeptSide::Negative),
+            Command::CutAlongLine(KeptSide::Both),
+        ],
+    ];
+    command_groups(ui, editor, &groups, commands);
+}
+
+/// Groups of commands, with a line between them.
+fn command_groups(ui: &mut egui::Ui, editor: &Editor, groups: &[&[Command]], commands: &mut Outbox) {
+    for (number, group) in groups.iter().enumerate() {
+        if number > 0 {
+            ui.separator();
+        }
+        for command in *group {
+            if command_button(ui, editor, command) {
+                commands.push(command.clone());
+                ui.close();
+            }
         }
     }
 }
