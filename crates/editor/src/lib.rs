@@ -61,6 +61,7 @@ mod scene_view;
 mod selection;
 mod snapshot;
 mod status;
+mod stitching;
 mod timeline;
 mod tool;
 mod view;
@@ -96,10 +97,11 @@ pub use scene_view::{ControlPoints, SceneView};
 pub use selection::Selection;
 pub use snapshot::Snapshot;
 pub use status::thousands;
+pub use stitching::{CutPlane, KeptSide, MeshChange, NewMesh, StitchRequest};
 pub use timeline::{Ease, HandlePlace, KeySpace, SequenceTimeline, Timeline};
 pub use tool::{
-    BrushMetric, Constraint, Correction, CorrectionBrush, Depth, FlowAction, FlowBrush, StiffnessAction,
-    StiffnessBrush, StrokeShape, ToolMode,
+    BrushMetric, Constraint, Correction, CorrectionBrush, Depth, FlowAction, FlowBrush, PointedRim, RimUse,
+    StiffnessAction, StiffnessBrush, StrokeShape, ToolMode,
 };
 pub use view::{
     Before, Camera, Clay, ControlShape, Cursor, GizmoAxes, GizmoMode, GizmoOrientation, GizmoPart, GizmoShape, Look,

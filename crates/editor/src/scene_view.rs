@@ -10,7 +10,10 @@ use pliant_mesh::Model;
 use crate::document::{Handle, HandleId};
 use crate::jobs::{Descent, JobKind, Symmetry};
 use crate::region::Counts;
-use crate::tool::{BrushMetric, CorrectionBrush, Depth, FlowBrush, StiffnessBrush, StrokeShape, ToolMode};
+use crate::stitching::KeptSide;
+use crate::tool::{
+    BrushMetric, CorrectionBrush, Depth, FlowBrush, PointedRim, RimUse, StiffnessBrush, StrokeShape, ToolMode,
+};
 use crate::view::{Camera, ControlShape, Cursor, GizmoOrientation, GizmoShape, Look, Orbit, Readout};
 
 /// The whole content of the 3D view and the panels around it.
@@ -95,6 +98,14 @@ pub struct SceneView<'a> {
     pub orientation: GizmoOrientation,
     /// True if the next click moves the pivot.
     pub wants_pivot: bool,
+    /// The use of the rim that the next click takes; `None` if it takes none.
+    pub wants_rim: Option<RimUse>,
+    /// The rim under the pointer that the next click takes.
+    pub rim: Option<&'a PointedRim>,
+    /// The side that is kept by the cut along the line that the next drag draws; `None` if it draws none.
+    pub wants_cut: Option<KeptSide>,
+    /// The change of the mesh that is under way, by the name of its step.
+    pub stitching: Option<&'static str>,
     /// The brush's radius in points.
     pub brush_radius_px: f64,
     /// The handles, in the order of their making.

@@ -8,11 +8,14 @@ use pliant_deform::{Attachment, ExampleShape, Loose, Method};
 
 use super::entry::{Action, Entry, Reason, Scope, State};
 use super::shortcut::Shortcut;
-use super::{controls, curves, document, examples, flow, handle, look, object, paint, pose, region, transform, view};
+use super::{
+    controls, curves, document, examples, flow, handle, look, mesh, object, paint, pose, region, transform, view,
+};
 use crate::document::{
     FlowOptions, HandleId, HandleTransform, ObjectAction, Paint, PivotPlace, Reach, SmallParts, Tips,
 };
 use crate::jobs::Symmetry;
+use crate::stitching::{KeptSide, MeshChange};
 use crate::tool::{
     BrushMetric, Context, CorrectionBrush, Depth, FlowBrush, Gesture, StiffnessBrush, StrokeShape, ToolMode,
 };
@@ -51,6 +54,7 @@ fn group_of(entry: &str) -> &'static str {
         "transform" => "Move, turn and scale",
         "region" => "Regions and stiffness",
         "object" => "Objects and parts",
+        "mesh" => "Mesh",
         "view" => "View",
         "look" => "Look",
         _ => "Others",
@@ -305,6 +309,18 @@ commands! {
     TurnInsideOut = object::TURN_INSIDE_OUT;
     /// Shows everything hidden.
     ShowEverything = object::SHOW_EVERYTHING;
+    /// Fills every hole.
+    FillHoles = mesh::FILL_HOLES;
+    /// Fills the hole whose rim the next click takes.
+    FillHole = mesh::FILL_HOLE;
+    /// Joins the two borders that the next clicks take by a tube.
+    BridgeBorders = mesh::BRIDGE;
+    /// Deletes the vertices with the paint of the selected handle or region.
+    DeleteRegion = mesh::DELETE_REGION;
+    /// Cuts along the line that the next drag draws; the positive side is to its left, seen along it.
+    CutAlongLine(kept: KeptSide) = mesh::CUT;
+    /// Changes the mesh.
+    ChangeMesh(change: MeshChange) = mesh::CHANGE_MESH;
     /// Frames everything.
     FrameAll = view::FRAME_ALL;
     /// Frames the selected handle and its region.

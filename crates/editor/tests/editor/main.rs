@@ -19,6 +19,7 @@ mod large_mesh;
 mod lateness;
 mod laws;
 mod memory_limit;
+mod mesh_changes;
 mod objects;
 mod pose;
 mod poses;

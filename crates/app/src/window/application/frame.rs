@@ -50,6 +50,8 @@ impl eframe::App for Application {
             self.editor.handle(event);
             context.request_repaint();
         }
+        self.follow_mesh();
+        self.begin_stitching();
         if let Some(command) = file_command {
             self.file_command(&context, command);
         }

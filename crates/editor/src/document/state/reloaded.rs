@@ -1,5 +1,5 @@
-//! A document on its mesh when that is read again: after another program has changed the file, or with another joining
-//! of its vertices.
+//! A document on its mesh when that is read again: after another program has changed the file, with another joining of
+//! its vertices, or with other triangles (cut, filled or joined).
 
 use std::sync::Arc;
 
@@ -10,10 +10,37 @@ use super::Document;
 use crate::document::access::Access;
 use crate::document::content::{Content, Paint};
 use crate::document::fluid::Fluid;
+use crate::document::handle::HandleId;
 use crate::document::kept_shape::KeptShape;
 use crate::document::matching::Matching;
 
 impl Document {
+    /// The same regions and handles on the vertices of a new mesh that match its own, which has the present shape at
+    /// rest, with the parts that are turned inside out turned there. Handles rest at their visible positions. Examples
+    /// have no displacements for new vertices: if there are some, they are removed.
+    pub(crate) fn onto_new_mesh(&self, matching: &Matching) -> Self {
+        let mut applied = self.clone();
+        applied.apply_shape();
+        let shape = Arc::clone(&applied.content.from_file);
+        let mut content = applied.onto(matching, Some(&shape)).content;
+        let count = matching.of_new.len();
+        content.rest = Arc::new(vec![DVec3::ZERO; count]);
+        content.applied = false;
+        content.settled = true;
+        content.strength = None;
+        content.inside_out = Arc::default();
+        if matching.unmatched() > 0 {
+            let attachments = Arc::make_mut(&mut content.attachments);
+            attachments.retain(|_, own| !matches!(own, Attachment::Shapes(_)));
+        }
+        let left: Vec<HandleId> = content.handles.iter().map(|handle| handle.id).collect();
+        for handle in &mut content.handles {
+            handle.parent = handle.parent.filter(|parent| left.contains(parent));
+            handle.twin = handle.twin.filter(|twin| left.contains(&twin.handle));
+        }
+        content.into()
+    }
+
     /// The same regions, handles and shapes on the vertices that match its own; the others are fixed. If the file was
     /// saved since it was opened, `saved` are the displacements at that time (an entry per surface vertex of this
     /// document), and the rest shape is the file's without them.
