@@ -138,6 +138,7 @@ impl Editor {
                     self.gesture = None;
                 }
             }
+            Event::Tick => self.workspace.tick(),
             Event::JobDone(done) => self.job_done(done),
             Event::Opened { model, name, beginning } => self.open(model, name, beginning),
             Event::Recovered(needed) => self.workspace.history.mark_unsaved(needed),
@@ -152,7 +153,12 @@ impl Editor {
     /// Applies the consequences of an event's changes: jobs, colours, the camera's history.
     fn conclude(&mut self) {
         let gesture = self.gesture.as_deref();
-        let activity = gesture.map_or(Activity::Still, Gesture::activity);
+        let activity = match gesture.map(Gesture::activity) {
+            // Nothing prepares for the pointer between two frames.
+            None | Some(Activity::Still) if self.workspace.keys.is_playing() => Activity::Dragging,
+            None => Activity::Still,
+            Some(activity) => activity,
+        };
         let by = match self.settings.mode {
             ToolMode::PaintStiffness => ColouredBy::Stiffness,
             ToolMode::Flow => ColouredBy::Dye,
@@ -231,7 +237,9 @@ impl Editor {
         if is_taken {
             return;
         }
-        if key == Key::Escape {
+        if key == Key::Escape && self.workspace.keys.is_playing() {
+            self.workspace.pause_keys();
+        } else if key == Key::Escape {
             // The most recent mode ends first: one that waits for a click, then the comparison.
             let waits = self.settings.wants_pivot || self.workspace.selection.wants_new_handle;
             if !waits {
@@ -379,6 +387,9 @@ impl Editor {
             workspace.open(model, name, document);
             workspace.refusal = refusal;
         });
+        if !self.workspace.document.animation().keys().is_empty() {
+            self.view.look.timeline = true;
+        }
         if matches!(beginning, Some(Beginning::Project(_))) {
             self.workspace.history.needs(SavedAs::Project);
         }
