@@ -2,12 +2,13 @@
 //!
 //! The app keeps the revisions of its last uploads and compares; nothing is uploaded or drawn when none changed.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use pliant_mesh::Model;
 
-use crate::document::{Handle, HandleId};
+use crate::document::{Handle, HandleId, KeyId};
 use crate::jobs::{Descent, JobKind, Symmetry};
 use crate::region::Counts;
 use crate::stitching::KeptSide;
@@ -90,6 +91,10 @@ pub struct SceneView<'a> {
     pub correction_brush: CorrectionBrush,
     /// The brush that pours and pushes.
     pub flow_brush: FlowBrush,
+    /// The selected keys.
+    pub selected_keys: &'a BTreeSet<KeyId>,
+    /// True while the animation plays.
+    pub is_animating: bool,
     /// True while the flow plays.
     pub is_playing: bool,
     /// The pressure of a pen, 0 to 1; `None` until the system reports it.

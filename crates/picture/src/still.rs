@@ -115,6 +115,7 @@ fn look(options: &StillOptions) -> Look {
         shadow: options.shadow,
         original: false,
         base: false,
+        timeline: false,
         before: Before::Off,
     }
 }

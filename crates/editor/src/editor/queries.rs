@@ -48,7 +48,8 @@ impl Editor {
             rims_revision: workspace.colours().rims_revision(),
             overlay_revision: self.overlay.revision,
             camera_revision: view.revision(),
-            is_dragging: gesture.is_some_and(|gesture| gesture.activity() == Activity::Dragging),
+            is_dragging: workspace.keys.is_playing()
+                || gesture.is_some_and(|gesture| gesture.activity() == Activity::Dragging),
             brush_ring: &self.overlay.ring,
             gizmo: &self.overlay.gizmo,
             controls: &self.overlay.controls,
@@ -69,6 +70,8 @@ impl Editor {
             stiffness_brush: settings.stiffness_brush,
             correction_brush: settings.correction_brush,
             flow_brush: settings.flow_brush,
+            selected_keys: workspace.keys.selected(),
+            is_animating: workspace.keys.is_playing(),
             is_playing: workspace.flow.is_playing(),
             pressure: settings.pressure,
             orientation: settings.orientation,

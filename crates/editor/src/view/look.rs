@@ -25,6 +25,8 @@ pub struct Look {
     pub original: bool,
     /// True if the smooth base is shown instead of the surface, if the method has one.
     pub base: bool,
+    /// True if the timeline is shown.
+    pub timeline: bool,
     /// The way in which the file's own shape is shown with the present one.
     pub before: Before,
 }
@@ -43,6 +45,7 @@ impl Default for Look {
             shadow: true,
             original: false,
             base: false,
+            timeline: false,
             before: Before::Off,
         }
     }

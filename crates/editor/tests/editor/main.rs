@@ -1,6 +1,7 @@
 //! The editor without a window: gestures, commands and jobs on every class of mesh.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
+mod animation;
 mod comparison;
 mod controls;
 mod corrections;

@@ -10,7 +10,7 @@ use std::time::Instant;
 
 use glam::DVec3;
 use pliant_deform::Bound;
-use pliant_editor::{EditFile, Setup, Start, Timeline, Until, sum_of_shapes};
+use pliant_editor::{EditFile, Setup, Start, Timeline, sum_of_shapes};
 use pliant_io::{FewTargets, Format, MorphAnimation, PointCache, PointCacheFormat, ShapeDirections};
 use pliant_mesh::{DrawnVertex, Model, Progress, SurfaceVertex};
 
@@ -334,7 +334,7 @@ impl Run<'_> {
         };
         bound.set_cancel(cancel);
         let targets = self.setup.targets_during(self.timeline, time);
-        let bent = start.bend(bound, &targets, Until::End, cancel);
+        let bent = start.bend_anew(bound, &targets, cancel);
         let bent = bent.map_err(|error| EngineError::Solve {
             file: self.animation.job.file.to_owned(),
             source: error.renumbered(|vertex| self.loaded.model.first_file_vertex(SurfaceVertex(vertex)).0),

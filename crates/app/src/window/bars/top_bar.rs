@@ -333,6 +333,7 @@ fn view_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
         choice(ui, Command::ToggleBefore(before), look.before == before);
     }
     ui.separator();
+    choice(ui, Command::ToggleTimeline, look.timeline);
     choice(ui, Command::CompareMethods, editor.comparison().is_some());
     ui.separator();
     let up = view.camera.up;
