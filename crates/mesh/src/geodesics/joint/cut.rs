@@ -5,9 +5,9 @@ use std::f64::consts::TAU;
 use glam::DVec3;
 
 use super::level_set::{self, Segments};
+use super::limb::{JOINT_RINGS, Joint};
 use super::rings::{Body, Field, Rings, Source};
 use super::shape::Shape;
-use super::{JOINT_RINGS, Joint};
 use crate::SurfaceVertex;
 use crate::geodesics::DistanceSearch;
 

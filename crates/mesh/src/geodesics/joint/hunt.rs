@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 
-use super::Joint;
 use super::candidates::{self, SMALLEST_SHARE};
 use super::cut::{Cut, NUDGE_RADII};
+use super::limb::Joint;
 use super::origin::{FarTips, Origin};
 use super::rings::{Body, End, Field, Narrowest, Rings, Source};
 use super::shape::Shape;
