@@ -94,7 +94,7 @@ pub use jobs::{
     PresentBinding, Running, SolveResult, Solved, Symmetry, Unfinished,
 };
 pub use lines::Lines;
-pub use region::{Counts, Region, Rim};
+pub use region::{Counts, FoundLimb, Region, Rim};
 pub use revision::Revision;
 pub use scene_view::{ControlPoints, SceneView};
 pub use selection::Selection;

@@ -79,6 +79,8 @@ pub struct SceneView<'a> {
     pub stroke_shape: StrokeShape,
     /// True if the points of curves follow a dragged one at their distances.
     pub chain: bool,
+    /// True if a drag of the pose brush bends a limb at all its joints.
+    pub whole_limb: bool,
     /// The depth of a lasso or a box.
     pub depth: Depth,
     /// The plane across which both sides are painted at once, found or still being searched for.

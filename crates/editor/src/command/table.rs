@@ -249,6 +249,8 @@ commands! {
     SetFlowBrush(brush: FlowBrush) = flow::SET_FLOW_BRUSH;
     /// Lets the points of curves follow a dragged one at their distances, or no longer.
     ToggleChain = curves::TOGGLE_CHAIN;
+    /// Lets a drag of the pose brush bend a limb at all its joints, or at one.
+    ToggleWholeLimb = curves::TOGGLE_WHOLE_LIMB;
     /// Adds points to the selected handle's curve: after each selected one, or between all.
     DivideCurve = curves::DIVIDE_CURVE;
     /// Removes the selected points of the selected handle's curve.

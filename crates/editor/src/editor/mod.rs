@@ -184,7 +184,7 @@ impl Editor {
         if !is_posing {
             self.workspace.jobs.forget_joint();
         } else if gesture.is_none() {
-            hover(&mut self.workspace, &self.view, hovering_px);
+            hover(&mut self.workspace, &self.view, hovering_px, self.settings.whole_limb);
         }
         tint(&mut self.workspace, &self.view, hovering_px);
         self.workspace.follow_flow(gesture.is_none());

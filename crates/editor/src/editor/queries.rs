@@ -64,6 +64,7 @@ impl Editor {
             outline_px: gesture.map_or(Vec::new(), Gesture::outline_px),
             stroke_shape: settings.stroke_shape,
             chain: settings.chain,
+            whole_limb: settings.whole_limb,
             depth: settings.depth,
             symmetry: workspace.symmetry(),
             brush_metric: settings.brush().metric,

@@ -33,4 +33,5 @@ mod strength;
 mod symmetry;
 mod tips;
 mod view;
+mod whole_limb;
 mod work_pose;
