@@ -100,7 +100,7 @@ pub use scene_view::{ControlPoints, SceneView};
 pub use selection::Selection;
 pub use snapshot::Snapshot;
 pub use status::thousands;
-pub use stitching::{CutPlane, KeptSide, MeshChange, NewMesh, StitchRequest};
+pub use stitching::{CutPlane, KeptSide, MergeChange, MergeSettings, MeshChange, NewMesh, REACH_RANGE, StitchRequest};
 pub use timeline::{HandlePlace, KeySpace, SequenceTimeline, Timeline};
 pub use tool::{
     BrushMetric, Constraint, Correction, CorrectionBrush, Depth, FlowAction, FlowBrush, PointedRim, RimUse,

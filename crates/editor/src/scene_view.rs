@@ -11,7 +11,7 @@ use pliant_mesh::Model;
 use crate::document::{Handle, HandleId, KeyId};
 use crate::jobs::{Descent, JobKind, Symmetry};
 use crate::region::Counts;
-use crate::stitching::KeptSide;
+use crate::stitching::{KeptSide, MergeSettings};
 use crate::tool::{
     BrushMetric, CorrectionBrush, Depth, FlowBrush, PointedRim, RimUse, StiffnessBrush, StrokeShape, ToolMode,
 };
@@ -111,6 +111,8 @@ pub struct SceneView<'a> {
     pub rim: Option<&'a PointedRim>,
     /// The side that is kept by the cut along the line that the next drag draws; `None` if it draws none.
     pub wants_cut: Option<KeptSide>,
+    /// How parts are merged.
+    pub merge: &'a MergeSettings,
     /// The change of the mesh that is under way, by the name of its step.
     pub stitching: Option<&'static str>,
     /// The brush's radius in points.

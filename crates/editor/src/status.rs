@@ -46,6 +46,8 @@ fn rim_hint(wanted: RimUse, rim: Option<&PointedRim>) -> String {
         RimUse::Fill => "fills it",
         RimUse::Bridge { first: None } => "begins the bridge there",
         RimUse::Bridge { first: Some(_) } => "leads the bridge there",
+        RimUse::Merge { first: None } => "takes it as the first of two",
+        RimUse::Merge { first: Some(_) } => "joins the first one to it, place to place",
     };
     match rim {
         Some(rim) => format!(
@@ -57,6 +59,8 @@ fn rim_hint(wanted: RimUse, rim: Option<&PointedRim>) -> String {
             RimUse::Fill => "Click near the rim of a hole",
             RimUse::Bridge { first: None } => "Click near the first of two rims",
             RimUse::Bridge { first: Some(_) } => "Click near the second rim",
+            RimUse::Merge { first: None } => "Click a place of the first of two rims",
+            RimUse::Merge { first: Some(_) } => "Click the place of the second rim that belongs to it",
         }
         .to_owned(),
     }

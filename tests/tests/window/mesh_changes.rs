@@ -7,6 +7,7 @@
     reason = "tests fail by panicking and say what they skip"
 )]
 
+use std::collections::BTreeSet;
 use std::f64::consts::PI;
 use std::ffi::{OsStr, OsString};
 use std::fs;
@@ -15,10 +16,10 @@ use std::sync::Arc;
 
 use crate::window_rig::Session;
 use egui::{Key, Modifiers, vec2};
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DQuat, DVec3};
 use pliant_app::window::{AppDirectories, KeepOriginal, Source, original_name};
-use pliant_editor::{Command, CutPlane, KeptSide, MeshChange};
-use pliant_mesh::{Drawn, Model, SurfaceVertex, shapes};
+use pliant_editor::{Command, CutPlane, HandleTransform, KeptSide, MergeSettings, MeshChange, Placement};
+use pliant_mesh::{Drawn, DrawnVertex, Model, SurfaceVertex, shapes};
 use pliant_tests::{Folder, bare_edit, open, run};
 
 /// A ball with a hole at its side.
@@ -273,4 +274,134 @@ fn cuts_and_bridges_are_the_command_lines_to_the_byte() {
         !problem.is_empty() && refused.contains(&problem),
         "{problem} / {refused}"
     );
+}
+
+/// A ball, cut in two by a wavy line: the halves of one surface, as two files.
+fn halves(folder: &Folder) -> [PathBuf; 2] {
+    let ball = shapes::icosphere(4);
+    let at = ball.positions.clone();
+    let is_left = |corners: &&[DrawnVertex; 3]| {
+        let middle: DVec3 = corners.iter().map(|corner| at[corner.index()]).sum::<DVec3>() / 3.0;
+        middle.x < 0.13 * (3.0 * middle.y).sin()
+    };
+    [true, false].map(|left| {
+        let mut half = ball.clone();
+        half.triangles.retain(|corners| is_left(&corners) == left);
+        let file = folder.write_mesh(if left { "left.off" } else { "right.off" }, &used(&half));
+        file
+    })
+}
+
+/// The same without unused vertices.
+fn used(shape: &Drawn) -> Drawn {
+    let is_used: BTreeSet<u32> = shape.triangles.iter().flatten().map(|corner| corner.0).collect();
+    let numbers: Vec<u32> = is_used.into_iter().collect();
+    let place = |old: DrawnVertex| DrawnVertex(numbers.binary_search(&old.0).unwrap() as u32);
+    Drawn {
+        positions: numbers.iter().map(|&old| shape.positions[old as usize]).collect(),
+        triangles: shape.triangles.iter().map(|corners| corners.map(place)).collect(),
+        ..Drawn::default()
+    }
+}
+
+fn append(session: &mut Session, file: &Path) {
+    session.harness.state_mut().append(file.to_owned());
+    session.settle();
+    assert_eq!(session.harness.state().editor().view().problem, None);
+}
+
+#[test]
+fn two_halves_are_appended_and_merged_to_the_shape_that_they_were_cut_from() {
+    let folder = Folder::new();
+    let [left, right] = halves(&folder);
+    let ball = shapes::icosphere(4);
+    for placement in [Placement::Fitted, Placement::Kept] {
+        let Some(mut session) = begin(&left) else { return };
+        append(&mut session, &right);
+        let editor = session.harness.state().editor();
+        let handle = editor.document().handles()[0].clone();
+        assert_eq!((&*handle.name, holes(&session)), ("right", 2));
+        let beside = model(&session);
+        if placement == Placement::Kept {
+            // Back to its place: the borders touch.
+            let right = open(&right).model;
+            let there = right.surface.positions.iter().sum::<DVec3>() / right.surface.positions.len() as f64;
+            let transform = HandleTransform::Trs {
+                translation: there - handle.pivot,
+                rotation: DQuat::IDENTITY,
+                scale: DVec3::ONE,
+                pivot: None,
+            };
+            command(&mut session, Command::SetHandleTransform(handle.id, transform));
+        }
+        let settings = MergeSettings {
+            placement,
+            ..MergeSettings::default()
+        };
+        command(&mut session, Command::SetMerge(settings));
+        command(&mut session, Command::Merge);
+        let view = session.harness.state().editor().view();
+        assert_eq!(view.problem, None, "{placement:?}");
+        let merged = model(&session);
+        let topology = &merged.topology;
+        let faults = topology.non_manifold_edges() + topology.misoriented_edges() + topology.boundary_loops().len();
+        assert_eq!((faults, topology.components().len()), (0, 1), "{placement:?}");
+        assert_eq!(merged.surface.positions.len(), ball.positions.len(), "{placement:?}");
+        for position in &ball.positions {
+            let near = |other: &DVec3| other.distance(*position) < 1e-6;
+            assert!(merged.surface.positions.iter().any(near), "{placement:?}: {position}");
+        }
+        assert_eq!(
+            session.harness.state().editor().document().handles().len(),
+            1,
+            "{placement:?}"
+        );
+        command(&mut session, Command::Undo);
+        assert!(Arc::ptr_eq(&model(&session), &beside));
+        command(&mut session, Command::Redo);
+        assert!(Arc::ptr_eq(&model(&session), &merged));
+    }
+}
+
+#[test]
+fn a_mirrored_copy_of_a_half_closes_it_and_faces_outwards() {
+    let folder = Folder::new();
+    let half = {
+        let mut ball = shapes::uv_sphere(24, 32);
+        let at = ball.positions.clone();
+        let middle = |corners: &[DrawnVertex; 3]| corners.iter().map(|corner| at[corner.index()].z).sum::<f64>();
+        ball.triangles.retain(|corners| middle(corners) > 0.0);
+        folder.write_mesh("half.off", &used(&ball))
+    };
+    let Some(mut session) = begin(&half) else { return };
+    append(&mut session, &half);
+    command(&mut session, Command::MirrorPart(2));
+    let handle = session.harness.state().editor().document().handles()[0].clone();
+    // A little apart from the first half, whose border is at z = 0.
+    let own = open(&half).model;
+    let middle = own.surface.positions.iter().sum::<DVec3>() / own.surface.positions.len() as f64;
+    let to = middle * DVec3::new(1.0, 1.0, -1.0) - DVec3::Z * 0.05;
+    let HandleTransform::Trs {
+        rotation, scale, pivot, ..
+    } = handle.transform
+    else {
+        panic!("{:?}", handle.transform)
+    };
+    let transform = HandleTransform::Trs {
+        translation: to - handle.pivot,
+        rotation,
+        scale,
+        pivot,
+    };
+    command(&mut session, Command::SetHandleTransform(handle.id, transform));
+    command(&mut session, Command::Merge);
+    assert_eq!(session.harness.state().editor().view().problem, None);
+    let merged = model(&session);
+    let topology = &merged.topology;
+    let faults = topology.non_manifold_edges() + topology.misoriented_edges() + topology.boundary_loops().len();
+    assert_eq!((faults, topology.components().len()), (0, 1));
+    let at = |vertex: SurfaceVertex| merged.surface.positions[vertex.index()];
+    let volume = |corners: &[SurfaceVertex; 3]| at(corners[0]).dot(at(corners[1]).cross(at(corners[2]))) / 6.0;
+    let volume: f64 = merged.surface.triangles.iter().map(volume).sum();
+    assert!((3.9..4.6).contains(&volume), "a ball's volume, outwards: {volume}");
 }

@@ -2,11 +2,11 @@
 
 use pliant_mesh::SurfaceVertex;
 
-use super::entry::{Action, Entry, Reason, Scope, State, item, unless};
+use super::entry::{Action, Entry, Reason, Scope, State, always, item, unless};
 use crate::document::Paint;
-use crate::stitching::{KeptSide, MeshChange};
+use crate::stitching::{KeptSide, MergeSettings, MeshChange, REACH_RANGE};
 use crate::tool::{Context, RimUse};
-use crate::workspace::stitch;
+use crate::workspace::{held_parts, merge_held, mirror_held, stitch};
 
 /// For commands that change the mesh: they need the whole shape, and are done one at a time.
 fn when_mesh_may_change<V>(state: &State<'_>, _: &V) -> Option<Reason> {
@@ -138,4 +138,91 @@ pub(super) const CHANGE_MESH: Entry<MeshChange> = Entry {
     scope: Scope::Document,
     unavailable: when_mesh_may_change,
     action: Action::Do(|context, change| stitch(context.workspace, change)),
+};
+
+/// For commands on the part that the selected handle holds.
+fn when_part_is_held<V>(state: &State<'_>, values: &V) -> Option<Reason> {
+    let is_held = || !held_parts(state.workspace).is_empty();
+    when_mesh_may_change(state, values)
+        .or_else(|| state.unlocked().err())
+        .or_else(|| {
+            unless(
+                is_held(),
+                "The selected handle holds no whole part: append a file, or select its handle.",
+            )
+        })
+}
+
+/// Mirrors the part that the selected handle holds, across axis 0, 1, 2 of the handle for x, y, z.
+pub(super) const MIRROR_PART: Entry<usize> = Entry {
+    listed: &[
+        item(
+            0,
+            "Mirror part in x",
+            "Mirrors the part that the selected handle holds, left and right.",
+            "flip reflect append",
+            &[],
+        ),
+        item(
+            1,
+            "Mirror part in y",
+            "Mirrors the part that the selected handle holds, up and down.",
+            "flip reflect append",
+            &[],
+        ),
+        item(
+            2,
+            "Mirror part in z",
+            "Mirrors the part that the selected handle holds, front and back.",
+            "flip reflect append",
+            &[],
+        ),
+    ],
+    scope: Scope::Document,
+    unavailable: when_part_is_held,
+    action: Action::Do(|context, axis| mirror_held(context.workspace, axis)),
+};
+
+/// Joins the part that the selected handle holds to the others, at the nearest borders.
+pub(super) const MERGE: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Merge nearest borders",
+        "Joins the part that the selected handle holds to the other parts, where borders are nearest.",
+        "join stitch combine append weld",
+        &[],
+    )],
+    scope: Scope::Document,
+    unavailable: when_part_is_held,
+    action: Action::Do(|context, ()| {
+        let settings = context.settings.merge.clone();
+        merge_held(context.workspace, &[], settings);
+    }),
+};
+
+/// Joins the part that the selected handle holds to another one, at the borders that the next clicks take.
+pub(super) const MERGE_PICKED: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Merge two borders",
+        "Joins two borders at the two places that you click next: one of the selected handle's part, one of another part.",
+        "join stitch combine append pick pair",
+        &[],
+    )],
+    scope: Scope::Document,
+    unavailable: when_part_is_held,
+    action: Action::Do(|context, ()| want_rim(context, RimUse::Merge { first: None })),
+};
+
+/// Chooses how parts are merged.
+pub(super) const SET_MERGE: Entry<MergeSettings> = Entry {
+    listed: &[],
+    scope: Scope::View,
+    unavailable: always,
+    action: Action::Do(|context, settings| {
+        if settings.reach.is_finite() {
+            let reach = settings.reach.clamp(*REACH_RANGE.start(), *REACH_RANGE.end());
+            context.settings.merge = MergeSettings { reach, ..settings };
+        }
+    }),
 };

@@ -17,7 +17,7 @@ use crate::document::{
 };
 use crate::ease::Ease;
 use crate::jobs::Symmetry;
-use crate::stitching::{KeptSide, MeshChange};
+use crate::stitching::{KeptSide, MergeSettings, MeshChange};
 use crate::tool::{
     BrushMetric, Context, CorrectionBrush, Depth, FlowBrush, Gesture, StiffnessBrush, StrokeShape, ToolMode,
 };
@@ -358,6 +358,14 @@ commands! {
     DeleteRegion = mesh::DELETE_REGION;
     /// Cuts along the line that the next drag draws; the positive side is to its left, seen along it.
     CutAlongLine(kept: KeptSide) = mesh::CUT;
+    /// Mirrors the part that the selected handle holds, across axis 0, 1, 2 of the handle for x, y, z.
+    MirrorPart(axis: usize) = mesh::MIRROR_PART;
+    /// Joins the part that the selected handle holds to the others, at the nearest borders.
+    Merge = mesh::MERGE;
+    /// Joins the part that the selected handle holds to another one, at the borders that the next clicks take.
+    MergePicked = mesh::MERGE_PICKED;
+    /// Chooses how parts are merged; the reach is clamped to [`REACH_RANGE`](crate::REACH_RANGE).
+    SetMerge(settings: MergeSettings) = mesh::SET_MERGE;
     /// Changes the mesh.
     ChangeMesh(change: MeshChange) = mesh::CHANGE_MESH;
     /// Frames everything.

@@ -80,6 +80,7 @@ impl Editor {
             wants_rim: settings.wants_rim,
             rim: self.overlay.rim.as_ref(),
             wants_cut: settings.wants_cut,
+            merge: &settings.merge,
             stitching: workspace.stitching.as_ref().map(|stitching| stitching.change.name()),
             brush_radius_px: settings.brush().radius_px,
             handles: document.handles(),

@@ -18,6 +18,21 @@ pub enum RimUse {
         /// A vertex of the first one, once that was taken.
         first: Option<SurfaceVertex>,
     },
+    /// It is joined with one of another part, at the vertices that are clicked.
+    Merge {
+        /// The vertex of the first one, once that was taken.
+        first: Option<SurfaceVertex>,
+    },
+}
+
+impl RimUse {
+    /// The vertex of the first of two rims, once that was taken.
+    pub fn first(self) -> Option<SurfaceVertex> {
+        match self {
+            Self::Fill => None,
+            Self::Bridge { first } | Self::Merge { first } => first,
+        }
+    }
 }
 
 /// A rim under the pointer.
@@ -124,10 +139,8 @@ impl Rims {
         let mut others = Vec::new();
         for (number, vertices) in self.loops.iter().enumerate() {
             let line = closed(&self.line(workspace, number));
-            match wanted {
-                Some(RimUse::Bridge { first: Some(first) }) if vertices.contains(&first) => {
-                    shapes.push(ControlShape::lines(TAKEN, line));
-                }
+            match wanted.and_then(RimUse::first) {
+                Some(first) if vertices.contains(&first) => shapes.push(ControlShape::lines(TAKEN, line)),
                 _ => others.extend(line),
             }
         }

@@ -7,7 +7,7 @@ use super::mode::{Depth, StrokeShape, ToolMode};
 use super::rim::RimUse;
 use super::stiffness_brush::{StiffnessAction, StiffnessBrush};
 use crate::document::{HandleId, Paint};
-use crate::stitching::KeptSide;
+use crate::stitching::{KeptSide, MergeSettings};
 use crate::view::{GizmoMode, GizmoOrientation};
 
 /// The tool, its brushes and the gizmo.
@@ -38,6 +38,8 @@ pub(crate) struct ToolSettings {
     pub(crate) wants_rim: Option<RimUse>,
     /// The side that is kept by the next drag, which draws a line along which the surface is cut.
     pub(crate) wants_cut: Option<KeptSide>,
+    /// How parts are merged.
+    pub(crate) merge: MergeSettings,
 }
 
 impl Default for ToolSettings {
@@ -60,6 +62,7 @@ impl Default for ToolSettings {
             wants_pivot: false,
             wants_rim: None,
             wants_cut: None,
+            merge: MergeSettings::default(),
         }
     }
 }

@@ -9,7 +9,7 @@ use serde_json::json;
 
 use super::look::{Channels, Dressed, Source};
 use super::shape_report::judged;
-use super::{Made, Remaking, ReportTo, ShapeCounts, Stitched, change_of, counted, lost, refused};
+use super::{Made, Remaking, ReportTo, ShapeCounts, Stitched, change_of, counted, flags, lost, refused};
 use crate::EngineError;
 use crate::files::{self, Staging};
 use crate::loading::Loaded;
@@ -52,9 +52,7 @@ pub fn cut(job: &Cut<'_>, watch: &Watch, staging: &Staging) -> Result<Stitched, 
                 source,
             };
             let selection = selector.evaluate(&loaded.model).map_err(of_selector)?;
-            let mut flags = vec![false; loaded.model.surface.positions.len()];
-            selection.iter().for_each(|vertex| flags[vertex.index()] = true);
-            deleted = flags;
+            deleted = flags(&selection, &loaded.model);
             CutBy::Deleted(&deleted)
         }
         CutAlong::Plane(plane, keep) => CutBy::Plane(plane, keep),

@@ -1,6 +1,7 @@
 //! Changes of topology: files in, a new file out. Cutting, filling and joining are the crate `stitch`'s; here they get
 //! files, appearances and reports.
 
+mod append;
 mod cut;
 mod fill;
 mod look;
@@ -11,7 +12,8 @@ mod shape_report;
 
 use std::path::Path;
 
-use pliant_mesh::WeldOptions;
+use pliant_editor::Selection;
+use pliant_mesh::{Model, WeldOptions};
 use pliant_stitch::{Age, NewShape};
 use serde_json::Value;
 
@@ -232,6 +234,13 @@ struct Written {
     staged: Staged,
     report: Option<Value>,
     warnings: Vec<String>,
+}
+
+/// A flag for each welded vertex of a model: whether it is selected.
+fn flags(selection: &Selection, model: &Model) -> Vec<bool> {
+    let mut flags = vec![false; model.surface.positions.len()];
+    selection.iter().for_each(|vertex| flags[vertex.index()] = true);
+    flags
 }
 
 /// The refusal of a stitch, which names its file.

@@ -1,16 +1,28 @@
 //! The open file's triangles, which commands, undo and redo change.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use glam::DVec3;
-use pliant_editor::{Event, Revision};
+use pliant_editor::{Command, Event, MeshChange, Revision};
 
 use crate::window::application::Application;
+use crate::window::input::file_command::FileCommand;
 use crate::window::panels::notes::Note;
 use crate::window::threads::message::Stitched;
 use crate::window::threads::workers::PoseSource;
 
 impl Application {
+    /// Puts another file beside the present shape, off the window's thread.
+    pub fn append(&mut self, path: PathBuf) {
+        if let Some(why) = FileCommand::Append.unavailable_because(&self.editor) {
+            return self.fail(why.to_owned());
+        }
+        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        self.session.to_append = Some(path);
+        self.command(Command::ChangeMesh(MeshChange::Append(name)));
+    }
+
     /// Begins the change of the mesh that the editor has been asked for.
     pub(in crate::window) fn begin_stitching(&mut self) {
         if let Some(request) = self.editor.take_stitch() {
@@ -29,6 +41,7 @@ impl Application {
             (mesh, notes)
         });
         let before = self.editor.history().names().1;
+        let is_appended = self.session.to_append.take().is_some();
         let (mesh, notes) = match result {
             Ok((mesh, notes)) => (Ok(Box::new(mesh)), notes),
             Err(sentence) => (Err(sentence), Vec::new()),
@@ -38,6 +51,9 @@ impl Application {
         if let Some(done) = notes.next().filter(|_| self.editor.history().names().1 > before) {
             self.notes.headline = Some(Note::Done(done));
             self.notes.about_file = notes.collect();
+            if is_appended {
+                self.editor.handle(Event::Command(Command::FrameAll));
+            }
         }
         self.follow_mesh();
     }

@@ -198,6 +198,27 @@ fn mesh_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
         ],
     ];
     command_groups(ui, editor, &groups, commands);
+    ui.separator();
+    let append = FileCommand::Append;
+    let why = append.unavailable_because(editor);
+    let button = ui.add_enabled(why.is_none(), egui::Button::new(append.name()));
+    let button = match why {
+        Some(why) => button.on_disabled_hover_text(why),
+        None => button.on_hover_text("Puts another file beside the shape, with a handle that moves it."),
+    };
+    if button.clicked() {
+        commands.push_file(append);
+        ui.close();
+    }
+    let groups: [&[Command]; 2] = [
+        &[0, 1, 2].map(Command::MirrorPart),
+        &[Command::Merge, Command::MergePicked],
+    ];
+    command_groups(ui, editor, &groups, commands);
+    if ui.button(FileCommand::MergeOptions.name()).clicked() {
+        commands.push_file(FileCommand::MergeOptions);
+        ui.close();
+    }
 }
 
 /// Groups of commands, with a line between them.

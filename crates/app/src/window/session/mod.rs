@@ -6,7 +6,7 @@ mod shapes;
 mod stitching;
 
 use std::collections::VecDeque;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use pliant_editor::{JobQueue, Revision, SaveMark, StitchRequest};
@@ -45,6 +45,8 @@ pub struct Session {
     opened: u64,
     /// The open file with other triangles.
     pub others: OtherShapes,
+    /// The file that a change of the mesh appends.
+    pub to_append: Option<PathBuf>,
     /// The running change of the mesh.
     stitching: Option<(Revision, Watch)>,
 }
@@ -62,11 +64,15 @@ impl Session {
     pub fn stitch(&mut self, request: StitchRequest, gpu: &Gpu, workers: &Workers) {
         let Some(open) = &self.open else { return };
         let (loaded, gpu) = (Arc::clone(&open.loaded), gpu.clone());
+        let second = self.to_append.clone();
         let (stamp, watch) = (self.stamp(), Watch::default());
         self.stitching = Some((stamp, watch.clone()));
         workers.spawn(
             "stitching",
-            move || Message::Stitched(stamp, stitching::stitch(&request, &loaded, &gpu, &watch)),
+            move || {
+                let made = stitching::stitch(&request, &loaded, second.as_deref(), &gpu, &watch);
+                Message::Stitched(stamp, made)
+            },
             move |sentence| Message::Stitched(stamp, Err(sentence)),
         );
     }

@@ -1,5 +1,6 @@
 //! Changes of the open file's triangles, off the window's thread: the engine makes a new shape in memory.
 
+use std::path::Path;
 use std::sync::Arc;
 
 use pliant_editor::StitchRequest;
@@ -13,27 +14,46 @@ use crate::window::files::rest_mesh::{MeshSource, RestMesh};
 use crate::window::threads::message::Stitched;
 use crate::window::viewport::gpu::Gpu;
 
-/// Makes the new shape of the open file.
+/// Makes the new shape of the open file. `second` is the file that is appended.
 ///
 /// # Errors
 /// A sentence about the refusal.
-pub fn stitch(request: &StitchRequest, loaded: &Loaded, gpu: &Gpu, watch: &Watch) -> Result<Box<Stitched>, String> {
-    let made = make(request, loaded, gpu, watch);
+pub fn stitch(
+    request: &StitchRequest,
+    loaded: &Loaded,
+    second: Option<&Path>,
+    gpu: &Gpu,
+    watch: &Watch,
+) -> Result<Box<Stitched>, String> {
+    let made = make(request, loaded, second, gpu, watch);
     made.map_err(|error| match error {
         EngineError::Interrupted => format!("{} was stopped: the surface is unchanged.", request.change.name()),
         error => error.to_string(),
     })
 }
 
-fn make(request: &StitchRequest, loaded: &Loaded, gpu: &Gpu, watch: &Watch) -> Result<Box<Stitched>, EngineError> {
+fn make(
+    request: &StitchRequest,
+    loaded: &Loaded,
+    second: Option<&Path>,
+    gpu: &Gpu,
+    watch: &Watch,
+) -> Result<Box<Stitched>, EngineError> {
     let present = Present {
         loaded,
         displacements: request.displacements(),
         inside_out: request.inside_out(),
     };
-    let Remade { loaded, done, warnings } = remake(&present, &request.change, watch)?;
+    let weld = loaded.model.weld;
+    let second = second.map(|path| pliant_engine::load(path, &weld, watch)).transpose()?;
+    let Remade {
+        loaded,
+        moved,
+        done,
+        warnings,
+    } = remake(&present, &request.change, second.as_ref(), watch)?;
     let progress = watch.begin("preparing the picture");
-    let mesh = request.onto(Arc::clone(&loaded.model));
+    let mesh = request.onto(Arc::clone(&loaded.model), moved.as_deref());
     progress.set(0.3);
     let drawing = Drawing::new(&loaded.model, loaded.scene.appearance(), Arc::default());
     progress.set(0.7);

@@ -160,6 +160,8 @@ pub enum Purpose {
     ExportEdit,
     /// To take an edit from, for the open mesh.
     ApplyEdit,
+    /// To put beside the open shape.
+    Append,
     /// To take a cage from.
     LoadCage,
     /// To take an example from.

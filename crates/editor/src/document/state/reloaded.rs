@@ -4,7 +4,8 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use pliant_deform::Attachment;
+use pliant_deform::{Attachment, Loose};
+use pliant_mesh::{Model, SurfaceVertex};
 
 use super::Document;
 use crate::document::access::Access;
@@ -39,6 +40,30 @@ impl Document {
             handle.twin = handle.twin.filter(|twin| left.contains(&twin.handle));
         }
         content.into()
+    }
+
+    /// Makes a handle of the vertices of a new mesh that match none of the former one. What was there before and is not
+    /// painted rests, whatever the handle touches.
+    pub(crate) fn hold_new_part(&mut self, name: &str, matching: &Matching, model: &Model) -> Option<HandleId> {
+        let new = (0..).zip(&matching.of_new).filter(|(_, old)| old.is_none());
+        let new: Vec<SurfaceVertex> = new.map(|(vertex, _)| SurfaceVertex(vertex)).collect();
+        if new.is_empty() {
+            return None;
+        }
+        let sum: DVec3 = new.iter().map(|vertex| model.surface.positions[vertex.index()]).sum();
+        let id = self.add_handle();
+        self.change_handle(id, |handle| {
+            handle.name = name.to_owned();
+            handle.pivot = sum / new.len() as f64;
+        });
+        self.paint_vertices(new.iter().map(|vertex| (*vertex, Paint::Handle(id))));
+        let mut parts = self.loose_parts().clone();
+        let former = (0..).zip(&matching.of_new_part).filter(|(_, old)| old.is_some());
+        former.for_each(|(part, _)| {
+            parts.entry(part).or_insert(Loose::Rest);
+        });
+        self.set_loose(self.loose(), parts);
+        Some(id)
     }
 
     /// The same regions, handles and shapes on the vertices that match its own; the others are fixed. If the file was
