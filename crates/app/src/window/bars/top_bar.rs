@@ -63,6 +63,7 @@ fn file_menu(ui: &mut egui::Ui, editor: &Editor, recent: &Recent<'_>) -> Option<
         FileCommand::SaveProject,
         FileCommand::SaveProjectAs,
         FileCommand::ExportEdit,
+        FileCommand::ExportAnimation,
         FileCommand::ApplyEdit,
         FileCommand::Quit,
     ] {

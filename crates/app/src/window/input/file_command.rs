@@ -32,6 +32,8 @@ pub enum FileCommand {
     SaveProjectAs,
     /// Write the regions, handles and transforms as an edit for the command line.
     ExportEdit,
+    /// Write the edit over time.
+    ExportAnimation,
     /// Apply an edit from a file to the open mesh.
     ApplyEdit,
     /// Weld the open mesh's vertices in another way.
@@ -78,6 +80,10 @@ impl FileCommand {
             attachments.any(|own| own.kind == kind)
         };
         match self {
+            Self::ExportAnimation => {
+                let has_keys = !editor.document().animation().keys().is_empty();
+                (!has_keys).then_some("There are no keys: set some on the timeline first.")
+            }
             Self::LoadCage => (!takes(AttachmentKind::ControlMesh))
                 .then_some("The method takes no cage: choose the method Cage first."),
             Self::AddExample | Self::AddMorphTarget(_) => (!takes(AttachmentKind::Shapes)).then_some(WITHOUT_EXAMPLES),
@@ -115,6 +121,7 @@ impl FileCommand {
             Self::Scale(_) => command(Key::Num0),
             Self::SaveProjectAs
             | Self::SaveMorph
+            | Self::ExportAnimation
             | Self::ApplyEdit
             | Self::Weld(_)
             | Self::LoadCage
@@ -136,7 +143,7 @@ impl FileCommand {
     }
 
     /// All commands that need no path, in the order of the menu.
-    pub const LISTED: [Self; 24] = [
+    pub const LISTED: [Self; 25] = [
         Self::Open,
         Self::NewFromSample,
         Self::Save,
@@ -146,6 +153,7 @@ impl FileCommand {
         Self::SaveProject,
         Self::SaveProjectAs,
         Self::ExportEdit,
+        Self::ExportAnimation,
         Self::ApplyEdit,
         Self::LoadCage,
         Self::AddExample,
@@ -193,6 +201,7 @@ impl FileCommand {
             Self::Scale(_) => "Interface size",
             Self::Hints => "Canvas hints",
             Self::ExportEdit => "Export edit…",
+            Self::ExportAnimation => "Export animation…",
             Self::ApplyEdit => "Apply an edit…",
             Self::SavePicture(_) => "Save picture…",
             Self::Quit => "Quit",
@@ -223,6 +232,7 @@ impl FileCommand {
             Self::Scale(_) => "ui zoom",
             Self::Hints => "help first steps",
             Self::ExportEdit => "json command line",
+            Self::ExportAnimation => "keys timeline gltf glb pc2 mdd frames video bake write",
             Self::ApplyEdit => "json import load again scan",
             Self::SavePicture(_) => "screenshot render image png",
             Self::Quit => "exit close",
