@@ -314,6 +314,7 @@ fn view_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     }
     ui.separator();
     choice(ui, Command::ToggleTimeline, look.timeline);
+    choice(ui, Command::ToggleSkins, look.timeline && look.skins.shown);
     choice(ui, Command::CompareMethods, editor.comparison().is_some());
     ui.separator();
     let up = view.camera.up;
