@@ -91,7 +91,7 @@ pub use input::{Button, Key, Modifiers, Pointer};
 pub use jobs::{
     Alternative, BothSides, Compared, Comparison, ControlPlaces, Descent, Executor, Figures, Flowed, InlineExecutor,
     Inspectable, Inspected, IntersectionPlace, Intersections, Job, JobDone, JobKind, JobOutcome, JobQueue, JobResult,
-    PresentBinding, Running, SolveResult, Solved, Symmetry, Unfinished,
+    PresentBinding, Running, Skin, Skinned, SolveResult, Solved, Symmetry, Unfinished,
 };
 pub use lines::Lines;
 pub use region::{Counts, FoundLimb, Region, Rim};
@@ -108,6 +108,6 @@ pub use tool::{
 };
 pub use view::{
     Before, Camera, Clay, ControlShape, Cursor, GizmoAxes, GizmoMode, GizmoOrientation, GizmoPart, GizmoShape, Look,
-    NamedView, Orbit, Pick, Projection, Ray, Readout, Shading, UpAxis, hit_gizmo,
+    NamedView, Orbit, Pick, Projection, Ray, Readout, Shading, Skins, UpAxis, hit_gizmo,
 };
 pub use workspace::{RegionAction, SnapshotKey, StiffnessChange, stiffness_colour};

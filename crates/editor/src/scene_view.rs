@@ -9,7 +9,7 @@ use glam::{DVec2, DVec3};
 use pliant_mesh::Model;
 
 use crate::document::{Handle, HandleId, KeyId};
-use crate::jobs::{Descent, JobKind, Symmetry};
+use crate::jobs::{Descent, JobKind, Skin, Symmetry};
 use crate::region::Counts;
 use crate::stitching::{KeptSide, MergeSettings};
 use crate::tool::{
@@ -93,6 +93,8 @@ pub struct SceneView<'a> {
     pub correction_brush: CorrectionBrush,
     /// The brush that pours and pushes.
     pub flow_brush: FlowBrush,
+    /// The ghosts of other moments, from the first to the last.
+    pub skins: &'a [Skin],
     /// The selected keys.
     pub selected_keys: &'a BTreeSet<KeyId>,
     /// True while the animation plays.

@@ -3,6 +3,7 @@
 use super::entry::{Action, Entry, Reason, Scope, State, alt, always, character, ctrl, item, unless};
 use crate::document::{Animation, KeyId};
 use crate::ease::Ease;
+use crate::view::Skins;
 use crate::workspace::{
     copy_keys, delete_keys, go_to, key_here, key_pose, move_keys, neighbour_key, paste_keys, set_fps, set_key_ease,
     step_frames, stretch_keys,
@@ -20,6 +21,37 @@ pub(super) const TOGGLE_TIMELINE: Entry<()> = Entry {
     scope: Scope::View,
     unavailable: always,
     action: Action::Do(|context, ()| context.view.look.timeline = !context.view.look.timeline),
+};
+
+/// Shows or hides the ghosts of other moments.
+pub(super) const TOGGLE_SKINS: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Onion skins",
+        "Shows or hides ghosts of the moments before and after the shown one, while the timeline is shown.",
+        "animation ghosts time trail",
+        &[alt('t')],
+    )],
+    scope: Scope::View,
+    unavailable: always,
+    action: Action::Do(|context, ()| {
+        let look = &mut context.view.look;
+        look.skins.shown = !(look.skins.shown && look.timeline);
+        look.timeline |= look.skins.shown;
+    }),
+};
+
+/// Chooses the ghosts of other moments.
+pub(super) const SET_SKINS: Entry<Skins> = Entry {
+    listed: &[],
+    scope: Scope::View,
+    unavailable: |_, skins| {
+        unless(
+            skins.are_usable(),
+            "There are at most 8 onion skins on a side, a frame apart or more.",
+        )
+    },
+    action: Action::Do(|context, skins| context.view.look.skins = skins),
 };
 
 /// Sets a key of every handle.

@@ -21,7 +21,7 @@ use crate::stitching::{KeptSide, MergeSettings, MeshChange};
 use crate::tool::{
     BrushMetric, Context, CorrectionBrush, Depth, FlowBrush, Gesture, StiffnessBrush, StrokeShape, ToolMode,
 };
-use crate::view::{Before, Clay, GizmoMode, GizmoOrientation, NamedView, Orbit, Shading, UpAxis};
+use crate::view::{Before, Clay, GizmoMode, GizmoOrientation, NamedView, Orbit, Shading, Skins, UpAxis};
 use crate::workspace::{RegionAction, StiffnessChange};
 
 /// A command in the list of a menu or the palette.
@@ -171,6 +171,10 @@ commands! {
     WorkPose = pose::WORK_POSE;
     /// Shows or hides the timeline.
     ToggleTimeline = animation::TOGGLE_TIMELINE;
+    /// Shows or hides ghosts of the moments around the shown one.
+    ToggleSkins = animation::TOGGLE_SKINS;
+    /// Chooses these ghosts.
+    SetSkins(skins: Skins) = animation::SET_SKINS;
     /// Sets a key of every handle at the shown moment.
     KeyHere = animation::KEY_HERE;
     /// Sets a key of the selected handles at the shown moment.

@@ -188,6 +188,7 @@ impl Editor {
         }
         tint(&mut self.workspace, &self.view, hovering_px);
         self.workspace.follow_flow(gesture.is_none());
+        self.workspace.follow_skins(&self.view.look, activity);
         self.workspace.conclude(activity, by, asked);
         if !gesture.is_some_and(Gesture::moves_camera) {
             self.view.rest();

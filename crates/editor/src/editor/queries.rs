@@ -71,6 +71,7 @@ impl Editor {
             stiffness_brush: settings.stiffness_brush,
             correction_brush: settings.correction_brush,
             flow_brush: settings.flow_brush,
+            skins: workspace.jobs.skins(),
             selected_keys: workspace.keys.selected(),
             is_animating: workspace.keys.is_playing(),
             is_playing: workspace.flow.is_playing(),

@@ -11,6 +11,7 @@ use super::flowed::{FlowRequest, flow_work};
 use super::inspected::Asked;
 use super::inspection::inspect_work;
 use super::scheduler::Jobs;
+use super::skins::{Skin, SkinSource, skins_work};
 use super::slot::{Slot, Work};
 use super::table::Slots;
 use super::work::intersect_work;
@@ -73,6 +74,37 @@ impl Jobs {
         let (revision, allowance) = (self.next_revision(), self.allowance);
         self.computed.slots.flow.follow(revision);
         self.computed.slots.flow.request(flow_work(request, allowance));
+    }
+
+    /// Requests the shapes of these moments around the shown one, each with its place and its time in seconds, unless they are known or under way. The running job
+    /// continues, so that they follow a drag; the newest request waits.
+    pub(crate) fn follow_skins(&mut self, moments: Vec<(i8, f64)>, document: &Document) {
+        if !self.is_bound() {
+            return;
+        }
+        let source = SkinSource::of(moments, document, self.computed.slots.bind.made());
+        if self.skin_source.as_ref() == Some(&source) {
+            return;
+        }
+        if let Some(work) = skins_work(&self.computed, document, source.moments(), self.allowance) {
+            self.skin_source = Some(source);
+            let revision = self.next_revision();
+            self.computed.slots.skins.follow(revision);
+            self.computed.slots.skins.request(work);
+        }
+    }
+
+    /// The shapes of other moments are no longer wanted.
+    pub(crate) fn forget_skins(&mut self) {
+        if self.skin_source.take().is_some() {
+            self.stop_asking(|slots| &mut slots.skins);
+            self.computed.slots.skins.take();
+        }
+    }
+
+    /// The shapes of other moments that were solved last.
+    pub(crate) fn skins(&self) -> &[Skin] {
+        self.computed.slots.skins.last().map_or(&[], |skinned| &skinned.skins)
     }
 
     /// The time in milliseconds since some moment, for the speed of a stroke; constant in an executor that does not

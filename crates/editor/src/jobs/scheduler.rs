@@ -14,6 +14,7 @@ use super::comparison::Comparison;
 use super::computed::Computed;
 use super::inspected::Asked;
 use super::ordering::{order_work, serves};
+use super::skins::SkinSource;
 use super::slot::{Ended, Scheduled, Slot, Unfinished, Work};
 use super::solved::{ControlPlaces, SolveResult, Solved};
 use super::solving::{controls_work, solve_work};
@@ -51,6 +52,8 @@ pub(crate) struct Jobs {
     pub(super) joint_up: i32,
     /// True if the last requested solve begins anew.
     solves_anew: bool,
+    /// The sources of the requested shapes of other moments.
+    pub(super) skin_source: Option<SkinSource>,
     /// The inspection job: its binding, and its targets if it depends on them, from its request on.
     pub(super) inspection: (Revision, Asked, Revision),
 }
@@ -88,6 +91,7 @@ impl Jobs {
             joint_asked: None,
             joint_up: 0,
             solves_anew: false,
+            skin_source: None,
             inspection: (Revision(0), Asked::default(), Revision(0)),
         }
     }
@@ -103,6 +107,7 @@ impl Jobs {
         self.comparison = None;
         self.joint_asked = None;
         self.joint_up = 0;
+        self.skin_source = None;
         let mut slots = std::mem::take(&mut self.computed.slots);
         slots.reset(self.next_revision());
         self.computed = Computed {

@@ -102,7 +102,7 @@ impl Wanted {
     }
 
     /// The same from where every frame of an animation begins, the rest shape or the kept one, to the end.
-    fn anew(self) -> Self {
+    pub(super) fn anew(self) -> Self {
         let start = match self.start {
             Start::Shape(shape) => Start::Shape(Arc::new(vec![DVec3::ZERO; shape.len()])),
             kept => kept,

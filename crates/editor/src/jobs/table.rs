@@ -15,6 +15,7 @@ use super::flowed::Flowed;
 use super::inspected::Inspected;
 use super::intersections::Intersections;
 use super::present_binding::PresentBinding;
+use super::skins::Skinned;
 use super::slot::{Ended, Scheduled, Slot, Unfinished};
 use super::solved::SolveResult;
 use crate::pickable::Pickable;
@@ -146,6 +147,8 @@ jobs! {
     inspect: Inspect(Inspected) = Row { doing: "inspecting the binding", is_awaited: true, is_named: false };
     /// The joint of the limb under the pointer; `None` if there is none.
     joint: Joint(Option<FoundLimb>) = Row { doing: "finding the joint", is_awaited: false, is_named: false };
+    /// The shapes of the moments around the shown one.
+    skins: Skins(Box<Skinned>) = Row { doing: "solving the moments around", is_awaited: false, is_named: false };
     /// A step of the flow on the surface.
     flow: Flow(Box<Flowed>) = Row { doing: "flowing", is_awaited: false, is_named: false };
     /// The places where the present shape passes through itself.

@@ -86,7 +86,7 @@ impl Track {
     /// The rates of change at a key, per second: those of the parabola through it and its neighbours; zero at an end.
     fn rates(&self, place: usize) -> Rates {
         let Some((before, after)) = place.checked_sub(1).zip(self.keys.get(place + 1)) else {
-            return Rates::default();
+            return Rates::ZERO;
         };
         let (before, key) = (&self.keys[before], &self.keys[place]);
         let (first, second) = (key.time - before.time, after.time - key.time);
@@ -116,11 +116,19 @@ impl Track {
 }
 
 /// The rates of change of a transform's vectors, per second.
-#[derive(Default)]
 struct Rates {
     pivot: DVec3,
     translation: DVec3,
     stretch: DMat3,
+}
+
+impl Rates {
+    /// At rest.
+    const ZERO: Self = Self {
+        pivot: DVec3::ZERO,
+        translation: DVec3::ZERO,
+        stretch: DMat3::ZERO,
+    };
 }
 
 /// The values of the cubic Hermite polynomials: of both ends, and of the rates at both ends.
@@ -235,6 +243,22 @@ mod tests {
         };
         // From 162 to -90 degrees the short way goes through 180.
         assert!(turn(1.5).abs() > 0.9 * PI, "{}", turn(1.5));
+    }
+
+    #[test]
+    fn between_keys_without_scale_no_length_changes() {
+        for ease in [Ease::Hold, Ease::Linear, Ease::Smooth] {
+            let mut keys = track(ease).keys;
+            keys.iter_mut().for_each(|key| key.transform.stretch = DMat3::IDENTITY);
+            let track = Track::new(keys);
+            for step in 0..=30 {
+                let map = track.at(0.1 * f64::from(step)).unwrap().affine();
+                for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
+                    let length = map.transform_vector3(axis).length();
+                    assert!((length - 1.0).abs() < 1e-12, "{ease:?}, step {step}: {length}");
+                }
+            }
+        }
     }
 
     /// The rotation of a map whose columns are orthogonal.

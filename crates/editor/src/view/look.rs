@@ -1,5 +1,7 @@
 //! The look of the view: a person's choice, not part of the document.
 
+use super::skins::Skins;
+
 /// The look of the surface.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Hash)]
 pub struct Look {
@@ -27,6 +29,8 @@ pub struct Look {
     pub base: bool,
     /// True if the timeline is shown.
     pub timeline: bool,
+    /// The ghosts of other moments, while the timeline is shown.
+    pub skins: Skins,
     /// The way in which the file's own shape is shown with the present one.
     pub before: Before,
 }
@@ -46,6 +50,7 @@ impl Default for Look {
             original: false,
             base: false,
             timeline: false,
+            skins: Skins::default(),
             before: Before::Off,
         }
     }

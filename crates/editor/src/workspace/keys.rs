@@ -12,8 +12,9 @@ use super::key_work::Play;
 use super::state::Workspace;
 use crate::document::{Animation, Aspect, HandleId, KeyFrame, KeyId, Placed};
 use crate::ease::Ease;
-use crate::jobs::JobKind;
+use crate::jobs::{Activity, JobKind};
 use crate::timeline::poses_at;
+use crate::view::Look;
 
 /// Sets a key of handles at the shown moment, at their present positions; pins have no keys. Selects it.
 pub(crate) fn key_here(workspace: &mut Workspace, is_wanted: impl Fn(HandleId) -> bool) {
@@ -211,6 +212,25 @@ impl Workspace {
 
     fn first_selected(&self) -> Option<f64> {
         self.keys.selected.iter().map(|id| id.time()).reduce(f64::min)
+    }
+}
+
+/// The ghosts of other moments.
+impl Workspace {
+    /// Requests the ghosts that the look shows. None is shown while the animation plays, and those of an iterative method
+    /// follow once the shape rests.
+    pub(crate) fn follow_skins(&mut self, look: &Look, activity: Activity) {
+        let has_keys = self.document.animation().duration() > 0.0;
+        if !(look.timeline && look.skins.shown && has_keys) || self.keys.is_playing() {
+            return self.jobs.forget_skins();
+        }
+        let is_live = self.document.method().solve() == Solve::Direct;
+        let is_at_rest = activity == Activity::Still && self.document.is_settled();
+        let is_other_problem = self.document.versions().are_other_problem(&self.seen);
+        if (is_live || is_at_rest) && activity != Activity::Painting && !is_other_problem {
+            let moments = look.skins.moments(self.document.animation());
+            self.jobs.follow_skins(moments, &self.document);
+        }
     }
 }
 

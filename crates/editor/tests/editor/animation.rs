@@ -455,3 +455,83 @@ fn a_command_that_can_not_be_done_says_why() {
     }
     assert!(rig.editor.document().animation().keys().is_empty());
 }
+
+/// The shown ghosts: their places and shapes.
+fn ghosts(rig: &Rig) -> Vec<(i8, Vec<DVec3>)> {
+    let skins = rig.editor.view().skins.iter();
+    skins.map(|skin| (skin.place, skin.from_file.to_vec())).collect()
+}
+
+#[test]
+fn ghosts_are_the_frames_at_their_moments_and_disturb_nothing() {
+    for method in ["bilaplacian", "arap"] {
+        let (mut rig, ids, _) = keyed(method);
+        let fps = rig.editor.document().animation().fps();
+        go_to(&mut rig, 9.0 / fps);
+        let at_once = shape(&rig);
+        let frames: Vec<(i8, Vec<DVec3>)> = [(-2, 1.0), (-1, 5.0), (1, 13.0), (2, 17.0)]
+            .into_iter()
+            .map(|(place, frame)| {
+                go_to(&mut rig, frame / fps);
+                (place, shape(&rig))
+            })
+            .collect();
+        go_to(&mut rig, 9.0 / fps);
+        assert!(ghosts(&rig).is_empty(), "they are off at first");
+        rig.command(Command::ToggleSkins);
+        rig.drain();
+        assert!(
+            rig.editor.view().look.timeline,
+            "{method}: the timeline comes with them"
+        );
+        assert!(ghosts(&rig) == frames, "{method}");
+        assert!(shape(&rig) == at_once, "{method}");
+        // None lies outside the keys.
+        go_to(&mut rig, 0.0);
+        let places: Vec<i8> = ghosts(&rig).iter().map(|(place, _)| *place).collect();
+        assert_eq!(places, [1, 2], "{method}");
+        go_to(&mut rig, 9.0 / fps);
+        assert!(ghosts(&rig) == frames && shape(&rig) == at_once, "{method} again");
+        // A pose that has no key yet counts as one, so that its effect on the frames around it is seen.
+        put(&mut rig, ids[0], trs(DVec3::X * 0.2, 0.3));
+        let posed = ghosts(&rig);
+        rig.command(Command::KeyHere);
+        go_to(&mut rig, 13.0 / fps);
+        let far = apart(&shape(&rig), &posed[2].1);
+        assert!(far < 1e-12, "{method}: {far}");
+        assert!(apart(&posed[2].1, &frames[2].1) > 1e-3, "{method}");
+    }
+}
+
+#[test]
+fn ghosts_follow_a_drag_of_a_linear_method_and_go_while_the_animation_plays() {
+    let (mut rig, ids, _) = keyed("bilaplacian");
+    let fps = rig.editor.document().animation().fps();
+    go_to(&mut rig, 9.0 / fps);
+    rig.command(Command::ToggleSkins);
+    rig.drain();
+    let before = ghosts(&rig);
+    rig.send(Event::Adjust(Command::SetHandleTransform(
+        ids[0],
+        trs(DVec3::Y * 0.3, 0.0),
+    )));
+    rig.drain();
+    assert_eq!(ghosts(&rig).len(), before.len());
+    assert!(ghosts(&rig) != before);
+    rig.send(Event::Adjusted);
+    rig.command(Command::PlayKeys);
+    rig.send(Event::Tick);
+    rig.drain();
+    assert!(ghosts(&rig).is_empty());
+    rig.command(Command::PlayKeys);
+    rig.drain();
+    assert!(!ghosts(&rig).is_empty());
+    let most = pliant_editor::Skins {
+        before: 200,
+        ..rig.editor.view().look.skins
+    };
+    assert!(rig.editor.unavailable_because(&Command::SetSkins(most)).is_some());
+    rig.command(Command::ToggleTimeline);
+    rig.drain();
+    assert!(ghosts(&rig).is_empty());
+}

@@ -175,7 +175,26 @@ impl Application {
                     .max(Duration::from_millis(10)),
             );
         }
+        self.skins(ui, rect, smooth)?;
         self.original(ui, rect, smooth)
+    }
+
+    /// Lays the ghosts of other moments over the picture, if there are some.
+    fn skins(
+        &mut self,
+        ui: &mut egui::Ui,
+        rect: egui::Rect,
+        smooth: Smoothness,
+    ) -> Result<(), pliant_render::RenderError> {
+        let Some(source) = self.workers.pose_source() else {
+            return Ok(());
+        };
+        let skins = self.editor.view().skins;
+        self.beside.skins.follow(ui.ctx(), skins, &self.viewport, &source);
+        if !skins.is_empty() && self.beside.skins.show(ui, rect, &self.editor, smooth)? {
+            ui.ctx().request_repaint_after(REST);
+        }
+        Ok(())
     }
 
     /// Lays the shape of the file over the picture, if it is shown along with the present one.

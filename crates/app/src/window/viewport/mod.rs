@@ -16,6 +16,7 @@ pub(in crate::window) mod method_views;
 pub(in crate::window) mod pose_queue;
 pub(in crate::window) mod shown;
 pub(in crate::window) mod side_view;
+pub(in crate::window) mod skins;
 pub(in crate::window) mod stiffness_legend;
 
 use std::sync::Arc;
@@ -57,6 +58,8 @@ pub struct Viewport {
     coarseness: Coarseness,
     /// The opacity of the picture over its background; below 1 the surroundings of the surface are left out.
     opacity: f32,
+    /// The colour by which the picture is multiplied.
+    tint: egui::Color32,
 }
 
 impl Viewport {
@@ -98,6 +101,7 @@ impl Viewport {
             drawing_time: Duration::ZERO,
             coarseness: Coarseness::default(),
             opacity: 1.0,
+            tint: egui::Color32::WHITE,
         }
     }
 
@@ -107,6 +111,11 @@ impl Viewport {
             self.opacity = opacity;
             self.drawn = None;
         }
+    }
+
+    /// Chooses the colour by which the picture is multiplied.
+    pub fn set_tint(&mut self, tint: egui::Color32) {
+        self.tint = tint;
     }
 
     /// The shown file.
@@ -335,7 +344,7 @@ impl Viewport {
         }
         if let Some(texture) = self.texture {
             let whole = egui::Rect::from_min_max(egui::Pos2::ZERO, egui::pos2(1.0, 1.0));
-            let tint = egui::Color32::WHITE.gamma_multiply(self.opacity);
+            let tint = self.tint.gamma_multiply(self.opacity);
             ui.painter().image(texture, rect, whole, tint);
         }
         let is_less = |drawn: &DrawnKey| drawn.size_px != size_px || drawn.detail == Detail::Reduced;

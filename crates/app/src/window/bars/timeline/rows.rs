@@ -97,13 +97,17 @@ impl Mark<'_> {
                 response.clicked(),
             )));
         }
-        if response.dragged() {
-            ui.ctx().data_mut(|data| data.insert_temp(drag(), id));
+        if response.dragged()
+            && let Some(by) = drag_of(ui, scale, editor)
+        {
+            ui.data_mut(|data| data.insert_temp(drag(), (id, by)));
             ui.ctx().set_cursor_icon(egui::CursorIcon::ResizeHorizontal);
         }
         if response.drag_stopped() {
-            ui.ctx().data_mut(|data| data.remove::<egui::Id>(drag()));
-            if let Some(by) = drag_of(ui, scale, editor).filter(|by| *by != 0.0) {
+            // The press is forgotten by now.
+            let last: Option<(egui::Id, f64)> = ui.data(|data| data.get_temp(drag()));
+            ui.data_mut(|data| data.remove::<(egui::Id, f64)>(drag()));
+            if let Some((_, by)) = last.filter(|(_, by)| *by != 0.0) {
                 commands.push(Command::MoveKeys(by));
             }
         }
@@ -138,8 +142,8 @@ fn present(editor: &Editor, key: &KeyFrame) -> Vec<KeyId> {
 
 /// The time by which the selected keys are being dragged.
 fn dragged_time(ui: &egui::Ui, scale: &TimeScale, editor: &Editor) -> Option<f64> {
-    let held: Option<egui::Id> = ui.ctx().data(|data| data.get_temp(drag()));
-    held.filter(|id| ui.ctx().is_being_dragged(*id))?;
+    let held: Option<(egui::Id, f64)> = ui.data(|data| data.get_temp(drag()));
+    held.filter(|(id, _)| ui.ctx().is_being_dragged(*id))?;
     drag_of(ui, scale, editor)
 }
 

@@ -1,7 +1,7 @@
 //! The buttons and fields of the timeline: play, steps, the moment, the frame rate, and the selected keys.
 
 use eframe::egui;
-use pliant_editor::{Animation, Command, Ease, Editor};
+use pliant_editor::{Animation, Command, Ease, Editor, KeyId, Skins};
 
 use crate::window::widgets::command_button::{command_button, icon_choice};
 use crate::window::widgets::icon::{self, Glyph};
@@ -31,6 +31,8 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
         }
         moment(ui, editor, commands);
         ui.separator();
+        skins(ui, editor, commands);
+        ui.separator();
         selected(ui, editor, commands);
     });
 }
@@ -59,13 +61,53 @@ fn moment(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     commands.adjust(&field, || Command::SetFps(rate));
 }
 
+/// The switch of the ghosts, and their settings.
+fn skins(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
+    let present = editor.view().look.skins;
+    if icon_choice(ui, editor, &Command::ToggleSkins, present.shown, Glyph::Ghost, None) {
+        commands.push(Command::ToggleSkins);
+    }
+    let mut skins = present;
+    let menu = ui.menu_button(icon::text(Glyph::ChevronDown, 12.0), |ui| {
+        egui::Grid::new("onion skins").num_columns(3).show(ui, |ui| {
+            let [before, after] = &mut skins.colours;
+            let sides = [
+                ("Before", &mut skins.before, before),
+                ("After", &mut skins.after, after),
+            ];
+            for (name, count, colour) in sides {
+                let label = ui.label(name);
+                let field = number_field(ui, count, |ui, count| {
+                    ui.add(dragged(ui, count, &[]).range(0..=Skins::MOST).speed(0.05))
+                });
+                field.labelled_by(label.id).on_hover_text("Sets the number of ghosts.");
+                ui.color_edit_button_srgb(colour).on_hover_text("Sets their colour.");
+                ui.end_row();
+            }
+            let label = ui.label("Every");
+            let field = number_field(ui, &mut skins.spacing, |ui, spacing| {
+                ui.add(dragged(ui, spacing, &[]).range(1..=1000).speed(0.1).suffix(" frames"))
+            });
+            field
+                .labelled_by(label.id)
+                .on_hover_text("Sets the frames from one ghost to the next.");
+            ui.end_row();
+        });
+    });
+    menu.response
+        .on_hover_text("Sets the number, the distance and the colours of the onion skins.");
+    if skins != present {
+        commands.push(Command::SetSkins(skins));
+    }
+}
+
 /// The ease of the selected keys, and the ways to copy and remove them.
 fn selected(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     let selected = editor.view().selected_keys;
     let keys = editor.document().animation().keys().iter();
     let own = keys.filter(|key| {
         let mut handles = key.handles();
-        handles.any(|handle| selected.contains(&pliant_editor::KeyId::new(handle, key.time)))
+        handles.any(|handle| selected.contains(&KeyId::new(handle, key.time)))
     });
     let mut eases: Vec<Ease> = own.map(|key| key.ease).collect();
     eases.dedup();
