@@ -13,4 +13,5 @@ mod frame;
 mod pose;
 mod session;
 mod slow_frames;
+mod timeline;
 mod window_rig;
