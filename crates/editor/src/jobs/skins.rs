@@ -2,12 +2,12 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use glam::DVec3;
-use pliant_deform::{BindError, Bound, Problem, Solve};
+use pliant_deform::{BindError, Problem, Solve};
 use pliant_mesh::SurfaceVertex;
 
 use super::allowance::Allowance;
 use super::computed::Computed;
+use super::skinned::{Skin, Skinned};
 use super::slot::{Unfinished, Work};
 use super::solving::Wanted;
 use crate::Setup;
@@ -15,24 +15,6 @@ use crate::document::{Animation, Aspect, Document, KeyFrame, Placed, Version};
 use crate::ease::Ease;
 use crate::revision::Revision;
 use crate::timeline::poses_at;
-
-/// The shape of another moment.
-#[derive(Clone, Debug)]
-pub struct Skin {
-    /// Its place: -1 is the nearest before the shown moment, 1 the nearest after it.
-    pub place: i8,
-    /// The displacements from the file's shape, per surface vertex.
-    pub from_file: Arc<Vec<DVec3>>,
-}
-
-/// The shapes of the moments around the shown one.
-#[derive(Default)]
-pub struct Skinned {
-    pub(super) skins: Vec<Skin>,
-    /// The factorisation of the binding with this revision: the descent of an iterative method continues from its last
-    /// step, so it gets one of its own here.
-    own: Option<(Revision, Arc<Mutex<Bound>>)>,
-}
 
 /// The sources of the shapes.
 #[derive(Clone, PartialEq, Debug)]

@@ -168,6 +168,7 @@ impl Application {
     /// Draws the view.
     fn picture(&mut self, ui: &mut egui::Ui, rect: egui::Rect) -> Result<(), pliant_render::RenderError> {
         let smooth = self.smoothness();
+        self.skins(ui, rect, smooth)?;
         let view = self.editor.view();
         if self.viewport.paint(ui, rect, &view, &self.editor, smooth)? {
             ui.ctx().request_repaint_after(
@@ -175,11 +176,10 @@ impl Application {
                     .max(Duration::from_millis(10)),
             );
         }
-        self.skins(ui, rect, smooth)?;
         self.original(ui, rect, smooth)
     }
 
-    /// Lays the ghosts of other moments over the picture, if there are some.
+    /// Draws the ghosts of other moments and the surroundings, if there are ghosts: the picture then goes over them.
     fn skins(
         &mut self,
         ui: &mut egui::Ui,
@@ -191,7 +191,8 @@ impl Application {
         };
         let skins = self.editor.view().skins;
         self.beside.skins.follow(ui.ctx(), skins, &self.viewport, &source);
-        if !skins.is_empty() && self.beside.skins.show(ui, rect, &self.editor, smooth)? {
+        self.viewport.set_cut_out(!skins.is_empty());
+        if !skins.is_empty() && self.beside.skins.show(ui, rect, &self.viewport, &self.editor, smooth)? {
             ui.ctx().request_repaint_after(REST);
         }
         Ok(())

@@ -1,4 +1,7 @@
-//! The ghosts of other moments over the present shape: further pictures from the same eye, coloured and faded.
+//! The ghosts of other moments behind the present shape: further pictures from the same eye, coloured and faded.
+//!
+//! They need no common depth: the surroundings are drawn first, without a surface, then the ghosts, and the present shape
+//! over them without its surroundings.
 
 use eframe::egui::{self, Color32, Rect, UiBuilder};
 use pliant_editor::{Clay, Editor, Look, SceneView, Shading, Skin, Skins};
@@ -9,34 +12,46 @@ use super::{Smoothness, Viewport};
 use crate::window::threads::workers::PoseSource;
 
 /// The opacity of the ghosts next to the shown moment.
-const NEAREST: f32 = 0.45;
+const NEAREST: f32 = 0.6;
 
 /// The opacity of a ghost as a share of that of its neighbour nearer to the shown moment.
 const FADE: f32 = 0.7;
 
 /// The pictures of other moments.
 #[derive(Default)]
-pub struct SkinViews(Vec<SideView>);
+pub struct SkinViews {
+    /// The surroundings under all of them, while there are some.
+    stage: Option<Viewport>,
+    ghosts: Vec<SideView>,
+}
 
 impl SkinViews {
     /// Returns true if every picture shows its moment.
     pub fn are_settled(&self, skins: &[Skin]) -> bool {
-        self.0.len() == skins.len() && self.0.iter().zip(skins).all(|(view, skin)| view.shows(&skin.from_file))
+        self.ghosts.len() == skins.len()
+            && self
+                .ghosts
+                .iter()
+                .zip(skins)
+                .all(|(view, skin)| view.shows(&skin.from_file))
     }
 
     /// Takes over the first view's state and the editor's moments, and the results of other threads.
     pub fn follow(&mut self, context: &egui::Context, skins: &[Skin], first: &Viewport, source: &PoseSource) {
         // Their data on the device is dropped with those that are no longer needed.
-        self.0.truncate(skins.len());
-        while self.0.len() < skins.len() {
-            self.0.push(SideView::beside(context, first));
+        self.ghosts.truncate(skins.len());
+        if skins.is_empty() {
+            self.stage = None;
+        }
+        while self.ghosts.len() < skins.len() {
+            self.ghosts.push(SideView::beside(context, first));
         }
         // Ghosts need no colours of numbers on the surface.
         let source = PoseSource {
             field: None,
             ..source.clone()
         };
-        for (view, skin) in self.0.iter_mut().zip(skins) {
+        for (view, skin) in self.ghosts.iter_mut().zip(skins) {
             view.workers.set_pose_source(source.clone());
             while let Some(message) = view.receive() {
                 view.take(message, &skin.from_file, &source);
@@ -45,7 +60,7 @@ impl SkinViews {
         }
     }
 
-    /// Draws them over the first view's picture in `rect`, the farthest ones first. Returns whether they are worth a
+    /// Draws the surroundings of the first view's surface and the ghosts into `rect`, the farthest ones first. Returns whether they are worth a
     /// second drawing when nothing has changed for a while.
     ///
     /// # Errors
@@ -54,6 +69,7 @@ impl SkinViews {
         &mut self,
         ui: &mut egui::Ui,
         rect: Rect,
+        first: &Viewport,
         editor: &Editor,
         smooth: Smoothness,
     ) -> Result<bool, RenderError> {
@@ -73,7 +89,10 @@ impl SkinViews {
             },
             ..editor.view()
         };
-        let mut order: Vec<(&Skin, &mut SideView)> = shown.skins.iter().zip(&mut self.0).collect();
+        let stage = self.stage.get_or_insert_with(|| first.beside());
+        stage.set_surroundings_of(first);
+        stage.paint(ui, rect, &view, editor, smooth)?;
+        let mut order: Vec<(&Skin, &mut SideView)> = shown.skins.iter().zip(&mut self.ghosts).collect();
         order.sort_by_key(|(skin, _)| std::cmp::Reverse(skin.place.unsigned_abs()));
         let mut is_worth_more = false;
         for (skin, side) in order {
