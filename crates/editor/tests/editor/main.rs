@@ -1,6 +1,7 @@
 //! The editor without a window: gestures, commands and jobs on every class of mesh.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
+mod appended_parts;
 mod comparison;
 mod controls;
 mod corrections;
@@ -20,6 +21,7 @@ mod lateness;
 mod laws;
 mod memory_limit;
 mod mesh_changes;
+mod mesh_picks;
 mod objects;
 mod pose;
 mod poses;
