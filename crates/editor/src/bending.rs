@@ -241,6 +241,15 @@ impl Start {
         })
     }
 
+    /// Bends to the end towards the targets, independent of all that was bent before with this binding.
+    ///
+    /// # Errors
+    /// Those of [`Start::bend`].
+    pub fn bend_anew(self, bound: &mut Bound, targets: &Targets, cancel: &Cancel) -> Result<Bent, SolveError> {
+        bound.rest();
+        self.bend(bound, targets, Until::End, cancel)
+    }
+
     /// Bends towards the targets. Stops after the step during which `cancel` was raised.
     ///
     /// # Errors

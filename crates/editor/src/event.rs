@@ -64,6 +64,8 @@ pub enum Event {
     Adjust(Command),
     /// The widget was let go.
     Adjusted,
+    /// The window is about to draw a frame while an animation plays.
+    Tick,
     /// A job given to the executor has ended, or has an intermediate result.
     JobDone(JobDone),
     /// A file was loaded and welded; `beginning` is set up on it.

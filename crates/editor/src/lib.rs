@@ -46,6 +46,7 @@
 mod bending;
 mod command;
 mod document;
+mod ease;
 mod editor;
 mod event;
 mod flow_start;
@@ -71,10 +72,12 @@ mod workspace;
 pub use bending::{Bent, Carried, Kept, Start, Targets, Until, settle};
 pub use command::{Command, KeyMap, Listed, Shortcut, WITHOUT_EXAMPLES};
 pub use document::{
-    Access, Carries, Content, Document, Dye, FlowOptions, Fluid, HANDLE_COLOURS, HISTORY_BYTES, Handle, HandleCurve,
-    HandleId, HandleLine, HandleSketch, HandleTransform, History, KeptShape, ObjectAction, Paint, PivotPlace, Pose,
-    Reach, SaveMark, SavedAs, SmallParts, Tips, Twin, object_name, sum_of_shapes,
+    Access, Animation, Carries, Content, Document, Dye, FlowOptions, Fluid, HANDLE_COLOURS, HISTORY_BYTES, Handle,
+    HandleCurve, HandleId, HandleLine, HandleSketch, HandleTransform, History, KeptShape, KeyFrame, KeyId,
+    ObjectAction, Paint, PivotPlace, Pose, Reach, SaveMark, SavedAs, SmallParts, Tips, Twin, object_name,
+    sum_of_shapes,
 };
+pub use ease::Ease;
 pub use editor::Editor;
 pub use event::Event;
 pub use flow_start::FlowStart;
@@ -88,23 +91,23 @@ pub use input::{Button, Key, Modifiers, Pointer};
 pub use jobs::{
     Alternative, BothSides, Compared, Comparison, ControlPlaces, Descent, Executor, Figures, Flowed, InlineExecutor,
     Inspectable, Inspected, IntersectionPlace, Intersections, Job, JobDone, JobKind, JobOutcome, JobQueue, JobResult,
-    PresentBinding, Running, SolveResult, Solved, Symmetry, Unfinished,
+    PresentBinding, Running, Skin, Skinned, SolveResult, Solved, Symmetry, Unfinished,
 };
 pub use lines::Lines;
-pub use region::{Counts, Region, Rim};
+pub use region::{Counts, FoundLimb, Region, Rim};
 pub use revision::Revision;
 pub use scene_view::{ControlPoints, SceneView};
 pub use selection::Selection;
 pub use snapshot::Snapshot;
 pub use status::thousands;
 pub use stitching::{CutPlane, KeptSide, MergeChange, MergeSettings, MeshChange, NewMesh, REACH_RANGE, StitchRequest};
-pub use timeline::{Ease, HandlePlace, KeySpace, SequenceTimeline, Timeline};
+pub use timeline::{HandlePlace, KeySpace, SequenceTimeline, Timeline};
 pub use tool::{
     BrushMetric, Constraint, Correction, CorrectionBrush, Depth, FlowAction, FlowBrush, PointedRim, RimUse,
     StiffnessAction, StiffnessBrush, StrokeShape, ToolMode,
 };
 pub use view::{
     Before, Camera, Clay, ControlShape, Cursor, GizmoAxes, GizmoMode, GizmoOrientation, GizmoPart, GizmoShape, Look,
-    NamedView, Orbit, Pick, Projection, Ray, Readout, Shading, UpAxis, hit_gizmo,
+    NamedView, Orbit, Pick, Projection, Ray, Readout, Shading, Skins, UpAxis, hit_gizmo,
 };
 pub use workspace::{RegionAction, SnapshotKey, StiffnessChange, stiffness_colour};

@@ -2,13 +2,14 @@
 //!
 //! The app keeps the revisions of its last uploads and compares; nothing is uploaded or drawn when none changed.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use pliant_mesh::Model;
 
-use crate::document::{Handle, HandleId};
-use crate::jobs::{Descent, JobKind, Symmetry};
+use crate::document::{Handle, HandleId, KeyId};
+use crate::jobs::{Descent, JobKind, Skin, Symmetry};
 use crate::region::Counts;
 use crate::stitching::{KeptSide, MergeSettings};
 use crate::tool::{
@@ -78,6 +79,8 @@ pub struct SceneView<'a> {
     pub stroke_shape: StrokeShape,
     /// True if the points of curves follow a dragged one at their distances.
     pub chain: bool,
+    /// True if a drag of the pose brush bends a limb at all its joints.
+    pub whole_limb: bool,
     /// The depth of a lasso or a box.
     pub depth: Depth,
     /// The plane across which both sides are painted at once, found or still being searched for.
@@ -90,6 +93,12 @@ pub struct SceneView<'a> {
     pub correction_brush: CorrectionBrush,
     /// The brush that pours and pushes.
     pub flow_brush: FlowBrush,
+    /// The ghosts of other moments, from the first to the last.
+    pub skins: &'a [Skin],
+    /// The selected keys.
+    pub selected_keys: &'a BTreeSet<KeyId>,
+    /// True while the animation plays.
+    pub is_animating: bool,
     /// True while the flow plays.
     pub is_playing: bool,
     /// The pressure of a pen, 0 to 1; `None` until the system reports it.

@@ -101,7 +101,7 @@ pub(crate) fn with_keys(edit: &Beginning) -> Result<&EditFile, EngineError> {
     match edit {
         Beginning::Edit(edit) => Ok(edit),
         Beginning::Project(_) => Err(EngineError::Arguments(
-            "--edit: a project has no keys: save it as an edit and give that keys".to_owned(),
+            "--edit: a project can't be animated: export its edit from the window, and give that".to_owned(),
         )),
     }
 }

@@ -36,6 +36,15 @@ impl Watch {
         }
     }
 
+    /// The same state for work that stops when `cancel` is raised.
+    #[must_use]
+    pub fn stopped_by(&self, cancel: &Cancel) -> Self {
+        Self {
+            cancel: cancel.clone(),
+            ..self.clone()
+        }
+    }
+
     /// Begins the stage `doing` ("reading", "binding"); the work reports its progress to the result.
     pub fn begin(&self, doing: &'static str) -> Progress {
         let progress = Progress::new();

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use glam::DVec2;
-use pliant_editor::{Before, Look, UpAxis};
+use pliant_editor::{Before, Look, Skins, UpAxis};
 use pliant_engine::EngineError;
 use pliant_engine::watch::Watch;
 use pliant_render::{Background, Frame, Headless, Image, Samples};
@@ -115,6 +115,8 @@ fn look(options: &StillOptions) -> Look {
         shadow: options.shadow,
         original: false,
         base: false,
+        timeline: false,
+        skins: Skins::default(),
         before: Before::Off,
     }
 }

@@ -14,4 +14,5 @@ mod mesh_changes;
 mod pose;
 mod session;
 mod slow_frames;
+mod timeline;
 mod window_rig;

@@ -287,8 +287,7 @@ fn halves(folder: &Folder) -> [PathBuf; 2] {
     [true, false].map(|left| {
         let mut half = ball.clone();
         half.triangles.retain(|corners| is_left(&corners) == left);
-        let file = folder.write_mesh(if left { "left.off" } else { "right.off" }, &used(&half));
-        file
+        folder.write_mesh(if left { "left.off" } else { "right.off" }, &used(&half))
     })
 }
 

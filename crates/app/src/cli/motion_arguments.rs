@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use pliant_engine::MORPH_TOLERANCE;
 
 use super::shared_arguments::BendingArguments;
 
@@ -22,7 +23,7 @@ pub(crate) struct AnimateArguments {
     pub report: Option<PathBuf>,
     /// The largest error of a glTF's frames, as a share of the diagonal of the shape's box: more of it takes fewer morph
     /// targets
-    #[arg(long, value_name = "SHARE", default_value = "0.00001", value_parser = error_share)]
+    #[arg(long, value_name = "SHARE", default_value_t = MORPH_TOLERANCE, value_parser = error_share)]
     pub tolerance: f64,
     /// The frames a second
     #[arg(long, value_name = "F", default_value = "24", value_parser = frame_rate)]

@@ -299,8 +299,9 @@ impl Bound {
         Ok(step)
     }
 
-    /// The next step begins at rest.
-    fn rest(&mut self) {
+    /// The next step begins at rest, whatever the last targets were. An iterative method otherwise goes on from the shape
+    /// of its last step.
+    pub fn rest(&mut self) {
         self.method.rest();
         if let Some(rigid) = &mut self.rigid {
             rigid.bound.rest();

@@ -4,6 +4,7 @@
 //! executing it with the reason if it fails, and its effect. Here each command is bound to its entry; a command without
 //! an entry does not compile.
 
+mod animation;
 mod controls;
 mod curves;
 mod document;

@@ -9,17 +9,19 @@ use pliant_deform::{Attachment, ExampleShape, Loose, Method};
 use super::entry::{Action, Entry, Reason, Scope, State};
 use super::shortcut::Shortcut;
 use super::{
-    controls, curves, document, examples, flow, handle, look, mesh, object, paint, pose, region, transform, view,
+    animation, controls, curves, document, examples, flow, handle, look, mesh, object, paint, pose, region, transform,
+    view,
 };
 use crate::document::{
-    FlowOptions, HandleId, HandleTransform, ObjectAction, Paint, PivotPlace, Reach, SmallParts, Tips,
+    FlowOptions, HandleId, HandleTransform, KeyId, ObjectAction, Paint, PivotPlace, Reach, SmallParts, Tips,
 };
+use crate::ease::Ease;
 use crate::jobs::Symmetry;
 use crate::stitching::{KeptSide, MergeSettings, MeshChange};
 use crate::tool::{
     BrushMetric, Context, CorrectionBrush, Depth, FlowBrush, Gesture, StiffnessBrush, StrokeShape, ToolMode,
 };
-use crate::view::{Before, Clay, GizmoMode, GizmoOrientation, NamedView, Orbit, Shading, UpAxis};
+use crate::view::{Before, Clay, GizmoMode, GizmoOrientation, NamedView, Orbit, Shading, Skins, UpAxis};
 use crate::workspace::{RegionAction, StiffnessChange};
 
 /// A command in the list of a menu or the palette.
@@ -47,6 +49,7 @@ fn group_of(entry: &str) -> &'static str {
         "controls" => "Cage and lattice",
         "examples" => "Examples",
         "pose" => "Poses",
+        "animation" => "Animation",
         "paint" => "Tools and brush",
         "flow" => "Flow",
         "curves" => "Curves",
@@ -166,6 +169,44 @@ commands! {
     RemovePose(place: usize) = pose::REMOVE_POSE;
     /// Begins a temporary pose for work on hidden places, or returns from it.
     WorkPose = pose::WORK_POSE;
+    /// Shows or hides the timeline.
+    ToggleTimeline = animation::TOGGLE_TIMELINE;
+    /// Shows or hides ghosts of the moments around the shown one.
+    ToggleSkins = animation::TOGGLE_SKINS;
+    /// Chooses these ghosts.
+    SetSkins(skins: Skins) = animation::SET_SKINS;
+    /// Sets a key of every handle at the shown moment.
+    KeyHere = animation::KEY_HERE;
+    /// Sets a key of the selected handles at the shown moment.
+    KeySelected = animation::KEY_SELECTED;
+    /// Sets a key at the shown moment from a pose, by its place in the list, and shows it.
+    KeyPose(place: usize) = animation::KEY_POSE;
+    /// Shows a moment, in seconds.
+    GoToTime(time: f64) = animation::GO_TO_TIME;
+    /// Shows the moment so many frames later.
+    StepFrames(frames: i32) = animation::STEP_FRAMES;
+    /// Shows the moment of the next key, or (false) of the last one before.
+    GoToKey(is_forward: bool) = animation::GO_TO_KEY;
+    /// Plays the animation over and over, or pauses.
+    PlayKeys = animation::PLAY_KEYS;
+    /// Selects these keys and no others.
+    SelectKeys(ids: Vec<KeyId>) = animation::SELECT_KEYS;
+    /// Selects every key.
+    SelectAllKeys = animation::SELECT_ALL_KEYS;
+    /// Moves the selected keys by a time in seconds; none goes below 0.
+    MoveKeys(by: f64) = animation::MOVE_KEYS;
+    /// Stretches the times of the selected keys by a factor above 0, about the first of them.
+    StretchKeys(factor: f64) = animation::STRETCH_KEYS;
+    /// Deletes the selected keys.
+    DeleteKeys = animation::DELETE_KEYS;
+    /// Copies the selected keys.
+    CopyKeys = animation::COPY_KEYS;
+    /// Pastes the copied keys, the first of them at the shown moment.
+    PasteKeys = animation::PASTE_KEYS;
+    /// Gives the selected keys another way to the next.
+    SetKeyEase(ease: Ease) = animation::SET_KEY_EASE;
+    /// Chooses the number of frames a second.
+    SetFps(fps: f64) = animation::SET_FPS;
     /// Begins or ends a comparison of the methods on the edit.
     CompareMethods = document::COMPARE_METHODS;
     /// Shows a method large during a comparison, by its number; with `None` all are small.
@@ -212,6 +253,8 @@ commands! {
     SetFlowBrush(brush: FlowBrush) = flow::SET_FLOW_BRUSH;
     /// Lets the points of curves follow a dragged one at their distances, or no longer.
     ToggleChain = curves::TOGGLE_CHAIN;
+    /// Lets a drag of the pose brush bend a limb at all its joints, or at one.
+    ToggleWholeLimb = curves::TOGGLE_WHOLE_LIMB;
     /// Adds points to the selected handle's curve: after each selected one, or between all.
     DivideCurve = curves::DIVIDE_CURVE;
     /// Removes the selected points of the selected handle's curve.

@@ -7,6 +7,7 @@ use glam::DVec3;
 use pliant_deform::{Attachment, Loose, Method};
 
 use super::access::Access;
+use super::animation::Animation;
 use super::fluid::{FlowOptions, Fluid};
 use super::handle::{Handle, HandleId};
 use super::kept_shape::KeptShape;
@@ -80,6 +81,8 @@ pub struct Content {
     pub(crate) strength: Option<Arc<Strength>>,
     /// The kept poses.
     pub(crate) poses: Arc<Vec<Pose>>,
+    /// The edit over time.
+    pub(crate) animation: Animation,
     /// The state to which the document returns from a work pose; `None` outside one.
     pub(crate) work_pose: Option<Arc<WorkPose>>,
     /// The fluid on the surface, which bends nothing.
@@ -130,6 +133,7 @@ impl Content {
             settled: true,
             strength: None,
             poses: Arc::default(),
+            animation: Animation::default(),
             work_pose: None,
             fluid: Fluid::default(),
             flow_options: FlowOptions::default(),

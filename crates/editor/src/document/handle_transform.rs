@@ -186,6 +186,24 @@ impl SplitTransform {
         };
         about(self.pivot, linear, self.translation)
     }
+
+    /// The same map as a handle's transform about its pivot.
+    pub(crate) fn about(&self, pivot: DVec3) -> HandleTransform {
+        let scale = DVec3::new(self.stretch.x_axis.x, self.stretch.y_axis.y, self.stretch.z_axis.z);
+        if self.stretch != DMat3::from_diagonal(scale) {
+            return HandleTransform::Matrix(self.affine());
+        }
+        let is_about_pivot = self.pivot == pivot;
+        HandleTransform::Trs {
+            translation: match is_about_pivot {
+                true => self.translation,
+                false => self.affine().transform_point3(pivot) - pivot,
+            },
+            rotation: self.rotation,
+            scale,
+            pivot: None,
+        }
+    }
 }
 
 impl Default for HandleTransform {

@@ -15,6 +15,7 @@ use pliant_deform::{Attachment, ExampleShape, Loose, Method};
 use pliant_mesh::Model;
 
 use super::access::Access;
+use super::animation::Animation;
 use super::content::{Content, Paint, Tips, WorkPose};
 use super::fluid::{FlowOptions, Fluid};
 use super::handle::{Handle, HandleId};
@@ -60,6 +61,8 @@ pub(crate) enum Change {
     Strength(Option<Arc<Strength>>),
     /// The kept poses.
     Poses(Arc<Vec<Pose>>),
+    /// The edit over time.
+    Animation(Animation),
     /// The state to which a work pose returns.
     WorkPose(Option<Arc<WorkPose>>),
     /// The fluid on the surface.
@@ -140,6 +143,7 @@ impl Step {
                     let of_pose = |pose| size_of::<Pose>() + of_handles(pose) + of_points(pose) * size_of::<DVec3>();
                     poses.iter().map(of_pose).sum()
                 }
+                Change::Animation(animation) => size_of::<Change>() + animation.bytes(),
                 Change::WorkPose(Some(work)) => {
                     // Its content shares the long vectors with the document until these change.
                     let corrected = work.corrected.as_ref().map_or(0, |corrected| corrected.len());
@@ -409,6 +413,7 @@ fn swap(change: &mut Change, document: &mut Document, strength: &mut Option<Arc<
         Change::Kept(kept) => document.swap_kept(kept),
         Change::Settled(settled) => document.swap_settled(settled),
         Change::Poses(poses) => document.swap_poses(poses),
+        Change::Animation(animation) => document.swap_animation(animation),
         Change::WorkPose(work) => document.swap_work_pose(work),
         Change::Fluid(fluid) => document.swap_fluid(fluid),
         Change::FlowOptions(options) => document.swap_flow_options(options),

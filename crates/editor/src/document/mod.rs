@@ -1,6 +1,7 @@
 //! The document and its undo: paint, handles, options, and the resulting shape.
 
 mod access;
+mod animation;
 mod content;
 mod fluid;
 mod handle;
@@ -28,6 +29,7 @@ mod version;
 mod vertex_access;
 
 pub use access::{Access, ObjectAction, SmallParts, object_name};
+pub use animation::{Animation, KeyFrame, KeyId};
 pub use content::sum_of_shapes;
 pub use content::{Content, Paint, Tips};
 pub use fluid::{Dye, FlowOptions, Fluid};

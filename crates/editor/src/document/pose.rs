@@ -126,7 +126,7 @@ impl Placed {
     }
 
     /// The same position relative to the rest shape that `made` has made of the former one.
-    fn rebased(self, made: DAffine3, pivot: DVec3) -> Self {
+    pub(super) fn rebased(self, made: DAffine3, pivot: DVec3) -> Self {
         let map = self.stance.transform.affine(self.pivot) * made.inverse();
         if !map.is_finite() {
             return self;

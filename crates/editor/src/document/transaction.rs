@@ -123,6 +123,9 @@ fn differences(before: &Document, after: &Document) -> Vec<Change> {
     if !Arc::ptr_eq(&before.poses, &after.poses) && before.poses != after.poses {
         changes.push(Change::Poses(Arc::clone(&before.poses)));
     }
+    if before.animation != after.animation {
+        changes.push(Change::Animation(before.animation.clone()));
+    }
     let same_work_pose = match (&before.work_pose, &after.work_pose) {
         (Some(before), Some(after)) => Arc::ptr_eq(before, after),
         (None, None) => true,

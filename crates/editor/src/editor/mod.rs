@@ -141,6 +141,7 @@ impl Editor {
                     self.gesture = None;
                 }
             }
+            Event::Tick => self.workspace.tick(),
             Event::JobDone(done) => self.job_done(done),
             Event::Opened { model, name, beginning } => self.open(model, name, beginning),
             Event::Stitched(result) => {
@@ -160,7 +161,12 @@ impl Editor {
     fn conclude(&mut self) {
         self.follow_mesh();
         let gesture = self.gesture.as_deref();
-        let activity = gesture.map_or(Activity::Still, Gesture::activity);
+        let activity = match gesture.map(Gesture::activity) {
+            // Nothing prepares for the pointer between two frames.
+            None | Some(Activity::Still) if self.workspace.keys.is_playing() => Activity::Dragging,
+            None => Activity::Still,
+            Some(activity) => activity,
+        };
         let by = match self.settings.mode {
             ToolMode::PaintStiffness => ColouredBy::Stiffness,
             ToolMode::Flow => ColouredBy::Dye,
@@ -178,10 +184,11 @@ impl Editor {
         if !is_posing {
             self.workspace.jobs.forget_joint();
         } else if gesture.is_none() {
-            hover(&mut self.workspace, &self.view, hovering_px);
+            hover(&mut self.workspace, &self.view, hovering_px, self.settings.whole_limb);
         }
         tint(&mut self.workspace, &self.view, hovering_px);
         self.workspace.follow_flow(gesture.is_none());
+        self.workspace.follow_skins(&self.view.look, activity);
         self.workspace.conclude(activity, by, asked);
         if !gesture.is_some_and(Gesture::moves_camera) {
             self.view.rest();
@@ -258,7 +265,9 @@ impl Editor {
         if is_taken {
             return;
         }
-        if key == Key::Escape {
+        if key == Key::Escape && self.workspace.keys.is_playing() {
+            self.workspace.pause_keys();
+        } else if key == Key::Escape {
             // The most recent mode ends first: one that waits for a click, then the comparison.
             let waits = self.settings.waits_for_press() || self.workspace.selection.wants_new_handle;
             if !waits {
@@ -406,6 +415,9 @@ impl Editor {
             workspace.open(model, name, document);
             workspace.refusal = refusal;
         });
+        if !self.workspace.document.animation().keys().is_empty() {
+            self.view.look.timeline = true;
+        }
         if matches!(beginning, Some(Beginning::Project(_))) {
             self.workspace.history.needs(SavedAs::Project);
         }

@@ -4,7 +4,6 @@ use glam::DVec3;
 use pliant_mesh::{Model, WeldOptions};
 
 use super::json::parse;
-use super::one_shape::refuse_keys;
 use super::project::StoredKept;
 use crate::document::Document;
 use crate::{Camera, EditError, EditFile, ExampleEntry, Project, Setup};
@@ -109,10 +108,7 @@ impl Beginning {
 
     pub(crate) fn document(&self, model: &Model) -> Result<Document, EditError> {
         match self {
-            Self::Edit(edit) => {
-                refuse_keys(edit, "use `pliant animate` or `pliant sequence`, or remove them")?;
-                super::exchange::import(edit, model)
-            }
+            Self::Edit(edit) => super::exchange::import(edit, model),
             Self::Project(project) => project.document(model),
         }
     }

@@ -68,8 +68,7 @@ pub struct EditFile {
     /// The share of the edit that is made, in 0 to 1: handles, control points and weights that bend the surface move by
     /// this share ([`HandleTransform::part`]).
     pub strength: f64,
-    /// Transforms of handles at times, for animations ([`EditFile::timeline`]); the window and a single bent file have
-    /// no use for them.
+    /// Transforms of handles at times, for animations ([`EditFile::timeline`]); a single bent file has no use for them.
     pub keys: Vec<KeyEntry>,
     /// Filters of handles' trajectories, for sequences ([`EditFile::sequence_timeline`]).
     pub filter: Vec<FilterEntry>,

@@ -7,7 +7,9 @@ use pliant_deform::{Attachment, CONTINUITY_RANGE, Role};
 use pliant_mesh::Model;
 
 use super::attachment::AttachmentEntry;
+use super::document_keys;
 use super::examples::entries_of;
+use super::pivoted::{with_pivot, without_pivot};
 use super::project::StoredKept;
 use super::selector::ranges_of;
 use crate::document::{Content, Document, Handle, HandleId, HandleLine, Paint, PivotPlace, Reach, followed};
@@ -43,9 +45,15 @@ pub(crate) fn export(document: &Document, model: &Arc<Model>) -> Result<EditFile
     if document.applied {
         return Err(ExportError::Applied);
     }
-    let kept = document.to_go_on_from();
+    let is_keyed = !document.animation().keys().is_empty();
+    // Frames of an animation don't begin at the shape of one of them.
+    let kept = match is_keyed {
+        true => document.kept.clone(),
+        false => document.to_go_on_from(),
+    };
     // An edit counts no full turns: values that depend on them are written as shown.
-    let in_full = Some(document.in_full()).filter(Document::goes_the_short_way);
+    // Keys have no full values.
+    let in_full = Some(document.in_full()).filter(|document| !is_keyed && document.goes_the_short_way());
     let strength = if in_full.is_some() { document.strength() } else { 1.0 };
     let document = in_full.as_ref().unwrap_or(document);
     let region = Region::measure(
@@ -122,7 +130,7 @@ pub(crate) fn export(document: &Document, model: &Arc<Model>) -> Result<EditFile
             stored.by(&document.method)
         }),
         strength,
-        keys: Vec::new(),
+        keys: document_keys::entries(document, &region.handles),
         filter: Vec::new(),
         footprints: Vec::new(),
         weld: model.weld.distance,
@@ -186,13 +194,16 @@ pub(crate) fn import(edit: &EditFile, model: &Model) -> Result<Document, EditErr
         .then(|| Arc::new(setup.stiffness.clone()));
     let continuity = edit.painted_continuity(model)?;
     document.continuity = (!continuity.is_empty()).then(|| Arc::new(continuity));
-    document.loose_parts = Arc::new(setup.loose_parts.into_iter().collect());
-    document.inside_out = Arc::new(setup.inside_out);
-    document.method = setup.method;
-    document.attachments = Arc::new(setup.attachments.into_iter().collect());
+    document.loose_parts = Arc::new(setup.loose_parts.iter().copied().collect());
+    document.inside_out = Arc::new(setup.inside_out.clone());
+    document.method = setup.method.clone();
+    document.attachments = Arc::new(setup.attachments.iter().cloned().collect());
     document.loose = setup.loose;
     let mut document = Document::from(document);
     document.take_part(edit.strength);
+    if !(edit.keys.is_empty() && edit.filter.is_empty() && edit.footprints.is_empty()) {
+        document_keys::take_keys(&mut document, edit, &setup)?;
+    }
     if let Some(kept) = edit.kept.as_ref().and_then(|kept| kept.taken_by(&edit.method)) {
         document.go_on_from(kept.on(model, "kept")?);
     }
@@ -200,32 +211,4 @@ pub(crate) fn import(edit: &EditFile, model: &Model) -> Result<Document, EditErr
         document.unsettle();
     }
     Ok(document)
-}
-
-/// The transform without its own pivot, which the handle has within a document.
-pub(crate) fn without_pivot(transform: HandleTransform) -> HandleTransform {
-    pivoted(transform, None)
-}
-
-/// The handle's transform with the handle's pivot.
-pub(crate) fn with_pivot(handle: &Handle) -> HandleTransform {
-    pivoted(handle.transform, Some(handle.pivot))
-}
-
-/// A matrix has no pivot and does not change.
-fn pivoted(transform: HandleTransform, pivot: Option<DVec3>) -> HandleTransform {
-    match transform {
-        HandleTransform::Trs {
-            translation,
-            rotation,
-            scale,
-            ..
-        } => HandleTransform::Trs {
-            translation,
-            rotation,
-            scale,
-            pivot,
-        },
-        HandleTransform::Matrix(_) => transform,
-    }
 }

@@ -4,10 +4,19 @@ use super::edit_error::{EditError, remedy};
 use super::edit_file::EditFile;
 use super::keys::KeyEntry;
 use super::setup::Setup;
+use crate::HandleTransform;
 use crate::bending::Targets;
 use crate::document::SplitTransform;
+use crate::ease::Ease;
 use crate::timeline::{Key, Timeline, Track};
 use crate::warning::shortened;
+
+/// A key of an edit: its time in seconds, the way to the next, and transforms by the handles' places in the list.
+pub(super) struct TimedKey {
+    pub(super) time: f64,
+    pub(super) ease: Ease,
+    pub(super) handles: Vec<(usize, HandleTransform)>,
+}
 
 impl EditFile {
     /// The motions of its handles on the model of `setup`, on which it was resolved.
@@ -21,6 +30,27 @@ impl EditFile {
                 place: "the edit".to_owned(),
             });
         }
+        let keys = self.timed_keys()?;
+        let mut of_handle: Vec<Vec<Key>> = vec![Vec::new(); self.handles.len()];
+        for key in &keys {
+            for (handle, transform) in &key.handles {
+                let pivot = setup.handles[*handle].pivot;
+                of_handle[*handle].push(Key {
+                    time: key.time,
+                    ease: key.ease,
+                    transform: SplitTransform::of(&transform.part(self.strength, pivot), pivot),
+                });
+            }
+        }
+        let duration = keys.last().map_or(0.0, |key| key.time);
+        Ok(Timeline::new(of_handle.into_iter().map(Track::new).collect(), duration))
+    }
+
+    /// Its keys, by time.
+    ///
+    /// # Errors
+    /// Members that are for sequences, a name that no handle has, a name that two handles have.
+    pub(super) fn timed_keys(&self) -> Result<Vec<TimedKey>, EditError> {
         let others = [
             ("filter", self.filter.is_empty()),
             ("footprints", self.footprints.is_empty()),
@@ -32,32 +62,28 @@ impl EditFile {
             });
         }
         let names: Vec<&str> = self.handles.iter().map(|handle| &*handle.name).collect();
-        let timed = |(place, key): (usize, &'_ KeyEntry)| match key.time {
-            Some(time) => Ok((place, time)),
-            None => Err(EditError::Other {
-                place: format!("keys[{place}]"),
-                sentence: "has the `frame` of a sequence, not a `time`: use `pliant sequence`, or give it a time"
-                    .to_owned(),
-            }),
-        };
-        let timed: Result<Vec<(usize, f64)>, EditError> = self.keys.iter().enumerate().map(timed).collect();
-        let mut keys = timed?;
-        keys.sort_by(|(_, a), (_, b)| a.total_cmp(b));
-        let mut of_handle: Vec<Vec<Key>> = vec![Vec::new(); names.len()];
-        for &(place, time) in &keys {
-            let key = &self.keys[place];
-            for (name, transform) in &key.handles {
-                let handle = handle_of(name, &names).map_err(|error| error.under(&format!("keys[{place}].handles")))?;
-                let pivot = setup.handles[handle].pivot;
-                of_handle[handle].push(Key {
-                    time,
-                    ease: key.ease,
-                    transform: SplitTransform::of(&transform.part(self.strength, pivot), pivot),
+        let timed = |(place, key): (usize, &KeyEntry)| {
+            let Some(time) = key.time else {
+                return Err(EditError::Other {
+                    place: format!("keys[{place}]"),
+                    sentence: "has the `frame` of a sequence, not a `time`: use `pliant sequence`, or give it a time"
+                        .to_owned(),
                 });
-            }
-        }
-        let duration = keys.last().map_or(0.0, |(_, time)| *time);
-        Ok(Timeline::new(of_handle.into_iter().map(Track::new).collect(), duration))
+            };
+            let named = key.handles.iter().map(|(name, transform)| {
+                let handle = handle_of(name, &names).map_err(|error| error.under(&format!("keys[{place}].handles")))?;
+                Ok((handle, *transform))
+            });
+            Ok(TimedKey {
+                time,
+                ease: key.ease,
+                handles: named.collect::<Result<_, EditError>>()?,
+            })
+        };
+        let timed: Result<Vec<TimedKey>, EditError> = self.keys.iter().enumerate().map(timed).collect();
+        let mut keys = timed?;
+        keys.sort_by(|a, b| a.time.total_cmp(&b.time));
+        Ok(keys)
     }
 }
 

@@ -6,7 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use super::edit_error::EditError;
 use crate::HandleTransform;
-use crate::timeline::{Ease, KeySpace};
+use crate::ease::Ease;
+use crate::timeline::KeySpace;
 
 /// The transforms of some handles at a time, or at a frame of a sequence.
 #[derive(Clone, PartialEq, Debug, Default, Serialize, Deserialize)]

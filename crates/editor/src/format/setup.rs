@@ -10,7 +10,7 @@ use pliant_mesh::{Bvh, Model, Surface, SurfaceVertex, triangles_under};
 use super::attachment::on_model;
 use super::edit_error::EditError;
 use super::edit_file::{EditFile, HandleEntry};
-use super::exchange::with_pivot;
+use super::pivoted::with_pivot;
 use super::pose::Limbs;
 use super::selector::Selector;
 use crate::bending::{Kept, Targets};

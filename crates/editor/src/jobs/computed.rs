@@ -11,6 +11,7 @@ use super::inspected::Inspectable;
 use super::intersections::Intersections;
 use super::table::Slots;
 use crate::bending::Carried;
+use crate::document::{Aspect, Document, Version};
 use crate::pickable::{Pickable, ShownTriangles};
 use crate::region::{FileContacts, Region};
 use crate::revision::Revision;
@@ -34,6 +35,8 @@ pub(crate) struct Computed {
     pub(super) newer_targets: Cancel,
     /// The state from which a solve with a kept shape continues, with this factorisation.
     pub(super) carried: Option<Carried>,
+    /// The version of the targets whose solve begins anew: where every frame of an animation begins.
+    pub(super) anew: Option<Version>,
     /// Warnings about the targets of the last solve.
     pub(super) blind_to: Vec<HandleWarning>,
     /// The examples' weights that the last solve used or found.
@@ -52,6 +55,7 @@ impl Default for Computed {
             controls_revision: Revision(0),
             newer_targets: Cancel::new(),
             carried: None,
+            anew: None,
             blind_to: Vec::new(),
             example_weights: Vec::new(),
         }
@@ -59,6 +63,11 @@ impl Default for Computed {
 }
 
 impl Computed {
+    /// Whether the solve for the document's targets begins anew.
+    pub(super) fn solves_anew(&self, document: &Document) -> bool {
+        self.anew == Some(document.versions().of(Aspect::Targets))
+    }
+
     /// The ordering for a power of the Laplacian, if it was made.
     pub(super) fn ordering(&self, power: u32) -> Option<Arc<Ordering>> {
         let mut orderings = self.orderings.iter();
@@ -93,7 +102,13 @@ impl Computed {
 
     /// The last joint that was found.
     pub(crate) fn joint(&self) -> Option<&Arc<Joint>> {
-        self.slots.joint.last()?.as_ref()
+        self.slots.joint.last()?.as_ref().map(|limb| &limb.joint)
+    }
+
+    /// The joints between that and the limb's tip, if they were asked for.
+    pub(crate) fn inner_joints(&self) -> &[Arc<Joint>] {
+        let limb = self.slots.joint.last().and_then(Option::as_ref);
+        limb.map_or(&[], |limb| &limb.inner)
     }
 
     /// The places where the present shape passes through itself; `None` before the search.

@@ -3,14 +3,16 @@
 
 use std::sync::Arc;
 
+use crate::region::FoundLimb;
 use glam::DVec3;
-use pliant_mesh::Joint;
 
 use super::comparison::Comparison;
 use super::flowed::{FlowRequest, flow_work};
 use super::inspected::Asked;
 use super::inspection::inspect_work;
 use super::scheduler::Jobs;
+use super::skinned::Skin;
+use super::skins::{SkinSource, skins_work};
 use super::slot::{Slot, Work};
 use super::table::Slots;
 use super::work::intersect_work;
@@ -31,9 +33,9 @@ impl Jobs {
     }
 
     /// The candidate of the joint that is wanted, if the joint under a triangle of the present shape has not been
-    /// requested yet.
-    pub(crate) fn asks_for_joint(&self, triangle: u32) -> Option<i32> {
-        let wanted = (self.shape_revision(), triangle, self.joint_up);
+    /// requested yet; `is_chain` if all joints of the limb are wanted.
+    pub(crate) fn asks_for_joint(&self, triangle: u32, is_chain: bool) -> Option<i32> {
+        let wanted = (self.shape_revision(), triangle, self.joint_up, is_chain);
         (self.joint_asked != Some(wanted)).then_some(self.joint_up)
     }
 
@@ -45,12 +47,15 @@ impl Jobs {
 
     /// Requests the joint under a triangle of the present shape. The running search continues, so that a steadily
     /// moving pointer still shows joints; the newest request waits.
-    pub(crate) fn look_for_joint(&mut self, triangle: u32, work: Work<Option<Arc<Joint>>>) {
+    pub(crate) fn look_for_joint(&mut self, triangle: u32, is_chain: bool, work: Work<Option<FoundLimb>>) {
         let shape = self.shape_revision();
-        if self.joint_asked.is_some_and(|(asked, ..)| asked != shape) {
+        if self
+            .joint_asked
+            .is_some_and(|(asked, .., chain)| (asked, chain) != (shape, is_chain))
+        {
             self.forget_joint();
         }
-        self.joint_asked = Some((shape, triangle, self.joint_up));
+        self.joint_asked = Some((shape, triangle, self.joint_up, is_chain));
         let revision = self.next_revision();
         self.computed.slots.joint.follow(revision);
         self.computed.slots.joint.request(work);
@@ -70,6 +75,37 @@ impl Jobs {
         let (revision, allowance) = (self.next_revision(), self.allowance);
         self.computed.slots.flow.follow(revision);
         self.computed.slots.flow.request(flow_work(request, allowance));
+    }
+
+    /// Requests the shapes of these moments around the shown one, each with its place and its time in seconds, unless they are known or under way. The running job
+    /// continues, so that they follow a drag; the newest request waits.
+    pub(crate) fn follow_skins(&mut self, moments: Vec<(i8, f64)>, document: &Document) {
+        if !self.is_bound() {
+            return;
+        }
+        let source = SkinSource::of(moments, document, self.computed.slots.bind.made());
+        if self.skin_source.as_ref() == Some(&source) {
+            return;
+        }
+        if let Some(work) = skins_work(&self.computed, document, source.moments(), self.allowance) {
+            self.skin_source = Some(source);
+            let revision = self.next_revision();
+            self.computed.slots.skins.follow(revision);
+            self.computed.slots.skins.request(work);
+        }
+    }
+
+    /// The shapes of other moments are no longer wanted.
+    pub(crate) fn forget_skins(&mut self) {
+        if self.skin_source.take().is_some() {
+            self.stop_asking(|slots| &mut slots.skins);
+            self.computed.slots.skins.take();
+        }
+    }
+
+    /// The shapes of other moments that were solved last.
+    pub(crate) fn skins(&self) -> &[Skin] {
+        self.computed.slots.skins.last().map_or(&[], |skinned| &skinned.skins)
     }
 
     /// The time in milliseconds since some moment, for the speed of a stroke; constant in an executor that does not

@@ -14,12 +14,13 @@ use super::comparison::Comparison;
 use super::computed::Computed;
 use super::inspected::Asked;
 use super::ordering::{order_work, serves};
+use super::skins::SkinSource;
 use super::slot::{Ended, Scheduled, Slot, Unfinished, Work};
 use super::solved::{ControlPlaces, SolveResult, Solved};
 use super::solving::{controls_work, solve_work};
 use super::table::{Executor, JobDone, JobKind, Slots};
 use super::work::{bind_work, pick_work, region_work};
-use crate::document::Document;
+use crate::document::{Document, Version};
 use crate::pickable::ShownTriangles;
 use crate::region::{Region, region_input};
 use crate::revision::Revision;
@@ -45,10 +46,14 @@ pub(crate) struct Jobs {
     pub(crate) comparison: Option<Comparison>,
     /// A different number for every measured region.
     pub(crate) roles_revision: Revision,
-    /// The shape, the triangle and the candidate of the last request for a joint.
-    pub(super) joint_asked: Option<(Revision, u32, i32)>,
+    /// The shape, the triangle, the candidate and the extent (all joints of the limb?) of the last request for a joint.
+    pub(super) joint_asked: Option<(Revision, u32, i32, bool)>,
     /// The candidate that is wanted, from the guess towards the body.
     pub(super) joint_up: i32,
+    /// True if the last requested solve begins anew.
+    solves_anew: bool,
+    /// The sources of the requested shapes of other moments.
+    pub(super) skin_source: Option<SkinSource>,
     /// The inspection job: its binding, and its targets if it depends on them, from its request on.
     pub(super) inspection: (Revision, Asked, Revision),
 }
@@ -85,6 +90,8 @@ impl Jobs {
             roles_revision: Revision(0),
             joint_asked: None,
             joint_up: 0,
+            solves_anew: false,
+            skin_source: None,
             inspection: (Revision(0), Asked::default(), Revision(0)),
         }
     }
@@ -100,6 +107,7 @@ impl Jobs {
         self.comparison = None;
         self.joint_asked = None;
         self.joint_up = 0;
+        self.skin_source = None;
         let mut slots = std::mem::take(&mut self.computed.slots);
         slots.reset(self.next_revision());
         self.computed = Computed {
@@ -148,9 +156,19 @@ impl Jobs {
     /// The handles' transforms have changed.
     pub(crate) fn targets_changed(&mut self) {
         let revision = self.next_revision();
-        self.computed.slots.solve.follow(revision);
+        // A solve that begins anew goes on to its end, for which newer targets don't wait.
+        match std::mem::take(&mut self.solves_anew) {
+            true => self.computed.slots.solve.renew(revision),
+            false => self.computed.slots.solve.follow(revision),
+        }
         self.computed.newer_targets.cancel();
         self.computed.newer_targets = Cancel::new();
+    }
+
+    /// The solve for this version of the targets begins where every frame of an animation begins, and goes on to its
+    /// end.
+    pub(crate) fn solve_anew(&mut self, targets: Version) {
+        self.computed.anew = Some(targets);
     }
 
     /// Restricts rays to these triangles.
@@ -277,6 +295,7 @@ impl Jobs {
             }
             if self.is_bound() && !document.settled {
                 self.want(|slots| &mut slots.solve, |computed| solve_work(computed, document));
+                self.solves_anew = self.computed.solves_anew(document);
             } else if self.is_bound() && self.are_controls_behind() {
                 self.want(|slots| &mut slots.solve, |computed| controls_work(computed, document));
             }

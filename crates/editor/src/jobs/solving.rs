@@ -19,8 +19,12 @@ pub(super) fn solve_work(computed: &Computed, document: &Document) -> Option<Wor
     let (binding, model) = (computed.slots.bind.last()?, computed.model.clone()?);
     let (bound, lines) = (Arc::clone(&binding.bound), binding.lines.clone());
     let (handles, carried) = (&computed.region.handles, computed.carried.as_ref());
+    let carried = carried.filter(|_| !computed.solves_anew(document));
     let wanted = Wanted::of(document, &document.method, handles, &document.from_rest, carried)?;
-    let wanted = wanted.along(&lines, document);
+    let wanted = match computed.solves_anew(document) {
+        true => wanted.along(&lines, document).anew(),
+        false => wanted.along(&lines, document),
+    };
     let newer_targets = computed.newer_targets.clone();
     Some(Box::new(move |_, cancel| {
         cancel.check()?;
@@ -62,6 +66,8 @@ pub(super) struct Wanted {
     handles: Vec<HandleId>,
     targets: Targets,
     start: Start,
+    /// True if it is independent of earlier solves, and goes on to its end.
+    is_anew: bool,
     /// The rest shape, if it is not the file's.
     rest: Option<Arc<Vec<DVec3>>>,
 }
@@ -80,6 +86,7 @@ impl Wanted {
             handles: handles.to_vec(),
             targets: targets(document, method, handles)?,
             start: start(document, handles, from_rest, carried)?,
+            is_anew: false,
             rest: document.applied.then(|| Arc::clone(&document.rest)),
         })
     }
@@ -94,9 +101,25 @@ impl Wanted {
         }
     }
 
-    /// Takes steps until the shape is worth showing.
+    /// The same from where every frame of an animation begins, the rest shape or the kept one, to the end.
+    pub(super) fn anew(self) -> Self {
+        let start = match self.start {
+            Start::Shape(shape) => Start::Shape(Arc::new(vec![DVec3::ZERO; shape.len()])),
+            kept => kept,
+        };
+        Self {
+            start,
+            is_anew: true,
+            ..self
+        }
+    }
+
+    /// Takes steps until the shape is worth showing, or to the end.
     pub(super) fn solve(self, bound: &mut Bound, cancel: &Cancel) -> Result<Solved, SolveError> {
-        let bent = self.start.bend(bound, &self.targets, Until::Frame, cancel)?;
+        let bent = match self.is_anew {
+            true => self.start.bend_anew(bound, &self.targets, cancel)?,
+            false => self.start.bend(bound, &self.targets, Until::Frame, cancel)?,
+        };
         let step = bent.step;
         Ok(Solved {
             jacobians: None,

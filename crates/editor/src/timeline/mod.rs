@@ -3,12 +3,13 @@
 mod filter;
 mod interpolation;
 mod motion;
+mod posed;
 mod span;
 mod track;
 
 pub(crate) use self::filter::quick_motions;
 pub use self::motion::Timeline;
+pub(crate) use self::posed::poses_at;
 pub use self::span::{HandlePlace, KeySpace, SequenceTimeline};
 pub(crate) use self::span::{Span, SpanKey};
-pub use self::track::Ease;
 pub(crate) use self::track::{Key, Track};

@@ -28,7 +28,7 @@ impl Timeline {
         let tracks = self.tracks.iter();
         tracks
             .zip(own)
-            .map(|(track, own)| track.at(time).unwrap_or(own))
+            .map(|(track, own)| track.at(time).map_or(own, |transform| transform.affine()))
             .collect()
     }
 }

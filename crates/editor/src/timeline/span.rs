@@ -12,8 +12,8 @@ use pliant_deform::RigidMotion;
 use serde::{Deserialize, Serialize};
 
 use super::interpolation::between;
-use super::track::Ease;
 use crate::document::SplitTransform;
+use crate::ease::Ease;
 
 /// The axes in which a key's transform stays the same from frame to frame. Its pivot always rides along with the handle.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Serialize, Deserialize)]

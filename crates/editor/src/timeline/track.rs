@@ -4,24 +4,11 @@
 //! quaternion curve with the same idea: both pass through their keys and have continuous velocities at evenly spaced
 //! keys.
 
-use glam::{DAffine3, DMat3, DQuat, DVec3};
-use serde::{Deserialize, Serialize};
+use glam::{DMat3, DQuat, DVec3};
 
 use super::interpolation::between;
 use crate::document::SplitTransform;
-
-/// The way from a key to the next.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase", expecting = "\"hold\", \"linear\" or \"smooth\"")]
-pub enum Ease {
-    /// The handle stays until the next key.
-    Hold,
-    /// At constant speed.
-    Linear,
-    /// Along a smooth curve through the keys.
-    #[default]
-    Smooth,
-}
+use crate::ease::Ease;
 
 /// A handle's transform at a time.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -54,22 +41,21 @@ impl Track {
     }
 
     /// The transform at a time; the first one before all keys, the last one after them. `None` without keys.
-    pub(crate) fn at(&self, time: f64) -> Option<DAffine3> {
+    pub(crate) fn at(&self, time: f64) -> Option<SplitTransform> {
         let next = self.keys.partition_point(|key| key.time <= time);
         let Some(place) = next.checked_sub(1) else {
-            return self.keys.first().map(|key| key.transform.affine());
+            return self.keys.first().map(|key| key.transform);
         };
         let key = self.keys[place];
         let Some(following) = self.keys.get(next).filter(|_| key.time < time) else {
-            return Some(key.transform.affine());
+            return Some(key.transform);
         };
         let share = (time - key.time) / (following.time - key.time);
-        let transform = match key.ease {
+        Some(match key.ease {
             Ease::Hold => key.transform,
             Ease::Linear => between(&key.transform, &following.transform, share),
             Ease::Smooth => self.smooth(place, share),
-        };
-        Some(transform.affine())
+        })
     }
 
     /// The transform at a share of the way from a key to the next, along the curve through all keys.
@@ -100,7 +86,7 @@ impl Track {
     /// The rates of change at a key, per second: those of the parabola through it and its neighbours; zero at an end.
     fn rates(&self, place: usize) -> Rates {
         let Some((before, after)) = place.checked_sub(1).zip(self.keys.get(place + 1)) else {
-            return Rates::default();
+            return Rates::ZERO;
         };
         let (before, key) = (&self.keys[before], &self.keys[place]);
         let (first, second) = (key.time - before.time, after.time - key.time);
@@ -130,11 +116,19 @@ impl Track {
 }
 
 /// The rates of change of a transform's vectors, per second.
-#[derive(Default)]
 struct Rates {
     pivot: DVec3,
     translation: DVec3,
     stretch: DMat3,
+}
+
+impl Rates {
+    /// At rest.
+    const ZERO: Self = Self {
+        pivot: DVec3::ZERO,
+        translation: DVec3::ZERO,
+        stretch: DMat3::ZERO,
+    };
 }
 
 /// The values of the cubic Hermite polynomials: of both ends, and of the rates at both ends.
@@ -158,6 +152,8 @@ fn squad([from, to]: [DQuat; 2], [inner_from, inner_to]: [DQuat; 2], share: f64)
 #[allow(clippy::unwrap_used, reason = "a test that can't go on fails")]
 mod tests {
     use std::f64::consts::PI;
+
+    use glam::DAffine3;
 
     use super::*;
 
@@ -197,7 +193,7 @@ mod tests {
             for key in &track.keys {
                 let exact = key.transform.affine();
                 assert!(
-                    apart(track.at(key.time).unwrap(), exact) < 1e-12,
+                    apart(track.at(key.time).unwrap().affine(), exact) < 1e-12,
                     "{ease:?} at {}",
                     key.time
                 );
@@ -212,7 +208,13 @@ mod tests {
     fn a_held_handle_stays_and_a_linear_one_has_constant_speed() {
         let (held, linear) = (track(Ease::Hold), track(Ease::Linear));
         assert_eq!(held.at(1.999), held.at(1.0));
-        let place = |time: f64| linear.at(time).unwrap().transform_point3(DVec3::new(1.0, 0.0, 0.0));
+        let place = |time: f64| {
+            linear
+                .at(time)
+                .unwrap()
+                .affine()
+                .transform_point3(DVec3::new(1.0, 0.0, 0.0))
+        };
         let steps: Vec<DVec3> = (0..10)
             .map(|step| place(0.1 * f64::from(step + 1)) - place(0.1 * f64::from(step)))
             .collect();
@@ -222,7 +224,7 @@ mod tests {
     #[test]
     fn a_smooth_handle_has_no_kink_and_no_turn_takes_the_long_way() {
         let track = track(Ease::Smooth);
-        let at = |time: f64| track.at(time).unwrap();
+        let at = |time: f64| track.at(time).unwrap().affine();
         let small = 1e-4;
         for time in [1.0, 2.0] {
             let (before, after) = (apart(at(time - small), at(time)), apart(at(time), at(time + small)));
@@ -241,6 +243,22 @@ mod tests {
         };
         // From 162 to -90 degrees the short way goes through 180.
         assert!(turn(1.5).abs() > 0.9 * PI, "{}", turn(1.5));
+    }
+
+    #[test]
+    fn between_keys_without_scale_no_length_changes() {
+        for ease in [Ease::Hold, Ease::Linear, Ease::Smooth] {
+            let mut keys = track(ease).keys;
+            keys.iter_mut().for_each(|key| key.transform.stretch = DMat3::IDENTITY);
+            let track = Track::new(keys);
+            for step in 0..=30 {
+                let map = track.at(0.1 * f64::from(step)).unwrap().affine();
+                for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
+                    let length = map.transform_vector3(axis).length();
+                    assert!((length - 1.0).abs() < 1e-12, "{ease:?}, step {step}: {length}");
+                }
+            }
+        }
     }
 
     /// The rotation of a map whose columns are orthogonal.

@@ -4,6 +4,7 @@
 //! highlighted, and a press grabs it.
 
 use glam::{DVec2, DVec3};
+use pliant_mesh::Joint;
 
 use super::brush::ring;
 use super::hidden_points::HiddenPoints;
@@ -204,7 +205,8 @@ fn joint(
     settings: &ToolSettings,
     pointer_px: Option<DVec2>,
 ) -> Vec<ControlShape> {
-    let shapes = |centre, joint| joint_shapes(centre, joint, view.camera(), view.viewport_px());
+    let shapes =
+        |centre, joint: Option<(&Joint, DVec3)>| joint_shapes(centre, joint, view.camera(), view.viewport_px());
     let of_handle = |id| {
         let handle = workspace.document.handle(id);
         handle.map_or_else(Vec::new, |handle| shapes(handle.centre(), None))
@@ -217,7 +219,15 @@ fn joint(
         .filter(|_| is_hovering)
         .and_then(|px| workspace.pick(view, px));
     match pick.map(|pick| limb_under(workspace, &pick)) {
-        Some(Limb::Untouched(limb)) => shapes(limb.joint.centre, Some(&*limb.joint)),
+        Some(Limb::Untouched(limb)) => {
+            let joints = std::iter::once(&limb.joint).chain(workspace.computed().inner_joints());
+            let joints: Vec<_> = joints.collect();
+            let ends = joints[1..].iter().map(|next| next.centre).chain([limb.joint.tip]);
+            let bones = joints.iter().zip(ends);
+            bones
+                .flat_map(|(joint, end)| shapes(joint.centre, Some((joint, end))))
+                .collect()
+        }
         Some(Limb::Posed(id)) => of_handle(id),
         Some(Limb::Unknown | Limb::None) | None => Vec::new(),
     }

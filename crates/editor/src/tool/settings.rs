@@ -30,6 +30,8 @@ pub(crate) struct ToolSettings {
     pub(crate) orientation: GizmoOrientation,
     /// True if the points of a curve follow a dragged one at their distances.
     pub(crate) chain: bool,
+    /// True if a drag of the pose brush bends a limb at all its joints.
+    pub(crate) whole_limb: bool,
     /// True if the next click moves the selected handle's pivot.
     pub(crate) wants_pivot: bool,
     /// The use of the rim that the next click takes.
@@ -56,6 +58,7 @@ impl Default for ToolSettings {
             gizmo_mode: GizmoMode::default(),
             orientation: GizmoOrientation::default(),
             chain: false,
+            whole_limb: false,
             wants_pivot: false,
             wants_rim: None,
             wants_cut: None,

@@ -1,5 +1,7 @@
 //! The look of the view: a person's choice, not part of the document.
 
+use super::skins::Skins;
+
 /// The look of the surface.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Hash)]
 pub struct Look {
@@ -25,6 +27,10 @@ pub struct Look {
     pub original: bool,
     /// True if the smooth base is shown instead of the surface, if the method has one.
     pub base: bool,
+    /// True if the timeline is shown.
+    pub timeline: bool,
+    /// The ghosts of other moments, while the timeline is shown.
+    pub skins: Skins,
     /// The way in which the file's own shape is shown with the present one.
     pub before: Before,
 }
@@ -43,6 +49,8 @@ impl Default for Look {
             shadow: true,
             original: false,
             base: false,
+            timeline: false,
+            skins: Skins::default(),
             before: Before::Off,
         }
     }

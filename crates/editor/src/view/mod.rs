@@ -10,6 +10,7 @@ mod look;
 mod picking;
 mod pointer;
 mod sight;
+mod skins;
 mod state;
 mod upright;
 
@@ -24,5 +25,6 @@ pub use look::{Before, Clay, Look, Shading};
 pub use picking::Pick;
 pub(crate) use picking::Picking;
 pub use pointer::{Cursor, Readout};
+pub use skins::Skins;
 pub(crate) use state::View;
 pub(crate) use upright::up_axis_of;

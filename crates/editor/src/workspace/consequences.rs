@@ -17,6 +17,7 @@ impl Workspace {
         self.follow_versions(activity);
         self.look_for_paint(activity);
         self.selection.drop_lost(&self.document);
+        self.drop_lost_keys();
         if !self.controls.is_empty() {
             let count = self.shown_controls().map_or(0, |shown| shown.positions.len());
             self.controls.drop_lost(count);

@@ -12,6 +12,8 @@ mod flow;
 mod flow_play;
 mod handle_values;
 mod handles;
+mod key_work;
+mod keys;
 mod mirror;
 mod mirror_request;
 mod objects;
@@ -43,6 +45,10 @@ pub(crate) use handle_values::{set_continuity, set_parent, set_reach, set_soft, 
 pub(crate) use handles::{
     change_handle, count_turn, delete_selected, held_because, pin_or_unpin_selected, put_handle, put_handles,
     reset_region, set_pivot, set_pivot_place, split_selected, untwin,
+};
+pub(crate) use keys::{
+    copy_keys, delete_keys, go_to, key_here, key_pose, move_keys, neighbour_key, paste_keys, set_fps, set_key_ease,
+    step_frames, stretch_keys,
 };
 pub(crate) use mirror::{mirror, take_mirrored};
 pub(crate) use mirror_request::Purpose;

@@ -10,6 +10,7 @@ use pliant_mesh::{Model, SurfaceVertex};
 use super::colour_revisions::Colours;
 use super::control_selection::ControlSelection;
 use super::flow_play::FlowPlay;
+use super::key_work::KeyWork;
 use super::mirror_request::Mirroring;
 use super::selection::HandleSelection;
 use super::stitching_request::Stitching;
@@ -48,6 +49,7 @@ pub(crate) struct Workspace {
     /// Whether anything is painted, and the paint for which that was computed.
     pub(super) painted: (bool, Version),
     pub(crate) flow: FlowPlay,
+    pub(crate) keys: KeyWork,
     /// The step of an active widget.
     adjusting: Option<Transaction>,
     pub(super) mirroring: Option<Mirroring>,
@@ -79,6 +81,7 @@ impl Workspace {
             colours: Colours::default(),
             shape_revision: 0,
             flow: FlowPlay::default(),
+            keys: KeyWork::default(),
             adjusting: None,
             mirroring: None,
             symmetry: Symmetry::None,
@@ -98,6 +101,7 @@ impl Workspace {
         self.file_name = name;
         self.jobs.open(model);
         self.begin_mesh();
+        self.keys = KeyWork::default();
     }
 
     /// Returns true if anything was painted at the end of the last event outside a stroke.
@@ -142,8 +146,9 @@ impl Workspace {
 
 /// Steps of the document.
 impl Workspace {
-    /// Begins a step, to be committed or aborted.
+    /// Begins a step, to be committed or aborted. A stretch of play ends before it.
     pub(crate) fn begin(&mut self, name: impl Into<String>) -> Transaction {
+        self.pause_keys();
         Transaction::begin(name, &self.document, &mut self.history)
     }
 
@@ -201,6 +206,7 @@ impl Workspace {
     /// Enters the adjusted step into the history.
     pub(crate) fn commit_adjusting(&mut self) {
         if let Some(transaction) = self.adjusting.take() {
+            self.end_scrubbing(transaction.before().animation());
             self.commit(&transaction);
         }
     }
@@ -217,6 +223,7 @@ impl Workspace {
         if !self.flow.is_still() {
             return self.flow.drop_stretch();
         }
+        self.pause_keys();
         self.jobs.drop_solves();
         let before: Vec<HandleId> = self.document.handles().iter().map(|handle| handle.id).collect();
         self.history.undo(&mut self.document);
@@ -230,6 +237,7 @@ impl Workspace {
 
     /// Redoes the last undone step.
     pub(crate) fn redo(&mut self) {
+        self.pause_keys();
         self.jobs.drop_solves();
         self.flow.drop_stretch();
         self.history.redo(&mut self.document);
@@ -241,6 +249,7 @@ impl Workspace {
 
     /// Goes back or forth to the state after this many steps of the history.
     pub(crate) fn go_to_step(&mut self, steps: usize) {
+        self.pause_keys();
         self.jobs.drop_solves();
         self.flow.drop_stretch();
         while self.history.names().1 > steps && self.history.undo(&mut self.document).is_some() {}

@@ -100,7 +100,7 @@ fn a_merge_asks_for_the_part_of_the_selected_handle_and_sorts_the_picked_places(
         (*REACH_RANGE.end(), Placement::Fitted)
     );
     rig.command(Command::Merge);
-    let mut asked = |rig: &mut Rig| {
+    let asked = |rig: &mut Rig| {
         let request = rig.editor.take_stitch().unwrap();
         rig.send(Event::Stitched(Err("not now".to_owned())));
         match request.change {

@@ -1,6 +1,7 @@
 //! The editor without a window: gestures, commands and jobs on every class of mesh.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
+mod animation;
 mod appended_parts;
 mod comparison;
 mod controls;
@@ -34,4 +35,5 @@ mod strength;
 mod symmetry;
 mod tips;
 mod view;
+mod whole_limb;
 mod work_pose;

@@ -210,3 +210,59 @@ fn the_paint_of_the_handle_or_region_is_deleted_and_a_locked_handle_refuses() {
         .unwrap_or_default();
     assert!(why.contains("locked"), "{why}");
 }
+
+#[test]
+fn keys_go_on_in_the_new_mesh_and_play_ends_before_it() {
+    let mut rig = Rig::open(bowl());
+    rig.paint_handle();
+    rig.command(Command::KeyHere);
+    rig.command(Command::GoToTime(1.0));
+    rig.move_by('x', "0.3");
+    rig.drain();
+    rig.command(Command::KeyHere);
+    let farthest = |rig: &Rig| {
+        let shown = rig
+            .model
+            .surface
+            .positions
+            .iter()
+            .zip(rig.editor.view().displacements.iter());
+        shown.map(|(rest, way)| (*rest + *way).x).fold(f64::MIN, f64::max)
+    };
+    let reached = farthest(&rig);
+    rig.command(Command::GoToTime(0.0));
+    rig.drain();
+    rig.command(Command::PlayKeys);
+    for _ in 0..4 {
+        rig.send(Event::Tick);
+        rig.drain();
+    }
+    assert!(rig.editor.view().is_animating);
+    rig.command(Command::FillHoles);
+    answer(&mut rig);
+    assert!(!rig.editor.view().is_animating);
+    assert_eq!(rig.editor.view().undo, Some("Fill holes"));
+    let filled = state(&rig);
+    rig.undo();
+    rig.drain();
+    let played = state(&rig);
+    rig.undo();
+    rig.redo();
+    rig.drain();
+    assert!(
+        state(&rig) == played,
+        "the stretch of play is a step on the former mesh"
+    );
+    rig.redo();
+    rig.drain();
+    follow(&mut rig);
+    assert!(state(&rig) == filled);
+    // The keys lead to the same shape, from the rest shape in which the mesh was filled.
+    rig.command(Command::GoToTime(1.0));
+    rig.drain();
+    assert!(
+        (farthest(&rig) - reached).abs() < 0.02,
+        "{} is not {reached}",
+        farthest(&rig)
+    );
+}

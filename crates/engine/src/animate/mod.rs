@@ -10,7 +10,7 @@ use std::time::Instant;
 
 use glam::DVec3;
 use pliant_deform::Bound;
-use pliant_editor::{EditFile, Setup, Start, Timeline, Until, sum_of_shapes};
+use pliant_editor::{EditFile, Setup, Start, Timeline, sum_of_shapes};
 use pliant_io::{FewTargets, Format, MorphAnimation, PointCache, PointCacheFormat, ShapeDirections};
 use pliant_mesh::{DrawnVertex, Model, Progress, SurfaceVertex};
 
@@ -30,6 +30,9 @@ const MOST_FRAMES: f64 = 100_000.0;
 
 /// A time this many frames before a whole frame still counts as that frame.
 const ROUNDING: f64 = 1e-6;
+
+/// The [`Animate::tolerance`] of an animation that has no other.
+pub const MORPH_TOLERANCE: f64 = 1e-5;
 
 /// The input of [`animate`].
 #[derive(Clone, Copy, Debug)]
@@ -52,18 +55,62 @@ pub struct Animate<'a> {
 /// Any refusal of the file, of the edit or of a frame. Nothing is written then.
 pub fn animate(animation: &Animate<'_>, watch: &Watch, staging: &Staging) -> Result<AnimationReport, EngineError> {
     let job = &animation.job;
-    let kind = Kind::of(job.output)?;
+    Kind::of(job.output)?;
     let report_to = job.report_to()?;
     let (loaded, load_ms) = job.load(job.file, watch)?;
-    let model = &loaded.model;
     let edit = job.edit_with_examples(&loaded, watch)?;
     let edit = with_keys(&edit)?;
+    let animated = stage_animation(animation, &loaded, edit, watch, staging)?;
+    let report = AnimationReport {
+        load_ms,
+        ..animated.report
+    };
+    let mut staged = animated.staged;
+    if let Some(to) = report_to {
+        let text = report.to_json();
+        let file = NewFile {
+            to,
+            bytes: text.as_bytes(),
+        };
+        staged = staged.and(staging.stage_watched(&[file], None, &Progress::new(), &watch.cancel)?);
+    }
+    loaded.refuse_changed(&staged)?;
+    staged.commit()?;
+    Ok(report)
+}
+
+/// An animation that is ready to be written.
+#[derive(Debug)]
+pub struct Animated {
+    /// Its files.
+    pub staged: Staged,
+    /// Its course.
+    pub report: AnimationReport,
+}
+
+/// Solves every frame of an animation of a file that was read already, for an edit that contains all that it needs, and
+/// prepares its files. The job's own file and edit only give their names.
+///
+/// # Errors
+/// Any refusal of the output, of the edit or of a frame.
+pub fn stage_animation(
+    animation: &Animate<'_>,
+    loaded: &Loaded,
+    edit: &EditFile,
+    watch: &Watch,
+    staging: &Staging,
+) -> Result<Animated, EngineError> {
+    let job = &animation.job;
+    let kind = Kind::of(job.output)?;
+    let report_to = job.report_to()?;
+    let model = &loaded.model;
     let in_edit = |source| job.refused(source);
     let setup = edit.resolve(model).map_err(in_edit)?;
     let timeline = edit.timeline(&setup).map_err(in_edit)?;
     check_bends(job.file, model, &setup.method)?;
     let count = frame_count(timeline.duration(), animation.fps)?;
     let frames = Frames::of(job.output, count - 1);
+    loaded.sources().for_each(|(what, path)| watch.note_read(what, path));
     for place in frames.all() {
         Destination::of(&place)?;
         // Only a glTF comes back whole with the animation, so only that may replace FILE.
@@ -77,20 +124,19 @@ pub fn animate(animation: &Animate<'_>, watch: &Watch, staging: &Staging) -> Res
     };
     let mut run = Run {
         animation,
-        loaded: &loaded,
+        loaded,
         setup: &setup,
         timeline: &timeline,
         watch,
         count,
         solve_ms: Vec::with_capacity(count),
         report: AnimationReport {
-            load_ms,
             bind_ms: ms_since(start),
-            ..AnimationReport::at_start(&loaded, setup.method.name(), animation.fps)
+            ..AnimationReport::at_start(loaded, setup.method.name(), animation.fps)
         },
     };
     let beside = report_to.as_ref();
-    let mut staged = match kind {
+    let staged = match kind {
         Kind::Cache(format) => run.cache(moving, format, staging)?,
         Kind::Morphs => run.morphs(moving, beside, staging)?,
         Kind::Files => run.files(moving, &frames, beside, staging)?,
@@ -98,18 +144,10 @@ pub fn animate(animation: &Animate<'_>, watch: &Watch, staging: &Staging) -> Res
     if watch.cancel.is_cancelled() {
         return Err(EngineError::Interrupted);
     }
-    let report = run.finished();
-    if let Some(to) = report_to {
-        let text = report.to_json();
-        let file = NewFile {
-            to,
-            bytes: text.as_bytes(),
-        };
-        staged = staged.and(staging.stage_watched(&[file], None, &Progress::new(), &watch.cancel)?);
-    }
-    loaded.refuse_changed(&staged)?;
-    staged.commit()?;
-    Ok(report)
+    Ok(Animated {
+        staged,
+        report: run.finished(),
+    })
 }
 
 /// The kind of an output.
@@ -334,7 +372,7 @@ impl Run<'_> {
         };
         bound.set_cancel(cancel);
         let targets = self.setup.targets_during(self.timeline, time);
-        let bent = start.bend(bound, &targets, Until::End, cancel);
+        let bent = start.bend_anew(bound, &targets, cancel);
         let bent = bent.map_err(|error| EngineError::Solve {
             file: self.animation.job.file.to_owned(),
             source: error.renumbered(|vertex| self.loaded.model.first_file_vertex(SurfaceVertex(vertex)).0),

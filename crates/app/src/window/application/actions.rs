@@ -17,7 +17,7 @@ use crate::window::dialogs::palette::Palette;
 use crate::window::dialogs::question::{Answer, Question, Then};
 use crate::window::files::listing;
 use crate::window::files::recovery::left;
-use crate::window::files::save_request::Content;
+use crate::window::files::save_request::{AnimationToWrite, Content};
 use crate::window::input::event_queue::EventQueue;
 use crate::window::input::file_command::FileCommand;
 use crate::window::session::{OpenFile, Source};
@@ -67,6 +67,7 @@ impl Application {
                 Err(error) => self.fail(error.to_string()),
             },
             (Purpose::Append, Some(path)) => self.append(path),
+            (Purpose::ExportAnimation, Some(path)) => self.export_animation(&path),
             (Purpose::LoadCage, Some(path)) => self.load_cage(path),
             (Purpose::AddExample, Some(path)) => self.load_example(path),
             (Purpose::SavePicture(kind), Some(path)) => match self.viewport.picture(&self.editor, kind) {
@@ -83,6 +84,24 @@ impl Application {
     fn save_copy(&mut self, path: &Path, content: Content) {
         let mark = self.editor.save_mark();
         self.session.save(path, content, mark, &self.workers);
+    }
+
+    /// Writes the edit over time, off the window's thread.
+    pub fn export_animation(&mut self, path: &Path) {
+        let Some(open) = &self.session.open else { return };
+        let mesh = open.mesh.clone();
+        match self.editor.edit_file() {
+            Ok(edit) => {
+                let animation = AnimationToWrite {
+                    edit,
+                    fps: self.editor.document().animation().fps(),
+                    mesh,
+                    watch: Watch::default(),
+                };
+                self.save_copy(path, Content::Animation(Box::new(animation)));
+            }
+            Err(error) => self.fail(error.to_string()),
+        }
     }
 
     /// Asks for a file by the system's dialog.
@@ -139,6 +158,7 @@ impl Application {
             ) => path.to_owned(),
             (Purpose::SaveMorph, Some(path)) => beside(path, "morph.glb"),
             (Purpose::ExportEdit, Some(path)) => beside(path, "edit.json"),
+            (Purpose::ExportAnimation, Some(path)) => beside(path, "animation.glb"),
             (Purpose::SaveProject, Some(path)) => beside(path, "pliant"),
             (Purpose::SavePicture(_), Some(path)) => beside(path, "png"),
             (
@@ -152,6 +172,7 @@ impl Application {
             ) => PathBuf::from("edited.glb"),
             (Purpose::SaveMorph, None) => PathBuf::from("morph.glb"),
             (Purpose::SaveProject, None) => PathBuf::from("edited.pliant"),
+            (Purpose::ExportAnimation, None) => PathBuf::from("animation.glb"),
             (Purpose::ExportEdit, None) => PathBuf::from("edit.json"),
             (Purpose::SavePicture(_), None) => PathBuf::from("picture.png"),
         }
@@ -195,6 +216,10 @@ impl Application {
             },
             FileCommand::SaveProjectAs => self.choose(Purpose::SaveProject),
             FileCommand::ExportEdit => self.choose(Purpose::ExportEdit),
+            FileCommand::ExportAnimation => match command.unavailable_because(&self.editor) {
+                Some(why) => self.fail(why.to_owned()),
+                None => self.choose(Purpose::ExportAnimation),
+            },
             FileCommand::ApplyEdit => self.choose(Purpose::ApplyEdit),
             FileCommand::MergeOptions => self.dialogs.merge.open = true,
             FileCommand::Append | FileCommand::LoadCage | FileCommand::AddExample | FileCommand::AddMorphTarget(_) => {

@@ -168,6 +168,7 @@ impl Application {
     /// Draws the view.
     fn picture(&mut self, ui: &mut egui::Ui, rect: egui::Rect) -> Result<(), pliant_render::RenderError> {
         let smooth = self.smoothness();
+        self.skins(ui, rect, smooth)?;
         let view = self.editor.view();
         if self.viewport.paint(ui, rect, &view, &self.editor, smooth)? {
             ui.ctx().request_repaint_after(
@@ -176,6 +177,25 @@ impl Application {
             );
         }
         self.original(ui, rect, smooth)
+    }
+
+    /// Draws the ghosts of other moments and the surroundings, if there are ghosts: the picture then goes over them.
+    fn skins(
+        &mut self,
+        ui: &mut egui::Ui,
+        rect: egui::Rect,
+        smooth: Smoothness,
+    ) -> Result<(), pliant_render::RenderError> {
+        let Some(source) = self.workers.pose_source() else {
+            return Ok(());
+        };
+        let skins = self.editor.view().skins;
+        self.beside.skins.follow(ui.ctx(), skins, &self.viewport, &source);
+        self.viewport.set_cut_out(!skins.is_empty());
+        if !skins.is_empty() && self.beside.skins.show(ui, rect, &self.viewport, &self.editor, smooth)? {
+            ui.ctx().request_repaint_after(REST);
+        }
+        Ok(())
     }
 
     /// Lays the shape of the file over the picture, if it is shown along with the present one.

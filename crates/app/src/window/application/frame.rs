@@ -8,7 +8,7 @@ use pliant_editor::{Command, Event};
 use crate::window::application::Application;
 use crate::window::bars::recent_menu::Recent;
 use crate::window::bars::status::{FileWork, FileWorkAnswer};
-use crate::window::bars::{status, tool_column, tool_settings, top_bar, view_bar};
+use crate::window::bars::{status, timeline, tool_column, tool_settings, top_bar, view_bar};
 use crate::window::dialogs::palette::{Found, Outcome};
 use crate::window::dialogs::{about, keys_window, log, memory_window, merge_window, question};
 use crate::window::input::event_queue::EventQueue;
@@ -17,6 +17,9 @@ use crate::window::panels::{self, PanelChange};
 use crate::window::session::OpenFile;
 use crate::window::threads::interface_pool;
 use crate::window::widgets::outbox::Outbox;
+
+/// The time between two looks whether the next frame of an animation is due.
+const TICK: Duration = Duration::from_millis(4);
 
 impl eframe::App for Application {
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
@@ -35,6 +38,11 @@ impl eframe::App for Application {
         self.file_shortcuts(&context);
         self.close_by_escape(&context);
 
+        if self.editor.view().is_animating {
+            self.editor.handle(Event::Tick);
+            // Often enough for the next frame to come in time.
+            context.request_repaint_after(TICK);
+        }
         let mut commands = Outbox::default();
         let (file_command, layout) = self.bars_and_panel(ui, &mut commands);
         if std::mem::replace(&mut self.layout.bars, layout) != layout || has_heard {
@@ -80,7 +88,7 @@ impl eframe::App for Application {
 impl Application {
     /// The bars and panels around the view. Returns the chosen file command, and the places of the content, the bars
     /// and the panel.
-    fn bars_and_panel(&mut self, ui: &mut egui::Ui, commands: &mut Outbox) -> (Option<FileCommand>, [egui::Rect; 6]) {
+    fn bars_and_panel(&mut self, ui: &mut egui::Ui, commands: &mut Outbox) -> (Option<FileCommand>, [egui::Rect; 7]) {
         let context = ui.ctx().clone();
         let title = self.session.open.as_ref().map(OpenFile::name).unwrap_or_default();
         let top = Panel::top("top").show(ui, |ui| {
@@ -118,6 +126,7 @@ impl Application {
             view_bar::show(ui, &self.editor, commands);
             tool_settings::show(ui, &self.editor, commands);
         });
+        let timeline = timeline::show(ui, &self.editor, commands);
         let bars = [&top.response, &status.response, &tools.response, &view_bar.response].map(|bar| bar.rect);
         let [top_rect, status_rect, tools_rect, view_bar_rect] = bars;
         let layout = [
@@ -127,6 +136,7 @@ impl Application {
             panel,
             tools_rect,
             view_bar_rect,
+            timeline,
         ];
         (top.inner.or_else(|| commands.take_file()), layout)
     }

@@ -11,7 +11,7 @@ pub struct Layout {
     /// True if the window is still to fill the screen, as it did last time.
     pub is_to_fill_screen: bool,
     /// The places of the window's content, its bars and its panel.
-    pub bars: [egui::Rect; 6],
+    pub bars: [egui::Rect; 7],
     /// The place of the view.
     pub view_rect: egui::Rect,
     /// The window's title.
@@ -25,7 +25,7 @@ impl Layout {
             shows_hints,
             is_panel_hidden: false,
             is_to_fill_screen,
-            bars: [egui::Rect::NOTHING; 6],
+            bars: [egui::Rect::NOTHING; 7],
             view_rect: egui::Rect::ZERO,
             title: String::new(),
         }

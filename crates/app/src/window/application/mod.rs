@@ -251,9 +251,10 @@ impl Application {
             .original
             .as_ref()
             .is_none_or(|original| original.is_settled(&view));
+        let skins = self.beside.skins.are_settled(view.skins);
         let drawn = self.redrawing.is_none() && self.shows_what_is_turned();
         let is_idle = self.session.doing().is_none() && !self.is_saving() && !self.is_loading_textures();
-        view.settled && shown && compared && original && drawn && is_idle
+        view.settled && shown && compared && original && skins && drawn && is_idle
     }
 
     /// The shape in the GPU's buffers, per surface vertex, from the file's.

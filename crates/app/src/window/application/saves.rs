@@ -181,7 +181,7 @@ impl Application {
         let saved = match written.what {
             WrittenKind::Model { .. } => Some(SavedAs::Model),
             WrittenKind::Project => Some(SavedAs::Project),
-            WrittenKind::Picture | WrittenKind::Edit | WrittenKind::Morph => None,
+            WrittenKind::Picture | WrittenKind::Edit | WrittenKind::Morph | WrittenKind::Animation => None,
         };
         if let Some(saved) = saved {
             self.settings.change(|settings| settings.remember(&written.path));
@@ -322,6 +322,7 @@ fn purpose(content: &Content) -> Purpose {
         Content::Morph(..) => Purpose::SaveMorph,
         Content::Project(..) => Purpose::SaveProject,
         Content::Edit(_) => Purpose::ExportEdit,
+        Content::Animation(_) => Purpose::ExportAnimation,
         Content::Picture(_) => Purpose::SavePicture(PictureKind {
             scale: 1,
             ground: Ground::AsShown,

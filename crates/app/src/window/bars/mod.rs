@@ -7,6 +7,7 @@ mod menu_keys;
 pub(in crate::window) mod recent_menu;
 mod share_slider;
 pub(in crate::window) mod status;
+pub(in crate::window) mod timeline;
 pub(in crate::window) mod toast;
 pub(in crate::window) mod tool_column;
 pub(in crate::window) mod tool_settings;

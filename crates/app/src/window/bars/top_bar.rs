@@ -65,6 +65,7 @@ fn file_menu(ui: &mut egui::Ui, editor: &Editor, recent: &Recent<'_>) -> Option<
         FileCommand::SaveProject,
         FileCommand::SaveProjectAs,
         FileCommand::ExportEdit,
+        FileCommand::ExportAnimation,
         FileCommand::ApplyEdit,
         FileCommand::Quit,
     ] {
@@ -354,6 +355,8 @@ fn view_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
         choice(ui, Command::ToggleBefore(before), look.before == before);
     }
     ui.separator();
+    choice(ui, Command::ToggleTimeline, look.timeline);
+    choice(ui, Command::ToggleSkins, look.timeline && look.skins.shown);
     choice(ui, Command::CompareMethods, editor.comparison().is_some());
     ui.separator();
     let up = view.camera.up;

@@ -27,6 +27,9 @@ const MODELS_AND_PROJECTS: &[&str] = &{
     endings
 };
 
+/// The extensions of animations: one file, or with `-####` in its name one for each frame.
+const ANIMATIONS: &[&str] = &["glb", "gltf", "pc2", "mdd", "obj", "ply", "stl", "off", "3mf"];
+
 /// The purpose of a dialog.
 struct Request {
     title: &'static str,
@@ -52,6 +55,7 @@ fn request(purpose: Purpose) -> Request {
         Purpose::SaveMorph => ("Save as morph target", Asked::ToSave, "glTF", &["glb", "gltf"]),
         Purpose::SaveProject => ("Save the project as", Asked::ToSave, "Projects", &["pliant"]),
         Purpose::ExportEdit => ("Export the edit", Asked::ToSave, "Edits", &["json"]),
+        Purpose::ExportAnimation => ("Export the animation", Asked::ToSave, "Animations", ANIMATIONS),
         Purpose::SavePicture(_) => ("Save the picture as", Asked::ToSave, "Pictures", &["png"]),
     };
     Request {

@@ -11,6 +11,7 @@ use pliant_render::Image;
 use super::rest_mesh::{MeshSource, RestMesh};
 use pliant_engine::Loaded;
 use pliant_engine::files::KnownFiles;
+use pliant_engine::watch::Watch;
 
 /// The request.
 #[derive(Clone)]
@@ -51,8 +52,23 @@ pub enum Content {
     Morph(Shape, RestMesh),
     /// An edit for the command line.
     Edit(Box<EditFile>),
+    /// The edit over time.
+    Animation(Box<AnimationToWrite>),
     /// A picture of the view.
     Picture(Arc<Image>),
+}
+
+/// The edit over time.
+#[derive(Clone)]
+pub struct AnimationToWrite {
+    /// The edit with its keys.
+    pub edit: EditFile,
+    /// The frames a second.
+    pub fps: f64,
+    /// The mesh as it was read.
+    pub mesh: RestMesh,
+    /// The stage of the work.
+    pub watch: Watch,
 }
 
 /// The bent mesh.
@@ -120,6 +136,8 @@ pub enum WrittenKind {
     Edit,
     /// The model at rest with the edit as a morph target, which is a copy beside the open file.
     Morph,
+    /// The model over time, which is a copy beside the open file.
+    Animation,
 }
 
 /// The reason why a file was not written; all files are unchanged.
@@ -135,6 +153,7 @@ impl Content {
     pub(super) fn mesh(&self) -> Option<&RestMesh> {
         match self {
             Self::Model(Model { mesh, .. }) | Self::Project(_, mesh) | Self::Morph(_, mesh) => Some(mesh),
+            Self::Animation(animation) => Some(&animation.mesh),
             Self::Edit(_) | Self::Picture(_) => None,
         }
     }
@@ -143,6 +162,7 @@ impl Content {
     pub(in crate::window) fn mesh_mut(&mut self) -> Option<&mut RestMesh> {
         match self {
             Self::Model(Model { mesh, .. }) | Self::Project(_, mesh) | Self::Morph(_, mesh) => Some(mesh),
+            Self::Animation(animation) => Some(&mut animation.mesh),
             Self::Edit(_) | Self::Picture(_) => None,
         }
     }

@@ -9,13 +9,17 @@ use pliant_render::Image;
 
 use super::project_file;
 use super::rest_mesh::MeshSource;
-use super::save_request::{Changed, Content, KeepOriginal, Model, SaveRequest, Unwritten, Written, WrittenKind};
+use super::save_request::{
+    AnimationToWrite, Changed, Content, KeepOriginal, Model, SaveRequest, Unwritten, Written, WrittenKind,
+};
 use crate::files::names::file_name;
 use crate::files::original::{Kept, Original};
+use pliant_editor::Beginning;
 use pliant_engine::EngineError;
 use pliant_engine::files::{self, Staged, Staging, Stamp};
 use pliant_engine::flow::dyed;
 use pliant_engine::saving::{self, SaveAs};
+use pliant_engine::{Animate, EditJob, MORPH_TOLERANCE, memory, stage_animation};
 use pliant_picture::picture_file;
 
 /// Writes the content. A save that was stopped in time has changed nothing.
@@ -157,8 +161,41 @@ fn ready(request: &SaveRequest, staging: &Staging, progress: &Progress, cancel: 
                 ..Ready::new(saved.staged, WrittenKind::Morph)
             })
         }
+        Content::Animation(animation) => ready_animation(animation, path, staging, cancel),
         Content::Model(model) => ready_model(model, path, staging, progress, cancel),
     }
+}
+
+/// The frames of the edit over time, by the function of `pliant animate`.
+fn ready_animation(
+    animation: &AnimationToWrite,
+    path: &Path,
+    staging: &Staging,
+    cancel: &Cancel,
+) -> Result<Ready, EngineError> {
+    let loaded = &*animation.mesh.loaded;
+    let beginning = Beginning::from(animation.edit.clone());
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let wanted = Animate {
+        job: EditJob {
+            file: &loaded.path,
+            edit: &beginning,
+            edit_path: Path::new("the present edit"),
+            output: path,
+            report: None,
+            weld: None,
+            budget: memory::budget(),
+        },
+        name: &stem,
+        tolerance: MORPH_TOLERANCE,
+        fps: animation.fps,
+    };
+    let watch = animation.watch.stopped_by(cancel);
+    let animated = stage_animation(&wanted, loaded, &animation.edit, &watch, staging)?;
+    Ok(Ready {
+        notes: animated.report.warnings,
+        ..Ready::new(animated.staged, WrittenKind::Animation)
+    })
 }
 
 /// The note about colours that are not saved.

@@ -32,6 +32,8 @@ pub enum FileCommand {
     SaveProjectAs,
     /// Write the regions, handles and transforms as an edit for the command line.
     ExportEdit,
+    /// Write the edit over time.
+    ExportAnimation,
     /// Apply an edit from a file to the open mesh.
     ApplyEdit,
     /// Weld the open mesh's vertices in another way.
@@ -90,6 +92,10 @@ impl FileCommand {
             Self::Append if editor.document().is_in_work_pose() => {
                 Some("This would change the shape to return to: leave the work pose first.")
             }
+            Self::ExportAnimation => {
+                let has_keys = !editor.document().animation().keys().is_empty();
+                (!has_keys).then_some("There are no keys: set some on the timeline first.")
+            }
             Self::LoadCage => (!takes(AttachmentKind::ControlMesh))
                 .then_some("The method takes no cage: choose the method Cage first."),
             Self::AddExample | Self::AddMorphTarget(_) => (!takes(AttachmentKind::Shapes)).then_some(WITHOUT_EXAMPLES),
@@ -127,6 +133,7 @@ impl FileCommand {
             Self::Scale(_) => command(Key::Num0),
             Self::SaveProjectAs
             | Self::SaveMorph
+            | Self::ExportAnimation
             | Self::ApplyEdit
             | Self::Weld(_)
             | Self::Append
@@ -150,7 +157,7 @@ impl FileCommand {
     }
 
     /// All commands that need no path, in the order of the menu.
-    pub const LISTED: [Self; 26] = [
+    pub const LISTED: [Self; 27] = [
         Self::Open,
         Self::NewFromSample,
         Self::Save,
@@ -160,6 +167,7 @@ impl FileCommand {
         Self::SaveProject,
         Self::SaveProjectAs,
         Self::ExportEdit,
+        Self::ExportAnimation,
         Self::ApplyEdit,
         Self::Append,
         Self::MergeOptions,
@@ -211,6 +219,7 @@ impl FileCommand {
             Self::Scale(_) => "Interface size",
             Self::Hints => "Canvas hints",
             Self::ExportEdit => "Export edit…",
+            Self::ExportAnimation => "Export animation…",
             Self::ApplyEdit => "Apply an edit…",
             Self::SavePicture(_) => "Save picture…",
             Self::Quit => "Quit",
@@ -243,6 +252,7 @@ impl FileCommand {
             Self::Scale(_) => "ui zoom",
             Self::Hints => "help first steps",
             Self::ExportEdit => "json command line",
+            Self::ExportAnimation => "keys timeline gltf glb pc2 mdd frames video bake write",
             Self::ApplyEdit => "json import load again scan",
             Self::SavePicture(_) => "screenshot render image png",
             Self::Quit => "exit close",

@@ -45,6 +45,11 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
                     button("Update", says, !is_shown, Command::RenewPose(place));
                     let says = "Moves everything back to this pose. Locked handles and pins stay.";
                     button("Apply", says, !is_shown, Command::TakePose(place));
+                    if editor.view().look.timeline {
+                        let command = Command::KeyPose(place);
+                        let says = "Sets a key with this pose at the shown moment.";
+                        button("Key", says, editor.is_enabled(&command), command);
+                    }
                     // The name has the room that the buttons leave.
                     ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
                         let (label, renamed) = name_label(ui, "the pose", place, &pose.name, is_shown);

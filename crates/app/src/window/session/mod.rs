@@ -37,6 +37,8 @@ pub struct Session {
     /// The stage of the running load.
     watch: Watch,
     saving: JobQueue<SaveRequest>,
+    /// The stage of the running save, if it has several.
+    save_watch: Option<Watch>,
     /// Saves that wait for the running one, in their order: none replaces another.
     to_save: VecDeque<SaveRequest>,
     /// The files that were read and written, as they were then.
@@ -211,7 +213,7 @@ impl Session {
                     }
                 }
                 WrittenKind::Project => open.project = Some(written.path.clone()),
-                WrittenKind::Edit | WrittenKind::Morph | WrittenKind::Picture => {}
+                WrittenKind::Edit | WrittenKind::Morph | WrittenKind::Animation | WrittenKind::Picture => {}
             }
         }
         self.start_saving(workers);
@@ -230,9 +232,10 @@ impl Session {
             .map(|_| self.watch.now().unwrap_or(("opening the file", 0.0)));
         let stitching = self.stitching.as_ref();
         let stitching = stitching.map(|(_, watch)| watch.now().unwrap_or(("changing the mesh", 0.0)));
-        loading
-            .or(stitching)
-            .or_else(|| self.saving.running().map(|running| ("saving", running.progress.get())))
+        let stage = || self.save_watch.as_ref().and_then(Watch::now);
+        let saving = self.saving.running();
+        let saving = saving.map(|running| stage().unwrap_or(("saving", running.progress.get())));
+        loading.or(stitching).or(saving)
     }
 
     fn stamp(&mut self) -> Revision {
@@ -270,6 +273,10 @@ impl Session {
         }
         let Some((running, request)) = self.saving.start_next() else {
             return;
+        };
+        self.save_watch = match &request.content {
+            Content::Animation(animation) => Some(animation.watch.clone()),
+            _ => None,
         };
         let stamp = running.stamp;
         let (progress, cancel) = (running.progress.clone(), running.cancel.clone());

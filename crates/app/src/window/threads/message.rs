@@ -158,6 +158,8 @@ pub enum Purpose {
     SaveProject,
     /// To write the edit file to.
     ExportEdit,
+    /// To write the edit over time to.
+    ExportAnimation,
     /// To take an edit from, for the open mesh.
     ApplyEdit,
     /// To put beside the open shape.

@@ -2,6 +2,7 @@
 
 use super::before::{OriginalView, Split};
 use super::method_views::MethodViews;
+use super::skins::SkinViews;
 
 /// The views that are shown along with the main one.
 #[derive(Default)]
@@ -10,6 +11,8 @@ pub struct ViewsBeside {
     pub original: Option<OriginalView>,
     /// The position of the line between both.
     pub split: Split,
+    /// The ghosts of other moments.
+    pub skins: SkinViews,
     /// The small views of each method's result, while methods are compared.
     pub methods: MethodViews,
 }
@@ -18,6 +21,7 @@ impl ViewsBeside {
     /// Lets the views go, whose device was lost.
     pub fn let_go(&mut self) {
         self.original = None;
+        self.skins = SkinViews::default();
         self.methods = MethodViews::default();
     }
 }

@@ -16,6 +16,7 @@ pub(in crate::window) mod method_views;
 pub(in crate::window) mod pose_queue;
 pub(in crate::window) mod shown;
 pub(in crate::window) mod side_view;
+pub(in crate::window) mod skins;
 pub(in crate::window) mod stiffness_legend;
 
 use std::sync::Arc;
@@ -37,7 +38,7 @@ use coarseness::Coarseness;
 use gpu::Gpu;
 use pliant_picture::drawing::{self, Drawing, Field, Scale};
 use pliant_picture::{legend, painting};
-use shown::{Colours, Shown, address};
+use shown::{Colours, Floor, Shown, address};
 
 /// Surfaces above this many triangles are not drawn a second time for smooth borders on a software device.
 const SOFT_SMOOTH_TRIANGLES: usize = 300_000;
@@ -57,6 +58,12 @@ pub struct Viewport {
     coarseness: Coarseness,
     /// The opacity of the picture over its background; below 1 the surroundings of the surface are left out.
     opacity: f32,
+    /// The colour by which the picture is multiplied.
+    tint: egui::Color32,
+    /// True if the surface is drawn without its surroundings, which lie under it in another view.
+    is_cut_out: bool,
+    /// The ground of a view without a surface.
+    floor: Option<Floor>,
 }
 
 impl Viewport {
@@ -98,6 +105,9 @@ impl Viewport {
             drawing_time: Duration::ZERO,
             coarseness: Coarseness::default(),
             opacity: 1.0,
+            tint: egui::Color32::WHITE,
+            is_cut_out: false,
+            floor: None,
         }
     }
 
@@ -107,6 +117,28 @@ impl Viewport {
             self.opacity = opacity;
             self.drawn = None;
         }
+    }
+
+    /// Draws the surface with its surroundings, or without them.
+    pub fn set_cut_out(&mut self, is_cut_out: bool) {
+        if self.is_cut_out != is_cut_out {
+            self.is_cut_out = is_cut_out;
+            self.drawn = None;
+        }
+    }
+
+    /// Draws only the surroundings of another view's surface.
+    pub fn set_surroundings_of(&mut self, other: &Self) {
+        let floor = other.surface.as_ref().map(Shown::floor);
+        if self.floor != floor {
+            self.floor = floor;
+            self.drawn = None;
+        }
+    }
+
+    /// Chooses the colour by which the picture is multiplied.
+    pub fn set_tint(&mut self, tint: egui::Color32) {
+        self.tint = tint;
     }
 
     /// The shown file.
@@ -335,7 +367,7 @@ impl Viewport {
         }
         if let Some(texture) = self.texture {
             let whole = egui::Rect::from_min_max(egui::Pos2::ZERO, egui::pos2(1.0, 1.0));
-            let tint = egui::Color32::WHITE.gamma_multiply(self.opacity);
+            let tint = self.tint.gamma_multiply(self.opacity);
             ui.painter().image(texture, rect, whole, tint);
         }
         let is_less = |drawn: &DrawnKey| drawn.size_px != size_px || drawn.detail == Detail::Reduced;
@@ -391,10 +423,8 @@ impl Viewport {
         if self.target.resize(renderer.device(), key.size_px, key.samples)? {
             self.register();
         }
-        let centre = self
-            .surface
-            .as_ref()
-            .map_or(DVec3::ZERO, |shown| shown.drawing.centre());
+        let floor = self.surface.as_ref().map(Shown::floor).or(self.floor);
+        let centre = floor.map_or(DVec3::ZERO, |floor| floor.centre);
         let eye = drawing::view(view.camera, view.viewport_px, centre);
         // Marks keep their width on the screen when the picture has fewer pixels.
         let drawn_share = f64::from(key.size_px[1]) / view.viewport_px.y.max(1.0);
@@ -404,8 +434,8 @@ impl Viewport {
             shown.update_shadow(&mut renderer, view, key.shadow)?;
         }
         let surfaces: Vec<&Surface> = self.surface.iter().map(|shown| &shown.surface).collect();
-        let is_alone = self.opacity < 1.0;
-        let ground = self.surface.as_ref().map(|shown| key.backdrop.grid(shown.ground(view)));
+        let is_alone = self.opacity < 1.0 || self.is_cut_out;
+        let ground = floor.map(|floor| key.backdrop.grid(floor.grid(view)));
         let has_ground = view.look.grid && !is_alone;
         let frame = Frame {
             view: &eye,

@@ -43,11 +43,15 @@ pub type ShadowKey = (usize, usize, UpAxis);
 impl Shown {
     /// The grid under the file's lowest point.
     pub fn ground(&self, view: &SceneView<'_>) -> Grid {
-        let height = match view.camera.up {
-            UpAxis::Y => self.lowest.y,
-            UpAxis::Z => self.lowest.z,
-        };
-        drawing::ground(view.camera, view.viewport_px, height, self.drawing.centre())
+        self.floor().grid(view)
+    }
+
+    /// The place of that grid.
+    pub fn floor(&self) -> Floor {
+        Floor {
+            lowest: self.lowest,
+            centre: self.drawing.centre(),
+        }
     }
 
     /// The shadow that belongs to the present picture.
@@ -161,6 +165,26 @@ impl Shown {
             self.rims = Some(view.rims_revision);
         }
         Ok(())
+    }
+}
+
+/// The place of the ground's grid.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Floor {
+    /// The height of the file's lowest point along each axis, in world units.
+    pub lowest: DVec3,
+    /// The centre of the file's drawing.
+    pub centre: DVec3,
+}
+
+impl Floor {
+    /// The grid.
+    pub fn grid(&self, view: &SceneView<'_>) -> Grid {
+        let height = match view.camera.up {
+            UpAxis::Y => self.lowest.y,
+            UpAxis::Z => self.lowest.z,
+        };
+        drawing::ground(view.camera, view.viewport_px, height, self.centre)
     }
 }
 

@@ -6,6 +6,7 @@
 //! All code may read a document's [`Content`]; only the functions here change it, and each records its change
 //! ([`Versions`]), undo and redo included. Cloning is cheap: the long vectors are shared until one side changes.
 
+mod animation;
 mod exchange;
 mod fluid;
 mod poses;

@@ -101,6 +101,7 @@ impl Document {
             tips: self.tips,
             loose: self.loose,
             poses: Arc::clone(&self.poses),
+            animation: self.animation.clone(),
             flow_options: self.flow_options,
             // The fluid's velocity belongs to the old triangles: it rests.
             fluid: Fluid {

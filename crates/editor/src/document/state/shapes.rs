@@ -31,10 +31,11 @@ impl Document {
         self.set_attachments(attachments);
         self.rest_examples();
         self.rebase_examples(&before);
+        let handles = self.content.handles.clone();
         if !self.content.poses.is_empty() {
-            let handles = self.content.handles.clone();
             self.change_poses(|poses| poses.iter_mut().for_each(|pose| pose.rebase(&handles)));
         }
+        self.content.animation.rebase(&handles);
         self.change_handles(|handles| {
             for handle in handles {
                 handle.apply();

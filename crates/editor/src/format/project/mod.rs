@@ -5,11 +5,13 @@
 //! of a file that was saved over is recognised under any name. Regions are ranges of the file's drawn vertices; only
 //! fields of numbers are base64 ([`field`]).
 
+mod animation;
 mod camera;
 mod examples;
 mod flow;
 mod handle;
 mod objects;
+mod place;
 mod poses;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -22,6 +24,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 
+use self::animation::StoredAnimation;
 use self::camera::StoredCamera;
 use self::examples::{are_weighed, read_examples, stored_examples};
 use self::flow::StoredFlow;
@@ -111,6 +114,9 @@ pub struct Project {
     /// The kept poses.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     poses: Vec<StoredPose>,
+    /// The edit over time.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    animation: Option<StoredAnimation>,
     /// The fluid on the surface, and the forces in its flow.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     flow: Option<StoredFlow>,
@@ -261,6 +267,7 @@ impl Project {
             weld: model.weld.distance,
             strength: document.strength.as_ref().map(|strength| strength.share),
             poses: document.poses.iter().map(StoredPose::of).collect(),
+            animation: StoredAnimation::of(document.animation()),
             flow: StoredFlow::of(&document.fluid, &document.flow_options, model),
             camera: camera.map(StoredCamera::of),
         }
@@ -396,6 +403,9 @@ impl Project {
             document.fluid = flow.fluid(model)?;
         }
         document.poses = Arc::new(self.poses.iter().map(StoredPose::pose).collect());
+        if let Some(animation) = &self.animation {
+            document.animation = animation.animation()?;
+        }
         let mut document = Document::from(document);
         if let Some(strength) = self.strength {
             strength_kind()
@@ -410,7 +420,10 @@ impl Project {
                 None => document.unbend(),
             }
         }
-        document.keep_way();
+        if document.animation().keys().is_empty() {
+            // Frames of an animation don't begin at the shape of one of them.
+            document.keep_way();
+        }
         Ok(document)
     }
 

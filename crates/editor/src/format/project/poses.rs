@@ -7,8 +7,8 @@ use glam::DVec3;
 use pliant_deform::METHODS;
 use serde::{Deserialize, Serialize};
 
-use crate::HandleTransform;
-use crate::document::{HandleId, Placed, Pose, Stance, followed, means};
+use super::place::{StoredPlace, places, stored_places};
+use crate::document::Pose;
 
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -25,32 +25,12 @@ pub(super) struct StoredPose {
     weights: BTreeMap<String, Vec<Option<f64>>>,
 }
 
-#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct StoredPlace {
-    #[serde(default)]
-    transform: HandleTransform,
-    /// The counted turn, in degrees about x, y and z.
-    #[serde(default)]
-    turn_deg: [f64; 3],
-    pivot: [f64; 3],
-}
-
 impl StoredPose {
     pub(super) fn of(pose: &Pose) -> Self {
-        let place = |placed: &Placed| StoredPlace {
-            transform: placed.stance.transform,
-            turn_deg: placed.stance.turn_deg.to_array(),
-            pivot: placed.pivot.to_array(),
-        };
         let points = |points: &Arc<Vec<DVec3>>| points.iter().map(|point| point.to_array()).collect();
         Self {
             name: pose.name.clone(),
-            handles: pose
-                .handles
-                .iter()
-                .map(|(id, placed)| (u32::from(id.0), place(placed)))
-                .collect(),
+            handles: stored_places(&pose.handles),
             controls: pose
                 .controls
                 .iter()
@@ -65,30 +45,10 @@ impl StoredPose {
     }
 
     pub(super) fn pose(&self) -> Pose {
-        let placed = |stored: &StoredPlace| {
-            let counted = DVec3::from_array(stored.turn_deg);
-            Placed {
-                stance: Stance {
-                    transform: stored.transform,
-                    // The counted turn must be the rotation, even in a file from another program.
-                    turn_deg: match stored.transform {
-                        HandleTransform::Trs { rotation, .. } if !means(counted, rotation) => {
-                            followed(DVec3::ZERO, rotation)
-                        }
-                        _ => counted,
-                    },
-                },
-                pivot: DVec3::from_array(stored.pivot),
-            }
-        };
         let points = |points: &Vec<[f64; 3]>| Arc::new(points.iter().map(|point| DVec3::from_array(*point)).collect());
         Pose {
             name: self.name.clone(),
-            handles: self
-                .handles
-                .iter()
-                .map(|(id, stored)| (HandleId(u16::try_from(*id).unwrap_or(u16::MAX)), placed(stored)))
-                .collect(),
+            handles: places(&self.handles),
             // An attachment that no method declares has no place.
             controls: known(&self.controls).map(|(name, own)| (name, points(own))).collect(),
             weights: known(&self.weights).map(|(name, own)| (name, own.clone())).collect(),

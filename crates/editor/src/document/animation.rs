@@ -1,0 +1,239 @@
+//! The edit over time: keys, which hold the positions of handles at moments, and the moment that is shown.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+use super::handle::{Handle, HandleId};
+use super::pose::Placed;
+use crate::ease::Ease;
+
+/// The frames a second of an animation that has no other rate.
+const FPS: f64 = 24.0;
+
+/// A time that is nearer to a frame than this share of a frame is that frame's.
+const NEAR: f64 = 1e-9;
+
+/// The keys of a document, and the moment that it shows.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Animation {
+    /// By time; each has a time of its own and names a handle.
+    keys: Arc<Vec<KeyFrame>>,
+    /// The shown moment, in seconds, at least 0.
+    time: f64,
+    /// The frames a second, in [`Animation::FPS_RANGE`].
+    fps: f64,
+}
+
+/// The positions of handles at a moment. Handles that it does not name pass by on the way to keys of their own.
+#[derive(Clone, PartialEq, Debug)]
+pub struct KeyFrame {
+    /// In seconds, at least 0.
+    pub time: f64,
+    /// The way to the next key of each handle.
+    pub ease: Ease,
+    pub(crate) handles: BTreeMap<HandleId, Placed>,
+}
+
+/// A key of one handle, by its time.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
+pub struct KeyId {
+    /// The handle.
+    pub handle: HandleId,
+    /// The time's bits, which are in the order of the times, because none is negative.
+    time_bits: u64,
+}
+
+impl KeyId {
+    /// The key of a handle at a time in seconds, at least 0.
+    pub fn new(handle: HandleId, time: f64) -> Self {
+        // Without the sign of -0.
+        let time_bits = time.abs().to_bits();
+        Self { handle, time_bits }
+    }
+
+    /// Its time in seconds.
+    pub fn time(self) -> f64 {
+        f64::from_bits(self.time_bits)
+    }
+}
+
+impl KeyFrame {
+    /// The handles that it names.
+    pub fn handles(&self) -> impl Iterator<Item = HandleId> {
+        self.handles.keys().copied()
+    }
+
+    /// Returns true if it names this handle.
+    pub fn has(&self, handle: HandleId) -> bool {
+        self.handles.contains_key(&handle)
+    }
+}
+
+impl Default for Animation {
+    fn default() -> Self {
+        Self {
+            keys: Arc::default(),
+            time: 0.0,
+            fps: FPS,
+        }
+    }
+}
+
+impl Animation {
+    /// The smallest and the largest number of frames a second.
+    pub const FPS_RANGE: std::ops::RangeInclusive<f64> = 1.0..=1000.0;
+
+    /// The latest time, in seconds: a week.
+    pub const LATEST: f64 = 604_800.0;
+
+    /// Keys in any order.
+    pub(crate) fn of(keys: impl IntoIterator<Item = KeyFrame>, time: f64, fps: f64) -> Self {
+        let mut animation = Self {
+            keys: Arc::default(),
+            time,
+            fps,
+        };
+        keys.into_iter().for_each(|key| animation.put(key));
+        animation
+    }
+
+    /// The keys, by time.
+    pub fn keys(&self) -> &[KeyFrame] {
+        &self.keys
+    }
+
+    /// The shown moment, in seconds.
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// The frames a second.
+    pub fn fps(&self) -> f64 {
+        self.fps
+    }
+
+    /// The time of the last key, in seconds; 0 without keys.
+    pub fn duration(&self) -> f64 {
+        self.keys.last().map_or(0.0, |key| key.time)
+    }
+
+    /// The frame at a time in seconds, a fraction between two frames.
+    pub fn frame_at(&self, time: f64) -> f64 {
+        time * self.fps
+    }
+
+    /// The time of the frame nearest to a time in seconds.
+    pub fn snapped(&self, time: f64) -> f64 {
+        (time.clamp(0.0, Self::LATEST) * self.fps).round() / self.fps
+    }
+
+    /// Every key of every handle.
+    pub(crate) fn ids(&self) -> impl Iterator<Item = KeyId> {
+        let of_key = |key: &KeyFrame| {
+            let time = key.time;
+            let handles: Vec<HandleId> = key.handles().collect();
+            handles.into_iter().map(move |handle| KeyId::new(handle, time))
+        };
+        self.keys.iter().flat_map(of_key)
+    }
+
+    /// The same animation at another moment.
+    pub(crate) fn at(&self, time: f64) -> Self {
+        Self {
+            time: self.tidy(time),
+            ..self.clone()
+        }
+    }
+
+    /// The same animation with other frames a second.
+    pub(crate) fn with_fps(&self, fps: f64) -> Self {
+        Self { fps, ..self.clone() }
+    }
+
+    /// Adds a key. If there is one at its time, each handle that it names gets its position, and that one's ease stays.
+    pub(crate) fn put(&mut self, key: KeyFrame) {
+        if key.handles.is_empty() {
+            return;
+        }
+        let time = self.tidy(key.time);
+        let keys = Arc::make_mut(&mut self.keys);
+        match keys.binary_search_by(|other| other.time.total_cmp(&time)) {
+            Ok(place) => keys[place].handles.extend(key.handles),
+            Err(place) => keys.insert(place, KeyFrame { time, ..key }),
+        }
+    }
+
+    /// Takes keys of single handles out.
+    pub(crate) fn take(&mut self, ids: &BTreeSet<KeyId>) -> Vec<KeyFrame> {
+        let mut taken = Vec::new();
+        let keys = Arc::make_mut(&mut self.keys);
+        for key in keys.iter_mut() {
+            let is_taken = |id: HandleId| ids.contains(&KeyId::new(id, key.time));
+            let (own, rest) = std::mem::take(&mut key.handles)
+                .into_iter()
+                .partition(|(id, _)| is_taken(*id));
+            key.handles = rest;
+            taken.push(KeyFrame {
+                handles: own,
+                ..key.clone()
+            });
+        }
+        keys.retain(|key| !key.handles.is_empty());
+        taken.retain(|key| !key.handles.is_empty());
+        taken
+    }
+
+    /// Moves keys of single handles to other times; those that come upon a key of their handle replace it. Returns them
+    /// at their new times.
+    pub(crate) fn retime(&mut self, ids: &BTreeSet<KeyId>, time: impl Fn(f64) -> f64) -> BTreeSet<KeyId> {
+        let mut moved = self.take(ids);
+        for key in &mut moved {
+            key.time = self.tidy(time(key.time));
+        }
+        self.put_all(moved)
+    }
+
+    /// Adds keys, and returns the key of every handle in them.
+    pub(crate) fn put_all(&mut self, keys: Vec<KeyFrame>) -> BTreeSet<KeyId> {
+        let added = Self::of(keys, self.time, self.fps);
+        let ids = added.ids().collect();
+        added.keys.iter().for_each(|key| self.put(key.clone()));
+        ids
+    }
+
+    /// Gives the moments of keys another way to the next.
+    pub(crate) fn set_ease(&mut self, ids: &BTreeSet<KeyId>, ease: Ease) {
+        for key in Arc::make_mut(&mut self.keys) {
+            if key.handles.keys().any(|id| ids.contains(&KeyId::new(*id, key.time))) {
+                key.ease = ease;
+            }
+        }
+    }
+
+    /// Keeps the keys' positions of handles when each handle's map of the rest shape becomes the new rest shape.
+    pub(crate) fn rebase(&mut self, handles: &[Handle]) {
+        for key in Arc::make_mut(&mut self.keys) {
+            for handle in handles {
+                if let Some(placed) = key.handles.get_mut(&handle.id) {
+                    *placed = placed.rebased(handle.affine(), handle.centre());
+                }
+            }
+        }
+    }
+
+    /// The memory of the keys.
+    pub(super) fn bytes(&self) -> usize {
+        let of_key = |key: &KeyFrame| size_of::<KeyFrame>() + key.handles.len() * size_of::<(HandleId, Placed)>();
+        self.keys.iter().map(of_key).sum()
+    }
+
+    /// A time that is allowed, on the frame that it means.
+    fn tidy(&self, time: f64) -> f64 {
+        let time = time.abs().min(Self::LATEST);
+        let frame = (time * self.fps).round();
+        if (time * self.fps - frame).abs() < NEAR {
+            return frame / self.fps;
+        }
+        time
+    }
+}

@@ -1,0 +1,84 @@
+//! The edit over time in a project.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use super::place::{StoredPlace, places, stored_places};
+use crate::document::{Animation, KeyFrame};
+use crate::ease::Ease;
+use crate::format::edit_error::EditError;
+
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct StoredAnimation {
+    /// The frames a second.
+    fps: f64,
+    /// The shown moment, in seconds.
+    #[serde(default)]
+    time: f64,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    keys: Vec<StoredKey>,
+}
+
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct StoredKey {
+    /// In seconds.
+    time: f64,
+    #[serde(default)]
+    ease: Ease,
+    /// The positions, by the handles' numbers.
+    handles: BTreeMap<u32, StoredPlace>,
+}
+
+impl StoredAnimation {
+    /// `None` for an edit without keys that shows its beginning.
+    pub(super) fn of(animation: &Animation) -> Option<Self> {
+        if *animation == Animation::default() {
+            return None;
+        }
+        let key = |key: &KeyFrame| StoredKey {
+            time: key.time,
+            ease: key.ease,
+            handles: stored_places(&key.handles),
+        };
+        Some(Self {
+            fps: animation.fps(),
+            time: animation.time(),
+            keys: animation.keys().iter().map(key).collect(),
+        })
+    }
+
+    /// The same, read.
+    ///
+    /// # Errors
+    /// A time or a number of frames a second outside its range.
+    pub(super) fn animation(&self) -> Result<Animation, EditError> {
+        let refuse = |place: String, found: f64, allowed: String| {
+            Err(EditError::OutOfRange {
+                place,
+                found: found.to_string(),
+                allowed,
+            })
+        };
+        let rates = Animation::FPS_RANGE;
+        if !rates.contains(&self.fps) {
+            let allowed = format!("a number from {} to {}", rates.start(), rates.end());
+            return refuse("animation.fps".to_owned(), self.fps, allowed);
+        }
+        let keyed = self.keys.iter().enumerate();
+        let keyed = keyed.map(|(place, key)| (format!("animation.keys[{place}].time"), key.time));
+        for (place, time) in keyed.chain([("animation.time".to_owned(), self.time)]) {
+            if !(0.0..=Animation::LATEST).contains(&time) {
+                return refuse(place, time, format!("seconds from 0 to {}", Animation::LATEST));
+            }
+        }
+        let key = |key: &StoredKey| KeyFrame {
+            time: key.time,
+            ease: key.ease,
+            handles: places(&key.handles),
+        };
+        Ok(Animation::of(self.keys.iter().map(key), self.time, self.fps))
+    }
+}

@@ -1,0 +1,151 @@
+//! The shapes of other moments around the shown one.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use pliant_deform::{BindError, Problem, Solve};
+use pliant_mesh::SurfaceVertex;
+
+use super::allowance::Allowance;
+use super::computed::Computed;
+use super::skinned::{Skin, Skinned};
+use super::slot::{Unfinished, Work};
+use super::solving::Wanted;
+use crate::Setup;
+use crate::document::{Animation, Aspect, Document, KeyFrame, Placed, Version};
+use crate::ease::Ease;
+use crate::revision::Revision;
+use crate::timeline::poses_at;
+
+/// The sources of the shapes.
+#[derive(Clone, PartialEq, Debug)]
+pub(crate) struct SkinSource {
+    moments: Vec<(i8, f64)>,
+    animation: Animation,
+    targets: Version,
+    binding: Revision,
+}
+
+impl SkinSource {
+    /// The moments, each with its place and its time in seconds.
+    pub(super) fn moments(&self) -> &[(i8, f64)] {
+        &self.moments
+    }
+
+    pub(super) fn of(moments: Vec<(i8, f64)>, document: &Document, binding: Revision) -> Self {
+        Self {
+            moments,
+            animation: document.animation().clone(),
+            targets: document.versions().of(Aspect::Targets),
+            binding,
+        }
+    }
+}
+
+/// Solves for the moments around the shown one, with the present positions of handles as a key there; `None` while
+/// nothing is bound.
+pub(super) fn skins_work(
+    computed: &Computed,
+    document: &Document,
+    moments: &[(i8, f64)],
+    allowance: Allowance,
+) -> Option<Work<Box<Skinned>>> {
+    let (binding, model) = (computed.slots.bind.last()?, computed.model.clone()?);
+    let revision = computed.slots.bind.made();
+    let animation = with_present(document);
+    let wanted = moments.iter().map(|&(place, time)| {
+        let there = document_at(document, &animation, time);
+        let handles = &computed.region.handles;
+        let wanted = Wanted::of(&there, &document.method, handles, &document.from_rest, None)?;
+        Some((place, wanted.along(&binding.lines, &there).anew()))
+    });
+    let wanted: Vec<(i8, Wanted)> = wanted.collect::<Option<_>>()?;
+    let present = Arc::clone(&binding.bound);
+    if document.method.solve() == Solve::Direct {
+        return Some(Box::new(move |_, cancel| {
+            let mut skins = Vec::with_capacity(wanted.len());
+            for (place, wanted) in wanted {
+                cancel.check()?;
+                let mut bound = present.lock().unwrap_or_else(PoisonError::into_inner);
+                let solved = wanted.solve(&mut bound, cancel);
+                let from_file = solved.map_err(|error| Unfinished::Failed(error.to_string()))?.from_file;
+                skins.push(Skin { place, from_file });
+            }
+            Ok(Box::new(Skinned { skins, own: None }))
+        }));
+    }
+    let last = computed.slots.skins.last().and_then(|last| last.own.clone());
+    let own = last.filter(|(of, _)| *of == revision).map(|(_, own)| own);
+    let ordering = match document.method.ordering_power() {
+        Some(power) => Some(computed.ordering(power)?),
+        None => None,
+    };
+    let reusable_factor = binding.reusable_factor.clone();
+    let (document, region) = (document.clone(), computed.region.clone());
+    Some(Box::new(move |progress, cancel| {
+        let own = match own {
+            Some(own) => own,
+            None => {
+                let setup = Setup::of_document(&document, &region, &model.surface);
+                let problem: Problem<'_> = setup.problem(&model);
+                let (ordering, factor) = (ordering.as_deref(), reusable_factor.as_ref());
+                match problem.rebind_within(ordering, factor, allowance.budget(), progress, cancel) {
+                    Ok(bound) => Arc::new(Mutex::new(bound)),
+                    Err(BindError::Cancelled(cancelled)) => return Err(cancelled.into()),
+                    Err(error) => {
+                        let known = |vertex| model.first_file_vertex(SurfaceVertex(vertex)).0;
+                        return Err(Unfinished::Failed(error.renumbered(known).to_string()));
+                    }
+                }
+            }
+        };
+        let mut skins = Vec::with_capacity(wanted.len());
+        let mut bound = own.lock().unwrap_or_else(PoisonError::into_inner);
+        for (place, wanted) in wanted {
+            cancel.check()?;
+            bound.set_cancel(cancel);
+            let solved = wanted.solve(&mut bound, cancel);
+            let from_file = solved.map_err(|error| Unfinished::Failed(error.to_string()))?.from_file;
+            skins.push(Skin { place, from_file });
+        }
+        cancel.check()?;
+        drop(bound);
+        Ok(Box::new(Skinned {
+            skins,
+            own: Some((revision, own)),
+        }))
+    }))
+}
+
+/// The document's keys, and the one that *Key here* would set, if a handle is not where the keys have it.
+fn with_present(document: &Document) -> Animation {
+    let mut animation = document.animation().clone();
+    let handles = document.handles();
+    let mut posed = poses_at(&animation, handles, animation.time()).into_iter();
+    let is_moved = posed.any(|(id, transform)| {
+        let handle = document.handle(id);
+        handle.is_some_and(|handle| handle.affine() != transform.affine(handle.pivot))
+    });
+    if is_moved {
+        let keyed = handles.iter().filter(|handle| !handle.is_pin);
+        animation.put(KeyFrame {
+            time: animation.time(),
+            ease: Ease::default(),
+            handles: keyed.map(|handle| (handle.id, Placed::of(handle))).collect(),
+        });
+    }
+    animation
+}
+
+/// The document with its handles where the keys have them at a time.
+fn document_at(document: &Document, animation: &Animation, time: f64) -> Document {
+    let mut there = document.clone();
+    let posed = poses_at(animation, document.handles(), time);
+    there.change_handles(|handles| {
+        for (id, transform) in posed {
+            if let Some(handle) = handles.iter_mut().find(|handle| handle.id == id) {
+                handle.put(transform);
+            }
+        }
+    });
+    there
+}

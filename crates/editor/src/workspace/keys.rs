@@ -1,0 +1,284 @@
+//! Actions on the keys of the edit over time.
+//!
+//! The document shows one moment. When the moment or the keys change, handles with keys go where the keys have them at
+//! that moment, in the same step of the history, and the surface is solved for them from the same start as every other
+//! frame. Handles without keys stay.
+
+use std::collections::BTreeSet;
+
+use pliant_deform::Solve;
+
+use super::key_work::Play;
+use super::state::Workspace;
+use crate::document::{Animation, Aspect, HandleId, KeyFrame, KeyId, Placed};
+use crate::ease::Ease;
+use crate::jobs::{Activity, JobKind};
+use crate::timeline::poses_at;
+use crate::view::Look;
+
+/// Sets a key of handles at the shown moment, at their present positions; pins have no keys. Selects it.
+pub(crate) fn key_here(workspace: &mut Workspace, is_wanted: impl Fn(HandleId) -> bool) {
+    let handles = workspace.document.handles().iter();
+    let keyed = handles.filter(|handle| !handle.is_pin && is_wanted(handle.id));
+    let handles = keyed.map(|handle| (handle.id, Placed::of(handle))).collect();
+    let time = workspace.document.animation().time();
+    let key = KeyFrame {
+        time,
+        ease: Ease::default(),
+        handles,
+    };
+    workspace.edit_keys("Key here", |animation| Some(animation.put_all(vec![key])));
+}
+
+/// Sets a key at the shown moment from a kept pose, and shows it.
+pub(crate) fn key_pose(workspace: &mut Workspace, place: usize) {
+    let document = &workspace.document;
+    let Some(pose) = document.poses().get(place) else {
+        return;
+    };
+    let is_keyed = |id: &HandleId| document.handle(*id).is_some_and(|handle| !handle.is_pin);
+    let handles = pose.handles.iter().filter(|(id, _)| is_keyed(id));
+    let key = KeyFrame {
+        time: document.animation().time(),
+        ease: Ease::default(),
+        handles: handles.map(|(id, placed)| (*id, *placed)).collect(),
+    };
+    let name = format!("Key {}", pose.name);
+    workspace.edit_keys(name, |animation| Some(animation.put_all(vec![key])));
+}
+
+/// Shows a moment, in seconds.
+pub(crate) fn go_to(workspace: &mut Workspace, time: f64) {
+    workspace.step("Go to time", |workspace| workspace.show_moment(time));
+}
+
+/// Shows the moment so many frames later.
+pub(crate) fn step_frames(workspace: &mut Workspace, frames: i32) {
+    let animation = workspace.document.animation();
+    let frame = animation.frame_at(animation.time());
+    let next = match frames < 0 {
+        true => (frame - 1e-6).ceil(),
+        false => (frame + 1e-6).floor(),
+    } + f64::from(frames);
+    let time = next.max(0.0) / animation.fps();
+    go_to(workspace, time);
+}
+
+/// The time of the next key after the shown moment, or of the last one before it.
+pub(crate) fn neighbour_key(animation: &Animation, is_forward: bool) -> Option<f64> {
+    let (now, mut times) = (animation.time(), animation.keys().iter().map(|key| key.time));
+    match is_forward {
+        true => times.find(|time| *time > now),
+        false => times.rfind(|time| *time < now),
+    }
+}
+
+/// Moves the selected keys by a time in seconds; none goes below 0.
+pub(crate) fn move_keys(workspace: &mut Workspace, by: f64) {
+    let first = workspace.first_selected().unwrap_or(0.0);
+    let by = by.max(-first);
+    retime(workspace, "Move keys", |time| time + by);
+}
+
+/// Stretches the times of the selected keys by a factor about the first of them.
+pub(crate) fn stretch_keys(workspace: &mut Workspace, factor: f64) {
+    let first = workspace.first_selected().unwrap_or(0.0);
+    retime(workspace, "Stretch keys", |time| first + (time - first) * factor);
+}
+
+fn retime(workspace: &mut Workspace, name: &str, time: impl Fn(f64) -> f64) {
+    let selected = workspace.keys.selected.clone();
+    workspace.edit_keys(name, |animation| Some(animation.retime(&selected, time)));
+}
+
+/// Removes the selected keys.
+pub(crate) fn delete_keys(workspace: &mut Workspace) {
+    let selected = workspace.keys.selected.clone();
+    workspace.edit_keys("Delete keys", |animation| {
+        animation.take(&selected);
+        Some(BTreeSet::new())
+    });
+}
+
+/// Keeps the selected keys to be pasted.
+pub(crate) fn copy_keys(workspace: &mut Workspace) {
+    let mut animation = workspace.document.animation().clone();
+    workspace.keys.copied = animation.take(&workspace.keys.selected);
+}
+
+/// Sets the copied keys, the first of them at the shown moment. Handles that no longer exist are left out.
+pub(crate) fn paste_keys(workspace: &mut Workspace) {
+    let mut keys = workspace.keys.copied.clone();
+    let Some(first) = keys.first().map(|key| key.time) else {
+        return;
+    };
+    let now = workspace.document.animation().time();
+    for key in &mut keys {
+        key.time += now - first;
+        key.handles.retain(|id, _| workspace.document.handle(*id).is_some());
+    }
+    workspace.edit_keys("Paste keys", |animation| Some(animation.put_all(keys)));
+}
+
+/// Gives the moments of the selected keys another way to the next.
+pub(crate) fn set_key_ease(workspace: &mut Workspace, ease: Ease) {
+    let selected = workspace.keys.selected.clone();
+    workspace.edit_keys("Change ease", |animation| {
+        animation.set_ease(&selected, ease);
+        None
+    });
+}
+
+/// Chooses the number of frames a second. Keys keep their times.
+pub(crate) fn set_fps(workspace: &mut Workspace, fps: f64) {
+    workspace.change("Change frame rate", |document| {
+        document.set_animation(document.animation().with_fps(fps));
+    });
+}
+
+/// The document's moment and keys.
+impl Workspace {
+    /// Changes the keys in one step, and shows the present moment of the changed ones. `change` returns the keys that
+    /// are selected then, unless the selection stays.
+    fn edit_keys(&mut self, name: impl Into<String>, change: impl FnOnce(&mut Animation) -> Option<BTreeSet<KeyId>>) {
+        self.step(name, |workspace| {
+            let mut animation = workspace.document.animation().clone();
+            let selected = change(&mut animation);
+            let time = animation.time();
+            workspace.document.set_animation(animation);
+            if let Some(selected) = selected {
+                workspace.keys.selected = selected;
+            }
+            workspace.show_moment(time);
+        });
+    }
+
+    /// Shows a moment, in seconds: handles with keys go to their transforms at that time.
+    fn show_moment(&mut self, time: f64) {
+        let document = &mut self.document;
+        let animation = document.animation().at(time);
+        let mut posed = poses_at(&animation, document.handles(), animation.time());
+        document.set_animation(animation);
+        posed.retain(|(id, transform)| {
+            let handle = document.handle(*id);
+            handle.is_some_and(|handle| handle.affine() != transform.affine(handle.pivot))
+        });
+        if posed.is_empty() {
+            return;
+        }
+        document.unsettle();
+        document.change_handles(|handles| {
+            for (id, transform) in posed {
+                if let Some(handle) = handles.iter_mut().find(|handle| handle.id == id) {
+                    handle.put(transform);
+                }
+            }
+        });
+        // While the moment is dragged, shapes go on from the last one, so that an iterative method keeps up.
+        if !self.is_adjusting() {
+            self.jobs.solve_anew(self.document.versions().of(Aspect::Targets));
+        }
+    }
+
+    /// The drag of the moment has ended: the shape is solved like that of every other frame.
+    pub(super) fn end_scrubbing(&mut self, before: &Animation) {
+        let document = &mut self.document;
+        let is_scrubbed = before.time() != document.animation().time();
+        if is_scrubbed && document.is_moved() && document.method().solve() != Solve::Direct {
+            self.jobs.drop_solves();
+            document.unsettle();
+            self.jobs.solve_anew(document.versions().of(Aspect::Targets));
+        }
+    }
+
+    /// Selects keys; those that don't exist are left out.
+    pub(crate) fn select_keys(&mut self, ids: impl IntoIterator<Item = KeyId>) {
+        self.keys.selected = ids.into_iter().collect();
+        self.drop_lost_keys();
+    }
+
+    /// Selects every key.
+    pub(crate) fn select_all_keys(&mut self) {
+        self.keys.selected = self.document.animation().ids().collect();
+    }
+
+    /// Drops selected keys that no longer exist.
+    pub(super) fn drop_lost_keys(&mut self) {
+        if !self.keys.selected.is_empty() {
+            let present: BTreeSet<KeyId> = self.document.animation().ids().collect();
+            self.keys.selected.retain(|id| present.contains(id));
+        }
+    }
+
+    fn first_selected(&self) -> Option<f64> {
+        self.keys.selected.iter().map(|id| id.time()).reduce(f64::min)
+    }
+}
+
+/// The ghosts of other moments.
+impl Workspace {
+    /// Requests the ghosts that the look shows. None is shown while the animation plays, and those of an iterative method
+    /// follow once the shape rests.
+    pub(crate) fn follow_skins(&mut self, look: &Look, activity: Activity) {
+        let has_keys = self.document.animation().duration() > 0.0;
+        if !(look.timeline && look.skins.shown && has_keys) || self.keys.is_playing() {
+            return self.jobs.forget_skins();
+        }
+        let is_live = self.document.method().solve() == Solve::Direct;
+        let is_at_rest = activity == Activity::Still && self.document.is_settled();
+        let is_other_problem = self.document.versions().are_other_problem(&self.seen);
+        if (is_live || is_at_rest) && activity != Activity::Painting && !is_other_problem {
+            let moments = look.skins.moments(self.document.animation());
+            self.jobs.follow_skins(moments, &self.document);
+        }
+    }
+}
+
+/// Play.
+impl Workspace {
+    /// Begins to play the frames over and over, or pauses.
+    pub(crate) fn play_or_pause_keys(&mut self) {
+        if self.keys.is_playing() {
+            return self.pause_keys();
+        }
+        let step = self.begin("Play");
+        let now_ms = self.jobs.now_ms();
+        self.keys.play = Some(Play {
+            step,
+            began_ms: now_ms,
+            next_ms: now_ms,
+        });
+    }
+
+    /// Ends a stretch of play, which becomes a step.
+    pub(crate) fn pause_keys(&mut self) {
+        if let Some(play) = self.keys.play.take() {
+            self.commit(&play.step);
+        }
+    }
+
+    /// Shows the next frame of a stretch of play, once the last one is solved and its time is over. No frame is left
+    /// out. With an executor that does not measure time, every call shows one.
+    pub(crate) fn tick(&mut self) {
+        let now_ms = self.jobs.now_ms();
+        let Some(play) = &mut self.keys.play else { return };
+        if !self.document.is_settled() {
+            let kinds = [JobKind::Order, JobKind::Region, JobKind::Bind, JobKind::Solve];
+            if !kinds.into_iter().any(|kind| self.jobs.is_busy(kind)) {
+                // It was stopped, or failed.
+                self.pause_keys();
+            }
+            return;
+        }
+        if now_ms < play.next_ms && now_ms != play.began_ms {
+            return;
+        }
+        let animation = self.document.animation();
+        play.next_ms = now_ms.max(play.next_ms + 1000.0 / animation.fps());
+        let next = (animation.frame_at(animation.time()) + 1e-6).floor() + 1.0;
+        let last = animation.frame_at(animation.duration()) + 1e-6;
+        let frame = if next > last { 0.0 } else { next };
+        let time = frame / animation.fps();
+        self.show_moment(time);
+    }
+}
