@@ -55,6 +55,9 @@ impl Workspace {
     /// Replaces the mesh and the document on it, as one step of the history.
     fn replace_mesh(&mut self, name: &str, new: NewMesh) {
         self.jobs.drop_solves();
+        // Steps that are open belong to the former mesh.
+        self.pause_keys();
+        self.commit_adjusting();
         self.history.sync(&self.document);
         let before = Content::clone(&self.document);
         self.document.replace(new.document);
