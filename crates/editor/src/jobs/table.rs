@@ -15,7 +15,7 @@ use super::flowed::Flowed;
 use super::inspected::Inspected;
 use super::intersections::Intersections;
 use super::present_binding::PresentBinding;
-use super::skins::Skinned;
+use super::skin::Skinned;
 use super::slot::{Ended, Scheduled, Slot, Unfinished};
 use super::solved::SolveResult;
 use crate::pickable::Pickable;
