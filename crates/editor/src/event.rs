@@ -13,6 +13,7 @@ use crate::command::{Command, KeyMap};
 use crate::document::{SaveMark, SavedAs};
 use crate::input::{Button, Key, Modifiers, Pointer};
 use crate::jobs::JobDone;
+use crate::stitching::NewMesh;
 
 /// An event. No event carries the time: the editor has no clock.
 #[derive(Debug)]
@@ -76,6 +77,9 @@ pub enum Event {
         /// Regions, handles and transforms to begin with; `None` begins afresh.
         beginning: Option<Beginning>,
     },
+    /// A change of the mesh ([`Editor::take_stitch`](crate::Editor::take_stitch)) has ended: the new mesh, or the reason
+    /// why there is none, in one sentence.
+    Stitched(Result<Box<NewMesh>, String>),
     /// The document was recovered from a session that ended without saving, or carried over to a file that another
     /// program has changed: no file has it, and one is needed.
     Recovered(SavedAs),

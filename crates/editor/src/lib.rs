@@ -62,6 +62,7 @@ mod scene_view;
 mod selection;
 mod snapshot;
 mod status;
+mod stitching;
 mod timeline;
 mod tool;
 mod view;
@@ -93,16 +94,17 @@ pub use jobs::{
     PresentBinding, Running, Skin, Skinned, SolveResult, Solved, Symmetry, Unfinished,
 };
 pub use lines::Lines;
-pub use region::{Counts, Region, Rim};
+pub use region::{Counts, FoundLimb, Region, Rim};
 pub use revision::Revision;
 pub use scene_view::{ControlPoints, SceneView};
 pub use selection::Selection;
 pub use snapshot::Snapshot;
 pub use status::thousands;
+pub use stitching::{CutPlane, KeptSide, MergeChange, MergeSettings, MeshChange, NewMesh, REACH_RANGE, StitchRequest};
 pub use timeline::{HandlePlace, KeySpace, SequenceTimeline, Timeline};
 pub use tool::{
-    BrushMetric, Constraint, Correction, CorrectionBrush, Depth, FlowAction, FlowBrush, StiffnessAction,
-    StiffnessBrush, StrokeShape, ToolMode,
+    BrushMetric, Constraint, Correction, CorrectionBrush, Depth, FlowAction, FlowBrush, PointedRim, RimUse,
+    StiffnessAction, StiffnessBrush, StrokeShape, ToolMode,
 };
 pub use view::{
     Before, Camera, Clay, ControlShape, Cursor, GizmoAxes, GizmoMode, GizmoOrientation, GizmoPart, GizmoShape, Look,

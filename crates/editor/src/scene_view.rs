@@ -11,7 +11,10 @@ use pliant_mesh::Model;
 use crate::document::{Handle, HandleId, KeyId};
 use crate::jobs::{Descent, JobKind, Skin, Symmetry};
 use crate::region::Counts;
-use crate::tool::{BrushMetric, CorrectionBrush, Depth, FlowBrush, StiffnessBrush, StrokeShape, ToolMode};
+use crate::stitching::{KeptSide, MergeSettings};
+use crate::tool::{
+    BrushMetric, CorrectionBrush, Depth, FlowBrush, PointedRim, RimUse, StiffnessBrush, StrokeShape, ToolMode,
+};
 use crate::view::{Camera, ControlShape, Cursor, GizmoOrientation, GizmoShape, Look, Orbit, Readout};
 
 /// The whole content of the 3D view and the panels around it.
@@ -76,6 +79,8 @@ pub struct SceneView<'a> {
     pub stroke_shape: StrokeShape,
     /// True if the points of curves follow a dragged one at their distances.
     pub chain: bool,
+    /// True if a drag of the pose brush bends a limb at all its joints.
+    pub whole_limb: bool,
     /// The depth of a lasso or a box.
     pub depth: Depth,
     /// The plane across which both sides are painted at once, found or still being searched for.
@@ -102,6 +107,16 @@ pub struct SceneView<'a> {
     pub orientation: GizmoOrientation,
     /// True if the next click moves the pivot.
     pub wants_pivot: bool,
+    /// The use of the rim that the next click takes; `None` if it takes none.
+    pub wants_rim: Option<RimUse>,
+    /// The rim under the pointer that the next click takes.
+    pub rim: Option<&'a PointedRim>,
+    /// The side that is kept by the cut along the line that the next drag draws; `None` if it draws none.
+    pub wants_cut: Option<KeptSide>,
+    /// How parts are merged.
+    pub merge: &'a MergeSettings,
+    /// The change of the mesh that is under way, by the name of its step.
+    pub stitching: Option<&'static str>,
     /// The brush's radius in points.
     pub brush_radius_px: f64,
     /// The handles, in the order of their making.

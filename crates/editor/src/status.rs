@@ -2,7 +2,7 @@
 
 use crate::jobs::{Activity, JobKind};
 use crate::region::Counts;
-use crate::tool::{Gesture, StrokeShape, ToolMode, ToolSettings};
+use crate::tool::{Gesture, PointedRim, RimUse, StrokeShape, ToolMode, ToolSettings, cut_effect};
 use crate::view::View;
 use crate::workspace::{Workspace, selected_curve};
 
@@ -12,6 +12,7 @@ pub(crate) fn status(
     workspace: &Workspace,
     view: &View,
     settings: &ToolSettings,
+    rim: Option<&PointedRim>,
 ) -> String {
     let Some(model) = workspace.model() else {
         return "Open a mesh, or drop one here".to_owned();
@@ -23,6 +24,11 @@ pub(crate) fn status(
         return format!("This file has only points: {refused}");
     }
     let now = gesture.and_then(|gesture| gesture.status(workspace, view));
+    let now = now.or_else(|| settings.wants_rim.map(|wanted| rim_hint(wanted, rim)));
+    let now = now.or_else(|| {
+        let effect = cut_effect(settings.wants_cut?);
+        Some(format!("Drag a line across the shape. {effect}"))
+    });
     let now = now.unwrap_or_else(|| hint(workspace, settings));
     let is_dragging = gesture.is_some_and(|gesture| gesture.activity() == Activity::Dragging);
     let parts = [
@@ -32,6 +38,32 @@ pub(crate) fn status(
         Some(now),
     ];
     parts.into_iter().flatten().collect::<Vec<_>>().join(" · ")
+}
+
+/// The rim under the pointer, and the effect of a click.
+fn rim_hint(wanted: RimUse, rim: Option<&PointedRim>) -> String {
+    let effect = match wanted {
+        RimUse::Fill => "fills it",
+        RimUse::Bridge { first: None } => "begins the bridge there",
+        RimUse::Bridge { first: Some(_) } => "leads the bridge there",
+        RimUse::Merge { first: None } => "takes it as the first of two",
+        RimUse::Merge { first: Some(_) } => "joins the first one to it, place to place",
+    };
+    match rim {
+        Some(rim) => format!(
+            "A rim of {} edges, {:.4} long: a click {effect}",
+            thousands(rim.edges()),
+            rim.length
+        ),
+        None => match wanted {
+            RimUse::Fill => "Click near the rim of a hole",
+            RimUse::Bridge { first: None } => "Click near the first of two rims",
+            RimUse::Bridge { first: Some(_) } => "Click near the second rim",
+            RimUse::Merge { first: None } => "Click a place of the first of two rims",
+            RimUse::Merge { first: Some(_) } => "Click the place of the second rim that belongs to it",
+        }
+        .to_owned(),
+    }
 }
 
 /// The progress of the shape's descent, if its method is iterative.

@@ -1,9 +1,10 @@
 //! A file on disk, read and welded.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use pliant_io::{Format, Scene, SceneAndDrawn};
+use pliant_io::{Bytes, Format, Resolver, Saved, Scene, SceneAndDrawn};
 use pliant_mesh::{Model, WeldOptions};
 use tracing::info_span;
 
@@ -105,6 +106,40 @@ pub fn load_bytes(bytes: Vec<u8>, path: &Path, weld: &WeldOptions, watch: &Watch
     };
     loaded.sources().for_each(|(what, path)| watch.note_read(what, path));
     Ok(loaded)
+}
+
+/// Reads and welds files that were saved in memory and are on no disk. Neighbours that are not among them are read beside
+/// `path`.
+///
+/// # Errors
+/// Those of [`load`].
+pub(crate) fn load_saved(saved: Saved, path: &Path, weld: &WeldOptions, watch: &Watch) -> Result<Loaded, EngineError> {
+    let mut files = saved.files.into_iter();
+    let bytes = files.next().map(|file| file.bytes).unwrap_or_default();
+    let resolver = InMemory {
+        files: files.map(|file| (file.name, Bytes::from(file.bytes))).collect(),
+        on_disk: Neighbours::of(path),
+    };
+    let name = path.to_string_lossy();
+    let progress = watch.begin("reading");
+    let format = Format::of_name(&name)?;
+    let opened = pliant_io::read(bytes, format, &name, &resolver, &progress, &watch.cancel);
+    welded(opened.map_err(EngineError::Read)?, path, weld, watch)
+}
+
+/// The neighbours of a file in memory.
+struct InMemory {
+    files: BTreeMap<String, Bytes>,
+    on_disk: Neighbours,
+}
+
+impl Resolver for InMemory {
+    fn read(&self, uri: &str) -> Result<Bytes, String> {
+        match self.files.get(uri) {
+            Some(bytes) => Ok(bytes.clone()),
+            None => self.on_disk.read(uri),
+        }
+    }
 }
 
 fn open_bytes(

@@ -6,8 +6,8 @@ use std::time::Instant;
 
 use glam::DVec3;
 use pliant_io::{
-    Format, MorphAnimation, MorphDeltas, MorphTarget, Role, Save, SaveError, Saved, Scene, SceneAndDrawn, UnsavedShape,
-    quoted, with_neighbours_renamed,
+    Format, MorphAnimation, MorphDeltas, MorphTarget, Placement, Role, Save, SaveError, Saved, Scene, SceneAndDrawn,
+    UnsavedShape, quoted, with_neighbours_renamed,
 };
 use pliant_mesh::{Cancel, Drawn, Progress};
 use tracing::info_span;
@@ -16,7 +16,7 @@ use crate::EngineError;
 use crate::coloured::save_with_colours;
 use crate::files::check::{self, Written};
 use crate::files::placement::{self, Action, Settled};
-use crate::files::{self, Bridge, Destination, NewFile, Share, Staged, Staging};
+use crate::files::{self, Bridge, Destination, NewFile, Share, Staged, Staging, name_as_text};
 use crate::loading::Loaded;
 use crate::report::ms_since;
 
@@ -118,28 +118,10 @@ pub(crate) fn stage_of(
     let of_check = progress.part(0.8, 1.0);
     let format = Format::of_name(&what.output.to_string_lossy())?;
     let name = name_in(format, &to);
-    let save = Save {
-        deltas: what.deltas,
-        turned: original.turned,
-        drawn: original.drawn,
-        positions: what.positions,
-        format,
-        name: &name,
-        placement: placement::placement(original.path, &to),
-    };
+    let placed = (format, &*name, placement::placement(original.path, &to));
+    let save = save_of(original, what, placed);
     let scene = original.scene;
-    let refused = |error| refused(what.output, error);
-    let saved = match (what.colours, what.morph, what.animation) {
-        (Some(colours), ..) => {
-            let course = (&of_making, cancel);
-            save_with_colours((original.path, scene), &save, colours, refused, course)
-        }
-        (None, Some(morph), _) => scene.save_as_morph(&save, morph, &of_making, cancel).map_err(refused),
-        (None, None, Some(animation)) => scene
-            .save_as_animation(&save, animation, &of_making, cancel)
-            .map_err(refused),
-        (None, None, None) => scene.save(&save, &of_making, cancel).map_err(refused),
-    }?;
+    let saved = encoded(original, what, &save, &of_making, cancel)?;
     let triangles = saved.triangles.clone();
     let compare = |back: &SceneAndDrawn| scene.check_read_back(&save, what.morph, triangles.as_deref(), back);
     stage_saved(
@@ -150,6 +132,84 @@ pub(crate) fn stage_of(
         staging,
         (&of_writing, &of_check, cancel),
     )
+}
+
+/// The save of a file in a format, under a name at a place.
+fn save_of<'a>(
+    original: &Original<'a>,
+    what: &SaveAs<'a>,
+    (format, name, placement): (Format, &'a str, Placement),
+) -> Save<'a> {
+    Save {
+        deltas: what.deltas,
+        turned: original.turned,
+        drawn: original.drawn,
+        positions: what.positions,
+        format,
+        name,
+        placement,
+    }
+}
+
+/// The bytes of a save and of its neighbours.
+fn encoded(
+    original: &Original<'_>,
+    what: &SaveAs<'_>,
+    save: &Save<'_>,
+    progress: &Progress,
+    cancel: &Cancel,
+) -> Result<Saved, EngineError> {
+    let scene = original.scene;
+    let refused = |error| refused(what.output, error);
+    match (what.colours, what.morph, what.animation) {
+        (Some(colours), ..) => {
+            let course = (progress, cancel);
+            save_with_colours((original.path, scene), save, colours, refused, course)
+        }
+        (None, Some(morph), _) => scene.save_as_morph(save, morph, progress, cancel).map_err(refused),
+        (None, None, Some(animation)) => scene
+            .save_as_animation(save, animation, progress, cancel)
+            .map_err(refused),
+        (None, None, None) => scene.save(save, progress, cancel).map_err(refused),
+    }
+}
+
+/// The files that a save over a file itself would write, in the format of `what.output`'s name.
+///
+/// # Errors
+/// The format can't represent it; [`EngineError::Interrupted`] soon after `cancel` is raised.
+pub(crate) fn in_memory(
+    loaded: &Loaded,
+    what: &SaveAs<'_>,
+    progress: &Progress,
+    cancel: &Cancel,
+) -> Result<Saved, EngineError> {
+    let original = Original {
+        path: &loaded.path,
+        scene: &loaded.scene,
+        drawn: &loaded.model.rest(),
+        turned: &loaded.model.drawn_vertices_of(what.inside_out),
+    };
+    let format = Format::of_name(&what.output.to_string_lossy())?;
+    let name = name_as_text(what.output.file_name().unwrap_or_default());
+    let save = save_of(&original, what, (format, &name, Placement::SameFile));
+    encoded(&original, what, &save, progress, cancel)
+}
+
+/// The files of a new shape, in the format of `output`'s name.
+///
+/// # Errors
+/// Those of [`in_memory`].
+pub(crate) fn new_in_memory(
+    shape: &UnsavedShape<'_>,
+    output: &Path,
+    progress: &Progress,
+    cancel: &Cancel,
+) -> Result<Saved, EngineError> {
+    let format = Format::of_name(&output.to_string_lossy())?;
+    let name = name_as_text(output.file_name().unwrap_or_default());
+    let saved = shape.save(format, &name, progress, cancel);
+    saved.map_err(|error| refused(output, error))
 }
 
 /// Refuses morph targets with names that others of the file already have.
@@ -276,7 +336,7 @@ pub fn bytes_at_rest(
 fn name_in(format: Format, to: &Destination) -> String {
     match format {
         // Only URIs can name files whose names are not UTF-8.
-        Format::Glb | Format::Gltf => files::name_as_text(to.name()),
+        Format::Glb | Format::Gltf => name_as_text(to.name()),
         _ => to.name().to_string_lossy().into_owned(),
     }
 }

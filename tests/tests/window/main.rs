@@ -10,6 +10,7 @@ mod examples;
 mod files;
 mod flow;
 mod frame;
+mod mesh_changes;
 mod pose;
 mod session;
 mod slow_frames;

@@ -17,6 +17,20 @@ pub(super) const TOGGLE_CHAIN: Entry<()> = Entry {
     action: Action::Do(|context, ()| context.settings.chain = !context.settings.chain),
 };
 
+/// Lets a drag of the pose brush bend a limb at all its joints, or at one.
+pub(super) const TOGGLE_WHOLE_LIMB: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Whole limb",
+        "Makes a drag with Pose bend a limb at all its joints, from the shoulder to the hand.",
+        "chain ik inverse kinematics arm leg bones reach",
+        &[],
+    )],
+    scope: Scope::Tool,
+    unavailable: always,
+    action: Action::Do(|context, ()| context.settings.whole_limb = !context.settings.whole_limb),
+};
+
 /// Adds control points.
 pub(super) const DIVIDE_CURVE: Entry<()> = Entry {
     listed: &[item(

@@ -14,6 +14,7 @@ mod flow;
 mod handle;
 mod key_map;
 mod look;
+mod mesh;
 mod object;
 mod paint;
 mod pose;

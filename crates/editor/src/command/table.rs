@@ -9,13 +9,15 @@ use pliant_deform::{Attachment, ExampleShape, Loose, Method};
 use super::entry::{Action, Entry, Reason, Scope, State};
 use super::shortcut::Shortcut;
 use super::{
-    animation, controls, curves, document, examples, flow, handle, look, object, paint, pose, region, transform, view,
+    animation, controls, curves, document, examples, flow, handle, look, mesh, object, paint, pose, region, transform,
+    view,
 };
 use crate::document::{
     FlowOptions, HandleId, HandleTransform, KeyId, ObjectAction, Paint, PivotPlace, Reach, SmallParts, Tips,
 };
 use crate::ease::Ease;
 use crate::jobs::Symmetry;
+use crate::stitching::{KeptSide, MergeSettings, MeshChange};
 use crate::tool::{
     BrushMetric, Context, CorrectionBrush, Depth, FlowBrush, Gesture, StiffnessBrush, StrokeShape, ToolMode,
 };
@@ -55,6 +57,7 @@ fn group_of(entry: &str) -> &'static str {
         "transform" => "Move, turn and scale",
         "region" => "Regions and stiffness",
         "object" => "Objects and parts",
+        "mesh" => "Mesh",
         "view" => "View",
         "look" => "Look",
         _ => "Others",
@@ -250,6 +253,8 @@ commands! {
     SetFlowBrush(brush: FlowBrush) = flow::SET_FLOW_BRUSH;
     /// Lets the points of curves follow a dragged one at their distances, or no longer.
     ToggleChain = curves::TOGGLE_CHAIN;
+    /// Lets a drag of the pose brush bend a limb at all its joints, or at one.
+    ToggleWholeLimb = curves::TOGGLE_WHOLE_LIMB;
     /// Adds points to the selected handle's curve: after each selected one, or between all.
     DivideCurve = curves::DIVIDE_CURVE;
     /// Removes the selected points of the selected handle's curve.
@@ -347,6 +352,26 @@ commands! {
     TurnInsideOut = object::TURN_INSIDE_OUT;
     /// Shows everything hidden.
     ShowEverything = object::SHOW_EVERYTHING;
+    /// Fills every hole.
+    FillHoles = mesh::FILL_HOLES;
+    /// Fills the hole whose rim the next click takes.
+    FillHole = mesh::FILL_HOLE;
+    /// Joins the two borders that the next clicks take by a tube.
+    BridgeBorders = mesh::BRIDGE;
+    /// Deletes the vertices with the paint of the selected handle or region.
+    DeleteRegion = mesh::DELETE_REGION;
+    /// Cuts along the line that the next drag draws; the positive side is to its left, seen along it.
+    CutAlongLine(kept: KeptSide) = mesh::CUT;
+    /// Mirrors the part that the selected handle holds, across axis 0, 1, 2 of the handle for x, y, z.
+    MirrorPart(axis: usize) = mesh::MIRROR_PART;
+    /// Joins the part that the selected handle holds to the others, at the nearest borders.
+    Merge = mesh::MERGE;
+    /// Joins the part that the selected handle holds to another one, at the borders that the next clicks take.
+    MergePicked = mesh::MERGE_PICKED;
+    /// Chooses how parts are merged; the reach is clamped to [`REACH_RANGE`](crate::REACH_RANGE).
+    SetMerge(settings: MergeSettings) = mesh::SET_MERGE;
+    /// Changes the mesh.
+    ChangeMesh(change: MeshChange) = mesh::CHANGE_MESH;
     /// Frames everything.
     FrameAll = view::FRAME_ALL;
     /// Frames the selected handle and its region.

@@ -60,7 +60,10 @@ pub(super) const PICK_PIVOT: Entry<()> = Entry {
     )],
     scope: Scope::Document,
     unavailable: with_unlocked,
-    action: Action::Do(|context, ()| context.settings.wants_pivot = true),
+    action: Action::Do(|context, ()| {
+        context.settings.want_nothing();
+        context.settings.wants_pivot = true;
+    }),
 };
 
 /// Moves a handle's pivot to a point of the present shape. The surface does not change.

@@ -12,10 +12,11 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use pliant_deform::{Attachment, ExampleShape, Loose, Method};
+use pliant_mesh::Model;
 
 use super::access::Access;
 use super::animation::Animation;
-use super::content::{Paint, Tips, WorkPose};
+use super::content::{Content, Paint, Tips, WorkPose};
 use super::fluid::{FlowOptions, Fluid};
 use super::handle::{Handle, HandleId};
 use super::kept_shape::KeptShape;
@@ -68,6 +69,27 @@ pub(crate) enum Change {
     Fluid(Fluid),
     /// The forces in its flow.
     FlowOptions(FlowOptions),
+    /// Another mesh, with the whole document on it. It is alone in its step, which has no shape of its own.
+    Mesh(Box<OtherMesh>),
+}
+
+/// A mesh, and the document on it.
+#[derive(Clone, Debug)]
+pub(crate) struct OtherMesh {
+    pub(crate) model: Arc<Model>,
+    pub(crate) content: Content,
+}
+
+impl OtherMesh {
+    /// About its memory.
+    fn bytes(&self) -> usize {
+        /// Position, normal, shapes, paint and neighbours of a vertex, and its drawn vertex.
+        const OF_VERTEX: usize = 240;
+        /// Corners and neighbours of a triangle, and its drawn triangle.
+        const OF_TRIANGLE: usize = 48;
+        let surface = &self.model.surface;
+        surface.positions.len() * OF_VERTEX + surface.triangles.len() * OF_TRIANGLE
+    }
 }
 
 /// A named step.
@@ -82,6 +104,14 @@ struct Step {
 }
 
 impl Step {
+    /// The mesh on its other side, if that is another one.
+    fn other_mesh(&self) -> Option<&OtherMesh> {
+        match &self.changes[..] {
+            [Change::Mesh(other)] => Some(other),
+            _ => None,
+        }
+    }
+
     fn bytes(&self) -> usize {
         let changes: usize = self
             .changes
@@ -96,6 +126,7 @@ impl Step {
                 Change::Access(access) => {
                     size_of::<Access>() + (access.hidden.len() + access.locked.len()) * size_of::<u32>()
                 }
+                Change::Mesh(other) => other.bytes(),
                 // Tables that steps share are counted in each.
                 Change::Attachments(attachments) => attachments.values().map(attachment_bytes).sum(),
                 Change::Kept(Some(kept)) => {
@@ -152,6 +183,8 @@ fn attachment_bytes(attachment: &Attachment) -> usize {
 pub struct History {
     done: VecDeque<Step>,
     undone: Vec<Step>,
+    /// The present mesh; `None` before the first file.
+    mesh: Option<Arc<Model>>,
     /// The shape to which the neighbouring steps' deltas are relative.
     shape: Arc<Vec<DVec3>>,
     /// That shape's version of the document's shape.
@@ -168,11 +201,12 @@ pub struct History {
 }
 
 impl History {
-    /// An empty history of a document that shows `shape`.
-    pub(crate) fn new(document: &Document, cap_bytes: usize) -> Self {
+    /// An empty history of a document on a mesh.
+    pub(crate) fn new(document: &Document, mesh: Option<Arc<Model>>, cap_bytes: usize) -> Self {
         Self {
             done: VecDeque::new(),
             undone: Vec::new(),
+            mesh,
             shape: Arc::clone(&document.from_rest),
             shape_version: document.versions().of(Aspect::Shape),
             cap_bytes,
@@ -251,7 +285,9 @@ impl History {
         if self.shape_version == document.versions().of(Aspect::Shape) {
             return;
         }
-        for step in self.done.back_mut().into_iter().chain(self.undone.last_mut()) {
+        let neighbours = self.done.back_mut().into_iter().chain(self.undone.last_mut());
+        // The document before another mesh is whole in its step.
+        for step in neighbours.filter(|step| step.other_mesh().is_none()) {
             let other = step.shape.applied(&self.shape);
             step.shape = Sparse::difference(&document.from_rest, &other);
         }
@@ -282,6 +318,28 @@ impl History {
         self.keep_shape_of(before);
     }
 
+    /// Adds a step to another mesh, on which the document is `after`; `before` is the earlier document.
+    ///
+    /// Undone steps can't be redone after this.
+    pub(crate) fn push_mesh(&mut self, name: String, mesh: Arc<Model>, before: Content, after: &Document) {
+        let Some(model) = self.mesh.replace(mesh) else { return };
+        let content = before;
+        let change = Change::Mesh(Box::new(OtherMesh { model, content }));
+        self.push(name, vec![change], after);
+        self.forget_oldest();
+    }
+
+    /// The present mesh; `None` before the first file.
+    pub(crate) fn mesh(&self) -> Option<&Arc<Model>> {
+        self.mesh.as_ref()
+    }
+
+    /// All meshes to which undo and redo can lead, and the present one.
+    pub fn meshes(&self) -> impl Iterator<Item = &Arc<Model>> {
+        let others = self.done.iter().chain(&self.undone).filter_map(Step::other_mesh);
+        others.map(|other| &other.model).chain(&self.mesh)
+    }
+
     /// Undoes the last step; returns its name, or `None` if there is none.
     pub(crate) fn undo(&mut self, document: &mut Document) -> Option<String> {
         self.sync(document);
@@ -309,6 +367,13 @@ impl History {
 
     fn exchange(&mut self, step: &mut Step, document: &mut Document) {
         self.revision += 1;
+        if let [Change::Mesh(other)] = &mut step.changes[..] {
+            document.swap_content(&mut other.content);
+            if let Some(mesh) = &mut self.mesh {
+                std::mem::swap(mesh, &mut other.model);
+            }
+            return self.keep_shape_of(document);
+        }
         // It is apart from the document, which forgets it when a handle moves.
         let mut strength = document.take_strength();
         for change in &mut step.changes {
@@ -353,5 +418,6 @@ fn swap(change: &mut Change, document: &mut Document, strength: &mut Option<Arc<
         Change::Fluid(fluid) => document.swap_fluid(fluid),
         Change::FlowOptions(options) => document.swap_flow_options(options),
         Change::Strength(other) => std::mem::swap(other, strength),
+        Change::Mesh(other) => document.swap_content(&mut other.content),
     }
 }

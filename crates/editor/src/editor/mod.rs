@@ -16,7 +16,7 @@ use crate::input::{Button, Key, Modifiers, Pointer};
 use crate::jobs::{Activity, Asked, Executor, JobDone, JobKind};
 use crate::tool::{Adjust, Brush, Context, Gesture, Lit, Next, Overlay, ToolMode, ToolSettings, begin, hover, tint};
 use crate::view::{Shading, UpAxis, View, up_axis_of};
-use crate::workspace::{ColouredBy, Workspace, take_mirrored};
+use crate::workspace::{ColouredBy, Workspace, take_mirrored, take_stitched};
 
 /// The factor by which a notch of the wheel changes the brush's size.
 const WHEEL_STEP: f64 = 1.15;
@@ -42,6 +42,8 @@ pub struct Editor {
     showing_original: Option<Key>,
     /// Events that wait until the hierarchy for rays has the drawn shape.
     waiting: VecDeque<Event>,
+    /// The mesh after the last event.
+    mesh: Option<Arc<Model>>,
 }
 
 impl Editor {
@@ -60,6 +62,7 @@ impl Editor {
             key_map: KeyMap::default(),
             showing_original: None,
             waiting: VecDeque::new(),
+            mesh: None,
         }
     }
 
@@ -141,6 +144,10 @@ impl Editor {
             Event::Tick => self.workspace.tick(),
             Event::JobDone(done) => self.job_done(done),
             Event::Opened { model, name, beginning } => self.open(model, name, beginning),
+            Event::Stitched(result) => {
+                self.abort_gesture();
+                take_stitched(&mut self.workspace, result.map(|new| *new));
+            }
             Event::Recovered(needed) => self.workspace.history.mark_unsaved(needed),
             Event::Saved(what, mark) => {
                 let Workspace { history, document, .. } = &mut self.workspace;
@@ -152,6 +159,7 @@ impl Editor {
 
     /// Applies the consequences of an event's changes: jobs, colours, the camera's history.
     fn conclude(&mut self) {
+        self.follow_mesh();
         let gesture = self.gesture.as_deref();
         let activity = match gesture.map(Gesture::activity) {
             // Nothing prepares for the pointer between two frames.
@@ -176,7 +184,7 @@ impl Editor {
         if !is_posing {
             self.workspace.jobs.forget_joint();
         } else if gesture.is_none() {
-            hover(&mut self.workspace, &self.view, hovering_px);
+            hover(&mut self.workspace, &self.view, hovering_px, self.settings.whole_limb);
         }
         tint(&mut self.workspace, &self.view, hovering_px);
         self.workspace.follow_flow(gesture.is_none());
@@ -185,6 +193,25 @@ impl Editor {
         if !gesture.is_some_and(Gesture::moves_camera) {
             self.view.rest();
         }
+    }
+
+    /// Forgets everything that belongs to another mesh, if an event has changed it.
+    fn follow_mesh(&mut self) {
+        let mesh = self.workspace.model();
+        let is_same = match (&self.mesh, mesh) {
+            (Some(before), Some(now)) => Arc::ptr_eq(before, now),
+            (before, now) => before.is_some() == now.is_some(),
+        };
+        if is_same {
+            return;
+        }
+        self.mesh = mesh.cloned();
+        self.gesture = None;
+        self.waiting.clear();
+        self.showing_original = None;
+        self.view.look.original = false;
+        self.settings.want_nothing();
+        self.brush = Brush::default();
     }
 
     /// The active gesture, and separately everything that it may change.
@@ -242,14 +269,14 @@ impl Editor {
             self.workspace.pause_keys();
         } else if key == Key::Escape {
             // The most recent mode ends first: one that waits for a click, then the comparison.
-            let waits = self.settings.wants_pivot || self.workspace.selection.wants_new_handle;
+            let waits = self.settings.waits_for_press() || self.workspace.selection.wants_new_handle;
             if !waits {
                 self.workspace.jobs.end_comparing();
             }
             self.workspace.refusal = None;
             self.workspace.selection.wants_new_handle = false;
             self.workspace.controls.put([]);
-            self.settings.wants_pivot = false;
+            self.settings.want_nothing();
         } else if let Some(command) = self.key_map.command(key, modifiers) {
             // A held key repeats: its display stays until it goes up.
             let is_held = command == Command::ToggleOriginal && self.showing_original == Some(key);
@@ -402,11 +429,6 @@ impl Editor {
     /// Opens another file in the workspace, and frames all of it.
     fn begin_file(&mut self, size: Option<f64>, up: UpAxis, open: impl FnOnce(&mut Workspace)) {
         self.abort_gesture();
-        self.showing_original = None;
-        self.view.look.original = false;
-        self.waiting.clear();
-        self.settings.wants_pivot = false;
-        self.brush = Brush::default();
         open(&mut self.workspace);
         self.view.open(size.map(|size| if size > 0.0 { size } else { 1.0 }), up);
         frame_all(&self.workspace, &mut self.view);

@@ -17,10 +17,11 @@ use crate::revision::Revision;
 use crate::scene_view::{ControlPoints, SceneView};
 use crate::snapshot::Snapshot;
 use crate::status::status;
+use crate::stitching::StitchRequest;
 use crate::tool::{Gesture, ToolMode};
 use crate::view::{Cursor, Look, Pick};
 use crate::warning::in_window_words;
-use crate::workspace::{ControlSource, SnapshotKey, Workspace, lasting, region_colour, rims};
+use crate::workspace::{ControlSource, SnapshotKey, Workspace, lasting, region_colour, rims, take_stitching};
 use crate::{EditFile, MeshReference, geometry_hash};
 
 impl Editor {
@@ -63,6 +64,7 @@ impl Editor {
             outline_px: gesture.map_or(Vec::new(), Gesture::outline_px),
             stroke_shape: settings.stroke_shape,
             chain: settings.chain,
+            whole_limb: settings.whole_limb,
             depth: settings.depth,
             symmetry: workspace.symmetry(),
             brush_metric: settings.brush().metric,
@@ -76,11 +78,16 @@ impl Editor {
             pressure: settings.pressure,
             orientation: settings.orientation,
             wants_pivot: settings.wants_pivot,
+            wants_rim: settings.wants_rim,
+            rim: self.overlay.rim.as_ref(),
+            wants_cut: settings.wants_cut,
+            merge: &settings.merge,
+            stitching: workspace.stitching.as_ref().map(|stitching| stitching.change.name()),
             brush_radius_px: settings.brush().radius_px,
             handles: document.handles(),
             selected: workspace.selection.selected(),
             companions: workspace.selection.companions(),
-            status: status(gesture, workspace, view, settings),
+            status: status(gesture, workspace, view, settings, self.overlay.rim.as_ref()),
             problem: workspace.refusal.as_deref(),
             jobs: workspace.jobs.running(),
             counts: workspace.computed().region.counts,
@@ -89,6 +96,19 @@ impl Editor {
             unsaved: workspace.history.is_unsaved(),
             settled: self.is_settled(),
         }
+    }
+
+    /// The change of the mesh that a person has asked for, once, and when the shape has settled. The caller makes the new
+    /// mesh and sends [`Event::Stitched`](crate::Event::Stitched).
+    pub fn take_stitch(&mut self) -> Option<StitchRequest> {
+        if !self.is_shape_settled() {
+            return None;
+        }
+        let change = take_stitching(&mut self.workspace)?;
+        Some(StitchRequest {
+            change,
+            snapshot: self.snapshot()?,
+        })
     }
 
     fn control_points(&self) -> Option<ControlPoints> {
@@ -311,12 +331,17 @@ impl Editor {
 
     /// Returns true if a gesture is active that Esc ends: a stroke, a drag, picking a pivot.
     pub fn is_acting(&self) -> bool {
-        self.gesture.is_some() || self.settings.wants_pivot
+        self.gesture.is_some() || self.settings.waits_for_press()
     }
 
     /// Returns true if shape and regions are final: no drag or stroke is active, and no job runs except those that
     /// prepare for the pointer or the first drag.
     pub fn is_settled(&self) -> bool {
+        self.workspace.stitching.is_none() && self.is_shape_settled()
+    }
+
+    /// The same on the present mesh, even if it is being changed.
+    fn is_shape_settled(&self) -> bool {
         let is_displaced = self.document().is_displaced();
         let awaited = |kind: JobKind| kind.is_awaited() && (kind != JobKind::Order || is_displaced);
         let jobs = &self.workspace.jobs;

@@ -102,7 +102,13 @@ impl Computed {
 
     /// The last joint that was found.
     pub(crate) fn joint(&self) -> Option<&Arc<Joint>> {
-        self.slots.joint.last()?.as_ref()
+        self.slots.joint.last()?.as_ref().map(|limb| &limb.joint)
+    }
+
+    /// The joints between that and the limb's tip, if they were asked for.
+    pub(crate) fn inner_joints(&self) -> &[Arc<Joint>] {
+        let limb = self.slots.joint.last().and_then(Option::as_ref);
+        limb.map_or(&[], |limb| &limb.inner)
     }
 
     /// The places where the present shape passes through itself; `None` before the search.

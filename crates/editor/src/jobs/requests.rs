@@ -3,15 +3,15 @@
 
 use std::sync::Arc;
 
+use crate::region::FoundLimb;
 use glam::DVec3;
-use pliant_mesh::Joint;
 
 use super::comparison::Comparison;
 use super::flowed::{FlowRequest, flow_work};
 use super::inspected::Asked;
 use super::inspection::inspect_work;
 use super::scheduler::Jobs;
-use super::skin::Skin;
+use super::skinned::Skin;
 use super::skins::{SkinSource, skins_work};
 use super::slot::{Slot, Work};
 use super::table::Slots;
@@ -33,9 +33,9 @@ impl Jobs {
     }
 
     /// The candidate of the joint that is wanted, if the joint under a triangle of the present shape has not been
-    /// requested yet.
-    pub(crate) fn asks_for_joint(&self, triangle: u32) -> Option<i32> {
-        let wanted = (self.shape_revision(), triangle, self.joint_up);
+    /// requested yet; `is_chain` if all joints of the limb are wanted.
+    pub(crate) fn asks_for_joint(&self, triangle: u32, is_chain: bool) -> Option<i32> {
+        let wanted = (self.shape_revision(), triangle, self.joint_up, is_chain);
         (self.joint_asked != Some(wanted)).then_some(self.joint_up)
     }
 
@@ -47,12 +47,15 @@ impl Jobs {
 
     /// Requests the joint under a triangle of the present shape. The running search continues, so that a steadily
     /// moving pointer still shows joints; the newest request waits.
-    pub(crate) fn look_for_joint(&mut self, triangle: u32, work: Work<Option<Arc<Joint>>>) {
+    pub(crate) fn look_for_joint(&mut self, triangle: u32, is_chain: bool, work: Work<Option<FoundLimb>>) {
         let shape = self.shape_revision();
-        if self.joint_asked.is_some_and(|(asked, ..)| asked != shape) {
+        if self
+            .joint_asked
+            .is_some_and(|(asked, .., chain)| (asked, chain) != (shape, is_chain))
+        {
             self.forget_joint();
         }
-        self.joint_asked = Some((shape, triangle, self.joint_up));
+        self.joint_asked = Some((shape, triangle, self.joint_up, is_chain));
         let revision = self.next_revision();
         self.computed.slots.joint.follow(revision);
         self.computed.slots.joint.request(work);

@@ -46,8 +46,8 @@ pub(crate) struct Jobs {
     pub(crate) comparison: Option<Comparison>,
     /// A different number for every measured region.
     pub(crate) roles_revision: Revision,
-    /// The shape, the triangle and the candidate of the last request for a joint.
-    pub(super) joint_asked: Option<(Revision, u32, i32)>,
+    /// The shape, the triangle, the candidate and the extent (all joints of the limb?) of the last request for a joint.
+    pub(super) joint_asked: Option<(Revision, u32, i32, bool)>,
     /// The candidate that is wanted, from the guess towards the body.
     pub(super) joint_up: i32,
     /// True if the last requested solve begins anew.

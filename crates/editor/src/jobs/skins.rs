@@ -7,7 +7,7 @@ use pliant_mesh::Cancel;
 
 use super::allowance::Allowance;
 use super::computed::Computed;
-use super::skin::{Skin, Skinned};
+use super::skinned::{Skin, Skinned};
 use super::slot::{Unfinished, Work};
 use super::solving::Wanted;
 use super::work::BindInput;

@@ -7,7 +7,7 @@
 use std::sync::Arc;
 
 use pliant_deform::{Budget, Ordering};
-use pliant_mesh::{Cancel, Joint, Progress, SurfaceVertex};
+use pliant_mesh::{Cancel, Progress, SurfaceVertex};
 
 use super::both_sides::BothSides;
 use super::compared::Compared;
@@ -15,11 +15,11 @@ use super::flowed::Flowed;
 use super::inspected::Inspected;
 use super::intersections::Intersections;
 use super::present_binding::PresentBinding;
-use super::skin::Skinned;
+use super::skinned::Skinned;
 use super::slot::{Ended, Scheduled, Slot, Unfinished};
 use super::solved::SolveResult;
 use crate::pickable::Pickable;
-use crate::region::Region;
+use crate::region::{FoundLimb, Region};
 use crate::revision::Revision;
 
 /// A row: what the window says about a kind of job, and who waits for it.
@@ -146,7 +146,7 @@ jobs! {
     /// Weights or base of the present binding, for display.
     inspect: Inspect(Inspected) = Row { doing: "inspecting the binding", is_awaited: true, is_named: false };
     /// The joint of the limb under the pointer; `None` if there is none.
-    joint: Joint(Option<Arc<Joint>>) = Row { doing: "finding the joint", is_awaited: false, is_named: false };
+    joint: Joint(Option<FoundLimb>) = Row { doing: "finding the joint", is_awaited: false, is_named: false };
     /// The shapes of the moments around the shown one.
     skins: Skins(Box<Skinned>) = Row { doing: "solving the moments around", is_awaited: false, is_named: false };
     /// A step of the flow on the surface.

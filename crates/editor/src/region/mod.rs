@@ -23,7 +23,8 @@ use glam::DVec3;
 use pliant_deform::{Loose, Role};
 use pliant_mesh::{Cancel, Cancelled, ContourLine, DistanceSearch, Model, Surface, SurfaceVertex};
 
-pub(crate) use self::limb_joint::limb_joint;
+pub use self::limb_joint::FoundLimb;
+pub(crate) use self::limb_joint::{limb_chain, limb_joint};
 use self::loose::Ball;
 pub(crate) use self::loose::FileContacts;
 use self::part::end_of_part;

@@ -6,6 +6,7 @@ use super::context::Context;
 use super::control_box::ControlBox;
 use super::correct;
 use super::curve_stroke::CurveStroke;
+use super::cut_line::CutLine;
 use super::flow_stroke::FlowStroke;
 use super::gesture::Gesture;
 use super::mode::{StrokeShape, ToolMode};
@@ -13,6 +14,7 @@ use super::navigate::Navigate;
 use super::outline::OutlineStroke;
 use super::paint::PaintStroke;
 use super::pose::PoseDrag;
+use super::rim::RimUse;
 use super::sketch_stroke::SketchStroke;
 use super::smooth::SmoothStroke;
 use super::stiffness::StiffnessStroke;
@@ -21,8 +23,9 @@ use super::transform::TransformDrag;
 use super::transform_measure::TransformKind;
 use crate::document::Paint;
 use crate::input::{Button, Pointer};
+use crate::stitching::MeshChange;
 use crate::view::{GizmoPart, Pick};
-use crate::workspace::set_pivot;
+use crate::workspace::{merge_held, set_pivot, stitch};
 
 /// The beginning of a gesture.
 type Begun = Option<Box<dyn Gesture>>;
@@ -32,6 +35,16 @@ pub(crate) fn begin(context: &mut Context<'_>, pointer: Pointer, button: Button)
     let modifiers = pointer.modifiers;
     match button {
         Button::Secondary | Button::Middle => return navigate(context, pointer, button),
+        Button::Primary if !modifiers.alt && context.settings.wants_rim.is_some() => {
+            return take_rim(context, pointer);
+        }
+        Button::Primary
+            if !modifiers.alt
+                && let Some(kept) = context.settings.wants_cut =>
+        {
+            context.workspace.refusal = None;
+            return Some(Box::new(CutLine::begin(pointer, kept)));
+        }
         Button::Primary
             if !modifiers.alt
                 && let Some(point) = control_under(context, pointer) =>
@@ -144,6 +157,32 @@ fn take_control(context: &mut Context<'_>, pointer: Pointer, point: u32) -> Begu
     context.workspace.controls.click(point);
     let drag = TransformDrag::begin(context, TransformKind::Move, Constraint::Free, pointer.position_px)?;
     Some(Box::new(drag.held(Button::Primary, None)))
+}
+
+/// Takes the rim under the pointer; beside all rims the camera moves.
+fn take_rim(context: &mut Context<'_>, pointer: Pointer) -> Begun {
+    let Some((wanted, rim)) = context.settings.wants_rim.zip(context.overlay.rim.as_ref()) else {
+        return navigate(context, pointer, Button::Primary);
+    };
+    context.workspace.refusal = None;
+    context.settings.wants_rim = None;
+    match wanted {
+        RimUse::Fill => stitch(context.workspace, MeshChange::FillAt(rim.vertex)),
+        RimUse::Bridge { first: None } => {
+            let first = Some(rim.vertex);
+            context.settings.wants_rim = Some(RimUse::Bridge { first });
+        }
+        RimUse::Bridge { first: Some(first) } => stitch(context.workspace, MeshChange::Bridge([first, rim.vertex])),
+        RimUse::Merge { first: None } => {
+            let first = Some(rim.vertex);
+            context.settings.wants_rim = Some(RimUse::Merge { first });
+        }
+        RimUse::Merge { first: Some(first) } => {
+            let settings = context.settings.merge.clone();
+            merge_held(context.workspace, &[[first, rim.vertex]], settings);
+        }
+    }
+    None
 }
 
 fn navigate(context: &mut Context<'_>, pointer: Pointer, button: Button) -> Begun {

@@ -1,5 +1,5 @@
 //! The display of a joint: rings around the limb that fade with the falloff, the bone from the centre of the turn to the
-//! limb's tip, and a dot at the centre.
+//! next joint or the limb's tip, and a dot at the centre.
 
 use std::f64::consts::TAU;
 
@@ -23,10 +23,10 @@ const RING_HIDDEN_SHARE: f32 = 0.12;
 /// The bone and the dot are inside the limb and yet visible.
 const BONE_HIDDEN_SHARE: f32 = 0.7;
 
-/// The shapes of a joint, or of the pivot alone if the limb was posed before.
+/// The shapes of a joint and of the bone from there to a point, or of the pivot alone if the limb was posed before.
 pub(crate) fn joint_shapes(
     centre: DVec3,
-    joint: Option<&Joint>,
+    joint: Option<(&Joint, DVec3)>,
     camera: &Camera,
     viewport_px: DVec2,
 ) -> Vec<ControlShape> {
@@ -36,14 +36,14 @@ pub(crate) fn joint_shapes(
     let mut shapes = Vec::new();
     let middle = JOINT_RINGS / 2;
     let [red, green, blue] = COLOUR;
-    for (number, ring) in joint.iter().flat_map(|joint| joint.rings.iter().enumerate()) {
+    for (number, ring) in joint.iter().flat_map(|(joint, _)| joint.rings.iter().enumerate()) {
         let share = number.abs_diff(middle) as f64 / (middle + 1) as f64;
         let colour = [red, green, blue, (255.0 * (1.0 - share)) as u8];
         let lines = ring.iter().map(|ends| ends.map(lifted)).collect();
         shapes.push(ControlShape::lines(colour, lines).with_hidden_share(RING_HIDDEN_SHARE));
     }
-    if let Some(joint) = joint {
-        shapes.extend(bone(joint, camera));
+    if let Some((joint, end)) = joint {
+        shapes.extend(bone(joint.centre, end, camera));
     }
     for (radius_px, colour) in [(DOT_PX + RIM_PX, RIM), (DOT_PX, [red, green, blue, 255])] {
         let dot = ControlShape::filled(colour, disc(centre, radius_px * px, camera));
@@ -52,9 +52,8 @@ pub(crate) fn joint_shapes(
     shapes
 }
 
-/// A kite across the line of sight from the joint to the limb's tip: its filling and its outline.
-fn bone(joint: &Joint, camera: &Camera) -> [ControlShape; 2] {
-    let (from, to) = (joint.centre, joint.tip);
+/// A kite across the line of sight from a joint to the next one or to the limb's tip: its filling and its outline.
+fn bone(from: DVec3, to: DVec3, camera: &Camera) -> [ControlShape; 2] {
     let waist = from.lerp(to, BONE_WAIST);
     let aside = (to - from).cross(camera.towards_eye(waist)) * BONE_HALF_WIDTH;
     let corners = [from, waist + aside, to, waist - aside];

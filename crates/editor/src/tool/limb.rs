@@ -11,7 +11,7 @@ use pliant_mesh::{DistanceSearch, Joint, Shape, SurfaceVertex};
 
 use crate::document::{Document, Handle, HandleId, Paint};
 use crate::jobs::JobKind;
-use crate::region::limb_joint;
+use crate::region::{FoundLimb, limb_chain, limb_joint};
 use crate::view::{Pick, View};
 use crate::workspace::{Workspace, members, tint_limb};
 
@@ -41,6 +41,18 @@ pub(crate) struct NewLimb {
 }
 
 impl NewLimb {
+    /// The part of a handle beyond a joint on it, which becomes its child.
+    pub(crate) fn within(workspace: &Workspace, parent: HandleId, joint: &Arc<Joint>) -> Self {
+        let paint = workspace.document.paint();
+        let is_parents = |vertex: &SurfaceVertex| paint[vertex.index()] == Paint::Handle(parent);
+        Self {
+            own: open(workspace, joint.far_side.iter().copied().filter(is_parents)),
+            joint: Arc::clone(joint),
+            parent: Some(parent),
+            children: Vec::new(),
+        }
+    }
+
     /// The vertices of its parent that become free to bend at the joint; `None` if the parent would keep no vertex.
     pub(crate) fn freed(&self, workspace: &Workspace) -> Option<Vec<SurfaceVertex>> {
         let (Some(parent), Some(model)) = (self.parent, workspace.model()) else {
@@ -65,8 +77,8 @@ impl NewLimb {
     }
 }
 
-/// Requests the joint of the limb under the pointer, if it is not known yet.
-pub(crate) fn hover(workspace: &mut Workspace, view: &View, pointer_px: Option<glam::DVec2>) {
+/// Requests the joint of the limb under the pointer, or all its joints, if it is not known yet.
+pub(crate) fn hover(workspace: &mut Workspace, view: &View, pointer_px: Option<glam::DVec2>, is_chain: bool) {
     if !workspace.jobs.is_picking_current() {
         return;
     }
@@ -78,7 +90,7 @@ pub(crate) fn hover(workspace: &mut Workspace, view: &View, pointer_px: Option<g
     if shown.is_some_and(|joint| joint.limb.binary_search(&pick.vertex).is_err()) {
         workspace.jobs.want_joint(None);
     }
-    let Some(up) = workspace.jobs.asks_for_joint(pick.triangle) else {
+    let Some(up) = workspace.jobs.asks_for_joint(pick.triangle, is_chain) else {
         return;
     };
     let Some(model) = workspace.model().cloned() else {
@@ -88,6 +100,7 @@ pub(crate) fn hover(workspace: &mut Workspace, view: &View, pointer_px: Option<g
     let contacts = workspace.computed().contacts.clone();
     workspace.jobs.look_for_joint(
         pick.triangle,
+        is_chain,
         Box::new(move |_, cancel| {
             let rest = model.surface.positions.iter().zip(&**displacements);
             let positions: Vec<_> = rest.map(|(&rest, &moved)| rest + moved).collect();
@@ -97,7 +110,14 @@ pub(crate) fn hover(workspace: &mut Workspace, view: &View, pointer_px: Option<g
                 positions: &positions,
             };
             let at = (pick.triangle, pick.point);
-            Ok(limb_joint(&model, &shape, &contacts, at, up, cancel)?.map(Arc::new))
+            match is_chain {
+                true => Ok(limb_chain(&model, &shape, &contacts, at, up, cancel)?),
+                false => {
+                    let joint = limb_joint(&model, &shape, &contacts, at, up, cancel)?.map(Arc::new);
+                    let inner = Vec::new();
+                    Ok(joint.map(|joint| FoundLimb { joint, inner }))
+                }
+            }
         }),
     );
 }

@@ -4,12 +4,14 @@
 //! highlighted, and a press grabs it.
 
 use glam::{DVec2, DVec3};
+use pliant_mesh::Joint;
 
 use super::brush::ring;
 use super::hidden_points::HiddenPoints;
 use super::intersections::intersection_shapes;
 use super::mode::{StrokeShape, ToolMode};
 use super::pose::{Limb, joint_shapes, limb_under};
+use super::rim::{PointedRim, RimUse, Rims};
 use super::settings::ToolSettings;
 use super::symmetry::{closed, symmetry_shapes};
 use super::taken_handle::is_taken_along;
@@ -56,6 +58,9 @@ pub(crate) struct Overlay {
     hidden: HiddenPoints,
     /// The part under a resting pointer.
     rested: Option<GizmoPart>,
+    /// The rims of the mesh while one is wanted, and the one that a press takes.
+    rims: Rims,
+    pub(crate) rim: Option<PointedRim>,
 }
 
 /// The colour of the ring at which a soft brush has half of its strength.
@@ -120,7 +125,7 @@ impl Overlay {
             takes_handle = lit == Lit::Pointed && is_taken_along(workspace, settings, &pick, pointer.modifiers);
             let has_ring = !matches!(settings.mode, ToolMode::Select | ToolMode::Pose)
                 && settings.stroke_shape == StrokeShape::Brush;
-            if has_ring && !settings.wants_pivot && !takes_handle {
+            if has_ring && !settings.waits_for_press() && !takes_handle {
                 line = ring(&picking, pointer.position_px, &pick, &settings.brush());
                 if let Some(share) = settings.soft_share() {
                     let inner = settings.brush().scaled(share);
@@ -139,6 +144,8 @@ impl Overlay {
         let controls = self.renew_controls(workspace, view, control_px);
         let joint_px = pointer_px.filter(|_| highlighted.is_none());
         shapes.extend(joint(lit, workspace, view, settings, joint_px));
+        let rim_px = pointer_px.filter(|_| lit == Lit::Pointed);
+        shapes.extend(self.renew_rims(workspace, view, settings.wants_rim, rim_px));
         shapes.extend(intersection_shapes(workspace, view));
         shapes.extend(symmetry_shapes(workspace, &line));
         if self.ring != line || self.gizmo != gizmo || self.controls != controls || self.shapes != shapes {
@@ -148,6 +155,19 @@ impl Overlay {
             self.controls = controls;
             self.revision += 1;
         }
+    }
+
+    /// The rims, and the one under the pointer, while one is wanted.
+    fn renew_rims(
+        &mut self,
+        workspace: &Workspace,
+        view: &View,
+        wanted: Option<RimUse>,
+        pointer_px: Option<DVec2>,
+    ) -> Vec<ControlShape> {
+        self.rims.follow(workspace, wanted);
+        self.rim = pointer_px.and_then(|px| self.rims.pointed(workspace, view, px));
+        self.rims.shapes(workspace, view, wanted, self.rim.as_ref())
     }
 
     /// The visible control points, and their shapes; `pointer_px` is the pointer's place if it may take one.
@@ -185,7 +205,8 @@ fn joint(
     settings: &ToolSettings,
     pointer_px: Option<DVec2>,
 ) -> Vec<ControlShape> {
-    let shapes = |centre, joint| joint_shapes(centre, joint, view.camera(), view.viewport_px());
+    let shapes =
+        |centre, joint: Option<(&Joint, DVec3)>| joint_shapes(centre, joint, view.camera(), view.viewport_px());
     let of_handle = |id| {
         let handle = workspace.document.handle(id);
         handle.map_or_else(Vec::new, |handle| shapes(handle.centre(), None))
@@ -198,7 +219,15 @@ fn joint(
         .filter(|_| is_hovering)
         .and_then(|px| workspace.pick(view, px));
     match pick.map(|pick| limb_under(workspace, &pick)) {
-        Some(Limb::Untouched(limb)) => shapes(limb.joint.centre, Some(&*limb.joint)),
+        Some(Limb::Untouched(limb)) => {
+            let joints = std::iter::once(&limb.joint).chain(workspace.computed().inner_joints());
+            let joints: Vec<_> = joints.collect();
+            let ends = joints[1..].iter().map(|next| next.centre).chain([limb.joint.tip]);
+            let bones = joints.iter().zip(ends);
+            bones
+                .flat_map(|(joint, end)| shapes(joint.centre, Some((joint, end))))
+                .collect()
+        }
         Some(Limb::Posed(id)) => of_handle(id),
         Some(Limb::Unknown | Limb::None) | None => Vec::new(),
     }

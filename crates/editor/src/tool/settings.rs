@@ -4,8 +4,10 @@ use super::brush::{BRUSH_RADIUS_PX, BrushMetric, BrushSize};
 use super::correction_brush::{Correction, CorrectionBrush};
 use super::flow_brush::FlowBrush;
 use super::mode::{Depth, StrokeShape, ToolMode};
+use super::rim::RimUse;
 use super::stiffness_brush::{StiffnessAction, StiffnessBrush};
 use crate::document::{HandleId, Paint};
+use crate::stitching::{KeptSide, MergeSettings};
 use crate::view::{GizmoMode, GizmoOrientation};
 
 /// The tool, its brushes and the gizmo.
@@ -28,8 +30,16 @@ pub(crate) struct ToolSettings {
     pub(crate) orientation: GizmoOrientation,
     /// True if the points of a curve follow a dragged one at their distances.
     pub(crate) chain: bool,
+    /// True if a drag of the pose brush bends a limb at all its joints.
+    pub(crate) whole_limb: bool,
     /// True if the next click moves the selected handle's pivot.
     pub(crate) wants_pivot: bool,
+    /// The use of the rim that the next click takes.
+    pub(crate) wants_rim: Option<RimUse>,
+    /// The side that is kept by the next drag, which draws a line along which the surface is cut.
+    pub(crate) wants_cut: Option<KeptSide>,
+    /// How parts are merged.
+    pub(crate) merge: MergeSettings,
 }
 
 impl Default for ToolSettings {
@@ -48,7 +58,11 @@ impl Default for ToolSettings {
             gizmo_mode: GizmoMode::default(),
             orientation: GizmoOrientation::default(),
             chain: false,
+            whole_limb: false,
             wants_pivot: false,
+            wants_rim: None,
+            wants_cut: None,
+            merge: MergeSettings::default(),
         }
     }
 }
@@ -86,6 +100,16 @@ impl ToolSettings {
     pub(crate) fn draws_curves(&self) -> bool {
         let is_curve = self.stroke_shape.is_line() && self.stroke_shape != StrokeShape::Sketch;
         self.mode == ToolMode::PaintHandle && is_curve
+    }
+
+    /// Returns true if the next press has a purpose of its own.
+    pub(crate) fn waits_for_press(&self) -> bool {
+        self.wants_pivot || self.wants_rim.is_some() || self.wants_cut.is_some()
+    }
+
+    /// The next press is the tool's again.
+    pub(crate) fn want_nothing(&mut self) {
+        (self.wants_pivot, self.wants_rim, self.wants_cut) = (false, None, None);
     }
 
     /// Chooses the measure of the chosen tool's brush; the tools that paint handles share one, and so do the others.

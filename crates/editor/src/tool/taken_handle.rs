@@ -16,7 +16,7 @@ pub(super) fn is_taken_along(
     modifiers: Modifiers,
 ) -> bool {
     let is_brush = settings.mode == ToolMode::PaintHandle && settings.stroke_shape == StrokeShape::Brush;
-    let waits = settings.wants_pivot || workspace.selection.wants_new_handle;
+    let waits = settings.waits_for_press() || workspace.selection.wants_new_handle;
     workspace.selected().is_some_and(|handle| {
         let is_on_it = workspace.document.paint().get(pick.vertex.index()) == Some(&Paint::Handle(handle.id));
         let is_movable = !handle.locked && !handle.is_pin;

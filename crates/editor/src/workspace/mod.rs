@@ -26,6 +26,8 @@ mod shown_controls;
 mod snapshot;
 mod state;
 mod stiffness;
+mod stitching;
+mod stitching_request;
 mod symmetry;
 mod work_pose;
 
@@ -65,5 +67,6 @@ pub use snapshot::SnapshotKey;
 pub(crate) use state::Workspace;
 pub use stiffness::StiffnessChange;
 pub(crate) use stiffness::{change_stiffness, clear_stiffness, set_stiffness};
+pub(crate) use stitching::{held_parts, merge_held, mirror_held, stitch, take_stitched, take_stitching};
 pub(crate) use symmetry::{set_symmetry, twin_across};
 pub(crate) use work_pose::{carry_corrections, lasting, toggle_work_pose};

@@ -13,6 +13,7 @@ use super::flow_play::FlowPlay;
 use super::key_work::KeyWork;
 use super::mirror_request::Mirroring;
 use super::selection::HandleSelection;
+use super::stitching_request::Stitching;
 use crate::document::{
     Aspect, Document, HISTORY_BYTES, Handle, HandleId, History, Transaction, Version, Versions, VertexAccess,
 };
@@ -55,6 +56,8 @@ pub(crate) struct Workspace {
     pub(super) symmetry: Symmetry,
     /// Both sides of the plane of symmetry, once they are found.
     pub(super) both_sides: Option<Arc<BothSides>>,
+    /// The change of the mesh that is under way.
+    pub(crate) stitching: Option<Stitching>,
 }
 
 impl Workspace {
@@ -63,7 +66,7 @@ impl Workspace {
         let document = Document::new(0);
         Self {
             jobs: Jobs::new(executor),
-            history: History::new(&document, HISTORY_BYTES),
+            history: History::new(&document, None, HISTORY_BYTES),
             seen: *document.versions(),
             painted: (false, document.versions().of(Aspect::Paint)),
             document,
@@ -83,30 +86,22 @@ impl Workspace {
             mirroring: None,
             symmetry: Symmetry::None,
             both_sides: None,
+            stitching: None,
         }
     }
 
     /// Opens another file, which begins with this document.
     pub(crate) fn open(&mut self, model: Arc<Model>, name: String, document: Document) {
         self.document.replace(document);
-        self.original = Arc::new(vec![DVec3::ZERO; self.document.paint.len()]);
-        self.history = History::new(&self.document, HISTORY_BYTES);
+        self.history = History::new(&self.document, Some(Arc::clone(&model)), HISTORY_BYTES);
         self.selection = HandleSelection::default();
-        self.controls = ControlSelection::default();
         self.selection
             .put(self.document.handles().first().map(|handle| handle.id));
         self.refusal = None;
         self.file_name = name;
-        self.descent = None;
-        self.mirroring = None;
-        self.symmetry = Symmetry::None;
-        self.both_sides = None;
         self.jobs.open(model);
-        self.flow.reset();
+        self.begin_mesh();
         self.keys = KeyWork::default();
-        self.seen = *self.document.versions();
-        self.shape_revision += 1;
-        self.colours.change_all();
     }
 
     /// Returns true if anything was painted at the end of the last event outside a stroke.
@@ -232,6 +227,7 @@ impl Workspace {
         self.jobs.drop_solves();
         let before: Vec<HandleId> = self.document.handles().iter().map(|handle| handle.id).collect();
         self.history.undo(&mut self.document);
+        self.follow_mesh();
         // After undo of a deletion the handle is selected, as before.
         let mut handles = self.document.handles().iter().map(|handle| handle.id);
         if let Some(back) = handles.find(|id| !before.contains(id)) {
@@ -245,6 +241,7 @@ impl Workspace {
         self.jobs.drop_solves();
         self.flow.drop_stretch();
         self.history.redo(&mut self.document);
+        self.follow_mesh();
         // A restored handle is probably the next one to be edited.
         let last = self.document.handles().last().map(|handle| handle.id);
         self.selection.put(self.selection.selected().or(last));
@@ -257,6 +254,7 @@ impl Workspace {
         self.flow.drop_stretch();
         while self.history.names().1 > steps && self.history.undo(&mut self.document).is_some() {}
         while self.history.names().1 < steps && self.history.redo(&mut self.document).is_some() {}
+        self.follow_mesh();
     }
 }
 

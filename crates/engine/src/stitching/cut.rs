@@ -3,16 +3,16 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use pliant_editor::{Selection, Selector};
-use pliant_mesh::Model;
-use pliant_stitch::{Age, Keep, NewShape, Part, Plane, StitchError, VertexSource};
+use pliant_editor::Selector;
+use pliant_stitch::{Age, Keep, NewShape, Plane, VertexSource};
 use serde_json::json;
 
 use super::look::{Channels, Dressed, Source};
-use super::shape_report::{Change, judged};
-use super::{Remaking, ShapeCounts, Stitched, counted, lost, refused};
+use super::shape_report::judged;
+use super::{Made, Remaking, ReportTo, ShapeCounts, Stitched, change_of, counted, flags, lost, refused};
 use crate::EngineError;
 use crate::files::{self, Staging};
+use crate::loading::Loaded;
 use crate::watch::Watch;
 
 /// The input of [`cut`].
@@ -44,64 +44,101 @@ pub fn cut(job: &Cut<'_>, watch: &Watch, staging: &Staging) -> Result<Stitched, 
     } = job.remaking;
     job.remaking.check_paths()?;
     let [loaded] = job.remaking.load([file], watch)?;
-    let selection = match job.along {
+    let deleted;
+    let by = match job.along {
         CutAlong::Selector(selector, place) => {
             let of_selector = |source| EngineError::Edit {
                 edit: place.to_owned(),
                 source,
             };
-            Some(selector.evaluate(&loaded.model).map_err(of_selector)?)
+            let selection = selector.evaluate(&loaded.model).map_err(of_selector)?;
+            deleted = flags(&selection, &loaded.model);
+            CutBy::Deleted(&deleted)
         }
-        CutAlong::Plane(..) => None,
+        CutAlong::Plane(plane, keep) => CutBy::Plane(plane, keep),
     };
+    let CutFile { made, left, gone } = cut_file(&loaded, by, output, report, watch)?;
+    let written = job.remaking.stage(
+        (&made.shape, &made.dressed),
+        |warnings| {
+            json!({
+                "vertices_deleted": loaded.model.drawn.file_vertex_count() - left.vertices,
+                "vertices_added": made.shape.file_vertex_count - left.vertices,
+                "triangles_deleted": gone,
+                "triangles_split": left.split,
+                "before": ShapeCounts::of(&loaded.model),
+                "after": made.after.map(|(counts, _)| counts),
+                "warnings": warnings,
+            })
+        },
+        made.warnings,
+        staging,
+        watch,
+    )?;
+    Ok(Stitched {
+        staged: written.staged,
+        done: made.done,
+        report: written.report,
+        warnings: written.warnings,
+        loaded: vec![loaded],
+    })
+}
 
+/// The line along which a surface is cut.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum CutBy<'a> {
+    /// The border of deleted surface vertices: a flag for each.
+    Deleted(&'a [bool]),
+    /// A plane.
+    Plane(Plane, Keep),
+}
+
+/// A file without a part.
+pub(super) struct CutFile {
+    pub made: Made,
+    left: Left,
+    /// The number of its triangles of which nothing is left.
+    gone: usize,
+}
+
+/// Cuts a file, to be written as `output`.
+pub(super) fn cut_file(
+    loaded: &Loaded,
+    by: CutBy<'_>,
+    output: &Path,
+    report: ReportTo<'_>,
+    watch: &Watch,
+) -> Result<CutFile, EngineError> {
     watch.begin("cutting");
     let drawn = loaded.model.rest();
-    let sources = [Source::of(&loaded, &drawn)];
+    let sources = [Source::of(loaded, &drawn)];
     let channels = Channels::of(&sources);
-    let shape = sources[0].with_part(channels, |part| match (job.along, &selection) {
-        (CutAlong::Plane(plane, keep), _) => NewShape::cut_along(part, &plane, keep),
-        (CutAlong::Selector(..), selection) => deleted(part, &loaded.model, selection.as_ref()),
+    let shape = sources[0].with_part(channels, |part| match by {
+        CutBy::Plane(plane, keep) => NewShape::cut_along(part, &plane, keep),
+        CutBy::Deleted(flags) => NewShape::cut(part, flags),
     });
-    let mut shape = shape.map_err(|error| refused(file, error))?;
+    let mut shape = shape.map_err(|error| refused(&loaded.path, error))?;
     let dressed = Dressed::of(&mut shape, &sources, channels);
     let left = Left::of(&shape);
     let broken = loaded.model.findings.non_finite_triangles.count;
     let gone = drawn.triangles.len() - broken - left.whole - left.split;
     let mut warnings = loaded.scene.notes().to_vec();
-    warnings.extend(lost(&loaded, output)?);
-    let change = |place: usize| match shape.triangle_sources[place].age {
-        Age::New => Change::Changed,
-        Age::Old => Change::OfPart(0),
-    };
-    let after = report.wanted(|| judged(&shape, dressed.triangles(), change, watch))?;
-    let written = job.remaking.stage(
-        (&shape, &dressed),
-        |warnings| {
-            json!({
-                "vertices_deleted": drawn.file_vertex_count - left.vertices,
-                "vertices_added": shape.file_vertex_count - left.vertices,
-                "triangles_deleted": gone,
-                "triangles_split": left.split,
-                "before": ShapeCounts::of(&loaded.model),
-                "after": after.map(|(counts, _)| counts),
-                "warnings": warnings,
-            })
-        },
-        warnings,
-        staging,
-        watch,
-    )?;
+    warnings.extend(lost(loaded, output)?);
+    let after = report.wanted(|| judged(&shape, dressed.triangles(), change_of(&shape), watch))?;
     let split = match left.split {
         0 => String::new(),
         count => format!(" and split {}", counted(count, "triangle", "triangles")),
     };
-    Ok(Stitched {
-        staged: written.staged,
-        done: format!("deleted {}{split}", counted(gone, "triangle", "triangles")),
-        report: written.report,
-        warnings: written.warnings,
-        loaded: vec![loaded],
+    Ok(CutFile {
+        made: Made {
+            shape,
+            dressed,
+            after,
+            warnings,
+            done: format!("deleted {}{split}", counted(gone, "triangle", "triangles")),
+        },
+        left,
+        gone,
     })
 }
 
@@ -116,14 +153,6 @@ pub fn read_selector(path: &Path, watch: &Watch) -> Result<Selector, EngineError
         edit: path.to_owned(),
         source,
     })
-}
-
-/// The shape without the selected vertices.
-fn deleted(part: &Part<'_>, model: &Model, selection: Option<&Selection>) -> Result<NewShape, StitchError> {
-    let mut delete = vec![false; model.surface.positions.len()];
-    let selected = selection.into_iter().flat_map(Selection::iter);
-    selected.for_each(|vertex| delete[vertex.index()] = true);
-    NewShape::cut(part, &delete)
 }
 
 /// The counts of a file's own vertices and triangles in a new shape.

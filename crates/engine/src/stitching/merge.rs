@@ -5,14 +5,15 @@ use std::time::Instant;
 
 use pliant_editor::{JoinsFile, Placement};
 use pliant_mesh::DrawnVertex;
-use pliant_stitch::{Joins, Pair, Part, PlacementOfB, Seam, StitchError, VertexSource};
+use pliant_stitch::{Joins, Merged, Pair, Part, PlacementOfB, Seam, StitchError, VertexSource};
 use serde_json::json;
 
 use super::look::{Channels, Dressed, Source};
 use super::prepared::Prepared;
 use super::shape_report::{Change, judged};
-use super::{Remaking, ShapeCounts, Stitched, counted, lost, refused};
+use super::{Made, Remaking, ReportTo, ShapeCounts, Stitched, counted, flags, lost, refused};
 use crate::files::{self, Staging};
+use crate::loading::Loaded;
 use crate::report::ms_since;
 use crate::watch::Watch;
 use crate::{EngineError, memory};
@@ -56,14 +57,87 @@ pub fn merge(job: &Merge<'_>, watch: &Watch, staging: &Staging) -> Result<Stitch
     let selectors = [&joins.delete_of_a, &joins.delete_of_b];
     let prepare = |side: usize| {
         let selection = selectors[side].evaluate(&loaded[side].model).map_err(of_joins)?;
+        let delete = flags(&selection, &loaded[side].model);
         let transform = joins.transform.as_ref().filter(|_| side == 1);
         let refuse = |error| refused(paths[side], error);
         let means = (&progress.part(0.0, 0.0), &watch.cancel);
-        Prepared::of(&loaded[side], &sources[side], &selection, transform, refuse, means)
+        Prepared::of(&loaded[side], &sources[side], &delete, (None, transform), refuse, means)
     };
     let prepared = [prepare(0)?, prepare(1)?];
     let pairs = pairs(joins, &loaded, &prepared).map_err(|(side, error)| refused(paths[side], error))?;
-    let channels = Channels::of(&sources);
+    let request = Joins {
+        pairs: &pairs,
+        placement: placement(joins.placement),
+        reach: joins.reach,
+        method: &joins.method,
+    };
+    let files = [&loaded[0], &loaded[1]];
+    let MergedFiles { made, merged } = merged(files, &sources, &prepared, &request, (output, report), watch)?;
+    let join_ms = ms_since(start);
+    let seam = |seam: &Seam| {
+        json!({
+            "edges": seam.edges, "lengths": seam.lengths, "points": seam.points,
+            "gap_mean": seam.gap[0], "gap_max": seam.gap[1],
+        })
+    };
+    let written = job.remaking.stage(
+        (&made.shape, &made.dressed),
+        |warnings| {
+            json!({
+                "method": joins.method.name(),
+                "joins": merged.seams.iter().map(seam).collect::<Vec<_>>(),
+                "motion_of_b": glam::DMat4::from(merged.motion).to_cols_array(),
+                "bent_vertices": { "a": merged.bendings[0].vertices, "b": merged.bendings[1].vertices },
+                "flipped_faces": { "a": merged.bendings[0].flipped, "b": merged.bendings[1].flipped },
+                "converged": merged.bendings.iter().all(|bending| bending.has_converged),
+                "a": ShapeCounts::of(&prepared[0].model),
+                "b": ShapeCounts::of(&prepared[1].model),
+                "after": made.after.map(|(counts, _)| counts),
+                "self_intersections_added": made.after.map_or(0, |(_, crossings)| crossings),
+                "load_ms": load_ms,
+                "join_ms": join_ms,
+                "warnings": warnings,
+            })
+        },
+        made.warnings,
+        staging,
+        watch,
+    )?;
+    Ok(Stitched {
+        staged: written.staged,
+        done: made.done,
+        report: written.report,
+        warnings: written.warnings,
+        loaded: loaded.into(),
+    })
+}
+
+/// Two files that were joined.
+pub(super) struct MergedFiles {
+    pub made: Made,
+    /// The joining in numbers; its shape is the made one.
+    merged: Merged,
+}
+
+/// The placement of B by its name in the joins format.
+pub(super) fn placement(named: Placement) -> PlacementOfB {
+    match named {
+        Placement::Fitted => PlacementOfB::Fitted,
+        Placement::Kept => PlacementOfB::Kept,
+    }
+}
+
+/// Joins two files, to be written as `output`. `sources` are theirs, and `prepared` their shapes.
+pub(super) fn merged(
+    files: [&Loaded; 2],
+    sources: &[Source<'_>; 2],
+    prepared: &[Prepared; 2],
+    request: &Joins<'_>,
+    (output, report): (&Path, ReportTo<'_>),
+    watch: &Watch,
+) -> Result<MergedFiles, EngineError> {
+    let progress = &watch.begin("joining");
+    let channels = Channels::of(sources);
     let has_normals = sources.iter().any(|source| source.look.normals.is_some());
     let value = |side: usize| {
         let (look, own) = (&sources[side].look, &prepared[side]);
@@ -85,25 +159,10 @@ pub fn merge(job: &Merge<'_>, watch: &Watch, staging: &Staging) -> Result<Stitch
         attributes: channels.attributes(&values[side]),
         normals: has_normals.then_some(&normals[side] as _),
     };
-    let request = Joins {
-        pairs: &pairs,
-        placement: match joins.placement {
-            Placement::Fitted => PlacementOfB::Fitted,
-            Placement::Kept => PlacementOfB::Kept,
-        },
-        reach: joins.reach,
-        method: &joins.method,
-    };
-    let merged = pliant_stitch::merge(
-        [&part(0), &part(1)],
-        &request,
-        memory::budget(),
-        &progress,
-        &watch.cancel,
-    );
+    let merged = pliant_stitch::merge([&part(0), &part(1)], request, memory::budget(), progress, &watch.cancel);
     let mut merged = merged.map_err(|error| {
         let source = renumbered(error.source, &prepared[error.part]);
-        refused(paths[error.part], source)
+        refused(&files[error.part].path, source)
     })?;
     // B as a whole moved rigidly first.
     let motions = [glam::DAffine3::IDENTITY, merged.motion];
@@ -132,13 +191,12 @@ pub fn merge(job: &Merge<'_>, watch: &Watch, staging: &Staging) -> Result<Stitch
     for source in &mut merged.shape.triangle_sources {
         *source = prepared[usize::from(source.part)].triangle_source(*source);
     }
-    let dressed = Dressed::of(&mut merged.shape, &sources, channels);
-    let join_ms = ms_since(start);
+    let dressed = Dressed::of(&mut merged.shape, sources, channels);
 
     let mut warnings = Vec::new();
     for side in 0..2 {
-        warnings.extend(loaded[side].scene.notes().iter().cloned());
-        warnings.extend(lost(&loaded[side], output)?);
+        warnings.extend(files[side].scene.notes().iter().cloned());
+        warnings.extend(lost(files[side], output)?);
         let turned = prepared[side].turned_parts;
         if turned > 0 {
             let parts = counted(turned, "part of", "parts of");
@@ -156,7 +214,7 @@ pub fn merge(job: &Merge<'_>, watch: &Watch, staging: &Staging) -> Result<Stitch
             warnings.push(format!(
                 "{} had not settled when the steps of {} ended: take another method or a smaller reach",
                 ["A", "B"][side],
-                joins.method.name()
+                request.method.name()
             ));
         }
     }
@@ -176,43 +234,15 @@ pub fn merge(job: &Merge<'_>, watch: &Watch, staging: &Staging) -> Result<Stitch
             "the joined surface passes through itself in {places} of triangles"
         ));
     }
-    let seam = |seam: &Seam| {
-        json!({
-            "edges": seam.edges, "lengths": seam.lengths, "points": seam.points,
-            "gap_mean": seam.gap[0], "gap_max": seam.gap[1],
-        })
-    };
-    let written = job.remaking.stage(
-        (shape, &dressed),
-        |warnings| {
-            json!({
-                "method": joins.method.name(),
-                "joins": merged.seams.iter().map(seam).collect::<Vec<_>>(),
-                "motion_of_b": glam::DMat4::from(merged.motion).to_cols_array(),
-                "bent_vertices": { "a": merged.bendings[0].vertices, "b": merged.bendings[1].vertices },
-                "flipped_faces": { "a": merged.bendings[0].flipped, "b": merged.bendings[1].flipped },
-                "converged": merged.bendings.iter().all(|bending| bending.has_converged),
-                "a": ShapeCounts::of(&prepared[0].model),
-                "b": ShapeCounts::of(&prepared[1].model),
-                "after": after.map(|(counts, _)| counts),
-                "self_intersections_added": after.map_or(0, |(_, crossings)| crossings),
-                "load_ms": load_ms,
-                "join_ms": join_ms,
-                "warnings": warnings,
-            })
-        },
-        warnings,
-        staging,
-        watch,
-    )?;
     let joined = counted(merged.seams.len(), "border", "borders");
-    Ok(Stitched {
-        staged: written.staged,
+    let made = Made {
+        shape: std::mem::take(&mut merged.shape),
+        dressed,
+        after,
+        warnings,
         done: format!("joined {joined}"),
-        report: written.report,
-        warnings: written.warnings,
-        loaded: loaded.into(),
-    })
+    };
+    Ok(MergedFiles { made, merged })
 }
 
 /// Reads the file of the joins of a merge.
@@ -229,11 +259,7 @@ pub fn read_joins(path: &Path, watch: &Watch) -> Result<JoinsFile, EngineError> 
 }
 
 /// The pairs by the parts' own numbers.
-fn pairs(
-    joins: &JoinsFile,
-    loaded: &[crate::Loaded; 2],
-    prepared: &[Prepared; 2],
-) -> Result<Vec<Pair>, (usize, StitchError)> {
+fn pairs(joins: &JoinsFile, loaded: &[Loaded; 2], prepared: &[Prepared; 2]) -> Result<Vec<Pair>, (usize, StitchError)> {
     let counts = [0, 1].map(|side| loaded[side].model.drawn.file_vertex_count());
     let pair = |named: &[u32; 2]| {
         for side in 0..2 {

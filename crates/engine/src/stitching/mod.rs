@@ -1,17 +1,20 @@
 //! Changes of topology: files in, a new file out. Cutting, filling and joining are the crate `stitch`'s; here they get
 //! files, appearances and reports.
 
+mod append;
 mod cut;
 mod fill;
 mod look;
 mod merge;
 mod prepared;
+mod remade;
 mod shape_report;
 
 use std::path::Path;
 
-use pliant_mesh::WeldOptions;
-use pliant_stitch::NewShape;
+use pliant_editor::Selection;
+use pliant_mesh::{Model, WeldOptions};
+use pliant_stitch::{Age, NewShape};
 use serde_json::Value;
 
 use crate::EngineError;
@@ -20,11 +23,13 @@ use crate::loading::{Loaded, check_not_empty, load};
 use crate::saving;
 use crate::watch::Watch;
 use look::Dressed;
+use shape_report::Change;
 
 pub use cut::{Cut, CutAlong, cut, read_selector};
 pub use fill::{Fill, fill};
 pub use merge::{Merge, merge, read_joins};
 pub use pliant_stitch::{Holes, Keep, Plane};
+pub use remade::{Present, Remade, remake};
 pub use shape_report::ShapeCounts;
 
 /// Whether a new shape may take the place of the file that it was made from.
@@ -204,11 +209,38 @@ impl Remaking<'_> {
     }
 }
 
+/// A shape that was made from one file.
+struct Made {
+    shape: NewShape,
+    dressed: Dressed,
+    /// Its numbers, and how many pairs of triangles now pass through each other, if somebody gets them.
+    after: Option<(ShapeCounts, usize)>,
+    /// Sentences that a person should know.
+    warnings: Vec<String>,
+    /// A sentence that says how much was done.
+    done: String,
+}
+
+/// What became of each triangle of a shape that was made from one file.
+fn change_of(shape: &NewShape) -> impl Fn(usize) -> Change {
+    |place| match shape.triangle_sources[place].age {
+        Age::New => Change::Changed,
+        Age::Old => Change::OfPart(0),
+    }
+}
+
 /// The files of a new shape, beside their places.
 struct Written {
     staged: Staged,
     report: Option<Value>,
     warnings: Vec<String>,
+}
+
+/// A flag for each welded vertex of a model: whether it is selected.
+fn flags(selection: &Selection, model: &Model) -> Vec<bool> {
+    let mut flags = vec![false; model.surface.positions.len()];
+    selection.iter().for_each(|vertex| flags[vertex.index()] = true);
+    flags
 }
 
 /// The refusal of a stitch, which names its file.

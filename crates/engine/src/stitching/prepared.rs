@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use glam::{DAffine3, DVec3, Vec3};
-use pliant_editor::{HandleTransform, Selection};
+use pliant_editor::HandleTransform;
 use pliant_mesh::{Cancel, Drawn, DrawnVertex, FileVertex, Model, Progress, WeldOptions};
 use pliant_stitch::{Age, Attributes, NewShape, Part, StitchError, TriangleSource, VertexSource};
 
@@ -29,16 +29,17 @@ pub(super) struct Prepared {
 }
 
 impl Prepared {
-    /// The shape of a file without the selected vertices, transformed. Closed parts that are inside out are turned, so
-    /// that both shapes agree about the outside.
+    /// The shape of a file without the deleted welded vertices (a flag for each), at its drawn positions in `source` and then transformed.
+    /// `displacements` are those of its welded vertices in `source`. Closed parts that are inside out are turned, so that
+    /// both shapes agree about the outside.
     ///
     /// # Errors
     /// A selection of everything; [`EngineError::Interrupted`].
     pub fn of(
         loaded: &Loaded,
         source: &Source<'_>,
-        delete: &Selection,
-        transform: Option<&HandleTransform>,
+        delete: &[bool],
+        (displacements, transform): (Option<&[DVec3]>, Option<&HandleTransform>),
         refuse: impl Fn(StitchError) -> EngineError,
         (progress, cancel): (&Progress, &Cancel),
     ) -> Result<Self, EngineError> {
@@ -50,13 +51,9 @@ impl Prepared {
             attributes: Attributes::NONE,
             normals: None,
         };
-        let shape = match delete.is_empty() {
-            true => NewShape::whole(&whole),
-            false => {
-                let mut flags = vec![false; model.surface.positions.len()];
-                delete.iter().for_each(|vertex| flags[vertex.index()] = true);
-                NewShape::cut(&whole, &flags).map_err(&refuse)?
-            }
+        let shape = match delete.contains(&true) {
+            false => NewShape::whole(&whole),
+            true => NewShape::cut(&whole, delete).map_err(&refuse)?,
         };
         let vertices: Vec<DrawnVertex> = shape
             .vertices
@@ -72,10 +69,9 @@ impl Prepared {
         }
         // Welded as the file was: each vertex at its surface's, so that only equal ones are joined.
         let surface = |old: DrawnVertex| {
-            model
-                .drawn
-                .surface_vertex(old)
-                .map(|v| model.surface.positions[v.index()])
+            let vertex = model.drawn.surface_vertex(old)?;
+            let displacement = displacements.map_or(DVec3::ZERO, |all| all[vertex.index()]);
+            Some(model.surface.positions[vertex.index()] + displacement)
         };
         let places = vertices.iter().map(|&old| surface(old).unwrap_or(DVec3::NAN));
         let mut drawn = Drawn {
@@ -94,8 +90,8 @@ impl Prepared {
                 .iter_mut()
                 .for_each(|position| *position = map.transform_point3(*position));
         }
-        let inside_out: BTreeSet<u32> = model.inside_out.iter().copied().collect();
-        let flags = model.drawn_vertices_of(&inside_out);
+        let inside_out: BTreeSet<u32> = source.model.inside_out.iter().copied().collect();
+        let flags = source.model.drawn_vertices_of(&inside_out);
         let is_inside_out = |old: DrawnVertex| flags.get(old.index()) == Some(&true);
         let is_turned = |corners: &[DrawnVertex; 3]| is_inside_out(vertices[corners[0].index()]) != is_mirrored;
         let is_turned: Vec<bool> = drawn.triangles.iter().map(is_turned).collect();
@@ -210,9 +206,9 @@ fn flattened(welded: &Model, before: &[DVec3], after: &Drawn) -> usize {
 }
 
 /// The mean of the welded vertices that are left.
-fn middle(model: &Model, delete: &Selection) -> DVec3 {
+fn middle(model: &Model, delete: &[bool]) -> DVec3 {
     let positions = model.main_positions();
-    let left = || (0..positions.len() as u32).filter(|&v| !delete.contains(pliant_mesh::SurfaceVertex(v)));
+    let left = || (0..positions.len() as u32).filter(|&v| !delete[v as usize]);
     let count = left().count().max(1) as f64;
     left().map(|v| positions[v as usize]).sum::<DVec3>() / count
 }

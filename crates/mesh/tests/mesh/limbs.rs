@@ -4,7 +4,7 @@
 use std::f64::consts::PI;
 
 use glam::DVec2;
-use pliant_mesh::{Cancel, Model, Shape, SurfaceVertex, joint_of, shapes};
+use pliant_mesh::{Cancel, Drawn, Joint, Model, Shape, SurfaceVertex, joint_of, shapes};
 
 /// A triangle at about this height, on any side, and its middle.
 fn triangle_at(model: &Model, z: f64, side: usize) -> (u32, glam::DVec3) {
@@ -50,6 +50,66 @@ fn a_limb_that_is_as_thick_as_it_is_long_bends_where_it_meets_the_body() {
             );
             assert!(joint.axis.z > 0.95, "from {z}, side {side}: {}", joint.axis);
         }
+    }
+}
+
+/// The joint under a triangle.
+fn joint_at(model: &Model, (triangle, middle): (u32, glam::DVec3)) -> Option<Joint> {
+    let shape = Shape {
+        triangles: &model.surface.triangles,
+        topology: &model.topology,
+        positions: &model.surface.positions,
+    };
+    joint_of(&shape, triangle, middle, 0, &Cancel::new()).unwrap()
+}
+
+/// Turned about the z axis from `top` to `bottom`, with closed ends.
+fn turned(top: f64, bottom: f64, radius: impl Fn(f64) -> f64) -> Drawn {
+    shapes::turned(90, 60, |share| {
+        let z = 0.5 * (top + bottom) + 0.5 * (top - bottom) * (PI * share).cos();
+        DVec2::new(if share % 1.0 == 0.0 { 0.0 } else { radius(z).max(1e-3) }, z)
+    })
+}
+
+#[test]
+fn the_head_of_a_bust_is_a_limb_though_it_is_larger_than_the_rest() {
+    // A ball of radius 1 on a neck of 0.25 on a ball of radius 0.55.
+    let ball = |z: f64, radius: f64| (radius * radius - z * z).max(0.0).sqrt();
+    let profile = |z: f64| {
+        let neck = if (-0.9..1.2).contains(&z) { 0.25 } else { 0.0 };
+        ball(z - 1.2, 1.0).max(ball(z + 0.9, 0.55)).max(neck)
+    };
+    let model = shapes::model(turned(2.2, -1.45, profile));
+    for z in [2.1, 1.7, 1.2, 0.7] {
+        for side in [0, 11, 37] {
+            let joint = joint_at(&model, triangle_at(&model, z, side));
+            let joint = joint.unwrap_or_else(|| panic!("no joint from {z}, side {side}"));
+            assert!((-0.45..0.3).contains(&joint.centre.z), "from {z}: {}", joint.centre);
+            assert!((joint.radius - 0.25).abs() < 0.03, "from {z}: {}", joint.radius);
+            assert!(joint.axis.z > 0.95, "from {z}: {}", joint.axis);
+            // Most of the head keeps its shape.
+            let head = |v: &&SurfaceVertex| model.surface.positions[v.index()].z > 0.7;
+            let of_head = model.surface.positions.iter().filter(|p| p.z > 0.7).count();
+            assert_eq!(
+                joint.far_side.iter().filter(head).count(),
+                of_head,
+                "from {z}, side {side}"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_tip_of_an_ear_leads_to_its_root() {
+    // An ear on a ball of radius 1 widens all the way from its tip at z = 2 to its root, where its radius is 0.22.
+    let ball = |z: f64| (1.0 - z * z).max(0.0).sqrt();
+    let ear = |z: f64| if z > 0.8 { 0.22 * (2.0 - z).powf(0.6) } else { 0.0 };
+    let model = shapes::model(turned(2.0, -1.0, |z| ball(z).max(ear(z))));
+    for side in [0, 9, 23, 40] {
+        let joint = joint_at(&model, triangle_at(&model, 2.09, side));
+        let joint = joint.unwrap_or_else(|| panic!("no joint from side {side}"));
+        assert!((0.9..1.3).contains(&joint.centre.z), "side {side}: {}", joint.centre);
+        assert!(joint.axis.z > 0.95, "side {side}: {}", joint.axis);
     }
 }
 

@@ -66,6 +66,7 @@ impl Application {
                 Ok(edit) => self.save_copy(&path, Content::Edit(Box::new(edit))),
                 Err(error) => self.fail(error.to_string()),
             },
+            (Purpose::Append, Some(path)) => self.append(path),
             (Purpose::ExportAnimation, Some(path)) => self.export_animation(&path),
             (Purpose::LoadCage, Some(path)) => self.load_cage(path),
             (Purpose::AddExample, Some(path)) => self.load_example(path),
@@ -147,7 +148,12 @@ impl Application {
         let beside = |path: &Path, ending: &str| path.with_extension(ending);
         match (purpose, self.path()) {
             (
-                Purpose::Open | Purpose::ApplyEdit | Purpose::LoadCage | Purpose::AddExample | Purpose::SaveAs,
+                Purpose::Open
+                | Purpose::ApplyEdit
+                | Purpose::Append
+                | Purpose::LoadCage
+                | Purpose::AddExample
+                | Purpose::SaveAs,
                 Some(path),
             ) => path.to_owned(),
             (Purpose::SaveMorph, Some(path)) => beside(path, "morph.glb"),
@@ -155,9 +161,15 @@ impl Application {
             (Purpose::ExportAnimation, Some(path)) => beside(path, "animation.glb"),
             (Purpose::SaveProject, Some(path)) => beside(path, "pliant"),
             (Purpose::SavePicture(_), Some(path)) => beside(path, "png"),
-            (Purpose::Open | Purpose::ApplyEdit | Purpose::LoadCage | Purpose::AddExample | Purpose::SaveAs, None) => {
-                PathBuf::from("edited.glb")
-            }
+            (
+                Purpose::Open
+                | Purpose::ApplyEdit
+                | Purpose::Append
+                | Purpose::LoadCage
+                | Purpose::AddExample
+                | Purpose::SaveAs,
+                None,
+            ) => PathBuf::from("edited.glb"),
             (Purpose::SaveMorph, None) => PathBuf::from("morph.glb"),
             (Purpose::SaveProject, None) => PathBuf::from("edited.pliant"),
             (Purpose::ExportAnimation, None) => PathBuf::from("animation.glb"),
@@ -177,7 +189,7 @@ impl Application {
         let is_own = open.is_some_and(|open| open.is_at(&path) || open.is_project_at(&path));
         !matches!(
             purpose,
-            Purpose::Open | Purpose::ApplyEdit | Purpose::LoadCage | Purpose::AddExample
+            Purpose::Open | Purpose::ApplyEdit | Purpose::Append | Purpose::LoadCage | Purpose::AddExample
         ) && path.is_file()
             && !is_own
     }
@@ -209,9 +221,11 @@ impl Application {
                 None => self.choose(Purpose::ExportAnimation),
             },
             FileCommand::ApplyEdit => self.choose(Purpose::ApplyEdit),
-            FileCommand::LoadCage | FileCommand::AddExample | FileCommand::AddMorphTarget(_) => {
+            FileCommand::MergeOptions => self.dialogs.merge.open = true,
+            FileCommand::Append | FileCommand::LoadCage | FileCommand::AddExample | FileCommand::AddMorphTarget(_) => {
                 match (command.unavailable_because(&self.editor), command) {
                     (Some(why), _) => self.fail(why.to_owned()),
+                    (None, FileCommand::Append) => self.choose(Purpose::Append),
                     (None, FileCommand::LoadCage) => self.choose(Purpose::LoadCage),
                     (None, FileCommand::AddMorphTarget(target)) => self.load_morph_target(target),
                     (None, _) => self.choose(Purpose::AddExample),

@@ -71,6 +71,7 @@ impl Application {
             self.editor.handle(event);
             ui.ctx().request_repaint();
         }
+        self.follow_mesh();
         self.request_drawing();
         self.request_pose();
         self.request_images();

@@ -56,6 +56,7 @@ impl Application {
                     }
                     None => {}
                 },
+                Message::Stitched(stamp, result) => self.take_stitched(stamp, result),
                 Message::Written(stamp, result) => self.written(stamp, result),
                 Message::OriginalFound(path, kept) => {
                     if let Some(Question::WriteOver(asked, found)) = &mut self.dialogs.question

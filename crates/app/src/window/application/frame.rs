@@ -3,14 +3,14 @@
 use std::time::{Duration, Instant};
 
 use eframe::egui::{self, CentralPanel, Panel};
-use pliant_editor::Event;
+use pliant_editor::{Command, Event};
 
 use crate::window::application::Application;
 use crate::window::bars::recent_menu::Recent;
 use crate::window::bars::status::{FileWork, FileWorkAnswer};
 use crate::window::bars::{status, timeline, tool_column, tool_settings, top_bar, view_bar};
 use crate::window::dialogs::palette::{Found, Outcome};
-use crate::window::dialogs::{about, keys_window, log, memory_window, question};
+use crate::window::dialogs::{about, keys_window, log, memory_window, merge_window, question};
 use crate::window::input::event_queue::EventQueue;
 use crate::window::input::file_command::FileCommand;
 use crate::window::panels::{self, PanelChange};
@@ -59,6 +59,8 @@ impl eframe::App for Application {
             self.editor.handle(event);
             context.request_repaint();
         }
+        self.follow_mesh();
+        self.begin_stitching();
         if let Some(command) = file_command {
             self.file_command(&context, command);
         }
@@ -190,6 +192,9 @@ impl Application {
         if self.dialogs.memory.show(context, &mut self.settings) {
             self.take_memory();
         }
+        if let Some(settings) = self.dialogs.merge.show(context, &self.editor) {
+            self.editor.handle(Event::Command(Command::SetMerge(settings)));
+        }
         if self.dialogs.about.open
             && let Some(command) = self.dialogs.about.show(context, &self.viewport.device())
         {
@@ -230,6 +235,7 @@ impl Application {
             || EventQueue::is_typing(context)
             || self.editor.is_acting();
         let windows = [
+            (merge_window::ID, &mut self.dialogs.merge.open),
             (keys_window::ID, &mut self.dialogs.keys.open),
             (memory_window::ID, &mut self.dialogs.memory.open),
             (log::ID, &mut self.dialogs.log.open),

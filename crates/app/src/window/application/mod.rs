@@ -6,6 +6,7 @@ pub(in crate::window) mod arrivals;
 mod elsewhere;
 pub(in crate::window) mod frame;
 pub(in crate::window) mod layout;
+mod meshes;
 pub(in crate::window) mod redrawing;
 pub(in crate::window) mod saves;
 pub(in crate::window) mod waiting_saves;
@@ -294,6 +295,7 @@ impl Application {
     pub fn command(&mut self, command: Command) {
         self.last_change = Instant::now();
         self.editor.handle(Event::Command(command));
+        self.follow_mesh();
     }
 
     /// Opens a file without asking whether unsaved work may be lost.

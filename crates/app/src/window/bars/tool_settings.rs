@@ -31,7 +31,11 @@ fn settings(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     let view = editor.view();
     ui.spacing_mut().slider_width = SLIDER;
     match view.tool {
-        ToolMode::Pose => {}
+        ToolMode::Pose => {
+            if command_choice(ui, editor, &Command::ToggleWholeLimb, view.whole_limb) {
+                commands.push(Command::ToggleWholeLimb);
+            }
+        }
         ToolMode::Flow => {
             brush(ui, view.brush_radius_px, view.brush_metric, commands);
             return flow_settings::show(ui, editor, commands);

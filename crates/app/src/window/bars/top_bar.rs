@@ -2,7 +2,8 @@
 
 use eframe::egui::{self, MenuBar, RichText};
 use pliant_editor::{
-    Before, Clay, Command, Editor, NamedView, Orbit, Projection, RegionAction, Shading, StiffnessChange, Tips, UpAxis,
+    Before, Clay, Command, Editor, KeptSide, NamedView, Orbit, Projection, RegionAction, Shading, StiffnessChange,
+    Tips, UpAxis,
 };
 
 use super::menu_keys;
@@ -25,11 +26,12 @@ pub fn show(
 ) -> Option<FileCommand> {
     let mut chosen = None;
     MenuBar::new().ui(ui, |ui| {
-        let [file, edit, region, view, window, help] = MENUS.map(|(name, _)| name);
+        let [file, edit, region, mesh, view, window, help] = MENUS.map(|(name, _)| name);
         let buttons = [
             ui.menu_button(file, |ui| chosen = file_menu(ui, editor, recent)),
             ui.menu_button(edit, |ui| edit_menu(ui, editor, commands)),
             ui.menu_button(region, |ui| region_menu(ui, editor, commands)),
+            ui.menu_button(mesh, |ui| mesh_menu(ui, editor, commands)),
             ui.menu_button(view, |ui| view_menu(ui, editor, commands)),
             ui.menu_button(window, |ui| file_commands(ui, &WINDOW_MENU, &mut chosen)),
             ui.menu_button(help, |ui| file_commands(ui, &HELP_MENU, &mut chosen)),
@@ -127,17 +129,7 @@ fn edit_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
             Command::TurnInsideOut,
         ],
     ];
-    for (number, group) in groups.into_iter().enumerate() {
-        if number > 0 {
-            ui.separator();
-        }
-        for command in group {
-            if command_button(ui, editor, command) {
-                commands.push(command.clone());
-                ui.close();
-            }
-        }
-    }
+    command_groups(ui, editor, &groups, commands);
     ui.separator();
     if menu_choice(ui, editor, &Command::WorkPose, editor.document().is_in_work_pose()) {
         commands.push(Command::WorkPose);
@@ -191,6 +183,56 @@ fn region_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
         if command_button(ui, editor, &command) {
             commands.push(command);
             ui.close();
+        }
+    }
+}
+
+fn mesh_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
+    let groups: [&[Command]; 3] = [
+        &[Command::FillHoles, Command::FillHole],
+        &[Command::BridgeBorders],
+        &[
+            Command::DeleteRegion,
+            Command::CutAlongLine(KeptSide::Positive),
+            Command::CutAlongLine(KeptSide::Negative),
+            Command::CutAlongLine(KeptSide::Both),
+        ],
+    ];
+    command_groups(ui, editor, &groups, commands);
+    ui.separator();
+    let append = FileCommand::Append;
+    let why = append.unavailable_because(editor);
+    let button = ui.add_enabled(why.is_none(), egui::Button::new(append.name()));
+    let button = match why {
+        Some(why) => button.on_disabled_hover_text(why),
+        None => button.on_hover_text("Puts another file beside the shape, with a handle that moves it."),
+    };
+    if button.clicked() {
+        commands.push_file(append);
+        ui.close();
+    }
+    let groups: [&[Command]; 2] = [
+        &[0, 1, 2].map(Command::MirrorPart),
+        &[Command::Merge, Command::MergePicked],
+    ];
+    command_groups(ui, editor, &groups, commands);
+    if ui.button(FileCommand::MergeOptions.name()).clicked() {
+        commands.push_file(FileCommand::MergeOptions);
+        ui.close();
+    }
+}
+
+/// Groups of commands, with a line between them.
+fn command_groups(ui: &mut egui::Ui, editor: &Editor, groups: &[&[Command]], commands: &mut Outbox) {
+    for (number, group) in groups.iter().enumerate() {
+        if number > 0 {
+            ui.separator();
+        }
+        for command in *group {
+            if command_button(ui, editor, command) {
+                commands.push(command.clone());
+                ui.close();
+            }
         }
     }
 }

@@ -48,6 +48,7 @@ fn request(purpose: Purpose) -> Request {
             MODELS_AND_PROJECTS,
         ),
         Purpose::ApplyEdit => ("Apply an edit", Asked::ToOpen, "Edits", &["json"]),
+        Purpose::Append => ("Append a file", Asked::ToOpen, "Models", MODELS),
         Purpose::LoadCage => ("Load a cage", Asked::ToOpen, "Models", MODELS),
         Purpose::AddExample => ("Add an example", Asked::ToOpen, "Models", MODELS),
         Purpose::SaveAs => ("Save the model as", Asked::ToSave, "Models", MODELS),

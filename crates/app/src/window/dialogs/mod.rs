@@ -1,5 +1,5 @@
 //! The layers that open over the window: questions, the folder browser, the palette, the list of keys, the choice of
-//! memory, the log, the version.
+//! memory, the options of a merge, the log, the version.
 
 pub(in crate::window) mod about;
 pub(in crate::window) mod file_dialog;
@@ -7,6 +7,7 @@ pub(in crate::window) mod folder_browser;
 pub(in crate::window) mod keys_window;
 pub(in crate::window) mod log;
 pub(in crate::window) mod memory_window;
+pub(in crate::window) mod merge_window;
 pub(in crate::window) mod palette;
 pub(in crate::window) mod question;
 mod system_dialog;
@@ -15,6 +16,7 @@ use self::about::About;
 use self::keys_window::KeysWindow;
 use self::log::Log;
 use self::memory_window::MemoryWindow;
+use self::merge_window::MergeWindow;
 use self::palette::Palette;
 use self::question::Question;
 
@@ -25,6 +27,7 @@ pub(in crate::window) struct Dialogs {
     pub log: Log,
     pub keys: KeysWindow,
     pub memory: MemoryWindow,
+    pub merge: MergeWindow,
     pub about: About,
     pub question: Option<Question>,
 }

@@ -3,6 +3,7 @@
 pub(in crate::window) mod app_directories;
 pub(in crate::window) mod desktop;
 pub(in crate::window) mod listing;
+pub(in crate::window) mod other_shape;
 pub(in crate::window) mod project_file;
 pub(in crate::window) mod recovery;
 pub(in crate::window) mod rest_mesh;

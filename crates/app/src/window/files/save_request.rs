@@ -9,6 +9,7 @@ use pliant_editor::{Dye, EditFile, SaveMark, Snapshot};
 use pliant_render::Image;
 
 use super::rest_mesh::{MeshSource, RestMesh};
+use pliant_engine::Loaded;
 use pliant_engine::files::KnownFiles;
 use pliant_engine::watch::Watch;
 
@@ -116,10 +117,12 @@ pub struct Written {
 }
 
 /// The written content.
-#[derive(Clone, PartialEq, Debug)]
+#[derive(Clone, Debug)]
 pub enum WrittenKind {
     /// The model.
     Model {
+        /// The file as it was read, whose displacements these are.
+        of: Arc<Loaded>,
         /// The new place of the mesh as it was read, if that has changed.
         source: Option<MeshSource>,
         /// The file's displacements, per surface vertex.

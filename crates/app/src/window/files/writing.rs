@@ -230,6 +230,7 @@ fn ready_model(
     };
     let saved = saving::stage(loaded, &save, staging, &of_save, cancel)?;
     let written = |source| WrittenKind::Model {
+        of: Arc::clone(&mesh.loaded),
         source,
         saved: Arc::clone(&shape.displacements),
     };

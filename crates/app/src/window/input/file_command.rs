@@ -38,6 +38,10 @@ pub enum FileCommand {
     ApplyEdit,
     /// Weld the open mesh's vertices in another way.
     Weld(WeldOptions),
+    /// Put another file beside the open shape.
+    Append,
+    /// Choose how parts are merged.
+    MergeOptions,
     /// Take a cage from a file.
     LoadCage,
     /// Take an example from a file of the same vertices.
@@ -72,6 +76,9 @@ pub enum FileCommand {
     Quit,
 }
 
+/// The reason for which the mesh can't be changed again.
+const BUSY: &str = "A change of the mesh is under way: wait until it has ended, or stop it.";
+
 impl FileCommand {
     /// The reason why it can't be done now; `None` if it can.
     pub fn unavailable_because(&self, editor: &Editor) -> Option<&'static str> {
@@ -80,6 +87,11 @@ impl FileCommand {
             attachments.any(|own| own.kind == kind)
         };
         match self {
+            Self::Append if editor.view().model.is_none() => Some("Nothing is open: open a file first."),
+            Self::Append if editor.view().stitching.is_some() => Some(BUSY),
+            Self::Append if editor.document().is_in_work_pose() => {
+                Some("This would change the shape to return to: leave the work pose first.")
+            }
             Self::ExportAnimation => {
                 let has_keys = !editor.document().animation().keys().is_empty();
                 (!has_keys).then_some("There are no keys: set some on the timeline first.")
@@ -124,6 +136,8 @@ impl FileCommand {
             | Self::ExportAnimation
             | Self::ApplyEdit
             | Self::Weld(_)
+            | Self::Append
+            | Self::MergeOptions
             | Self::LoadCage
             | Self::AddExample
             | Self::AddMorphTarget(_)
@@ -143,7 +157,7 @@ impl FileCommand {
     }
 
     /// All commands that need no path, in the order of the menu.
-    pub const LISTED: [Self; 25] = [
+    pub const LISTED: [Self; 27] = [
         Self::Open,
         Self::NewFromSample,
         Self::Save,
@@ -155,6 +169,8 @@ impl FileCommand {
         Self::ExportEdit,
         Self::ExportAnimation,
         Self::ApplyEdit,
+        Self::Append,
+        Self::MergeOptions,
         Self::LoadCage,
         Self::AddExample,
         Self::SavePicture(PictureKind {
@@ -189,6 +205,8 @@ impl FileCommand {
             Self::SaveProject => "Save project",
             Self::SaveProjectAs => "Save project as…",
             Self::Weld(_) => "Weld vertices",
+            Self::Append => "Append a file…",
+            Self::MergeOptions => "Merge options…",
             Self::LoadCage => "Load cage…",
             Self::AddExample => "Add example from file…",
             Self::AddMorphTarget(_) => "Add a morph target",
@@ -221,6 +239,8 @@ impl FileCommand {
             Self::SaveMorph => "blend shape key gltf glb write file",
             Self::SaveProject | Self::SaveProjectAs => "pliant file document",
             Self::Weld(_) => "weld merge distance doubles seams",
+            Self::Append => "add import second scan part merge join combine",
+            Self::MergeOptions => "join reach method fit settings",
             Self::LoadCage => "open import control mesh",
             Self::AddExample | Self::AddMorphTarget(_) => "open import pose shape blend morph in-between",
             Self::Palette => "palette search",

@@ -10,10 +10,11 @@ use super::{held_modifiers, key_of, pressed_key};
 use crate::window::input::file_command::FileCommand;
 
 /// The menus of the bar, each with the letter that opens it together with Alt. Alt and H shows everything that is hidden.
-pub const MENUS: [(&str, egui::Key); 6] = [
+pub const MENUS: [(&str, egui::Key); 7] = [
     ("File", egui::Key::F),
     ("Edit", egui::Key::E),
     ("Region", egui::Key::R),
+    ("Mesh", egui::Key::M),
     ("View", egui::Key::V),
     ("Window", egui::Key::W),
     ("Help", egui::Key::P),

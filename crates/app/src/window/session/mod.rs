@@ -1,30 +1,31 @@
 //! The open file, and the jobs that load and save it.
 
+mod open_file;
 pub(in crate::window) mod opening;
+mod shapes;
+mod stitching;
 
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use glam::DVec3;
-use pliant_editor::{JobQueue, Revision, SaveMark};
+use pliant_editor::{JobQueue, Revision, SaveMark, StitchRequest};
 
-use crate::files::names::file_name;
 use crate::files::original::Original;
 use crate::window::files::rest_mesh::RestMesh;
 pub use crate::window::files::save_request::KeepOriginal;
 use crate::window::files::save_request::{Changed, Content, SaveRequest, Unwritten, Written, WrittenKind};
 use crate::window::files::writing::write;
+pub use crate::window::session::open_file::OpenFile;
 pub use crate::window::session::opening::Source;
 use crate::window::session::opening::{absolute, open};
+use crate::window::session::shapes::OtherShapes;
 use crate::window::threads::message::{Message, ModelToShow};
 use crate::window::threads::workers::Workers;
 use crate::window::viewport::gpu::Gpu;
-use pliant_engine::Loaded;
-use pliant_engine::files::{KnownFiles, is_same};
+use pliant_engine::files::KnownFiles;
 use pliant_engine::watch::Watch;
 use pliant_mesh::Cancel;
-use pliant_picture::drawing::Drawing;
 
 /// The open file and the jobs that read and write it.
 #[derive(Default)]
@@ -44,43 +45,12 @@ pub struct Session {
     known: KnownFiles,
     /// The number of files opened so far.
     opened: u64,
-}
-
-/// The open file.
-pub struct OpenFile {
-    /// The path from which it was read, or to which it was last saved; none for the built-in sample.
-    pub path: Option<PathBuf>,
-    /// The file as stored when it was opened, and its vertex sets: every save patches it.
-    pub loaded: Arc<Loaded>,
-    /// The names of its morph targets.
-    pub morph_targets: Vec<String>,
-    /// Its data for the renderer.
-    pub drawing: Arc<Drawing>,
-    /// The mesh as it was read, and its present place.
-    pub mesh: RestMesh,
-    /// The project that it was opened from or saved to.
-    pub project: Option<PathBuf>,
-    /// The displacements with which the file at `path` was saved there, per surface vertex; `None` if it was not.
-    pub saved: Option<Arc<Vec<DVec3>>>,
-    /// True if a person agreed to replace `path`, or saved it here under a new name.
-    pub may_write_over: bool,
-}
-
-impl OpenFile {
-    /// The name to show.
-    pub fn name(&self) -> String {
-        file_name(self.path.as_deref().unwrap_or(&self.loaded.path))
-    }
-
-    /// Returns true if a path leads to the file that was read or last saved.
-    pub fn is_at(&self, path: &Path) -> bool {
-        self.path.as_deref().is_some_and(|own| is_same(own, path))
-    }
-
-    /// Returns true if a path leads to the project.
-    pub fn is_project_at(&self, path: &Path) -> bool {
-        self.project.as_deref().is_some_and(|own| is_same(own, path))
-    }
+    /// The open file with other triangles.
+    pub others: OtherShapes,
+    /// The file that a change of the mesh appends.
+    pub to_append: Option<PathBuf>,
+    /// The running change of the mesh.
+    stitching: Option<(Revision, Watch)>,
 }
 
 impl Session {
@@ -92,8 +62,38 @@ impl Session {
         self.start_loading(workers);
     }
 
-    /// Cancels the running work: a load, or a save before it has changed anything on the disk.
+    /// Changes the open file's triangles, off the window's thread.
+    pub fn stitch(&mut self, request: StitchRequest, gpu: &Gpu, workers: &Workers) {
+        let Some(open) = &self.open else { return };
+        let (loaded, gpu) = (Arc::clone(&open.loaded), gpu.clone());
+        let second = self.to_append.clone();
+        let (stamp, watch) = (self.stamp(), Watch::default());
+        self.stitching = Some((stamp, watch.clone()));
+        workers.spawn(
+            "stitching",
+            move || {
+                let made = stitching::stitch(&request, &loaded, second.as_deref(), &gpu, &watch);
+                Message::Stitched(stamp, made)
+            },
+            move |sentence| Message::Stitched(stamp, Err(sentence)),
+        );
+    }
+
+    /// Notes the end of a change of the mesh. Returns true if it is still wanted.
+    pub fn has_stitched(&mut self, stamp: Revision) -> bool {
+        let ended = self.stitching.take_if(|(running, _)| *running == stamp);
+        ended.is_some()
+    }
+
+    fn stop_stitching(&self) {
+        if let Some((_, watch)) = &self.stitching {
+            watch.cancel.cancel();
+        }
+    }
+
+    /// Cancels the running work: a change of the mesh, a load, or a save before it has changed anything on the disk.
     pub fn stop(&mut self) {
+        self.stop_stitching();
         self.loading.cancel();
         self.saving.cancel();
         self.to_save.clear();
@@ -127,6 +127,9 @@ impl Session {
     /// Makes an opened file the open one.
     pub fn adopt(&mut self, opened: &ModelToShow) {
         self.opened += 1;
+        self.others = OtherShapes::default();
+        self.stop_stitching();
+        self.stitching = None;
         for (path, stamp) in opened.loaded.stamps() {
             self.known.note(path, stamp.clone());
         }
@@ -192,12 +195,21 @@ impl Session {
             && written.opened == self.opened
         {
             match &written.what {
-                WrittenKind::Model { source, saved } => {
+                WrittenKind::Model { of, source, saved } => {
                     open.path = Some(written.path.clone());
-                    open.saved = Some(Arc::clone(saved));
-                    open.may_write_over = true;
+                    self.others.were_replaced();
+                    // Undo may have led to other triangles while this was written.
+                    let (mesh, in_file, may_write_over) = match self.others.of_mut(of) {
+                        Some(other) => {
+                            (open.saved, open.may_write_over) = (None, false);
+                            (&mut other.mesh, &mut other.saved, &mut other.may_write_over)
+                        }
+                        None => (&mut open.mesh, &mut open.saved, &mut open.may_write_over),
+                    };
+                    *in_file = Some(Arc::clone(saved));
+                    *may_write_over = true;
                     if let Some(source) = source {
-                        open.mesh.source = source.clone();
+                        mesh.source = source.clone();
                     }
                 }
                 WrittenKind::Project => open.project = Some(written.path.clone()),
@@ -218,9 +230,12 @@ impl Session {
             .loading
             .running()
             .map(|_| self.watch.now().unwrap_or(("opening the file", 0.0)));
+        let stitching = self.stitching.as_ref();
+        let stitching = stitching.map(|(_, watch)| watch.now().unwrap_or(("changing the mesh", 0.0)));
         let stage = || self.save_watch.as_ref().and_then(Watch::now);
         let saving = self.saving.running();
-        loading.or_else(|| saving.map(|running| stage().unwrap_or(("saving", running.progress.get()))))
+        let saving = saving.map(|running| stage().unwrap_or(("saving", running.progress.get())));
+        loading.or(stitching).or(saving)
     }
 
     fn stamp(&mut self) -> Revision {
@@ -249,6 +264,7 @@ impl Session {
             // The save before it may have moved the mesh as it was read to another file.
             if let (Some(open), Some(mesh)) = (&self.open, request.content.mesh_mut())
                 && request.opened == self.opened
+                && Arc::ptr_eq(&mesh.loaded, &open.mesh.loaded)
             {
                 mesh.source = open.mesh.source.clone();
             }

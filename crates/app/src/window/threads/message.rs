@@ -5,12 +5,13 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use pliant_deform::ExampleShape;
-use pliant_editor::{Beginning, JobDone, Revision, SavedAs, SnapshotKey};
+use pliant_editor::{Beginning, JobDone, NewMesh, Revision, SavedAs, SnapshotKey};
 use pliant_mesh::Cancel;
 use pliant_render::{Image, Materials, Surface};
 
 use crate::files::original::Kept;
 use crate::window::files::listing::Entry;
+use crate::window::files::other_shape::OtherShape;
 use crate::window::files::rest_mesh::MeshSource;
 use crate::window::files::save_request::{Unwritten, Written};
 use pliant_engine::Loaded;
@@ -31,6 +32,8 @@ pub enum Message {
     LoadedMaterials(ImagesOf, Result<LoadedMaterials, String>),
     /// A file was opened, or the reason why not.
     Opened(Revision, Result<Box<ModelToShow>, String>),
+    /// The open file's triangles were changed, or the reason why not.
+    Stitched(Revision, Result<Box<Stitched>, String>),
     /// A file was written, or the reason why not.
     Written(Revision, Result<Written, Unwritten>),
     /// The place where the original of the file at this path is or will be kept, or the reason why it is unknown.
@@ -132,6 +135,16 @@ pub struct ModelToShow {
     pub notes: Vec<String>,
 }
 
+/// A new shape of the open file, ready to be shown and edited.
+pub struct Stitched {
+    /// The document on it.
+    pub mesh: NewMesh,
+    /// The shape.
+    pub shape: OtherShape,
+    /// Notes for a person, a sentence each: the first says how much was done.
+    pub notes: Vec<String>,
+}
+
 /// The purpose of choosing a path.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Purpose {
@@ -149,6 +162,8 @@ pub enum Purpose {
     ExportAnimation,
     /// To take an edit from, for the open mesh.
     ApplyEdit,
+    /// To put beside the open shape.
+    Append,
     /// To take a cage from.
     LoadCage,
     /// To take an example from.

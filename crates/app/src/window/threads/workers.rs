@@ -44,6 +44,11 @@ pub struct PoseSource {
 }
 
 impl PoseSource {
+    /// Returns true if a shape has as many vertices as the file.
+    fn fits(&self, displacements: &[DVec3]) -> bool {
+        displacements.len() == self.loaded.model.surface.positions.len()
+    }
+
     /// A shape, prepared for the renderer; its normals are turned by `jacobians` if these are known.
     pub fn pose(&self, displacements: Arc<Vec<DVec3>>, jacobians: Option<&[Mat3]>) -> Posed {
         let model = &self.loaded.model;
@@ -148,7 +153,10 @@ impl Executor for Workers {
             move || {
                 let done = debug_span!("job", kind = kind.doing()).in_scope(|| job.run());
                 let posed = match (&done.outcome, source) {
-                    (Ok(JobResult::Solve(SolveResult::Shape(solved))), Some(source)) => {
+                    // The window may not have followed the editor to another mesh yet.
+                    (Ok(JobResult::Solve(SolveResult::Shape(solved))), Some(source))
+                        if source.fits(&solved.from_file) =>
+                    {
                         Some(source.pose(Arc::clone(&solved.from_file), solved.jacobians.as_deref()))
                     }
                     _ => None,

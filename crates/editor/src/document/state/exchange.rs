@@ -9,7 +9,7 @@ use pliant_mesh::SurfaceVertex;
 
 use super::{Document, Repainted};
 use crate::document::access::Access;
-use crate::document::content::{Paint, Tips};
+use crate::document::content::{Content, Paint, Tips};
 use crate::document::handle::Handle;
 use crate::document::kept_shape::KeptShape;
 use crate::document::sparse::Sparse;
@@ -32,6 +32,13 @@ impl Document {
         by.marks.count_on_from(&self.marks);
         by.marks.mark(&Aspect::ALL);
         *self = by;
+    }
+
+    /// Exchanges everything with a document on another mesh.
+    pub(in crate::document) fn swap_content(&mut self, content: &mut Content) {
+        std::mem::swap(content, &mut self.content);
+        self.repainted = Repainted::All;
+        self.marks.mark(&Aspect::ALL);
     }
 
     pub(in crate::document) fn swap_kept(&mut self, kept: &mut Option<Arc<KeptShape>>) {

@@ -1,19 +1,71 @@
-//! A document on its mesh when that is read again: after another program has changed the file, or with another joining
-//! of its vertices.
+//! A document on its mesh when that is read again: after another program has changed the file, with another joining of
+//! its vertices, or with other triangles (cut, filled or joined).
 
 use std::sync::Arc;
 
 use glam::DVec3;
-use pliant_deform::Attachment;
+use pliant_deform::{Attachment, Loose};
+use pliant_mesh::{Model, SurfaceVertex};
 
 use super::Document;
 use crate::document::access::Access;
 use crate::document::content::{Content, Paint};
 use crate::document::fluid::Fluid;
+use crate::document::handle::HandleId;
 use crate::document::kept_shape::KeptShape;
 use crate::document::matching::Matching;
 
 impl Document {
+    /// The same regions and handles on the vertices of a new mesh that match its own, which has the present shape at
+    /// rest, with the parts that are turned inside out turned there. Handles rest at their visible positions. Examples
+    /// have no displacements for new vertices: if there are some, they are removed.
+    pub(crate) fn onto_new_mesh(&self, matching: &Matching) -> Self {
+        let mut applied = self.clone();
+        applied.apply_shape();
+        let shape = Arc::clone(&applied.content.from_file);
+        let mut content = applied.onto(matching, Some(&shape)).content;
+        let count = matching.of_new.len();
+        content.rest = Arc::new(vec![DVec3::ZERO; count]);
+        content.applied = false;
+        content.settled = true;
+        content.strength = None;
+        content.inside_out = Arc::default();
+        if matching.unmatched() > 0 {
+            let attachments = Arc::make_mut(&mut content.attachments);
+            attachments.retain(|_, own| !matches!(own, Attachment::Shapes(_)));
+        }
+        let left: Vec<HandleId> = content.handles.iter().map(|handle| handle.id).collect();
+        for handle in &mut content.handles {
+            handle.parent = handle.parent.filter(|parent| left.contains(parent));
+            handle.twin = handle.twin.filter(|twin| left.contains(&twin.handle));
+        }
+        content.into()
+    }
+
+    /// Makes a handle of the vertices of a new mesh that match none of the former one. What was there before and is not
+    /// painted rests, whatever the handle touches.
+    pub(crate) fn hold_new_part(&mut self, name: &str, matching: &Matching, model: &Model) -> Option<HandleId> {
+        let new = (0..).zip(&matching.of_new).filter(|(_, old)| old.is_none());
+        let new: Vec<SurfaceVertex> = new.map(|(vertex, _)| SurfaceVertex(vertex)).collect();
+        if new.is_empty() {
+            return None;
+        }
+        let sum: DVec3 = new.iter().map(|vertex| model.surface.positions[vertex.index()]).sum();
+        let id = self.add_handle();
+        self.change_handle(id, |handle| {
+            handle.name = name.to_owned();
+            handle.pivot = sum / new.len() as f64;
+        });
+        self.paint_vertices(new.iter().map(|vertex| (*vertex, Paint::Handle(id))));
+        let mut parts = self.loose_parts().clone();
+        let former = (0..).zip(&matching.of_new_part).filter(|(_, old)| old.is_some());
+        former.for_each(|(part, _)| {
+            parts.entry(part).or_insert(Loose::Rest);
+        });
+        self.set_loose(self.loose(), parts);
+        Some(id)
+    }
+
     /// The same regions, handles and shapes on the vertices that match its own; the others are fixed. If the file was
     /// saved since it was opened, `saved` are the displacements at that time (an entry per surface vertex of this
     /// document), and the rest shape is the file's without them.

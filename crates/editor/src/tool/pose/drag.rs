@@ -1,13 +1,16 @@
 //! A drag of the pose brush, from the press to the release of the limb.
 
+use std::sync::Arc;
+
 use glam::{DVec2, DVec3};
-use pliant_mesh::SurfaceVertex;
+use pliant_mesh::{Joint, SurfaceVertex};
 
 use super::motion::{Motion, Pose, Way};
+use super::reach::Reaching;
 use crate::document::{
     Document, Handle, HandleId, HandleTransform, Paint, PivotPlace, Reach, Transaction, accumulated, link_twins,
 };
-use crate::input::{Button, Pointer};
+use crate::input::{Button, Modifiers, Pointer};
 use crate::jobs::{Activity, JobKind};
 use crate::tool::context::Context;
 use crate::tool::gesture::{Gesture, Next};
@@ -29,6 +32,8 @@ pub(crate) struct PoseDrag {
     pick: Pick,
     start_px: DVec2,
     last: Pointer,
+    /// True if the limb bends at all its joints.
+    is_whole: bool,
     phase: Phase,
 }
 
@@ -38,6 +43,8 @@ enum Phase {
     Looking,
     /// The limb follows the pointer.
     Posing(Box<Posing>),
+    /// The limb bends at all its joints.
+    Reaching(Box<Reaching>),
 }
 
 /// A limb that has become a handle.
@@ -59,17 +66,31 @@ impl PoseDrag {
             pick,
             start_px: pointer.position_px,
             last: pointer,
+            is_whole: context.settings.whole_limb && pointer.modifiers == Modifiers::NONE,
             phase: Phase::Looking,
         };
-        hover(context.workspace, context.view, Some(pointer.position_px));
+        hover(
+            context.workspace,
+            context.view,
+            Some(pointer.position_px),
+            context.settings.whole_limb,
+        );
         (drag.take_limb(context.workspace) == Next::Stay).then_some(drag)
     }
 
     /// Grabs the limb, if it is known.
     fn take_limb(&mut self, workspace: &mut Workspace) -> Next {
-        let posing = match limb_under(workspace, &self.pick) {
-            // The shown joint may be that of the place where the pointer was before.
-            _ if workspace.jobs.is_busy(JobKind::Joint) => return Next::Stay,
+        let limb = limb_under(workspace, &self.pick);
+        // The shown joint may be that of the place where the pointer was before.
+        if workspace.jobs.is_busy(JobKind::Joint) {
+            return Next::Stay;
+        }
+        if self.is_whole
+            && let Some((transaction, handles)) = take_chain(workspace, &limb, self.pick.vertex)
+        {
+            return self.reach(workspace, transaction, &handles);
+        }
+        let posing = match limb {
             Limb::Unknown => return Next::Stay,
             Limb::None => {
                 workspace.refuse(NO_JOINT);
@@ -104,6 +125,31 @@ impl PoseDrag {
         }));
         Next::Stay
     }
+
+    /// Grabs a limb by handles, from the body on, of which the last one has the grabbed point.
+    fn reach(&mut self, workspace: &mut Workspace, transaction: Transaction, handles: &[HandleId]) -> Next {
+        workspace.controls.put([]);
+        workspace.selection.put_alone(handles.last().copied());
+        workspace.selection.wants_new_handle = false;
+        match Reaching::begin(workspace, transaction, handles, self.pick.point) {
+            Some(reaching) => {
+                self.phase = Phase::Reaching(Box::new(reaching));
+                Next::Stay
+            }
+            None => Next::End,
+        }
+    }
+}
+
+impl PoseDrag {
+    /// The open step.
+    fn transaction(&self) -> Option<&Transaction> {
+        match &self.phase {
+            Phase::Looking => None,
+            Phase::Posing(posing) => Some(&posing.transaction),
+            Phase::Reaching(reaching) => Some(&reaching.transaction),
+        }
+    }
 }
 
 impl Posing {
@@ -137,7 +183,7 @@ impl Gesture for PoseDrag {
     fn activity(&self) -> Activity {
         match self.phase {
             Phase::Looking => Activity::Still,
-            Phase::Posing(_) => Activity::Dragging,
+            Phase::Posing(_) | Phase::Reaching(_) => Activity::Dragging,
         }
     }
 
@@ -148,13 +194,14 @@ impl Gesture for PoseDrag {
     fn lit(&self) -> Lit {
         match self.phase {
             Phase::Looking => Lit::Ring,
-            Phase::Posing(_) => Lit::Pivot,
+            Phase::Posing(_) | Phase::Reaching(_) => Lit::Pivot,
         }
     }
 
     fn status(&self, _: &Workspace, view: &View) -> Option<String> {
         Some(match &self.phase {
             Phase::Looking => "Finding the joint: Esc to cancel".to_owned(),
+            Phase::Reaching(_) => "Bending the limb at all its joints: release to keep it, Esc to cancel".to_owned(),
             Phase::Posing(posing) => {
                 let doing = match posing.motion.pose {
                     Pose::Turn => "Turning",
@@ -180,6 +227,7 @@ impl Gesture for PoseDrag {
     fn shapes(&self, view: &View) -> Vec<ControlShape> {
         match &self.phase {
             Phase::Posing(posing) if posing.is_armed => posing.motion.arc(view, self.last.position_px),
+            Phase::Reaching(reaching) => reaching.shapes(),
             _ => Vec::new(),
         }
     }
@@ -194,9 +242,17 @@ impl Gesture for PoseDrag {
 
     fn moved(&mut self, context: &mut Context<'_>, pointer: Pointer) -> Next {
         let last_px = std::mem::replace(&mut self.last, pointer).position_px;
-        if let Phase::Posing(posing) = &mut self.phase {
-            posing.is_armed |= pointer.position_px.distance(self.start_px) >= THRESHOLD_PX;
-            posing.follow(context, last_px, pointer);
+        let is_armed = pointer.position_px.distance(self.start_px) >= THRESHOLD_PX;
+        match &mut self.phase {
+            Phase::Looking => {}
+            Phase::Posing(posing) => {
+                posing.is_armed |= is_armed;
+                posing.follow(context, last_px, pointer);
+            }
+            Phase::Reaching(reaching) => {
+                reaching.is_armed |= is_armed;
+                reaching.follow(context.workspace, context.view, pointer.position_px);
+            }
         }
         Next::Stay
     }
@@ -208,8 +264,8 @@ impl Gesture for PoseDrag {
         // The held modifiers no longer matter: the pointer's last movement counts.
         let modifiers = self.last.modifiers;
         self.moved(context, Pointer { modifiers, ..pointer });
-        if let Phase::Posing(posing) = &self.phase {
-            context.workspace.commit(&posing.transaction);
+        if let Some(transaction) = self.transaction() {
+            context.workspace.commit(transaction);
         }
         Next::End
     }
@@ -217,13 +273,13 @@ impl Gesture for PoseDrag {
     fn found_joint(&mut self, context: &mut Context<'_>) -> Next {
         match self.phase {
             Phase::Looking => self.take_limb(context.workspace),
-            Phase::Posing(_) => Next::Stay,
+            Phase::Posing(_) | Phase::Reaching(_) => Next::Stay,
         }
     }
 
     fn abort(&mut self, context: &mut Context<'_>) {
-        if let Phase::Posing(posing) = &self.phase {
-            context.workspace.abort(&posing.transaction);
+        if let Some(transaction) = self.transaction() {
+            context.workspace.abort(transaction);
         }
     }
 }
@@ -253,8 +309,60 @@ fn make_handle(workspace: &mut Workspace, limb: &NewLimb, freed: &[SurfaceVertex
         return None;
     }
     let mut transaction = workspace.begin_stroke("Pose");
+    workspace.document.keep_shape();
+    let id = add_limb(workspace, &transaction, limb, freed);
+    let handle = workspace.document.handle(id)?.clone();
+    transaction.rename(format!("Make {}", handle.name));
+    Some((transaction, handle, joint.axis))
+}
+
+/// Grabs all parts of a limb as far as the one with the grabbed vertex, from the body on; they are made handles if the
+/// limb is untouched. `None` if it has only one part, or if only some of its parts are handles.
+fn take_chain(workspace: &mut Workspace, limb: &Limb, grabbed: SurfaceVertex) -> Option<(Transaction, Vec<HandleId>)> {
+    match limb {
+        Limb::Posed(id) => {
+            let document = &workspace.document;
+            let parent = |id: &HandleId| document.handle(*id).and_then(|handle| handle.parent);
+            let mut handles: Vec<HandleId> = std::iter::successors(Some(*id), parent).collect();
+            handles.reverse();
+            (handles.len() > 1).then(|| (workspace.begin("Pose a limb"), handles))
+        }
+        Limb::Untouched(limb) if limb.parent.is_none() && limb.children.is_empty() && !limb.own.is_empty() => {
+            let inner = workspace.computed().inner_joints().to_vec();
+            (!inner.is_empty()).then(|| make_chain(workspace, limb, &inner, grabbed))
+        }
+        _ => None,
+    }
+}
+
+/// Makes the parts of a limb between its joints handles, each the child of the one before it.
+fn make_chain(
+    workspace: &mut Workspace,
+    root: &NewLimb,
+    inner: &[Arc<Joint>],
+    grabbed: SurfaceVertex,
+) -> (Transaction, Vec<HandleId>) {
+    let transaction = workspace.begin_stroke("Pose a limb");
+    workspace.document.keep_shape();
+    let first = add_limb(workspace, &transaction, root, &[]);
+    let (mut last, mut held) = (first, vec![first]);
+    for joint in inner {
+        let limb = NewLimb::within(workspace, last, joint);
+        let Some(freed) = limb.freed(workspace).filter(|_| !limb.own.is_empty()) else {
+            continue;
+        };
+        last = add_limb(workspace, &transaction, &limb, &freed);
+        if joint.limb.binary_search(&grabbed).is_ok() {
+            held.push(last);
+        }
+    }
+    (transaction, held)
+}
+
+/// Makes a limb a handle within a step.
+fn add_limb(workspace: &mut Workspace, step: &Transaction, limb: &NewLimb, freed: &[SurfaceVertex]) -> HandleId {
+    let joint = &*limb.joint;
     let document = &mut workspace.document;
-    document.keep_shape();
     let id = document.add_handle();
     document.change_handle(id, |handle| {
         handle.reach = Reach::Length(limb.joint.width());
@@ -264,16 +372,14 @@ fn make_handle(workspace: &mut Workspace, limb: &NewLimb, freed: &[SurfaceVertex
     for child in &limb.children {
         document.change_handle(*child, |child| child.parent = Some(id));
     }
-    tidy_handles(workspace, transaction.before());
+    tidy_handles(workspace, step.before());
     workspace.document.change_handle(id, |handle| {
         let on_rest = handle.affine().inverse().transform_point3(joint.centre);
         handle.pivot_place = PivotPlace::Picked;
         handle.move_pivot(on_rest);
     });
     make_posed_twin(workspace, id, limb, freed);
-    let handle = workspace.document.handle(id)?.clone();
-    transaction.rename(format!("Make {}", handle.name));
-    Some((transaction, handle, joint.axis))
+    id
 }
 
 /// Paints a limb's own vertices as a handle, and frees those that bend at its joint.

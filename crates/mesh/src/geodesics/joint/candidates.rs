@@ -7,8 +7,9 @@
 //! gaps stand in for them.
 
 use std::f64::consts::TAU;
+use std::ops::Range;
 
-use super::rings::{Rings, Source};
+use super::rings::{End, Rings, Source};
 use crate::SurfaceVertex;
 
 /// The least convexity of a joint.
@@ -32,15 +33,44 @@ const LARGEST_SHARE: f64 = 0.35;
 /// The same where the rings show no joint: half of a surface, and a little more.
 const LARGEST_HALF: f64 = 0.53;
 
+/// A point so many radii beyond a joint may be on the joint's limb.
+const ASKEW_RADII: f64 = 2.5;
+
+/// Rings around a tip are at least so many times as long as the ring before them.
+const TIP_WIDENS: f64 = 0.98;
+
+/// A limb that shows around its own tip is at least this many radii long.
+const TIP_RADII: f64 = 2.2;
+
+/// The same limb's least share of the area, so that a toe leads to its foot.
+pub(super) const SMALLEST_SHARE: f64 = 0.01;
+
+/// A head may have this share of the area if its neck is the only narrow ring.
+const LARGEST_HEAD: f64 = 0.9;
+
+/// The neck of such a head is exceeded so many times by rings before and after it.
+const NECK: f64 = 1.5;
+
 /// The point's distance from the joint is at least this many radii.
 const CLEAR_RADII: f64 = 0.25;
 
 /// The candidates beyond a point, as levels, ascending. The first of them is the guess: the first joint that the rings
-/// show, or the narrowest ring if the limb widens before that.
-pub(super) fn candidates(rings: &Rings, corners: &[SurfaceVertex; 3], source: Source) -> Vec<usize> {
-    let mut all = shown(rings, corners);
-    let narrowest = rings.narrowest(corners, 0, source).map(|narrowest| narrowest.level);
-    if let Some(narrowest) = narrowest.filter(|&level| rings.limb_share(level) <= LARGEST_HALF) {
+/// show, or the narrowest ring if the limb widens before that. Limbs below the share `least` of the area do not count. `is_whole` tells
+/// that the rings are those of the whole surface.
+pub(super) fn candidates(
+    rings: &Rings,
+    corners: &[SurfaceVertex; 3],
+    source: Source,
+    least: f64,
+    is_whole: bool,
+) -> Vec<usize> {
+    let mut all = shown(rings, corners, least);
+    // Rings beyond the search's limit may be narrower.
+    let narrowest = rings
+        .narrowest(corners, 0, source)
+        .filter(|narrowest| is_whole || narrowest.end == End::Widens);
+    let narrowest = narrowest.map(|narrowest| narrowest.level);
+    if let Some(narrowest) = narrowest.filter(|&level| (least..=LARGEST_HALF).contains(&rings.limb_share(level))) {
         let has_widened = |level: usize| {
             let between = &rings.lengths()[narrowest..level.max(narrowest)];
             between
@@ -51,11 +81,51 @@ pub(super) fn candidates(rings: &Rings, corners: &[SurfaceVertex; 3], source: So
             all.insert(0, narrowest);
         }
     }
+    if all.is_empty() {
+        all.extend(neck(rings).filter(|&level| level >= rings.first(corners)));
+    }
     all
 }
 
+/// Returns true if rings around a point show a joint before they cease to be those of a tip: they widen all the time, and
+/// far less than around a point on a side.
+pub(super) fn is_tip(rings: &Rings) -> bool {
+    let lengths = rings.lengths();
+    let Some(joint) = widening(rings).into_iter().next() else {
+        return false;
+    };
+    let widens = lengths[..=joint].windows(2).all(|pair| pair[1] >= TIP_WIDENS * pair[0]);
+    let is_long = rings.radii()[joint] >= TIP_RADII * lengths[joint] / TAU;
+    widens && is_long && rings.limb_share(joint) >= SMALLEST_SHARE
+}
+
+/// The last joint before a point, if the point is within [`ASKEW_RADII`] of it: rings around a tip are askew at a shoulder,
+/// so a point on the upper arm may be beyond the ring of its own joint.
+pub(super) fn just_before(rings: &Rings, corners: &[SurfaceVertex; 3]) -> Option<usize> {
+    let at = *rings.radii().get(rings.first(corners))?;
+    let is_near = |&level: &usize| {
+        let radius = rings.lengths()[level] / TAU;
+        (0.0..ASKEW_RADII * radius).contains(&(at - rings.radii()[level]))
+            && rings.radii()[level] >= LONG_RADII * radius
+            && rings.limb_share(level) <= LARGEST_SHARE
+    };
+    joints(rings).into_iter().rfind(is_near)
+}
+
+/// The narrowest ring between two parts that are both wider: the neck of a bust.
+pub(super) fn neck(rings: &Rings) -> Option<usize> {
+    let lengths = rings.lengths();
+    let longest = |range: Range<usize>| lengths[range].iter().copied().fold(0.0, f64::max);
+    let is_neck = |&level: &usize| {
+        let exceeded = longest(0..level).min(longest(level..lengths.len()));
+        (1.0 - LARGEST_HEAD..=LARGEST_HEAD).contains(&rings.limb_share(level)) && exceeded >= NECK * lengths[level]
+    };
+    let necks = (0..lengths.len()).filter(|&level| lengths[level] > 0.0).filter(is_neck);
+    necks.min_by(|&a, &b| lengths[a].total_cmp(&lengths[b]))
+}
+
 /// The joints that the rings show beyond a point, and the middles of gaps between them.
-fn shown(rings: &Rings, corners: &[SurfaceVertex; 3]) -> Vec<usize> {
+fn shown(rings: &Rings, corners: &[SurfaceVertex; 3], least: f64) -> Vec<usize> {
     let first = rings.first(corners);
     let radius = |level: usize| rings.lengths().get(level).map_or(0.0, |length| length / TAU);
     let apart = |one: usize, other: usize| rings.radii()[other] - rings.radii()[one];
@@ -63,7 +133,7 @@ fn shown(rings: &Rings, corners: &[SurfaceVertex; 3]) -> Vec<usize> {
         level >= first
             && apart(first, level) >= CLEAR_RADII * radius(level)
             && rings.radii()[level] >= LONG_RADII * radius(level)
-            && rings.limb_share(level) <= LARGEST_SHARE
+            && (least..=LARGEST_SHARE).contains(&rings.limb_share(level))
     };
     let (joints, before): (Vec<usize>, Vec<usize>) = joints(rings).into_iter().partition(is_clear);
     // The first gap begins at the last joint before the point.
@@ -155,7 +225,7 @@ fn narrow(rings: &Rings) -> Vec<usize> {
 fn joints(rings: &Rings) -> Vec<usize> {
     let mut joints = narrow(rings);
     let near = |one: usize, other: usize| {
-        let radius = rings.lengths()[one] / TAU;
+        let radius = rings.lengths()[one].min(rings.lengths()[other]) / TAU;
         (rings.radii()[one] - rings.radii()[other]).abs() < radius
     };
     let others: Vec<usize> = widening(rings)

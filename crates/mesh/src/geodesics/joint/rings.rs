@@ -1,7 +1,8 @@
 //! Level sets of a distance field that separate the body from the rest.
 //!
-//! At a level r the *body* is the connected component of {distance ≥ r} that has two fifths of the whole area or more;
-//! at a lower level it is the one that contains the body of the higher level. So bodies are nested, and the ring of a
+//! At a level r the *body* is the connected component of {distance ≥ r} that has two fifths of the whole area or more, or
+//! a tenth if there is hardly anything else beyond r; at a lower level it is the one that contains the body of the higher
+//! level. So bodies are nested, and the ring of a
 //! level, the boundary of its body, always separates the surface, even one with holes and handles. The *limb* is the
 //! rest.
 
@@ -18,6 +19,10 @@ use crate::{SurfaceVertex, face_area};
 const LEVELS: u32 = 256;
 /// The body's least share of the area.
 const BODY_SHARE: f64 = 0.4;
+/// The least share of a body that is all that is beyond its level.
+const LONE_BODY_SHARE: f64 = 0.1;
+/// A piece with this share of the area beyond a level is all that is beyond it, but for tips.
+const LONE: f64 = 0.9;
 /// A ring counts if it is shorter than this share of the circle of its distance: the share is 0.64 for a sphere's
 /// equator and less than 0.32 around a tube, once the circle has closed around it.
 const ROUND_SHARE: f64 = 0.5;
@@ -256,6 +261,12 @@ impl Rings {
         let is_limb = |v: &&SurfaceVertex| self.in_body[v.index()] as usize <= level;
         self.vertices.iter().filter(is_limb).copied().collect()
     }
+
+    /// Every vertex of the component that is in the body of a level, ascending.
+    pub(super) fn body(&self, level: usize) -> Vec<SurfaceVertex> {
+        let is_body = |v: &&SurfaceVertex| self.in_body[v.index()] as usize > level;
+        self.vertices.iter().filter(is_body).copied().collect()
+    }
 }
 
 /// The line of a level in a triangle; there is none beyond the limit.
@@ -268,6 +279,9 @@ fn cut(shape: &Shape<'_>, field: &Field, triangle: [SurfaceVertex; 3], level: us
 }
 
 /// A vertex of the body at the highest level that has one, and the number of levels at which it is in the body.
+///
+/// The body of a bust is smaller than its head. So the body goes on beyond the level at which it has its least share, as
+/// long as nearly all that is beyond a level is one piece.
 fn innermost_body(shape: &Shape<'_>, vertices: &[SurfaceVertex], levels: &[u32]) -> Option<(SurfaceVertex, u32)> {
     let mut areas = vec![0.0; levels.len()];
     let mut whole = 0.0;
@@ -282,11 +296,14 @@ fn innermost_body(shape: &Shape<'_>, vertices: &[SurfaceVertex], levels: &[u32])
     falling.sort_by_key(|v| std::cmp::Reverse(levels[v.index()]));
     // Parents of a forest of sets; a vertex enters it when its level is reached.
     let mut parents: Vec<u32> = vec![u32::MAX; levels.len()];
+    let (mut entered, mut largest) = (0.0, (0.0, 0));
+    let mut innermost: Option<(SurfaceVertex, u32)> = None;
     for &v in &falling {
         if levels[v.index()] == 0 {
             break;
         }
         parents[v.index()] = v.0;
+        entered += areas[v.index()];
         for &u in shape.topology.neighbours(v) {
             if parents[u.index()] == u32::MAX {
                 continue;
@@ -297,9 +314,19 @@ fn innermost_body(shape: &Shape<'_>, vertices: &[SurfaceVertex], levels: &[u32])
                 areas[one as usize] += areas[other as usize];
             }
         }
-        if areas[root(&mut parents, v.0) as usize] >= BODY_SHARE * whole {
-            return Some((v, levels[v.index()]));
+        let own = root(&mut parents, v.0);
+        if areas[own as usize] > largest.0 {
+            largest = (areas[own as usize], own);
         }
+        if areas[own as usize] >= BODY_SHARE * whole {
+            let is_own = |(seed, _): &(SurfaceVertex, u32)| root(&mut parents, seed.0) == own;
+            return innermost.filter(is_own).or(Some((v, levels[v.index()])));
+        }
+        let is_alone = largest.0 >= LONE_BODY_SHARE * whole && largest.0 >= LONE * entered;
+        innermost = match is_alone {
+            true => innermost.or(Some((SurfaceVertex(largest.1), levels[v.index()]))),
+            false => None,
+        };
     }
     None
 }

@@ -3,7 +3,7 @@ use std::f64::consts::PI;
 use glam::{DAffine3, DQuat, DVec2, DVec3};
 
 use super::*;
-use crate::{Model, shapes};
+use crate::{Model, SurfaceVertex, shapes};
 
 fn joint_at(model: &Model, triangle: u32) -> Option<Joint> {
     let shape = Shape {

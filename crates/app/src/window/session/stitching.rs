@@ -1,0 +1,92 @@
+//! Changes of the open file's triangles, off the window's thread: the engine makes a new shape in memory.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use pliant_editor::StitchRequest;
+use pliant_engine::stitching::{Present, Remade, remake};
+use pliant_engine::watch::Watch;
+use pliant_engine::{EngineError, Loaded};
+use pliant_picture::drawing::Drawing;
+
+use crate::window::files::other_shape::OtherShape;
+use crate::window::files::rest_mesh::{MeshSource, RestMesh};
+use crate::window::threads::message::Stitched;
+use crate::window::viewport::gpu::Gpu;
+
+/// Makes the new shape of the open file. `second` is the file that is appended.
+///
+/// # Errors
+/// A sentence about the refusal.
+pub fn stitch(
+    request: &StitchRequest,
+    loaded: &Loaded,
+    second: Option<&Path>,
+    gpu: &Gpu,
+    watch: &Watch,
+) -> Result<Box<Stitched>, String> {
+    let made = make(request, loaded, second, gpu, watch);
+    made.map_err(|error| match error {
+        EngineError::Interrupted => format!("{} was stopped: the surface is unchanged.", request.change.name()),
+        error => error.to_string(),
+    })
+}
+
+fn make(
+    request: &StitchRequest,
+    loaded: &Loaded,
+    second: Option<&Path>,
+    gpu: &Gpu,
+    watch: &Watch,
+) -> Result<Box<Stitched>, EngineError> {
+    let present = Present {
+        loaded,
+        displacements: request.displacements(),
+        inside_out: request.inside_out(),
+    };
+    let weld = loaded.model.weld;
+    let second = second.map(|path| pliant_engine::load(path, &weld, watch)).transpose()?;
+    let Remade {
+        loaded,
+        moved,
+        done,
+        warnings,
+    } = remake(&present, &request.change, second.as_ref(), watch)?;
+    let progress = watch.begin("preparing the picture");
+    let mesh = request.onto(Arc::clone(&loaded.model), moved.as_deref());
+    progress.set(0.3);
+    let drawing = Drawing::new(&loaded.model, loaded.scene.appearance(), Arc::default());
+    progress.set(0.7);
+    let at_rest = vec![glam::DVec3::ZERO; loaded.model.surface.positions.len()];
+    let pose = drawing.pose(&loaded.model, &at_rest);
+    let surface = gpu.upload(&drawing, &pose);
+    let surface = surface.map_err(|error| EngineError::System(error.to_string()))?;
+    if watch.cancel.is_cancelled() {
+        return Err(EngineError::Interrupted);
+    }
+    let loaded = Arc::new(loaded);
+    Ok(Box::new(Stitched {
+        mesh,
+        notes: std::iter::once(done)
+            .chain(warnings)
+            .map(|note| sentence(&note))
+            .collect(),
+        shape: OtherShape {
+            morph_targets: loaded.scene.morph_targets(),
+            drawing: Arc::new(drawing),
+            surface: Some(surface),
+            mesh: RestMesh::new(Arc::clone(&loaded), MeshSource::Gone),
+            saved: None,
+            may_write_over: false,
+            loaded,
+        },
+    }))
+}
+
+/// A clause as a sentence.
+fn sentence(clause: &str) -> String {
+    let mut letters = clause.chars();
+    let first = letters.next().into_iter().flat_map(char::to_uppercase);
+    let end = if clause.ends_with('.') { "" } else { "." };
+    first.chain(letters).chain(end.chars()).collect()
+}

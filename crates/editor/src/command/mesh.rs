@@ -1,0 +1,228 @@
+//! Commands that change the triangles of the surface.
+
+use pliant_mesh::SurfaceVertex;
+
+use super::entry::{Action, Entry, Reason, Scope, State, always, item, unless};
+use crate::document::Paint;
+use crate::stitching::{KeptSide, MergeSettings, MeshChange, REACH_RANGE};
+use crate::tool::{Context, RimUse};
+use crate::workspace::{held_parts, merge_held, mirror_held, stitch};
+
+/// For commands that change the mesh: they need the whole shape, and are done one at a time.
+fn when_mesh_may_change<V>(state: &State<'_>, _: &V) -> Option<Reason> {
+    let is_still = state.workspace.stitching.is_none();
+    state.unopened().or_else(|| state.in_work_pose()).or(unless(
+        is_still,
+        "A change of the mesh is under way: wait until it has ended, or stop it.",
+    ))
+}
+
+/// Fills every hole.
+pub(super) const FILL_HOLES: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Fill all holes",
+        "Closes every hole of the surface smoothly; the outer border of an open sheet stays.",
+        "close repair cap patch watertight scan",
+        &[],
+    )],
+    scope: Scope::Document,
+    unavailable: when_mesh_may_change,
+    action: Action::Do(|context, ()| stitch(context.workspace, MeshChange::FillAll)),
+};
+
+/// Fills the hole whose rim the next click takes.
+pub(super) const FILL_HOLE: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Fill a hole",
+        "Closes the hole whose rim you click next.",
+        "close repair cap patch one pick",
+        &[],
+    )],
+    scope: Scope::Document,
+    unavailable: when_mesh_may_change,
+    action: Action::Do(|context, ()| want_rim(context, RimUse::Fill)),
+};
+
+/// Joins two borders, which the next clicks take, by a tube.
+pub(super) const BRIDGE: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Bridge two borders",
+        "Joins the two borders that you click next by a smooth tube.",
+        "connect tube tunnel handle loops join",
+        &[],
+    )],
+    scope: Scope::Document,
+    unavailable: when_mesh_may_change,
+    action: Action::Do(|context, ()| want_rim(context, RimUse::Bridge { first: None })),
+};
+
+fn want_rim(context: &mut Context<'_>, wanted: RimUse) {
+    context.settings.want_nothing();
+    context.settings.wants_rim = Some(wanted);
+}
+
+/// Deletes the selected region.
+pub(super) const DELETE_REGION: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Delete region",
+        "Deletes the painted vertices of the selected handle or region, with all triangles at them.",
+        "cut remove erase trim",
+        &[],
+    )],
+    scope: Scope::Document,
+    unavailable: |state, ()| when_mesh_may_change(state, &()).or_else(|| painted_role(state).err()),
+    action: Action::Do(|context, ()| {
+        let selected = context.workspace.selection.selected();
+        if let Some(role) = context.settings.selected_role(selected) {
+            let painted = (0..).zip(context.workspace.document.paint());
+            let deleted = painted.filter(|(_, paint)| **paint == role);
+            let deleted = deleted.map(|(vertex, _)| SurfaceVertex(vertex)).collect();
+            stitch(context.workspace, MeshChange::Delete(deleted));
+        }
+    }),
+};
+
+/// The role whose vertices can be deleted.
+fn painted_role(state: &State<'_>) -> Result<Paint, Reason> {
+    let role = state.settings.selected_role(state.workspace.selection.selected());
+    let role = role.ok_or("No region is selected: select a handle, or choose Paint region or Paint fixed.")?;
+    if let Paint::Handle(_) = role {
+        state.unlocked()?;
+    }
+    if !state.workspace.document.paint().contains(&role) {
+        return Err("Nothing is painted: paint the part to delete first.".into());
+    }
+    Ok(role)
+}
+
+/// Cuts along the line that the next drag draws.
+pub(super) const CUT: Entry<KeptSide> = Entry {
+    listed: &[
+        item(
+            KeptSide::Positive,
+            "Cut along a line",
+            "Deletes the part to the right of the line that you draw next, seen along it.",
+            "plane slice trim knife",
+            &[],
+        ),
+        item(
+            KeptSide::Negative,
+            "Cut along a line, the left",
+            "Deletes the part to the left of the line that you draw next, seen along it.",
+            "plane slice trim knife",
+            &[],
+        ),
+        item(
+            KeptSide::Both,
+            "Add edges along a line",
+            "Splits the triangles along the line that you draw next, and deletes nothing.",
+            "plane slice knife divide both",
+            &[],
+        ),
+    ],
+    scope: Scope::Document,
+    unavailable: when_mesh_may_change,
+    action: Action::Do(|context, kept| {
+        context.settings.want_nothing();
+        context.settings.wants_cut = Some(kept);
+    }),
+};
+
+/// Changes the mesh.
+pub(super) const CHANGE_MESH: Entry<MeshChange> = Entry {
+    listed: &[],
+    scope: Scope::Document,
+    unavailable: when_mesh_may_change,
+    action: Action::Do(|context, change| stitch(context.workspace, change)),
+};
+
+/// For commands on the part that the selected handle holds.
+fn when_part_is_held<V>(state: &State<'_>, values: &V) -> Option<Reason> {
+    let is_held = || !held_parts(state.workspace).is_empty();
+    when_mesh_may_change(state, values)
+        .or_else(|| state.unlocked().err())
+        .or_else(|| {
+            unless(
+                is_held(),
+                "The selected handle holds no whole part: append a file, or select its handle.",
+            )
+        })
+}
+
+/// Mirrors the part that the selected handle holds, across axis 0, 1, 2 of the handle for x, y, z.
+pub(super) const MIRROR_PART: Entry<usize> = Entry {
+    listed: &[
+        item(
+            0,
+            "Mirror part in x",
+            "Mirrors the part that the selected handle holds, left and right.",
+            "flip reflect append",
+            &[],
+        ),
+        item(
+            1,
+            "Mirror part in y",
+            "Mirrors the part that the selected handle holds, up and down.",
+            "flip reflect append",
+            &[],
+        ),
+        item(
+            2,
+            "Mirror part in z",
+            "Mirrors the part that the selected handle holds, front and back.",
+            "flip reflect append",
+            &[],
+        ),
+    ],
+    scope: Scope::Document,
+    unavailable: when_part_is_held,
+    action: Action::Do(|context, axis| mirror_held(context.workspace, axis)),
+};
+
+/// Joins the part that the selected handle holds to the others, at the nearest borders.
+pub(super) const MERGE: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Merge nearest borders",
+        "Joins the part that the selected handle holds to the other parts, where borders are nearest.",
+        "join stitch combine append weld",
+        &[],
+    )],
+    scope: Scope::Document,
+    unavailable: when_part_is_held,
+    action: Action::Do(|context, ()| {
+        let settings = context.settings.merge.clone();
+        merge_held(context.workspace, &[], settings);
+    }),
+};
+
+/// Joins the part that the selected handle holds to another one, at the borders that the next clicks take.
+pub(super) const MERGE_PICKED: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Merge two borders",
+        "Joins two borders at the two places that you click next: one of the selected handle's part, one of another part.",
+        "join stitch combine append pick pair",
+        &[],
+    )],
+    scope: Scope::Document,
+    unavailable: when_part_is_held,
+    action: Action::Do(|context, ()| want_rim(context, RimUse::Merge { first: None })),
+};
+
+/// Chooses how parts are merged.
+pub(super) const SET_MERGE: Entry<MergeSettings> = Entry {
+    listed: &[],
+    scope: Scope::View,
+    unavailable: always,
+    action: Action::Do(|context, settings| {
+        if settings.reach.is_finite() {
+            let reach = settings.reach.clamp(*REACH_RANGE.start(), *REACH_RANGE.end());
+            context.settings.merge = MergeSettings { reach, ..settings };
+        }
+    }),
+};

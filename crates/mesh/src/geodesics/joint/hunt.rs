@@ -1,0 +1,233 @@
+//! The search for the joint of a point: origins of rings are tried in turn, the likeliest first.
+
+use glam::DVec3;
+
+use super::candidates::{self, SMALLEST_SHARE};
+use super::cut::{Cut, NUDGE_RADII};
+use super::limb::Joint;
+use super::origin::{FarTips, Origin};
+use super::rings::{Body, End, Field, Narrowest, Rings, Source};
+use super::shape::Shape;
+use crate::geodesics::DistanceSearch;
+use crate::{Cancel, Cancelled, SurfaceVertex};
+
+/// If a point is so near to the tip of its rings that it is itself the tip, and the far tip is within so many radii, the
+/// point is on the side of a head, not at the tip of a limb.
+const HEAD_RADII: f64 = 3.0;
+
+/// The first search covers this share of the component's extent; only if that is not enough does another search cover
+/// all of it.
+const FIRST_SHARE: f64 = 0.35;
+
+/// A straight joint is the narrowest ring within so many radii of the askew one where the point is beyond that.
+const BESIDE_RADII: f64 = 1.5;
+
+/// The search for the joint of a point in a triangle.
+pub(super) struct Hunt<'a> {
+    shape: &'a Shape<'a>,
+    cancel: &'a Cancel,
+    search: DistanceSearch,
+    point: DVec3,
+    corners: [SurfaceVertex; 3],
+    /// The triangle's corners, with their distances from the point.
+    seeds: [(SurfaceVertex, f64); 3],
+}
+
+/// What the rings around the point itself show.
+struct Surroundings {
+    /// The narrowest ring; it is askew if the point is on the side of a limb.
+    askew: Option<Cut>,
+    /// True if the point is the tip of a limb.
+    is_tip: bool,
+}
+
+impl<'a> Hunt<'a> {
+    pub(super) fn new(shape: &'a Shape<'a>, triangle: u32, point: DVec3, cancel: &'a Cancel) -> Self {
+        let corners = shape.triangles[triangle as usize];
+        Self {
+            shape,
+            cancel,
+            search: DistanceSearch::default(),
+            point,
+            corners,
+            seeds: corners.map(|v| (v, shape.positions[v.index()].distance(point))),
+        }
+    }
+
+    /// The joint that is `up` candidates farther from the limb's tip than the guess.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub(super) fn joint(mut self, up: i32) -> Result<Option<Joint>, Cancelled> {
+        let (mut origins, far) = self.likely_origins()?;
+        let mut found = self.first_candidate(&origins, up)?;
+        if found.is_none() {
+            let FarTips { limb, ends } = match far {
+                Some(tips) => tips,
+                None => self.far_tips()?,
+            };
+            let tried = origins.len();
+            for tip in limb {
+                if origins.iter().all(|origin| origin.tip != tip) {
+                    origins.push(Origin::far(tip));
+                }
+            }
+            found = self.first_candidate(&origins[tried..], up)?;
+            if found.is_none() {
+                found = self.beside(&origins)?.map(|cut| (cut, 0));
+            }
+            if found.is_none() {
+                found = self.neck(ends)?.map(|cut| (cut, 0));
+            }
+        }
+        self.cancel.check()?;
+        let Some((cut, up)) = found else { return Ok(None) };
+        let joint = cut.joint(&mut self.search, self.shape);
+        Ok(joint.map(|joint| Joint { up, ..joint }))
+    }
+
+    /// The origins that the rings around the point suggest, and the far tips if they were needed for that.
+    fn likely_origins(&mut self) -> Result<(Vec<Origin>, Option<FarTips>), Cancelled> {
+        let near = FIRST_SHARE * self.extent();
+        let Surroundings { askew, is_tip } = self.surroundings(near)?;
+        let mut origins = Vec::new();
+        if is_tip {
+            origins.push(Origin {
+                tip: self.corners[0],
+                near,
+                source: Source::Tip,
+                least: SMALLEST_SHARE,
+            });
+        }
+        let Some(askew) = askew else { return Ok((origins, None)) };
+        let tip = askew.tip(self.shape);
+        let from_rings = Origin {
+            tip,
+            near: 1.6 * self.shape.positions[tip.index()].distance(askew.centre) + 4.0 * askew.radius,
+            source: Source::Tip,
+            least: 0.0,
+        };
+        let away = |tip: SurfaceVertex| self.shape.positions[tip.index()].distance(self.point);
+        if away(tip) >= askew.radius {
+            origins.push(from_rings);
+            return Ok((origins, None));
+        }
+        let far = self.far_tips()?;
+        let farthest = far.limb[0];
+        let away = self.shape.positions[farthest.index()].distance(self.point);
+        let is_on_head = (askew.radius..HEAD_RADII * askew.radius).contains(&away);
+        origins.push(from_rings);
+        let last = origins.len() - usize::from(is_on_head);
+        origins.insert(last, Origin::far(farthest));
+        Ok((origins, Some(far)))
+    }
+
+    fn far_tips(&mut self) -> Result<FarTips, Cancelled> {
+        FarTips::of(&mut self.search, self.shape, &self.seeds, self.cancel)
+    }
+
+    /// The diagonal of the box around the component.
+    fn extent(&self) -> f64 {
+        let topology = self.shape.topology;
+        let vertices = topology.vertices_of(topology.component(self.corners[0]));
+        let (mut least, mut most) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        for position in vertices.map(|v| self.shape.positions[v.index()]) {
+            (least, most) = (least.min(position), most.max(position));
+        }
+        least.distance(most)
+    }
+
+    /// The rings around `seeds` up to the distance `limit`.
+    fn rings(&mut self, seeds: &[(SurfaceVertex, f64)], limit: f64) -> Result<(Field, Rings), Cancelled> {
+        let field = Field::measure(&mut self.search, self.shape, seeds, limit);
+        self.cancel.check()?;
+        let rings = Rings::of(self.shape, &field, Body::Large);
+        self.cancel.check()?;
+        Ok((field, rings))
+    }
+
+    /// The rings around the point. The search first covers the distance `near`, and everything if the rings have not
+    /// widened again by then.
+    fn surroundings(&mut self, near: f64) -> Result<Surroundings, Cancelled> {
+        let seeds = self.seeds;
+        let mut is_tip = false;
+        for limit in [near, f64::INFINITY] {
+            let (field, rings) = self.rings(&seeds, limit)?;
+            is_tip |= limit == near && candidates::is_tip(&rings);
+            match rings.narrowest(&self.corners, 0, Source::Point) {
+                Some(Narrowest { level, end }) if end == End::Widens || limit.is_infinite() => {
+                    let askew = Some(Cut::of(self.shape, &field, &rings, level));
+                    return Ok(Surroundings { askew, is_tip });
+                }
+                _ => {}
+            }
+        }
+        Ok(Surroundings { askew: None, is_tip })
+    }
+
+    /// The straightened candidate from the first of some origins that has one, and the number of candidates before it.
+    fn first_candidate(&mut self, origins: &[Origin], up: i32) -> Result<Option<(Cut, i32)>, Cancelled> {
+        for origin in origins {
+            if let Some((cut, up)) = self.candidate(origin, up)? {
+                return Ok(Some((self.straight(&cut, NUDGE_RADII).unwrap_or(cut), up)));
+            }
+        }
+        Ok(None)
+    }
+
+    /// The candidate `up` places farther from the tip than the guess, and the number of places that there are.
+    fn candidate(&mut self, origin: &Origin, up: i32) -> Result<Option<(Cut, i32)>, Cancelled> {
+        for limit in [origin.near, f64::INFINITY] {
+            let (field, rings) = self.rings(&[(origin.tip, 0.0)], limit)?;
+            let candidates =
+                candidates::candidates(&rings, &self.corners, origin.source, origin.least, limit.is_infinite());
+            let place = up.clamp(0, candidates.len().saturating_sub(1) as i32);
+            let found = candidates.get(place as usize);
+            if let Some(&level) = found.filter(|_| limit.is_infinite() || place == up) {
+                return Ok(Some((Cut::of(self.shape, &field, &rings, level), place)));
+            }
+            if limit.is_infinite() {
+                break;
+            }
+        }
+        Ok(None)
+    }
+
+    /// The straight ring of the last joint before the point, from the first of some origins that has one with the point
+    /// on its limb.
+    fn beside(&mut self, origins: &[Origin]) -> Result<Option<Cut>, Cancelled> {
+        for origin in origins {
+            let (field, rings) = self.rings(&[(origin.tip, 0.0)], f64::INFINITY)?;
+            let Some(level) = candidates::just_before(&rings, &self.corners) else {
+                continue;
+            };
+            let askew = Cut::of(self.shape, &field, &rings, level);
+            let straight = self.straight(&askew, BESIDE_RADII);
+            if straight.is_some() {
+                return Ok(straight);
+            }
+        }
+        Ok(None)
+    }
+
+    /// The neck of a bust, from the first of its ends that shows one. The point is on the limb, whichever side of the
+    /// neck that is.
+    fn neck(&mut self, ends: [SurfaceVertex; 2]) -> Result<Option<Cut>, Cancelled> {
+        for end in ends {
+            let (field, rings) = self.rings(&[(end, 0.0)], f64::INFINITY)?;
+            let Some(level) = candidates::neck(&rings) else {
+                continue;
+            };
+            let mut cut = Cut::of(self.shape, &field, &rings, level);
+            if level < rings.first(&self.corners) {
+                cut.limb = rings.body(level);
+            }
+            return Ok(Some(self.straight(&cut, NUDGE_RADII).unwrap_or(cut)));
+        }
+        Ok(None)
+    }
+
+    fn straight(&mut self, cut: &Cut, nudge: f64) -> Option<Cut> {
+        cut.straightened(&mut self.search, self.shape, &self.corners, nudge)
+    }
+}
