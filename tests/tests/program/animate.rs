@@ -101,6 +101,25 @@ fn a_frame_at_a_keys_time_is_the_shape_of_that_keys_transforms() {
 }
 
 #[test]
+fn a_frame_is_the_same_to_the_byte_whatever_comes_before_it() {
+    for method in ["bilaplacian", "arap", "shells", "embedded"] {
+        let folder = Folder::new();
+        folder.write_mesh("bar.off", &bar());
+        animate(
+            &folder,
+            &edit(method, &json!({}), &keys()),
+            "f-####.off",
+            &["--fps", "8"],
+        )
+        .done();
+        let alone = json!([{ "time": 0.0, "handles": { "top": bent() } }]);
+        animate(&folder, &edit(method, &json!({}), &alone), "a-####.off", &[]).done();
+        let bytes = |name: &str| fs::read(folder.at(name)).unwrap();
+        assert!(bytes("f-0004.off") == bytes("a-0000.off"), "{method}");
+    }
+}
+
+#[test]
 fn caches_have_the_numbered_files_positions_and_bytes_do_not_depend_on_threads() {
     let folder = Folder::new();
     folder.write_mesh("bar.off", &bar());

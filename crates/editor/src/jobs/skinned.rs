@@ -1,4 +1,4 @@
-//! The shapes of the moments around the shown one, as their job finds them.
+//! The shapes of other moments around the shown one.
 
 use std::sync::{Arc, Mutex};
 
@@ -19,8 +19,9 @@ pub struct Skin {
 /// The shapes of the moments around the shown one.
 #[derive(Default)]
 pub struct Skinned {
+    /// By their moments.
     pub(super) skins: Vec<Skin>,
-    /// The factorisation of the binding with this revision: the descent of an iterative method continues from its last
-    /// step, so it gets one of its own here.
+    /// The own factorisation of an iterative method, and the revision of the binding that it repeats: the descent of the
+    /// shown shape continues from its last step, so the one of other moments must not disturb it.
     pub(super) own: Option<(Revision, Arc<Mutex<Bound>>)>,
 }

@@ -1,16 +1,16 @@
-//! The shapes of other moments around the shown one.
+//! Solving for other moments around the shown one.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use pliant_deform::{BindError, Problem, Solve};
-use pliant_mesh::SurfaceVertex;
+use pliant_deform::{Bound, Solve};
+use pliant_mesh::Cancel;
 
 use super::allowance::Allowance;
 use super::computed::Computed;
 use super::skinned::{Skin, Skinned};
 use super::slot::{Unfinished, Work};
 use super::solving::Wanted;
-use crate::Setup;
+use super::work::BindInput;
 use crate::document::{Animation, Aspect, Document, KeyFrame, Placed, Version};
 use crate::ease::Ease;
 use crate::revision::Revision;
@@ -49,8 +49,7 @@ pub(super) fn skins_work(
     moments: &[(i8, f64)],
     allowance: Allowance,
 ) -> Option<Work<Box<Skinned>>> {
-    let (binding, model) = (computed.slots.bind.last()?, computed.model.clone()?);
-    let revision = computed.slots.bind.made();
+    let (binding, model) = (computed.slots.bind.last()?, computed.model.as_ref()?);
     let animation = with_present(document);
     let wanted = moments.iter().map(|&(place, time)| {
         let there = document_at(document, &animation, time);
@@ -59,61 +58,41 @@ pub(super) fn skins_work(
         Some((place, wanted.along(&binding.lines, &there).anew()))
     });
     let wanted: Vec<(i8, Wanted)> = wanted.collect::<Option<_>>()?;
-    let present = Arc::clone(&binding.bound);
     if document.method.solve() == Solve::Direct {
+        let present = Arc::clone(&binding.bound);
         return Some(Box::new(move |_, cancel| {
-            let mut skins = Vec::with_capacity(wanted.len());
-            for (place, wanted) in wanted {
-                cancel.check()?;
-                let mut bound = present.lock().unwrap_or_else(PoisonError::into_inner);
-                let solved = wanted.solve(&mut bound, cancel);
-                let from_file = solved.map_err(|error| Unfinished::Failed(error.to_string()))?.from_file;
-                skins.push(Skin { place, from_file });
-            }
+            let skins = solved(wanted, &present, cancel)?;
             Ok(Box::new(Skinned { skins, own: None }))
         }));
     }
+    let revision = computed.slots.bind.made();
     let last = computed.slots.skins.last().and_then(|last| last.own.clone());
-    let own = last.filter(|(of, _)| *of == revision).map(|(_, own)| own);
-    let ordering = match document.method.ordering_power() {
-        Some(power) => Some(computed.ordering(power)?),
-        None => None,
-    };
-    let reusable_factor = binding.reusable_factor.clone();
-    let (document, region) = (document.clone(), computed.region.clone());
+    let last = last.filter(|(of, _)| *of == revision);
+    let input = BindInput::of(computed, model, document, revision.0, allowance)?;
     Some(Box::new(move |progress, cancel| {
-        let own = match own {
-            Some(own) => own,
-            None => {
-                let setup = Setup::of_document(&document, &region, &model.surface);
-                let problem: Problem<'_> = setup.problem(&model);
-                let (ordering, factor) = (ordering.as_deref(), reusable_factor.as_ref());
-                match problem.rebind_within(ordering, factor, allowance.budget(), progress, cancel) {
-                    Ok(bound) => Arc::new(Mutex::new(bound)),
-                    Err(BindError::Cancelled(cancelled)) => return Err(cancelled.into()),
-                    Err(error) => {
-                        let known = |vertex| model.first_file_vertex(SurfaceVertex(vertex)).0;
-                        return Err(Unfinished::Failed(error.renumbered(known).to_string()));
-                    }
-                }
-            }
+        let own = match last {
+            Some((_, own)) => own,
+            None => input.bind(progress, cancel)?.bound,
         };
-        let mut skins = Vec::with_capacity(wanted.len());
-        let mut bound = own.lock().unwrap_or_else(PoisonError::into_inner);
-        for (place, wanted) in wanted {
-            cancel.check()?;
-            bound.set_cancel(cancel);
-            let solved = wanted.solve(&mut bound, cancel);
-            let from_file = solved.map_err(|error| Unfinished::Failed(error.to_string()))?.from_file;
-            skins.push(Skin { place, from_file });
-        }
-        cancel.check()?;
-        drop(bound);
-        Ok(Box::new(Skinned {
-            skins,
-            own: Some((revision, own)),
-        }))
+        let skins = solved(wanted, &own, cancel)?;
+        let own = Some((revision, own));
+        Ok(Box::new(Skinned { skins, own }))
     }))
+}
+
+/// Solves for moments, one after the other, so that a frame of a drag comes in between.
+fn solved(wanted: Vec<(i8, Wanted)>, bound: &Mutex<Bound>, cancel: &Cancel) -> Result<Vec<Skin>, Unfinished> {
+    let mut skins = Vec::with_capacity(wanted.len());
+    for (place, wanted) in wanted {
+        cancel.check()?;
+        let mut bound = bound.lock().unwrap_or_else(PoisonError::into_inner);
+        bound.set_cancel(cancel);
+        let solved = wanted.solve(&mut bound, cancel);
+        let from_file = solved.map_err(|error| Unfinished::Failed(error.to_string()))?.from_file;
+        skins.push(Skin { place, from_file });
+    }
+    cancel.check()?;
+    Ok(skins)
 }
 
 /// The document's keys, and the one that *Key here* would set, if a handle is not where the keys have it.

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use pliant_deform::{BindError, Problem};
-use pliant_mesh::{Bvh, Damage, Model, SurfaceVertex};
+use pliant_deform::{BindError, Ordering, Problem, ReusableFactor};
+use pliant_mesh::{Bvh, Cancel, Damage, Model, Progress, SurfaceVertex};
 
 use super::allowance::Allowance;
 use super::computed::Computed;
@@ -51,6 +51,63 @@ pub(super) fn pick_work(computed: &Computed, model: &Arc<Model>, document: &Docu
     }))
 }
 
+/// The input of a binding.
+pub(super) struct BindInput {
+    model: Arc<Model>,
+    document: Document,
+    region: Region,
+    ordering: Option<Arc<Ordering>>,
+    reusable_factor: Option<ReusableFactor>,
+    revision: u64,
+    allowance: Allowance,
+}
+
+impl BindInput {
+    /// That of the document, with the region that was measured last; `None` while the ordering that the method needs is
+    /// missing.
+    pub(super) fn of(
+        computed: &Computed,
+        model: &Arc<Model>,
+        document: &Document,
+        revision: u64,
+        allowance: Allowance,
+    ) -> Option<Self> {
+        let ordering = match document.method.ordering_power() {
+            Some(power) => Some(computed.ordering(power)?),
+            None => None,
+        };
+        Some(Self {
+            model: Arc::clone(model),
+            document: document.clone(),
+            region: computed.region.clone(),
+            ordering,
+            reusable_factor: computed.slots.bind.last().and_then(|last| last.reusable_factor.clone()),
+            revision,
+            allowance,
+        })
+    }
+
+    /// Factorises.
+    pub(super) fn bind(&self, progress: &Progress, cancel: &Cancel) -> Result<PresentBinding, Unfinished> {
+        let (model, region) = (&self.model, &self.region);
+        let setup = Setup::of_document(&self.document, region, &model.surface);
+        let problem = Problem {
+            revision: self.revision,
+            ..setup.problem(model)
+        };
+        let (ordering, reusable_factor) = (self.ordering.as_deref(), self.reusable_factor.as_ref());
+        match problem.rebind_within(ordering, reusable_factor, self.allowance.budget(), progress, cancel) {
+            Ok(bound) => Ok(PresentBinding::of(bound, &region.handles, setup.lines.clone())),
+            Err(BindError::Cancelled(cancelled)) => Err(cancelled.into()),
+            Err(error) => Err(Unfinished::Failed(
+                error
+                    .renumbered(|vertex| model.first_file_vertex(SurfaceVertex(vertex)).0)
+                    .to_string(),
+            )),
+        }
+    }
+}
+
 /// Factorises; `None` while the ordering that the method needs is missing.
 pub(super) fn bind_work(
     computed: &Computed,
@@ -59,32 +116,9 @@ pub(super) fn bind_work(
     revision: u64,
     allowance: Allowance,
 ) -> Option<Work<Box<PresentBinding>>> {
-    let ordering = match document.method.ordering_power() {
-        Some(power) => Some(computed.ordering(power)?),
-        None => None,
-    };
-    let (model, document, region) = (Arc::clone(model), document.clone(), computed.region.clone());
-    let reusable_factor = computed.slots.bind.last().and_then(|last| last.reusable_factor.clone());
+    let input = BindInput::of(computed, model, document, revision, allowance)?;
     Some(Box::new(move |progress, cancel| {
-        let setup = Setup::of_document(&document, &region, &model.surface);
-        let problem = Problem {
-            revision,
-            ..setup.problem(&model)
-        };
-        let (ordering, reusable_factor) = (ordering.as_deref(), reusable_factor.as_ref());
-        match problem.rebind_within(ordering, reusable_factor, allowance.budget(), progress, cancel) {
-            Ok(bound) => Ok(Box::new(PresentBinding::of(
-                bound,
-                &region.handles,
-                setup.lines.clone(),
-            ))),
-            Err(BindError::Cancelled(cancelled)) => Err(cancelled.into()),
-            Err(error) => Err(Unfinished::Failed(
-                error
-                    .renumbered(|vertex| model.first_file_vertex(SurfaceVertex(vertex)).0)
-                    .to_string(),
-            )),
-        }
+        input.bind(progress, cancel).map(Box::new)
     }))
 }
 
