@@ -18,7 +18,7 @@ use crate::window_rig::Session;
 use egui::{Key, Modifiers, vec2};
 use glam::{DAffine3, DQuat, DVec3};
 use pliant_app::window::{AppDirectories, KeepOriginal, Source, original_name};
-use pliant_editor::{Command, CutPlane, HandleTransform, KeptSide, MergeSettings, MeshChange, Paint, Placement};
+use pliant_editor::{Command, CutPlane, HandleTransform, KeptSide, MergeSettings, MeshChange, Placement};
 use pliant_mesh::{Drawn, DrawnVertex, Model, SurfaceVertex, shapes};
 use pliant_tests::{Folder, bare_edit, open, run};
 
