@@ -48,6 +48,9 @@ pub(super) const SMALLEST_SHARE: f64 = 0.01;
 /// A head may have this share of the area if its neck is the only narrow ring.
 const LARGEST_HEAD: f64 = 0.9;
 
+/// The rings are those of one piece if they go on until they have cut off this share of the area.
+const ONE_PIECE: f64 = 0.85;
+
 /// The neck of such a head is exceeded so many times by rings before and after it.
 const NECK: f64 = 1.5;
 
@@ -82,7 +85,11 @@ pub(super) fn candidates(
         }
     }
     if all.is_empty() {
-        all.extend(neck(rings).filter(|&level| level >= rings.first(corners)));
+        all.extend(neck_within(
+            rings,
+            rings.first(corners)..rings.lengths().len(),
+            LARGEST_SHARE,
+        ));
     }
     all
 }
@@ -112,16 +119,24 @@ pub(super) fn just_before(rings: &Rings, corners: &[SurfaceVertex; 3]) -> Option
     joints(rings).into_iter().rfind(is_near)
 }
 
-/// The narrowest ring between two parts that are both wider: the neck of a bust.
-pub(super) fn neck(rings: &Rings) -> Option<usize> {
+/// The narrowest of some rings between two parts that are both much wider.
+fn neck_within(rings: &Rings, levels: Range<usize>, most: f64) -> Option<usize> {
     let lengths = rings.lengths();
     let longest = |range: Range<usize>| lengths[range].iter().copied().fold(0.0, f64::max);
     let is_neck = |&level: &usize| {
         let exceeded = longest(0..level).min(longest(level..lengths.len()));
-        (1.0 - LARGEST_HEAD..=LARGEST_HEAD).contains(&rings.limb_share(level)) && exceeded >= NECK * lengths[level]
+        (1.0 - LARGEST_HEAD..=most).contains(&rings.limb_share(level)) && exceeded >= NECK * lengths[level]
     };
-    let necks = (0..lengths.len()).filter(|&level| lengths[level] > 0.0).filter(is_neck);
-    necks.min_by(|&a, &b| lengths[a].total_cmp(&lengths[b]))
+    let rings = levels.filter(|&level| lengths.get(level).is_some_and(|length| *length > 0.0));
+    rings.filter(is_neck).min_by(|&a, &b| lengths[a].total_cmp(&lengths[b]))
+}
+
+/// The neck of a bust, by the rings around the end of its base, if it is before the point and all beyond it is one piece:
+/// a body with legs is no head.
+pub(super) fn neck(rings: &Rings, corners: &[SurfaceVertex; 3]) -> Option<usize> {
+    let last = rings.lengths().iter().rposition(|length| *length > 0.0)?;
+    let is_one_piece = rings.limb_share(last) >= ONE_PIECE;
+    is_one_piece.then(|| neck_within(rings, 0..rings.first(corners), LARGEST_HEAD))?
 }
 
 /// The joints that the rings show beyond a point, and the middles of gaps between them.

@@ -233,19 +233,16 @@ impl<'a> Hunt<'a> {
         Ok(None)
     }
 
-    /// The neck of a bust, from the first of its ends that shows one. The point is on the limb, whichever side of the
-    /// neck that is.
+    /// The neck of a bust, from the first of its ends that is the end of its base. The limb is the head, on the other side.
     fn neck(&mut self, ends: [SurfaceVertex; 2]) -> Result<Option<Cut>, Cancelled> {
         for end in ends {
             let around = self.rings_of_tip(end, f64::INFINITY)?;
             let (field, rings) = &*around;
-            let Some(level) = candidates::neck(rings) else {
+            let Some(level) = candidates::neck(rings, &self.corners) else {
                 continue;
             };
             let mut cut = Cut::of(self.shape, field, rings, level);
-            if level < rings.first(&self.corners) {
-                cut.limb = rings.body(level);
-            }
+            cut.limb = rings.body(level);
             return Ok(Some(self.straight(&cut, NUDGE_RADII).unwrap_or(cut)));
         }
         Ok(None)
