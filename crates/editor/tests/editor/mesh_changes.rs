@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use pliant_editor::{Command, Event, HandleId, MeshChange, Paint, ToolMode};
-use pliant_mesh::{SurfaceVertex, shapes};
+use pliant_mesh::SurfaceVertex;
 
 use crate::rig::new_mesh::{answer, bowl, closed, follow, open_shapes, present, state};
 use crate::rig::{CENTRE_PX, Rig, weld};
