@@ -134,6 +134,9 @@ impl StitchRequest {
             MeshChange::Append(name) => document.hold_new_part(name, &matching, &model),
             _ => None,
         };
+        if moved.is_some() {
+            document.centre_pivots(&model);
+        }
         NewMesh {
             document,
             model,

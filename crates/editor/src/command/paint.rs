@@ -78,7 +78,11 @@ pub(super) const SET_TOOL: Entry<ToolMode> = Entry {
     ],
     scope: Scope::Tool,
     unavailable: always,
-    action: Action::Do(|context, mode| context.settings.mode = mode),
+    action: Action::Do(|context, mode| {
+        // A press belongs to the new tool.
+        context.settings.want_nothing();
+        context.settings.mode = mode;
+    }),
 };
 
 /// The shape in which the left button selects vertices.

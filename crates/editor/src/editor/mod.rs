@@ -186,7 +186,7 @@ impl Editor {
         } else if gesture.is_none() {
             hover(&mut self.workspace, &self.view, hovering_px, self.settings.whole_limb);
         }
-        tint(&mut self.workspace, &self.view, hovering_px);
+        tint(&mut self.workspace, &self.view, hovering_px, self.settings.whole_limb);
         self.workspace.follow_flow(gesture.is_none());
         self.workspace.follow_skins(&self.view.look, activity);
         self.workspace.conclude(activity, by, asked);

@@ -11,7 +11,7 @@ use super::loose::FileContacts;
 const CHAIN_SHARE: f64 = 0.25;
 
 /// A chain has at most so many joints.
-const CHAIN_JOINTS: i32 = 4;
+const CHAIN_JOINTS: i32 = 5;
 
 /// The limb at a point of the surface.
 #[derive(Clone, Debug)]

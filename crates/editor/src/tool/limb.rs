@@ -123,7 +123,7 @@ pub(crate) fn hover(workspace: &mut Workspace, view: &View, pointer_px: Option<g
 }
 
 /// Tints the limb that a press of the pose brush at `pointer_px` would turn; `None` tints none.
-pub(crate) fn tint(workspace: &mut Workspace, view: &View, pointer_px: Option<glam::DVec2>) {
+pub(crate) fn tint(workspace: &mut Workspace, view: &View, pointer_px: Option<glam::DVec2>, is_whole: bool) {
     let pick = pointer_px.and_then(|px| workspace.pick(view, px));
     // The limb is looked through once for each joint, not at each move of the pointer.
     let tinted = workspace.colours().turning();
@@ -133,7 +133,7 @@ pub(crate) fn tint(workspace: &mut Workspace, view: &View, pointer_px: Option<gl
     {
         return;
     }
-    let joint = match pick.map(|pick| limb_under(workspace, &pick)) {
+    let joint = match pick.map(|pick| limb_under(workspace, &pick, is_whole)) {
         Some(Limb::Untouched(limb)) => Some(limb.joint),
         _ => None,
     };
@@ -141,9 +141,13 @@ pub(crate) fn tint(workspace: &mut Workspace, view: &View, pointer_px: Option<gl
 }
 
 /// The limb at a point of the surface, by the joint that was found last: the handle of that joint, or the part of the
-/// surface that can become one.
-pub(crate) fn limb_under(workspace: &Workspace, pick: &Pick) -> Limb {
+/// surface that can become one. If whole limbs are posed, a part of one stays a part, wherever joints are found on the
+/// bent surface.
+pub(crate) fn limb_under(workspace: &Workspace, pick: &Pick, is_whole: bool) -> Limb {
     let on = handle_at(&workspace.document, pick);
+    if let Some(id) = on.filter(|id| is_whole && is_in_chain(&workspace.document, *id)) {
+        return Limb::Posed(id);
+    }
     let joint = workspace.computed().joint();
     let Some(joint) = joint.filter(|joint| joint.limb.binary_search(&pick.vertex).is_ok()) else {
         return match on {
@@ -167,6 +171,12 @@ pub(crate) fn limb_under(workspace: &Workspace, pick: &Pick) -> Limb {
         Some(new) => Limb::Untouched(new),
         None => Limb::Posed(present),
     }
+}
+
+/// Returns true if a handle is another one's parent or child.
+fn is_in_chain(document: &Document, id: HandleId) -> bool {
+    let is_its = |handle: &Handle| handle.parent == Some(id) || (handle.id == id && handle.parent.is_some());
+    document.handles().iter().any(is_its)
 }
 
 /// Returns true if a handle's pivot is at a joint.

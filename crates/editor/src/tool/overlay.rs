@@ -218,7 +218,7 @@ fn joint(
     let pick = pointer_px
         .filter(|_| is_hovering)
         .and_then(|px| workspace.pick(view, px));
-    match pick.map(|pick| limb_under(workspace, &pick)) {
+    match pick.map(|pick| limb_under(workspace, &pick, settings.whole_limb)) {
         Some(Limb::Untouched(limb)) => {
             let joints = std::iter::once(&limb.joint).chain(workspace.computed().inner_joints());
             let joints: Vec<_> = joints.collect();

@@ -56,6 +56,9 @@ impl Workspace {
     fn replace_mesh(&mut self, name: &str, new: NewMesh) {
         self.pause_keys();
         self.jobs.drop_solves();
+        // Steps that are open belong to the former mesh.
+        self.pause_keys();
+        self.commit_adjusting();
         self.history.sync(&self.document);
         let before = Content::clone(&self.document);
         self.document.replace(new.document);

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
 mod animation;
+mod appended_parts;
 mod comparison;
 mod controls;
 mod corrections;
@@ -21,6 +22,7 @@ mod lateness;
 mod laws;
 mod memory_limit;
 mod mesh_changes;
+mod mesh_picks;
 mod objects;
 mod pose;
 mod poses;

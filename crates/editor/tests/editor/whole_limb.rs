@@ -107,15 +107,25 @@ fn one_drag_of_the_hand_bends_all_joints_and_the_hand_is_under_the_pointer() {
     for (p, d) in rig.model.surface.positions.iter().zip(document.from_file().iter()) {
         assert!(p.x > 0.9 || d.length() < 1e-9, "the body is held at {p}");
     }
-    // The next drag continues with the same parts.
-    let (_, hand_px) = seen(&rig, hand);
-    drag(&mut rig, hand_px, DVec2::new(20.0, 60.0), Modifiers::NONE);
-    let again = rig.editor.document().handles().to_vec();
-    assert_eq!(again.len(), 3);
-    for (one, other) in bones(&again).iter().zip(bones(&handles)) {
-        assert!((one - other).abs() < 1e-9);
+    // The next drags continue with the same parts, however far the limb is bent.
+    let mut hand = hand;
+    for by_px in [
+        DVec2::new(20.0, 160.0),
+        DVec2::new(-110.0, 40.0),
+        DVec2::new(60.0, -200.0),
+    ] {
+        let (vertex, hand_px) = seen(&rig, hand);
+        drag(&mut rig, hand_px, by_px, Modifiers::NONE);
+        let again = rig.editor.document().handles().to_vec();
+        assert_eq!(again.len(), 3);
+        for (one, other) in bones(&again).iter().zip(bones(&handles)) {
+            assert!((one - other).abs() < 1e-9);
+        }
+        hand = rig.model.surface.positions[vertex] + rig.editor.document().from_file()[vertex];
     }
-    rig.undo();
+    for _ in 0..3 {
+        rig.undo();
+    }
     rig.undo();
     rig.drain();
     assert_eq!(rig.fingerprint(), before, "each drag is one step");

@@ -1,6 +1,7 @@
 //! A document on its mesh when that is read again: after another program has changed the file, with another joining of
 //! its vertices, or with other triangles (cut, filled or joined).
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -11,7 +12,7 @@ use super::Document;
 use crate::document::access::Access;
 use crate::document::content::{Content, Paint};
 use crate::document::fluid::Fluid;
-use crate::document::handle::HandleId;
+use crate::document::handle::{HandleId, PivotPlace};
 use crate::document::kept_shape::KeptShape;
 use crate::document::matching::Matching;
 
@@ -64,6 +65,28 @@ impl Document {
         });
         self.set_loose(self.loose(), parts);
         Some(id)
+    }
+
+    /// Puts the pivots that belong in the middle of their handles there, after a change that has moved vertices. The
+    /// handles rest.
+    pub(crate) fn centre_pivots(&mut self, model: &Model) {
+        let mut sums: BTreeMap<HandleId, (DVec3, f64)> = BTreeMap::new();
+        for (paint, position) in self.content.paint.iter().zip(&model.surface.positions) {
+            if let Paint::Handle(id) = paint {
+                let (sum, count) = sums.entry(*id).or_default();
+                (*sum, *count) = (*sum + *position, *count + 1.0);
+            }
+        }
+        self.change_handles(|handles| {
+            for handle in handles
+                .iter_mut()
+                .filter(|handle| handle.pivot_place == PivotPlace::Centroid)
+            {
+                if let Some((sum, count)) = sums.get(&handle.id) {
+                    handle.pivot = *sum / *count;
+                }
+            }
+        });
     }
 
     /// The same regions, handles and shapes on the vertices that match its own; the others are fixed. If the file was

@@ -80,7 +80,7 @@ impl PoseDrag {
 
     /// Grabs the limb, if it is known.
     fn take_limb(&mut self, workspace: &mut Workspace) -> Next {
-        let limb = limb_under(workspace, &self.pick);
+        let limb = limb_under(workspace, &self.pick, self.is_whole);
         // The shown joint may be that of the place where the pointer was before.
         if workspace.jobs.is_busy(JobKind::Joint) {
             return Next::Stay;

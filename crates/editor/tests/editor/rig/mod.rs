@@ -2,6 +2,8 @@
 #![allow(dead_code, reason = "each test file uses the verbs it needs")]
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test that can't go on fails")]
 
+pub mod new_mesh;
+
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 

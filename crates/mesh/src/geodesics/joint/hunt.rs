@@ -1,5 +1,7 @@
 //! The search for the joint of a point: origins of rings are tried in turn, the likeliest first.
 
+use std::rc::Rc;
+
 use glam::DVec3;
 
 use super::candidates::{self, SMALLEST_SHARE};
@@ -31,6 +33,8 @@ pub(super) struct Hunt<'a> {
     corners: [SurfaceVertex; 3],
     /// The triangle's corners, with their distances from the point.
     seeds: [(SurfaceVertex, f64); 3],
+    /// The rings of the whole surface around tips that were tried, which several steps of the search need.
+    whole: Vec<(SurfaceVertex, Rc<(Field, Rings)>)>,
 }
 
 /// What the rings around the point itself show.
@@ -51,6 +55,7 @@ impl<'a> Hunt<'a> {
             point,
             corners,
             seeds: corners.map(|v| (v, shape.positions[v.index()].distance(point))),
+            whole: Vec::new(),
         }
     }
 
@@ -146,6 +151,22 @@ impl<'a> Hunt<'a> {
         Ok((field, rings))
     }
 
+    /// The rings around a tip up to the distance `limit`.
+    fn rings_of_tip(&mut self, tip: SurfaceVertex, limit: f64) -> Result<Rc<(Field, Rings)>, Cancelled> {
+        let known = self
+            .whole
+            .iter()
+            .find(|(other, _)| *other == tip && limit.is_infinite());
+        if let Some((_, rings)) = known {
+            return Ok(Rc::clone(rings));
+        }
+        let rings = Rc::new(self.rings(&[(tip, 0.0)], limit)?);
+        if limit.is_infinite() {
+            self.whole.push((tip, Rc::clone(&rings)));
+        }
+        Ok(rings)
+    }
+
     /// The rings around the point. The search first covers the distance `near`, and everything if the rings have not
     /// widened again by then.
     fn surroundings(&mut self, near: f64) -> Result<Surroundings, Cancelled> {
@@ -178,13 +199,14 @@ impl<'a> Hunt<'a> {
     /// The candidate `up` places farther from the tip than the guess, and the number of places that there are.
     fn candidate(&mut self, origin: &Origin, up: i32) -> Result<Option<(Cut, i32)>, Cancelled> {
         for limit in [origin.near, f64::INFINITY] {
-            let (field, rings) = self.rings(&[(origin.tip, 0.0)], limit)?;
+            let around = self.rings_of_tip(origin.tip, limit)?;
+            let (field, rings) = &*around;
             let candidates =
-                candidates::candidates(&rings, &self.corners, origin.source, origin.least, limit.is_infinite());
+                candidates::candidates(rings, &self.corners, origin.source, origin.least, limit.is_infinite());
             let place = up.clamp(0, candidates.len().saturating_sub(1) as i32);
             let found = candidates.get(place as usize);
             if let Some(&level) = found.filter(|_| limit.is_infinite() || place == up) {
-                return Ok(Some((Cut::of(self.shape, &field, &rings, level), place)));
+                return Ok(Some((Cut::of(self.shape, field, rings, level), place)));
             }
             if limit.is_infinite() {
                 break;
@@ -197,11 +219,12 @@ impl<'a> Hunt<'a> {
     /// on its limb.
     fn beside(&mut self, origins: &[Origin]) -> Result<Option<Cut>, Cancelled> {
         for origin in origins {
-            let (field, rings) = self.rings(&[(origin.tip, 0.0)], f64::INFINITY)?;
-            let Some(level) = candidates::just_before(&rings, &self.corners) else {
+            let around = self.rings_of_tip(origin.tip, f64::INFINITY)?;
+            let (field, rings) = &*around;
+            let Some(level) = candidates::just_before(rings, &self.corners) else {
                 continue;
             };
-            let askew = Cut::of(self.shape, &field, &rings, level);
+            let askew = Cut::of(self.shape, field, rings, level);
             let straight = self.straight(&askew, BESIDE_RADII);
             if straight.is_some() {
                 return Ok(straight);
@@ -214,11 +237,12 @@ impl<'a> Hunt<'a> {
     /// neck that is.
     fn neck(&mut self, ends: [SurfaceVertex; 2]) -> Result<Option<Cut>, Cancelled> {
         for end in ends {
-            let (field, rings) = self.rings(&[(end, 0.0)], f64::INFINITY)?;
-            let Some(level) = candidates::neck(&rings) else {
+            let around = self.rings_of_tip(end, f64::INFINITY)?;
+            let (field, rings) = &*around;
+            let Some(level) = candidates::neck(rings) else {
                 continue;
             };
-            let mut cut = Cut::of(self.shape, &field, &rings, level);
+            let mut cut = Cut::of(self.shape, field, rings, level);
             if level < rings.first(&self.corners) {
                 cut.limb = rings.body(level);
             }

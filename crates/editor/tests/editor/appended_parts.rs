@@ -1,0 +1,147 @@
+//! Parts of another file: their handle moves them alone, they are mirrored, and a merge asks for the right ones.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+use pliant_editor::{Command, Event, MergeSettings, MeshChange, Paint, Placement, REACH_RANGE};
+use pliant_mesh::SurfaceVertex;
+
+use crate::rig::new_mesh::{answer, bowl, state, used};
+use crate::rig::{Rig, VIEWPORT_PX};
+
+/// A bowl with another one appended, whose handle is selected.
+fn appended() -> Rig {
+    let mut rig = Rig::open(bowl());
+    rig.command(Command::ChangeMesh(MeshChange::Append("lid".to_owned())));
+    answer(&mut rig);
+    rig
+}
+
+#[test]
+fn an_appended_part_gets_a_handle_that_moves_it_alone_wherever_it_touches() {
+    let mut rig = appended();
+    let count = used(bowl()).positions.len();
+    let handle = rig.editor.document().handles()[0].clone();
+    assert_eq!((&*handle.name, rig.editor.view().selected), ("lid", Some(handle.id)));
+    assert_eq!(rig.count(Paint::Handle(handle.id)), count);
+    assert!(
+        rig.editor.document().paint()[..count]
+            .iter()
+            .all(|paint| *paint == Paint::Bare)
+    );
+    // Far into the other bowl, and on through it: each is a step, and the first bowl rests to the bit.
+    let before = state(&rig);
+    for _ in 0..2 {
+        rig.move_by('x', "-1.7");
+        rig.drain();
+        let ways = rig.editor.document().from_file();
+        assert!(ways[..count].iter().all(|way| *way == DVec3::ZERO));
+        assert!(
+            ways[count..]
+                .iter()
+                .all(|way| (way.x % 1.7).abs() < 1e-9 && way.x < -1.0)
+        );
+    }
+    rig.undo();
+    rig.undo();
+    rig.drain();
+    assert!(state(&rig) == before);
+    rig.undo();
+    assert_eq!(rig.editor.view().model.unwrap().surface.positions.len(), count);
+    assert!(rig.editor.document().handles().is_empty());
+}
+
+#[test]
+fn a_mirrored_part_is_turned_so_that_it_still_faces_outwards_and_undo_takes_both_back() {
+    let mut rig = appended();
+    let before = rig.fingerprint();
+    let count = used(bowl()).positions.len();
+    for axis in 0..3 {
+        rig.command(Command::MirrorPart(axis));
+        rig.drain();
+        let document = rig.editor.document();
+        let turned: Vec<u32> = document.inside_out().iter().copied().collect();
+        let component = rig.model.topology.component(SurfaceVertex(count as u32));
+        assert_eq!(turned, [component]);
+        assert!(document.handles()[0].affine().matrix3.determinant() < 0.0);
+        rig.command(Command::MirrorPart(axis));
+        rig.drain();
+        assert!(
+            rig.editor.document().inside_out().is_empty(),
+            "a second time mirrors it back"
+        );
+        rig.undo();
+        rig.undo();
+        rig.drain();
+        assert_eq!(rig.fingerprint(), before);
+    }
+}
+
+#[test]
+fn a_merge_asks_for_the_part_of_the_selected_handle_and_sorts_the_picked_places() {
+    let mut rig = Rig::open(bowl());
+    rig.paint_handle();
+    rig.drain();
+    let why = rig.editor.unavailable_because(&Command::Merge).unwrap_or_default();
+    assert!(why.contains("holds no whole part"), "{why}");
+
+    let mut rig = appended();
+    let count = used(bowl()).positions.len();
+    let part: Vec<SurfaceVertex> = (count as u32..2 * count as u32).map(SurfaceVertex).collect();
+    let settings = MergeSettings {
+        reach: 7.0,
+        placement: Placement::Fitted,
+        ..MergeSettings::default()
+    };
+    rig.command(Command::SetMerge(settings));
+    let settings = rig.editor.view().merge.clone();
+    assert_eq!(
+        (settings.reach, settings.placement),
+        (*REACH_RANGE.end(), Placement::Fitted)
+    );
+    rig.command(Command::Merge);
+    let asked = |rig: &mut Rig| {
+        let request = rig.editor.take_stitch().unwrap();
+        rig.send(Event::Stitched(Err("not now".to_owned())));
+        match request.change {
+            MeshChange::Merge(change) => change,
+            other => panic!("{other:?}"),
+        }
+    };
+    let change = asked(&mut rig);
+    assert_eq!(
+        (change.part, change.pairs, change.settings),
+        (part.clone(), Vec::new(), settings.clone())
+    );
+
+    let rims = rig.model.topology.boundary_loops();
+    let model = Arc::clone(&rig.model);
+    let px = |rig: &Rig, vertex: SurfaceVertex| {
+        let position = model.surface.positions[vertex.index()];
+        rig.editor.view().camera.project(position, VIEWPORT_PX).unwrap()
+    };
+    rig.command(Command::FrameAll);
+    let of_part = |held: bool| rims.iter().find(|rim| part.contains(&rim[0]) == held).unwrap()[0];
+    for order in [[true, false], [false, true]] {
+        rig.command(Command::MergePicked);
+        for held in order {
+            let at = px(&rig, of_part(held));
+            rig.press(at);
+            rig.release(at);
+        }
+        let change = asked(&mut rig);
+        let [[a, b]] = change.pairs[..] else {
+            panic!("{:?}", change.pairs)
+        };
+        assert!(!part.contains(&a) && part.contains(&b), "A comes first");
+    }
+    rig.command(Command::MergePicked);
+    for _ in 0..2 {
+        let at = px(&rig, of_part(true));
+        rig.press(at);
+        rig.release(at);
+    }
+    assert!(rig.editor.take_stitch().is_none());
+    let problem = rig.editor.view().problem.unwrap_or_default().to_owned();
+    assert!(problem.contains("on one side"), "{problem}");
+}

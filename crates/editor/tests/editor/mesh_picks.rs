@@ -1,0 +1,176 @@
+//! The rims that are clicked and the lines that are drawn for changes of the mesh.
+
+use std::sync::Arc;
+
+use glam::DVec2;
+use pliant_editor::{Command, Event, KeptSide, Key, MeshChange, RimUse, ToolMode};
+use pliant_mesh::{SurfaceVertex, shapes};
+
+use crate::rig::new_mesh::{bowl, open_shapes, used};
+use crate::rig::{CENTRE_PX, Rig, VIEWPORT_PX};
+
+#[test]
+fn the_rim_near_the_pointer_is_shown_with_its_length_and_a_click_takes_it() {
+    for (case, shape) in open_shapes() {
+        let mut rig = Rig::open(shape);
+        rig.command(Command::FillHole);
+        assert!(rig.editor.view().wants_rim == Some(RimUse::Fill), "{case}");
+        for rim in rig.model.topology.boundary_loops() {
+            let model = Arc::clone(&rig.model);
+            let at = |vertex: SurfaceVertex| model.surface.positions[vertex.index()];
+            let length: f64 = (0..rim.len())
+                .map(|k| at(rim[k]).distance(at(rim[(k + 1) % rim.len()])))
+                .sum();
+            // A vertex of it that no other rim is near to on the screen.
+            let camera = *rig.editor.view().camera;
+            let px = |vertex: SurfaceVertex| camera.project(at(vertex), VIEWPORT_PX).unwrap();
+            let others: Vec<DVec2> = rig
+                .model
+                .topology
+                .boundary_loops()
+                .iter()
+                .filter(|other| **other != rim)
+                .flatten()
+                .map(|vertex| px(*vertex))
+                .collect();
+            let is_alone = |vertex: &SurfaceVertex| others.iter().all(|other| other.distance(px(*vertex)) > 45.0);
+            let Some(vertex) = rim.iter().copied().find(is_alone) else {
+                continue;
+            };
+            rig.move_to(px(vertex));
+            let view = rig.editor.view();
+            let shown = view.rim.expect(case);
+            assert_eq!(shown.edges(), rim.len(), "{case}");
+            assert!((shown.length - length).abs() < 1e-12 * length, "{case}");
+            assert!(rim.contains(&shown.vertex), "{case}");
+            assert!(
+                view.status.contains(&format!("{} edges", rim.len())),
+                "{case}: {}",
+                view.status
+            );
+            rig.press(px(vertex));
+            rig.release(px(vertex));
+            let request = rig.editor.take_stitch().expect(case);
+            assert!(
+                matches!(request.change, MeshChange::FillAt(vertex) if rim.contains(&vertex)),
+                "{case}"
+            );
+            assert!(rig.editor.view().wants_rim.is_none(), "{case}: one click, one hole");
+            rig.send(Event::Stitched(Err("not now".to_owned())));
+            rig.command(Command::FillHole);
+        }
+        rig.move_to(DVec2::new(3.0, 3.0));
+        assert!(rig.editor.view().rim.is_none(), "{case}: far from every rim");
+        rig.key(Key::Escape);
+        assert!(rig.editor.view().wants_rim.is_none(), "{case}");
+        assert!(
+            rig.editor.view().shapes.is_empty(),
+            "{case}: the rims are no longer shown"
+        );
+    }
+}
+
+#[test]
+fn a_line_cuts_by_the_plane_through_it_and_the_eye_and_keeps_the_side_that_is_asked_for() {
+    let ways = [
+        [300.0, 320.0, 520.0, 250.0],
+        [500.0, 200.0, 380.0, 410.0],
+        [420.0, 100.0, 380.0, 500.0],
+    ];
+    for is_parallel in [false, true] {
+        for [fx, fy, tx, ty] in ways {
+            for kept in [KeptSide::Positive, KeptSide::Negative, KeptSide::Both] {
+                let mut rig = Rig::open(bowl());
+                if is_parallel {
+                    rig.command(Command::ToggleProjection);
+                }
+                let (from, to) = (DVec2::new(fx, fy), DVec2::new(tx, ty));
+                rig.command(Command::CutAlongLine(kept));
+                assert!(
+                    rig.editor.view().status.contains("Drag a line"),
+                    "{}",
+                    rig.editor.view().status
+                );
+                rig.press(from);
+                rig.move_to(0.5 * (from + to));
+                assert!(rig.editor.view().outline_px.len() > 2);
+                rig.move_to(to);
+                rig.release(to);
+                let request = rig.editor.take_stitch().unwrap();
+                let MeshChange::Cut(plane, side) = request.change else {
+                    panic!("{:?}", request.change)
+                };
+                assert_eq!(side, kept);
+                assert!(rig.editor.view().wants_cut.is_none(), "one drag, one cut");
+                let camera = *rig.editor.view().camera;
+                for point in &rig.model.surface.positions {
+                    let px = camera.project(*point, VIEWPORT_PX).unwrap();
+                    // y points down, so the left of the line is where this is negative.
+                    let to_right = (to - from).perp_dot(px - from) / (to - from).length();
+                    let level = plane.normal.dot(*point) - plane.distance;
+                    if to_right.abs() > 1e-6 {
+                        assert_eq!(level > 0.0, to_right < 0.0, "{to_right} px to the right of the line");
+                    }
+                }
+            }
+        }
+    }
+    // A click draws no line.
+    let mut rig = Rig::open(bowl());
+    rig.command(Command::CutAlongLine(KeptSide::Positive));
+    rig.press(CENTRE_PX);
+    rig.release(CENTRE_PX);
+    assert!(rig.editor.take_stitch().is_none() && rig.editor.view().wants_cut.is_some());
+    rig.key(Key::Escape);
+    assert!(rig.editor.view().wants_cut.is_none());
+    // A press belongs to the last thing that was chosen.
+    rig.command(Command::CutAlongLine(KeptSide::Both));
+    rig.command(Command::FillHole);
+    assert!(rig.editor.view().wants_cut.is_none() && rig.editor.view().wants_rim.is_some());
+    rig.command(Command::SetTool(ToolMode::PaintFixed));
+    assert!(rig.editor.view().wants_rim.is_none());
+}
+
+#[test]
+fn a_bridge_takes_two_rims_and_esc_gives_the_first_one_up() {
+    let mut rig = Rig::open(used(shapes::tube(16, 12, 2.0)));
+    let rims = rig.model.topology.boundary_loops();
+    let model = Arc::clone(&rig.model);
+    let place = |rig: &Rig, rim: &[SurfaceVertex]| {
+        let camera = *rig.editor.view().camera;
+        let px = |vertex: &SurfaceVertex| {
+            let position = model.surface.positions[vertex.index()];
+            camera.project(position, VIEWPORT_PX).unwrap()
+        };
+        // The vertex furthest from the middle of the view.
+        let places = rim.iter().map(px);
+        places
+            .max_by(|a, b| a.distance(CENTRE_PX).total_cmp(&b.distance(CENTRE_PX)))
+            .unwrap()
+    };
+    for is_given_up in [true, false] {
+        rig.command(Command::BridgeBorders);
+        let first = place(&rig, &rims[0]);
+        rig.press(first);
+        rig.release(first);
+        assert!(rig.editor.take_stitch().is_none());
+        let wanted = rig.editor.view().wants_rim;
+        let Some(RimUse::Bridge { first: Some(first) }) = wanted else {
+            panic!("{wanted:?}")
+        };
+        assert!(rims[0].contains(&first));
+        if is_given_up {
+            rig.key(Key::Escape);
+            assert!(rig.editor.view().wants_rim.is_none());
+            continue;
+        }
+        let second = place(&rig, &rims[1]);
+        rig.press(second);
+        rig.release(second);
+        let request = rig.editor.take_stitch().unwrap();
+        let MeshChange::Bridge([a, b]) = request.change else {
+            panic!("{:?}", request.change)
+        };
+        assert!(rims[0].contains(&a) && rims[1].contains(&b));
+    }
+}
