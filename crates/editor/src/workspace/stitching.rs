@@ -54,6 +54,7 @@ pub(crate) fn take_stitched(workspace: &mut Workspace, result: Result<NewMesh, S
 impl Workspace {
     /// Replaces the mesh and the document on it, as one step of the history.
     fn replace_mesh(&mut self, name: &str, new: NewMesh) {
+        self.pause_keys();
         self.jobs.drop_solves();
         // Steps that are open belong to the former mesh.
         self.pause_keys();

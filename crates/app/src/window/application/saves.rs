@@ -40,6 +40,9 @@ impl Application {
     fn wish(&mut self, wish: SaveWish) {
         // A stretch of play that has not ended is in no file.
         self.editor.handle(Event::Command(Command::PauseFlow));
+        if self.editor.view().is_animating {
+            self.editor.handle(Event::Command(Command::PlayKeys));
+        }
         let (same, others) = std::mem::take(&mut self.waiting.wishes)
             .into_iter()
             .partition(|other| other.path() == wish.path());
