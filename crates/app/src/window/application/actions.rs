@@ -154,22 +154,13 @@ impl Application {
                 | Purpose::LoadCage
                 | Purpose::AddExample
                 | Purpose::SaveAs,
-                Some(path),
-            ) => path.to_owned(),
+                path,
+            ) => path.unwrap_or(Path::new("edited.glb")).to_owned(),
             (Purpose::SaveMorph, Some(path)) => beside(path, "morph.glb"),
             (Purpose::ExportEdit, Some(path)) => beside(path, "edit.json"),
             (Purpose::ExportAnimation, Some(path)) => beside(path, "animation.glb"),
             (Purpose::SaveProject, Some(path)) => beside(path, "pliant"),
             (Purpose::SavePicture(_), Some(path)) => beside(path, "png"),
-            (
-                Purpose::Open
-                | Purpose::ApplyEdit
-                | Purpose::Append
-                | Purpose::LoadCage
-                | Purpose::AddExample
-                | Purpose::SaveAs,
-                None,
-            ) => PathBuf::from("edited.glb"),
             (Purpose::SaveMorph, None) => PathBuf::from("morph.glb"),
             (Purpose::SaveProject, None) => PathBuf::from("edited.pliant"),
             (Purpose::ExportAnimation, None) => PathBuf::from("animation.glb"),

@@ -12,7 +12,8 @@ use crate::window::panels::notes::Notes;
 use crate::window::session::OpenFile;
 use crate::window::threads::message::{ImagesOf, LoadedMaterials, Message, ModelToShow, Posed};
 use crate::window::threads::workers::PoseSource;
-use pliant_picture::drawing::{self, Field};
+use pliant_engine::Loaded;
+use pliant_picture::drawing::{self, Drawing, Field};
 
 impl Application {
     /// Takes the results of other threads. Returns whether there was anything besides new shapes, which come at every
@@ -122,14 +123,7 @@ impl Application {
             self.recent_pictures.want(&path);
         }
         let name = self.session.open.as_ref().map(OpenFile::name).unwrap_or_default();
-        self.workers.set_pose_source(PoseSource {
-            loaded: Arc::clone(&loaded),
-            drawing: Arc::clone(&drawing),
-            field: self.wanted_field(),
-            scales: Arc::default(),
-        });
-        self.poses.cancel();
-        self.stop_images();
+        self.pose_from(&loaded, &drawing);
         let lowest = loaded.model.bounds().map_or(DVec3::ZERO, |bounds| bounds.min);
         self.viewport.show(drawing, surface, displacements, lowest);
         self.notes = Notes {
@@ -215,6 +209,18 @@ impl Application {
             self.viewport.give_up_images(&of.drawing);
             self.fail(format!("the materials are shown without their images: {sentence}"));
         }
+    }
+
+    /// Poses are those of this file from here on; what was under way for another is dropped.
+    pub(in crate::window) fn pose_from(&mut self, loaded: &Arc<Loaded>, drawing: &Arc<Drawing>) {
+        self.workers.set_pose_source(PoseSource {
+            loaded: Arc::clone(loaded),
+            drawing: Arc::clone(drawing),
+            field: self.wanted_field(),
+            scales: Arc::default(),
+        });
+        self.poses.cancel();
+        self.stop_images();
     }
 
     /// Requests the pose of the present shape if it is not the shown one (after undo, or while a handle moves before

@@ -10,7 +10,6 @@ use crate::window::application::Application;
 use crate::window::input::file_command::FileCommand;
 use crate::window::panels::notes::Note;
 use crate::window::threads::message::Stitched;
-use crate::window::threads::workers::PoseSource;
 
 impl Application {
     /// Puts another file beside the present shape, off the window's thread.
@@ -74,14 +73,7 @@ impl Application {
         let leads_to = |model: &_| history.meshes().any(|mesh| Arc::ptr_eq(mesh, model));
         self.session.others.forget_unless(leads_to);
         self.redrawing = None;
-        self.workers.set_pose_source(PoseSource {
-            loaded: Arc::clone(&loaded),
-            drawing: Arc::clone(&drawing),
-            field: self.wanted_field(),
-            scales: Arc::default(),
-        });
-        self.poses.cancel();
-        self.stop_images();
+        self.pose_from(&loaded, &drawing);
         let displacements = match &surface {
             Some(_) => Arc::new(vec![DVec3::ZERO; loaded.model.surface.positions.len()]),
             None => Arc::clone(self.editor.view().drawn),

@@ -34,7 +34,8 @@ pub use self::limb::{JOINT_RINGS, Joint};
 pub use self::shape::Shape;
 use crate::{Cancel, Cancelled};
 
-/// The joint between a point in a triangle and the body, which has two fifths of the component's area or more; `None`
+/// The joint between a point in a triangle and the body, which has two fifths of the component's area or more, or less
+/// if the limb is the head of a bust; `None`
 /// if no ring around the point's side is clearly shorter than that of a disc, as on a ball or a sheet.
 ///
 /// `up` chooses the joint that is so many candidates farther from the limb's tip than the guess, which is the first one
