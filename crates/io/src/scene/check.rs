@@ -45,9 +45,7 @@ impl Scene {
             false => triangle,
         };
         match (self.stored(), save.format) {
-            (Stored::Gltf(_), Format::Glb | Format::Gltf)
-            | (Stored::Threemf(_), Format::Threemf)
-            | (Stored::Usdz(_), Format::Usdz) => {
+            (Stored::Gltf(_), Format::Glb | Format::Gltf) | (Stored::Threemf(_), Format::Threemf) => {
                 same_count("vertices", back.drawn.positions.len(), save.drawn.positions.len())?;
                 let vertices = 0..save.drawn.positions.len();
                 each(vertices.map(|vertex| (vertex, wanted(vertex))), back, &stored)?;

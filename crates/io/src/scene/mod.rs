@@ -617,7 +617,8 @@ impl Scene {
     /// The file's own polygons over drawn vertices, if any of them is not a triangle.
     pub fn polygons(&self) -> Option<Polygons> {
         match &self.stored {
-            Stored::Gltf(_) | Stored::Stl(_) | Stored::Threemf(_) | Stored::Usdz(_) => None,
+            Stored::Gltf(_) | Stored::Stl(_) | Stored::Threemf(_) => None,
+            Stored::Usdz(stored) => stored.polygons(),
             Stored::Obj(stored) => stored.polygons(),
             Stored::Ply(stored) => stored.polygons(),
             Stored::Off(stored) => stored.polygons(),

@@ -22,6 +22,7 @@ use glam::DVec3;
 use pliant_mesh::{Drawn, Object};
 
 use crate::archive::Archive;
+use crate::convert::Polygons;
 use crate::objects;
 use crate::save::course::Course;
 use crate::save::moved::Moved;
@@ -87,12 +88,13 @@ pub(crate) fn read(source: &Source<'_>) -> Result<(Stored, Drawn), ReadError> {
     let looks = Looks::new(&part.bytes, &layer, archive, &name);
     let placed = placed::placed(&part.bytes, &layer, looks, source.cancel).map_err(error)?;
     let (drawn, instances) = (placed.drawn, placed.instances);
-    let (look, notes) = (placed.looks.look, placed.looks.notes);
+    let (look, notes, polygons) = (placed.looks.look, placed.looks.notes, placed.polygons);
     let stored = Stored {
         bytes: source.bytes.clone(),
         place: part.place,
         text: part.bytes,
         instances,
+        polygons: (polygons.len() < drawn.triangles.len()).then_some(polygons),
         look,
         notes,
     };
@@ -117,6 +119,11 @@ impl Stored {
 
     pub(crate) fn objects(&self) -> Vec<Object> {
         objects::of_groups(&self.look)
+    }
+
+    /// The faces over drawn vertices, if any of them is not a triangle.
+    pub(crate) fn polygons(&self) -> Option<Polygons> {
+        self.polygons.clone()
     }
 
     pub(crate) fn appearance(&self) -> Appearance {

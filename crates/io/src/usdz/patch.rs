@@ -14,7 +14,7 @@ use crate::save::bits::bit_equal;
 use crate::save::course::Course;
 use crate::save::frames::Frames;
 use crate::save::moved::Moved;
-use crate::save::turned::push_negated;
+use crate::save::turned::{push_negated, wound_back};
 use crate::text::{Splice, push_f32, push_f64};
 use crate::{Format, SaveError};
 
@@ -153,14 +153,14 @@ fn negate(replaced: &mut Replaced, text: &[u8], at: usize) {
     }
 }
 
-/// Exchanges the second and the third corner of the triangles that are turned inside out.
+/// Reverses the corners of the faces that are turned inside out.
 fn turn(replaced: &mut Replaced, text: &[u8], instance: &Instance, moved: &Moved<'_>) -> Result<(), SaveError> {
     let mesh = &instance.mesh;
     let is_split = instance.vertices.len() > mesh.points.len();
-    if is_split || mesh.counts.iter().any(|&count| count != 3) {
+    if is_split {
         return Err(SaveError::CannotHold {
             what: format!(
-                "the mesh {} turned inside out, whose faces have more than three corners or looks of their own at each,",
+                "the mesh {} turned inside out, whose faces have looks of their own at their corners,",
                 quoted(&instance.name)
             ),
             format: Format::Usdz,
@@ -174,11 +174,17 @@ fn turn(replaced: &mut Replaced, text: &[u8], instance: &Instance, moved: &Moved
             places.push(range);
         }
     }
-    for (corners, places) in instance.corners.chunks_exact(3).zip(places.chunks_exact(3)) {
-        if moved.turns(DrawnVertex(corners[0])) {
-            replaced.push((places[1].clone(), text[places[2].clone()].to_vec()));
-            replaced.push((places[2].clone(), text[places[1].clone()].to_vec()));
+    let mut start = 0;
+    for &count in &mesh.counts {
+        let end = start + count as usize;
+        let (Some(corners), Some(places)) = (instance.corners.get(start..end), places.get(start..end)) else {
+            break;
+        };
+        if corners.first().is_some_and(|&first| moved.turns(DrawnVertex(first))) {
+            let texts = wound_back(places).map(|place| text[place.clone()].to_vec());
+            replaced.extend(places.iter().cloned().zip(texts));
         }
+        start = end;
     }
     Ok(())
 }

@@ -16,8 +16,10 @@ use super::transform::local;
 use super::values::{indices, word};
 use crate::appearance::Group;
 use crate::appearance::colour::short;
+use crate::convert::Polygons;
 use crate::polygon::diagonals::Diagonals;
 use crate::polygon::triangulate;
+use crate::save::turned::wound_back;
 
 /// Corners between two checks for cancelling.
 const CORNERS_BETWEEN_LOOKS: usize = 1 << 14;
@@ -42,6 +44,8 @@ const OTHER_SHAPES: [&str; 9] = [
 pub(super) struct Placed<'a> {
     pub drawn: Drawn,
     pub instances: Vec<Instance>,
+    /// Every drawn face.
+    pub polygons: Polygons,
     pub looks: Looks<'a>,
     normals: Vec<[f32; 3]>,
     uvs: Vec<[f32; 2]>,
@@ -62,6 +66,10 @@ pub(super) fn placed<'a>(
     let mut placed = Placed {
         drawn: Drawn::default(),
         instances: Vec::new(),
+        polygons: Polygons {
+            offsets: vec![0],
+            ..Polygons::default()
+        },
         looks,
         normals: Vec::new(),
         uvs: Vec::new(),
@@ -138,6 +146,9 @@ impl Placed<'_> {
                 let triangle = if is_mirrored { [a, c, b] } else { [a, b, c] };
                 self.triangle(triangle, materials.as_ref().map_or(0, |of| of[face]), prim);
             });
+            if count > 2 {
+                self.polygon(&corners[start..end], is_mirrored);
+            }
             start = end;
         }
         self.instances.push(Instance {
@@ -265,6 +276,16 @@ impl Placed<'_> {
                 node_name: prim.name.clone(),
             }),
         }
+    }
+
+    /// Adds a face, wound as its triangles are.
+    fn polygon(&mut self, corners: &[u32], is_mirrored: bool) {
+        let own = &mut self.polygons.corners;
+        match is_mirrored {
+            true => own.extend(wound_back(corners).copied().map(DrawnVertex)),
+            false => own.extend(corners.iter().copied().map(DrawnVertex)),
+        }
+        self.polygons.offsets.push(own.len() as u32);
     }
 
     fn finished(mut self) -> Self {

@@ -7,6 +7,7 @@ use glam::DAffine3;
 
 use super::mesh::Mesh;
 use crate::Appearance;
+use crate::convert::Polygons;
 
 /// A mesh of the layer, as it is shown.
 #[derive(Debug)]
@@ -32,6 +33,8 @@ pub(crate) struct Stored {
     /// The layer.
     pub(super) text: Vec<u8>,
     pub(super) instances: Vec<Instance>,
+    /// The faces, if some are no triangles.
+    pub(super) polygons: Option<Polygons>,
     pub(super) look: Appearance,
     pub(super) notes: Vec<String>,
 }

@@ -119,10 +119,10 @@ fn normals_turn_with_the_surface_and_looks_at_corners_split_points() {
 
 #[test]
 fn parts_are_turned_inside_out_and_back() {
-    let triangles = square("")
-        .replace("[4]", "[3, 3]")
-        .replace("[0, 1, 2, 3]", "[0, 1, 2, 0, 2, 3]");
-    let bytes = packed(triangles.as_bytes());
+    let text = square("")
+        .replace("[4]", "[3, 4]")
+        .replace("[0, 1, 2, 3]", "[0, 1, 2, 0, 2, 3, 1]");
+    let bytes = packed(text.as_bytes());
     let opened = open(&bytes, Format::Usdz);
     let turned = |opened: &SceneAndDrawn| {
         let all = vec![true; opened.drawn.positions.len()];
@@ -143,7 +143,26 @@ fn parts_are_turned_inside_out_and_back() {
     let once = turned(&opened);
     assert_ne!(once.drawn.triangles, opened.drawn.triangles);
     let twice = turned(&once);
-    assert_eq!(text_of(&save(&twice, &twice.drawn.positions)), triangles);
+    assert_eq!(text_of(&save(&twice, &twice.drawn.positions)), text);
+}
+
+#[test]
+fn a_bent_quad_may_be_drawn_by_its_other_diagonal() {
+    let opened = opened(&square(""));
+    let folded = moved(&opened, |vertex| vertex == 0, |p| p - DVec3::new(1.0, 1.0, 0.0));
+    let save = Save {
+        deltas: MorphDeltas::WhereFarOff,
+        turned: &[],
+        drawn: &opened.drawn,
+        positions: &folded,
+        format: Format::Usdz,
+        name: "out.usdz",
+        placement: Placement::SameFolder,
+    };
+    let saved = opened.scene.save(&save, &Progress::new(), &Cancel::new()).unwrap();
+    let back = open(&saved.files[0].bytes, Format::Usdz);
+    assert_ne!(back.drawn.triangles, opened.drawn.triangles);
+    opened.scene.check_read_back(&save, None, None, &back).unwrap();
 }
 
 #[test]
