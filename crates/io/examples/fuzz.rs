@@ -1,10 +1,12 @@
-//! Puts broken files through every parser: `cargo run --release --example fuzz -p pliant-io -- SEED COUNT [FILE..]`.
+//! Puts broken files through every parser: `cargo run --release --example fuzz -p pliant-io -- SEED COUNT [KIND..]
+//! [FILE..]`.
 //!
-//! It begins from the test corpus and from FILEs; COUNT may be FIRST..END, because runs have numbers by which each can
-//! be repeated alone. It reports panics, runs beyond 5 s, and the bytes that reading allocated, and keeps the files
-//! that caused them; it ends with status 1 after a panic, a slow run or an allocation beyond 64 times the file. A slow
-//! run is repeated at once, and the shorter time counts: on a busy machine a thread may have to wait. After 10 s of
-//! processor time a run that does not end is reported by its number, and the program ends.
+//! It begins from the test corpus and from FILEs, of the KINDs alone if extensions such as `3mf` are given. COUNT may be
+//! FIRST..END, because runs have numbers by which each can be repeated alone. It reports panics, runs beyond 5 s, and
+//! the bytes that reading allocated, and keeps the files that caused them; it ends with status 1 after a panic, a slow
+//! run or an allocation beyond 64 times the file. A slow run is repeated at once, and the shorter time counts: on a busy
+//! machine a thread may have to wait. After 10 s of processor time a run that does not end is reported by its number,
+//! and the program ends.
 
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "an example speaks")]
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "it measures, and fails loudly")]
@@ -61,18 +63,28 @@ fn main() -> ExitCode {
         Some((first, end)) => Some(number(first)?..number(end)?),
     });
     let (Some(seed), Some(runs)) = (seed, runs) else {
-        eprintln!("fuzz SEED COUNT|FIRST..END [FILE..]");
+        eprintln!("fuzz SEED COUNT|FIRST..END [KIND..] [FILE..]");
         return ExitCode::from(2);
     };
     let count = runs.end.saturating_sub(runs.start);
     let mut sound = corpus(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/corpus"));
-    for path in &arguments[2..] {
+    let (kinds, files): (Vec<&String>, Vec<&String>) = arguments[2..]
+        .iter()
+        .partition(|argument| Format::EXTENSIONS.contains(&argument.as_str()));
+    for path in files {
         let format = Format::of_name(path).expect("a file of a known kind");
         sound.push(Sound {
             name: path.clone(),
             kind: Kind::Mesh(Format::ALL.iter().position(|other| *other == format).unwrap()),
             bytes: std::fs::read(path).expect("a file that can be read"),
         });
+    }
+    let is_wanted = |file: &Sound| match file.kind {
+        Kind::Mesh(format) => kinds.iter().any(|kind| *kind == Format::EXTENSIONS[format]),
+        Kind::Image => false,
+    };
+    if !kinds.is_empty() {
+        sound.retain(is_wanted);
     }
     std::thread::spawn(|| {
         let mut last = (0, 0);

@@ -104,6 +104,15 @@ pub enum SaveError {
 }
 
 impl SaveError {
+    /// The refusal of other colours in a file of a format whose colours other data of the file may name.
+    pub(crate) fn without_new_colours(format: Format) -> Self {
+        Self::CannotHold {
+            what: format!("new colours of vertices beside those of the {format}"),
+            format,
+            remedy: "save as .glb, .gltf, .ply, .obj or .off".to_owned(),
+        }
+    }
+
     /// The refusal of vertex colours in an STL.
     pub fn without_colours() -> Self {
         Self::CannotHold {

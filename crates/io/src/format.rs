@@ -6,7 +6,7 @@ use crate::quote::quoted;
 
 /// A name whose extension is that of no known format.
 #[derive(Clone, PartialEq, Eq, Debug, thiserror::Error)]
-#[error("\"{}\" has no extension of a known kind: name it .glb, .gltf, .obj, .ply, .stl, .off or .3mf", quoted(.name))]
+#[error("\"{}\" has no extension of a known kind: name it .glb, .gltf, .obj, .ply, .stl, .off, .3mf or .usdz", quoted(.name))]
 pub struct UnknownFormat {
     /// The file's name.
     pub name: String,
@@ -29,11 +29,13 @@ pub enum Format {
     Off,
     /// 3D Manufacturing Format, objects in a zip archive.
     Threemf,
+    /// USD in a zip archive, for phones.
+    Usdz,
 }
 
 impl Format {
     /// Every format, in the order in which they are listed for a person.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Glb,
         Self::Gltf,
         Self::Obj,
@@ -41,6 +43,7 @@ impl Format {
         Self::Stl,
         Self::Off,
         Self::Threemf,
+        Self::Usdz,
     ];
 
     /// Their extensions, in the same order.
@@ -74,6 +77,7 @@ impl Format {
             Self::Stl => "stl",
             Self::Off => "off",
             Self::Threemf => "3mf",
+            Self::Usdz => "usdz",
         }
     }
 }
@@ -88,6 +92,7 @@ impl fmt::Display for Format {
             Self::Stl => "STL",
             Self::Off => "OFF",
             Self::Threemf => "3MF",
+            Self::Usdz => "USDZ",
         })
     }
 }

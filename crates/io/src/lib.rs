@@ -1,4 +1,4 @@
-//! Files as bytes: glTF/GLB, OBJ, PLY, STL and OFF in and out, losslessly; image decoding.
+//! Files as bytes: glTF/GLB, OBJ, PLY, STL, OFF, 3MF and USDZ in and out, losslessly; image decoding.
 //!
 //! [`read`] gives the complete file as stored (a [`Scene`]) and the geometry that it shows ([`pliant_mesh::Drawn`]).
 //! [`Scene::save`] gives bytes back in which only the moved vertices' numbers differ, or the same shape as another kind
@@ -43,6 +43,7 @@
 //! ```
 
 mod appearance;
+mod archive;
 mod bytes;
 mod cache_frames;
 mod convert;
@@ -65,6 +66,7 @@ mod stl;
 mod summary;
 mod text;
 mod threemf;
+mod usdz;
 
 pub use appearance::{
     AlphaMode, Appearance, Group, Image, Lighting, Map, Material, Origin, OriginalMaterial, UvSet, Wrap,

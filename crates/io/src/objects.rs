@@ -6,6 +6,8 @@ use std::ops::Range;
 
 use pliant_mesh::Object;
 
+use crate::Appearance;
+
 /// The longest name, in characters, of which each run of triangles gets a copy: a readable length. The file keeps the
 /// whole name.
 const LONGEST_NAME: usize = 120;
@@ -25,6 +27,16 @@ pub(crate) struct TriangleRun<Key> {
     pub(crate) material: String,
     /// Range of the drawn triangles.
     pub(crate) triangles: Range<u32>,
+}
+
+/// The objects of groups: the triangles of one node in one material.
+pub(crate) fn of_groups(look: &Appearance) -> Vec<Object> {
+    gathered(look.groups.iter().map(|group| TriangleRun {
+        key: (&group.node_name, group.material),
+        name: short_name(&group.node_name),
+        material: short_name(&look.materials[group.material].name),
+        triangles: group.triangles.clone(),
+    }))
 }
 
 /// The objects, in the order in which the runs first name them. Runs without triangles make no object.

@@ -39,7 +39,8 @@ def needed(module):
     try:
         return importlib.import_module(module)
     except ImportError:
-        package = {"igl": "libigl", "dask.distributed": "dask distributed"}.get(module, module)
+        packages = {"igl": "libigl", "dask.distributed": "dask distributed", "mcp.client.stdio": "mcp"}
+        package = "usd-core" if module.startswith("pxr") else packages.get(module, module)
         skip(f"{module} is not installed: pip install {package}")
 
 

@@ -60,7 +60,7 @@ fn command(session: &mut Session, command: Command) {
 
 #[test]
 fn a_filled_shape_is_the_command_lines_and_undo_and_redo_change_the_picture() {
-    for format in ["off", "obj", "ply", "stl", "glb", "gltf", "3mf"] {
+    for format in ["off", "obj", "ply", "stl", "glb", "gltf", "3mf", "usdz"] {
         let folder = Folder::new();
         let file = bowl_file(&folder, format);
         let Some(mut session) = begin(&file) else { return };

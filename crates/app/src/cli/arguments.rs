@@ -19,7 +19,7 @@ use crate::version::VERSION;
 #[command(
     name = "pliant",
     version = VERSION,
-    about = "Bends scanned meshes: opens glb, gltf, obj, ply, stl, off and 3mf files and saves them back, changing \
+    about = "Bends scanned meshes: opens glb, gltf, obj, ply, stl, off, 3mf and usdz files and saves them back, changing \
              only the shape",
     args_conflicts_with_subcommands = true,
     disable_help_subcommand = true
@@ -76,7 +76,7 @@ pub(crate) struct GenerateArguments {
 
 #[derive(Args, Debug)]
 pub(crate) struct InfoArguments {
-    /// The file: glb, gltf, obj, ply, stl, off or 3mf
+    /// The file: glb, gltf, obj, ply, stl, off, 3mf or usdz
     pub file: PathBuf,
     /// Print JSON instead of text
     #[arg(long)]
@@ -88,7 +88,7 @@ pub(crate) struct InfoArguments {
 
 #[derive(Args, Debug)]
 pub(crate) struct DiffArguments {
-    /// The first file: glb, gltf, obj, ply, stl, off or 3mf
+    /// The first file: glb, gltf, obj, ply, stl, off, 3mf or usdz
     pub first: PathBuf,
     /// The second file
     pub second: PathBuf,
@@ -99,7 +99,7 @@ pub(crate) struct DiffArguments {
 
 #[derive(Args, Debug)]
 pub(crate) struct ApplyArguments {
-    /// The file to bend: glb, gltf, obj, ply, stl, off or 3mf
+    /// The file to bend: glb, gltf, obj, ply, stl, off, 3mf or usdz
     pub file: PathBuf,
     /// The edit: regions, handles with transforms, curves or sketches, and a method; or a .pliant project
     #[arg(long, value_name = "EDIT.json")]
@@ -168,7 +168,7 @@ impl MorphArguments {
 
 #[derive(Args, Debug)]
 pub(crate) struct TransferArguments {
-    /// The mesh that has the pose, at rest: glb, gltf, obj, ply, stl, off or 3mf
+    /// The mesh that has the pose, at rest: glb, gltf, obj, ply, stl, off, 3mf or usdz
     pub source: PathBuf,
     /// The same vertices and triangles in the pose
     pub pose: PathBuf,
@@ -194,7 +194,7 @@ pub(crate) struct TransferArguments {
 
 #[derive(Args, Debug)]
 pub(crate) struct FlowArguments {
-    /// The file along whose surface dye flows: glb, gltf, obj, ply, stl, off or 3mf
+    /// The file along whose surface dye flows: glb, gltf, obj, ply, stl, off, 3mf or usdz
     pub file: PathBuf,
     /// The dye, the velocities and the forces
     #[arg(long, value_name = "FLOW.json")]

@@ -9,7 +9,7 @@ use super::shared_arguments::BendingArguments;
 
 #[derive(Args, Debug)]
 pub(crate) struct AnimateArguments {
-    /// The file to bend: glb, gltf, obj, ply, stl, off or 3mf
+    /// The file to bend: glb, gltf, obj, ply, stl, off, 3mf or usdz
     pub file: PathBuf,
     /// The edit, with `keys`: handles' transforms at times
     #[arg(long, value_name = "EDIT.json")]

@@ -11,7 +11,7 @@ use super::shared_arguments::{ComputeArguments, WeldArguments};
 
 #[derive(Args, Debug)]
 pub(crate) struct CompareArguments {
-    /// The file to bend: glb, gltf, obj, ply, stl, off or 3mf
+    /// The file to bend: glb, gltf, obj, ply, stl, off, 3mf or usdz
     pub file: PathBuf,
     /// The edit
     #[arg(long, value_name = "EDIT.json")]
@@ -68,7 +68,7 @@ impl LookArguments {
 /// The arguments of `pliant render`.
 #[derive(Args, Clone, PartialEq, Debug)]
 pub struct RenderArguments {
-    /// The file to draw: glb, gltf, obj, ply, stl, off or 3mf
+    /// The file to draw: glb, gltf, obj, ply, stl, off, 3mf or usdz
     pub file: PathBuf,
     /// The picture to write
     #[arg(long, value_name = "OUT.png")]

@@ -11,7 +11,7 @@ use super::shared_arguments::{ComputeArguments, WeldArguments};
 
 #[derive(Args, Debug)]
 pub(crate) struct MergeArguments {
-    /// The file that stays where it is: glb, gltf, obj, ply, stl, off or 3mf
+    /// The file that stays where it is: glb, gltf, obj, ply, stl, off, 3mf or usdz
     pub first: PathBuf,
     /// The file that is joined to it
     pub second: PathBuf,
@@ -25,7 +25,7 @@ pub(crate) struct MergeArguments {
 
 #[derive(Args, Debug)]
 pub(crate) struct FillArguments {
-    /// The file with holes: glb, gltf, obj, ply, stl, off or 3mf
+    /// The file with holes: glb, gltf, obj, ply, stl, off, 3mf or usdz
     pub file: PathBuf,
     /// Fill only the N longest borders; without it and --at, fill every hole except the outer border of an open sheet
     #[arg(long, value_name = "N", conflicts_with = "at", value_parser = RangedU64ValueParser::<usize>::new().range(1..=100_000_000))]
@@ -40,7 +40,7 @@ pub(crate) struct FillArguments {
 
 #[derive(Args, Debug)]
 pub(crate) struct BridgeArguments {
-    /// The file with the borders: glb, gltf, obj, ply, stl, off or 3mf
+    /// The file with the borders: glb, gltf, obj, ply, stl, off, 3mf or usdz
     pub file: PathBuf,
     /// A vertex of each of the two borders to join, by their numbers in the file
     #[arg(long, num_args = 2, value_names = ["VERTEX", "VERTEX"], required = true)]
@@ -52,7 +52,7 @@ pub(crate) struct BridgeArguments {
 
 #[derive(Args, Debug)]
 pub(crate) struct CutArguments {
-    /// The file to cut: glb, gltf, obj, ply, stl, off or 3mf
+    /// The file to cut: glb, gltf, obj, ply, stl, off, 3mf or usdz
     pub file: PathBuf,
     /// The vertices to delete, as a selector of the edit format
     #[arg(

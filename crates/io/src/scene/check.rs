@@ -70,7 +70,7 @@ impl Scene {
                 each(of_file.map(|(v, file)| (v, wanted[file.index()])), back, &stored)?;
                 same_windings(self, save, back, is_turned)
             }
-            (_, Format::Glb | Format::Gltf | Format::Stl | Format::Threemf) => {
+            (_, format) if has_only_triangles(format) => {
                 let count = triangles.map_or(save.drawn.triangles.len(), <[u32]>::len);
                 same_count("triangles", back.drawn.triangles.len(), count)?;
                 let source = |place: usize| triangles.map_or(place, |triangles| triangles[place] as usize);
@@ -98,6 +98,14 @@ impl Scene {
             }
         }
     }
+}
+
+/// Returns true if new files of a format have no polygons.
+fn has_only_triangles(format: Format) -> bool {
+    matches!(
+        format,
+        Format::Glb | Format::Gltf | Format::Stl | Format::Threemf | Format::Usdz
+    )
 }
 
 /// A face's corners with their final winding.
@@ -140,7 +148,7 @@ impl UnsavedShape<'_> {
         back: &SceneAndDrawn,
     ) -> Result<(), String> {
         let stored = Precision::of(back);
-        if matches!(format, Format::Glb | Format::Gltf | Format::Stl | Format::Threemf) {
+        if has_only_triangles(format) {
             let count = triangles.map_or(self.triangles.len(), <[u32]>::len);
             same_count("triangles", back.drawn.triangles.len(), count)?;
             let source = |place: usize| triangles.map_or(place, |triangles| triangles[place] as usize);
@@ -181,6 +189,7 @@ impl<'a> Precision<'a> {
         match back.scene.stored() {
             Stored::Gltf(stored) => Self::Within(stored.roundings(&back.drawn)),
             Stored::Threemf(stored) => Self::Within(stored.roundings(&back.drawn)),
+            Stored::Usdz(stored) => Self::Within(stored.roundings(&back.drawn)),
             _ => Self::Nearest(&back.scene),
         }
     }

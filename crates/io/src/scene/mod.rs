@@ -26,7 +26,7 @@ use crate::save::moved::Moved;
 use crate::save::{MorphAnimation, MorphTarget, OutputFile, Placement, Save, Saved};
 use crate::source::{Resolver, Source};
 use crate::summary::Summary;
-use crate::{Appearance, Bytes, Format, ReadError, SaveError, gltf, obj, off, ply, stl, threemf};
+use crate::{Appearance, Bytes, Format, ReadError, SaveError, gltf, obj, off, ply, stl, threemf, usdz};
 
 /// The result of [`read`].
 #[derive(Debug)]
@@ -53,6 +53,7 @@ pub(crate) enum Stored {
     Stl(stl::Stored),
     Off(off::Stored),
     Threemf(threemf::Stored),
+    Usdz(usdz::Stored),
 }
 
 /// Reads a file of the given format. `name` is used in messages only; `resolver` reads the neighbours.
@@ -97,6 +98,10 @@ pub fn read(
         Format::Threemf => {
             let (stored, drawn) = threemf::read(&source)?;
             (Stored::Threemf(stored), drawn)
+        }
+        Format::Usdz => {
+            let (stored, drawn) = usdz::read(&source)?;
+            (Stored::Usdz(stored), drawn)
         }
     };
     cancel.check()?;
@@ -162,6 +167,7 @@ pub(crate) fn write_new(mesh: &NewMesh<'_>, format: Format, course: &Course<'_>)
         Format::Stl => stl::write_new(mesh, course),
         Format::Off => off::write_new(mesh, course),
         Format::Threemf => threemf::write_new(mesh, course),
+        Format::Usdz => usdz::write_new(mesh, course),
     }
 }
 
@@ -180,6 +186,7 @@ impl Scene {
             Stored::Stl(stored) => stored.notes(),
             Stored::Off(stored) => stored.notes(),
             Stored::Threemf(stored) => stored.notes(),
+            Stored::Usdz(stored) => stored.notes(),
         }
     }
 
@@ -192,6 +199,7 @@ impl Scene {
             Stored::Stl(stored) => stored.summary(),
             Stored::Off(stored) => stored.summary(),
             Stored::Threemf(stored) => stored.summary(),
+            Stored::Usdz(stored) => stored.summary(),
         }
     }
 
@@ -202,6 +210,7 @@ impl Scene {
             Stored::Gltf(stored) => stored.objects(),
             Stored::Obj(stored) => stored.objects(),
             Stored::Threemf(stored) => stored.objects(),
+            Stored::Usdz(stored) => stored.objects(),
             Stored::Ply(_) | Stored::Stl(_) | Stored::Off(_) => Vec::new(),
         }
     }
@@ -211,7 +220,7 @@ impl Scene {
     pub fn morph_targets(&self) -> Vec<String> {
         match &self.stored {
             Stored::Gltf(stored) => stored.morph_targets(),
-            Stored::Obj(_) | Stored::Ply(_) | Stored::Stl(_) | Stored::Off(_) | Stored::Threemf(_) => Vec::new(),
+            _ => Vec::new(),
         }
     }
 
@@ -229,7 +238,7 @@ impl Scene {
     ) -> Result<Option<Vec<DVec3>>, ReadError> {
         match &self.stored {
             Stored::Gltf(stored) => stored.morph_target(file, target, vertex_count, cancel),
-            Stored::Obj(_) | Stored::Ply(_) | Stored::Stl(_) | Stored::Off(_) | Stored::Threemf(_) => Ok(None),
+            _ => Ok(None),
         }
     }
 
@@ -242,6 +251,7 @@ impl Scene {
             Stored::Stl(stored) => stored.appearance(),
             Stored::Off(stored) => stored.appearance(),
             Stored::Threemf(stored) => stored.appearance(),
+            Stored::Usdz(stored) => stored.appearance(),
         }
     }
 
@@ -286,6 +296,7 @@ impl Scene {
             (Stored::Stl(stored), Format::Stl) => stored.write(&moved, course).map(own),
             (Stored::Off(stored), Format::Off) => stored.write(&moved, course).map(own),
             (Stored::Threemf(stored), Format::Threemf) => stored.write(&moved, course).map(own),
+            (Stored::Usdz(stored), Format::Usdz) => stored.write(&moved, course).map(own),
             (_, format) => self.converted(&moved, self.appearance(), save, (format, parting), course),
         }
     }
@@ -296,10 +307,11 @@ impl Scene {
         self.format() == format || (is_gltf(self.format()) && is_gltf(format))
     }
 
-    /// Returns true if a save in this format can have other colours of vertices: not STL, and not the file's own 3MF,
-    /// whose triangles name groups of colours that its other data may name, too.
+    /// Returns true if a save in this format can have other colours of vertices: not STL, and not the file's own 3MF
+    /// or USDZ, whose colours other data of the file may name, too.
     pub fn takes_colours(&self, format: Format) -> bool {
-        format != Format::Stl && (format != Format::Threemf || !self.is_of_kind(format))
+        let shares = matches!(format, Format::Threemf | Format::Usdz) && self.is_of_kind(format);
+        format != Format::Stl && !shares
     }
 
     /// The file with other vertex colours: linear, from 0 to 65535, one for each drawn vertex. In the file's own format
@@ -338,7 +350,9 @@ impl Scene {
                 return stored.save_with_colours(save, colours, course);
             }
             (_, Format::Stl) => return Err(SaveError::without_colours()),
-            (Stored::Threemf(_), Format::Threemf) => return Err(threemf::without_new_colours()),
+            (Stored::Threemf(_), Format::Threemf) | (Stored::Usdz(_), Format::Usdz) => {
+                return Err(SaveError::without_new_colours(save.format));
+            }
             (Stored::Obj(stored), Format::Obj) => (stored.write_coloured(&of_file()), stored.neighbours()),
             (Stored::Ply(stored), Format::Ply) => (stored.write_coloured(&of_file())?, stored.neighbours()),
             (Stored::Off(stored), Format::Off) => (stored.write_coloured(&of_file()), (Vec::new(), Vec::new())),
@@ -563,7 +577,7 @@ impl Scene {
             Stored::Ply(stored) => stored.unread(),
             Stored::Stl(stored) => stored.unread(),
             Stored::Off(stored) => stored.unread(),
-            Stored::Gltf(_) | Stored::Obj(_) | Stored::Threemf(_) => Vec::new(),
+            Stored::Gltf(_) | Stored::Obj(_) | Stored::Threemf(_) | Stored::Usdz(_) => Vec::new(),
         };
         let own = self.format.extension();
         (!unread.is_empty()).then(|| {
@@ -596,7 +610,7 @@ impl Scene {
         match &self.stored {
             Stored::Ply(stored) => stored.nearest(axis, value),
             Stored::Stl(stored) => stored.nearest(value),
-            Stored::Gltf(_) | Stored::Obj(_) | Stored::Off(_) | Stored::Threemf(_) => value,
+            Stored::Gltf(_) | Stored::Obj(_) | Stored::Off(_) | Stored::Threemf(_) | Stored::Usdz(_) => value,
         }
     }
 
@@ -604,6 +618,7 @@ impl Scene {
     pub fn polygons(&self) -> Option<Polygons> {
         match &self.stored {
             Stored::Gltf(_) | Stored::Stl(_) | Stored::Threemf(_) => None,
+            Stored::Usdz(stored) => stored.polygons(),
             Stored::Obj(stored) => stored.polygons(),
             Stored::Ply(stored) => stored.polygons(),
             Stored::Off(stored) => stored.polygons(),

@@ -2,11 +2,11 @@
 
 use std::collections::{BTreeMap, VecDeque};
 
-use super::archive::Archive;
 use super::model::{Component, Fault, Model, parse};
 use super::resources::Resources;
 use super::stored::Part;
 use super::xml::{Step, walk};
+use crate::archive::Archive;
 use crate::source::Source;
 use crate::{Bytes, Format, ReadError};
 

@@ -5,7 +5,6 @@
 //! `quick-xml`. The crate `threemf2` reads and writes whole documents into types of its own: elements and attributes
 //! that it does not know, such as those of slicers, would be lost, and a coordinate has no place in the file.
 
-mod archive;
 mod build;
 mod model;
 mod patch;
@@ -50,15 +49,6 @@ pub(crate) fn read(source: &Source<'_>) -> Result<(Stored, Drawn), ReadError> {
     ))
 }
 
-/// The refusal of other colours in a file that has its own groups of them.
-pub(crate) fn without_new_colours() -> SaveError {
-    SaveError::CannotHold {
-        what: "new colours of vertices beside those of the 3MF".to_owned(),
-        format: Format::Threemf,
-        remedy: "save as .glb, .gltf, .ply, .obj or .off".to_owned(),
-    }
-}
-
 impl Stored {
     pub(crate) fn notes(&self) -> &[String] {
         &self.notes
@@ -77,12 +67,7 @@ impl Stored {
     }
 
     pub(crate) fn objects(&self) -> Vec<Object> {
-        objects::gathered(self.look.groups.iter().map(|group| objects::TriangleRun {
-            key: (&group.node_name, group.material),
-            name: objects::short_name(&group.node_name),
-            material: objects::short_name(&self.look.materials[group.material].name),
-            triangles: group.triangles.clone(),
-        }))
+        objects::of_groups(&self.look)
     }
 
     pub(crate) fn appearance(&self) -> Appearance {

@@ -6,9 +6,9 @@ use std::ops::Range;
 use glam::{DAffine3, DVec3};
 use pliant_mesh::DrawnVertex;
 
-use super::archive::with_parts;
 use super::stored::{Instance, Stored};
 use super::xml::element_at;
+use crate::archive::{Packing, with_parts};
 use crate::save::bits::bit_equal;
 use crate::save::course::Course;
 use crate::save::moved::Moved;
@@ -73,7 +73,7 @@ pub(super) fn patched(stored: &Stored, moved: &Moved<'_>, course: &Course<'_>) -
             parts.push((part.place, splice.finish()));
         }
     }
-    with_parts(&stored.bytes, &parts).map_err(|what| SaveError::CannotHold {
+    with_parts(&stored.bytes, &parts, Packing::Deflated).map_err(|what| SaveError::CannotHold {
         what: format!("this file, because {what},"),
         format: Format::Threemf,
         remedy: "save in another format".to_owned(),

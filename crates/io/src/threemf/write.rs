@@ -8,10 +8,10 @@ use std::fmt::Write as _;
 
 use pliant_mesh::DrawnVertex;
 
-use super::archive::{archive_of, with_parts};
 use super::resources::text_of;
 use crate::appearance::colour::{SrgbBytes, byte, srgb_of_linear};
 use crate::appearance::{Appearance, Material};
+use crate::archive::{Packing, archive_of, with_parts};
 use crate::convert::NewMesh;
 use crate::convert::faces::{lost, lost_where, merged};
 use crate::save::Saved;
@@ -99,9 +99,9 @@ pub(crate) fn write_new(mesh: &NewMesh<'_>, course: &Course<'_>) -> Result<Saved
         format: Format::Threemf,
         remedy: "save in another format".to_owned(),
     };
-    let archive = archive_of(&parts).map_err(unwritable)?;
+    let archive = archive_of(&parts, Packing::Deflated).map_err(unwritable)?;
     // Copied once, so that the other parts' headers are those of every later save.
-    let bytes = with_parts(&archive, &[(2, model.clone())]).map_err(unwritable)?;
+    let bytes = with_parts(&archive, &[(2, model.clone())], Packing::Deflated).map_err(unwritable)?;
     Ok(Saved::alone(mesh.name, bytes, left_out(mesh, &dresses)))
 }
 

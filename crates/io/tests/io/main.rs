@@ -31,4 +31,5 @@ mod stopping;
 mod text;
 mod threemf;
 mod turned;
+mod usdz;
 mod vertex_colours;

@@ -274,6 +274,29 @@ fn threemf_survives_in_its_model_and_in_its_archive() {
     }
 }
 
+const LAYER: &[u8] = b"#usda 1.0\n( upAxis = \"Y\" )\ndef Xform \"R\"\n{\n double3 xformOp:translate = (1, 0, 0)\n\
+uniform token[] xformOpOrder = [\"xformOp:translate\"]\n def Mesh \"A\" (\n  kind = \"component\"\n )\n {\n\
+int[] faceVertexCounts = [3, 4]\n int[] faceVertexIndices = [0, 1, 2, 0, 2, 3, 4]\n\
+point3f[] points = [ (0, 0, 0), (1, 0, 0), (1, 1, 0.5), (0, 1, 0), (0, 0.5, 0) ]\n\
+normal3f[] normals = [ (0, 0, 1), (0, 0, 1), (0, 0, 1), (0, 0, 1), (0, 0, 1) ]\n\
+color3f[] primvars:displayColor = [ (1, 0, 0), (0, 1, 0) ] (\n interpolation = \"uniform\"\n )\n\
+rel material:binding = </R/M>\n def GeomSubset \"S\"\n {\n int[] indices = [ 1 ]\n rel material:binding = </R/M>\n }\n }\n\
+def Material \"M\"\n {\n token outputs:surface.connect = </R/M/P.outputs:surface>\n def Shader \"P\"\n {\n\
+color3f inputs:diffuseColor = (1, 0, 0.5)\n token outputs:surface\n }\n }\n}\n";
+
+fn usdz(layer: &[u8]) -> Vec<u8> {
+    let stored = zip::write::SimpleFileOptions::default().compression_method(zip::CompressionMethod::Stored);
+    let mut zip = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
+    zip.start_file("m.usda", stored).unwrap();
+    zip.write_all(layer).unwrap();
+    zip.finish().unwrap().into_inner()
+}
+
+#[test]
+fn usdz_survives_in_its_layer() {
+    survive_packed(Format::Usdz, &[LAYER], 3000, |layer| usdz(&layer));
+}
+
 #[test]
 fn bytes_of_any_kind_survive() {
     let mut chance = Chance(7);

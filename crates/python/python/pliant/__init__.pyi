@@ -146,7 +146,7 @@ def bind(
     """
 
 def load(path: File, *, weld: float | None = None) -> Mesh:
-    """Reads a mesh from a glTF, GLB, OBJ, PLY, STL, OFF or 3MF file.
+    """Reads a mesh from a glTF, GLB, OBJ, PLY, STL, OFF, 3MF or USDZ file.
 
     :param weld: the distance within which vertices are joined, in the file's units; 0 joins only equal ones. Without
         it, the distance follows from the mesh's edges and from the file's rounding of numbers.
@@ -170,7 +170,7 @@ def save(path: File, mesh: Mesh, vertices: npt.ArrayLike | None = None) -> list[
 def info(file: File, *, weld: float | None = None) -> dict[str, Any]:
     """The contents of a file and the faults of its mesh, like `pliant info --json`.
 
-    :param file: a glTF, GLB, OBJ, PLY, STL, OFF or 3MF file.
+    :param file: a glTF, GLB, OBJ, PLY, STL, OFF, 3MF or USDZ file.
     :param weld: the distance within which vertices are joined, as in `load`.
     :return: `format`, `holds`, `vertices`, `welded_vertices`, `triangles`, `bounding_box`, `components`, `findings`,
         `sentences` and the other members of the command's JSON.

@@ -99,7 +99,7 @@ fn control(release: &Release, architecture: &str, libraries: &str, kibibytes: u6
          Description: editor that bends scanned meshes\n \
          Pliant bends scanned meshes: paint the part that may move, paint a handle and drag it,\n \
          and the surface follows like a sheet of material. It opens glTF, OBJ, PLY,\n \
-         STL, OFF and 3MF, and saves the same file, changing only its shape.\n \
+         STL, OFF, 3MF and USDZ, and saves the same file, changing only its shape.\n \
          .\n \
          It bends by many methods of research (as rigidly as possible, as a thin\n \
          plate, as a shell, with cages and lattices), in a window or in batch.\n",

@@ -41,7 +41,7 @@ pub const TOOLS: [Tool; 9] = [
     Tool {
         name: "open",
         title: "Open a file",
-        description: "Opens a mesh file (glb, gltf, obj, ply, stl, off or 3mf) and gives a name for it, `model`, which the \
+        description: "Opens a mesh file (glb, gltf, obj, ply, stl, off, 3mf or usdz) and gives a name for it, `model`, which the \
                       other tools take. At most 16 models are open at a time.",
         arguments: || (file_arguments(), &["file"]),
         only_reads: true,

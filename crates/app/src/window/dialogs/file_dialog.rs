@@ -28,7 +28,7 @@ const MODELS_AND_PROJECTS: &[&str] = &{
 };
 
 /// The extensions of animations: one file, or with `-####` in its name one for each frame.
-const ANIMATIONS: &[&str] = &["glb", "gltf", "pc2", "mdd", "obj", "ply", "stl", "off", "3mf"];
+const ANIMATIONS: &[&str] = &["glb", "gltf", "pc2", "mdd", "obj", "ply", "stl", "off", "3mf", "usdz"];
 
 /// The purpose of a dialog.
 struct Request {

@@ -8,11 +8,14 @@
 )]
 
 use std::collections::BTreeMap;
+use std::io::{Cursor, Read, Write};
 use std::path::Path;
 
 use glam::DVec3;
 use pliant_io::{Bytes, Format, MorphTarget, Placement, Resolver, Save, decode_images, read};
 use pliant_mesh::{Cancel, Progress};
+use zip::write::SimpleFileOptions;
+use zip::{ZipArchive, ZipWriter};
 
 /// The memory limit of a broken image.
 const IMAGE_BUDGET: u64 = 64 << 20;
@@ -174,6 +177,10 @@ pub fn broken(sound: &Sound, others: &[Sound], chance: &mut Chance) -> Vec<u8> {
         }
         return noise;
     }
+    // Of archives a part is broken in half of the runs, so that its checksum is right.
+    if sound.bytes.starts_with(b"PK") && chance.below(2) == 0 {
+        return with_broken_part(sound, others, chance);
+    }
     let mut bytes = sound.bytes.clone();
     let is_glb = bytes.starts_with(b"glTF");
     for _ in 0..=chance.below(3) * chance.below(2) {
@@ -200,6 +207,41 @@ pub fn broken(sound: &Sound, others: &[Sound], chance: &mut Chance) -> Vec<u8> {
         }
     }
     bytes
+}
+
+/// An archive in which one part is broken.
+fn with_broken_part(sound: &Sound, others: &[Sound], chance: &mut Chance) -> Vec<u8> {
+    let mut old = ZipArchive::new(Cursor::new(&sound.bytes)).unwrap();
+    let mut new = ZipWriter::new(Cursor::new(Vec::new()));
+    let names = old.len();
+    // The part with the geometry is the largest.
+    let sizes = (0..names).map(|place| old.by_index(place).unwrap().size());
+    let largest = sizes
+        .enumerate()
+        .max_by_key(|(_, size)| *size)
+        .map_or(0, |(place, _)| place);
+    let wanted = if chance.below(4) == 0 {
+        chance.below(names)
+    } else {
+        largest
+    };
+    for place in 0..names {
+        let mut file = old.by_index(place).unwrap();
+        let options = SimpleFileOptions::default().compression_method(file.compression());
+        let mut bytes = Vec::new();
+        file.read_to_end(&mut bytes).unwrap();
+        if place == wanted && !bytes.is_empty() {
+            let part = Sound {
+                name: String::new(),
+                kind: sound.kind,
+                bytes,
+            };
+            bytes = broken(&part, others, chance);
+        }
+        new.start_file(file.name().unwrap(), options).unwrap();
+        new.write_all(&bytes).unwrap();
+    }
+    new.finish().unwrap().into_inner()
 }
 
 fn of_bytes(bytes: &mut Vec<u8>, chance: &mut Chance) {
