@@ -69,7 +69,7 @@ pub fn show(
             }
             // A name of its own: what comes and goes at the right end must not make other buttons of these between the
             // press and the release of a click.
-            let rest = UiBuilder::new().scope_id(Id::new("the status line's sentences"));
+            let rest = UiBuilder::new().scope_id(Id::unique("the status line's sentences"));
             let rest = rest.layout(Layout::left_to_right(Align::Center));
             ui.scope_builder(rest, |ui| {
                 answer = file_line(ui, file_work);
