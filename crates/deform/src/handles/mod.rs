@@ -91,6 +91,14 @@ impl Handle {
         }
     }
 
+    /// Another handle's motion in this one's coordinates.
+    pub fn following(&self, other: &Handle, motion: &Motion) -> Motion {
+        Motion {
+            linear: motion.linear * (self.radius / other.radius),
+            shift: motion.displace(other.coordinates(self.world_centre)),
+        }
+    }
+
     /// A rigid motion in the handle's coordinates.
     pub fn rigid_motion(&self, rigid: &RigidMotion) -> Motion {
         Motion {

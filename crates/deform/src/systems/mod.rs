@@ -19,3 +19,4 @@ pub(crate) mod refine;
 pub(crate) mod setup;
 pub(crate) mod solution;
 pub(crate) mod springs;
+pub(crate) mod stiff_parts;

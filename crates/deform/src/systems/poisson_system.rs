@@ -50,6 +50,21 @@ impl PoissonSystem {
         refactorisation: Refactorisation,
         input: &BindInput<'_>,
     ) -> Result<Self, BindError> {
+        Self::bind_tied(energy, stiffness, refactorisation, input, |_| ())
+    }
+
+    /// The same after `tie` has hung further springs on the operator. Their anchors come after those of soft handles in
+    /// every field, and their values are the caller's.
+    ///
+    /// # Errors
+    /// The bi-Laplacian's errors.
+    pub fn bind_tied(
+        energy: PlateEnergy,
+        stiffness: &[f64],
+        refactorisation: Refactorisation,
+        input: &BindInput<'_>,
+        tie: impl FnOnce(&mut BilaplacianOperator),
+    ) -> Result<Self, BindError> {
         let &BindInput { partition, cancel, .. } = input;
         let problem = BoundaryProblem {
             stiffness,
@@ -63,7 +78,8 @@ impl PoissonSystem {
             Some(order),
         )?;
         let plan = EliminationPlan::of(input)?;
-        let (operator, prescribed) = operator(&problem, energy, partition, input.handles, Boundaries::OfLaplacian);
+        let (mut operator, prescribed) = operator(&problem, energy, partition, input.handles, Boundaries::OfLaplacian);
+        tie(&mut operator);
         cancel.check()?;
         let refuse = |error| refused(error, input);
         let mut system =

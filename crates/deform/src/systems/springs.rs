@@ -30,6 +30,15 @@ impl Springs {
         }
     }
 
+    /// The first `count` springs at `vertex_count` local vertices.
+    pub fn first(&self, count: usize, vertex_count: usize) -> Self {
+        let mut first = Self::default();
+        if count > 0 {
+            first.add(vertex_count, &self.locals[..count], &self.strengths[..count]);
+        }
+        first
+    }
+
     /// The vertex of a spring.
     pub fn local(&self, spring: usize) -> u32 {
         self.locals[spring]

@@ -6,7 +6,7 @@ use glam::{DAffine3, DQuat, DVec3};
 use pliant_deform::{Bilaplacian, Detail, Method, RigidMotion, Role};
 use pliant_mesh::{Drawn, shapes};
 
-use crate::rig::{Scene, turned};
+use crate::rig::{Scene, settle, turned};
 
 /// Closed limbs of length about 6 along z, with flat sides, round, and round with necks.
 fn limbs() -> Vec<(&'static str, Drawn)> {
@@ -56,7 +56,7 @@ impl Bent {
         scene.method = method.clone();
         let turn = DAffine3::from_quat(DQuat::from_axis_angle(axis, PI / 3.0));
         let target = DAffine3::from_translation(middle) * turn * DAffine3::from_translation(-middle);
-        let shape = scene.moved(&[target]);
+        let (shape, _) = settle(&mut scene.bind(), &[target]);
         Self { scene, band, shape }
     }
 
@@ -156,6 +156,46 @@ fn a_soft_band_hardly_swells() {
             "{name}: {volumes:?}"
         );
     });
+}
+
+#[test]
+fn a_stiff_band_turns_as_a_whole_by_methods_with_turns_of_their_own_too() {
+    let limbs = limbs();
+    let (bar, necks) = (&limbs[0].1, &limbs[2].1);
+    let cases = [
+        ("laplacian", necks, DVec3::X, 0),
+        ("laplacian", necks, DVec3::Z, 1),
+        ("laplacian", necks, DVec3::X, 2),
+        ("poisson", necks, DVec3::X, 0),
+        ("poisson", necks, DVec3::Z, 1),
+        ("poisson", necks, DVec3::X, 2),
+        ("space-primo", bar, DVec3::X, 1),
+    ];
+    for (name, drawn, axis, place) in cases {
+        let method = Method::from_name(name).unwrap();
+        let departure = |stiffness| Bent::of(drawn, &method, axis, &BANDS[place], stiffness).departure();
+        let departures = [1.0, 10.0, 100.0, 1000.0].map(departure);
+        // The fixed part or the handle bends a band next to it: more stiffness is needed there.
+        let enough = if place == 1 { 2 } else { 3 };
+        assert!(
+            departures.windows(2).all(|pair| pair[1] < pair[0]) && departures[enough] < 0.1 * departures[0],
+            "{name} about {axis}, {:?}: {departures:?}",
+            BANDS[place]
+        );
+    }
+}
+
+#[test]
+fn details_on_a_stiff_band_of_a_limb_that_is_thin_for_its_model_go_with_it() {
+    let drawn = shapes::turned(60, 12, |t| {
+        let end = (1.0 - (2.0 * t - 1.0).powi(10)).max(0.0).sqrt();
+        glam::DVec2::new(0.12 * end, 6.0 * t)
+    });
+    for (name, method, _) in methods() {
+        let departure = |stiffness| Bent::of(&drawn, &method, DVec3::X, &BANDS[2], stiffness).departure();
+        let [even, stiff] = [1.0, 10.0].map(departure);
+        assert!(stiff < 0.5 * even, "{name}: {even} {stiff}");
+    }
 }
 
 #[test]

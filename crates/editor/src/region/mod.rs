@@ -8,6 +8,7 @@
 //! A method with control points (a cage, a lattice) or examples can also bend without handles: then all unpainted
 //! vertices are free, unless some vertices were painted free.
 
+mod limb_chain;
 mod limb_joint;
 mod loose;
 mod part;
@@ -23,8 +24,9 @@ use glam::DVec3;
 use pliant_deform::{Loose, Role};
 use pliant_mesh::{Cancel, Cancelled, ContourLine, DistanceSearch, Model, Surface, SurfaceVertex};
 
-pub use self::limb_joint::FoundLimb;
-pub(crate) use self::limb_joint::{limb_chain, limb_joint};
+pub use self::limb_chain::FoundLimb;
+pub(crate) use self::limb_chain::limb_chain;
+pub(crate) use self::limb_joint::limb_joint;
 use self::loose::Ball;
 pub(crate) use self::loose::FileContacts;
 use self::part::end_of_part;

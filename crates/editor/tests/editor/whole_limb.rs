@@ -11,20 +11,45 @@ const JOINTS: [f64; 3] = [1.6, 3.2, 4.8];
 
 /// A ball of radius 1.4 about the origin with two arms along x, to 5.8 and -5.8, each with three joints.
 fn body_with_jointed_arms() -> Drawn {
+    body_with_arms(&JOINTS, 0.0)
+}
+
+/// A ball of radius 1.4 about the origin with two arms along x, to 5.8 and -5.8, which are narrow at `joints`, and at the
+/// end of each arm a finger of this length.
+fn body_with_arms(joints: &[f64], finger: f64) -> Drawn {
+    let end = 5.8 + finger;
+    let capped = |radius: f64, over: f64| radius * (1.0 - over.max(0.0).powi(2)).max(0.0).sqrt();
     let profile = |share: f64| {
-        let x: f64 = 5.8 * (1.0 - 2.0 * share);
+        let x: f64 = end * (1.0 - 2.0 * share);
         let ball = (1.4 * 1.4 - x * x).max(0.0).sqrt();
-        let narrow = JOINTS.map(|joint| 0.16 * (-((x.abs() - joint) / 0.3).powi(2)).exp());
-        let arm = 0.42 - narrow.iter().sum::<f64>();
-        let cap = (1.0 - ((x.abs() - 5.4) / 0.4).max(0.0).powi(2)).max(0.0).sqrt();
-        DVec2::new(if share % 1.0 == 0.0 { 0.0 } else { ball.max(arm * cap) }, x)
+        let narrow = joints
+            .iter()
+            .map(|joint| 0.16 * (-((x.abs() - joint) / 0.3).powi(2)).exp());
+        let arm = capped(0.42 - narrow.sum::<f64>(), (x.abs() - 5.4) / 0.4);
+        let finger = if finger > 0.0 {
+            capped(0.15, (x.abs() - end + 0.15) / 0.15)
+        } else {
+            0.0
+        };
+        DVec2::new(
+            if share % 1.0 == 0.0 {
+                0.0
+            } else {
+                ball.max(arm).max(finger)
+            },
+            x,
+        )
     };
     let along_x = DAffine3::from_mat3(DMat3::from_cols(DVec3::Y, DVec3::Z, DVec3::X));
     shapes::moved(&shapes::turned(160, 24, profile), along_x)
 }
 
 fn open() -> Rig {
-    let mut rig = Rig::open(body_with_jointed_arms());
+    pose(body_with_jointed_arms())
+}
+
+fn pose(body: Drawn) -> Rig {
+    let mut rig = Rig::open(body);
     rig.command(Command::SetTool(ToolMode::Pose));
     rig.command(Command::ToggleWholeLimb);
     rig
@@ -129,6 +154,30 @@ fn one_drag_of_the_hand_bends_all_joints_and_the_hand_is_under_the_pointer() {
     rig.undo();
     rig.drain();
     assert_eq!(rig.fingerprint(), before, "each drag is one step");
+}
+
+#[test]
+fn a_smooth_elbow_is_a_joint_and_a_knuckle_is_none() {
+    for (joints, finger) in [([1.6, 4.8].as_slice(), 0.0), (&[1.6, 4.8], 0.7), (&JOINTS, 0.7)] {
+        let mut rig = pose(body_with_arms(joints, finger));
+        let (_, hand_px) = seen(&rig, DVec3::new(5.4 + finger, 0.0, 0.0));
+        drag(&mut rig, hand_px, DVec2::new(-60.0, -60.0), Modifiers::NONE);
+        let pivots: Vec<DVec3> = rig
+            .editor
+            .document()
+            .handles()
+            .iter()
+            .map(|handle| handle.pivot)
+            .collect();
+        assert_eq!(
+            pivots.len(),
+            3,
+            "shoulder, elbow and wrist with a finger of {finger}: {pivots:?}"
+        );
+        for (pivot, (joint, most)) in pivots.iter().zip([(1.6, 0.25), (3.2, 0.5), (4.8, 0.25)]) {
+            assert!(pivot.distance(DVec3::X * joint) < most, "{joint}: {pivot}");
+        }
+    }
 }
 
 #[test]

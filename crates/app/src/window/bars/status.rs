@@ -1,6 +1,6 @@
 //! The line below the view: the program's activity, and the next possible step.
 
-use eframe::egui::{self, Align, Color32, Label, Layout, ProgressBar, RichText, Spinner};
+use eframe::egui::{self, Align, Color32, Id, Label, Layout, ProgressBar, RichText, Spinner, UiBuilder};
 use pliant_editor::{Command, Editor};
 
 use crate::window::widgets::outbox::Outbox;
@@ -67,7 +67,11 @@ pub fn show(
             if !view.jobs.is_empty() && ui.small_button("Stop").clicked() {
                 commands.push(Command::CancelJobs);
             }
-            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+            // A name of its own: what comes and goes at the right end must not make other buttons of these between the
+            // press and the release of a click.
+            let rest = UiBuilder::new().scope_id(Id::new("the status line's sentences"));
+            let rest = rest.layout(Layout::left_to_right(Align::Center));
+            ui.scope_builder(rest, |ui| {
                 answer = file_line(ui, file_work);
                 for (kind, share) in &view.jobs {
                     // A job too short to notice needs no bar.
@@ -91,17 +95,18 @@ fn file_line(ui: &mut egui::Ui, file_work: &FileWork) -> Option<FileWorkAnswer> 
     let mut answer = None;
     if let Some(waiting) = &file_work.waiting {
         ui.add(Spinner::new().size(14.0));
-        let width = WAITING_SHARE * ui.available_width();
-        ui.scope(|ui| {
-            ui.set_max_width(width);
-            ui.add(Label::new(waiting).truncate());
-        });
+        // The buttons come first: a sentence that changes its length must not move them from under the pointer.
         if ui.small_button("Save now").clicked() {
             answer = Some(FileWorkAnswer::SaveAsItIs);
         }
         if ui.small_button("Don't save").clicked() {
             answer = Some(FileWorkAnswer::Stop);
         }
+        let width = WAITING_SHARE * ui.available_width();
+        ui.scope(|ui| {
+            ui.set_max_width(width);
+            ui.add(Label::new(waiting).truncate());
+        });
     }
     if let Some((doing, share)) = file_work.doing {
         progress(ui, doing, share);

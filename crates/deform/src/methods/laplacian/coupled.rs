@@ -16,6 +16,7 @@ use crate::numerical::rows::{CHUNK, place_in};
 use crate::sparse::factor_error::FactorError;
 use crate::sparse::matrix::{CONSTRAINED, ScaledMatrix};
 use crate::systems::operator::BilaplacianOperator;
+use crate::systems::springs::Springs;
 
 /// ε.
 const FIRMNESS: f64 = 1e-6;
@@ -29,6 +30,8 @@ const ENTRY: usize = 12;
 /// The energy over the operator's local vertices.
 pub(super) struct CoupledEnergy<'a> {
     pub operator: &'a BilaplacianOperator,
+    /// The soft handles' springs, which are the operator's first ones.
+    pub springs: Springs,
     /// G of each entry of the Laplacian's full rows.
     entries: Vec<DMat3>,
     /// The start of each local vertex' entries.
@@ -36,12 +39,14 @@ pub(super) struct CoupledEnergy<'a> {
 }
 
 impl<'a> CoupledEnergy<'a> {
-    /// The energy for the rest positions of the local vertices, their fits and their `curvature` L p.
+    /// The energy for the rest positions of the local vertices, their fits and their `curvature` L p, with the first
+    /// `spring_count` springs of the operator.
     ///
     /// # Errors
     /// [`FactorError::Memory`].
     pub fn of(
         operator: &'a BilaplacianOperator,
+        spring_count: usize,
         similarities: &[Similarity],
         rest: &[DVec3],
         curvature: &[DVec3],
@@ -62,6 +67,7 @@ impl<'a> CoupledEnergy<'a> {
         }
         Ok(Self {
             operator,
+            springs: operator.springs.first(spring_count, count),
             entries,
             offsets,
         })
@@ -165,7 +171,7 @@ impl<'a> CoupledEnergy<'a> {
     /// The blocks of a vertex' column on and below the diagonal, its own first: Σ_i c_i (C_iuᵀ C_iv + ε w_iu w_iv I).
     fn column(&self, local: u32, column: u32, column_of: &[u32], slots: &mut [u32]) -> Vec<(u32, DMat3)> {
         let laplacian = &self.operator.laplacian;
-        let spring = DMat3::from_diagonal(DVec3::splat(self.operator.springs.diagonal(local)));
+        let spring = DMat3::from_diagonal(DVec3::splat(self.springs.diagonal(local)));
         let mut blocks = vec![(column, spring)];
         slots[local as usize] = 1;
         let mut touched = vec![local];

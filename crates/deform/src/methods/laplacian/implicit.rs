@@ -54,7 +54,7 @@ impl<'a> ImplicitSystem<'a> {
             FactorError::Pivot(column) => FactorError::Pivot(locals[column / DOF] as usize),
             other => other,
         })?;
-        let springs = energy.operator.springs.locals().iter();
+        let springs = energy.springs.locals().iter();
         Ok(Self {
             places: locals
                 .iter()
@@ -110,7 +110,7 @@ impl Refined for ImplicitSystem<'_> {
 
     fn scaled_residual<const K: usize>(&self, d: &[[f64; K]]) -> Vec<[f64; K]> {
         let laplacian = &self.energy.operator.laplacian;
-        let springs = &self.energy.operator.springs;
+        let springs = &self.energy.springs;
         let stress = self.energy.stress(d);
         let mut residual = vec![[0.0; K]; self.places.len()];
         residual

@@ -1,7 +1,8 @@
 //! Laplacian editing [SCL+04, LSC+04; BS08, sections 3.1.2, 3.2.5 and 3.2.6]: each vertex' differential coordinate L p
 //! is transformed, and the bi-Laplacian system L M⁻¹ L d = L M⁻¹ (T − I) L p reassembles the surface.
 //!
-//! Painted stiffness s scales the density of the energy ½ ∫ s |Δp' − T Δp|², as for a thin plate.
+//! Painted stiffness s scales the density of the energy ½ ∫ s |Δp' − T Δp|², as for a thin plate, and each stiff part
+//! turns as a whole (`parts`).
 //!
 //! Parts: `similarity`, `rings` and `estimate` give the transformations, `coupled`, `implicit` and `bases` the first
 //! shape of implicit ones, `shape` computes a frame, and `systems::poisson_system` solves.
@@ -13,6 +14,7 @@ mod estimate;
 mod implicit;
 mod moments;
 mod options;
+mod parts;
 mod rings;
 mod shape;
 mod similarity;
@@ -26,6 +28,7 @@ pub use self::options::{LaplacianEditing, LocalScale, Transforms};
 
 use self::bases::ImplicitBases;
 use self::coupled::CoupledEnergy;
+use self::parts::TurningParts;
 use self::rings::Rings;
 use self::similarity::Similarity;
 use crate::handles::polar::{Polar, polars_of};
@@ -47,6 +50,7 @@ pub(crate) struct LaplacianSolver {
     curvature: Vec<DVec3>,
     rings: Option<Rings>,
     implicit: Option<Implicit>,
+    parts: TurningParts,
     handles: Vec<Handle>,
     /// The handles' maps at the last frame, from which turns continue.
     polars: Vec<Polar>,
@@ -79,12 +83,14 @@ impl LaplacianSolver {
             cancel,
             ..
         } = input;
-        let system = PoissonSystem::bind(
-            PlateEnergy::of_power(2),
-            problem.stiffness,
-            input.refactorisation,
-            input,
-        )?;
+        let mut parts = TurningParts::default();
+        let (mut spring_count, energy) = (0, PlateEnergy::of_power(2));
+        let system = PoissonSystem::bind_tied(energy, problem.stiffness, input.refactorisation, input, |operator| {
+            spring_count = operator.springs.len();
+            if options.transforms == Transforms::Implicit && options.steps == 1 {
+                parts = TurningParts::attach(operator, input);
+            }
+        })?;
         progress.set(0.3);
         let positions = &problem.surface.positions;
         let laplacian = &system.operator().laplacian;
@@ -125,7 +131,7 @@ impl LaplacianSolver {
                 }
             };
             let similarities: Vec<Similarity> = system.vertices().iter().enumerate().map(similarity).collect();
-            let energy = CoupledEnergy::of(system.operator(), &similarities, &rest, &curvature);
+            let energy = CoupledEnergy::of(system.operator(), spring_count, &similarities, &rest, &curvature);
             let energy = energy.map_err(|_| BindError::OutOfMemory {
                 free_count: system.columns().len(),
             })?;
@@ -141,6 +147,7 @@ impl LaplacianSolver {
             curvature,
             rings,
             implicit,
+            parts,
             handles: input.handles.to_vec(),
             polars: vec![Polar::default(); input.handles.len()],
             scratch: Scratch::default(),
@@ -196,7 +203,7 @@ impl LaplacianSolver {
 
     /// Like [`LaplacianSolver::energy`], for any displacements and these motions; `None` if they can't be solved.
     fn energy_of(&self, motions: &[Motion], displacements: &[DVec3]) -> Option<f64> {
-        let field = self.system.read(motions, displacements);
+        let mut field = self.system.read(motions, displacements);
         let mut scratch = self.new_scratch();
         match &self.implicit {
             // The transformations are the shape's own.
@@ -205,7 +212,10 @@ impl LaplacianSolver {
                     self.fitted(implicit, local, &field).change()
                 });
             }
-            _ => self.shape(motions, &mut scratch).ok()?,
+            _ => {
+                self.shape(motions, &mut scratch).ok()?;
+                self.parts.copy_anchors(&scratch.field, &mut field);
+            }
         }
         Some(self.energy(&scratch.changes, &field))
     }

@@ -38,7 +38,14 @@ impl LaplacianSolver {
                 // The transformations are those of the last step: at the first one, none.
                 self.system.solve(&scratch.load, &mut scratch.field)?;
             }
-            if first.is_some() && self.options.scale == LocalScale::Normalised {
+            if let Some(implicit) = first
+                && self.options.scale == LocalScale::Free
+                && self.rings.is_none()
+            {
+                self.change_by(&mut scratch.changes, |local| {
+                    self.fitted(implicit, local, &scratch.field).change()
+                });
+            } else if first.is_some() && self.options.scale == LocalScale::Normalised {
                 self.rescale(scratch);
             } else if let Some(rings) = &self.rings {
                 let estimate = Estimate {
@@ -52,6 +59,7 @@ impl LaplacianSolver {
                 };
                 estimate.transform(&mut scratch.changes);
             }
+            self.parts.turn(&part, &self.handles, &self.curvature, scratch);
             self.set_load(scratch);
             self.system.solve(&scratch.load, &mut scratch.field)?;
         }
@@ -79,9 +87,11 @@ impl LaplacianSolver {
             .collect()
     }
 
-    /// Returns true if the bases' shape is the last one: it solves for implicit transformations that keep their scale.
+    /// Returns true if the bases' shape is the last one: it solves for implicit transformations that keep their scale,
+    /// if no part turns as a whole.
     pub(super) fn is_settled_by_bases(&self) -> bool {
-        self.implicit.is_some() && self.options.scale == LocalScale::Free && self.options.steps == 1
+        let keeps_scale = self.options.scale == LocalScale::Free && self.options.steps == 1;
+        self.implicit.is_some() && keeps_scale && self.parts.is_empty()
     }
 
     /// The similarity that fits a field around a vertex.

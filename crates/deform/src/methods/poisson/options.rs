@@ -7,9 +7,10 @@ options! {
     pub struct Poisson {
         /// The spreading of the handles' rotations and stretches.
         propagation: Propagation = Choice {
-            default: Propagation::Harmonic,
-            help: "spreading of the handles' turns and stretches: even (\"harmonic\"), by distance along the surface \
-                   (\"geodesic\"), or with stiffly painted parts turning as a whole (\"material\")",
+            default: Propagation::Material,
+            help: "spreading of the handles' turns and stretches: with stiffly painted parts turning as a whole \
+                   (\"material\"), the same without heed of paint (\"harmonic\"), or by distance along the surface \
+                   (\"geodesic\")",
         },
     }
 }

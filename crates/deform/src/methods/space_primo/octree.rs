@@ -15,6 +15,10 @@ use crate::space::shaping::shaping;
 /// The most small cubes along an axis.
 const FINEST: i32 = 128;
 
+/// The size of a grid relative to the moving part. It is a little larger, so that the flat sides of a block lie within
+/// cubes. A triangle exactly between two cubes belongs to neither, and then the block has coarse cells alone.
+const LOOSE: f64 = 1.0 + 1e-4;
+
 /// Bytes of a small cube during its classification.
 const CUBE: usize = 32;
 
@@ -102,7 +106,7 @@ impl Octree {
             DVec3::ZERO
         };
         let longest = extent.max_element();
-        let world_side = if longest > 0.0 { longest / f64::from(along) } else { 1.0 };
+        let world_side = if longest > 0.0 { LOOSE * longest / f64::from(along) } else { 1.0 };
         // There are two more cubes on each side: one for fixed vertices nearby, and an empty one.
         let counts = (extent / world_side * SHRUNK).ceil().as_ivec3().max(IVec3::ONE) + 4;
         let grid = Grid {
