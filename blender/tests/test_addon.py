@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 import subprocess
 import sys
 
@@ -348,6 +349,23 @@ def test_a_mesh_that_is_edited_ends_its_session_with_a_sentence(addon, bent):
     assert obj.session_uid not in addon.live.notices
 
 
+def rendered_frames(addon, obj, tmp_path):
+    """The shapes of a live object in ten frames, 2 to 11, each as it was rendered."""
+    scene = bpy.context.scene
+    scene.render.engine, scene.cycles.samples, scene.render.resolution_x, scene.render.resolution_y = "CYCLES", 1, 8, 8
+    scene.frame_start, scene.frame_end, scene.render.filepath = 2, 11, str(tmp_path / "frame")
+    scene.camera = add(bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera")))
+    rendered = {}
+    note = lambda scene, _=None: rendered.setdefault(scene.frame_current, addon.live.session_of(obj).shape.copy())
+    bpy.app.handlers.render_post.append(note)
+    try:
+        bpy.ops.render.render(animation=True)
+    finally:
+        bpy.app.handlers.render_post.remove(note)
+    assert sorted(rendered) == list(range(2, 12))
+    return rendered
+
+
 def test_a_file_that_is_saved_while_bent_live_goes_on_when_it_is_opened(addon, bent, tmp_path):
     obj, target = bent
     rest = stored(obj.data)
@@ -362,25 +380,54 @@ def test_a_file_that_is_saved_while_bent_live_goes_on_when_it_is_opened(addon, b
     bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "live.blend"))
     obj, target = (bpy.data.objects[name] for name in names)
     assert np.array_equal(shown(obj), now) and not obj.modifiers["hook"].show_viewport
-    # Ten frames are rendered.
-    scene = bpy.context.scene
-    scene.render.engine, scene.cycles.samples, scene.render.resolution_x, scene.render.resolution_y = "CYCLES", 1, 8, 8
-    scene.frame_start, scene.frame_end, scene.render.filepath = 2, 11, str(tmp_path / "frame")
-    scene.camera = add(bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera")))
-    rendered = {}
-    note = lambda scene, _=None: rendered.setdefault(scene.frame_current, addon.live.session_of(obj).shape.copy())
-    bpy.app.handlers.render_post.append(note)
-    try:
-        bpy.ops.render.render(animation=True)
-    finally:
-        bpy.app.handlers.render_post.remove(note)
-    assert sorted(rendered) == list(range(2, 12))
+    rendered = rendered_frames(addon, obj, tmp_path)
     for frame, shape in rendered.items():
         assert np.abs(shape - settled_at(obj, target, frame, before)).max() < 1e-5, frame
     select(obj)
     bpy.ops.pliant.discard()
     assert obj.data.shape_keys is None and np.array_equal(stored(obj.data), rest)
     assert obj.modifiers["hook"].show_viewport and not obj.modifiers["hook"].show_render
+
+
+def test_frames_of_a_second_bend_that_was_saved_and_reopened_are_the_command_line_s(addon, bent, tmp_path):
+    program = os.environ.get("PLIANT") or shutil.which("pliant")
+    if not program:
+        pytest.skip("there is no command line: PLIANT names no program")
+    obj, target = bent
+    bpy.ops.pliant.begin()
+    target.location.x, target.rotation_euler.y = 0.4, 0.5
+    bpy.context.view_layer.update()
+    bpy.ops.pliant.bake()
+    start, before = shown(obj), target.matrix_world.copy()
+    top, foot = stored(obj.data)[:, 2] > 1.8, stored(obj.data)[:, 2] < 0.2
+    bpy.ops.pliant.begin()
+    bow(obj, target)
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "second.blend"))
+    names = obj.name, target.name
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "second.blend"))
+    obj, target = (bpy.data.objects[name] for name in names)
+    rendered = rendered_frames(addon, obj, tmp_path)
+
+    obj.data.calc_loop_triangles()
+    lines = [f"OFF\n{len(start)} {len(obj.data.loop_triangles)} 0"]
+    lines += ["{!r} {!r} {!r}".format(*map(float, point)) for point in start]
+    lines += ["3 {} {} {}".format(*triangle.vertices) for triangle in obj.data.loop_triangles]
+    (tmp_path / "start.off").write_text("\n".join(lines) + "\n")
+    for frame, shape in rendered.items():
+        bpy.context.scene.frame_set(frame)
+        way = np.array(target.matrix_world @ before.inverted(), dtype=float)
+        handle = {"name": "top", "select": {"vertices": np.flatnonzero(top).tolist()}}
+        edit = {
+            "version": 1,
+            "method": {"name": "arap", "energy": "smooth"},
+            "fixed": {"vertices": np.flatnonzero(foot).tolist()},
+            "handles": [{**handle, "transform": {"matrix": way.T.ravel().tolist()}}],
+        }
+        (tmp_path / "edit.json").write_text(json.dumps(edit))
+        arguments = [tmp_path / "start.off", "--edit", tmp_path / "edit.json", "--output", tmp_path / f"{frame}.off"]
+        subprocess.run([program, "apply", *map(str, arguments)], check=True, capture_output=True)
+        wanted = pliant.load(tmp_path / f"{frame}.off").vertices
+        assert np.abs(shape - wanted).max() < 1e-5, frame
 
 
 def test_a_live_file_that_can_t_go_on_is_put_back_with_a_sentence(addon, bent, tmp_path):
