@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use glam::{DAffine3, DVec3};
-use pliant_deform::{Arap, ArapEnergy, Method, Role};
+use pliant_deform::{Arap, ArapEnergy, Bilaplacian, Detail, Method, Role};
 use pliant_mesh::shapes;
 
 use crate::rig::{Scene, apart, settle};
@@ -89,10 +89,10 @@ const LIMITED: [(&str, f64, Beyond); 12] = [
     ("mls", 90.0, Beyond::TwistsInOnePlace),
     ("lattice", 90.0, Beyond::Narrows),
     ("cage", 90.0, Beyond::Narrows),
-    ("embedded", 120.0, Beyond::NarrowsNecks),
+    ("embedded", 95.0, Beyond::NarrowsNecks),
     ("arap", 95.0, Beyond::NarrowsNecks),
-    ("primo", 140.0, Beyond::NarrowsNecks),
-    ("shells", 150.0, Beyond::NarrowsNecks),
+    ("primo", 120.0, Beyond::NarrowsNecks),
+    ("shells", 125.0, Beyond::NarrowsNecks),
     ("frames", 140.0, Beyond::Narrows),
     ("space-primo", 120.0, Beyond::NarrowsNecks),
 ];
@@ -122,8 +122,14 @@ fn methods_follow_turns_up_to_where_their_sentence_says_and_poisson_follows_half
     for (name, follows, beyond) in LIMITED {
         let method = &named(name);
         if beyond != Beyond::TwistsInOnePlace {
-            let (kept, step) = twisted(method, follows, 0.6);
-            assert!(kept > KEPT && step < SPREAD, "{name} {kept} {step}");
+            for neck in [0.6, 0.2] {
+                // In a neck the turn is rightly concentrated.
+                let (kept, step) = twisted(method, follows, neck);
+                assert!(
+                    kept > KEPT && (step < SPREAD || neck < 0.5),
+                    "{name} {neck} {kept} {step}"
+                );
+            }
         }
         let [(plain, step), (neck, _)] = [1.0, 0.3].map(|neck| twisted(method, 175.0, neck));
         let is_as_said = match beyond {
@@ -134,7 +140,6 @@ fn methods_follow_turns_up_to_where_their_sentence_says_and_poisson_follows_half
         assert!(is_as_said, "{name} {plain} {neck} {step}");
     }
     for neck in [1.0, 0.6, 0.3, 0.2] {
-        // In a neck the turn is rightly concentrated.
         let (kept, step) = twisted(&named("poisson"), 180.0, neck);
         assert!(kept > KEPT && (step < SPREAD || neck < 0.5), "{neck} {kept} {step}");
     }
@@ -225,6 +230,15 @@ fn the_plain_energies_say_from_where_on_folds_crease_a_limb() {
             "{beyond:?}"
         );
     }
+}
+
+#[test]
+fn transferred_details_say_sooner_that_necks_narrow() {
+    let mut options = Bilaplacian::default();
+    options.detail = Detail::DeformationTransfer;
+    let method = Method::from(options);
+    assert!(said(&method, 65.0, true).is_empty() && twisted(&method, 65.0, 0.2).0 > 0.7);
+    assert!(!said(&method, 90.0, true).is_empty() && twisted(&method, 90.0, 0.2).0 < 0.7);
 }
 
 #[test]

@@ -57,9 +57,13 @@ impl DeformMethod for Bilaplacian {
         (self.stretching > 0.0).then_some(("stretching", -2))
     }
 
-    /// Between two turns it is their mean, which is narrower by the cosine of half the angle.
+    /// Between two turns it is their mean, which is narrower by the cosine of half the angle; a base that has shrunk to a
+    /// line at a neck narrows it more.
     fn follows_turns(&self) -> Option<Followed> {
-        Some(Followed::by_limbs(90.0))
+        Some(Followed::by_limbs(match self.detail {
+            Detail::DeformationTransfer => 65.0,
+            Detail::None | Detail::NormalDisplacements | Detail::DisplacementVolumes => 90.0,
+        }))
     }
 
     fn needs(&self) -> Needs {

@@ -59,7 +59,7 @@ impl DeformMethod for Embedded {
 
     /// Nodes may stretch, and near half a turn that costs less than turning.
     fn follows_turns(&self) -> Option<Followed> {
-        Some(Followed::by_necks(120.0))
+        Some(Followed::by_necks(95.0))
     }
 
     fn needs(&self) -> Needs {

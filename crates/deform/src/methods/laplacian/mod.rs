@@ -83,8 +83,8 @@ impl LaplacianSolver {
             cancel,
             ..
         } = input;
-        let mut parts = TurningParts::default();
-        let (mut spring_count, energy) = (0, PlateEnergy::of_power(2));
+        let (mut parts, mut spring_count) = (TurningParts::default(), 0);
+        let energy = PlateEnergy::of_power(2);
         let system = PoissonSystem::bind_tied(energy, problem.stiffness, input.refactorisation, input, |operator| {
             spring_count = operator.springs.len();
             if options.transforms == Transforms::Implicit && options.steps == 1 {

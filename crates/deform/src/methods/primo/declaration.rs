@@ -36,7 +36,7 @@ impl DeformMethod for Primo {
 
     /// Like ARAP, it gives way where the surface twists most.
     fn follows_turns(&self) -> Option<Followed> {
-        Some(Followed::by_necks(140.0))
+        Some(Followed::by_necks(120.0))
     }
 
     fn turns_by_moves(&self) -> bool {

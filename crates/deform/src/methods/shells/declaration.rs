@@ -65,7 +65,7 @@ impl DeformMethod for Shells {
 
     /// Like ARAP, the surface gives way where it twists most.
     fn follows_turns(&self) -> Option<Followed> {
-        Some(Followed::by_necks(150.0))
+        Some(Followed::by_necks(125.0))
     }
 
     fn resists_collapse(&self) -> bool {

@@ -106,7 +106,11 @@ impl Octree {
             DVec3::ZERO
         };
         let longest = extent.max_element();
-        let world_side = if longest > 0.0 { LOOSE * longest / f64::from(along) } else { 1.0 };
+        let world_side = if longest > 0.0 {
+            LOOSE * longest / f64::from(along)
+        } else {
+            1.0
+        };
         // There are two more cubes on each side: one for fixed vertices nearby, and an empty one.
         let counts = (extent / world_side * SHRUNK).ceil().as_ivec3().max(IVec3::ONE) + 4;
         let grid = Grid {
