@@ -5,6 +5,7 @@
 //! compiler, reads both, but not safely: of broken binary layers, some make it allocate 2 TB at once, which ends the
 //! program, and some broken text layers are never done.
 
+mod drawing;
 mod layer;
 mod looks;
 mod mesh;
