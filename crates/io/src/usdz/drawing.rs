@@ -7,7 +7,7 @@ use std::collections::HashMap;
 use glam::{DAffine3, DVec3};
 use pliant_mesh::{Cancel, Drawn, DrawnVertex, FileVertex};
 
-use super::Fault;
+use super::fault::Fault;
 use super::layer::{Layer, Prim};
 use super::looks::Looks;
 use super::mesh::{Corner, Mesh, mesh};

@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 use glam::DAffine3;
 use pliant_mesh::Cancel;
 
-use super::Fault;
 use super::drawing::Placed;
+use super::fault::Fault;
 use super::layer::Layer;
 use super::looks::Looks;
 use super::transform::local;
