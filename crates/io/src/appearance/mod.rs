@@ -211,6 +211,17 @@ pub struct Image {
     pub origin: Origin,
 }
 
+impl Image {
+    /// The extension of a PNG or JPEG, which every reader of images knows; `None` for other kinds.
+    pub(crate) fn common_extension(&self) -> Option<&'static str> {
+        match self.encoded[..] {
+            [0x89, b'P', b'N', b'G', ..] => Some("png"),
+            [0xff, 0xd8, 0xff, ..] => Some("jpg"),
+            _ => None,
+        }
+    }
+}
+
 /// The place that an image was read from.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Origin {

@@ -9,7 +9,7 @@ use pliant_mesh::DrawnVertex;
 use super::stored::{Instance, Stored};
 use super::xml::element_at;
 use crate::archive::{Packing, with_parts};
-use crate::save::bits::bit_equal;
+use crate::save::bits::{bit_equal, placed};
 use crate::save::course::Course;
 use crate::save::moved::Moved;
 use crate::text::{Splice, push_f64};
@@ -96,10 +96,7 @@ fn gathered(stored: &Stored, instance: &Instance, moved: &Moved<'_>) -> Result<C
             remedy: "save as .glb".to_owned(),
         })?;
         let vertex = moved.drawn.file_vertex[drawn as usize].0 - instance.first_file_vertex;
-        let own = match instance.transform == DAffine3::IDENTITY {
-            true => new,
-            false => to_object.transform_point3(new),
-        };
+        let own = placed(to_object, new);
         // The first place that moved counts, as in every format whose vertices are split by their looks.
         changes.vertices.entry(vertex).or_insert(own);
     }

@@ -14,6 +14,7 @@ use super::stored::Instance;
 use crate::appearance::colour::linear_colour;
 use crate::appearance::{Appearance, Group, Image, Material, Origin};
 use crate::quote::quoted;
+use crate::save::bits;
 
 /// The depth to which objects may consist of objects.
 const DEPTH: usize = 64;
@@ -173,7 +174,7 @@ impl<'a> Gathering<'a> {
         self.spend(found.triangles.len(), TRIANGLE_BYTES)?;
         let first = self.placed.drawn.positions.len();
         for (number, &vertex) in found.vertices.iter().enumerate() {
-            let world = at(transform, vertex);
+            let world = bits::placed(transform, vertex);
             self.vertex(world, first_file_vertex + number as u32);
         }
         // A vertex gets the look of its first triangle; another look makes another vertex.
@@ -358,13 +359,5 @@ impl<'a> Gathering<'a> {
             self.placed.notes.push(note.to_owned());
         }
         self.placed
-    }
-}
-
-/// A place in world space. Without a transform it is the file's to the bit.
-fn at(transform: DAffine3, vertex: DVec3) -> DVec3 {
-    match transform == DAffine3::IDENTITY {
-        true => vertex,
-        false => transform.transform_point3(vertex),
     }
 }

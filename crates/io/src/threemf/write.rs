@@ -111,14 +111,13 @@ fn push(out: &mut Vec<u8>, text: &str) {
 
 /// The path in the archive of each image that 3MF can hold.
 fn image_paths(look: &Appearance) -> Vec<Option<String>> {
-    let kind = |bytes: &[u8]| match bytes {
-        [0x89, b'P', b'N', b'G', ..] => Some("png"),
-        [0xff, 0xd8, 0xff, ..] => Some("jpg"),
-        _ => None,
-    };
     let images = look.images.iter().enumerate();
     images
-        .map(|(number, image)| kind(&image.encoded).map(|kind| format!("/3D/Textures/{number}.{kind}")))
+        .map(|(number, image)| {
+            image
+                .common_extension()
+                .map(|kind| format!("/3D/Textures/{number}.{kind}"))
+        })
         .collect()
 }
 

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use pliant_mesh::Cancel;
 
-use super::Fault;
+use super::fault::Fault;
 use super::tokens::{Token, Tokens};
 
 /// Tokens between two checks for cancelling.

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use super::Fault;
+use super::fault::Fault;
 use super::layer::Prim;
 use super::values::{each_number, indices, metadatum, vectors};
 

@@ -5,6 +5,8 @@
 //! compiler, reads both, but not safely: of broken binary layers, some make it allocate 2 TB at once, which ends the
 //! program, and some broken text layers are never done.
 
+mod drawing;
+mod fault;
 mod layer;
 mod looks;
 mod mesh;
@@ -30,30 +32,12 @@ use crate::source::Source;
 use crate::summary::Summary;
 use crate::{Appearance, Format, ReadError, SaveError};
 
+use fault::Fault;
 use looks::Looks;
 use stored::Instance;
 
 pub(crate) use stored::Stored;
 pub(crate) use write::write_new;
-
-/// A reason not to read a layer.
-#[derive(Debug)]
-pub(super) enum Fault {
-    /// It is damaged.
-    Malformed(String),
-    /// It needs other layers, or chooses between variants.
-    Composed,
-    /// It has something that is not read.
-    Unsupported { feature: String, remedy: String },
-    /// The caller cancelled.
-    Stopped(ReadError),
-}
-
-impl From<String> for Fault {
-    fn from(reason: String) -> Self {
-        Self::Malformed(reason)
-    }
-}
 
 /// Reads a USDZ file.
 pub(crate) fn read(source: &Source<'_>) -> Result<(Stored, Drawn), ReadError> {

@@ -10,7 +10,7 @@ use super::stored::{Instance, Stored};
 use super::tokens::{Token, Tokens};
 use crate::archive::{Packing, with_parts};
 use crate::quote::quoted;
-use crate::save::bits::bit_equal;
+use crate::save::bits::{bit_equal, placed};
 use crate::save::course::Course;
 use crate::save::frames::Frames;
 use crate::save::moved::Moved;
@@ -103,10 +103,7 @@ fn points(replaced: &mut Replaced, text: &[u8], instance: &Instance, moved: &Mov
                 remedy: "save as .glb".to_owned(),
             });
         }
-        let own = match instance.transform == glam::DAffine3::IDENTITY {
-            true => new,
-            false => inverse.transform_point3(new),
-        };
+        let own = placed(inverse, new);
         replace_vector(replaced, text, mesh.point_at[point], own, mesh.is_single);
     }
     Ok(())

@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3};
 
-use super::Fault;
+use super::fault::Fault;
 use super::layer::Prim;
 use super::values::{numbers, words};
 

@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use super::texture::{Texture, push_texture};
 use crate::appearance::{AlphaMode, Map, Material, UvSet, Wrap};
 use crate::convert::NewMesh;
 
@@ -23,13 +24,8 @@ impl Materials {
         let mut used: Vec<usize> = groups.map(|group| group.material).collect();
         used.sort_unstable();
         used.dedup();
-        let kind = |bytes: &[u8]| match bytes {
-            [0x89, b'P', b'N', b'G', ..] => Some("png"),
-            [0xff, 0xd8, 0xff, ..] => Some("jpg"),
-            _ => None,
-        };
         let images = look.images.iter().enumerate();
-        let images = images.map(|(number, image)| Some(format!("textures/{number}.{}", kind(&image.encoded)?)));
+        let images = images.map(|(number, image)| Some(format!("textures/{number}.{}", image.common_extension()?)));
         let maps = used.iter().flat_map(|&number| {
             let material = &look.materials[number];
             [
@@ -55,16 +51,6 @@ impl Materials {
 /// Returns true if a map lies on the surface like the base colour.
 fn is_plain(map: &Map) -> bool {
     map.set == UvSet::Base && map.transform == [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]
-}
-
-/// A shader of a material.
-struct Texture<'a> {
-    name: &'a str,
-    path: &'a str,
-    wrap: [Wrap; 2],
-    space: &'a str,
-    scale: [f32; 4],
-    bias: [f32; 4],
 }
 
 /// Appends a material.
@@ -219,37 +205,4 @@ fn has_maps(material: &Material) -> bool {
         || material.normal_map.is_some()
         || material.occlusion_map.is_some()
         || material.emissive_map.is_some()
-}
-
-fn push_texture(nodes: &mut String, own: &str, texture: &Texture<'_>) {
-    let Texture {
-        name,
-        path,
-        wrap,
-        space,
-        scale,
-        bias,
-    } = texture;
-    let [wrap_s, wrap_t] = wrap.map(|wrap| match wrap {
-        Wrap::Repeat => "repeat",
-        Wrap::MirroredRepeat => "mirror",
-        Wrap::ClampToEdge => "clamp",
-    });
-    let list = |numbers: &[f32; 4]| numbers.map(|number| number.to_string()).join(", ");
-    let (scale, bias) = (list(scale), list(bias));
-    // Writing to a String can't fail.
-    let _ = write!(
-        nodes,
-        "\n            def Shader \"{name}\"\n            {{\n                \
-         uniform token info:id = \"UsdUVTexture\"\n                \
-         asset inputs:file = @{path}@\n                \
-         float4 inputs:bias = ({bias})\n                \
-         float4 inputs:scale = ({scale})\n                \
-         token inputs:sourceColorSpace = \"{space}\"\n                \
-         float2 inputs:st.connect = <{own}/Coordinates.outputs:result>\n                \
-         token inputs:wrapS = \"{wrap_s}\"\n                \
-         token inputs:wrapT = \"{wrap_t}\"\n                \
-         float outputs:a\n                float outputs:b\n                float outputs:g\n                \
-         float outputs:r\n                float3 outputs:rgb\n            }}\n"
-    );
 }
