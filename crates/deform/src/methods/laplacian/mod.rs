@@ -77,12 +77,7 @@ struct Scratch {
 impl LaplacianSolver {
     /// Factors the bi-Laplacian and, for implicit transformations, the coupled system, and solves for its bases.
     pub fn bind(options: &LaplacianEditing, input: &BindInput<'_>) -> Result<Self, BindError> {
-        let &BindInput {
-            problem,
-            progress,
-            cancel,
-            ..
-        } = input;
+        let (problem, progress, cancel) = (input.problem, input.progress, input.cancel);
         let (mut parts, mut spring_count) = (TurningParts::default(), 0);
         let energy = PlateEnergy::of_power(2);
         let system = PoissonSystem::bind_tied(energy, problem.stiffness, input.refactorisation, input, |operator| {

@@ -14,7 +14,6 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
-use super::Scratch;
 use crate::handles::{Handle, Motion};
 use crate::method::BindInput;
 use crate::numerical::rigid_fit::RigidMotion;
@@ -84,18 +83,25 @@ impl TurningParts {
         self.0.is_empty()
     }
 
-    /// Finds the parts' motions from the first shape in the scratch's field, moves the anchors, and blends (T_C − I) L p
-    /// into the changes of the parts' vertices.
-    pub fn turn(&self, motions: &[Motion], handles: &[Handle], curvature: &[DVec3], scratch: &mut Scratch) {
+    /// Finds the parts' motions from the first shape, which is in `field`, moves the anchors there, and blends
+    /// (T_C − I) L p into the changes of the parts' vertices.
+    pub fn turn(
+        &self,
+        motions: &[Motion],
+        handles: &[Handle],
+        curvature: &[DVec3],
+        field: &mut [[f64; 3]],
+        changes: &mut [DVec3],
+    ) {
         for part in &self.0 {
-            let motion = part.motion(motions, handles, &scratch.field);
+            let motion = part.motion(motions, handles, field);
             for &(place, coordinates) in &part.anchors {
-                scratch.field[place as usize] = motion.displace(coordinates).to_array();
+                field[place as usize] = motion.displace(coordinates).to_array();
             }
             let turn = motion.linear * part.handle.radius.recip();
             for member in &part.members {
                 let local = member.local as usize;
-                let change = &mut scratch.changes[local];
+                let change = &mut changes[local];
                 *change += (turn * curvature[local] - *change) * member.share;
             }
         }

@@ -59,7 +59,8 @@ impl LaplacianSolver {
                 };
                 estimate.transform(&mut scratch.changes);
             }
-            self.parts.turn(&part, &self.handles, &self.curvature, scratch);
+            let Scratch { field, changes, .. } = &mut *scratch;
+            self.parts.turn(&part, &self.handles, &self.curvature, field, changes);
             self.set_load(scratch);
             self.system.solve(&scratch.load, &mut scratch.field)?;
         }
