@@ -64,7 +64,8 @@ def test_a_file_of_pixar_s_library_is_read_and_bent(tmp_path):
 
     edit = {**BEND, "handles": [{**BEND["handles"][0], "transform": {"translation": [0.3, 0, 0]}}]}
     pliant.apply(tmp_path / "bar.usdz", edit=edit, output=tmp_path / "bent.usdz")
-    bent = usd.Stage.Open(str(tmp_path / "bent.usdz")).GetPrimAtPath("/Root/Bar")
+    stage = usd.Stage.Open(str(tmp_path / "bent.usdz"))     # a prim lives no longer than its stage
+    bent = stage.GetPrimAtPath("/Root/Bar")
     shown = np.array(bent.GetAttribute("points").Get()) @ matrix[:3, :3] + matrix[3, :3]
     assert np.allclose(shown, pliant.load(tmp_path / "bent.usdz").vertices, atol=1e-6)
     assert not np.allclose(shown, loaded.vertices, atol=0.1)
