@@ -27,7 +27,7 @@ pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     attachments: &[],
     heeds: &[ConstraintKind::SoftHandles, ConstraintKind::Stiffness],
     default: || Poisson::default().into(),
-    first_choice: || Poisson::default().into(),
+    first_choice: || Poisson::first_choice().into(),
 };
 
 impl DeformMethod for Poisson {

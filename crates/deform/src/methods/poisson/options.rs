@@ -7,11 +7,19 @@ options! {
     pub struct Poisson {
         /// The spreading of the handles' rotations and stretches.
         propagation: Propagation = Choice {
-            default: Propagation::Material,
-            help: "spreading of the handles' turns and stretches: with stiffly painted parts turning as a whole \
-                   (\"material\"), the same without heed of paint (\"harmonic\"), or by distance along the surface \
-                   (\"geodesic\")",
+            default: Propagation::Harmonic,
+            help: "spreading of the handles' turns and stretches: even (\"harmonic\"), by distance along the surface \
+                   (\"geodesic\"), or with stiffly painted parts turning as a whole (\"material\")",
         },
+    }
+}
+
+impl Poisson {
+    /// The window's choice: stiff parts turn as a whole. Where nothing is painted it is the harmonic spreading.
+    pub fn first_choice() -> Self {
+        Self {
+            propagation: Propagation::Material,
+        }
     }
 }
 

@@ -177,7 +177,7 @@ pub fn broken(sound: &Sound, others: &[Sound], chance: &mut Chance) -> Vec<u8> {
         }
         return noise;
     }
-    // Of archives a part is broken in half of the runs, so that its checksum is right.
+    // Half of the runs break a part of an archive before its checksum is made, so that readers see what is broken.
     if sound.bytes.starts_with(b"PK") && chance.below(2) == 0 {
         return with_broken_part(sound, others, chance);
     }
