@@ -6,7 +6,7 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use pliant_mesh::{Cancel, Cancelled, JOINT_RINGS, Joint, Model, Shape, SurfaceVertex, face_area};
+use pliant_mesh::{Cancel, Cancelled, Joint, Model, Shape, SurfaceVertex, face_area};
 
 use super::limb_joint::limb_joint;
 use super::loose::FileContacts;
@@ -137,7 +137,7 @@ impl Link {
 
 /// A place on the other side of a joint, beyond its falloff, on the side of the limb that `near` is on.
 fn beyond(shape: &Shape<'_>, joint: &Joint, near: DVec3) -> Option<(u32, DVec3)> {
-    let ring = joint.rings.iter().take(JOINT_RINGS).rfind(|ring| !ring.is_empty())?;
+    let ring = joint.rings.iter().rfind(|ring| !ring.is_empty())?;
     let distance = |point: DVec3| point.distance_squared(near);
     let on_ring = ring.iter().map(|segment| segment[0]);
     let point = on_ring.min_by(|&a, &b| distance(a).total_cmp(&distance(b)))?;
