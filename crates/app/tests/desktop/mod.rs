@@ -15,7 +15,7 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 pub const PLIANT: &str = env!("CARGO_BIN_EXE_pliant");
-pub const SIZE: (i32, i32) = (1280, 800);
+pub const SIZE: (i32, i32) = (1024, 700);
 /// Software drawing of a frame takes about a tenth of a second: act like a slow hand.
 pub const PAUSE: Duration = Duration::from_millis(250);
 
