@@ -25,6 +25,7 @@ mod root;
 mod run;
 mod system;
 mod test;
+mod test_programs;
 mod tool;
 mod validation;
 mod verdict;

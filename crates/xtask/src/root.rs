@@ -2,8 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-/// The workspace's folder.
+/// The workspace's folder: the one that cargo runs this program from, because a moved or copied checkout brings a
+/// program that was built elsewhere.
 pub fn root() -> PathBuf {
-    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
-    here.ancestors().nth(2).unwrap_or(here).to_path_buf()
+    let built = || env!("CARGO_MANIFEST_DIR").into();
+    let here = std::env::var_os("CARGO_MANIFEST_DIR").map_or_else(built, PathBuf::from);
+    here.ancestors().nth(2).unwrap_or(Path::new(".")).to_path_buf()
 }

@@ -10,7 +10,9 @@ use crate::manual;
 use crate::process;
 use crate::python;
 use crate::requirement::{PICTURES, TESTS, WINDOW};
+use crate::root::root;
 use crate::system;
+use crate::test_programs::test_programs;
 use crate::validation;
 use crate::verdict::{Skips, Verdict};
 
@@ -32,15 +34,11 @@ pub fn test(filters: &[String], consent: Consent) -> Result<(), String> {
         check::clippy(&mut verdict);
         check::documentation(&mut verdict);
     }
-    let mut tests = process::cargo(&["test", "--locked", "--workspace", "--no-fail-fast"]);
-    // Show the output of passing tests, because it names skipped parts.
-    tests.args(["--", "--show-output"]).args(filters);
     let display = match &prepared {
         Prepared::Complete => Some(Display::start()?),
         Prepared::Without(_) => Display::start().ok(),
     };
-    set_environment(&mut tests, display.as_ref());
-    verdict.tests("workspace", &mut tests);
+    workspace(filters, display.as_ref(), &mut verdict)?;
     if filters.is_empty() {
         validation::pictures(&mut verdict);
         python::unpacked::tests(&mut verdict);
@@ -56,6 +54,29 @@ pub fn test(filters: &[String], consent: Consent) -> Result<(), String> {
         }
     };
     verdict.conclude(started, skips)
+}
+
+/// Builds and runs all tests of the workspace: the programs that drive the real window beside the others, then the
+/// examples of the documentation.
+fn workspace(filters: &[String], display: Option<&Display>, verdict: &mut Verdict) -> Result<(), String> {
+    let programs = test_programs(&root())?;
+    let tests = |targets: &[&str], names: &[String]| {
+        let mut tests = process::cargo(&["test", "--locked", "--workspace", "--no-fail-fast"]);
+        tests.args(targets);
+        tests.args(names.iter().flat_map(|name| ["--test", name]));
+        // Show the output of passing tests, because it names skipped parts.
+        tests.args(["--", "--show-output"]).args(filters);
+        set_environment(&mut tests, display);
+        tests
+    };
+    // Two builds at once would wait for each other.
+    process::succeed(&mut process::cargo(&["test", "--locked", "--workspace", "--no-run"]))?;
+    verdict.tests_beside(
+        ("workspace", &mut tests(&["--lib", "--bins"], &programs.others)),
+        ("real window", &mut tests(&[], &programs.of_window)),
+    );
+    verdict.tests("documentation's examples", &mut tests(&["--doc"], &[]));
+    Ok(())
 }
 
 /// Sets the virtual display and the driver for comparing pictures.

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 use std::io::{BufRead, BufReader, Write};
-use std::process::{Command, Stdio};
+use std::process::{Command, ExitStatus, Stdio};
 use std::time::Instant;
 
 use crate::process;
@@ -56,9 +56,37 @@ impl Verdict {
     /// Runs a `cargo test` command, and shows and counts its lines.
     pub fn tests(&mut self, name: &str, command: &mut Command) {
         println!("\n── {name}: {}", process::words(command));
-        let started = Instant::now();
-        let failures = self.failures.len();
+        let (started, failures) = (Instant::now(), self.failures.len());
         let result = self.listen(command);
+        self.record_tests(name, result, started, failures);
+    }
+
+    /// Runs two `cargo test` commands at the same time. The lines of the second one are shown and counted after those of
+    /// the first one.
+    pub fn tests_beside(&mut self, (name, first): (&str, &mut Command), (beside, second): (&str, &mut Command)) {
+        let (started, words) = (Instant::now(), process::words(second));
+        let second = std::thread::scope(|scope| {
+            let second = scope.spawn(|| second.stdin(Stdio::null()).output());
+            self.tests(name, first);
+            second.join()
+        });
+        println!("\n── {beside}: {words}");
+        let failures = self.failures.len();
+        let result = match second {
+            Ok(Ok(output)) => {
+                eprint!("{}", String::from_utf8_lossy(&output.stderr));
+                self.show(&output.stdout[..])
+                    .map_err(|e| format!("The output of `{words}` can't be shown: {e}."))
+                    .and_then(|()| succeeded(&words, output.status))
+            }
+            Ok(Err(e)) => Err(format!("`{words}` can't be run: {e}.")),
+            Err(_) => Err(format!("`{words}` was not waited for.")),
+        };
+        self.record_tests(beside, result, started, failures);
+    }
+
+    /// Counts a `cargo test` command as a step. `failures` is the number of failures before it.
+    fn record_tests(&mut self, name: &str, result: Result<(), String>, started: Instant, failures: usize) {
         if self.failures.len() > failures {
             // Failed tests are already listed; any other failure, such as a compile error, counts as this step's.
             self.steps.push(step(name, "FAILED", started));
@@ -93,22 +121,22 @@ impl Verdict {
         let cannot = |e: std::io::Error| format!("`{words}` can't be run: {e}.");
         let mut child = command.stdout(Stdio::piped()).spawn().map_err(cannot)?;
         if let Some(pipe) = child.stdout.take() {
-            let mut lines = BufReader::new(pipe);
-            let mut line = Vec::new();
-            while lines.read_until(b'\n', &mut line).map_err(cannot)? > 0 {
-                if self.count(String::from_utf8_lossy(&line).trim_end()) == Worth::Showing {
-                    let mut out = std::io::stdout().lock();
-                    out.write_all(&line).and_then(|()| out.flush()).map_err(cannot)?;
-                }
-                line.clear();
+            self.show(BufReader::new(pipe)).map_err(cannot)?;
+        }
+        succeeded(&words, child.wait().map_err(cannot)?)
+    }
+
+    /// Shows and counts all lines of cargo's output.
+    fn show(&mut self, mut lines: impl BufRead) -> std::io::Result<()> {
+        let mut line = Vec::new();
+        while lines.read_until(b'\n', &mut line)? > 0 {
+            if self.count(String::from_utf8_lossy(&line).trim_end()) == Worth::Showing {
+                let mut out = std::io::stdout().lock();
+                out.write_all(&line).and_then(|()| out.flush())?;
             }
+            line.clear();
         }
-        let status = child.wait().map_err(cannot)?;
-        if status.success() {
-            Ok(())
-        } else {
-            Err(format!("`{words}` failed ({status})."))
-        }
+        Ok(())
     }
 
     /// Processes one line of cargo's output. Output of passing tests is hidden, except for the names of skipped parts.
@@ -198,6 +226,13 @@ impl Verdict {
             self.ignored,
             self.filtered,
         )
+    }
+}
+
+fn succeeded(words: &str, status: ExitStatus) -> Result<(), String> {
+    match status.success() {
+        true => Ok(()),
+        false => Err(format!("`{words}` failed ({status}).")),
     }
 }
 
