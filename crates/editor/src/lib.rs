@@ -51,6 +51,7 @@ mod editor;
 mod event;
 mod flow_start;
 mod format;
+mod former;
 mod input;
 mod jobs;
 mod lines;
@@ -87,6 +88,7 @@ pub use format::{
     HandleEntry, HandleSetup, JoinsFile, KeyEntry, MeshReference, Placement, PoseEntry, Project, Rest, SOFT_RANGE,
     STIFFNESS_RANGE, Selector, Setup, StoredKept, VelocityEntry, geometry_hash, refuse_keys,
 };
+pub use former::Former;
 pub use input::{Button, Key, Modifiers, Pointer};
 pub use jobs::{
     Alternative, BothSides, Compared, Comparison, ControlPlaces, Descent, Executor, Figures, Flowed, InlineExecutor,

@@ -38,6 +38,11 @@ impl Snapshot {
         (project.into(), matching.unmatched())
     }
 
+    /// The shape, as displacements of the surface's vertices from the file's.
+    pub fn displacements(&self) -> &[DVec3] {
+        self.document.from_file()
+    }
+
     /// The mesh.
     pub fn model(&self) -> &Arc<Model> {
         &self.model

@@ -6,11 +6,12 @@ use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use glam::DVec3;
-use pliant_deform::Method;
-use pliant_mesh::{Model, SurfaceVertex};
+use pliant_deform::{Budget, Method};
+use pliant_mesh::{Cancel, Cancelled, Model, SurfaceVertex};
 
 use crate::document::{Document, HandleId, Matching};
 use crate::format::Placement;
+use crate::former::Former;
 use crate::snapshot::Snapshot;
 
 /// A change of topology of the present shape. Vertices are those of the present surface.
@@ -115,7 +116,7 @@ pub struct StitchRequest {
 impl StitchRequest {
     /// The present shape, as displacements of the surface's vertices from the file's.
     pub fn displacements(&self) -> &[DVec3] {
-        self.snapshot.document.from_file()
+        self.snapshot.displacements()
     }
 
     /// The connected parts that are turned inside out, by their numbers.
@@ -125,11 +126,21 @@ impl StitchRequest {
 
     /// The document on the new mesh, which has the shape of the snapshot at rest, except at vertices that the change has
     /// moved: `moved` are the displacements of all vertices to their new places, if they differ from the present ones.
-    pub fn onto(&self, model: Arc<Model>, moved: Option<&[DVec3]>) -> NewMesh {
+    /// `budget` limits the memory for continuing examples into new triangles.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub fn onto(
+        &self,
+        model: Arc<Model>,
+        moved: Option<&[DVec3]>,
+        budget: Budget,
+        cancel: &Cancel,
+    ) -> Result<NewMesh, Cancelled> {
         let before = &self.snapshot;
         let places = moved.unwrap_or(before.document.from_file());
         let matching = Matching::of(&before.model, &model, Some(places));
-        let mut document = before.document.onto_new_mesh(&matching);
+        let (mut document, lost) = before.document.onto_new_mesh(&matching, &model, budget, cancel)?;
         let selected = match &self.change {
             MeshChange::Append(name) => document.hold_new_part(name, &matching, &model),
             _ => None,
@@ -137,11 +148,13 @@ impl StitchRequest {
         if moved.is_some() {
             document.centre_pivots(&model);
         }
-        NewMesh {
+        Ok(NewMesh {
+            former: Former::of(before, &matching, &model),
             document,
             model,
             selected,
-        }
+            lost,
+        })
     }
 }
 
@@ -152,4 +165,18 @@ pub struct NewMesh {
     pub(crate) document: Document,
     /// The handle to select, if the change has made one.
     pub(crate) selected: Option<HandleId>,
+    former: Former,
+    lost: Vec<String>,
+}
+
+impl NewMesh {
+    /// The mesh from which it was made.
+    pub fn former(&self) -> &Former {
+        &self.former
+    }
+
+    /// Sentences about parts of the document that the new mesh can't keep.
+    pub fn lost(&self) -> &[String] {
+        &self.lost
+    }
 }

@@ -33,7 +33,7 @@ pub(crate) fn save_with_colours(
     let beside = Beside(&shaped.files, &neighbours);
     let bytes = shaped.files.first().map(|file| file.bytes.clone()).unwrap_or_default();
     let back = pliant_io::read(bytes, save.format, save.name, &beside, &of_reading, cancel);
-    let SceneAndDrawn { scene, drawn } = back.map_err(EngineError::Read)?;
+    let SceneAndDrawn { scene, drawn } = back?;
     let colours = carried(save, &drawn, colours);
     let again = Save {
         drawn: &drawn,

@@ -131,6 +131,15 @@ pub enum EngineError {
     System(String),
 }
 
+impl From<pliant_io::ReadError> for EngineError {
+    fn from(error: pliant_io::ReadError) -> Self {
+        match error {
+            pliant_io::ReadError::Cancelled(_) => Self::Interrupted,
+            error => Self::Read(error),
+        }
+    }
+}
+
 impl EngineError {
     /// The exit status: 2 for wrong arguments, 1 for everything else.
     pub fn status(&self) -> u8 {

@@ -96,7 +96,7 @@ fn morph_target(target: &str, loaded: &Loaded, watch: &Watch) -> Result<Vec<DVec
     let name = loaded.path.to_string_lossy();
     let count = loaded.model.drawn.vertex_count();
     let found = loaded.scene.morph_target(&name, target, count, &watch.cancel);
-    found.map_err(EngineError::Read)?.ok_or_else(|| {
+    found?.ok_or_else(|| {
         let known = loaded.scene.morph_targets();
         let remedy = match known.is_empty() {
             true => "it has none: name a `file`".to_owned(),

@@ -124,7 +124,7 @@ pub(crate) fn load_saved(saved: Saved, path: &Path, weld: &WeldOptions, watch: &
     let progress = watch.begin("reading");
     let format = Format::of_name(&name)?;
     let opened = pliant_io::read(bytes, format, &name, &resolver, &progress, &watch.cancel);
-    welded(opened.map_err(EngineError::Read)?, path, weld, watch)
+    welded(opened?, path, weld, watch)
 }
 
 /// The neighbours of a file in memory.
@@ -156,7 +156,7 @@ fn open_bytes(
     for place in neighbours.places() {
         watch.note_read("a file that the model names", &place);
     }
-    opened.map_err(EngineError::Read)
+    Ok(opened?)
 }
 
 fn welded(opened: SceneAndDrawn, path: &Path, weld: &WeldOptions, watch: &Watch) -> Result<Loaded, EngineError> {

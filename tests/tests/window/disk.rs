@@ -18,7 +18,7 @@ use pliant_app::window::{AppDirectories, KeepOriginal, Source, original_name};
 use pliant_editor::Command;
 use pliant_tests::{Folder, run};
 
-fn open(path: &Path) -> Option<Session> {
+pub(super) fn open(path: &Path) -> Option<Session> {
     Session::begin_in(Source::File(path.to_owned()), AppDirectories::default())
 }
 
@@ -27,7 +27,7 @@ fn ball(folder: &Folder, name: &str, depth: u32) -> PathBuf {
 }
 
 /// A handle at the top, moved upwards.
-fn edit(session: &mut Session) {
+pub(super) fn edit(session: &mut Session) {
     let top = session.point_of(|positions| *positions.iter().max_by(|a, b| a.y.total_cmp(&b.y)).unwrap());
     session.stroke(top + egui::vec2(0.0, 6.0), top + egui::vec2(0.0, 16.0));
     assert!(!session.harness.state().editor().document().handles().is_empty());
@@ -36,7 +36,7 @@ fn edit(session: &mut Session) {
 }
 
 /// Begins to move the selected handle upwards.
-fn move_up(session: &mut Session, length: &str) {
+pub(super) fn move_up(session: &mut Session, length: &str) {
     session.key(Key::G, Modifiers::NONE);
     session.key(Key::Y, Modifiers::NONE);
     for digit in length.chars() {
@@ -49,18 +49,18 @@ fn move_up(session: &mut Session, length: &str) {
     session.key(Key::Enter, Modifiers::NONE);
 }
 
-fn save(session: &mut Session) {
+pub(super) fn save(session: &mut Session) {
     session.key(Key::S, Modifiers::COMMAND);
     session.harness.run_steps(2);
 }
 
-fn says(session: &Session, words: &str) -> bool {
+pub(super) fn says(session: &Session, words: &str) -> bool {
     session.harness.query_all_by_label_contains(words).next().is_some()
 }
 
 /// Runs frames until the window shows this text.
 #[track_caller]
-fn await_words(session: &mut Session, words: &str) {
+pub(super) fn await_words(session: &mut Session, words: &str) {
     let start = Instant::now();
     while !says(session, words) {
         assert!(start.elapsed() < Duration::from_secs(60), "{words:?} never comes");
@@ -69,7 +69,7 @@ fn await_words(session: &mut Session, words: &str) {
     }
 }
 
-fn click(session: &mut Session, label: &str) {
+pub(super) fn click(session: &mut Session, label: &str) {
     session.harness.run_steps(2);
     let at = session.harness.get_by_label(label).rect().center();
     for pressed in [true, false] {

@@ -15,4 +15,5 @@ mod pose;
 mod session;
 mod slow_frames;
 mod timeline;
+mod unsaved_meshes;
 mod window_rig;

@@ -429,7 +429,7 @@ fn warnings(problem: &BoundaryProblem, loose: &[u32], loose_of: &[Loose]) -> Vec
     sentences
 }
 
-/// Sentences on components with a handle and without a fixed vertex.
+/// Sentences on components with a handle and without a fixed vertex. One that handles hold whole goes where they take it.
 fn warnings_of_unheld(problem: &BoundaryProblem, unheld: &[u32], handles: &[Vec<u32>]) -> Vec<Warning> {
     let size = |component: u32| problem.topology.components()[component as usize].vertex_count;
     let mut holders = vec![Vec::new(); unheld.len()];
@@ -446,6 +446,15 @@ fn warnings_of_unheld(problem: &BoundaryProblem, unheld: &[u32], handles: &[Vec<
                 }
             }
         }
+    }
+    let (unheld, holders): (Vec<u32>, Vec<Vec<(usize, usize)>>) = unheld
+        .iter()
+        .copied()
+        .zip(holders)
+        .filter(|(component, holders)| holders.iter().map(|(_, count)| count).sum::<usize>() < size(*component))
+        .unzip();
+    if unheld.is_empty() {
+        return Vec::new();
     }
     if unheld.len() <= NAMED {
         let one = |(&component, holders): (&u32, Vec<(usize, usize)>)| {

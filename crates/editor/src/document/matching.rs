@@ -5,6 +5,8 @@ use std::collections::HashMap;
 use glam::DVec3;
 use pliant_mesh::{Model, SurfaceVertex};
 
+use super::matched_objects::matched_objects;
+
 /// Vertices in the same place are no further apart than this share of the mesh's size and place, which is the error of
 /// positions stored as f32.
 const SAME_PLACE: f64 = 1e-6;
@@ -16,8 +18,8 @@ pub struct Matching {
     pub(super) of_new: Vec<Option<u32>>,
     /// For each connected part of the new mesh, the old part of its first matched vertex.
     pub(super) of_new_part: Vec<Option<u32>>,
-    /// True if both files draw the same triangles, for any joining of their vertices.
-    pub(super) draws_the_same: bool,
+    /// For each object of the new mesh, the old object that most of its matched triangles belong to.
+    pub(super) of_new_object: Vec<Option<u32>>,
 }
 
 impl Matching {
@@ -34,6 +36,26 @@ impl Matching {
             }
             (false, None) => by_place(&old.surface.positions, &new.surface.positions),
         };
+        let of_new_object = match draws_the_same {
+            true => (0..new.all_objects().len() as u32).map(Some).collect(),
+            false => matched_objects(old, new, &of_new),
+        };
+        Self::with(of_new, of_new_object, old, new)
+    }
+
+    /// The same from the new mesh to the old one. Where several vertices match one, it gets the first.
+    pub(crate) fn inverse(&self, old: &Model, new: &Model) -> Self {
+        let mut of_old = vec![None; old.surface.positions.len()];
+        for (vertex, old_vertex) in (0..).zip(&self.of_new) {
+            if let Some(old_vertex) = old_vertex {
+                of_old[*old_vertex as usize].get_or_insert(vertex);
+            }
+        }
+        let objects = matched_objects(new, old, &of_old);
+        Self::with(of_old, objects, new, old)
+    }
+
+    fn with(of_new: Vec<Option<u32>>, of_new_object: Vec<Option<u32>>, old: &Model, new: &Model) -> Self {
         let mut of_new_part = vec![None; new.topology.components().len()];
         for (vertex, old_vertex) in (0..).zip(&of_new) {
             if let Some(old_vertex) = old_vertex {
@@ -44,8 +66,26 @@ impl Matching {
         Self {
             of_new,
             of_new_part,
-            draws_the_same,
+            of_new_object,
         }
+    }
+
+    /// The displacements of the new mesh's vertices, given those of the old one's; zero for unmatched ones.
+    pub(crate) fn displacements(&self, old: &[DVec3]) -> Vec<DVec3> {
+        let of_new = self.of_new.iter();
+        of_new
+            .map(|vertex| vertex.map_or(DVec3::ZERO, |vertex| old[vertex as usize]))
+            .collect()
+    }
+
+    /// The vertices of the new mesh without a counterpart that belong to a part with matched ones, ascending.
+    pub(super) fn new_in_former_parts(&self, new: &Model) -> Vec<u32> {
+        let all = (0..).zip(&self.of_new).filter(|(_, old)| old.is_none());
+        let is_former = |vertex: &u32| {
+            let part = new.topology.component(SurfaceVertex(*vertex));
+            self.of_new_part[part as usize].is_some()
+        };
+        all.map(|(vertex, _)| vertex).filter(is_former).collect()
     }
 
     /// The number of vertices of the new mesh without a counterpart in the old one.

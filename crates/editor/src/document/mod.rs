@@ -2,6 +2,7 @@
 
 mod access;
 mod animation;
+mod carried_examples;
 mod content;
 mod fluid;
 mod handle;
@@ -13,6 +14,7 @@ mod handle_sketch;
 mod handle_transform;
 mod history;
 mod kept_shape;
+mod matched_objects;
 mod matching;
 mod mirror_plane;
 mod parents;

@@ -3,6 +3,7 @@
 
 mod animation;
 mod appended_parts;
+mod carried;
 mod comparison;
 mod controls;
 mod corrections;

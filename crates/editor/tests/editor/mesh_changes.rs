@@ -4,8 +4,9 @@
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
+use pliant_deform::Budget;
 use pliant_editor::{Command, Event, HandleId, MeshChange, Paint, ToolMode};
-use pliant_mesh::SurfaceVertex;
+use pliant_mesh::{Cancel, SurfaceVertex};
 
 use crate::rig::new_mesh::{answer, bowl, closed, follow, open_shapes, present, state};
 use crate::rig::{CENTRE_PX, Rig, weld};
@@ -160,7 +161,8 @@ fn a_change_that_comes_too_late_or_fails_leaves_everything() {
     rig.move_by('x', "0.1");
     rig.drain();
     let before = state(&rig);
-    let made = request.onto(weld(closed(present(&request, &rig.model), &rig.model)), None);
+    let new = weld(closed(present(&request, &rig.model), &rig.model));
+    let made = request.onto(new, None, Budget::default(), &Cancel::new()).unwrap();
     rig.send(Event::Stitched(Ok(Box::new(made))));
     assert!(state(&rig) == before);
     let problem = rig.editor.view().problem.unwrap_or_default().to_owned();

@@ -47,6 +47,17 @@ pub fn textured_sphere(path: &Path, height: f64) {
 
 /// Fills a file, with a report beside OUT, and gives the warnings.
 pub fn filled(file: &Path, output: &Path, holes: Holes, replace: Replace) -> Result<Vec<String>, EngineError> {
+    filled_watched(file, output, holes, replace, &Watch::default())
+}
+
+/// The same under a watch that may stop it.
+pub fn filled_watched(
+    file: &Path,
+    output: &Path,
+    holes: Holes,
+    replace: Replace,
+    watch: &Watch,
+) -> Result<Vec<String>, EngineError> {
     let report = output.with_extension("json");
     let job = Fill {
         remaking: Remaking {
@@ -56,7 +67,7 @@ pub fn filled(file: &Path, output: &Path, holes: Holes, replace: Replace) -> Res
         },
         holes,
     };
-    committed(fill(&job, &Watch::default(), &Staging::default()))
+    committed(fill(&job, watch, &Staging::default()))
 }
 
 /// Cuts a file, and gives the warnings.

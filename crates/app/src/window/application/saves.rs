@@ -10,6 +10,7 @@ use crate::files::names::{file_name, free_name};
 use crate::window::application::Application;
 use crate::window::dialogs::file_dialog;
 use crate::window::dialogs::question::{ChangedOffer, Question, Then};
+use crate::window::files::in_file::InFile;
 use crate::window::files::rest_mesh::MeshSource;
 use crate::window::files::save_request::{Changed, Content, Model, Shape, Unwritten, Written, WrittenKind};
 use crate::window::files::save_wish::SaveWish;
@@ -17,7 +18,7 @@ use crate::window::panels::notes::Note;
 use crate::window::session::opening::Reload;
 use crate::window::session::{KeepOriginal, Source};
 use crate::window::threads::message::{Ground, PictureKind, Purpose};
-use pliant_engine::files::{is_same, shown};
+use pliant_engine::files::shown;
 use pliant_engine::is_project;
 use pliant_mesh::WeldOptions;
 
@@ -166,7 +167,7 @@ impl Application {
             Err(Unwritten::Changed(path, request)) => {
                 self.session.ask_again();
                 let offers = match self.reload(&request.content) {
-                    Some(_) => ChangedOffer::Reload,
+                    Some((_, lost)) => ChangedOffer::Reload { lost },
                     None => ChangedOffer::Others,
                 };
                 self.dialogs.question = Some(Question::Changed(path, offers));
@@ -246,7 +247,7 @@ impl Application {
             .unwritten
             .take()
             .and_then(|request| self.reload(&request.content));
-        if let Some(reload) = reload {
+        if let Some((reload, _)) = reload {
             self.waiting.then = None;
             let source = Source::Reloaded(Box::new(reload));
             self.session.load(source, &self.viewport.gpu(), &self.workers);
@@ -254,23 +255,35 @@ impl Application {
     }
 
     /// The way to open the changed file again with the former one's edit, if it is known which part of the edit the
-    /// file has.
-    fn reload(&self, content: &Content) -> Option<Reload> {
+    /// file has, and the names of the changes of its triangles that no file has, which are then lost.
+    fn reload(&self, content: &Content) -> Option<(Reload, Vec<&'static str>)> {
         let open = self.session.open.as_ref()?;
         let file = open.path.clone()?;
-        let is_known = open.saved.is_some() || is_same(&file, &open.loaded.path);
         let is_model = matches!(content, Content::Model(_));
-        let snapshot = self.editor.snapshot().filter(|_| is_known && is_model)?;
-        Some(Reload {
+        let mut snapshot = self.editor.snapshot().filter(|_| is_model)?;
+        let mut lost = Vec::new();
+        let mut in_file = &open.in_file;
+        while let InFile::Made(name, former) = in_file {
+            lost.insert(0, *name);
+            snapshot = former.restore(&snapshot);
+            in_file = self.session.others.in_file(former.model())?;
+        }
+        let saved = match in_file {
+            InFile::AsRead => None,
+            InFile::Saved(saved) => Some(Arc::clone(saved)),
+            InFile::Made(..) | InFile::Unknown => return None,
+        };
+        let reload = Reload {
             // As before: the edit or a person may have requested it.
             weld: snapshot.model().weld,
             snapshot,
-            saved: open.saved.clone(),
+            saved,
             project: open.project.clone(),
             path: Some(file.clone()),
             file: Some(file),
             unsaved: true,
-        })
+        };
+        Some((reload, lost))
     }
 
     /// Opens the mesh again with its vertices welded in another way, and applies the work to it. It is read from its
@@ -285,11 +298,14 @@ impl Application {
         let (file, saved) = match &open.mesh.source {
             MeshSource::Sample => (None, None),
             MeshSource::File(file) => (Some(file.clone()), None),
-            MeshSource::Gone if open.saved.is_some() => (open.path.clone(), open.saved.clone()),
-            MeshSource::Gone => {
-                let gone = "no file holds the mesh as it was opened: save the project, open it, then weld its vertices";
-                return self.fail(gone.to_owned());
-            }
+            MeshSource::Gone => match open.in_file.saved() {
+                Some(saved) => (open.path.clone(), Some(Arc::clone(saved))),
+                None => {
+                    let gone =
+                        "no file holds the mesh as it was opened: save the project, open it, then weld its vertices";
+                    return self.fail(gone.to_owned());
+                }
+            },
         };
         let reload = Reload {
             file,

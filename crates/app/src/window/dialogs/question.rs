@@ -47,10 +47,13 @@ impl Question {
 }
 
 /// The options for a file that another program has changed, besides saving elsewhere and overwriting it.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, PartialEq, Eq, Debug)]
 pub enum ChangedOffer {
     /// Read it again, and apply the edit to it.
-    Reload,
+    Reload {
+        /// The names of the steps that have changed the mesh and are in no file: they are lost.
+        lost: Vec<&'static str>,
+    },
     /// No further option.
     Others,
 }
@@ -106,7 +109,7 @@ pub fn ask(context: &egui::Context, question: &mut Question) -> Option<Answer> {
         }
         match question {
             Question::WriteOver(path, kept) => write_over(ui, path, kept.as_ref(), &mut answer),
-            Question::Changed(path, offer) => changed(ui, path, *offer, &mut answer),
+            Question::Changed(path, offer) => changed(ui, path, offer, &mut answer),
             Question::File(purpose, browser) => file(ui, *purpose, browser, &mut answer),
             Question::Replace(purpose, path) => replace(ui, *purpose, path, &mut answer),
             Question::Discard(then, name) => discard(ui, then, name, &mut answer),
@@ -142,17 +145,29 @@ fn write_over(ui: &mut egui::Ui, path: &Path, kept: Option<&Result<Kept, String>
     });
 }
 
-fn changed(ui: &mut egui::Ui, path: &Path, offer: ChangedOffer, answer: &mut Option<Answer>) {
+fn changed(ui: &mut egui::Ui, path: &Path, offer: &ChangedOffer, answer: &mut Option<Answer>) {
     let name = file_name(path);
     ui.heading(format!("{name} has changed"));
     ui.label("Another program or window has written this file since it was read or saved here.");
-    if offer == ChangedOffer::Reload {
+    if let ChangedOffer::Reload { lost } = offer {
         ui.label("Reloading opens the changed file with your edit. The steps so far can then no longer be undone.");
+        if !lost.is_empty() {
+            let steps = lost.join(", ");
+            ui.label(format!(
+                "These changes of the mesh are in no file, and reloading loses them: {steps}."
+            ));
+        }
     }
     ui.add_space(8.0);
     ui.horizontal(|ui| {
-        if offer == ChangedOffer::Reload && ui.button("Reload with the edit").clicked() {
-            *answer = Some(Answer::Reload);
+        if let ChangedOffer::Reload { lost } = offer {
+            let name = match lost.is_empty() {
+                true => "Reload with the edit",
+                false => "Reload and lose them",
+            };
+            if ui.button(name).clicked() {
+                *answer = Some(Answer::Reload);
+            }
         }
         if main_button(ui, "Save beside…") {
             *answer = Some(Answer::Beside);

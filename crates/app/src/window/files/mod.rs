@@ -2,6 +2,7 @@
 
 pub(in crate::window) mod app_directories;
 pub(in crate::window) mod desktop;
+pub(in crate::window) mod in_file;
 pub(in crate::window) mod listing;
 pub(in crate::window) mod other_shape;
 pub(in crate::window) mod project_file;

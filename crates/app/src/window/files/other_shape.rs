@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use glam::DVec3;
 use pliant_engine::Loaded;
 use pliant_picture::drawing::Drawing;
 use pliant_render::Surface;
 
+use super::in_file::InFile;
 use super::rest_mesh::RestMesh;
 
 /// The open file with other triangles than the present ones.
@@ -21,8 +21,8 @@ pub struct OtherShape {
     pub surface: Option<Surface>,
     /// It without displacements, and its present place.
     pub mesh: RestMesh,
-    /// The displacements with which it was saved at the open file's path, if it was.
-    pub saved: Option<Arc<Vec<DVec3>>>,
+    /// What the file at the open file's path holds of it.
+    pub in_file: InFile,
     /// True if a person agreed that it replaces the file at that path.
     pub may_write_over: bool,
 }

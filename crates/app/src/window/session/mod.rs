@@ -12,6 +12,7 @@ use std::sync::Arc;
 use pliant_editor::{JobQueue, Revision, SaveMark, StitchRequest};
 
 use crate::files::original::Original;
+use crate::window::files::in_file::InFile;
 use crate::window::files::rest_mesh::RestMesh;
 pub use crate::window::files::save_request::KeepOriginal;
 use crate::window::files::save_request::{Changed, Content, SaveRequest, Unwritten, Written, WrittenKind};
@@ -23,7 +24,7 @@ use crate::window::session::shapes::OtherShapes;
 use crate::window::threads::message::{Message, ModelToShow};
 use crate::window::threads::workers::Workers;
 use crate::window::viewport::gpu::Gpu;
-use pliant_engine::files::KnownFiles;
+use pliant_engine::files::{KnownFiles, is_same};
 use pliant_engine::watch::Watch;
 use pliant_mesh::Cancel;
 
@@ -102,7 +103,7 @@ impl Session {
     /// Makes the next save ask again before it replaces the opened file, unless one already did.
     pub fn ask_again(&mut self) {
         if let Some(open) = &mut self.open {
-            open.may_write_over = open.saved.is_some();
+            open.may_write_over = open.in_file.saved().is_some();
         }
     }
 
@@ -143,7 +144,10 @@ impl Session {
             drawing: Arc::clone(&opened.drawing),
             mesh: RestMesh::new(Arc::clone(&opened.loaded), opened.source.clone()),
             project: opened.project.clone(),
-            saved: None,
+            in_file: match &opened.path {
+                Some(path) if is_same(path, &opened.loaded.path) => InFile::AsRead,
+                _ => InFile::Unknown,
+            },
             may_write_over: false,
         });
     }
@@ -201,12 +205,13 @@ impl Session {
                     // Undo may have led to other triangles while this was written.
                     let (mesh, in_file, may_write_over) = match self.others.of_mut(of) {
                         Some(other) => {
-                            (open.saved, open.may_write_over) = (None, false);
-                            (&mut other.mesh, &mut other.saved, &mut other.may_write_over)
+                            open.in_file.was_replaced();
+                            open.may_write_over = false;
+                            (&mut other.mesh, &mut other.in_file, &mut other.may_write_over)
                         }
-                        None => (&mut open.mesh, &mut open.saved, &mut open.may_write_over),
+                        None => (&mut open.mesh, &mut open.in_file, &mut open.may_write_over),
                     };
-                    *in_file = Some(Arc::clone(saved));
+                    *in_file = InFile::Saved(Arc::clone(saved));
                     *may_write_over = true;
                     if let Some(source) = source {
                         mesh.source = source.clone();

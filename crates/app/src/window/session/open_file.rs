@@ -3,12 +3,12 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use glam::DVec3;
 use pliant_engine::Loaded;
 use pliant_engine::files::is_same;
 use pliant_picture::drawing::Drawing;
 
 use crate::files::names::file_name;
+use crate::window::files::in_file::InFile;
 use crate::window::files::rest_mesh::RestMesh;
 
 /// The open file.
@@ -25,8 +25,8 @@ pub struct OpenFile {
     pub mesh: RestMesh,
     /// The project that it was opened from or saved to.
     pub project: Option<PathBuf>,
-    /// The displacements with which the file at `path` was saved there, per surface vertex; `None` if it was not.
-    pub saved: Option<Arc<Vec<DVec3>>>,
+    /// What the file at `path` holds of it.
+    pub in_file: InFile,
     /// True if a person agreed to replace `path`, or saved it here under a new name.
     pub may_write_over: bool,
 }

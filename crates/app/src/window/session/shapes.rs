@@ -6,6 +6,7 @@ use pliant_engine::Loaded;
 use pliant_mesh::Model;
 use pliant_render::Surface;
 
+use crate::window::files::in_file::InFile;
 use crate::window::files::other_shape::OtherShape;
 use crate::window::session::open_file::OpenFile;
 
@@ -28,7 +29,7 @@ impl OtherShapes {
         std::mem::swap(&mut open.morph_targets, &mut other.morph_targets);
         std::mem::swap(&mut open.drawing, &mut other.drawing);
         std::mem::swap(&mut open.mesh, &mut other.mesh);
-        std::mem::swap(&mut open.saved, &mut other.saved);
+        std::mem::swap(&mut open.in_file, &mut other.in_file);
         std::mem::swap(&mut open.may_write_over, &mut other.may_write_over);
         Some(other.surface.take())
     }
@@ -38,10 +39,18 @@ impl OtherShapes {
         self.0.iter_mut().find(|other| Arc::ptr_eq(&other.loaded, loaded))
     }
 
+    /// What the open one's file holds of the shape of a model.
+    pub fn in_file(&self, model: &Arc<Model>) -> Option<&InFile> {
+        let mut others = self.0.iter();
+        let other = others.find(|other| Arc::ptr_eq(&other.loaded.model, model))?;
+        Some(&other.in_file)
+    }
+
     /// Notes that a save of another shape has replaced the file at the open one's path.
     pub fn were_replaced(&mut self) {
         for other in &mut self.0 {
-            (other.saved, other.may_write_over) = (None, false);
+            other.in_file.was_replaced();
+            other.may_write_over = false;
         }
     }
 

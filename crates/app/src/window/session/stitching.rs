@@ -6,9 +6,10 @@ use std::sync::Arc;
 use pliant_editor::StitchRequest;
 use pliant_engine::stitching::{Present, Remade, remake};
 use pliant_engine::watch::Watch;
-use pliant_engine::{EngineError, Loaded};
+use pliant_engine::{EngineError, Loaded, memory};
 use pliant_picture::drawing::Drawing;
 
+use crate::window::files::in_file::InFile;
 use crate::window::files::other_shape::OtherShape;
 use crate::window::files::rest_mesh::{MeshSource, RestMesh};
 use crate::window::threads::message::Stitched;
@@ -53,7 +54,13 @@ fn make(
         warnings,
     } = remake(&present, &request.change, second.as_ref(), watch)?;
     let progress = watch.begin("preparing the picture");
-    let mesh = request.onto(Arc::clone(&loaded.model), moved.as_deref());
+    let mesh = request.onto(
+        Arc::clone(&loaded.model),
+        moved.as_deref(),
+        memory::budget(),
+        &watch.cancel,
+    );
+    let mesh = mesh.map_err(|_| EngineError::Interrupted)?;
     progress.set(0.3);
     let drawing = Drawing::new(&loaded.model, loaded.scene.appearance(), Arc::default());
     progress.set(0.7);
@@ -65,21 +72,19 @@ fn make(
         return Err(EngineError::Interrupted);
     }
     let loaded = Arc::new(loaded);
+    let notes = std::iter::once(done).chain(warnings).chain(mesh.lost().iter().cloned());
     Ok(Box::new(Stitched {
-        mesh,
-        notes: std::iter::once(done)
-            .chain(warnings)
-            .map(|note| sentence(&note))
-            .collect(),
+        notes: notes.map(|note| sentence(&note)).collect(),
         shape: OtherShape {
             morph_targets: loaded.scene.morph_targets(),
             drawing: Arc::new(drawing),
             surface: Some(surface),
             mesh: RestMesh::new(Arc::clone(&loaded), MeshSource::Gone),
-            saved: None,
+            in_file: InFile::Made(request.change.name(), mesh.former().clone()),
             may_write_over: false,
             loaded,
         },
+        mesh,
     }))
 }
 

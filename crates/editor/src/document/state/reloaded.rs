@@ -1,15 +1,16 @@
 //! A document on its mesh when that is read again: after another program has changed the file, with another joining of
 //! its vertices, or with other triangles (cut, filled or joined).
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use glam::DVec3;
-use pliant_deform::{Attachment, Loose};
-use pliant_mesh::{Model, SurfaceVertex};
+use pliant_deform::{Attachment, Budget, Loose};
+use pliant_mesh::{Cancel, Cancelled, Model, SurfaceVertex};
 
 use super::Document;
 use crate::document::access::Access;
+use crate::document::carried_examples::carry_examples;
 use crate::document::content::{Content, Paint};
 use crate::document::fluid::Fluid;
 use crate::document::handle::{HandleId, PivotPlace};
@@ -18,11 +19,26 @@ use crate::document::matching::Matching;
 
 impl Document {
     /// The same regions and handles on the vertices of a new mesh that match its own, which has the present shape at
-    /// rest, with the parts that are turned inside out turned there. Handles rest at their visible positions. Examples
-    /// have no displacements for new vertices: if there are some, they are removed.
-    pub(crate) fn onto_new_mesh(&self, matching: &Matching) -> Self {
+    /// rest, with the parts that are turned inside out turned there. Handles rest at their visible positions. With it
+    /// come sentences about what was lost.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub(crate) fn onto_new_mesh(
+        &self,
+        matching: &Matching,
+        model: &Model,
+        budget: Budget,
+        cancel: &Cancel,
+    ) -> Result<(Self, Vec<String>), Cancelled> {
         let mut applied = self.clone();
         applied.apply_shape();
+        let mut lost: Vec<String> = self
+            .attachments
+            .keys()
+            .filter(|name| !applied.attachments.contains_key(*name))
+            .map(|name| format!("The {name} was removed, because it belongs to the former rest shape."))
+            .collect();
         let shape = Arc::clone(&applied.content.from_file);
         let mut content = applied.onto(matching, Some(&shape)).content;
         let count = matching.of_new.len();
@@ -31,16 +47,32 @@ impl Document {
         content.settled = true;
         content.strength = None;
         content.inside_out = Arc::default();
-        if matching.unmatched() > 0 {
-            let attachments = Arc::make_mut(&mut content.attachments);
-            attachments.retain(|_, own| !matches!(own, Attachment::Shapes(_)));
-        }
+        let mut attachments = (*applied.content.attachments).clone();
+        lost.extend(carry_examples(&mut attachments, matching, model, budget, cancel)?);
+        content.attachments = Arc::new(attachments);
         let left: Vec<HandleId> = content.handles.iter().map(|handle| handle.id).collect();
+        let gone = self.handles.iter().filter(|handle| !left.contains(&handle.id));
+        lost.extend(gone.map(|handle| format!("{} was removed with its last vertex.", handle.name)));
         for handle in &mut content.handles {
             handle.parent = handle.parent.filter(|parent| left.contains(parent));
             handle.twin = handle.twin.filter(|twin| left.contains(&twin.handle));
         }
-        content.into()
+        Ok((content.into(), lost))
+    }
+
+    /// The document on the mesh from which its own was made by [`onto_new_mesh`](Self::onto_new_mesh), without that
+    /// change: `shape` is the shape that the former mesh had then, and `inside_out` its parts that were turned.
+    pub(crate) fn onto_former_mesh(&self, matching: &Matching, shape: &[DVec3], inside_out: &BTreeSet<u32>) -> Self {
+        let mut in_file = vec![DVec3::ZERO; self.paint.len()];
+        for (vertex, shape) in matching.of_new.iter().zip(shape) {
+            if let Some(vertex) = vertex {
+                in_file[*vertex as usize] = -*shape;
+            }
+        }
+        let mut former = self.onto(matching, Some(&in_file));
+        let turned = former.inside_out.symmetric_difference(inside_out).copied().collect();
+        former.set_inside_out(Arc::new(turned));
+        former
     }
 
     /// Makes a handle of the vertices of a new mesh that match none of the former one. What was there before and is not
@@ -159,14 +191,7 @@ impl Document {
         content.loose_parts = Arc::new(loose.collect());
         let turned = parts().filter(|(_, old)| self.inside_out.contains(old));
         content.inside_out = Arc::new(turned.map(|(new, _)| new).collect());
-        if matching.draws_the_same {
-            let isolated = self.access.isolated;
-            let isolated = isolated.and_then(|alone| parts().find(|(_, old)| *old == alone).map(|(new, _)| new));
-            content.access = Arc::new(Access {
-                isolated,
-                ..Access::clone(&self.access)
-            });
-        }
+        content.access = Arc::new(self.access_onto(matching));
         let is_there = |paint: &Paint| content.paint.contains(paint);
         let left: Vec<_> = content
             .handles
@@ -176,6 +201,30 @@ impl Document {
             .collect();
         content.handles = left;
         content.into()
+    }
+
+    /// The hidden and locked objects of a new mesh: those that were so before. A part that is isolated stays so if it
+    /// is still one part and everything in the new mesh was there before.
+    fn access_onto(&self, matching: &Matching) -> Access {
+        let objects = |of: &BTreeSet<u32>| {
+            let new = (0..).zip(&matching.of_new_object);
+            let own = new.filter(|(_, old)| old.is_some_and(|old| of.contains(&old)));
+            own.map(|(new, _)| new).collect()
+        };
+        let isolated = self
+            .access
+            .isolated
+            .filter(|_| matching.of_new_part.iter().all(Option::is_some));
+        let isolated = isolated.and_then(|alone| {
+            let mut own = (0..).zip(&matching.of_new_part).filter(|(_, old)| **old == Some(alone));
+            own.next().filter(|_| own.next().is_none()).map(|(new, _)| new)
+        });
+        Access {
+            hidden: objects(&self.access.hidden),
+            locked: objects(&self.access.locked),
+            isolated,
+            small: self.access.small,
+        }
     }
 }
 

@@ -4,8 +4,9 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
+use pliant_deform::Budget;
 use pliant_editor::{Event, MeshChange, StitchRequest};
-use pliant_mesh::{Drawn, DrawnVertex, FileVertex, Model, SurfaceVertex, shapes};
+use pliant_mesh::{Cancel, Drawn, DrawnVertex, FileVertex, Model, SurfaceVertex, shapes};
 
 use super::{Fingerprint, Rig, weld};
 
@@ -78,10 +79,22 @@ pub fn closed(mut shape: Drawn, model: &Model) -> Drawn {
 
 /// Gives the editor the mesh that it has asked for, made by hand.
 pub fn answer(rig: &mut Rig) {
+    answer_with(rig, |shape| (*weld(shape)).clone());
+}
+
+/// The same with the model that `model` makes of the new shape.
+pub fn answer_with(rig: &mut Rig, model: impl FnOnce(Drawn) -> Model) {
     let request = rig.editor.take_stitch().expect("a change was asked for");
-    let model = Arc::clone(&rig.model);
-    let shape = present(&request, &model);
-    let shape = match &request.change {
+    let shape = new_shape(&request, &rig.model);
+    let made = request.onto(Arc::new(model(shape)), None, Budget::default(), &Cancel::new());
+    rig.send(Event::Stitched(Ok(Box::new(made.unwrap()))));
+    follow(rig);
+    rig.drain();
+}
+
+fn new_shape(request: &StitchRequest, model: &Model) -> Drawn {
+    let shape = present(request, model);
+    match &request.change {
         MeshChange::Delete(vertices) => {
             let gone: BTreeSet<u32> = vertices.iter().map(|vertex| vertex.0).collect();
             let mut left = shape;
@@ -93,12 +106,8 @@ pub fn answer(rig: &mut Rig) {
             let beside = DAffine3::from_translation(DVec3::X * 2.2);
             shapes::together(&[shape, shapes::moved(&bowl(), beside)])
         }
-        _ => closed(shape, &model),
-    };
-    let made = request.onto(weld(shape), None);
-    rig.send(Event::Stitched(Ok(Box::new(made))));
-    follow(rig);
-    rig.drain();
+        _ => closed(shape, model),
+    }
 }
 
 /// The rig's own mesh is the editor's.
