@@ -326,6 +326,12 @@ pub enum SolveError {
         /// The handle.
         handle: usize,
     },
+    /// A direction along which a handle is free has no length, or contains a NaN or an infinity.
+    #[error("the free direction of handle {handle} is none: give three finite numbers, not all 0")]
+    NoDirection {
+        /// The handle.
+        handle: usize,
+    },
     /// A handle's vertices have places, and the method takes no places.
     #[error(
         "{method} moves a handle as a whole and takes no positions for its vertices: give a transform, or take {}",

@@ -29,6 +29,8 @@ pub struct Targets {
     lines: Lines,
     /// The share of the lines' way.
     line_share: f64,
+    /// The free direction of each handle that has one.
+    free_along: Vec<Option<DVec3>>,
     /// The positions of the brought control points, moved by hand.
     controls: Option<Arc<Vec<DVec3>>>,
     /// The weights of the examples, `None` for one to be found.
@@ -42,6 +44,7 @@ impl Targets {
             handles,
             lines: Lines::default(),
             line_share: 1.0,
+            free_along: Vec::new(),
             controls: attachment.and_then(Attachment::moved).cloned(),
             weights: match attachment {
                 Some(Attachment::Shapes(examples)) => examples.weights.clone(),
@@ -60,6 +63,15 @@ impl Targets {
         }
     }
 
+    /// The same with handles that slide along these directions.
+    #[must_use]
+    pub fn free_along(self, directions: Vec<Option<DVec3>>) -> Self {
+        Self {
+            free_along: directions,
+            ..self
+        }
+    }
+
     /// Takes an iterative method that rests towards lines that turn far, in steps: it would not see full turns. Every
     /// other binding stays as it is. `displacements` has one entry per surface vertex.
     ///
@@ -70,7 +82,8 @@ impl Targets {
         let count = if is_led { self.lines.steps(self.line_share) } else { 1 };
         for step in 1..count {
             let share = self.line_share * step as f64 / count as f64;
-            self.clone().along(&self.lines, share).set(bound)?;
+            let led = self.clone().along(&self.lines, share).free_along(Vec::new());
+            led.set(bound)?;
             settle(bound, displacements, Until::Frame.steps(bound), cancel)?;
             if cancel.is_cancelled() {
                 break;
@@ -82,8 +95,9 @@ impl Targets {
     /// Gives them to a binding.
     ///
     /// # Errors
-    /// Those of [`Bound::set_places`], [`Bound::set_weights`] and [`Bound::set_controls`].
+    /// Those of [`Bound::set_free_along`], [`Bound::set_places`], [`Bound::set_weights`] and [`Bound::set_controls`].
     pub fn set(&self, bound: &mut Bound) -> Result<(), SolveError> {
+        bound.set_free_along(&self.free_along)?;
         match self.lines.is_empty() {
             true => bound.set_targets(&self.handles)?,
             false => bound.set_places(&self.lines.targets(&self.handles, self.line_share))?,
@@ -162,6 +176,7 @@ impl Kept {
             handles: self.targets,
             lines: present.lines.moved(|handle| self.curves.get(handle)?.as_ref()),
             line_share: present.line_share,
+            free_along: Vec::new(),
             controls: own.as_ref().filter(is_same).or(present.controls.as_ref()).cloned(),
             weights: self.shape.weights.clone(),
         };

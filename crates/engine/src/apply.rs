@@ -9,7 +9,7 @@ use std::time::Instant;
 
 use glam::DVec3;
 use pliant_deform::{BindError, Bound, Budget, ExampleShape, Method, Ordering, SolveError, Step};
-use pliant_editor::{Beginning, Intersections, Setup, Start, Until, refuse_keys, sum_of_shapes};
+use pliant_editor::{Beginning, HandleSetup, Intersections, Setup, Start, Until, refuse_keys, sum_of_shapes};
 use pliant_io::{MorphDeltas, MorphTarget};
 use pliant_mesh::{Bvh, Cancel, Damage, Model, Progress, SurfaceVertex, vertex_normals};
 use tracing::info_span;
@@ -19,7 +19,7 @@ use crate::edit_job::EditJob;
 use crate::files::{Destination, NewFile, Staging};
 use crate::loading::Loaded;
 use crate::memory;
-use crate::report::{Distortion, Energy, ExampleWeight, FrameTimes, Report, finite_or, ms_since};
+use crate::report::{Distortion, Energy, ExampleWeight, FrameTimes, HandleSlide, Report, finite_or, ms_since};
 use crate::saving::{self, SaveAs};
 use crate::watch::Watch;
 
@@ -262,6 +262,7 @@ fn report(
         energy: solution.energy,
         handle_residual: solution.handle_residual,
         examples: solution.examples,
+        slides: solution.slides,
         distortion: Distortion {
             edge_stretch_mean: finite_or(distortion.edge_stretch_mean, 1.0),
             edge_stretch_max: finite_or(distortion.edge_stretch_max, f64::MAX),
@@ -287,6 +288,7 @@ struct Solution {
     energy: Energy,
     handle_residual: f64,
     examples: Vec<ExampleWeight>,
+    slides: Vec<HandleSlide>,
     warnings: Vec<String>,
 }
 
@@ -298,6 +300,20 @@ fn example_weights(setup: &Setup, weights: &[f64]) -> Vec<ExampleWeight> {
         weight: *weight,
     };
     each.map(weight).collect()
+}
+
+/// The last step's places of free handles.
+fn slides(setup: &Setup, bound: &Bound) -> Vec<HandleSlide> {
+    let handles = setup
+        .handles
+        .iter()
+        .enumerate()
+        .filter(|(_, handle)| handle.free_along.is_some());
+    let slide = |(number, handle): (usize, &HandleSetup)| HandleSlide {
+        name: handle.name.clone(),
+        distance: bound.slide(number),
+    };
+    handles.map(slide).collect()
 }
 
 impl Solution {
@@ -322,6 +338,7 @@ impl Solution {
             energy: Energy::default(),
             handle_residual: 0.0,
             examples: example_weights(setup, &vec![0.0; setup.examples().map_or(0, |own| own.shapes.len())]),
+            slides: Vec::new(),
             warnings: Vec::new(),
         }
     }
@@ -402,6 +419,7 @@ fn solve(
             r#final: finite_or(bent.last.energy, f64::MAX),
         },
         examples: example_weights(setup, bound.weights()),
+        slides: slides(setup, &bound),
         warnings: {
             let mut warnings = setup.worded(bound.warnings());
             warnings.extend(setup.problem(model).counted_otherwise());

@@ -41,6 +41,9 @@ pub struct Report {
     /// The weights of the edit's examples, set or found.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub examples: Vec<ExampleWeight>,
+    /// The free handles, and how far they slid.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub slides: Vec<HandleSlide>,
     /// The distortion of the shape.
     pub distortion: Distortion,
     /// Sentences that a person should know.
@@ -69,6 +72,15 @@ pub struct ExampleWeight {
     pub name: String,
     /// 0 at rest, 1 for the example.
     pub weight: f64,
+}
+
+/// A free handle's place along its direction.
+#[derive(Clone, PartialEq, Debug, Serialize)]
+pub struct HandleSlide {
+    /// The handle's name.
+    pub name: String,
+    /// Its distance from where its transform puts it, along its free direction, in world units.
+    pub distance: f64,
 }
 
 /// The deformation energy before and after.

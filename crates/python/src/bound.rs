@@ -335,6 +335,7 @@ impl BoundMesh {
             if let Some(along) = &targets.along {
                 along.lead(solver, displacements, cancel)?;
             }
+            solver.set_free_along(&self.setup.free_along())?;
             solver.set_places(&targets.of_solver)?;
             *has_targets = true;
             *last = settle(solver, displacements, most, cancel)?;

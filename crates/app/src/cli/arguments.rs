@@ -265,6 +265,8 @@ pub(super) fn methods_help() -> String {
         "\n\nConstraints, as members of the edit:\n  \
          handles[].soft ({soft}): weight of a handle that only pulls, 1e-6 to 1e6; at 1 handle and surface yield \
          equally; without it the handle is exact\n  \
+         handles[].free_along (methods with an energy): direction along which the handle slides to where the energy is \
+         least; without it the handle is held in all directions\n  \
          handles[].continuity ({joints}): smoothness of the surface at this handle, 0 for a hinge, 1 for equal \
          tangents, 2 for equal curvature, or between; at most the order less 1; default 2\n  \
          continuity ({joints}): the same for all handles and fixed vertices: a number, or a list of \

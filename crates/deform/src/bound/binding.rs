@@ -229,6 +229,7 @@ impl Bound {
             offsets: Arc::default(),
             own_ways: Vec::new(),
             sections: None,
+            slides: None,
             world_rest,
             takes_places,
             is_exact: implementation.handle_fit() == HandleFit::Exact,

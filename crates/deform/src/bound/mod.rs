@@ -2,8 +2,12 @@
 
 mod binding;
 mod sections;
+mod slides;
+mod sliding;
+mod step;
 mod target;
 mod targets;
+mod valley;
 
 use std::sync::Arc;
 
@@ -12,6 +16,8 @@ use pliant_mesh::Cancel;
 use rayon::prelude::*;
 
 use self::sections::Sections;
+use self::slides::Slides;
+pub use self::step::Step;
 pub use self::target::Target;
 use crate::attachment::{check_weights, finite};
 use crate::handles::finite::Finite;
@@ -46,6 +52,8 @@ pub struct Bound {
     own_ways: Vec<(u32, DVec3)>,
     /// The sections that are bound as handles, if a handle has several.
     sections: Option<Sections>,
+    /// The handles that are free along a line, if there are any.
+    slides: Option<Box<Slides>>,
     iteration: u32,
     solve: Solve,
     name: &'static str,
@@ -77,26 +85,6 @@ enum Way {
     BackSubstitution,
 }
 
-/// The result of one step.
-#[derive(Clone, Copy, PartialEq, Debug, Default)]
-pub struct Step {
-    /// True if further steps to the same targets would change nothing. Linear methods: always.
-    pub converged: bool,
-    /// True if further steps to the same targets do nothing: it converged, found no lower energy, or met the method's
-    /// limit.
-    pub finished: bool,
-    /// The deformation energy, 0 at rest, without unit and independent of the model's scale. For the bi-Laplacian it is
-    /// ½ dᵀ A d (see [`crate::Bilaplacian`]) and the energy of the soft handles' springs; for ARAP its own energy and
-    /// its springs', divided by ½ Σ w |e|² of the rest shape; for gradient editing likewise. Components without a
-    /// handle are left out.
-    pub energy: f64,
-    /// The number of steps taken towards these targets, this one included.
-    pub iteration: u32,
-    /// The largest distance of a hard handle's vertex from its target by the handle's transform, in world units: 0 for
-    /// every method that holds handles exactly.
-    pub handle_residual: f64,
-}
-
 impl Bound {
     /// The data that the next binding can reuse if only a few vertices' roles change. Only linear methods have such a
     /// factor, and it holds little unless [`crate::Problem::rebind`] bound it.
@@ -105,12 +93,20 @@ impl Bound {
     }
 
     fn put_offsets(&mut self, offsets: Arc<Offsets>) {
-        self.iteration = 0;
+        self.begin_anew();
         self.method.set_offsets(&offsets);
         if let Some(rigid) = &mut self.rigid {
             rigid.bound.put_offsets(Arc::clone(&offsets));
         }
         self.offsets = offsets;
+    }
+
+    /// The next step has new targets.
+    fn begin_anew(&mut self) {
+        self.iteration = 0;
+        if let Some(slides) = &mut self.slides {
+            slides.search = None;
+        }
     }
 
     /// Sets the handles' motions. An iterative method continues from its present shape.
@@ -147,10 +143,11 @@ impl Bound {
             false => Err(AttachmentRefused::MovedCount { found, expected }),
         };
         checked.map_err(|refused| SolveError::Controls { title, refused })?;
-        if self.solve == Solve::Direct || controls.attachment.moved() != Some(moved) {
-            self.iteration = 0;
-        }
+        let is_other = controls.attachment.moved() != Some(moved);
         controls.move_to(Arc::clone(moved));
+        if self.solve == Solve::Direct || is_other {
+            self.begin_anew();
+        }
         self.rigid
             .as_mut()
             .map_or(Ok(()), |rigid| rigid.bound.set_controls(moved))
@@ -165,7 +162,7 @@ impl Bound {
         let checked = check_weights(weights, self.weights.len());
         checked.map_err(|refused| SolveError::Controls { title, refused })?;
         if self.weights != weights {
-            self.iteration = 0;
+            self.begin_anew();
             self.weights = weights.to_vec();
             self.method.set_weights(weights);
         }
@@ -215,7 +212,7 @@ impl Bound {
     /// # Errors
     /// A wrong length, or a result that is not finite; `displacements` are then all zero.
     pub fn step(&mut self, displacements: &mut [DVec3]) -> Result<Step, SolveError> {
-        self.frame(displacements, Way::Shortest)
+        self.go(displacements, Way::Shortest)
     }
 
     /// Sets the flag that ends a long step: once it is raised, a step that only settles the shape for unchanged targets
@@ -233,7 +230,19 @@ impl Bound {
     /// # Errors
     /// Those of [`Bound::step`].
     pub fn step_by_back_substitution(&mut self, displacements: &mut [DVec3]) -> Result<Step, SolveError> {
-        self.frame(displacements, Way::BackSubstitution)
+        self.go(displacements, Way::BackSubstitution)
+    }
+
+    fn go(&mut self, displacements: &mut [DVec3], way: Way) -> Result<Step, SolveError> {
+        let Some(mut slides) = self.slides.take() else {
+            return self.frame(displacements, way);
+        };
+        let step = self.slide_step(&mut slides, displacements, way);
+        if step.is_err() {
+            slides.search = None;
+        }
+        self.slides = Some(slides);
+        step
     }
 
     /// Computes the method's displacements, zeros elsewhere, then those of followers; then checks that all are finite.
@@ -302,6 +311,9 @@ impl Bound {
     /// The next step begins at rest, whatever the last targets were. An iterative method otherwise goes on from the shape
     /// of its last step.
     pub fn rest(&mut self) {
+        if let Some(slides) = &mut self.slides {
+            slides.forget();
+        }
         self.method.rest();
         if let Some(rigid) = &mut self.rigid {
             rigid.bound.rest();

@@ -135,6 +135,7 @@ impl Bound {
         if offsets != *self.offsets {
             self.put_offsets(Arc::new(offsets));
         }
+        let motions = self.slid(motions, placed);
         self.put_motions(motions);
         let of_binding = self.of_binding.iter();
         self.warnings.clear();

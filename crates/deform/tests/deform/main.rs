@@ -39,6 +39,7 @@ mod robust;
 mod sections;
 mod shared;
 mod shells;
+mod slides;
 mod soft;
 mod soup;
 mod space;

@@ -7,8 +7,8 @@ use crate::document::{HandleId, Reach};
 use crate::input::Key;
 use crate::tool::{ToolMode, Widen};
 use crate::workspace::{
-    Purpose, change_handle, delete_selected, mirror, pin_or_unpin_selected, reset_region, set_continuity, set_parent,
-    set_reach, set_soft, split_selected, untwin,
+    Purpose, change_handle, delete_selected, free_or_hold_selected, mirror, pin_or_unpin_selected, reset_region,
+    set_continuity, set_parent, set_reach, set_soft, split_selected, untwin,
 };
 
 /// Widens the selected handle's reach with the pointer.
@@ -230,6 +230,28 @@ pub(super) const PIN: Entry<()> = Entry {
     scope: Scope::Document,
     unavailable: |state, ()| state.selected().err(),
     action: Action::Do(|context, ()| pin_or_unpin_selected(context.workspace)),
+};
+
+/// Frees the selected handle along the direction of sight, or holds it there again.
+pub(super) const FREE_OR_HOLD_DEPTH: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Free or hold depth",
+        "Holds the selected handle only where you see it: it stays under the pointer, and the shape chooses its distance \
+         from you. Or holds it in depth again.",
+        "plane of the picture screen view projection constraint slide free distance",
+        &[],
+    )],
+    scope: Scope::Document,
+    unavailable: |state, ()| match state.unlocked() {
+        Err(reason) => Some(reason),
+        Ok(handle) if handle.is_pin => Some(format!("{} is pinned: unpin it first.", handle.name).into()),
+        Ok(handle) if handle.line.is_some() => {
+            Some(format!("{} follows a line, which holds it in every direction.", handle.name).into())
+        }
+        Ok(_) => None,
+    },
+    action: Action::Do(|context, ()| free_or_hold_selected(context.workspace, context.view.camera())),
 };
 
 /// Names a handle.

@@ -303,6 +303,8 @@ commands! {
     ResetHandle = transform::RESET_HANDLE;
     /// Pins the selected handle, or unpins it.
     PinOrUnpin = handle::PIN;
+    /// Frees the selected handle along the direction of sight, or holds it there again.
+    FreeOrHoldDepth = handle::FREE_OR_HOLD_DEPTH;
     /// Names a handle.
     RenameHandle(id: HandleId, name: String) = handle::RENAME_HANDLE;
     /// Gives a handle a colour, sRGB with alpha.

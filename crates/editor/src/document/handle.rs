@@ -48,6 +48,9 @@ pub struct Handle {
     pub parent: Option<HandleId>,
     /// The line that its vertices follow before its transform moves them.
     pub line: Option<HandleLine>,
+    /// The unit direction along which it is free, in world space: its transform holds it across this direction only, and
+    /// it slides along it to where the energy is least.
+    pub free_along: Option<DVec3>,
 }
 
 /// The place of a handle's pivot.
@@ -106,6 +109,7 @@ impl Handle {
             twin: None,
             parent: None,
             line: None,
+            free_along: None,
         }
     }
 
@@ -154,6 +158,7 @@ impl Handle {
         self.name = format!("pin {}", u32::from(self.id.0) + 1);
         self.reach = Reach::Length(0.0);
         self.twin = None;
+        self.free_along = None;
     }
 
     /// Moves the pivot to a point of the rest shape; the map of positions stays the same.
@@ -171,6 +176,11 @@ impl Handle {
             *translation = affine.transform_point3(pivot) - pivot;
         }
         self.pivot = pivot;
+    }
+
+    /// Its free direction, if it is not held otherwise: by a line, or as a pin.
+    pub(crate) fn freedom(&self) -> Option<DVec3> {
+        self.free_along.filter(|_| self.line.is_none() && !self.is_pin)
     }
 
     /// Returns true if it is away from its rest position.

@@ -276,6 +276,17 @@ impl History {
         self.saved.reshaped(self.state());
     }
 
+    /// Notes that free handles, which were these before, have slid with the present state's shape: the neighbouring steps
+    /// give each side its own handles.
+    pub(crate) fn slid(&mut self, before: &[Handle], next_handle: u16) {
+        let neighbours = self.done.back_mut().into_iter().chain(self.undone.last_mut());
+        for step in neighbours.filter(|step| step.other_mesh().is_none()) {
+            if !step.changes.iter().any(|change| matches!(change, Change::Handles(..))) {
+                step.changes.push(Change::Handles(before.to_vec(), next_handle));
+            }
+        }
+    }
+
     fn state(&self) -> u64 {
         self.done.back().map_or(self.oldest, |step| step.state)
     }

@@ -21,6 +21,7 @@ use super::pose::PoseEntry;
 use super::project::StoredKept;
 use super::reader::read;
 use super::selector::Selector;
+use super::transform::optional_vector;
 use crate::HandleTransform;
 use crate::document::{HandleCurve, HandleLine, HandleSketch};
 use crate::warning::shortened;
@@ -96,6 +97,10 @@ pub struct HandleEntry {
     /// Their motion.
     #[serde(default)]
     pub transform: HandleTransform,
+    /// The direction in world space, of any length, along which they are free: `transform` holds them across it only, and
+    /// they slide along it to where the energy is least.
+    #[serde(default, skip_serializing_if = "Option::is_none", with = "optional_vector")]
+    pub free_along: Option<DVec3>,
     /// The curve that they follow before `transform` moves them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub curve: Option<HandleCurve>,
@@ -458,6 +463,9 @@ impl HandleEntry {
             (_, Some(_), Some(_)) => {
                 return refuse("has a `pose` and a line: keep one, a point on its limb or the line that it follows");
             }
+            _ if self.free_along.is_some() && self.line().is_some() => {
+                return refuse("has a line and `free_along`: keep one, the line that it follows or its free direction");
+            }
             (Some(select), ..) => select.check().map_err(|error| error.under("select"))?,
             (None, None, None) => {
                 return Err(EditError::Missing {
@@ -466,6 +474,15 @@ impl HandleEntry {
                 });
             }
             (None, ..) => {}
+        }
+        if let Some(direction) = self.free_along
+            && direction.try_normalize().is_none()
+        {
+            return Err(EditError::OutOfRange {
+                place: "free_along".to_owned(),
+                found: format!("{}, {}, {}", direction.x, direction.y, direction.z),
+                allowed: "a direction: three numbers, not all 0".to_owned(),
+            });
         }
         if let Some(value) = self.soft {
             weight.check(value).map_err(|error| error.under("soft"))?;

@@ -88,9 +88,13 @@ impl EditFile {
 }
 
 impl Setup {
-    /// The targets at a time of a timeline, in seconds. Control points and weights of examples are those of the edit.
+    /// The targets at a time of a timeline, in seconds. Control points and weights of examples are those of
+    /// the edit, and keys hold a free handle.
     pub fn targets_during(&self, timeline: &Timeline, time: f64) -> Targets {
-        self.targets_of(timeline.maps_at(time, self.targets(1.0)))
+        let targets = self.targets_of(timeline.maps_at(time, self.targets(1.0)));
+        let free_along = self.handles.iter().enumerate();
+        let free_along = free_along.map(|(place, handle)| handle.free_along.filter(|_| !timeline.is_keyed(place)));
+        targets.free_along(free_along.collect())
     }
 }
 

@@ -77,6 +77,8 @@ pub struct HandleSetup {
     pub transform: HandleTransform,
     /// The pivot of its transform, or else the mean of its rest positions.
     pub pivot: DVec3,
+    /// The direction along which it is free, in world space.
+    pub free_along: Option<DVec3>,
 }
 
 impl Setup {
@@ -126,6 +128,7 @@ impl Setup {
                     name: handle.name.clone(),
                     transform: with_pivot(handle),
                     pivot: handle.pivot,
+                    free_along: document.freedom(handle.id),
                 })
                 .collect(),
             stiffness: stiffness.map_or_else(|| vec![1.0; region.roles.len()], <[f64]>::to_vec),
@@ -179,7 +182,14 @@ impl Setup {
     pub fn targets_at(&self, t: f64) -> Targets {
         let part = |attachment| attachment_part(&self.method, attachment, t);
         let targets = Targets::new(self.targets(t), self.attachment().map(part).as_ref());
-        targets.along(&self.lines, self.line_share * t)
+        targets
+            .along(&self.lines, self.line_share * t)
+            .free_along(self.free_along())
+    }
+
+    /// The free direction of each handle that has one.
+    pub fn free_along(&self) -> Vec<Option<DVec3>> {
+        self.handles.iter().map(|handle| handle.free_along).collect()
     }
 
     /// The targets at the end of the motion, with other maps of the handles.
@@ -294,6 +304,7 @@ impl EditFile {
                 name: entry.name.clone(),
                 transform: entry.transform.part(self.strength, pivot),
                 pivot,
+                free_along: entry.free_along,
             });
         }
         let lines: Vec<Option<HandleLine>> = self.handles.iter().map(HandleEntry::line).collect();

@@ -211,3 +211,16 @@ pub(crate) mod vector {
         Numbers::deserialize(deserializer).map(|numbers| DVec3::from_array(numbers.0))
     }
 }
+
+/// The same, if it is there.
+pub(crate) mod optional_vector {
+    use super::{DVec3, Deserializer, Serialize, Serializer, vector};
+
+    pub fn serialize<S: Serializer>(vector: &Option<DVec3>, serializer: S) -> Result<S::Ok, S::Error> {
+        vector.map(|vector| vector.to_array()).serialize(serializer)
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<DVec3>, D::Error> {
+        vector::deserialize(deserializer).map(Some)
+    }
+}

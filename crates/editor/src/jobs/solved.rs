@@ -6,6 +6,7 @@ use glam::{DVec3, Mat3};
 use pliant_deform::Bound;
 
 use crate::bending::Carried;
+use crate::document::HandleId;
 use crate::warning::HandleWarning;
 
 /// The result of the job that bends.
@@ -31,6 +32,8 @@ pub struct Solved {
     pub(crate) controls: Option<ControlPlaces>,
     /// The solution behind it, if it continues a kept shape.
     pub(crate) carried: Option<Carried>,
+    /// The distances by which free handles slid along their directions, at the end of a solve.
+    pub(crate) slides: Vec<(HandleId, f64)>,
     /// The motions in these targets that the method can't follow.
     pub(crate) blind_to: Vec<HandleWarning>,
     /// The examples' weights that were used or found.

@@ -121,7 +121,14 @@ impl Wanted {
             false => self.start.bend(bound, &self.targets, Until::Frame, cancel)?,
         };
         let step = bent.step;
+        let slides = self
+            .handles
+            .iter()
+            .enumerate()
+            .map(|(number, id)| (*id, bound.slide(number)));
+        let slides = slides.filter(|(_, distance)| step.finished && *distance != 0.0);
         Ok(Solved {
+            slides: slides.collect(),
             jacobians: None,
             controls: ControlPlaces::of(bound),
             from_file: sum_of_shapes(self.rest.as_ref(), &bent.shown),
@@ -165,10 +172,9 @@ pub(super) fn targets(document: &Document, method: &Method, handles: &[HandleId]
     let declared = method.declaration();
     let mut attachments = document.attachments.iter();
     let own = attachments.find(|(name, _)| declared.attachment(name).is_some());
-    Some(Targets::new(
-        maps(document, handles)?,
-        own.map(|(_, attachment)| attachment),
-    ))
+    let targets = Targets::new(maps(document, handles)?, own.map(|(_, attachment)| attachment));
+    let free_along = handles.iter().map(|id| document.freedom(*id));
+    Some(targets.free_along(free_along.collect()))
 }
 
 /// The lines of a binding of `handles` with the document's present ways of their curves.

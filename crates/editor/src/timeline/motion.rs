@@ -23,6 +23,11 @@ impl Timeline {
         self.duration
     }
 
+    /// Returns true if the handle at this place of the list has a key.
+    pub(crate) fn is_keyed(&self, place: usize) -> bool {
+        self.tracks.get(place).is_some_and(|track| track.at(0.0).is_some())
+    }
+
     /// The handles' maps at a time in seconds. `own` are the maps of handles without keys.
     pub(crate) fn maps_at(&self, time: f64, own: Vec<DAffine3>) -> Vec<DAffine3> {
         let tracks = self.tracks.iter();

@@ -17,7 +17,7 @@ use crate::document::{Handle, HandleId, HandleTransform, Transaction, accumulate
 use crate::input::{Button, Key, Modifiers, Pointer};
 use crate::jobs::Activity;
 use crate::view::{ControlShape, Cursor, GizmoAxes, GizmoPart, Readout, View};
-use crate::workspace::{Workspace, count_turn, held_because, members, put_handles};
+use crate::workspace::{Workspace, aim_free_handles, count_turn, held_because, members, put_handles};
 
 /// A held button must move the pointer this far before a handle follows.
 const THRESHOLD_PX: f64 = 3.0;
@@ -188,6 +188,7 @@ impl TransformDrag {
         companions: &[Handle],
     ) {
         let (measure, start) = (&self.measure, self.measure.start);
+        let before = workspace.document.handle(handle).map(|handle| handle.transform);
         let together = |own: HandleTransform, of_other: &dyn Fn(&Handle) -> HandleTransform| {
             let others = companions.iter().map(|other| (other.id, of_other(other)));
             std::iter::once((handle, own)).chain(others).collect::<Vec<_>>()
@@ -222,6 +223,10 @@ impl TransformDrag {
                 };
                 put_handles(workspace, &together(start.scaled_by(factors, pivot), &of_other));
             }
+        }
+        if workspace.document.handle(handle).map(|handle| handle.transform) != before {
+            let moved = std::iter::once(handle).chain(companions.iter().map(|other| other.id));
+            aim_free_handles(workspace, view.camera(), moved);
         }
     }
 }

@@ -129,6 +129,10 @@ impl Workspace {
         }
         self.document.show(solved.from_rest, solved.from_file);
         if finality == Finality::Final {
+            let handles = self.document.handles().to_vec();
+            if self.document.slide_handles(&solved.slides) {
+                self.history.slid(&handles, self.document.next_handle);
+            }
             self.document.settle();
         }
     }

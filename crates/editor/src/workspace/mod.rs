@@ -10,6 +10,7 @@ mod dirty_colours;
 mod examples;
 mod flow;
 mod flow_play;
+mod freedom;
 mod handle_values;
 mod handles;
 mod key_work;
@@ -41,6 +42,7 @@ pub(crate) use curves::{divide_curve, remove_curve_points, selected_curve};
 pub(crate) use examples::{
     add_example, examples_name, keep_example, remove_example, rename_example, set_example_weight,
 };
+pub(crate) use freedom::{aim_free_handles, free_or_hold_selected};
 pub(crate) use handle_values::{set_continuity, set_parent, set_reach, set_soft, set_turn, transform_handle};
 pub(crate) use handles::{
     change_handle, count_turn, delete_selected, held_because, pin_or_unpin_selected, put_handle, put_handles,

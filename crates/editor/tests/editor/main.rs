@@ -12,6 +12,7 @@ mod curves;
 mod edit_format;
 mod examples;
 mod flow;
+mod free_depth;
 mod habits;
 mod inside_out;
 mod inspection;

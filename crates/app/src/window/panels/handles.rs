@@ -69,7 +69,11 @@ fn row(ui: &mut egui::Ui, handle: &Handle, is_selected: bool, commands: &mut Out
             if toggle(ui, Icon::Eye, handle.visible, &format!("Show {}", handle.name), hover) {
                 commands.push(Command::ToggleHandleVisible(handle.id));
             }
-            let badges = [("soft", handle.soft.is_some()), ("twin", handle.twin.is_some())];
+            let badges = [
+                ("soft", handle.soft.is_some()),
+                ("free", handle.free_along.is_some()),
+                ("twin", handle.twin.is_some()),
+            ];
             let badges = badges.iter().filter(|(_, has)| *has).map(|(name, _)| *name);
             let badges = badges.collect::<Vec<_>>().join(", ");
             if !badges.is_empty() {
@@ -185,6 +189,7 @@ fn numbers(ui: &mut egui::Ui, editor: &Editor, handle: &Handle, commands: &mut O
             joint(ui, editor, handle, commands);
             softness(ui, handle, commands);
             ui.end_row();
+            depth(ui, editor, handle, commands);
             parent(ui, editor, handle, commands);
         });
 }
@@ -353,6 +358,22 @@ fn joint(ui: &mut egui::Ui, editor: &Editor, handle: &Handle, commands: &mut Out
             commands.adjust(&field, || Command::SetContinuity(handle.id, Some(value)));
             ui.label(RichText::new(word).weak());
         });
+    });
+    ui.end_row();
+}
+
+/// Whether the handle is free along the direction of sight.
+fn depth(ui: &mut egui::Ui, editor: &Editor, handle: &Handle, commands: &mut Outbox) {
+    let mut is_free = handle.free_along.is_some();
+    let unavailable = editor.unavailable_because(&Command::FreeOrHoldDepth);
+    let hover = "Drags the handle in the plane of the picture: it stays under the pointer, and the shape chooses its \
+                 distance from you, as a hand that you pull aside comes round with its arm.";
+    ui.add_enabled_ui(unavailable.is_none(), |ui| {
+        let field = ui.checkbox(&mut is_free, "Free depth").on_hover_text(hover);
+        let field = field.on_disabled_hover_text(unavailable.as_deref().unwrap_or_default());
+        if field.changed() {
+            commands.push(Command::FreeOrHoldDepth);
+        }
     });
     ui.end_row();
 }

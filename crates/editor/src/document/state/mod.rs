@@ -9,6 +9,7 @@
 mod animation;
 mod exchange;
 mod fluid;
+mod freedom;
 mod poses;
 mod reloaded;
 mod shapes;
@@ -414,7 +415,7 @@ impl Document {
         {
             changed.push(Aspect::Constraints);
         }
-        if !are_same(before, after, |h| (h.affine(), h.line.clone())) {
+        if !are_same(before, after, |h| (h.affine(), h.line.clone(), h.freedom())) {
             changed.push(Aspect::Targets);
         }
         if !are_same(before, after, |h| (h.id, h.colour, h.visible, h.is_pin)) {

@@ -44,6 +44,9 @@ pub(super) struct StoredHandle {
     /// The curve that its vertices follow.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     curve: Option<HandleCurve>,
+    /// The unit direction along which they are free.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    free_along: Option<[f64; 3]>,
     /// Or the line to which their outline is drawn.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     sketch: Option<HandleSketch>,
@@ -124,6 +127,7 @@ impl StoredHandle {
                 at: twin.plane.distance(),
             }),
             parent: handle.parent.map(|parent| parent.0),
+            free_along: handle.free_along.map(|direction| direction.to_array()),
             curve: handle.line.as_ref().and_then(HandleLine::curve).cloned(),
             sketch: handle.line.as_ref().and_then(HandleLine::sketch).cloned(),
         }
@@ -145,9 +149,16 @@ impl StoredHandle {
         };
         let refused_weight = self.soft.is_some_and(|weight| !SOFT_RANGE.contains(&weight))
             || self.continuity.is_some_and(|value| !CONTINUITY_RANGE.contains(&value));
-        if is_reach_refused || refused_weight || self.twin.is_some_and(|twin| twin.plane().is_none()) {
+        let free_along = self
+            .free_along
+            .map(|numbers| DVec3::from_array(numbers).try_normalize());
+        if free_along == Some(None)
+            || is_reach_refused
+            || refused_weight
+            || self.twin.is_some_and(|twin| twin.plane().is_none())
+        {
             return Err(EditError::Project(format!(
-                "the handle `{}` has an invalid reach, weight, continuity or twin: save it again",
+                "the handle `{}` has an invalid reach, weight, continuity, free direction or twin: save it again",
                 shortened(&self.name)
             )));
         }
@@ -186,6 +197,7 @@ impl StoredHandle {
             }),
             parent: self.parent.map(HandleId),
             line: self.line(),
+            free_along: self.free_along.map(DVec3::from_array),
             ..Handle::new(id, self.name.clone())
         })
     }

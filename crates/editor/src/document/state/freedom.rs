@@ -1,0 +1,34 @@
+//! Handles that are free along a direction.
+
+use glam::DVec3;
+
+use super::Document;
+use crate::document::handle::{Handle, HandleId};
+use crate::document::version::Aspect;
+
+impl Document {
+    /// The direction along which a handle slides, if it is free: the keys of a handle hold it.
+    pub(crate) fn freedom(&self, id: HandleId) -> Option<DVec3> {
+        let mut keys = self.content.animation.keys().iter();
+        let is_keyed = keys.any(|key| key.has(id));
+        self.handle(id).and_then(Handle::freedom).filter(|_| !is_keyed)
+    }
+
+    /// Moves free handles along their directions to where a solve has found them. Their targets stay the same, because a
+    /// transform says nothing about its handle's place along the direction. Returns whether a handle has moved.
+    pub(crate) fn slide_handles(&mut self, distances: &[(HandleId, f64)]) -> bool {
+        // A part of the edit leaves the whole edit as it is.
+        if distances.is_empty() || self.strength() != 1.0 {
+            return false;
+        }
+        for (id, distance) in distances {
+            let direction = self.freedom(*id);
+            let mut handles = self.content.handles.iter_mut();
+            if let (Some(direction), Some(handle)) = (direction, handles.find(|handle| handle.id == *id)) {
+                handle.put(handle.transform.moved_by(direction * *distance));
+            }
+        }
+        self.marks.mark(&[Aspect::Handles]);
+        true
+    }
+}

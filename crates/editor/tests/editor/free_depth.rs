@@ -1,0 +1,183 @@
+//! Handles that are free along the direction of sight.
+
+use std::sync::Arc;
+
+use glam::{DVec2, DVec3};
+use pliant_editor::{Command, EditError, EditFile, Event, GizmoPart, HandleId, Key, NamedView, Paint, Start, Until};
+use pliant_mesh::{Cancel, Progress, shapes};
+
+use crate::rig::{CENTRE_PX, ITERATED, Rig, VIEWPORT_PX};
+
+/// The pull of the handle, on the screen.
+const PULL_PX: DVec2 = DVec2::new(320.0, -220.0);
+
+/// A bar along x that is seen from its near end, which is a handle; the far one is fixed.
+fn bar() -> Rig {
+    let edit = r#"{"version": 1, "method": {"name": "arap"},
+        "fixed": {"slab": {"axis": "x", "from": 0, "to": 0.1}},
+        "handles": [{"name": "hand", "select": {"slab": {"axis": "x", "from": 0.95, "to": 1}}}]}"#;
+    let mut rig = Rig::open(shapes::bar(8, 2, 2));
+    rig.send(Event::Opened {
+        model: Arc::clone(&rig.model),
+        name: "bar".to_owned(),
+        beginning: Some(EditFile::parse(edit).unwrap().into()),
+    });
+    rig.command(Command::View(NamedView::Right));
+    rig.command(Command::FrameAll);
+    rig.command(Command::SelectHandle(HandleId(0)));
+    rig.drain();
+    rig
+}
+
+/// Pulls the selected handle in the plane of the screen.
+fn pull(rig: &mut Rig, by_px: DVec2) {
+    rig.move_to(CENTRE_PX);
+    rig.type_keys("g");
+    rig.move_to(CENTRE_PX + 0.5 * by_px);
+    rig.drain();
+    rig.move_to(CENTRE_PX + by_px);
+    rig.drain();
+    rig.key(Key::Enter);
+    rig.drain();
+}
+
+/// The place of the handle's pivot on the screen.
+fn seen_px(rig: &Rig) -> DVec2 {
+    let view = rig.editor.view();
+    view.camera.project(view.handles[0].centre(), VIEWPORT_PX).unwrap()
+}
+
+fn farthest(a: &[DVec3], b: &[DVec3]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max)
+}
+
+#[test]
+fn a_handle_that_is_free_in_depth_stays_under_the_pointer_and_comes_round() {
+    let (mut held, mut free) = (bar(), bar());
+    free.command(Command::FreeOrHoldDepth);
+    for rig in [&mut held, &mut free] {
+        let from_px = seen_px(rig);
+        pull(rig, PULL_PX);
+        let apart_px = seen_px(rig).distance(from_px + PULL_PX);
+        assert!(apart_px < 0.5, "{apart_px}");
+    }
+    let [of_held, of_free] = [&held, &free].map(|rig| rig.editor.view().descent.unwrap().energy);
+    assert!(of_free < of_held, "{of_free} and {of_held}");
+    // The visible handle is where its vertices are.
+    let document = free.editor.document();
+    let affine = document.handles()[0].affine();
+    for (vertex, rest) in free.model.surface.positions.iter().enumerate() {
+        if document.paint()[vertex] == Paint::Handle(document.handles()[0].id) {
+            let apart = (*rest + document.from_rest()[vertex]).distance(affine.transform_point3(*rest));
+            assert!(apart < 1e-9, "{apart:e}");
+        }
+    }
+}
+
+#[test]
+fn an_arm_that_is_seen_from_its_hand_swings_back_as_the_hand_is_pulled_aside() {
+    let along = |is_free: bool| {
+        let mut rig = bar();
+        rig.command(Command::ToggleProjection);
+        if is_free {
+            rig.command(Command::FreeOrHoldDepth);
+        }
+        pull(&mut rig, PULL_PX);
+        rig.editor.view().handles[0].centre().x
+    };
+    let (held, free) = (along(false), along(true));
+    assert!(free < held - 0.1, "{free} and {held}");
+}
+
+#[test]
+fn every_step_with_a_free_handle_is_undone_and_redone_to_the_bit() {
+    let mut rig = bar();
+    let mut states = vec![rig.fingerprint()];
+    rig.command(Command::FreeOrHoldDepth);
+    states.push(rig.fingerprint());
+    pull(&mut rig, PULL_PX);
+    states.push(rig.fingerprint());
+    // Another method chooses another depth.
+    rig.choose("bilaplacian");
+    states.push(rig.fingerprint());
+    pull(&mut rig, DVec2::new(-30.0, 60.0));
+    states.push(rig.fingerprint());
+    rig.command(Command::FreeOrHoldDepth);
+    states.push(rig.fingerprint());
+    for state in states.iter().rev().skip(1) {
+        rig.undo();
+        assert!(rig.fingerprint() == *state);
+    }
+    for state in states.iter().skip(1) {
+        rig.redo();
+        assert!(rig.fingerprint() == *state);
+    }
+}
+
+#[test]
+fn the_free_direction_is_that_of_sight_at_the_last_move() {
+    let mut rig = bar();
+    rig.command(Command::FreeOrHoldDepth);
+    let direction = |rig: &Rig| rig.editor.view().handles[0].free_along.unwrap();
+    assert!(direction(&rig).dot(DVec3::NEG_X) > 0.99);
+    rig.command(Command::View(NamedView::Front));
+    assert!(direction(&rig).dot(DVec3::NEG_X) > 0.99);
+    assert!(rig.drag(GizmoPart::Arrow(1), DVec2::new(0.0, -40.0)));
+    let view = rig.editor.view();
+    let sight = view.camera.towards_eye(view.handles[0].centre());
+    assert!(direction(&rig).dot(-sight) > 1.0 - 1e-12);
+}
+
+#[test]
+fn an_exported_edit_and_a_project_keep_the_freedom_and_give_the_shape() {
+    for method in ["bilaplacian", "arap"] {
+        let mut rig = bar();
+        rig.choose(method);
+        rig.command(Command::FreeOrHoldDepth);
+        pull(&mut rig, PULL_PX);
+        let shown = rig.editor.document().from_rest().to_vec();
+        let edit = rig.editor.edit_file().unwrap();
+        let read = EditFile::parse(&edit.to_json()).unwrap();
+        assert!(read.handles[0].free_along.is_some());
+        let setup = read.resolve(&rig.model).unwrap();
+        let (progress, cancel) = (Progress::new(), Cancel::new());
+        let ordering = setup.method.ordering(&rig.model.topology, &progress, &cancel).unwrap();
+        let bound = setup.problem(&rig.model).bind(ordering.as_ref(), &progress, &cancel);
+        let mut bound = bound.unwrap();
+        let start = match &setup.kept {
+            Some(kept) => Start::Kept(kept.clone()),
+            None => Start::Shape(Arc::new(vec![DVec3::ZERO; shown.len()])),
+        };
+        let bent = start
+            .bend(&mut bound, &setup.targets_at(1.0), Until::End, &cancel)
+            .unwrap();
+        let apart = farthest(&bent.shown, &shown) / rig.model.bounds().unwrap().diagonal();
+        assert!(apart < ITERATED, "{method}: {apart:e}");
+        if method == "bilaplacian" {
+            assert!(apart < 1e-9, "{apart:e}");
+        }
+    }
+}
+
+#[test]
+fn a_free_direction_is_refused_beside_a_line_and_without_length() {
+    let edit = |members: &str| {
+        let text =
+            format!(r#"{{"version": 1, "method": {{"name": "arap"}}, "handles": [{{"name": "hand", {members}}}]}}"#);
+        EditFile::parse(&text)
+    };
+    let of = |refused: Result<EditFile, EditError>| refused.unwrap_err().to_string();
+    let said = of(edit(r#""select": "all", "free_along": [0, 0, 0]"#));
+    assert!(
+        said.contains("handles[0].free_along") && said.contains("not all 0"),
+        "{said}"
+    );
+    let line = r#""curve": {"points": [[0, 0, 0], [1, 0, 0]]}, "free_along": [0, 0, 1]"#;
+    let said = of(edit(line));
+    assert!(said.contains("`free_along`"), "{said}");
+    assert!(of(edit(r#""select": "all", "free_along": 3"#)).contains("handles[0].free_along"));
+    assert_eq!(
+        edit(r#""select": "all", "free_along": [0, 0, 2]"#).unwrap().handles[0].free_along,
+        Some(DVec3::Z * 2.0)
+    );
+}
