@@ -46,7 +46,7 @@ impl Former {
         Snapshot {
             document,
             model: Arc::clone(&self.model),
-            camera: snapshot.camera.clone(),
+            camera: snapshot.camera,
         }
     }
 }

@@ -86,7 +86,7 @@ pub use format::{
     Accuracy, AttachmentEntry, Axis, Beginning, DyeEntry, EDIT_VERSION, EditError, EditFile, ExampleEntry,
     ExampleSource, ExportError, FieldEntry, FilterEntry, FilterKind, FlowFile, FlowMotion, FootprintEntry, GroundAxis,
     HandleEntry, HandleSetup, JoinsFile, KeyEntry, MeshReference, Placement, PoseEntry, Project, Rest, SOFT_RANGE,
-    STIFFNESS_RANGE, Selector, Setup, StoredKept, VelocityEntry, geometry_hash, refuse_keys,
+    STIFFNESS_RANGE, Selector, Setup, StoredKept, VelocityEntry, digest, geometry_hash, refuse_keys,
 };
 pub use former::Former;
 pub use input::{Button, Key, Modifiers, Pointer};

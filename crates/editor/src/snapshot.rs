@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::DVec3;
 use pliant_mesh::Model;
 
-use crate::document::{Document, Matching};
+use crate::document::{Document, Dye, Matching};
 use crate::view::Camera;
 use crate::{Beginning, MeshReference, Project, geometry_hash};
 
@@ -21,6 +21,20 @@ impl Snapshot {
     /// The project of this state. This takes some tens of milliseconds on a large mesh.
     pub fn project(&self, mesh: MeshReference) -> Project {
         Project::of(&self.document, &self.model, Some(&self.camera), mesh)
+    }
+
+    /// The same without the kept dye that a file has already, whose colours were saved with `saved`: an entry per surface
+    /// vertex.
+    #[must_use]
+    pub fn without_saved_dye(&self, saved: &[Dye]) -> Self {
+        let mut without = self.clone();
+        without.document.set_fluid(self.document.fluid().without_saved(saved));
+        without
+    }
+
+    /// The dye that was kept as vertex colours, of each surface vertex.
+    pub fn kept_dye(&self) -> Option<&Arc<Vec<Dye>>> {
+        self.document.fluid().kept.as_ref()
     }
 
     /// The document on its mesh when that is read again, after another program has changed the file or with another

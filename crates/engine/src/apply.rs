@@ -17,6 +17,7 @@ use tracing::info_span;
 use crate::EngineError;
 use crate::edit_job::EditJob;
 use crate::files::{Destination, NewFile, Staging};
+use crate::flow::{colour_hash, with_dye};
 use crate::loading::Loaded;
 use crate::memory;
 use crate::report::{Distortion, Energy, ExampleWeight, FrameTimes, HandleSlide, Report, finite_or, ms_since};
@@ -59,9 +60,12 @@ pub fn bind(
 
 /// The refusal of a binding, which names vertices by the file's numbers.
 pub(crate) fn refused(file: &Path, model: &Model, error: BindError) -> EngineError {
-    EngineError::Bind {
-        file: file.to_owned(),
-        source: error.renumbered(|vertex| model.first_file_vertex(SurfaceVertex(vertex)).0),
+    match error {
+        BindError::Cancelled(_) => EngineError::Interrupted,
+        error => EngineError::Bind {
+            file: file.to_owned(),
+            source: error.renumbered(|vertex| model.first_file_vertex(SurfaceVertex(vertex)).0),
+        },
     }
 }
 
@@ -118,9 +122,11 @@ pub fn apply(apply: &Apply<'_>, watch: &Watch, staging: &Staging) -> Result<Repo
 
     let progress = watch.begin("saving");
     let start = Instant::now();
+    let (colours, without_dye) = kept_dye(job, &loaded, apply.morph.is_some())?;
     let save = SaveAs {
         inside_out: &setup.inside_out,
         deltas: apply.deltas,
+        colours: colours.as_deref(),
         morph: apply.morph.as_ref(),
         beside: report_to.as_ref().map(|report| ("--report", report)),
         ..SaveAs::shape(&solution.positions, job.output)
@@ -133,7 +139,8 @@ pub fn apply(apply: &Apply<'_>, watch: &Watch, staging: &Staging) -> Result<Repo
         save_ms,
         check_ms: saved.check_ms,
     };
-    let report = report(&loaded, &setup, solution, times, saved.warnings, watch)?;
+    let warnings = saved.warnings.into_iter().chain(without_dye).collect();
+    let report = report(&loaded, &setup, solution, times, warnings, watch)?;
     let mut staged = saved.staged;
     if let Some(to) = report_to {
         let text = report.to_json();
@@ -149,6 +156,25 @@ pub fn apply(apply: &Apply<'_>, watch: &Watch, staging: &Staging) -> Result<Repo
     loaded.refuse_changed(&staged)?;
     staged.commit()?;
     Ok(report)
+}
+
+/// The vertex colours of a project that has kept dye, or a sentence that says why the output has none.
+fn kept_dye(
+    job: &EditJob<'_>,
+    loaded: &Loaded,
+    as_morph: bool,
+) -> Result<(Option<Vec<[u16; 4]>>, Option<String>), EngineError> {
+    let Beginning::Project(project) = job.edit else {
+        return Ok((None, None));
+    };
+    let Some(dye) = project.kept_dye(&loaded.model).map_err(|source| job.refused(source))? else {
+        return Ok((None, None));
+    };
+    if project.mesh_colours().is_some_and(|own| own != colour_hash(loaded)) {
+        let sentence = "FILE has other colours than the project's mesh, so the dye that was kept is left out.";
+        return Ok((None, Some(sentence.to_owned())));
+    }
+    Ok(with_dye(loaded, &dye, job.output, as_morph))
 }
 
 /// Solves an edit with this setup on a file that was read, and reports on it; nothing is saved.

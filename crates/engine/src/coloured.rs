@@ -42,19 +42,74 @@ pub(crate) fn save_with_colours(
         ..*save
     };
     let coloured = scene.save_with_colours(&again, &colours, &progress.part(0.7, 1.0), cancel);
-    let mut coloured = coloured.map_err(refused)?;
-    let is_there = |file: &OutputFile| coloured.files.iter().any(|own| own.name == file.name);
-    let further: Vec<OutputFile> = shaped
+    let coloured = coloured.map_err(refused)?;
+    Ok(Saved {
+        triangles: shaped.triangles.clone(),
+        ..with_files_of(coloured, shaped)
+    })
+}
+
+/// The formats of text in whose own files new colours keep every vertex.
+const TEXT: [Format; 3] = [Format::Obj, Format::Ply, Format::Off];
+
+/// Returns true if [`save_targets_with_colours`] can save this file.
+pub(crate) fn targets_take_colours(scene: &Scene) -> bool {
+    scene.is_of_kind(Format::Glb) || TEXT.into_iter().any(|format| scene.is_of_kind(format))
+}
+
+/// A file that was read from `path`, with morph targets and with these colours of its drawn vertices: the colours go into
+/// the file at rest, in memory, and `targets` saves the file that this gives.
+///
+/// # Errors
+/// Those of both saves, as `refused` words them.
+pub(crate) fn save_targets_with_colours(
+    (path, scene): (&Path, &Scene),
+    save: &Save<'_>,
+    colours: &[[u16; 4]],
+    targets: impl FnOnce(&Scene, &Save<'_>, &Progress) -> Result<Saved, SaveError>,
+    refused: impl Fn(SaveError) -> EngineError,
+    (progress, cancel): (&Progress, &Cancel),
+) -> Result<Saved, EngineError> {
+    let own = TEXT.into_iter().find(|format| scene.is_of_kind(*format));
+    let format = own.unwrap_or(save.format);
+    let at_rest = Save {
+        positions: &save.drawn.positions,
+        turned: &[],
+        format,
+        ..*save
+    };
+    let coloured = scene.save_with_colours(&at_rest, colours, &progress.part(0.0, 0.3), cancel);
+    let coloured = coloured.map_err(&refused)?;
+    let neighbours = Neighbours::of(path);
+    let beside = Beside(&coloured.files, &neighbours);
+    let bytes = coloured
+        .files
+        .first()
+        .map(|file| file.bytes.clone())
+        .unwrap_or_default();
+    let of_reading = progress.part(0.3, 0.5);
+    let SceneAndDrawn { scene, drawn } = pliant_io::read(bytes, format, save.name, &beside, &of_reading, cancel)?;
+    let with_targets = Save { drawn: &drawn, ..*save };
+    let saved = targets(&scene, &with_targets, &progress.part(0.5, 1.0)).map_err(refused)?;
+    match own {
+        // The neighbours of a text file are in the glTF.
+        Some(_) => Ok(saved),
+        None => Ok(with_files_of(saved, coloured)),
+    }
+}
+
+/// A save with the further files of the one before it, which it may still name, and with the warnings of both.
+fn with_files_of(mut saved: Saved, before: Saved) -> Saved {
+    let is_there = |file: &OutputFile| saved.files.iter().any(|own| own.name == file.name);
+    let further: Vec<OutputFile> = before
         .files
         .into_iter()
         .skip(1)
         .filter(|file| !is_there(file))
         .collect();
-    coloured.files.extend(further);
-    let warnings = shaped.warnings.into_iter().chain(coloured.warnings);
-    coloured.warnings = warnings.collect();
-    coloured.triangles = shaped.triangles;
-    Ok(coloured)
+    saved.files.extend(further);
+    saved.warnings = before.warnings.into_iter().chain(saved.warnings).collect();
+    saved
 }
 
 /// The colours on the drawn vertices of the saved shape. Faces that were turned may show a text file's vertices in

@@ -12,6 +12,18 @@ pub enum EngineError {
     /// The arguments are wrong.
     #[error("{0}")]
     Arguments(String),
+    /// Numbered files of an animation exist, and nobody allowed it to replace them.
+    #[error(
+        "--output would replace {count} numbered {}, the first of them {}: give another name, or --replace",
+        if *.count == 1 { "file" } else { "files" },
+        shown(.first)
+    )]
+    FramesExist {
+        /// The first of them.
+        first: PathBuf,
+        /// Their number.
+        count: usize,
+    },
     /// A file could not be read or written.
     #[error(transparent)]
     File(#[from] FileError),
@@ -144,7 +156,7 @@ impl EngineError {
     /// The exit status: 2 for wrong arguments, 1 for everything else.
     pub fn status(&self) -> u8 {
         match self {
-            Self::Arguments(_) => 2,
+            Self::Arguments(_) | Self::FramesExist { .. } => 2,
             _ => 1,
         }
     }
@@ -152,7 +164,7 @@ impl EngineError {
     /// Its sentence for callers whose arguments have no dashes before their names.
     pub fn without_dashes(&self) -> String {
         let sentence = self.to_string();
-        let Self::Arguments(_) = self else {
+        let (Self::Arguments(_) | Self::FramesExist { .. }) = self else {
             return sentence;
         };
         let names = [

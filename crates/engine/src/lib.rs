@@ -74,7 +74,9 @@ pub mod stitching;
 mod transfer;
 pub mod watch;
 
-pub use animate::{Animate, Animated, AnimationReport, MORPH_TOLERANCE, MorphReport, animate, stage_animation};
+pub use animate::{
+    Animate, Animated, AnimationReport, ExistingFrames, MORPH_TOLERANCE, MorphReport, animate, stage_animation,
+};
 pub use apply::{Apply, Prepared, Solved, apply, bind, check_bends, order, prepare, solved};
 pub use difference::{Compared, differences};
 pub use edit::read_edit;

@@ -13,7 +13,7 @@ use pliant_mesh::{Cancel, Drawn, Progress};
 use tracing::info_span;
 
 use crate::EngineError;
-use crate::coloured::save_with_colours;
+use crate::coloured::{save_targets_with_colours, save_with_colours};
 use crate::files::check::{self, Written};
 use crate::files::placement::{self, Action, Settled};
 use crate::files::{self, Bridge, Destination, NewFile, Share, Staged, Staging, name_as_text};
@@ -161,10 +161,20 @@ fn encoded(
 ) -> Result<Saved, EngineError> {
     let scene = original.scene;
     let refused = |error| refused(what.output, error);
+    let file = (original.path, scene);
     match (what.colours, what.morph, what.animation) {
-        (Some(colours), ..) => {
-            let course = (progress, cancel);
-            save_with_colours((original.path, scene), save, colours, refused, course)
+        (Some(colours), None, None) => save_with_colours(file, save, colours, refused, (progress, cancel)),
+        (Some(colours), Some(morph), _) => {
+            let targets = |scene: &Scene, save: &Save<'_>, progress: &Progress| {
+                scene.save_as_morph(save, morph, progress, cancel)
+            };
+            save_targets_with_colours(file, save, colours, targets, refused, (progress, cancel))
+        }
+        (Some(colours), None, Some(animation)) => {
+            let targets = |scene: &Scene, save: &Save<'_>, progress: &Progress| {
+                scene.save_as_animation(save, animation, progress, cancel)
+            };
+            save_targets_with_colours(file, save, colours, targets, refused, (progress, cancel))
         }
         (None, Some(morph), _) => scene.save_as_morph(save, morph, progress, cancel).map_err(refused),
         (None, None, Some(animation)) => scene

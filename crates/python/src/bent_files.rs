@@ -6,7 +6,7 @@ use pliant_deform::{Budget, Method};
 use pliant_editor::Beginning;
 use pliant_engine::files::{Staging, refuse_shared};
 use pliant_engine::watch::Watch;
-use pliant_engine::{Animate, Apply, EditJob, EngineError, Given, MorphDeltas, MorphTarget, Sequence};
+use pliant_engine::{Animate, Apply, EditJob, EngineError, ExistingFrames, Given, MorphDeltas, MorphTarget, Sequence};
 use pyo3::prelude::*;
 use pyo3::types::PyBool;
 
@@ -91,7 +91,7 @@ fn morph_name(as_morph: Option<&Bound<'_, PyAny>>, edit: &Given) -> PyResult<Opt
 
 #[doc = include_str!(concat!(env!("OUT_DIR"), "/animate.txt"))]
 #[pyfunction]
-#[pyo3(signature = (file, *, edit, output, report=None, tolerance=0.00001, fps=24.0, method=None, memory=None, weld=None))]
+#[pyo3(signature = (file, *, edit, output, report=None, tolerance=0.00001, fps=24.0, replace=false, method=None, memory=None, weld=None))]
 #[expect(clippy::too_many_arguments, reason = "they are the command's arguments, by name")]
 pub fn animate<'py>(
     py: Python<'py>,
@@ -101,6 +101,7 @@ pub fn animate<'py>(
     report: Option<PathBuf>,
     tolerance: f64,
     fps: f64,
+    replace: bool,
     method: Option<&Bound<'py, PyAny>>,
     memory: Option<&Bound<'py, PyAny>>,
     weld: Option<f64>,
@@ -130,6 +131,7 @@ pub fn animate<'py>(
             name: &name,
             tolerance,
             fps,
+            frames: ExistingFrames::replaced(replace),
         };
         let told = pliant_engine::animate(&job, watch, &Staging::default())?;
         Ok((told.to_json(), told.warnings))

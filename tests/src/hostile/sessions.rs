@@ -255,6 +255,8 @@ impl Desk {
                 }
                 runner.untouched(root, &before, "a refusal");
             }
+            // These sessions export no animation.
+            Err(Unwritten::FramesExist { .. }) => runner.result.refused += 1,
             Err(Unwritten::Changed(..)) => {
                 let found = &mut runner.result.violations;
                 found.push(violation(Law::TheirsIsKept, "the person is asked again and again"));

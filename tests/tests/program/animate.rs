@@ -5,7 +5,12 @@ use std::fs;
 use std::path::Path;
 
 use glam::DVec3;
-use pliant_mesh::{Drawn, shapes};
+use pliant_engine::files::Staging;
+use pliant_engine::watch::Watch;
+use pliant_engine::{
+    Animate, EditJob, EngineError, ExistingFrames, MORPH_TOLERANCE, animate as animate_files, memory, read_edit,
+};
+use pliant_mesh::{Cancel, Drawn, shapes};
 use pliant_tests::morphs::Glb;
 use pliant_tests::{Ended, Folder, diagonal, largest_distance, open, run};
 use serde_json::{Value, json};
@@ -181,6 +186,60 @@ fn handles_without_keys_keep_their_own_transform_and_keys_come_in_any_order() {
 }
 
 #[test]
+fn numbered_files_replace_others_only_on_request() {
+    let folder = Folder::new();
+    folder.write_mesh("bar.off", &bar());
+    let edit = edit("bilaplacian", &json!({}), &keys());
+    folder.write("f-0003.off", "somebody's");
+    let names = folder.names();
+    animate(&folder, &edit, "f-####.off", &["--fps", "8"]).refused(2, &["1 numbered file,", "f-0003.off", "--replace"]);
+    let edit_too: Vec<String> = folder.names().into_iter().filter(|name| name != "edit.json").collect();
+    assert_eq!(edit_too, names);
+    assert_eq!(fs::read(folder.at("f-0003.off")).unwrap(), b"somebody's");
+    animate(&folder, &edit, "f-####.off", &["--fps", "8", "--replace"]).done();
+    assert_ne!(fs::read(folder.at("f-0003.off")).unwrap(), b"somebody's");
+    animate(&folder, &edit, "f-####.off", &["--fps", "8"]).refused(2, &["5 numbered files,", "f-0000.off"]);
+}
+
+#[test]
+fn an_animation_that_is_stopped_anywhere_leaves_the_folder_as_it_was() {
+    for out in ["f-#.off", "f.glb", "f.pc2"] {
+        let folder = Folder::new();
+        let file = folder.write_mesh("bar.off", &bar());
+        let edit_at = folder.write("edit.json", edit("bilaplacian", &json!({}), &keys()).to_string());
+        let edit = read_edit(&edit_at, &Watch::default()).unwrap();
+        let output = folder.at(out);
+        let animation = Animate {
+            job: EditJob {
+                file: &file,
+                edit: &edit,
+                edit_path: &edit_at,
+                output: &output,
+                report: None,
+                weld: None,
+                budget: memory::budget(),
+            },
+            name: "f",
+            tolerance: MORPH_TOLERANCE,
+            fps: 8.0,
+            frames: ExistingFrames::Keep,
+        };
+        let mut stops = 0;
+        for looks in (0..100).map(|step| step + step * step / 2) {
+            let watch = Watch::cancelled_by(&Cancel::after_looks(looks));
+            match animate_files(&animation, &watch, &Staging::default()) {
+                Ok(_) => break,
+                Err(EngineError::Interrupted) => stops += 1,
+                Err(other) => panic!("{out} after {looks} looks: {other}"),
+            }
+            assert_eq!(folder.names(), ["bar.off", "edit.json"], "{out} after {looks} looks");
+        }
+        assert!((3..100).contains(&stops), "{out}: {stops}");
+        assert!(folder.names().len() > 2, "{out}");
+    }
+}
+
+#[test]
 fn keys_that_can_not_be_followed_are_refused_in_words_and_nothing_is_written() {
     let folder = Folder::new();
     let file = folder.write_mesh("bar.off", &bar());
@@ -261,9 +320,11 @@ fn a_gltf_plays_every_frame_within_the_bound_by_few_targets_and_is_otherwise_the
             .into_iter()
             .chain(more.into_iter().flatten()))
         .done();
-        run(words(&edit_at, "own.glb", "f-####.glb")
-            .into_iter()
-            .chain(["--fps".into(), "16".into()]))
+        run(words(&edit_at, "own.glb", "f-####.glb").into_iter().chain([
+            "--fps".into(),
+            "16".into(),
+            "--replace".into(),
+        ]))
         .done();
         let report: Value = serde_json::from_slice(&fs::read(report_at).unwrap()).unwrap();
         let (bound, error) = (

@@ -7,13 +7,18 @@
     reason = "tests fail by panicking and say what they skip"
 )]
 
+use std::ffi::OsStr;
+use std::path::Path;
+
+use crate::disk::{await_words, click, save};
 use crate::window_rig::Session;
 use egui::{Key, Modifiers, Pos2, vec2};
+use egui_kittest::kittest::Queryable;
 use glam::DVec3;
-use pliant_app::window::KeepOriginal;
+use pliant_app::window::{AppDirectories, KeepOriginal, Source};
 use pliant_editor::{Command, NamedView, ToolMode};
 use pliant_mesh::DrawnVertex;
-use pliant_tests::{Folder, assets, open};
+use pliant_tests::{Folder, assets, open, run};
 
 /// A place on the sample's flank.
 fn flank(session: &Session) -> Pos2 {
@@ -115,6 +120,31 @@ fn colour_is_poured_played_kept_and_saved_with_the_bent_shape() {
         }
         assert!(dyed > 10, "{name}: {dyed} dyed vertices at their bent places");
     }
+    // The same colours are in a morph target's file, and in that of the project by the command line.
+    let flowed = colours(&folder.at("flowed.glb"));
+    let (morph, project, applied) = (
+        folder.at("morph.glb"),
+        folder.at("flow.pliant"),
+        folder.at("applied.glb"),
+    );
+    session.harness.state_mut().save_morph_to(morph.clone());
+    session.harness.state_mut().save_project_to(project.clone());
+    session.settle();
+    assert!(colours(&morph) == flowed, "the morph target's file has the dye");
+    assert_eq!(open(&morph).scene.morph_targets(), ["morph"]);
+    let [apply, edit, output] = ["apply", "--edit", "--output"].map(OsStr::new);
+    let sample = assets().join("creature.glb");
+    run([
+        apply,
+        sample.as_os_str(),
+        edit,
+        project.as_os_str(),
+        output,
+        applied.as_os_str(),
+    ])
+    .done();
+    assert!(colours(&applied) == flowed, "`apply` of the project has the dye");
+
     let stl = folder.path().join("flowed.stl");
     session.harness.state_mut().save_to(stl, KeepOriginal::No);
     session.settle();
@@ -123,4 +153,76 @@ fn colour_is_poured_played_kept_and_saved_with_the_bent_shape() {
         said.contains("Saved") && said.contains("takes no new vertex colours"),
         "{said}"
     );
+}
+
+fn colours(path: &Path) -> Vec<[u16; 4]> {
+    open(path).scene.appearance().colours.unwrap()
+}
+
+#[test]
+fn dye_that_a_file_has_already_comes_on_it_only_once() {
+    let folder = Folder::new();
+    let file = folder.at("scan.glb");
+    std::fs::copy(assets().join("creature.glb"), &file).unwrap();
+    let begin = |path: &Path| Session::begin_in(Source::File(path.to_owned()), AppDirectories::default());
+    let Some(mut session) = begin(&file) else { return };
+    from_the_right(&mut session);
+    session.key(Key::Num9, Modifiers::NONE);
+    let from = flank(&session);
+    session.stroke(from, from + vec2(60.0, 0.0));
+    session.harness.state_mut().command(Command::KeepDye);
+    let kept = session
+        .harness
+        .state()
+        .editor()
+        .document()
+        .fluid()
+        .kept
+        .clone()
+        .unwrap();
+    assert!(
+        kept.iter().any(|dye| (0.2..0.8).contains(&dye[3])),
+        "some of it is half transparent"
+    );
+    let project = folder.at("scan.pliant");
+    session.harness.state_mut().save_project_to(project.clone());
+    session.settle();
+    session.harness.state_mut().save_to(file.clone(), KeepOriginal::Yes);
+    session.settle();
+    let once = colours(&file);
+
+    // The project's mesh is the original, not the file of the same shape in other colours.
+    let mut again = begin(&project).unwrap();
+    let out = folder.at("from-project.glb");
+    again.harness.state_mut().save_to(out.clone(), KeepOriginal::No);
+    again.settle();
+    assert!(colours(&out) == once);
+    drop(again);
+
+    // Another program moves the saved file: read again, it has the dye.
+    let moved = r#"{"version": 1, "method": {"name": "bilaplacian"}, "handles":
+        [{"name": "all", "select": "all", "transform": {"translation": [0, 1, 0]}}]}"#;
+    let (edit_at, theirs) = (folder.write("moved.json", moved), folder.at("theirs.glb"));
+    let [apply, edit, output] = ["apply", "--edit", "--output"].map(OsStr::new);
+    run([
+        apply,
+        file.as_os_str(),
+        edit,
+        edit_at.as_os_str(),
+        output,
+        theirs.as_os_str(),
+    ])
+    .done();
+    std::fs::rename(&theirs, &file).unwrap();
+    save(&mut session);
+    if session.harness.query_by_label("Save").is_some() {
+        click(&mut session, "Save");
+    }
+    await_words(&mut session, "scan.glb has changed");
+    click(&mut session, "Reload with the edit");
+    session.settle();
+    let out = folder.at("reloaded.glb");
+    session.harness.state_mut().save_to(out.clone(), KeepOriginal::No);
+    session.settle();
+    assert!(colours(&out) == once);
 }

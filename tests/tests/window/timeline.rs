@@ -6,13 +6,14 @@
     reason = "tests fail by panicking and say what they skip"
 )]
 
+use crate::disk::{await_words, click, says};
 use crate::window_rig::Session;
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, Pos2};
 use egui_kittest::kittest::Queryable;
 use pliant_deform::Method;
 use pliant_editor::{Beginning, Command, Document, KeyId};
-use pliant_engine::{Animate, EditJob, MORPH_TOLERANCE, animate, files::Staging, memory, watch::Watch};
+use pliant_engine::{Animate, EditJob, ExistingFrames, MORPH_TOLERANCE, animate, files::Staging, memory, watch::Watch};
 use pliant_tests::{Folder, assets};
 
 fn document(session: &Session) -> &Document {
@@ -180,6 +181,7 @@ fn the_animation_is_exported_as_the_command_line_writes_it() {
         name: "wave",
         tolerance: MORPH_TOLERANCE,
         fps: 8.0,
+        frames: ExistingFrames::Keep,
     };
     animate(&animation, &Watch::default(), &Staging::default()).unwrap();
     assert!(std::fs::read(&written).unwrap() == bytes);
@@ -190,4 +192,26 @@ fn the_animation_is_exported_as_the_command_line_writes_it() {
     let said = session.harness.state().headline().unwrap_or_default().to_owned();
     assert!(said.contains("-####"), "{said}");
     assert!(!wrong.exists());
+}
+
+#[test]
+fn numbered_files_replace_others_only_after_a_question() {
+    let Some(mut session) = keyed() else { return };
+    command(&mut session, Command::SetFps(2.0));
+    let folder = Folder::new();
+    let (frames, last) = (folder.at("wave-##.off"), folder.at("wave-01.off"));
+    std::fs::write(&last, "somebody's").unwrap();
+    for (answer, is_replaced) in [("Cancel", false), ("Replace", true)] {
+        session.harness.state_mut().export_animation(&frames);
+        await_words(&mut session, "Replace 1 file?");
+        assert!(says(&session, "wave-01.off"));
+        assert!(
+            !folder.at("wave-00.off").exists(),
+            "nothing is written before the answer"
+        );
+        click(&mut session, answer);
+        session.settle();
+        assert_eq!(std::fs::read(&last).unwrap() != b"somebody's", is_replaced, "{answer}");
+        assert_eq!(folder.at("wave-00.off").exists(), is_replaced, "{answer}");
+    }
 }

@@ -1,6 +1,6 @@
 //! `pliant animate`: an edit with keys over time.
 
-use pliant_engine::{Animate, EditJob, EngineError, animate, files};
+use pliant_engine::{Animate, EditJob, EngineError, ExistingFrames, animate, files};
 
 use super::apply::own_name;
 use super::motion_arguments::AnimateArguments;
@@ -15,6 +15,7 @@ pub(super) fn run(arguments: &AnimateArguments, console: &mut Console<'_>) -> Re
         report,
         tolerance,
         fps,
+        replace,
         bending,
     } = arguments;
     files::refuse_shared(("--output", output), [("--edit", &**edit_path)])?;
@@ -37,6 +38,7 @@ pub(super) fn run(arguments: &AnimateArguments, console: &mut Console<'_>) -> Re
         name: &name,
         tolerance: *tolerance,
         fps: *fps,
+        frames: ExistingFrames::replaced(*replace),
     };
     let (watch, staging) = (&console.watch, &console.staging);
     let report = on_threads(bending.compute, || animate(&job, watch, staging))??;

@@ -28,6 +28,9 @@ pub(crate) struct AnimateArguments {
     /// The frames a second
     #[arg(long, value_name = "F", default_value = "24", value_parser = frame_rate)]
     pub fps: f64,
+    /// Allow numbered files to replace existing ones
+    #[arg(long)]
+    pub replace: bool,
     /// The bending.
     #[command(flatten)]
     pub bending: BendingArguments,

@@ -62,6 +62,22 @@ impl Fluid {
         dye_colour(over(at(&self.dye), at(&self.kept)))
     }
 
+    /// The same with the kept dye that a file lacks whose colours have `saved` already.
+    pub(crate) fn without_saved(&self, saved: &[Dye]) -> Self {
+        let left = |kept: &Arc<Vec<Dye>>| {
+            let left: Vec<Dye> = kept
+                .iter()
+                .zip(saved)
+                .map(|(kept, saved)| without(*kept, *saved))
+                .collect();
+            left.iter().any(|dye| dye[3] > 0.0).then(|| Arc::new(left))
+        };
+        Self {
+            kept: self.kept.as_ref().and_then(left),
+            ..self.clone()
+        }
+    }
+
     /// The dye over the kept one, in place of both; the fluid is then clear and rests.
     pub(crate) fn with_dye_kept(&self) -> Self {
         let kept = match (&self.dye, &self.kept) {
@@ -76,6 +92,24 @@ impl Fluid {
             ..Self::default()
         }
     }
+}
+
+/// The dye that gives `whole` over `under`: the rest of a dye of which a part is in the file already. Where `under` covers
+/// everything, its own part can't be told any more, and the whole is the answer unless they are equal.
+pub(crate) fn without(whole: Dye, under: Dye) -> Dye {
+    if whole == under {
+        return [0.0; 4];
+    }
+    let seen = 1.0 - under[3];
+    if seen <= 0.0 {
+        return whole;
+    }
+    // 1 − whole = (1 − top)(1 − under) for the coverage.
+    let clear = ((1.0 - whole[3]) / seen).clamp(0.0, 1.0);
+    std::array::from_fn(|k| match k {
+        3 => 1.0 - clear,
+        _ => (whole[k] - clear * under[k]).max(0.0),
+    })
 }
 
 /// One dye over another.
@@ -123,6 +157,26 @@ fn to_srgb(value: f32) -> u8 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_dye_without_the_one_below_it_gives_the_whole_over_that_one_again() {
+        let shares = [0.0f32, 0.25, 0.5, 0.8, 1.0];
+        for top in shares {
+            for under in shares {
+                let [top, under] = [[top * 0.2, top * 0.9, 0.0, top], [under * 0.7, 0.0, under, under]];
+                let whole = over(top, under);
+                let again = over(without(whole, under), under);
+                for (a, b) in again.iter().zip(whole) {
+                    assert!(
+                        (a - b).abs() < 1e-6,
+                        "{top:?} over {under:?}: {again:?} is not {whole:?}"
+                    );
+                }
+            }
+        }
+        let half = [0.5, 0.0, 0.0, 0.5];
+        assert_eq!(without(half, half), [0.0; 4]);
+    }
 
     #[test]
     fn a_colour_that_covers_everything_is_shown_as_it_is() {

@@ -53,6 +53,6 @@ pub use keys::KeyEntry;
 pub use one_shape::refuse_keys;
 pub(crate) use pivoted::without_pivot;
 pub use pose::PoseEntry;
-pub use project::{MeshReference, Project, StoredKept, geometry_hash};
+pub use project::{MeshReference, Project, StoredKept, digest, geometry_hash};
 pub use selector::{Axis, Selector};
 pub use setup::{HandleSetup, Rest, Setup};

@@ -5,6 +5,7 @@ mod interpolation;
 mod motion;
 mod posed;
 mod span;
+mod spline;
 mod track;
 
 pub(crate) use self::filter::quick_motions;

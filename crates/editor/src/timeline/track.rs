@@ -2,11 +2,12 @@
 //!
 //! Positions and stretches run along Catmull–Rom splines with uneven spacing, rotations along squad \[Sho87\], the
 //! quaternion curve with the same idea: both pass through their keys and have continuous velocities at evenly spaced
-//! keys.
+//! keys. A handle that two neighbouring keys hold at one place rests between them.
 
 use glam::{DMat3, DQuat, DVec3};
 
 use super::interpolation::between;
+use super::spline::{KeyRates, eased, hermite, squad};
 use crate::document::SplitTransform;
 use crate::ease::Ease;
 
@@ -63,10 +64,11 @@ impl Track {
         let (from, to) = (&self.keys[place], &self.keys[place + 1]);
         let span = to.time - from.time;
         let (from_rate, to_rate) = (self.rates(place), self.rates(place + 1));
+        let turned = eased(share, self.turn_rests(place), self.turn_rests(place + 1));
         let rotation = squad(
             [from.transform.rotation, to.transform.rotation],
             [self.tangent(place), self.tangent(place + 1)],
-            share,
+            turned,
         );
         let basis = hermite(share);
         let vector = |a: DVec3, b: DVec3, rate_a: DVec3, rate_b: DVec3| {
@@ -83,37 +85,50 @@ impl Track {
         }
     }
 
-    /// The rates of change at a key, per second: those of the parabola through it and its neighbours; zero at an end.
+    /// The rates of change at a key, per second: those of the parabola through it and its neighbours; zero at an end. A
+    /// key beside an equal one rests.
     fn rates(&self, place: usize) -> Rates {
         let Some((before, after)) = place.checked_sub(1).zip(self.keys.get(place + 1)) else {
             return Rates::ZERO;
         };
         let (before, key) = (&self.keys[before], &self.keys[place]);
-        let (first, second) = (key.time - before.time, after.time - key.time);
-        let [of_before, of_after] = [second / first, first / second].map(|weight| weight / (first + second));
-        let rate = |a: DVec3, b: DVec3, c: DVec3| (b - a) * of_before + (c - b) * of_after;
+        let rates = KeyRates::of([before.time, key.time, after.time]);
         let (a, b, c) = (&before.transform, &key.transform, &after.transform);
         Rates {
-            pivot: rate(a.pivot, b.pivot, c.pivot),
-            translation: rate(a.translation, b.translation, c.translation),
-            stretch: (b.stretch - a.stretch) * of_before + (c.stretch - b.stretch) * of_after,
+            pivot: rates.of_vector(a.pivot, b.pivot, c.pivot),
+            translation: rates.of_vector(a.translation, b.translation, c.translation),
+            stretch: rates.of_matrix(a.stretch, b.stretch, c.stretch),
         }
     }
 
-    /// The inner quaternion of squad at a key; the key's own at an end, where the turn begins and ends at rest.
+    /// The inner quaternion of squad at a key; the key's own where the turn rests.
     fn tangent(&self, place: usize) -> DQuat {
-        let rotation = |place: usize| self.keys.get(place).map(|key| key.transform.rotation);
         let own = self.keys[place].transform.rotation;
-        match (place.checked_sub(1).and_then(rotation), rotation(place + 1)) {
-            (Some(before), Some(after)) => {
-                let turns = |other: DQuat| (own.inverse() * other).to_scaled_axis();
-                let bend = (turns(before) + turns(after)) * -0.25;
-                (own * DQuat::from_scaled_axis(bend)).normalize()
+        match self.turns(place) {
+            Some([before, after]) if !self.turn_rests(place) => {
+                (own * DQuat::from_scaled_axis((before + after) * -0.25)).normalize()
             }
             _ => own,
         }
     }
+
+    /// True if the turn rests at a key: at an end, and beside a key with the same rotation.
+    fn turn_rests(&self, place: usize) -> bool {
+        self.turns(place)
+            .is_none_or(|turns| turns.iter().any(|turn| turn.length() < SAME_TURN_RAD))
+    }
+
+    /// The turns from a key to both of its neighbours, as scaled axes; `None` at an end.
+    fn turns(&self, place: usize) -> Option<[DVec3; 2]> {
+        let rotation = |place: usize| self.keys.get(place).map(|key| key.transform.rotation);
+        let (before, after) = (rotation(place.checked_sub(1)?)?, rotation(place + 1)?);
+        let own = rotation(place)?.inverse();
+        Some([before, after].map(|other| (own * other).to_scaled_axis()))
+    }
 }
+
+/// A turn by less than this is none.
+const SAME_TURN_RAD: f64 = 1e-9;
 
 /// The rates of change of a transform's vectors, per second.
 struct Rates {
@@ -129,23 +144,6 @@ impl Rates {
         translation: DVec3::ZERO,
         stretch: DMat3::ZERO,
     };
-}
-
-/// The values of the cubic Hermite polynomials: of both ends, and of the rates at both ends.
-fn hermite(share: f64) -> [f64; 4] {
-    let (square, cube) = (share * share, share.powi(3));
-    [
-        2.0 * cube - 3.0 * square + 1.0,
-        3.0 * square - 2.0 * cube,
-        cube - 2.0 * square + share,
-        cube - square,
-    ]
-}
-
-/// Squad: slerp(slerp(q₀, q₁, h), slerp(s₀, s₁, h), 2h(1 − h)) \[Sho87\].
-fn squad([from, to]: [DQuat; 2], [inner_from, inner_to]: [DQuat; 2], share: f64) -> DQuat {
-    let (outer, inner) = (from.slerp(to, share), inner_from.slerp(inner_to, share));
-    outer.slerp(inner, 2.0 * share * (1.0 - share)).normalize()
 }
 
 #[cfg(test)]
@@ -243,6 +241,45 @@ mod tests {
         };
         // From 162 to -90 degrees the short way goes through 180.
         assert!(turn(1.5).abs() > 0.9 * PI, "{}", turn(1.5));
+    }
+
+    #[test]
+    fn a_handle_that_two_keys_hold_rests_between_them() {
+        let moved = DVec3::new(0.3, 2.0, -1.0);
+        for places in [[0, 1, 1, 0, 2], [0, 0, 1, 1, 1], [1, 0, 2, 2, 0]] {
+            let at = |place: i32| f64::from(place);
+            let keys = places.iter().zip([0.0, 0.5, 2.0, 2.25, 4.0]);
+            let keys = keys.map(|(&place, time)| Key {
+                transform: SplitTransform {
+                    stretch: DMat3::from_diagonal(DVec3::splat(1.0 + at(place))),
+                    ..key(time, Ease::Smooth, moved * at(place), at(place)).transform
+                },
+                ..key(time, Ease::Smooth, DVec3::ZERO, 0.0)
+            });
+            let track = Track::new(keys.collect());
+            for pair in track
+                .keys
+                .windows(2)
+                .filter(|pair| pair[0].transform == pair[1].transform)
+            {
+                for share in [0.1, 0.3, 0.5, 0.8] {
+                    let time = pair[0].time + share * (pair[1].time - pair[0].time);
+                    let way = apart(track.at(time).unwrap().affine(), pair[0].transform.affine());
+                    assert!(way < 1e-12, "{places:?} at {time}: {way}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_turn_begins_and_ends_at_rest_like_a_move() {
+        let keys = [(0.0, 0.0), (2.0, 1.5)].map(|(time, turn)| key(time, Ease::Smooth, DVec3::X * turn, turn));
+        let track = Track::new(keys.to_vec());
+        for step in 0..=20 {
+            let transform = track.at(0.1 * f64::from(step)).unwrap();
+            let turn = transform.rotation.to_scaled_axis().z;
+            assert!((turn - transform.translation.x).abs() < 1e-12, "{turn}");
+        }
     }
 
     #[test]

@@ -47,6 +47,41 @@ pub struct Animate<'a> {
     pub tolerance: f64,
     /// The frames a second.
     pub fps: f64,
+    /// Whether numbered files may replace others.
+    pub frames: ExistingFrames,
+}
+
+/// The treatment of files with the names of an animation's numbered files.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub enum ExistingFrames {
+    /// They are kept, and the animation is refused.
+    #[default]
+    Keep,
+    /// They are replaced.
+    Replace,
+}
+
+impl ExistingFrames {
+    /// Those that may be replaced on request.
+    pub fn replaced(is_wanted: bool) -> Self {
+        if is_wanted { Self::Replace } else { Self::Keep }
+    }
+
+    /// Refuses names that are taken.
+    fn check(self, frames: &Frames) -> Result<(), EngineError> {
+        let Frames::Each { .. } = frames else { return Ok(()) };
+        if self == Self::Replace {
+            return Ok(());
+        }
+        let mut taken = frames.all().filter(|place| place.exists());
+        match taken.next() {
+            Some(first) => Err(EngineError::FramesExist {
+                first,
+                count: 1 + taken.count(),
+            }),
+            None => Ok(()),
+        }
+    }
 }
 
 /// Solves every frame of an animation and writes it and the report, or nothing at all.
@@ -117,6 +152,7 @@ pub fn stage_animation(
         let edited = matches!(kind, Kind::Morphs).then_some(job.file);
         job.refuse_outputs(&place, edited, watch)?;
     }
+    animation.frames.check(&frames)?;
     let start = Instant::now();
     let moving = match is_at_rest(edit) {
         true => None,

@@ -1,17 +1,51 @@
 //! Dye over a file's own colours.
 
+use std::path::Path;
+
 use pliant_editor::Dye;
+use pliant_io::Format;
 use pliant_mesh::{DrawnVertex, Model};
 
+use crate::coloured;
 use crate::loading::Loaded;
 
 const MOST: f64 = u16::MAX as f64;
 
 /// A file's colours with a dye for each surface vertex over them, linear and from 0 to 65535, one for each drawn vertex;
 /// `None` if nothing is dyed.
-pub fn dyed(loaded: &Loaded, dyes: &[Dye]) -> Option<Vec<[u16; 4]>> {
+fn dyed(loaded: &Loaded, dyes: &[Dye]) -> Option<Vec<[u16; 4]>> {
     let dyes: Vec<[f64; 4]> = dyes.iter().map(|dye| dye.map(f64::from)).collect();
     Colours::of(loaded).with(&dyes, &loaded.model)
+}
+
+/// The colours of a save of a file with dye that was kept over its own: `output` gives the format. A sentence comes
+/// instead if a file of that format can't have them.
+pub fn with_dye(
+    loaded: &Loaded,
+    dyes: &[Dye],
+    output: &Path,
+    as_morph: bool,
+) -> (Option<Vec<[u16; 4]>>, Option<String>) {
+    let scene = &loaded.scene;
+    let holds = Format::of_name(&output.to_string_lossy()).is_ok_and(|format| match as_morph {
+        true => coloured::targets_take_colours(scene),
+        false => scene.takes_colours(format),
+    });
+    match dyed(loaded, dyes) {
+        Some(_) if !holds => (None, Some(WITHOUT_COLOURS.to_owned())),
+        colours => (colours, None),
+    }
+}
+
+/// The sentence about colours that are not saved.
+const WITHOUT_COLOURS: &str =
+    "This kind of file takes no new vertex colours, so the kept dye is not in it: save as GLB, PLY or OBJ, too.";
+
+/// `sha256:` and the digest of a file's own colours.
+pub fn colour_hash(loaded: &Loaded) -> String {
+    let colours = loaded.scene.appearance().colours.unwrap_or_default();
+    let bytes = colours.iter().flatten().flat_map(|channel| channel.to_le_bytes());
+    pliant_editor::digest(&bytes.collect::<Vec<u8>>())
 }
 
 /// The file's own colours, one for each drawn vertex; white if it has none.

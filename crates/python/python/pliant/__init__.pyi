@@ -274,6 +274,7 @@ def animate(
     report: File | None = None,
     tolerance: float = 0.00001,
     fps: float = 24.0,
+    replace: bool = False,
     method: Method | None = None,
     memory: int | str | None = None,
     weld: float | None = None,
@@ -287,6 +288,7 @@ def animate(
     :param report: the file for the report.
     :param tolerance: the largest error of a glTF's frames, 1e-7 to 0.1, as a share of the diagonal of the shape's box.
     :param fps: the frames a second, 0.001 to 1000.
+    :param replace: whether numbered files may replace existing ones.
     :param method: the method instead of the edit's, as in `apply`.
     :param memory: the most memory for binding, as in `apply`.
     :param weld: the distance within which vertices are joined; by default the edit's.

@@ -25,7 +25,7 @@ use crate::window::threads::message::{Message, Purpose};
 use crate::window::widgets::theme;
 use pliant_engine::control_mesh::control_mesh;
 use pliant_engine::watch::Watch;
-use pliant_engine::{EngineError, Loaded, examples, is_project};
+use pliant_engine::{EngineError, ExistingFrames, Loaded, examples, is_project};
 
 impl Application {
     pub(in crate::window) fn file_shortcuts(&mut self, context: &egui::Context) {
@@ -95,6 +95,7 @@ impl Application {
                 let animation = AnimationToWrite {
                     edit,
                     fps: self.editor.document().animation().fps(),
+                    frames: ExistingFrames::Keep,
                     mesh,
                     watch: Watch::default(),
                 };
@@ -358,6 +359,7 @@ impl Application {
             }
             Answer::Reload => self.reload_changed(),
             Answer::Overwrite => self.overwrite(),
+            Answer::ReplaceFrames => self.replace_frames(),
             Answer::Beside => self.save_beside(),
             Answer::Path(purpose, path) if self.would_be_lost(purpose, &path) => {
                 self.dialogs.question = Some(Question::Replace(purpose, path));

@@ -19,7 +19,7 @@ use crate::window::session::opening::Reload;
 use crate::window::session::{KeepOriginal, Source};
 use crate::window::threads::message::{Ground, PictureKind, Purpose};
 use pliant_engine::files::shown;
-use pliant_engine::is_project;
+use pliant_engine::{ExistingFrames, is_project};
 use pliant_mesh::WeldOptions;
 
 impl Application {
@@ -173,6 +173,10 @@ impl Application {
                 self.dialogs.question = Some(Question::Changed(path, offers));
                 self.waiting.unwritten = Some(request);
             }
+            Err(Unwritten::FramesExist { first, count, request }) => {
+                self.dialogs.question = Some(Question::ReplaceFrames { first, count });
+                self.waiting.unwritten = Some(request);
+            }
             Err(Unwritten::Refused(sentence)) => {
                 self.session.ask_again();
                 self.waiting.then = None;
@@ -240,6 +244,17 @@ impl Application {
         self.session.save_again(*request, &self.workers);
     }
 
+    /// Writes an animation whose numbered files replace others.
+    pub(in crate::window) fn replace_frames(&mut self) {
+        let Some(mut request) = self.waiting.unwritten.take() else {
+            return;
+        };
+        if let Content::Animation(animation) = &mut request.content {
+            animation.frames = ExistingFrames::Replace;
+        }
+        self.session.save_again(*request, &self.workers);
+    }
+
     /// Opens the changed file with the former one's edit.
     pub(in crate::window) fn reload_changed(&mut self) {
         let reload = self
@@ -270,7 +285,7 @@ impl Application {
         }
         let saved = match in_file {
             InFile::AsRead => None,
-            InFile::Saved(saved) => Some(Arc::clone(saved)),
+            InFile::Saved(saved) => Some(saved.clone()),
             InFile::Made(..) | InFile::Unknown => return None,
         };
         let reload = Reload {
@@ -299,7 +314,7 @@ impl Application {
             MeshSource::Sample => (None, None),
             MeshSource::File(file) => (Some(file.clone()), None),
             MeshSource::Gone => match open.in_file.saved() {
-                Some(saved) => (open.path.clone(), Some(Arc::clone(saved))),
+                Some(saved) => (open.path.clone(), Some(saved.clone())),
                 None => {
                     let gone =
                         "no file holds the mesh as it was opened: save the project, open it, then weld its vertices";

@@ -26,6 +26,13 @@ pub enum Question {
     File(Purpose, Box<FolderBrowser>),
     /// The replacement of the existing file at the chosen path.
     Replace(Purpose, PathBuf),
+    /// The replacement of existing numbered files of an animation.
+    ReplaceFrames {
+        /// The first of them.
+        first: PathBuf,
+        /// Their number.
+        count: usize,
+    },
     /// The loss of unsaved work.
     Discard(Then, String),
     /// The recovery of earlier sessions' work.
@@ -41,6 +48,7 @@ impl Question {
             Self::File(purpose, _) => file_dialog::title(*purpose),
             Self::Recover(_) => "Recover unsaved work?",
             Self::Replace(..) => "Replace the file?",
+            Self::ReplaceFrames { .. } => "Replace the frames?",
             Self::Discard(..) => "There is unsaved work",
         }
     }
@@ -84,6 +92,8 @@ pub enum Answer {
     Replace(Purpose, PathBuf),
     /// Read the file that another program has changed again, and apply the edit to it.
     Reload,
+    /// Replace the existing numbered files.
+    ReplaceFrames,
     /// Replace the file that another program has changed.
     Overwrite,
     /// Save under another name than the file that another program has changed.
@@ -112,6 +122,7 @@ pub fn ask(context: &egui::Context, question: &mut Question) -> Option<Answer> {
             Question::Changed(path, offer) => changed(ui, path, offer, &mut answer),
             Question::File(purpose, browser) => file(ui, *purpose, browser, &mut answer),
             Question::Replace(purpose, path) => replace(ui, *purpose, path, &mut answer),
+            Question::ReplaceFrames { first, count } => replace_frames(ui, first, *count, &mut answer),
             Question::Discard(then, name) => discard(ui, then, name, &mut answer),
             Question::Recover(left) => recover(ui, left, &mut answer),
         }
@@ -191,6 +202,31 @@ fn replace(ui: &mut egui::Ui, purpose: Purpose, path: &Path, answer: &mut Option
         }
         if ui.button("Replace").clicked() {
             *answer = Some(Answer::Replace(purpose, path.to_owned()));
+        }
+        if ui.button("Cancel").clicked() {
+            *answer = Some(Answer::Cancel);
+        }
+    });
+}
+
+fn replace_frames(ui: &mut egui::Ui, first: &Path, count: usize, answer: &mut Option<Answer>) {
+    let files = if count == 1 {
+        "1 file".to_owned()
+    } else {
+        format!("{count} files")
+    };
+    ui.heading(format!("Replace {files}?"));
+    ui.label(format!(
+        "Files with the names of the frames exist, the first of them {}. Exporting here replaces them.",
+        file_name(first)
+    ));
+    ui.add_space(8.0);
+    ui.horizontal(|ui| {
+        if main_button(ui, "Another name…") {
+            *answer = Some(Answer::Beside);
+        }
+        if ui.button("Replace").clicked() {
+            *answer = Some(Answer::ReplaceFrames);
         }
         if ui.button("Cancel").clicked() {
             *answer = Some(Answer::Cancel);

@@ -9,6 +9,7 @@ use super::rest_mesh::{Check, MeshSource, RestMesh, load_sample};
 use crate::files::names::{SAMPLE_NAME, file_name, original_names, saved_name, source_names, sources_of};
 use crate::files::original::{Kept, free_or_same};
 use pliant_engine::files::{self, Staged, Staging, Stamp};
+use pliant_engine::flow::colour_hash;
 use pliant_engine::saving::{self, SaveAs};
 use pliant_engine::watch::Watch;
 use pliant_engine::{EngineError, Loaded};
@@ -40,12 +41,13 @@ pub fn stage(
         }
     };
     let name = beside.is_some().then(|| file_name(&mesh.loaded.path));
-    assembled(snapshot, (mesh_path, name), beside, path, staging)
+    assembled(snapshot, &mesh.loaded, (mesh_path, name), beside, path, staging)
 }
 
 /// A project that names its mesh by a path and, if that is not its own name, by the name that people know.
 fn assembled(
     snapshot: &Snapshot,
+    loaded: &Loaded,
     (mesh_path, name): (Option<String>, Option<String>),
     beside: Option<(PathBuf, Option<Staged>)>,
     path: &Path,
@@ -56,6 +58,11 @@ fn assembled(
         name,
         geometry: geometry_hash(snapshot.model()),
     });
+    // Kept dye lies over the mesh's own colours, so it must not come upon a file that has it already.
+    let project = match snapshot.kept_dye() {
+        Some(_) => project.over_colours(colour_hash(loaded)),
+        None => project,
+    };
     let staged = staging.stage([(path.to_owned(), project.to_json().as_bytes())])?;
     let (kept, mesh) = beside.unzip();
     Ok(StagedProject {
@@ -91,7 +98,7 @@ pub fn write_with_mesh(
     let stands_at = kept.map(|kept| relative(model.unwrap_or(kept), files::folder_of(path)));
     // If the model has a file, its path says which.
     let name = (beside.is_some() && model.is_none()).then(|| file_name(&mesh.loaded.path));
-    let StagedProject { staged, kept } = assembled(snapshot, (stands_at, name), beside, path, &staging)?;
+    let StagedProject { staged, kept } = assembled(snapshot, &mesh.loaded, (stands_at, name), beside, path, &staging)?;
     staged.commit()?;
     if let Some(kept) = kept {
         mesh.note_copy(&kept, Stamp::of(&kept)?);
@@ -216,7 +223,7 @@ pub fn read(path: &Path, watch: &Watch) -> Result<OpenedProject, EngineError> {
     let folder = files::folder_of(path);
     let at = files::path_of_text(folder, &named);
     let beside = folder.join(at.file_name().unwrap_or_default());
-    let mut what = "missing";
+    let (mut what, mut found) = ("missing", None);
     let places = [&at, &beside].into_iter().cloned();
     let originals = original_names(&at).chain(original_names(&beside));
     let places = places.chain(originals).chain(sources_of(path));
@@ -230,16 +237,27 @@ pub fn read(path: &Path, watch: &Watch) -> Result<OpenedProject, EngineError> {
                 continue;
             }
         };
-        if geometry_hash(&loaded.model) == project.mesh().geometry {
-            return Ok(OpenedProject {
-                project,
-                loaded,
-                source: MeshSource::File(mesh),
-                named: at.clone(),
-                stamp,
-            });
+        if geometry_hash(&loaded.model) != project.mesh().geometry {
+            what = "a different mesh now";
+        } else if project
+            .mesh_colours()
+            .is_none_or(|colours| colours == colour_hash(&loaded))
+        {
+            found = Some((loaded, mesh));
+            break;
+        } else {
+            // A file with other colours may have the kept dye in them already: the original is better.
+            found.get_or_insert((loaded, mesh));
         }
-        what = "a different mesh now";
+    }
+    if let Some((loaded, mesh)) = found {
+        return Ok(OpenedProject {
+            project,
+            loaded,
+            source: MeshSource::File(mesh),
+            named: at.clone(),
+            stamp,
+        });
     }
     Err(EngineError::ProjectMesh {
         project: path.to_owned(),

@@ -8,10 +8,11 @@ use glam::DVec3;
 use pliant_editor::{Dye, EditFile, SaveMark, Snapshot};
 use pliant_render::Image;
 
+use super::in_file::SavedShape;
 use super::rest_mesh::{MeshSource, RestMesh};
-use pliant_engine::Loaded;
 use pliant_engine::files::KnownFiles;
 use pliant_engine::watch::Watch;
+use pliant_engine::{ExistingFrames, Loaded};
 
 /// The request.
 #[derive(Clone)]
@@ -65,6 +66,8 @@ pub struct AnimationToWrite {
     pub edit: EditFile,
     /// The frames a second.
     pub fps: f64,
+    /// Whether numbered files may replace others.
+    pub frames: ExistingFrames,
     /// The mesh as it was read.
     pub mesh: RestMesh,
     /// The stage of the work.
@@ -125,8 +128,8 @@ pub enum WrittenKind {
         of: Arc<Loaded>,
         /// The new place of the mesh as it was read, if that has changed.
         source: Option<MeshSource>,
-        /// The file's displacements, per surface vertex.
-        saved: Arc<Vec<DVec3>>,
+        /// The shape in the file.
+        saved: SavedShape,
     },
     /// The project.
     Project,
@@ -144,6 +147,15 @@ pub enum WrittenKind {
 pub enum Unwritten {
     /// Another program has changed this file since the window read or wrote it: the person decides.
     Changed(PathBuf, Box<SaveRequest>),
+    /// The animation's numbered files would replace others: the person decides.
+    FramesExist {
+        /// The first of them.
+        first: PathBuf,
+        /// Their number.
+        count: usize,
+        /// The save.
+        request: Box<SaveRequest>,
+    },
     /// Another reason.
     Refused(String),
 }

@@ -3,30 +3,31 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use pliant_io::{Format, MorphTarget};
+use pliant_io::MorphTarget;
 use pliant_mesh::{Cancel, Progress};
 use pliant_render::Image;
 
+use super::in_file::SavedShape;
 use super::project_file;
 use super::rest_mesh::MeshSource;
 use super::save_request::{
-    AnimationToWrite, Changed, Content, KeepOriginal, Model, SaveRequest, Unwritten, Written, WrittenKind,
+    AnimationToWrite, Changed, Content, KeepOriginal, Model, SaveRequest, Shape, Unwritten, Written, WrittenKind,
 };
 use crate::files::names::file_name;
 use crate::files::original::{Kept, Original};
 use pliant_editor::Beginning;
-use pliant_engine::EngineError;
 use pliant_engine::files::{self, Staged, Staging, Stamp};
-use pliant_engine::flow::dyed;
+use pliant_engine::flow::with_dye;
 use pliant_engine::saving::{self, SaveAs};
 use pliant_engine::{Animate, EditJob, MORPH_TOLERANCE, memory, stage_animation};
+use pliant_engine::{EngineError, Loaded};
 use pliant_picture::picture_file;
 
 /// Writes the content. A save that was stopped in time has changed nothing.
 ///
 /// # Errors
-/// [`Unwritten::Changed`] if another program has changed a file that would be replaced, and [`Unwritten::Refused`] with
-/// a sentence otherwise; every file is then unchanged.
+/// [`Unwritten::Changed`] if another program has changed a file that would be replaced, [`Unwritten::FramesExist`] if
+/// numbered files would be, and [`Unwritten::Refused`] with a sentence otherwise; every file is then unchanged.
 pub fn write(request: SaveRequest, progress: &Progress, cancel: &Cancel) -> Result<Written, Unwritten> {
     let name = file_name(&request.path);
     let stopped = || {
@@ -36,6 +37,11 @@ pub fn write(request: SaveRequest, progress: &Progress, cancel: &Cancel) -> Resu
     match write_unless_changed(&request, progress, cancel) {
         Ok(Ok(written)) => Ok(written),
         Ok(Err(changed)) => Err(Unwritten::Changed(changed, Box::new(request))),
+        Err(EngineError::FramesExist { first, count }) => Err(Unwritten::FramesExist {
+            first,
+            count,
+            request: Box::new(request),
+        }),
         Err(EngineError::Interrupted) => Err(stopped()),
         Err(error) => Err(Unwritten::Refused(error.to_string())),
     }
@@ -150,14 +156,16 @@ fn ready(request: &SaveRequest, staging: &Staging, progress: &Progress, cancel: 
                 name: &stem,
                 weight: 1.0,
             };
+            let (colours, lost) = colours(shape, &mesh.loaded, path, true);
             let save = SaveAs {
                 morph: Some(&morph),
                 inside_out: &shape.inside_out,
+                colours: colours.as_deref(),
                 ..SaveAs::shape(&positions, path)
             };
             let saved = saving::stage(&mesh.loaded, &save, staging, progress, cancel)?;
             Ok(Ready {
-                notes: saved.warnings,
+                notes: saved.warnings.into_iter().chain(lost).collect(),
                 ..Ready::new(saved.staged, WrittenKind::Morph)
             })
         }
@@ -189,6 +197,7 @@ fn ready_animation(
         name: &stem,
         tolerance: MORPH_TOLERANCE,
         fps: animation.fps,
+        frames: animation.frames,
     };
     let watch = animation.watch.stopped_by(cancel);
     let animated = stage_animation(&wanted, loaded, &animation.edit, &watch, staging)?;
@@ -198,9 +207,11 @@ fn ready_animation(
     })
 }
 
-/// The note about colours that are not saved.
-const WITHOUT_COLOURS: &str =
-    "This kind of file takes no new vertex colours, so the kept dye is not in it: save as GLB, PLY or OBJ, too.";
+/// The colours of a shape with kept dye, or a sentence that says why the file has none.
+fn colours(shape: &Shape, loaded: &Loaded, path: &Path, as_morph: bool) -> (Option<Vec<[u16; 4]>>, Option<String>) {
+    let dye = shape.dye.as_ref();
+    dye.map_or((None, None), |dye| with_dye(loaded, dye, path, as_morph))
+}
 
 /// The model, together with the original of the file that it replaces.
 fn ready_model(
@@ -219,10 +230,7 @@ fn ready_model(
     let keeps = model.keep_original == KeepOriginal::Yes || is_source;
     let split = if keeps { 0.5 } else { 1.0 };
     let (of_save, of_original) = (progress.part(0.0, split), progress.part(split, 1.0));
-    let holds_colours = Format::of_name(&path.to_string_lossy()).is_ok_and(|format| loaded.scene.takes_colours(format));
-    let colours = shape.dye.as_ref().and_then(|dye| dyed(loaded, dye));
-    let lost = (colours.is_some() && !holds_colours).then(|| WITHOUT_COLOURS.to_owned());
-    let colours = colours.filter(|_| holds_colours);
+    let (colours, lost) = colours(shape, loaded, path, false);
     let save = SaveAs {
         inside_out: &shape.inside_out,
         colours: colours.as_deref(),
@@ -232,7 +240,10 @@ fn ready_model(
     let written = |source| WrittenKind::Model {
         of: Arc::clone(&mesh.loaded),
         source,
-        saved: Arc::clone(&shape.displacements),
+        saved: SavedShape {
+            displacements: Arc::clone(&shape.displacements),
+            dye: shape.dye.clone().filter(|_| colours.is_some()),
+        },
     };
     let mut ready = Ready {
         notes: saved.warnings.into_iter().chain(lost).collect(),

@@ -211,7 +211,7 @@ impl Session {
                         }
                         None => (&mut open.mesh, &mut open.in_file, &mut open.may_write_over),
                     };
-                    *in_file = InFile::Saved(Arc::clone(saved));
+                    *in_file = InFile::Saved(saved.clone());
                     *may_write_over = true;
                     if let Some(source) = source {
                         mesh.source = source.clone();

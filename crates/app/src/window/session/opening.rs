@@ -8,6 +8,7 @@ use pliant_editor::{Beginning, SavedAs, Snapshot};
 use pliant_mesh::WeldOptions;
 
 use crate::files::names::saved_name;
+use crate::window::files::in_file::SavedShape;
 use crate::window::files::project_file;
 use crate::window::files::recovery::left::opened_project;
 use crate::window::files::rest_mesh::{MeshSource, load_sample};
@@ -49,8 +50,8 @@ pub struct Reload {
     pub weld: WeldOptions,
     /// The document.
     pub snapshot: Snapshot,
-    /// The displacements with which the mesh in `file` was saved there, per surface vertex, if it was.
-    pub saved: Option<Arc<Vec<DVec3>>>,
+    /// The shape with which the mesh in `file` was saved there, if it was.
+    pub saved: Option<SavedShape>,
     /// True if the work counts as unsaved.
     pub unsaved: bool,
     /// The project that is open.
@@ -128,8 +129,11 @@ pub(super) fn open(source: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<Mode
                 ),
                 None => (load_sample(&reload.weld, watch)?, MeshSource::Sample),
             };
-            let saved = reload.saved.as_ref().map(|saved| &***saved);
-            let (carried, unmatched) = reload.snapshot.on_changed_mesh(&loaded.model, saved);
+            let displacements = reload.saved.as_ref().map(|saved| &**saved.displacements);
+            let dye = reload.saved.as_ref().and_then(|saved| saved.dye.as_ref());
+            let without_dye = dye.map(|dye| reload.snapshot.without_saved_dye(dye));
+            let snapshot = without_dye.as_ref().unwrap_or(&reload.snapshot);
+            let (carried, unmatched) = snapshot.on_changed_mesh(&loaded.model, displacements);
             if unmatched > 0 {
                 notes.push(format!(
                     "{unmatched} vertices of the changed file are new: they stay fixed until you paint them."

@@ -44,7 +44,7 @@ pub use crate::format::kept::StoredKept;
 use crate::format::stored_field::{Field, Ranges, for_each_drawn, ranges_where};
 use crate::region::{FileContacts, Region, region_input};
 use crate::warning::shortened;
-use crate::{Camera, STIFFNESS_RANGE};
+use crate::{Camera, Dye, STIFFNESS_RANGE};
 
 /// The version of the project format for reading and writing.
 const PROJECT_VERSION: u64 = 1;
@@ -120,6 +120,9 @@ pub struct Project {
     /// The fluid on the surface, and the forces in its flow.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     flow: Option<StoredFlow>,
+    /// The [`digest`] of the mesh's own vertex colours, under dye that was kept.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    mesh_colours: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     camera: Option<StoredCamera>,
 }
@@ -164,6 +167,11 @@ pub fn geometry_hash(model: &Model) -> String {
         hash.update(vertex.0.to_le_bytes());
     }
     hexadecimal(hash)
+}
+
+/// `sha256:` and the digest of bytes.
+pub fn digest(bytes: &[u8]) -> String {
+    hexadecimal(Sha256::new_with_prefix(bytes))
 }
 
 fn hexadecimal(hash: Sha256) -> String {
@@ -269,6 +277,7 @@ impl Project {
             poses: document.poses.iter().map(StoredPose::of).collect(),
             animation: StoredAnimation::of(document.animation()),
             flow: StoredFlow::of(&document.fluid, &document.flow_options, model),
+            mesh_colours: None,
             camera: camera.map(StoredCamera::of),
         }
     }
@@ -285,10 +294,34 @@ impl Project {
         &self.mesh
     }
 
+    /// The same with the [`digest`] of the mesh's own vertex colours, over which its kept dye lies.
+    #[must_use]
+    pub fn over_colours(self, colours: String) -> Self {
+        Self {
+            mesh_colours: Some(colours),
+            ..self
+        }
+    }
+
+    /// That digest, if it is known.
+    pub fn mesh_colours(&self) -> Option<&str> {
+        self.mesh_colours.as_deref()
+    }
+
+    /// The dye that was kept as vertex colours, of each surface vertex of its mesh.
+    ///
+    /// # Errors
+    /// A fluid that can't be read.
+    pub fn kept_dye(&self, model: &Model) -> Result<Option<Arc<Vec<Dye>>>, EditError> {
+        let fluid = self.flow.as_ref().map(|flow| flow.fluid(model)).transpose()?;
+        Ok(fluid.and_then(|fluid| fluid.kept))
+    }
+
     /// A digest of the document in it, independent of the mesh's path and the camera.
     pub fn document_hash(&self) -> String {
         let document = Self {
             camera: None,
+            mesh_colours: None,
             mesh: MeshReference {
                 path: None,
                 ..self.mesh.clone()
