@@ -58,8 +58,8 @@ pub fn cut(job: &Cut<'_>, watch: &Watch, staging: &Staging) -> Result<Stitched, 
         CutAlong::Plane(plane, keep) => CutBy::Plane(plane, keep),
     };
     let CutFile { made, left, gone } = cut_file(&loaded, by, output, report, watch)?;
-    let written = job.remaking.stage(
-        (&made.shape, &made.dressed),
+    let stitched = job.remaking.stage(
+        &made,
         |warnings| {
             json!({
                 "vertices_deleted": loaded.model.drawn.file_vertex_count() - left.vertices,
@@ -71,17 +71,10 @@ pub fn cut(job: &Cut<'_>, watch: &Watch, staging: &Staging) -> Result<Stitched, 
                 "warnings": warnings,
             })
         },
-        made.warnings,
         staging,
         watch,
     )?;
-    Ok(Stitched {
-        staged: written.staged,
-        done: made.done,
-        report: written.report,
-        warnings: written.warnings,
-        loaded: vec![loaded],
-    })
+    Ok(stitched.from(vec![loaded]))
 }
 
 /// The line along which a surface is cut.

@@ -111,6 +111,11 @@ pub struct Stitched {
 }
 
 impl Stitched {
+    /// The same with the files that were read for it.
+    fn from(self, loaded: Vec<Loaded>) -> Self {
+        Self { loaded, ..self }
+    }
+
     /// Commits the files after those of `first`: originals that are kept.
     ///
     /// # Errors
@@ -172,21 +177,20 @@ impl Remaking<'_> {
         watch.refuse_outputs(&outputs, Some(file))
     }
 
-    /// Writes a dressed shape and the report beside their places.
+    /// Writes a shape and the report beside their places. `report` makes the report's members from the warnings.
     fn stage(
         &self,
-        (shape, dressed): (&NewShape, &Dressed),
+        made: &Made,
         report: impl FnOnce(&[String]) -> Value,
-        mut warnings: Vec<String>,
         staging: &Staging,
         watch: &Watch,
-    ) -> Result<Written, EngineError> {
+    ) -> Result<Stitched, EngineError> {
         let progress = watch.begin("saving");
         let report_to = self.report.file().map(Destination::of).transpose()?;
         let beside = report_to.as_ref().map(|to| ("--report", to));
-        let unsaved = dressed.unsaved(shape);
+        let unsaved = made.dressed.unsaved(&made.shape);
         let saved = saving::stage_new(&unsaved, self.output, beside, staging, &progress, &watch.cancel)?;
-        warnings.extend(saved.warnings);
+        let warnings: Vec<String> = made.warnings.iter().cloned().chain(saved.warnings).collect();
         let mut staged = saved.staged;
         let report = self.report.wanted(|| Ok::<_, EngineError>(report(&warnings)))?;
         if let Some((to, report)) = report_to.zip(report.as_ref()) {
@@ -201,8 +205,10 @@ impl Remaking<'_> {
         if watch.cancel.is_cancelled() {
             return Err(EngineError::Interrupted);
         }
-        Ok(Written {
+        Ok(Stitched {
+            loaded: Vec::new(),
             staged,
+            done: made.done.clone(),
             report,
             warnings,
         })
@@ -227,13 +233,6 @@ fn change_of(shape: &NewShape) -> impl Fn(usize) -> Change {
         Age::New => Change::Changed,
         Age::Old => Change::OfPart(0),
     }
-}
-
-/// The files of a new shape, beside their places.
-struct Written {
-    staged: Staged,
-    report: Option<Value>,
-    warnings: Vec<String>,
 }
 
 /// A flag for each welded vertex of a model: whether it is selected.
