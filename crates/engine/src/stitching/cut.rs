@@ -116,7 +116,7 @@ pub(super) fn cut_file(
     let broken = loaded.model.findings.non_finite_triangles.count;
     let gone = drawn.triangles.len() - broken - left.whole - left.split;
     let mut warnings = loaded.scene.notes().to_vec();
-    warnings.extend(lost(loaded, output)?);
+    warnings.extend(lost(loaded, &dressed, output)?);
     let after = report.wanted(|| judged(&shape, dressed.triangles(), change_of(&shape), watch))?;
     let split = match left.split {
         0 => String::new(),

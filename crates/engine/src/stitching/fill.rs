@@ -113,7 +113,7 @@ pub(super) fn filled(
             "{holes} filled without fairing: the equations there could not be solved"
         ));
     }
-    warnings.extend(lost(loaded, output)?);
+    warnings.extend(lost(loaded, &dressed, output)?);
     let after = report.wanted(|| judged(&shape, dressed.triangles(), change_of(&shape), watch))?;
     if let Some((_, crossings)) = after.filter(|(_, crossings)| *crossings > 0) {
         let places = counted(crossings, "place", "places");

@@ -189,7 +189,7 @@ pub(super) fn merged(
     let mut warnings = Vec::new();
     for side in 0..2 {
         warnings.extend(files[side].scene.notes().iter().cloned());
-        warnings.extend(lost(files[side], output)?);
+        warnings.extend(lost(files[side], &dressed, output)?);
         let turned = prepared[side].turned_parts;
         if turned > 0 {
             let parts = counted(turned, "part of", "parts of");

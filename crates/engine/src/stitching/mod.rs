@@ -18,6 +18,7 @@ use pliant_stitch::{Age, NewShape};
 use serde_json::Value;
 
 use crate::EngineError;
+use crate::files::placement::placement;
 use crate::files::{self, Destination, NewFile, Staged, Staging};
 use crate::loading::{Loaded, check_not_empty, load};
 use crate::saving;
@@ -188,7 +189,8 @@ impl Remaking<'_> {
         let progress = watch.begin("saving");
         let report_to = self.report.file().map(Destination::of).transpose()?;
         let beside = report_to.as_ref().map(|to| ("--report", to));
-        let unsaved = made.dressed.unsaved(&made.shape);
+        let place = placement(self.file, &Destination::of(self.output)?);
+        let unsaved = made.dressed.unsaved(&made.shape, place);
         let saved = saving::stage_new(&unsaved, self.output, beside, staging, &progress, &watch.cancel)?;
         let warnings: Vec<String> = made.warnings.iter().cloned().chain(saved.warnings).collect();
         let mut staged = saved.staged;
@@ -254,9 +256,10 @@ fn refused(file: &Path, error: pliant_stitch::StitchError) -> EngineError {
 }
 
 /// The sentences about the parts of a file that a new shape loses.
-fn lost(loaded: &Loaded, output: &Path) -> Result<Vec<String>, EngineError> {
+fn lost(loaded: &Loaded, dressed: &Dressed, output: &Path) -> Result<Vec<String>, EngineError> {
     let format = pliant_io::Format::of_name(&output.to_string_lossy())?;
-    let mut sentences = loaded.scene.lost_in_new_shape(format);
+    let has_own_names = format == pliant_io::Format::Obj && dressed.has_obj_names();
+    let mut sentences = loaded.scene.lost_in_new_shape(format, has_own_names);
     let broken = loaded.model.findings.non_finite_triangles.count;
     if broken > 0 {
         let triangles = counted(broken, "triangle", "triangles");
