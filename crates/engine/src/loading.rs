@@ -124,7 +124,11 @@ pub(crate) fn load_saved(saved: Saved, path: &Path, weld: &WeldOptions, watch: &
     let progress = watch.begin("reading");
     let format = Format::of_name(&name)?;
     let opened = pliant_io::read(bytes, format, &name, &resolver, &progress, &watch.cancel);
-    welded(opened?, path, weld, watch)
+    let loaded = welded(opened?, path, weld, watch)?;
+    Ok(Loaded {
+        neighbours: resolver.on_disk.were_read(),
+        ..loaded
+    })
 }
 
 /// The neighbours of a file in memory.

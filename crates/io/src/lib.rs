@@ -69,7 +69,7 @@ mod threemf;
 mod usdz;
 
 pub use appearance::{
-    AlphaMode, Appearance, Group, Image, Lighting, Map, Material, Origin, OriginalMaterial, UvSet, Wrap,
+    AlphaMode, Appearance, Group, Image, Lighting, Map, Material, ObjNames, Origin, OriginalMaterial, UvSet, Wrap,
 };
 pub use bytes::Bytes;
 pub use cache_frames::CacheFrames;

@@ -185,6 +185,93 @@ fn handles_without_keys_keep_their_own_transform_and_keys_come_in_any_order() {
     assert!(away < 1e-9, "{away}");
 }
 
+/// An edit whose handle follows a curve along the bar's upper end, by `bilaplacian`, of which `strength` is made.
+fn curved(curve: &Value, transform: &Value, strength: &Value) -> Value {
+    let mut edit = edit("bilaplacian", transform, &Value::Null);
+    let mut own = json!({ "points": [[0, 0, 3.4], [0, 0, 3.7], [0, 0, 4.0]] });
+    own.as_object_mut().unwrap().extend(curve.as_object().unwrap().clone());
+    edit["handles"][0]["curve"] = own;
+    edit["strength"] = strength.clone();
+    edit
+}
+
+#[test]
+fn curves_and_the_strength_meet_their_keys_and_rest_between_equal_ones() {
+    let folder = Folder::new();
+    let file = folder.write_mesh("bar.off", &bar());
+    let size = diagonal(&bar().positions);
+    let bent_curve =
+        json!({ "moved": [[0, 0, 3.4], [0.3, 0, 3.7], [0.9, 0, 3.8]], "twist": [0, 20, 60], "scale": [1, 1, 1.3] });
+    let at_rest = json!({});
+    // The curve, the strength and the transform at each key; the strength of the whole edit.
+    let keyed = [
+        (&at_rest, 1.0, json!({})),
+        (&bent_curve, 0.4, lifted()),
+        (&bent_curve, 0.4, lifted()),
+        (&bent_curve, 1.0, lifted()),
+    ];
+    for (own, has_strengths) in [(1.0, true), (0.6, false)] {
+        let mut over_time = curved(&at_rest, &json!({}), &json!(own));
+        let key = |(place, (curve, strength, transform)): (usize, &(&Value, f64, Value))| {
+            let mut key =
+                json!({ "time": 0.25 * place as f64, "curves": { "top": curve }, "handles": { "top": transform } });
+            if has_strengths {
+                key["strength"] = json!(strength);
+            }
+            key
+        };
+        over_time["keys"] = keyed.iter().enumerate().map(key).collect();
+        animate(&folder, &over_time, "f-##.off", &["--fps", "8", "--replace"]).done();
+        let out = folder.at("pose.off");
+        for (place, (curve, strength, transform)) in keyed.iter().enumerate() {
+            let strength = if has_strengths { *strength } else { own };
+            folder
+                .apply(&file, &curved(curve, transform, &json!(strength)), &out, &[])
+                .done();
+            let frame = folder.at(&format!("f-{:02}.off", 2 * place));
+            let away = largest_distance(&shape(&frame), &shape(&out));
+            assert!(away <= 1e-9 * size, "key {place} of strength {strength}: {away}");
+        }
+        let bytes = |frame: u32| fs::read(folder.at(&format!("f-{frame:02}.off"))).unwrap();
+        assert!(
+            bytes(2) == bytes(3) && bytes(3) == bytes(4),
+            "between two equal keys nothing moves"
+        );
+        assert_ne!(bytes(0), bytes(1));
+        assert_eq!(bytes(4) == bytes(5), !has_strengths);
+    }
+}
+
+#[test]
+fn weights_of_examples_meet_their_keys() {
+    let folder = Folder::new();
+    let file = folder.write_mesh("bar.off", &bar());
+    let mut wide = bar();
+    wide.positions.iter_mut().for_each(|position| position.x *= 1.5);
+    folder.write_mesh("wide.off", &wide);
+    let with = |weight: f64| {
+        let mut edit = edit("shells", &json!({}), &Value::Null);
+        edit["method"]["examples"] = json!([{ "file": "wide.off", "weight": weight }]);
+        edit
+    };
+    let mut over_time = with(0.0);
+    over_time["keys"] = json!([
+        { "time": 0.0, "weights": [0.0] },
+        { "time": 0.5, "weights": [0.8] },
+        { "time": 1.0, "weights": [0.8] },
+    ]);
+    animate(&folder, &over_time, "f-#.off", &["--fps", "2"]).done();
+    let out = folder.at("pose.off");
+    folder.apply(&file, &with(0.8), &out, &[]).done();
+    let away = largest_distance(&shape(&folder.at("f-1.off")), &shape(&out));
+    assert!(away <= 1e-6, "{away}");
+    assert!(largest_distance(&shape(&folder.at("f-0.off")), &shape(&out)) > 0.01);
+    assert_eq!(
+        fs::read(folder.at("f-1.off")).unwrap(),
+        fs::read(folder.at("f-2.off")).unwrap()
+    );
+}
+
 #[test]
 fn numbered_files_replace_others_only_on_request() {
     let folder = Folder::new();
@@ -275,6 +362,21 @@ fn keys_that_can_not_be_followed_are_refused_in_words_and_nothing_is_written() {
         ),
         (with(json!([{ "handles": {} }])), "f.pc2", ["keys[0]", "`time`"]),
         (with(keys()), "f-####.xyz", ["--output", "xyz"]),
+        (
+            with(json!([{ "time": 0, "curves": { "top": {} } }])),
+            "f-####.off",
+            ["keys[0].curves", "without a `curve`"],
+        ),
+        (
+            with(json!([{ "time": 0, "strength": 1.5 }])),
+            "f-####.off",
+            ["keys[0].strength is 1.5", "from 0 to 1"],
+        ),
+        (
+            with(json!([{ "time": 0, "weights": [0.5] }])),
+            "f-####.off",
+            ["has 1 `weights`", "0 examples"],
+        ),
     ] {
         let ended = animate(&folder, &edit, out, &[]);
         assert!(ended.status == 1 || ended.status == 2, "{out}: {}", ended.status);

@@ -21,6 +21,7 @@ use super::pose::PoseEntry;
 use super::project::StoredKept;
 use super::reader::read;
 use super::selector::Selector;
+use super::strength::strength_kind;
 use super::transform::optional_vector;
 use crate::HandleTransform;
 use crate::document::{HandleCurve, HandleLine, HandleSketch};
@@ -31,9 +32,6 @@ pub const EDIT_VERSION: u64 = 1;
 
 /// The smallest and the largest stiffness of an edit.
 pub const STIFFNESS_RANGE: std::ops::RangeInclusive<f64> = 0.001..=1000.0;
-
-/// The smallest and the largest shown share of an edit.
-pub const STRENGTH_RANGE: std::ops::RangeInclusive<f64> = 0.0..=1.0;
 
 /// The smallest and the largest weight of a soft handle.
 pub const SOFT_RANGE: std::ops::RangeInclusive<f64> = 1e-6..=1e6;
@@ -372,9 +370,15 @@ impl EditFile {
         if self.kept.is_some() && !self.handles.is_empty() {
             return false;
         }
-        if self.strength == 0.0 {
-            return true;
-        }
+        self.strength == 0.0 || self.is_at_rest()
+    }
+
+    /// The same for the whole edit, of which the strength is a share.
+    pub fn changes_nothing_in_full(&self) -> bool {
+        (self.kept.is_none() || self.handles.is_empty()) && self.is_at_rest()
+    }
+
+    fn is_at_rest(&self) -> bool {
         let own = self.attachments.iter();
         let own = own.filter(|(name, _)| self.method.declaration().attachment(name).is_some());
         let are_at_rest = own.map(|(_, entry)| match entry {
@@ -518,15 +522,6 @@ fn check_parents(handles: &[HandleEntry]) -> Result<(), EditError> {
         }
     }
     Ok(())
-}
-
-/// The range of a strength.
-pub(crate) fn strength_kind() -> FieldKind {
-    FieldKind {
-        name: "a strength",
-        range: STRENGTH_RANGE,
-        may_be_rigid: false,
-    }
 }
 
 /// The range of a weld distance.

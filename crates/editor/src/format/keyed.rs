@@ -1,21 +1,25 @@
 //! An edit's keys on a model: the timeline of its handles.
 
 use super::edit_error::{EditError, remedy};
-use super::edit_file::EditFile;
+use super::edit_file::{EditFile, HandleEntry};
 use super::keys::KeyEntry;
 use super::setup::Setup;
 use crate::HandleTransform;
 use crate::bending::Targets;
-use crate::document::SplitTransform;
+use crate::document::{HandleCurve, SplitTransform};
 use crate::ease::Ease;
-use crate::timeline::{Key, Timeline, Track};
+use crate::timeline::{Key, NumberTrack, Timeline, Track, Values, values_of};
 use crate::warning::shortened;
 
-/// A key of an edit: its time in seconds, the way to the next, and transforms by the handles' places in the list.
-pub(super) struct TimedKey {
+/// A key of an edit: its time in seconds, the way to the next, transforms and curves by the handles' places in the list,
+/// and the weights and the strength that it has.
+pub(super) struct TimedKey<'a> {
     pub(super) time: f64,
     pub(super) ease: Ease,
     pub(super) handles: Vec<(usize, HandleTransform)>,
+    pub(super) curves: Vec<(usize, HandleCurve)>,
+    pub(super) weights: Option<&'a [Option<f64>]>,
+    pub(super) strength: Option<f64>,
 }
 
 impl EditFile {
@@ -31,6 +35,7 @@ impl EditFile {
             });
         }
         let keys = self.timed_keys()?;
+        let part = self.part_before_keys();
         let mut of_handle: Vec<Vec<Key>> = vec![Vec::new(); self.handles.len()];
         for key in &keys {
             for (handle, transform) in &key.handles {
@@ -38,19 +43,67 @@ impl EditFile {
                 of_handle[*handle].push(Key {
                     time: key.time,
                     ease: key.ease,
-                    transform: SplitTransform::of(&transform.part(self.strength, pivot), pivot),
+                    transform: SplitTransform::of(&transform.part(part, pivot), pivot),
                 });
             }
         }
-        let duration = keys.last().map_or(0.0, |key| key.time);
-        Ok(Timeline::new(of_handle.into_iter().map(Track::new).collect(), duration))
+        let curve = |(handle, entry): (usize, &HandleEntry)| {
+            let of_key = |key: &TimedKey<'_>| {
+                let (_, curve) = key.curves.iter().find(|(own, _)| *own == handle)?;
+                Some((key.time, key.ease, values_of(curve)))
+            };
+            let track = NumberTrack::new(keys.iter().filter_map(of_key).collect());
+            let curve = entry.curve.clone().filter(|_| !track.is_empty())?;
+            Some((handle, curve, track))
+        };
+        let numbers = |of: &dyn Fn(&TimedKey<'_>) -> Option<Vec<f64>>| {
+            let keyed = keys.iter().filter_map(|key| {
+                let values = Values {
+                    numbers: of(key)?,
+                    vectors: Vec::new(),
+                };
+                Some((key.time, key.ease, values))
+            });
+            NumberTrack::new(keyed.collect())
+        };
+        let weights = |key: &TimedKey<'_>| {
+            let weights = key.weights?.iter();
+            Some(weights.map(|weight| weight.unwrap_or(f64::NAN)).collect())
+        };
+        if let Some((place, found)) = (0..)
+            .zip(&self.keys)
+            .filter_map(|(place, key)| Some((place, key.weights.as_ref()?.len())))
+            .find(|(_, found)| *found != setup.examples().map_or(0, |examples| examples.shapes.len()))
+        {
+            let count = setup.examples().map_or(0, |examples| examples.shapes.len());
+            let place: usize = place;
+            return Err(EditError::Other {
+                place: format!("keys[{place}]"),
+                sentence: format!("has {found} `weights`, but the method has {count} examples: give one for each"),
+            });
+        }
+        Ok(Timeline {
+            tracks: of_handle.into_iter().map(Track::new).collect(),
+            curves: self.handles.iter().enumerate().filter_map(curve).collect(),
+            weights: numbers(&weights),
+            strength: numbers(&|key| Some(vec![key.strength?])),
+            duration: keys.last().map_or(0.0, |key| key.time),
+        })
+    }
+
+    /// The share of the edit that does not change over time: the keys' own shares are instead of it.
+    pub(super) fn part_before_keys(&self) -> f64 {
+        match self.keys.iter().any(|key| key.strength.is_some()) {
+            true => 1.0,
+            false => self.strength,
+        }
     }
 
     /// Its keys, by time.
     ///
     /// # Errors
     /// Members that are for sequences, a name that no handle has, a name that two handles have.
-    pub(super) fn timed_keys(&self) -> Result<Vec<TimedKey>, EditError> {
+    pub(super) fn timed_keys(&self) -> Result<Vec<TimedKey<'_>>, EditError> {
         let others = [
             ("filter", self.filter.is_empty()),
             ("footprints", self.footprints.is_empty()),
@@ -62,36 +115,73 @@ impl EditFile {
             });
         }
         let names: Vec<&str> = self.handles.iter().map(|handle| &*handle.name).collect();
-        let timed = |(place, key): (usize, &KeyEntry)| {
-            let Some(time) = key.time else {
-                return Err(EditError::Other {
-                    place: format!("keys[{place}]"),
-                    sentence: "has the `frame` of a sequence, not a `time`: use `pliant sequence`, or give it a time"
-                        .to_owned(),
-                });
-            };
-            let named = key.handles.iter().map(|(name, transform)| {
-                let handle = handle_of(name, &names).map_err(|error| error.under(&format!("keys[{place}].handles")))?;
-                Ok((handle, *transform))
-            });
-            Ok(TimedKey {
-                time,
-                ease: key.ease,
-                handles: named.collect::<Result<_, EditError>>()?,
-            })
-        };
-        let timed: Result<Vec<TimedKey>, EditError> = self.keys.iter().enumerate().map(timed).collect();
+        let timed: Result<Vec<TimedKey<'_>>, EditError> = self
+            .keys
+            .iter()
+            .enumerate()
+            .map(|(place, key)| self.timed_key(place, key, &names))
+            .collect();
         let mut keys = timed?;
         keys.sort_by(|a, b| a.time.total_cmp(&b.time));
         Ok(keys)
     }
+
+    fn timed_key<'a>(&self, place: usize, key: &'a KeyEntry, names: &[&str]) -> Result<TimedKey<'a>, EditError> {
+        let Some(time) = key.time else {
+            return Err(EditError::Other {
+                place: format!("keys[{place}]"),
+                sentence: "has the `frame` of a sequence, not a `time`: use `pliant sequence`, or give it a time"
+                    .to_owned(),
+            });
+        };
+        let named = key.handles.iter().map(|(name, transform)| {
+            let handle = handle_of(name, names).map_err(|error| error.under(&format!("keys[{place}].handles")))?;
+            Ok((handle, *transform))
+        });
+        let curves = key.curves.iter().map(|(name, curve)| {
+            let under = |error: EditError| error.under(&format!("keys[{place}].curves"));
+            let handle = handle_of(name, names).map_err(under)?;
+            let refuse = |sentence: String| EditError::Other {
+                place: format!("keys[{place}].curves.{}", shortened(name)),
+                sentence,
+            };
+            let own = self.handles[handle].curve.as_ref();
+            let own = own.ok_or_else(|| {
+                refuse("is of a handle without a `curve`: give the handle one, or remove this".to_owned())
+            })?;
+            Ok((handle, curve.on(own).map_err(refuse)?))
+        });
+        Ok(TimedKey {
+            time,
+            ease: key.ease,
+            handles: named.collect::<Result<_, EditError>>()?,
+            curves: curves.collect::<Result<_, EditError>>()?,
+            weights: key.weights.as_deref(),
+            strength: key.strength,
+        })
+    }
 }
 
 impl Setup {
-    /// The targets at a time of a timeline, in seconds. Control points and weights of examples are those of
-    /// the edit, and keys hold a free handle.
+    /// The targets at a time of a timeline, in seconds. Control points are those of the edit, and so is everything that
+    /// has no keys; a free handle with keys is held by them.
     pub fn targets_during(&self, timeline: &Timeline, time: f64) -> Targets {
-        let targets = self.targets_of(timeline.maps_at(time, self.targets(1.0)));
+        let share = timeline.strength_at(time);
+        let keyed = timeline.transforms_at(time).zip(&self.handles).zip(self.targets(share));
+        let maps = keyed.map(|((transform, handle), own)| match transform {
+            None => own,
+            Some(transform) if share == 1.0 => transform.affine(),
+            Some(transform) => {
+                let part = transform.about(handle.pivot).part(share, handle.pivot);
+                part.affine(handle.pivot)
+            }
+        });
+        let targets = self.targets_with(
+            maps.collect(),
+            timeline.weights_at(time),
+            &timeline.curves_at(time),
+            share,
+        );
         let free_along = self.handles.iter().enumerate();
         let free_along = free_along.map(|(place, handle)| handle.free_along.filter(|_| !timeline.is_keyed(place)));
         targets.free_along(free_along.collect())

@@ -4,8 +4,13 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use pliant_deform::LARGEST_WEIGHT;
+
 use super::edit_error::EditError;
+use super::strength::strength_kind;
+use super::transform::Numbers;
 use crate::HandleTransform;
+use crate::document::HandleCurve;
 use crate::ease::Ease;
 use crate::timeline::KeySpace;
 
@@ -31,6 +36,51 @@ pub struct KeyEntry {
     /// The transforms, by the handles' names.
     #[serde(default)]
     pub handles: BTreeMap<String, HandleTransform>,
+    /// Where handles' curves go, by the handles' names: a key of an animation.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub curves: BTreeMap<String, CurveKey>,
+    /// The weights of the method's examples, in their order; null is one that the solver finds.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub weights: Option<Vec<Option<f64>>>,
+    /// The share of the edit that is made, from 0 to 1. If a key has one, it is instead of the edit's own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub strength: Option<f64>,
+}
+
+/// Where the control points of a handle's curve go. A list that is left out has the values at rest.
+#[derive(Clone, PartialEq, Debug, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CurveKey {
+    /// The positions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) moved: Option<Vec<Numbers<3>>>,
+    /// The twists, in degrees.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) twist: Option<Vec<f64>>,
+    /// The scales.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) scale: Option<Vec<f64>>,
+}
+
+impl CurveKey {
+    /// The curve of a handle at this key.
+    ///
+    /// # Errors
+    /// The list that makes no curve, and its fault.
+    pub(super) fn on(&self, curve: &HandleCurve) -> Result<HandleCurve, String> {
+        let rest = curve.rest();
+        let points = rest.points().to_vec();
+        let count = points.len();
+        let moved = self.moved.as_ref();
+        HandleCurve::new(
+            points.clone(),
+            rest.is_closed(),
+            moved.map_or(points, |moved| moved.iter().map(|own| own.0.into()).collect()),
+            self.twist.clone().unwrap_or_else(|| vec![0.0; count]),
+            self.scale.clone().unwrap_or_else(|| vec![1.0; count]),
+        )
+        .map_err(|(list, refused)| format!("can't be followed: its `{list}` {refused}"))
+    }
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes by reference")]
@@ -68,7 +118,28 @@ pub(super) fn check_keys(keys: &[KeyEntry]) -> Result<(), EditError> {
                 );
             }
             (Some(time), None) => check_time(keys, place, time)?,
+            (None, Some(_)) if !key.curves.is_empty() || key.weights.is_some() || key.strength.is_some() => {
+                return refuse(
+                    "has a `frame`, so it takes no `curves`, no `weights` and no `strength`: those are for keys with a \
+                     `time`",
+                );
+            }
             (None, Some(frame)) => check_span(place, frame, key.span)?,
+        }
+        if let Some(strength) = key.strength {
+            let place = format!("keys[{place}].strength");
+            strength_kind().check(strength).map_err(|error| error.under(&place))?;
+        }
+        let weights = key.weights.iter().flatten().flatten();
+        if let Some(weight) = weights
+            .copied()
+            .find(|weight| !(-LARGEST_WEIGHT..=LARGEST_WEIGHT).contains(weight))
+        {
+            return Err(EditError::OutOfRange {
+                place: format!("keys[{place}].weights"),
+                found: weight.to_string(),
+                allowed: format!("numbers from -{LARGEST_WEIGHT} to {LARGEST_WEIGHT}, or null"),
+            });
         }
         if key.time.is_some() != keys[0].time.is_some() {
             return refuse("differs from the others: give all keys a `time`, or all of them a `frame`");

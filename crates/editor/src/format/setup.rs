@@ -14,7 +14,7 @@ use super::pivoted::with_pivot;
 use super::pose::Limbs;
 use super::selector::Selector;
 use crate::bending::{Kept, Targets};
-use crate::document::{Document, HandleId, HandleLine, attachment_part};
+use crate::document::{Document, HandleCurve, HandleId, HandleLine, attachment_part};
 use crate::lines::Lines;
 use crate::region::Region;
 use crate::warning::{shortened, worded};
@@ -192,9 +192,30 @@ impl Setup {
         self.handles.iter().map(|handle| handle.free_along).collect()
     }
 
-    /// The targets at the end of the motion, with other maps of the handles.
-    pub(crate) fn targets_of(&self, handles: Vec<DAffine3>) -> Targets {
-        Targets::new(handles, self.attachment()).along(&self.lines, self.line_share)
+    /// The targets with these maps of the handles, weights of the examples, if there are others, and curves by the
+    /// handles' numbers; `share` is that of the lines, the control points and the weights that is made.
+    pub(crate) fn targets_with(
+        &self,
+        handles: Vec<DAffine3>,
+        weights: Option<Vec<Option<f64>>>,
+        curves: &[(usize, HandleCurve)],
+        share: f64,
+    ) -> Targets {
+        let mut attachment = self.attachment().cloned();
+        let mut part = share;
+        if let (Some(weights), Some(Attachment::Shapes(examples))) = (weights, &mut attachment) {
+            examples.weights = weights;
+            // The edit's own weights are that share already.
+            part *= self.line_share;
+        }
+        let attachment = attachment.map(|own| attachment_part(&self.method, &own, part));
+        let targets = Targets::new(handles, attachment.as_ref());
+        let of_handle = |handle: usize| curves.iter().find(|(own, _)| *own == handle).map(|(_, curve)| curve);
+        let lines = match curves.is_empty() {
+            true => self.lines.clone(),
+            false => self.lines.moved(of_handle),
+        };
+        targets.along(&lines, self.line_share * share)
     }
 
     /// The handles' maps at the share `t` of the motion, 0 at rest and 1 at their targets.
@@ -302,7 +323,7 @@ impl EditFile {
             let pivot = entry.transform.pivot_or(middle);
             handles.push(HandleSetup {
                 name: entry.name.clone(),
-                transform: entry.transform.part(self.strength, pivot),
+                transform: entry.transform.part(self.part_before_keys(), pivot),
                 pivot,
                 free_along: entry.free_along,
             });
@@ -315,7 +336,7 @@ impl EditFile {
             roles,
             handles,
             lines,
-            line_share: self.strength,
+            line_share: self.part_before_keys(),
             stiffness,
             soft: self.handles.iter().map(HandleEntry::softness).collect(),
             continuity,
@@ -335,7 +356,7 @@ impl EditFile {
         let attachments = entries.map(|(name, entry)| {
             let attachment = on_model(name, entry, model)?;
             let attachment = match declared.attachment(name) {
-                Some(_) => attachment_part(&self.method, &attachment, self.strength),
+                Some(_) => attachment_part(&self.method, &attachment, self.part_before_keys()),
                 None => attachment,
             };
             Ok((*name, attachment))

@@ -3,6 +3,7 @@
 mod filter;
 mod interpolation;
 mod motion;
+mod numbers;
 mod posed;
 mod span;
 mod spline;
@@ -10,6 +11,8 @@ mod track;
 
 pub(crate) use self::filter::quick_motions;
 pub use self::motion::Timeline;
+pub(crate) use self::motion::values_of;
+pub(crate) use self::numbers::{NumberTrack, Values};
 pub(crate) use self::posed::poses_at;
 pub use self::span::{HandlePlace, KeySpace, SequenceTimeline};
 pub(crate) use self::span::{Span, SpanKey};

@@ -39,6 +39,17 @@ impl KeyRates {
         rate * self.allowed(size(first), size(second), size(rate))
     }
 
+    /// The rate of a number that never leaves the range of its neighbours: at the lowest and the highest key it is 0. A
+    /// number that is none has the rate 0.
+    pub(super) fn of_number(&self, before: f64, own: f64, after: f64) -> f64 {
+        let (first, second) = (own - before, after - own);
+        let rate = first * self.weights[0] + second * self.weights[1];
+        match first * second > 0.0 && rate.is_finite() {
+            true => rate * self.allowed(first.abs(), second.abs(), rate.abs()),
+            false => 0.0,
+        }
+    }
+
     /// The share of a rate that the steps to both neighbours allow.
     fn allowed(&self, first: f64, second: f64, rate: f64) -> f64 {
         let most = MOST_RATE * (first / self.spans[0]).min(second / self.spans[1]);

@@ -154,7 +154,7 @@ pub fn stage_animation(
     }
     animation.frames.check(&frames)?;
     let start = Instant::now();
-    let moving = match is_at_rest(edit) {
+    let moving = match is_at_rest(edit, &timeline) {
         true => None,
         false => Some(prepare(job.file, model, &setup, job.budget, watch)?),
     };
@@ -224,9 +224,14 @@ fn frame_count(duration: f64, fps: f64) -> Result<usize, EngineError> {
 }
 
 /// Returns true if no frame moves anything.
-fn is_at_rest(edit: &EditFile) -> bool {
+fn is_at_rest(edit: &EditFile, timeline: &Timeline) -> bool {
     let mut keyed = edit.keys.iter().flat_map(|key| key.handles.values());
-    edit.changes_nothing() && (edit.strength == 0.0 || keyed.all(pliant_editor::HandleTransform::is_identity))
+    let is_keyed = edit.keys.iter().any(|key| key.strength.is_some());
+    let moves = !keyed.all(pliant_editor::HandleTransform::is_identity) || !timeline.keeps_curves_and_weights();
+    match edit.strength == 0.0 && !is_keyed {
+        true => edit.changes_nothing(),
+        false => edit.changes_nothing_in_full() && !moves,
+    }
 }
 
 /// An animation that is being written.

@@ -26,7 +26,7 @@ pub(super) fn appended(files: [&Loaded; 2], output: &Path) -> Result<Made, Engin
     let mut warnings = Vec::new();
     for file in files {
         warnings.extend(file.scene.notes().iter().cloned());
-        warnings.extend(lost(file, output)?);
+        warnings.extend(lost(file, &dressed, output)?);
     }
     Ok(Made {
         shape,

@@ -58,8 +58,8 @@ pub fn cut(job: &Cut<'_>, watch: &Watch, staging: &Staging) -> Result<Stitched, 
         CutAlong::Plane(plane, keep) => CutBy::Plane(plane, keep),
     };
     let CutFile { made, left, gone } = cut_file(&loaded, by, output, report, watch)?;
-    let written = job.remaking.stage(
-        (&made.shape, &made.dressed),
+    let stitched = job.remaking.stage(
+        &made,
         |warnings| {
             json!({
                 "vertices_deleted": loaded.model.drawn.file_vertex_count() - left.vertices,
@@ -71,17 +71,10 @@ pub fn cut(job: &Cut<'_>, watch: &Watch, staging: &Staging) -> Result<Stitched, 
                 "warnings": warnings,
             })
         },
-        made.warnings,
         staging,
         watch,
     )?;
-    Ok(Stitched {
-        staged: written.staged,
-        done: made.done,
-        report: written.report,
-        warnings: written.warnings,
-        loaded: vec![loaded],
-    })
+    Ok(stitched.from(vec![loaded]))
 }
 
 /// The line along which a surface is cut.
@@ -123,7 +116,7 @@ pub(super) fn cut_file(
     let broken = loaded.model.findings.non_finite_triangles.count;
     let gone = drawn.triangles.len() - broken - left.whole - left.split;
     let mut warnings = loaded.scene.notes().to_vec();
-    warnings.extend(lost(loaded, output)?);
+    warnings.extend(lost(loaded, &dressed, output)?);
     let after = report.wanted(|| judged(&shape, dressed.triangles(), change_of(&shape), watch))?;
     let split = match left.split {
         0 => String::new(),

@@ -52,8 +52,8 @@ pub fn fill(job: &Fill<'_>, watch: &Watch, staging: &Staging) -> Result<Stitched
             "faired": hole.is_faired,
         })
     };
-    let written = job.remaking.stage(
-        (&made.shape, &made.dressed),
+    let stitched = job.remaking.stage(
+        &made,
         |warnings| {
             json!({
                 "holes_filled": filled.holes.len(),
@@ -70,17 +70,10 @@ pub fn fill(job: &Fill<'_>, watch: &Watch, staging: &Staging) -> Result<Stitched
                 "warnings": warnings,
             })
         },
-        made.warnings,
         staging,
         watch,
     )?;
-    Ok(Stitched {
-        staged: written.staged,
-        done: made.done,
-        report: written.report,
-        warnings: written.warnings,
-        loaded: vec![loaded],
-    })
+    Ok(stitched.from(vec![loaded]))
 }
 
 /// A file with filled holes.
@@ -120,7 +113,7 @@ pub(super) fn filled(
             "{holes} filled without fairing: the equations there could not be solved"
         ));
     }
-    warnings.extend(lost(loaded, output)?);
+    warnings.extend(lost(loaded, &dressed, output)?);
     let after = report.wanted(|| judged(&shape, dressed.triangles(), change_of(&shape), watch))?;
     if let Some((_, crossings)) = after.filter(|(_, crossings)| *crossings > 0) {
         let places = counted(crossings, "place", "places");

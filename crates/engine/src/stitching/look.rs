@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use glam::{DVec3, Vec3};
-use pliant_io::{Appearance, Group, Image, Material, OriginalMaterial, Polygons, UnsavedShape};
+use pliant_io::{Appearance, Group, Image, Material, ObjNames, OriginalMaterial, Placement, Polygons, UnsavedShape};
 use pliant_mesh::{Drawn, DrawnVertex, Model, vertex_normals};
 use pliant_stitch::{Age, Attributes, NewShape, Part, VertexSource};
 
@@ -177,6 +177,7 @@ impl Dressed {
             .map(|&place| shape.triangle_sources[place as usize])
             .collect();
         dress_vertices(&mut appearance, shape, sources, channels);
+        appearance.obj = obj_names(sources);
         let polygons = polygons(shape, sources);
         Self {
             triangles: std::mem::take(&mut shape.triangles),
@@ -185,22 +186,53 @@ impl Dressed {
         }
     }
 
-    /// The shape to write.
-    pub fn unsaved<'a>(&'a self, shape: &'a NewShape) -> UnsavedShape<'a> {
+    /// The shape to write, at a place relative to the first source.
+    pub fn unsaved<'a>(&'a self, shape: &'a NewShape, place: Placement) -> UnsavedShape<'a> {
+        let mut appearance = self.appearance.clone();
+        if let Some(names) = &mut appearance.obj {
+            // In the same folder, everything that the libraries name is there.
+            names.names_other_maps &= place == Placement::OtherFolder;
+        }
         UnsavedShape {
             positions: &shape.positions,
             triangles: &self.triangles,
             polygons: self.polygons.clone(),
             file_vertex: &shape.file_vertices,
             file_vertex_count: shape.file_vertex_count,
-            appearance: self.appearance.clone(),
+            appearance,
         }
+    }
+
+    /// Whether a new OBJ gets the libraries and names of its sources.
+    pub fn has_obj_names(&self) -> bool {
+        self.appearance.obj.is_some()
     }
 
     /// Its triangles.
     pub fn triangles(&self) -> &[[DrawnVertex; 3]] {
         &self.triangles
     }
+}
+
+/// The names of OBJ sources, if all are such files and no name gets another meaning.
+fn obj_names(sources: &[Source<'_>]) -> Option<ObjNames> {
+    let mut all: Option<ObjNames> = None;
+    let mut used: Vec<&str> = Vec::new();
+    for source in sources {
+        let look = &source.look;
+        let own = look.obj.as_ref()?;
+        let names: Vec<&str> = look
+            .groups
+            .iter()
+            .map(|group| &*look.materials[group.material].name)
+            .collect();
+        all = Some(match all {
+            None => own.clone(),
+            Some(all) => all.joined(&used, own, &names)?,
+        });
+        used.extend(names);
+    }
+    all
 }
 
 /// Adds a source's groups, materials and images; those that are there already are not doubled.

@@ -80,8 +80,8 @@ pub fn merge(job: &Merge<'_>, watch: &Watch, staging: &Staging) -> Result<Stitch
             "gap_mean": seam.gap[0], "gap_max": seam.gap[1],
         })
     };
-    let written = job.remaking.stage(
-        (&made.shape, &made.dressed),
+    let stitched = job.remaking.stage(
+        &made,
         |warnings| {
             json!({
                 "method": joins.method.name(),
@@ -99,17 +99,10 @@ pub fn merge(job: &Merge<'_>, watch: &Watch, staging: &Staging) -> Result<Stitch
                 "warnings": warnings,
             })
         },
-        made.warnings,
         staging,
         watch,
     )?;
-    Ok(Stitched {
-        staged: written.staged,
-        done: made.done,
-        report: written.report,
-        warnings: written.warnings,
-        loaded: loaded.into(),
-    })
+    Ok(stitched.from(loaded.into()))
 }
 
 /// Two files that were joined.
@@ -196,7 +189,7 @@ pub(super) fn merged(
     let mut warnings = Vec::new();
     for side in 0..2 {
         warnings.extend(files[side].scene.notes().iter().cloned());
-        warnings.extend(lost(files[side], output)?);
+        warnings.extend(lost(files[side], &dressed, output)?);
         let turned = prepared[side].turned_parts;
         if turned > 0 {
             let parts = counted(turned, "part of", "parts of");

@@ -18,6 +18,7 @@ use pliant_stitch::{Age, NewShape};
 use serde_json::Value;
 
 use crate::EngineError;
+use crate::files::placement::placement;
 use crate::files::{self, Destination, NewFile, Staged, Staging};
 use crate::loading::{Loaded, check_not_empty, load};
 use crate::saving;
@@ -111,6 +112,11 @@ pub struct Stitched {
 }
 
 impl Stitched {
+    /// The same with the files that were read for it.
+    fn from(self, loaded: Vec<Loaded>) -> Self {
+        Self { loaded, ..self }
+    }
+
     /// Commits the files after those of `first`: originals that are kept.
     ///
     /// # Errors
@@ -172,21 +178,21 @@ impl Remaking<'_> {
         watch.refuse_outputs(&outputs, Some(file))
     }
 
-    /// Writes a dressed shape and the report beside their places.
+    /// Writes a shape and the report beside their places. `report` makes the report's members from the warnings.
     fn stage(
         &self,
-        (shape, dressed): (&NewShape, &Dressed),
+        made: &Made,
         report: impl FnOnce(&[String]) -> Value,
-        mut warnings: Vec<String>,
         staging: &Staging,
         watch: &Watch,
-    ) -> Result<Written, EngineError> {
+    ) -> Result<Stitched, EngineError> {
         let progress = watch.begin("saving");
         let report_to = self.report.file().map(Destination::of).transpose()?;
         let beside = report_to.as_ref().map(|to| ("--report", to));
-        let unsaved = dressed.unsaved(shape);
+        let place = placement(self.file, &Destination::of(self.output)?);
+        let unsaved = made.dressed.unsaved(&made.shape, place);
         let saved = saving::stage_new(&unsaved, self.output, beside, staging, &progress, &watch.cancel)?;
-        warnings.extend(saved.warnings);
+        let warnings: Vec<String> = made.warnings.iter().cloned().chain(saved.warnings).collect();
         let mut staged = saved.staged;
         let report = self.report.wanted(|| Ok::<_, EngineError>(report(&warnings)))?;
         if let Some((to, report)) = report_to.zip(report.as_ref()) {
@@ -201,8 +207,10 @@ impl Remaking<'_> {
         if watch.cancel.is_cancelled() {
             return Err(EngineError::Interrupted);
         }
-        Ok(Written {
+        Ok(Stitched {
+            loaded: Vec::new(),
             staged,
+            done: made.done.clone(),
             report,
             warnings,
         })
@@ -229,13 +237,6 @@ fn change_of(shape: &NewShape) -> impl Fn(usize) -> Change {
     }
 }
 
-/// The files of a new shape, beside their places.
-struct Written {
-    staged: Staged,
-    report: Option<Value>,
-    warnings: Vec<String>,
-}
-
 /// A flag for each welded vertex of a model: whether it is selected.
 fn flags(selection: &Selection, model: &Model) -> Vec<bool> {
     let mut flags = vec![false; model.surface.positions.len()];
@@ -255,9 +256,10 @@ fn refused(file: &Path, error: pliant_stitch::StitchError) -> EngineError {
 }
 
 /// The sentences about the parts of a file that a new shape loses.
-fn lost(loaded: &Loaded, output: &Path) -> Result<Vec<String>, EngineError> {
+fn lost(loaded: &Loaded, dressed: &Dressed, output: &Path) -> Result<Vec<String>, EngineError> {
     let format = pliant_io::Format::of_name(&output.to_string_lossy())?;
-    let mut sentences = loaded.scene.lost_in_new_shape(format);
+    let has_own_names = format == pliant_io::Format::Obj && dressed.has_obj_names();
+    let mut sentences = loaded.scene.lost_in_new_shape(format, has_own_names);
     let broken = loaded.model.findings.non_finite_triangles.count;
     if broken > 0 {
         let triangles = counted(broken, "triangle", "triangles");

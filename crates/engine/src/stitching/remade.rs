@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 use pliant_editor::{CutPlane, KeptSide, MergeChange, MeshChange};
+use pliant_io::{Placement, Saved};
 use pliant_mesh::{Progress, SurfaceVertex};
 use pliant_stitch::{Holes, Joins, Keep, NewShape, Pair, Plane, VertexSource};
 
@@ -17,7 +18,9 @@ use super::merge::{merged, placement};
 use super::prepared::Prepared;
 use super::{Made, ReportTo, refused};
 use crate::EngineError;
+use crate::files::holds;
 use crate::loading::{Loaded, check_not_empty, load_saved};
+use crate::path_text::{folder_of, neighbour_path};
 use crate::saving::{SaveAs, in_memory, new_in_memory};
 use crate::watch::Watch;
 
@@ -172,12 +175,20 @@ fn ways(present: &Present<'_>, shape: &NewShape) -> Vec<DVec3> {
 /// The file of a new shape, written in memory and read again.
 fn in_memory_again(present: &Present<'_>, made: &Made, path: PathBuf, watch: &Watch) -> Result<Loaded, EngineError> {
     let progress = watch.begin("making the new shape");
-    let unsaved = made.dressed.unsaved(&made.shape);
-    let saved = new_in_memory(&unsaved, &path, &progress, &watch.cancel)?;
-    // Neighbours would have to be on a disk: a GLB has everything in itself.
-    let (saved, path) = match saved.files.len() {
-        1 => (saved, path),
-        _ => {
+    let unsaved = made.dressed.unsaved(&made.shape, Placement::SameFile);
+    let mut saved = new_in_memory(&unsaved, &path, &progress, &watch.cancel)?;
+    let are_there = |saved: &Saved| {
+        let mut neighbours = saved.files.iter().skip(1);
+        neighbours.all(|file| holds(&neighbour_path(folder_of(&path), &file.name), &file.bytes))
+    };
+    // Other neighbours than those on the disk would have to be written: a GLB has everything in itself.
+    let (saved, path) = match are_there(&saved) {
+        // They are read from there.
+        true => {
+            saved.files.truncate(1);
+            (saved, path)
+        }
+        false => {
             let alone = path.with_extension("glb");
             (new_in_memory(&unsaved, &alone, &progress, &watch.cancel)?, alone)
         }

@@ -4,4 +4,5 @@
 mod files;
 mod made;
 mod materials;
+mod obj_names;
 mod stopped;

@@ -1,12 +1,14 @@
 //! The appearance of a scene: attributes of the drawn vertices, materials and images.
 
 pub(crate) mod colour;
+mod obj_names;
 pub(crate) mod original;
 mod uv_set;
 
 use std::ops::Range;
 
 use crate::Bytes;
+pub use obj_names::ObjNames;
 pub use original::OriginalMaterial;
 pub use uv_set::UvSet;
 
@@ -32,6 +34,8 @@ pub struct Appearance {
     pub materials: Vec<Material>,
     /// Images; every material's index is in range.
     pub images: Vec<Image>,
+    /// The names that a new OBJ file gets again; `None` for files of other formats, and if nobody asked for them.
+    pub obj: Option<ObjNames>,
 }
 
 impl Appearance {

@@ -30,7 +30,7 @@ use crate::save::moved::Moved;
 use crate::source::Source;
 use crate::summary::Summary;
 use crate::text::line_of;
-use crate::{Appearance, ReadError, SaveError, objects};
+use crate::{Appearance, ObjNames, ReadError, SaveError, objects};
 use materials::Materials;
 use statements::{NONE, Statements};
 
@@ -95,7 +95,7 @@ fn groups(statements: &Statements, corners: &corners::Corners, materials: &mut M
         .map(|(run, (&start, end))| Group {
             triangles: start..end,
             material: run.material.unwrap_or(plain),
-            node_name: run.object.clone(),
+            node_name: run.object().to_owned(),
         })
         .collect()
 }
@@ -211,7 +211,29 @@ impl Stored {
             groups: self.groups.clone(),
             materials: self.materials.materials.clone(),
             images: self.materials.images.clone(),
+            obj: None,
         }
+    }
+
+    /// The same with the names that a new OBJ file gets again.
+    pub(crate) fn appearance_with_names(&self) -> Appearance {
+        let smoothing = &self.statements.smoothing;
+        let is_one_group = !smoothing.has_several && !smoothing.has_flat;
+        Appearance {
+            obj: Some(ObjNames {
+                groups: self.statements.runs.iter().map(|run| run.names.clone()).collect(),
+                smoothing: smoothing.group.clone().filter(|_| is_one_group),
+                ..materials::names_of(&self.materials)
+            }),
+            ..self.appearance()
+        }
+    }
+
+    /// A sentence about the smoothing groups that a new shape does not have.
+    pub(crate) fn smoothing_lost(&self) -> Option<String> {
+        let smoothing = &self.statements.smoothing;
+        let is_divided = smoothing.has_several || (smoothing.has_flat && smoothing.group.is_some());
+        is_divided.then(|| "The new shape leaves out smoothing groups ('s'): keep the .obj for them.".to_owned())
     }
 
     /// Colours after the positions: sRGB from 0 to 1, or to 255 if one is larger than 1.
@@ -238,7 +260,7 @@ impl Stored {
 
     /// The libraries and textures that a copy in another folder needs beside it, and warnings.
     pub(crate) fn neighbours(&self) -> (Vec<OutputFile>, Vec<String>) {
-        materials::neighbours(&self.materials)
+        materials::neighbours(&materials::names_of(&self.materials))
     }
 
     /// A warning that names the parts of the materials that a file of another format does not have.

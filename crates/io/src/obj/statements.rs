@@ -34,8 +34,16 @@ pub(super) struct Run {
     pub(super) first_face: usize,
     /// Index into [`Statements::material_names`].
     pub(super) material: Option<usize>,
+    /// The `o` and the `g` name; empty where there is none.
+    pub(super) names: [String; 2],
+}
+
+impl Run {
     /// The `o` name, or else the `g` name; empty if there is neither.
-    pub(super) object: String,
+    pub(super) fn object(&self) -> &str {
+        let [object, group] = &self.names;
+        if object.is_empty() { group } else { object }
+    }
 }
 
 /// The statements of an OBJ file, in the order of its lines.
@@ -72,7 +80,7 @@ pub(super) struct Smoothing {
     /// True if some faces are flat.
     pub(super) has_flat: bool,
     /// The first group.
-    group: Option<String>,
+    pub(super) group: Option<String>,
     /// True if there are several groups, between which edges are hard.
     pub(super) has_several: bool,
     /// Whether each face is flat, up to the last flat one.
@@ -297,15 +305,10 @@ impl<'a> Reader<'a> {
             return Ok(());
         }
         if !self.run_is_open {
-            let object = if self.object.is_empty() {
-                &self.group
-            } else {
-                &self.object
-            };
             let run = Run {
                 first_face: self.found.face_ends.len(),
                 material: self.material,
-                object: object.clone(),
+                names: [self.object.clone(), self.group.clone()],
             };
             self.found.runs.push(run);
             self.run_is_open = true;

@@ -11,18 +11,22 @@ use crate::convert::NewMesh;
 use crate::convert::faces::{for_each_face, lost, lost_where, merged};
 use crate::gltf::{FROM_OUTSIDE, NO_IMAGE};
 use crate::images::decodes;
+use crate::obj::materials::neighbours;
 use crate::quote::quoted;
 use crate::save::colours::unit;
 use crate::save::course::Course;
 use crate::save::{OutputFile, Role, Saved, own_stem};
 use crate::text::{push_f32, push_f64};
-use crate::{Appearance, SaveError};
+use crate::{Appearance, ObjNames, SaveError};
 
 /// Writes a mesh as OBJ: a `v` line (with its colour) per vertex, a `vt` and a `vn` line per drawn vertex (vertices
 /// that a texture seam or a hard edge split are merged again), and its faces by object and material.
 pub(crate) fn write_new(mesh: &NewMesh<'_>, course: &Course<'_>) -> Result<Saved, SaveError> {
     let look = &mesh.appearance;
     let stem = &own_stem(mesh.name);
+    if let Some(own) = &look.obj {
+        return write_again(mesh, own, course);
+    }
     let has_materials = look.materials.iter().any(|material| !is_plain(material));
     let names = material_names(look);
     let mut out = Vec::new();
@@ -54,6 +58,27 @@ pub(crate) fn write_new(mesh: &NewMesh<'_>, course: &Course<'_>) -> Result<Saved
         }
     }
     saved.warnings.extend(left_out(look));
+    Ok(saved)
+}
+
+/// The same with the libraries, names and groups of the OBJ files that the mesh is made of.
+fn write_again(mesh: &NewMesh<'_>, own: &ObjNames, course: &Course<'_>) -> Result<Saved, SaveError> {
+    let mut out = Vec::new();
+    for (path, _) in &own.libraries {
+        push_line(&mut out, &["mtllib ", path]);
+    }
+    let (of_vertices, of_faces) = course.split(0.6);
+    let (vertices, number) = merged(mesh);
+    push_vertices(&mut out, mesh, &vertices, &of_vertices)?;
+    if let Some(group) = &own.smoothing {
+        push_line(&mut out, &["s ", group]);
+    }
+    let materials = mesh.appearance.materials.iter();
+    let names: Vec<String> = materials.map(|material| material.name.clone()).collect();
+    push_faces(&mut out, mesh, &number, Some(&names), &of_faces)?;
+    let (neighbours, warnings) = neighbours(own);
+    let mut saved = Saved::alone(mesh.name, out, warnings);
+    saved.files.extend(neighbours);
     Ok(saved)
 }
 
@@ -147,8 +172,9 @@ fn push_faces(
     material_names: Option<&[String]>,
     course: &Course<'_>,
 ) -> Result<(), Cancelled> {
-    let mut groups = mesh.appearance.groups.iter().peekable();
-    let (mut object, mut material) = (String::new(), None);
+    let mut groups = (0..).zip(&mesh.appearance.groups).peekable();
+    let names_again = mesh.appearance.obj.as_ref();
+    let (mut object, mut group_name, mut material) = (String::new(), String::new(), None);
     let count = mesh.positions.len() as u32;
     if matches!(&mesh.appearance.flat[..], [whole] if *whole == (0..count)) {
         push_line(out, &["s off"]);
@@ -156,16 +182,22 @@ fn push_faces(
     let (has_uvs, has_normals) = (mesh.appearance.uvs.is_some(), mesh.appearance.normals.is_some());
     let (mut number, mut own) = (Vec::new(), Vec::new());
     for_each_face(mesh, course, |corners, triangle| {
-        while let Some(group) = groups.next_if(|group| group.triangles.start as usize <= triangle) {
+        while let Some((place, group)) = groups.next_if(|(_, group)| group.triangles.start as usize <= triangle) {
             if group.triangles.is_empty() {
                 continue;
             }
-            if group.node_name != object {
-                push_line(out, &["o ", &one_line(&group.node_name)]);
-                object.clone_from(&group.node_name);
+            let names: Option<&[String; 2]> = names_again.and_then(|again| again.groups.get(place));
+            let [own_object, own_group] =
+                names.map_or([&*group.node_name, ""], |names| names.each_ref().map(|name| &**name));
+            for (keyword, name, present) in [("o ", own_object, &mut object), ("g ", own_group, &mut group_name)] {
+                if name != present {
+                    push_line(out, &[keyword, &one_line(name)]);
+                    name.clone_into(present);
+                }
             }
             if let Some(names) = material_names
                 && material != Some(group.material)
+                && !names[group.material].is_empty()
             {
                 push_line(out, &["usemtl ", &names[group.material]]);
                 material = Some(group.material);

@@ -110,6 +110,7 @@ impl Stored {
         let unit = |normal: [f32; 3]| glam::Vec3::from(normal).normalize_or_zero().to_array();
         let are_any_set = self.normals.iter().any(|normal| *normal != [0.0; 3]);
         Appearance {
+            obj: None,
             normals: are_any_set.then(|| self.of_drawn(&self.normals).map(unit).collect()),
             uvs: (!self.uvs.is_empty()).then(|| self.uvs.iter().map(|&[u, v]| [u, 1.0 - v]).collect()),
             second_uvs: None,

@@ -255,11 +255,12 @@ impl Scene {
         }
     }
 
-    /// The same, with each material of a glTF as the file has it, so that [`UnsavedShape`](crate::UnsavedShape) writes
-    /// all of it to a new glTF.
+    /// The same, with each material of a glTF and the names of an OBJ as the file has them, so that
+    /// [`UnsavedShape`](crate::UnsavedShape) writes all of it to a new file of the same kind.
     pub fn appearance_with_originals(&self) -> Appearance {
         match &self.stored {
             Stored::Gltf(stored) => stored.appearance_with_originals(),
+            Stored::Obj(stored) => stored.appearance_with_names(),
             _ => self.appearance(),
         }
     }
@@ -533,8 +534,8 @@ impl Scene {
 
     /// Sentences about the data of this file that a new file of the format can't have when vertices and triangles
     /// differ from the file's: skins, animations, morph targets, data that only this file's format names. The file is
-    /// made with [`Self::appearance_with_originals`].
-    pub fn lost_in_new_shape(&self, format: Format) -> Vec<String> {
+    /// made with [`Self::appearance_with_originals`]; `has_own_names` says whether an OBJ keeps its libraries.
+    pub fn lost_in_new_shape(&self, format: Format, has_own_names: bool) -> Vec<String> {
         let summary = self.summary();
         let motion = [
             ("skins", summary.skins > 0),
@@ -565,10 +566,14 @@ impl Scene {
             _ => self.unread_lost(format),
         };
         let materials = match &self.stored {
-            Stored::Obj(stored) => stored.materials_lost(&format.to_string()),
+            Stored::Obj(stored) if !has_own_names => stored.materials_lost(&format.to_string()),
             _ => None,
         };
-        [motion, unread, materials].into_iter().flatten().collect()
+        let smoothing = match &self.stored {
+            Stored::Obj(stored) => stored.smoothing_lost(),
+            _ => None,
+        };
+        [motion, unread, materials, smoothing].into_iter().flatten().collect()
     }
 
     /// A warning about parts of the file that other formats do not get.

@@ -154,7 +154,7 @@ fn data_that_the_new_file_lacks_is_named() {
     let mut material = rich(reference);
     material["extensions"]["ACME_lacquer"] = json!({ "recipe": 4 });
     let mut maker = file(&material);
-    let named = |maker: &Maker, format: Format| open(&maker.glb()).scene.lost_in_new_shape(format).join(" ");
+    let named = |maker: &Maker, format: Format| open(&maker.glb()).scene.lost_in_new_shape(format, false).join(" ");
     maker.root["meshes"][0]["primitives"][0]["attributes"]
         .as_object_mut()
         .unwrap()

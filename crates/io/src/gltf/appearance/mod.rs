@@ -26,6 +26,7 @@ const CHUNK: usize = 1 << 14;
 /// The appearance of the drawn set that `pieces` describe.
 pub(crate) fn appearance(document: &Document, meshes: &[Vec<Primitive>], pieces: &Pieces) -> Appearance {
     let mut out = Appearance {
+        obj: None,
         normals: gather(pieces, [0.0; 3], |instance| {
             let normals = normals(document, instance, primitive(meshes, instance))?;
             let in_world = in_world(instance, &normals);

@@ -20,7 +20,7 @@ use crate::text::excerpt;
 use library::{image_names, parse, set_base_colour};
 use names::texture_file;
 pub(super) use names::{as_uri, behind_options, folder_of, join};
-pub(super) use neighbours::{neighbours, unread_lost};
+pub(super) use neighbours::{names_of, neighbours, unread_lost};
 
 /// One material for each name, in order, and the images they use.
 #[derive(Debug, Default)]

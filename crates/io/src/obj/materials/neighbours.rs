@@ -4,22 +4,34 @@ use super::Materials;
 use super::library::is_other_map;
 use crate::save::{OutputFile, Role};
 use crate::text::excerpt;
+use crate::{Bytes, ObjNames};
+
+/// The libraries and textures of materials; without groups.
+pub(in crate::obj) fn names_of(materials: &Materials) -> ObjNames {
+    let images = materials.image_paths.iter().zip(&materials.images);
+    ObjNames {
+        libraries: materials.libraries.clone(),
+        textures: images
+            .map(|(path, image)| (path.clone(), image.encoded.clone()))
+            .collect(),
+        names_other_maps: materials.unread.iter().any(|keyword| is_other_map(keyword)),
+        ..ObjNames::default()
+    }
+}
 
 /// The libraries and textures that an OBJ file in another folder needs beside it, and warnings about those that are not
 /// copied.
-pub(in crate::obj) fn neighbours(materials: &Materials) -> (Vec<OutputFile>, Vec<String>) {
+pub(in crate::obj) fn neighbours(names: &ObjNames) -> (Vec<OutputFile>, Vec<String>) {
     let (mut files, mut warnings): (Vec<OutputFile>, Vec<String>) = (Vec::new(), Vec::new());
-    let libraries = materials.libraries.iter();
-    let libraries = libraries.map(|(path, bytes)| (Role::Library, path, &**bytes));
-    let images = materials.image_paths.iter().zip(&materials.images);
-    let images = images.map(|(path, image)| (Role::Image, path, &*image.encoded));
-    for (role, path, bytes) in libraries.chain(images) {
-        if files.iter().any(|file| file.name == *path) {
+    let of_role = |role| move |(path, bytes): &'_ (String, Bytes)| (role, path.clone(), bytes.clone());
+    let libraries = names.libraries.iter().map(of_role(Role::Library));
+    for (role, path, bytes) in libraries.chain(names.textures.iter().map(of_role(Role::Image))) {
+        if files.iter().any(|file| file.name == path) {
             continue;
         }
-        if is_inside(path) {
+        if is_inside(&path) {
             files.push(OutputFile {
-                name: path.clone(),
+                name: path,
                 role,
                 bytes: bytes.to_vec(),
             });
@@ -30,7 +42,7 @@ pub(in crate::obj) fn neighbours(materials: &Materials) -> (Vec<OutputFile>, Vec
             ));
         }
     }
-    if materials.unread.iter().any(|keyword| is_other_map(keyword)) {
+    if names.names_other_maps {
         let warning = "Maps other than the base colour's stay in the old folder: copy them yourself.";
         warnings.push(warning.to_owned());
     }
